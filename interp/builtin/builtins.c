@@ -14,6 +14,7 @@
 #include "base/hash.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/signature.h"
 
 // All families, in the order in which the documentation lists them.
 // clang-format off
@@ -106,75 +107,6 @@ static pthread_mutex_t table_mutex = PTHREAD_MUTEX_INITIALIZER;
 
 static void *take(size_t n, size_t size) { return cag_arena_alloc(&table_arena, n * size); }
 
-static char *copy_text(const char *s, size_t n) {
-  char *copy = take(n + 1, 1);
-  memcpy(copy, s, n);
-  return copy;
-}
-
-// --- Signatures: name "(" parameter { "," parameter } [ "," "..." ] ")" ---
-
-static const char *skip_spaces(const char *s) {
-  while (*s == ' ' || *s == '\n') s++;
-  return s;
-}
-
-// The end of a parameter's text: the next `,` or `)` outside of brackets and texts.
-static const char *parameter_end(const char *s) {
-  int depth = 0;
-  bool quoted = false;
-  for (; *s; s++) {
-    if (*s == '"') quoted = !quoted;
-    if (quoted) continue;
-    if (depth == 0 && (*s == ',' || *s == ')')) break;
-    if (*s == '(' || *s == '[' || *s == '{') depth++;
-    else if (*s == ')' || *s == ']' || *s == '}') depth--;
-  }
-  return s;
-}
-
-static size_t trimmed(const char *s, const char *end) {
-  while (end > s && end[-1] == ' ') end--;
-  return (size_t)(end - s);
-}
-
-static void parse_parameter(CagSignature *out, const char *s, const char *end) {
-  if (strncmp(s, "...", 3) == 0) {
-    out->variadic = true;
-    return;
-  }
-  const char *equals = memchr(s, '=', (size_t)(end - s));
-  size_t n = trimmed(s, equals ? equals : end);
-  size_t i = out->count++;
-  out->parameters[i] = copy_text(s, n);
-  out->positional_only[i] = n == 1 && s[0] >= 'A' && s[0] <= 'Z';
-  if (!equals) {
-    out->required = i + 1;
-    return;
-  }
-  const char *value = skip_spaces(equals + 1);
-  out->defaults[i] = copy_text(value, trimmed(value, end));
-}
-
-static void parse_signature(CagSignature *out, const char *text) {
-  const char *open = strchr(text, '(');
-  out->name = open ? copy_text(text, (size_t)(open - text)) : text;
-  if (!open) return;
-  // No signature has more parameters than commas, and one.
-  size_t most = 1;
-  for (const char *s = open; *s; s++) most += *s == ',';
-  out->parameters = take(most, sizeof *out->parameters);
-  out->defaults = take(most, sizeof *out->defaults);
-  out->positional_only = take(most, sizeof *out->positional_only);
-  const char *s = skip_spaces(open + 1);
-  while (*s && *s != ')') {
-    const char *end = parameter_end(s);
-    parse_parameter(out, s, end);
-    if (*end == 0) break;
-    s = *end == ',' ? skip_spaces(end + 1) : end;
-  }
-}
-
 // --- Building ---
 
 static size_t find_name(const char *name) {
@@ -219,7 +151,7 @@ static void build_table(void *context) {
   size_t n = 0;
   for (size_t f = 0; f < FAMILY_COUNT; f++)
     for (const CagBuiltin *b = families[f]; b->signature; b++) {
-      parse_signature(&parsed[n], b->signature);
+      cag_signature_parse(&parsed[n], b->signature, &table_arena);
       all[n++] = b;
     }
   table.names = take(table.row_count, sizeof *table.names);
@@ -239,6 +171,7 @@ static void build_table(void *context) {
   for (size_t r = 0; r < table.row_count; r++) {
     size_t to = table.names[name_of[r]].first + filled[name_of[r]]++;
     table.rows[to] = *all[r];
+    table.rows[to].signature = parsed[r].text;
     table.signatures[to] = parsed[r];
   }
 }

@@ -556,7 +556,8 @@ static bool call_find_root(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_calculus[] = {
-    {"integrate(f, range)", call_integrate, "number or list",
+    {"integrate(f: function x => number, range: range of numbers or angles)", call_integrate,
+     "number or list",
      "The integral of a function that gives numbers or vectors, to about 11 digits; ends may be "
      "infinite. Over a range of angles f is called with angles, and the "
      "integral is by radians. f is not asked at the ends. An error where the integral does not "
@@ -564,18 +565,19 @@ const CagBuiltin cag_builtins_calculus[] = {
      "print near(integrate(x => x^2, 0..3), 9), near(integrate(x => exp(-x^2), -inf..inf), "
      "sqrt(pi)) // expect: true true",
      0, FAMILY},
-    {"minimize(f, range)", call_minimize, "list",
+    {"minimize(f: function x => number, range: range of numbers or angles)", call_minimize, "list",
      "[x, f(x)] at the least value of f over a finite range: of 129 samples the four lowest "
      "valleys are refined by Brent's method, so a valley narrower than a "
      "128th of the range may be missed. x is accurate to about 8 digits, as a minimum is.",
      "m = minimize(x => (x - 2)^2 + 1, 0..5)\nprint near(m, [2, 1], 1e-6) // expect: true", 0,
      FAMILY},
-    {"maximize(f, range)", call_maximize, "list",
+    {"maximize(f: function x => number, range: range of numbers or angles)", call_maximize, "list",
      "[x, f(x)] at the greatest value of f over a finite range, as minimize finds the least.",
      "m = maximize(a => sin(a), 0deg..180deg)\nprint near(m[0], 90deg, 1e-5), near(m[1], 1) // "
      "expect: true true",
      0, FAMILY},
-    {"find_root(f, range)", call_find_root, "number or angle",
+    {"find_root(f: function x => number, range: range of numbers or angles)", call_find_root,
+     "number or angle",
      "Where f is 0 in a range at whose ends it has different signs, to the accuracy of the numbers "
      "(Brent's method).",
      "print near(find_root(x => x^2 - 2, 0..2), sqrt(2)) // expect: true", 0, FAMILY},

@@ -28,16 +28,16 @@ static bool call_trace(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_control[] = {
-    {"error(message)", call_error, "none",
+    {"error(message: text)", call_error, "none",
      "Stops the script with this message, or the attempt around it.",
      "print attempt(() => error(\"no such size\"), err => err.message) // expect: no such size", 0,
      FAMILY},
-    {"attempt(f, handler)", call_attempt, "any",
+    {"attempt(f: function () => value, handler: function err => value)", call_attempt, "any",
      "f(), or handler(err) when f stops with an error. err is a record: message, code, reason, "
      "file, line, column. The limits of a run (memory, time, depth) "
      "pass through.",
      "print attempt(() => 1/0, err => err.code) // expect: E0307", 0, FAMILY},
-    {"trace(x, label = \"\")", call_trace, "as x",
+    {"trace(x: any value, label: text = \"\")", call_trace, "as x",
      "Writes x with its place in the script to standard error, and gives x.",
      "print trace(1 + 1, \"sum\") * 2 // expect: 4", 0, FAMILY},
     {0}};

@@ -103,7 +103,9 @@ bool cag_figures_surface_normals(CagCall *call, CagValue *result) {
 static const char figures[] = "Figures";
 
 const CagBuiltin cag_builtins_figures[] = {
-    {"label(P, text, place = \"right\", mark = \"none\", size = none, along = none)",
+    {"label(P: point, text: text, place: text = \"right\", "
+     "mark: \"none\" or \"dot\" or \"circle\" or \"cross\" or \"arrow\" = \"none\", "
+     "size: length = none, along: vector = none)",
      cag_figures_label, "mesh",
      "A text at P in an .svg picture; other pictures and formats leave it out, but .json has it. "
      "It "
@@ -116,7 +118,8 @@ const CagBuiltin cag_builtins_figures[] = {
      "show circle(10), label([10, 0], \"P_0\", mark: \"dot\")\n"
      "print bounds(translate([1, 2, 0]) * label([3, 4], \"Q\")).min // expect: [4, 6, 0]",
      CAG_TAKES(LIST), figures},
-    {"hedgehog(S, n = 12, scale = none)", cag_figures_surface_normals, "group",
+    {"hedgehog(S: surface, n: integer = 12, scale: number = none)", cag_figures_surface_normals,
+     "group",
      "The normals of a surface as lines at n by n points, of the length `scale` mm (none: by the "
      "size of S; negative: to the other side).",
      "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"

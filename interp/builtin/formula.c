@@ -358,7 +358,7 @@ static bool call_formula(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_formula[] = {
-    {"formula(text, parameters)", call_formula, "function",
+    {"formula(text: text, parameters: list of texts)", call_formula, "function",
      "The function of these parameters that a formula in text is: numbers, + - * / % ^, "
      "parentheses, pi, tau, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh "
      "exp ln "

@@ -293,7 +293,7 @@ static const char asked[] = "Curves: questions";
 static const char theory[] = "Curves: theory";
 
 const CagBuiltin cag_builtins_frenet[] = {
-    {"special_points(C)", call_special_points, "record",
+    {"special_points(C: curve)", call_special_points, "record",
      "The parameters where the curve stands still for a moment (singular: the first derivative is "
      "0), where its curvature is 0 (straightening) and where its torsion is 0 (flattening); a "
      "parameter is in the first of these lists that it belongs to. Pieces between knots and "
@@ -302,7 +302,7 @@ const CagBuiltin cag_builtins_frenet[] = {
      "s = special_points(curve(t => [t, t^3], -1..1))\n"
      "print near(s.straightening, [0], 1e-9), s.singular, s.planar // expect: true [] [-1..1]",
      CURVES, asked},
-    {"plane_contact(C, t, normal)", call_plane_contact, "record",
+    {"plane_contact(C: curve, t: number or angle, normal: vector)", call_plane_contact, "record",
      "How the curve meets the plane through C(t) with this normal: the coefficients [c1, c2, c3] "
      "of its signed distance c1 h + c2 h^2 + c3 h^3 + ... at t + h, the order of contact (0: it "
      "goes through at an angle, 1: it touches, 2: the osculating plane; inf: it lies in the "
@@ -311,50 +311,53 @@ const CagBuiltin cag_builtins_frenet[] = {
      "c = curve(t => [t, t^2, t^3], -1..1)\n"
      "print plane_contact(c, 0, Y).order, plane_contact(c, 0, Z).crosses // expect: 1 true",
      CURVES, asked},
-    {"osculating_circle(C, t)", call_osculating_circle, "record",
+    {"osculating_circle(C: curve, t: number or angle)", call_osculating_circle, "record",
      "The circle of curvature: radius, center, and the circle as a curve that starts at C(t) and "
      "runs along with C. Where the curvature is 0 there is none: an error (no-normal).",
      "print near(osculating_circle(ellipse(2, 1), 0deg).center, [1.5, 0]) // expect: true", CURVES,
      asked},
-    {"tangent_line(C, t, length = 1)", call_tangent_line, "curve",
+    {"tangent_line(C: curve, t: number or angle, length: length = 1)", call_tangent_line, "curve",
      "The line from C(t) along the tangent, of this length; a negative one runs backwards.",
      "print end_point(tangent_line(bezier([[0, 0], [1, 0], [2, 2]]), 0, 3)) // expect: [3, 0]",
      CURVES, asked},
-    {"frame_derivative(C, t)", call_frame_derivative, "record",
+    {"frame_derivative(C: curve, t: number or angle)", call_frame_derivative, "record",
      "How the Frenet frame turns: the derivatives of tangent, normal and binormal by the arc "
      "length, "
      "and as rows of coefficients in the frame by_length and by_parameter (skew matrices).",
      "f = frame_derivative(circle(2), 0deg)\n"
      "print near(f.by_length, [[0, 0.5, 0], [-0.5, 0, 0], [0, 0, 0]]) // expect: true",
      CURVES, asked},
-    {"frenet_of(derivatives)", call_frenet_of, "record",
+    {"frenet_of(derivatives: list of vectors)", call_frenet_of, "record",
      "Frame of a curve with these derivatives of order 1, 2 (and 3): speed, tangent, normal, "
      "binormal, curvature, torsion and radius of curvature. What does not exist is none. A first "
      "derivative of 0 is an error (singular-point).",
      "print frenet_of([[2, 0, 0], [0, 2, 0], [0, 0, 3]]).curvature // expect: 0.5", CAG_TAKES_LISTS,
      theory},
-    {"triad_derivative(triad, derivatives)", call_triad_derivative, "list",
+    {"triad_derivative(triad: list of 3 vectors, derivatives: list of vectors)",
+     call_triad_derivative, "list",
      "Of three unit vectors at right angles that turn: the rows of coefficients of their "
      "derivatives in the vectors themselves, a skew matrix.",
      "print triad_derivative([X, Y, Z], [2 * Y, -2 * X, [0, 0, 0]]) // expect: [[0, 2, 0], [-2, 0, "
      "0], [0, 0, 0]]",
      CAG_TAKES_LISTS, theory},
-    {"chain_derivatives(derivatives, by)", call_chain_derivatives, "list",
+    {"chain_derivatives(derivatives: list of vectors, by: list of numbers)", call_chain_derivatives,
+     "list",
      "The derivatives of order 1, 2, .. of C(t(u)) by u, from those of C by t and those of t by u, "
      "as many of both.",
      "print chain_derivatives([[1, 2], [0, 4]], [2, 3]) // expect: [[2, 4], [3, 22]]",
      CAG_TAKES_LISTS, theory},
-    {"circular_vectors(t)", call_circular_vectors, "record",
+    {"circular_vectors(t: angle)", call_circular_vectors, "record",
      "The unit vectors of the turning axes: e = [cos t, sin t, 0] and g = [-sin t, cos t, 0], its "
      "derivative.",
      "print circular_vectors(90deg) // expect: {e: [0, 1, 0], g: [-1, 0, 0]}", 0, theory},
-    {"helix_motion(radius, turning, speed, time)", call_helix_motion, "record",
+    {"helix_motion(radius: length, turning: angle, speed: number, time: number)", call_helix_motion,
+     "record",
      "A point that starts at [radius, 0, 0], turns about z by the angle `turning` each second and "
      "climbs at this speed: point, velocity, angle turned, rise per radian, pitch per turn, length "
      "of its way, curvature and torsion.",
      "m = helix_motion(2, 90deg, 3, 1)\nprint m.point, m.angle // expect: [0, 2, 3] 90deg", 0,
      theory},
-    {"constant_curve(curvature, torsion)", call_constant_curve, "record",
+    {"constant_curve(curvature: curvature, torsion: curvature)", call_constant_curve, "record",
      "The curve of constant curvature and torsion: kind (\"line\", \"circle\" or \"helix\"), "
      "radius, "
      "rise per radian and pitch per turn, as `helix` takes it.",

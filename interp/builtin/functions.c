@@ -368,7 +368,7 @@ static bool call_surface(CagCall *call, CagValue *result) {
 #define FUNCTIONS (CAG_TAKES(CLOSURE) | CAG_TAKES(BUILTIN) | CAG_TAKES(CURVE) | CAG_TAKES(SURFACE))
 
 const CagBuiltin cag_builtins_functions[] = {
-    {"curve(f, range)", call_curve, "curve",
+    {"curve(f: function t => point, range: range of numbers or angles)", call_curve, "curve",
      "The curve of the points f(t), t in a range of numbers or of angles. f gives [x, y], or [x, "
      "y, z]. Derivatives, and with them tangents, lengths and meshes, are computed exactly along "
      "with the formula, not by differences; of an angle they are per radian. floor, round, sign "
@@ -378,8 +378,9 @@ const CagBuiltin cag_builtins_functions[] = {
      "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
      "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
      FUNCTIONS, "Curves: made"},
-    {"natural_curve(curvature, length, torsion = none, frame = identity)", call_natural_curve,
-     "curve",
+    {"natural_curve(curvature: function s => number or curvature, length: length, "
+     "torsion: function s => number or curvature = none, frame: transform = identity)",
+     call_natural_curve, "curve",
      "The curve whose curvature (1/mm) and torsion are these functions of the arc length s in "
      "0..length, which is its parameter. It starts at the frame's origin along its x axis and "
      "bends "
@@ -389,7 +390,9 @@ const CagBuiltin cag_builtins_functions[] = {
      "c = natural_curve(s => 0.5, pi) // a quarter of a circle of radius 2\n"
      "print near(end_point(c), [2, 2]), near(curvature(c, 1), 0.5) // expect: true true",
      FUNCTIONS, "Curves: made"},
-    {"surface(f, u = 0..1, v = 0..1)", call_surface, "surface",
+    {"surface(f: function (u, v) => point, u: range of numbers or angles = 0..1, "
+     "v: range of numbers or angles = 0..1)",
+     call_surface, "surface",
      "The surface of the points f(u, v) = [x, y, z], u and v in ranges of numbers or of angles. "
      "Partial derivatives are exact, as of `curve`. Edges that meet and edges that are one point "
      "are found, so that a closed formula is a closed surface.",

@@ -450,7 +450,7 @@ static bool call_distance(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_hulls[] = {
-    {"convex_hull(points)", call_convex_hull, "region or solid",
+    {"convex_hull(points: list of points)", call_convex_hull, "region or solid",
      "The smallest convex shape that holds all points: of points of the plane a region, "
      "counter-clockwise from the leftmost; of points in space, or of a shape or list of shapes, a "
      "solid bounded by triangles. Sides are decided exactly. Points within rounding of a "
@@ -462,12 +462,12 @@ const CagBuiltin cag_builtins_hulls[] = {
      "h = convex_hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])\n"
      "print len(vertices(tessellate(h))), near(volume(h), 1 / 6) // expect: 4 true",
      0, "The plane"},
-    {"hull(points)", call_convex_hull, "region or solid",
+    {"hull(points: list of points)", call_convex_hull, "region or solid",
      "Another name of `convex_hull`: the smallest convex shape that holds all points or shapes.",
      "print area(hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1]])) // expect: 8\n"
      "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
      0, "The plane"},
-    {"curve_on(S, C)", call_curve_on, "curve",
+    {"curve_on(S: surface, C: curve)", call_curve_on, "curve",
      "The curve on the surface, or on the side of a swept solid, whose u and v are x and y of a "
      "plane curve; angles of the surface "
      "are radians there. It has the plane curve's parameter and domain, and exact derivatives up "
@@ -476,13 +476,13 @@ const CagBuiltin cag_builtins_hulls[] = {
      "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
      "print is_closed(c), length(c) > 3 * tau // expect: true true",
      CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: made"},
-    {"contains(G, P)", call_contains, "bool",
+    {"contains(G: shape or group, P: point or shape)", call_contains, "bool",
      "Whether a solid or closed mesh contains P; its boundary, to 1e-9 of its size, belongs to it. "
      "Solids are asked exactly but for walls and gaps thinner than 1e-3 of their size.",
      "print contains(sphere(2), [0, 0, 1.999]), contains(box(1), [1, 1, 1.001]) // expect: true "
      "false",
      CAG_TAKES(SOLID) | CAG_TAKES(MESH), "Solids: measures"},
-    {"distance(G, P)", call_distance, "number",
+    {"distance(G: shape or group, P: point or shape)", call_distance, "number",
      "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
      "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
      "meshes: every place whose mesh is near enough is tried by Newton's method. "

@@ -590,37 +590,41 @@ static bool call_complex_roots(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_matrices[] = {
-    {"solve(matrix, rhs)", call_solve, "list",
+    {"solve(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)", call_solve,
+     "list",
      "The x with matrix * x = rhs, of a square matrix (a list of rows) and a vector, or a matrix "
      "of several columns. An error where the matrix is singular.",
      "print solve([[2, 1], [1, 3]], [3, 5]) // expect: [0.8, 1.4]", 0, FAMILY},
-    {"least_squares(matrix, rhs)", call_least_squares, "list",
+    {"least_squares(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)",
+     call_least_squares, "list",
      "The x for which the squares of matrix * x - rhs have the least sum; where there are several, "
      "the shortest.",
      "print round(least_squares([[1, 0], [1, 1], [1, 2]], [1, 3, 5]), 9) // expect: [1, 2]", 0,
      FAMILY},
-    {"multiply(A, B)", call_multiply, "list",
-     "The product of two matrices, or of a matrix and a vector.",
+    {"multiply(A: list of rows of numbers, B: list of rows of numbers or vector)", call_multiply,
+     "list", "The product of two matrices, or of a matrix and a vector.",
      "print multiply([[1, 2], [3, 4]], [1, 1]), multiply([[1, 2], [3, 4]], [[0, 1], [1, 0]]) // "
      "expect: [3, 7] [[2, 1], [4, 3]]",
      LISTS, FAMILY},
-    {"determinant(A)", call_determinant, "number", "The determinant of a square matrix.",
-     "print determinant([[1, 2], [3, 4]]) // expect: -2", LISTS, FAMILY},
-    {"inverse(A)", call_inverse, "list",
+    {"determinant(A: list of rows of numbers)", call_determinant, "number",
+     "The determinant of a square matrix.", "print determinant([[1, 2], [3, 4]]) // expect: -2",
+     LISTS, FAMILY},
+    {"inverse(A: list of rows of numbers)", call_inverse, "list",
      "The inverse of a square matrix. An error where it is singular.",
      "print inverse([[2, 0], [0, 4]]) // expect: [[0.5, 0], [0, 0.25]]", LISTS, FAMILY},
-    {"transpose(A)", call_transpose, "list", "The matrix whose rows are the columns of A.",
+    {"transpose(A: list of rows of numbers)", call_transpose, "list",
+     "The matrix whose rows are the columns of A.",
      "print transpose([[1, 2, 3], [4, 5, 6]]) // expect: [[1, 4], [2, 5], [3, 6]]", LISTS, FAMILY},
-    {"eigen(symmetric)", call_eigen, "record",
+    {"eigen(symmetric: list of rows of numbers)", call_eigen, "record",
      "Eigenvalues of a symmetric matrix in rising order, and as `vectors` the unit eigenvector of "
      "each, its largest component positive.",
      "e = eigen([[2, 0], [0, 1]])\nprint e.values, e.vectors // expect: [1, 2] [[0, 1], [1, 0]]", 0,
      FAMILY},
-    {"roots(coefficients)", call_roots, "list",
+    {"roots(coefficients: list of numbers)", call_roots, "list",
      "The real roots of c0 + c1 x + c2 x^2 + ... in rising order, multiple ones as often as they "
      "are roots. An error where all coefficients are 0.",
      "print roots([-6, 11, -6, 1]), roots([1, 0, 1]) // expect: [1, 2, 3] []", 0, FAMILY},
-    {"complex_roots(coefficients)", call_complex_roots, "list",
+    {"complex_roots(coefficients: list of numbers)", call_complex_roots, "list",
      "All roots of c0 + c1 x + c2 x^2 + ... as [re, im], by real, then imaginary part.",
      "print complex_roots([1, 0, 1]) // expect: [[0, -1], [0, 1]]", 0, FAMILY},
     {0}};

@@ -69,9 +69,11 @@ static bool check_faces(CagCall *call, CagValue *result) {
   "touching vertices taken apart) and volume (mm3, negative inside out), else none."
 
 const CagBuiltin cag_builtins_checks[] = {
-    {"mesh_check(M)", check_mesh, "record", "Whether a mesh is the boundary of a solid: " REPORT,
+    {"mesh_check(M: mesh)", check_mesh, "record",
+     "Whether a mesh is the boundary of a solid: " REPORT,
      "print mesh_check(tessellate(torus(3, 1))).genus // expect: 1", CAG_TAKES(MESH), meshes},
-    {"mesh_check(vertices, faces)", check_faces, "record",
+    {"mesh_check(vertices: list of points, faces: list of lists of integers)", check_faces,
+     "record",
      "The same of faces with any number of corners, as mesh takes them, before they are cut into "
      "triangles: " REPORT,
      "square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n"

@@ -71,7 +71,7 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_mesh_files[] = {
-    {"read_mesh(path)", call_read_mesh, "mesh",
+    {"read_mesh(path: text)", call_read_mesh, "mesh",
      "The mesh of a file: STL (binary and text), OBJ, PLY (binary and text), glTF and GLB, all its "
      "parts together. Lengths are taken as millimeters and Z as up; those of glTF are meters with "
      "Y up and are turned into ours. Points at one place are one point of the mesh; normals and "

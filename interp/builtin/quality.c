@@ -394,8 +394,9 @@ static bool call_isophotes(CagCall *call, CagValue *result) {
 static const char figures[] = "Figures";
 
 const CagBuiltin cag_builtins_quality[] = {
-    {"colored_by(S, value, range = none, colors = \"auto\", tolerance = none)", call_colored_by,
-     "mesh",
+    {"colored_by(S: surface or solid or group, value: text, range: range of numbers = none, "
+     "colors: \"auto\" or \"sequence\" or \"diverging\" = \"auto\", tolerance: length = none)",
+     call_colored_by, "mesh",
      "A surface, or the faces of a solid, as a mesh colored by \"gaussian\", \"mean\", "
      "\"principal_max\" or \"principal_min\" curvature (1/mm, Gaussian 1/mm2, signed by the "
      "normal), or by \"slope\", the angle between tangent plane and horizontal (degrees). The "
@@ -409,7 +410,9 @@ const CagBuiltin cag_builtins_quality[] = {
      "true\n"
      "print near(color_range(m).end, 0.5, 1e-3) // expect: true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"zebra(G, stripes = 8, view = none, across = none, tolerance = none)", call_zebra, "mesh",
+    {"zebra(G: shape or group, stripes: integer = 8, view: vector = none, "
+     "across: vector = none, tolerance: length = none)",
+     call_zebra, "mesh",
      "What a mirror of this shape shows of long lamps: as many light and dark stripes, a mesh. "
      "`view` is the direction to the eye (none: from the front, a little above), wherever the "
      "camera stands; r = 2 (n . view) n - view the mirrored one; `across` the direction square to "
@@ -419,25 +422,27 @@ const CagBuiltin cag_builtins_quality[] = {
      "m = zebra(sphere_surface(5), view: X)\n"
      "print near(max(values_of(m)), 1, 1e-3), color_range(m) // expect: true -1..1",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"isophotes(G, direction = Z, levels = 11, tolerance = none)", call_isophotes, "group",
+    {"isophotes(G: shape or group, direction: vector = Z, "
+     "levels: integer or list of angles = 11, tolerance: length = none)",
+     call_isophotes, "group",
      "The curves along which the angle between normal and direction is constant, as exact as "
      "`section`: for a count that many angles evenly between 0deg and 180deg, or a list of angles. "
      "At 90deg it is the outline seen along the direction.",
      "c = isophotes(sphere_surface(5), Z, [60deg]).items\n"
      "print len(c), near(length(c[0]), 2 * pi * 5 * sin(60deg)) // expect: 1 true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"values_of(M)", call_values_of, "list",
+    {"values_of(M: mesh)", call_values_of, "list",
      "The values by which a mesh of `colored_by` or `zebra` is colored, in the order of its "
      "`vertices`. A mesh without values is an error (no-values).",
      "m = colored_by(sphere_surface(2), \"gaussian\")\n"
      "print near(values_of(m)[0], 1 / 4), len(values_of(m)) == len(vertices(m)) // expect: true "
      "true",
      CAG_TAKES(MESH), figures},
-    {"color_range(M)", call_color_range, "range",
+    {"color_range(M: mesh)", call_color_range, "range",
      "The values that have the first and the last color of a mesh of `colored_by` or `zebra`.",
      "print color_range(colored_by(sphere_surface(2), \"mean\", 0..1)) // expect: 0..1",
      CAG_TAKES(MESH), figures},
-    {"color_of(M, value)", call_scale_color, "list",
+    {"color_of(M: mesh, value: number)", call_scale_color, "list",
      "The color that a mesh of `colored_by` or `zebra` gives to a value: red, green and blue in "
      "linear light, 0..1.",
      "m = colored_by(sphere_surface(2), \"mean\", 0..1)\n"

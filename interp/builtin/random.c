@@ -103,7 +103,7 @@ static bool call_random(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_random[] = {
-    {"random(seed, n, over = 0..1)", call_random, "list",
+    {"random(seed: integer, n: integer, over: range = 0..1)", call_random, "list",
      "n numbers or angles spread evenly over an interval; with a step, such as 1..6 by 1, elements "
      "of the range. Pure: the same seed gives the same list, on every "
      "machine (xoshiro256** seeded by splitmix64).",

@@ -90,7 +90,8 @@ static bool configuration(CagCall *call, CagValue *result) {
   "revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), revolute(d: 56.5)])\n"
 
 const CagBuiltin cag_builtins_inverse[] = {
-    {"ik_all(robot, T, near = home)", ik_all, "record",
+    {"ik_all(robot: robot, T: transform or point, near: list of joint values = home)", ik_all,
+     "record",
      "Every joint position that brings the tool to the pose T, by closed form, the limits not "
      "asked: `status` (\"ok\", \"unreachable\", \"infeasible-orientation\" of arms with fewer than "
      "six joints, \"singular\"), `solutions` (records of `q`, `config` with the branch, 1 or -1, "
@@ -103,7 +104,7 @@ const CagBuiltin cag_builtins_inverse[] = {
          "print all.status, len(all.solutions), all.solutions[0].config // expect: ok 8 {shoulder: "
          "1, elbow: 1, wrist: 1}",
      CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
-    {"configuration(robot, q)", configuration, "record",
+    {"configuration(robot: robot, q: list of joint values)", configuration, "record",
      "The branch that joint values belong to, 1 or -1 each: shoulder (before or behind the first "
      "axis), elbow (the side to which it is bent), wrist (the sign of the sine of joint 5), as far "
      "as the arm has them; the elbow of a planar or SCARA arm is the sign of the sine of its "

@@ -304,7 +304,8 @@ static bool call_read_urdf(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_robot_files[] = {
-    {"read_urdf(path, tip = none, base = none, shapes = true)", call_read_urdf, "robot",
+    {"read_urdf(path: text, tip: text = none, base: text = none, shapes: bool = true)",
+     call_read_urdf, "robot",
      "The robot of a URDF file, as the chain of links from `base` (none: the first) down to `tip` "
      "(none: the end of what does not branch), in mm. Its rows are classic ones, with fixed links "
      "where no row leads from one axis to the next; `continuous` joints have -360deg..360deg; "

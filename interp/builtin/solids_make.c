@@ -8,9 +8,9 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
-                 CagValue *result) {
+// Takes the address of `made` because the call that fills it in is an argument before it.
+static bool solid_result(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
+                         CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
   *result = cag_solid_value(call->vm, *made);
   return true;
@@ -33,56 +33,48 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
     if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
   }
   if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
-  return give(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
+  return solid_result(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, CagValue *result) {
-  double radius;
+  struct {
+    double radius;
+  } a;
   CagSolid *s = NULL;
   CagError err;
-  if (!cag_arg_positive(call, 0, &radius)) return false;
-  return give(call, cag_solid_sphere(radius, &s, &err), &err, &s, result);
-}
-
-// A radius that may be 0 beside one that is not.
-static bool read_radius(CagCall *call, int argument, double fallback, double *out) {
-  char text[32];
-  if (!cag_arg_number_or(call, argument, fallback, out)) return false;
-  if (*out >= 0 && isfinite(*out)) return true;
-  return cag_fail_call(call, argument, CAG_ERR_value,
-                       "expects a finite radius of 0 or more as `%s`, found %s",
-                       cag_parameter_name(call, argument), cag_number_text(*out, text));
+  return cag_bind(call, &a, sizeof a) &&
+         solid_result(call, cag_solid_sphere(a.radius, &s, &err), &err, &s, result);
 }
 
 // A cylinder or frustum about Z, on z = 0 or with its middle there.
-static bool give_upright(CagCall *call, double height, double radius, double top, bool centered,
-                         CagValue *result) {
+static bool upright_result(CagCall *call, double height, double radius, double top, bool centered,
+                           CagValue *result) {
   CagSolid *s = NULL, *moved = NULL;
   CagError err;
   CagStatus status = cag_solid_cylinder(height, radius, top, &s, &err);
-  if (status != CAG_OK || !centered) return give(call, status, &err, &s, result);
+  if (status != CAG_OK || !centered) return solid_result(call, status, &err, &s, result);
   const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
   status = cag_solid_transform(s, &down, &moved, &err);
   cag_solid_release(s);
-  return give(call, status, &err, &moved, result);
+  return solid_result(call, status, &err, &moved, result);
 }
 
 bool cag_solids_cylinder(CagCall *call, CagValue *result) {
-  double height, radius, top;
-  bool centered;
-  if (!cag_arg_positive(call, 0, &height) || !read_radius(call, 1, 0, &radius) ||
-      !read_radius(call, 2, radius, &top) || !cag_arg_bool_or(call, 3, false, &centered))
-    return false;
-  return give_upright(call, height, radius, top, centered, result);
+  struct {
+    double height, radius, top;
+    bool centered;
+  } a;
+  return cag_bind(call, &a, sizeof a) &&
+         upright_result(call, a.height, a.radius, a.top, a.centered, result);
 }
 
 bool cag_solids_cone(CagCall *call, CagValue *result) {
-  double height, radius;
-  bool centered;
-  if (!cag_arg_positive(call, 0, &height) || !cag_arg_positive(call, 1, &radius) ||
-      !cag_arg_bool_or(call, 2, false, &centered))
-    return false;
-  return give_upright(call, height, radius, 0, centered, result);
+  struct {
+    double height, radius;
+    bool centered;
+  } a;
+  return cag_bind(call, &a, sizeof a) &&
+         upright_result(call, a.height, a.radius, 0, a.centered, result);
 }
 
 bool cag_solids_prism(CagCall *call, CagValue *result) {
@@ -119,22 +111,25 @@ CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSoli
 }
 
 bool cag_solids_rod(CagCall *call, CagValue *result) {
-  CagVec3 p, q;
-  double radius, top;
+  struct {
+    CagPoint p, q;
+    double radius, top;
+  } a;
   CagSolid *s = NULL;
   CagError err;
-  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL) ||
-      !read_radius(call, 2, 0, &radius) || !read_radius(call, 3, radius, &top))
-    return false;
-  return give(call, cag_solid_rod(p, q, radius, top, &s, &err), &err, &s, result);
+  return cag_bind(call, &a, sizeof a) &&
+         solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, &err), &err, &s,
+                      result);
 }
 
 bool cag_solids_torus(CagCall *call, CagValue *result) {
-  double major, minor;
+  struct {
+    double major, minor;
+  } a;
   CagSolid *s = NULL;
   CagError err;
-  if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
-  return give(call, cag_solid_torus(major, minor, &s, &err), &err, &s, result);
+  return cag_bind(call, &a, sizeof a) &&
+         solid_result(call, cag_solid_torus(a.major, a.minor, &s, &err), &err, &s, result);
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
@@ -168,7 +163,8 @@ static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSol
 static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  if (!give(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s, result))
+  if (!solid_result(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s,
+                    result))
     return false;
   cag_shape_say_alike(*result, v);
   return true;
@@ -179,7 +175,7 @@ static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *resul
   CagSolid *s = NULL;
   CagSurface **faces = cag_hold_surface_array(call, shapes->length);
   if (!collect_faces(call, shapes, faces) ||
-      !give(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
+      !solid_result(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
     return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;

@@ -14,8 +14,10 @@ static const char segments[] = "Curves: segments and bases";
 
 const CagBuiltin cag_builtins_splines[] = {
     // --- Through points ---
-    {"hermite(points, tangents, parameters = \"uniform\", limit = none)", cag_splines_hermite,
-     "curve",
+    {"hermite(points: list of points, tangents: list of vectors, "
+     "parameters: \"chord\" or \"uniform\" or \"centripetal\" or list of numbers = \"uniform\", "
+     "limit: number = none)",
+     cag_splines_hermite, "curve",
      "Cubic segments through the points with these tangents, one to each point, by the parameter. "
      "The parameter passes the points at 0, 1, 2 ..., or as cubic_spline says it. With `limit`, "
      "tangents longer than so many chords of a segment are shortened: 3 keeps segments free of "
@@ -23,7 +25,9 @@ const CagBuiltin cag_builtins_splines[] = {
      "c = hermite([[0, 0], [1, 1]], [[3, 0], [3, 0]])\n"
      "print c(0.5), derivative(c, 1) // expect: [0.5, 0.5] [3, 0]",
      LISTS, through},
-    {"cubic_spline(points, ends = relaxed(), parameters = \"chord\", tension = 0)",
+    {"cubic_spline(points: list of points, ends: end conditions = relaxed(), "
+     "parameters: \"chord\" or \"uniform\" or \"centripetal\" or list of numbers = \"chord\", "
+     "tension: number or list of numbers = 0)",
      cag_splines_cubic_spline, "curve",
      "The cubic spline through the points, whose second derivative is continuous. `ends` is "
      "relaxed(), clamped(V, V), cyclic(), anticyclic() or ends(start, finish). The parameter "
@@ -36,7 +40,8 @@ const CagBuiltin cag_builtins_splines[] = {
      "parameters: \"uniform\")\n"
      "print near(derivative(c, 1), [1, -0.8]) // expect: true",
      LISTS, through},
-    {"clamped(start, finish, direction = false)", cag_splines_clamped, "record",
+    {"clamped(start: vector, finish: vector, direction: bool = false)", cag_splines_clamped,
+     "record",
      "End conditions of a cubic spline: its tangents at both ends, by the parameter. With "
      "`direction: true` only their direction counts, and the speed is that of the end segments.",
      "c = cubic_spline([[0, 0], [3, 4]], clamped([2, 0], [0, 2]))\n"
@@ -60,12 +65,14 @@ const CagBuiltin cag_builtins_splines[] = {
      "parameters: \"uniform\")\n"
      "print near(derivative(c, 0), -derivative(c, 4)) // expect: true",
      0, through},
-    {"ends(start = none, finish = none, direction = false)", cag_splines_ends, "record",
-     "End conditions of a cubic spline, mixed: a tangent, or none for a relaxed end.",
+    {"ends(start: vector = none, finish: vector = none, direction: bool = false)", cag_splines_ends,
+     "record", "End conditions of a cubic spline, mixed: a tangent, or none for a relaxed end.",
      "c = cubic_spline([[0, 0], [1, 2]], ends([0, 4], none), parameters: \"uniform\")\n"
      "print derivative(c, 0), near(derivative(c, 1, 2), [0, 0]) // expect: [0, 4] true",
      0, through},
-    {"parabolic_blend(points, alpha = 0.5, ends = \"open\", closed = false)",
+    {"parabolic_blend(points: list of points, "
+     "alpha: number or list of numbers or \"chord\" = 0.5, "
+     "ends: \"open\" or \"parabola\" = \"open\", closed: bool = false)",
      cag_splines_parabolic_blend, "curve",
      "Cubic segments that blend the parabolas through three neighboring points each. A parabola "
      "is at its middle point at alpha, between 0 and 1: one number, a list of one for each middle "
@@ -75,26 +82,33 @@ const CagBuiltin cag_builtins_splines[] = {
      "c = parabolic_blend([[0, 0], [1, 1], [2, -1], [3, 0]])\n"
      "print c(0), near(c(1 / 3), [4 / 3, 4 / 9]) // expect: [1, 1] true",
      LISTS, through},
-    {"catmull_rom(points, alpha = 0.5, ends = \"open\", closed = false)", cag_splines_catmull_rom,
-     "curve",
+    {"catmull_rom(points: list of points, alpha: number in 0..1 = 0.5, "
+     "ends: \"open\" or \"parabola\" = \"open\", closed: bool = false)",
+     cag_splines_catmull_rom, "curve",
      "The Catmull-Rom spline: a parabolic blend whose parameter grows by the distance of the "
      "points to the power alpha: 0 uniform, 0.5 centripetal, 1 chordal.",
      "c = catmull_rom([[0, 0], [1, 1], [2, -1], [3, 0]], alpha: 0)\n"
      "print domain(c), near(derivative(c, 0), [1, -0.5]) // expect: 0..1 true",
      LISTS, through},
-    {"polynomial_curve(coefficients, length = 1)", cag_splines_polynomial_curve, "curve",
+    {"polynomial_curve(coefficients: list of points and vectors, length: number = 1)",
+     cag_splines_polynomial_curve, "curve",
      "The curve a + b t + c t^2 + ... of the points and vectors [a, b, c, ...] over 0..length.",
      "c = polynomial_curve([[0, 0], [1, 1], [0, 2]])\n"
      "print c(0.5), derivative(c, 1) // expect: [0.5, 1] [1, 5]",
      LISTS, through},
 
     // --- From data ---
-    {"data_parameters(points, by = \"chord\")", cag_splines_data_parameters, "list",
+    {"data_parameters(points: list of points, "
+     "by: \"chord\" or \"uniform\" or \"centripetal\" = \"chord\")",
+     cag_splines_data_parameters, "list",
      "The parameters of data points: the sum of their distances up to each (\"chord\"), of the "
      "roots of these (\"centripetal\"), or of ones (\"uniform\").",
      "print data_parameters([[0, 0], [3, 4], [3, 6]]) // expect: [0, 5, 7]", LISTS, data},
-    {"interpolate(points, degree = 3, parameters = \"chord\", tangents = none, knots = \"auto\", "
-     "order = none)",
+    {"interpolate(points: list of points, degree: integer >= 1 = 3, "
+     "parameters: \"chord\" or \"uniform\" or \"centripetal\" or list of numbers = \"chord\", "
+     "tangents: list of vectors = none, "
+     "knots: \"auto\" or \"open\" or \"averaged\" or list of numbers = \"auto\", "
+     "order: integer = none)",
      cag_splines_interpolate, "curve",
      "The B-spline of this degree through all points. Parameters by spacing run over 0..spans; "
      "those given are kept. `tangents` (by the parameter) are two for the ends or one for each "
@@ -105,8 +119,12 @@ const CagBuiltin cag_builtins_splines[] = {
      "print near(c(1.5), [3, 2.5]), near(points(c)[2], [3, 2.874362872], 1e-9) // expect: true "
      "true",
      LISTS, data},
-    {"fit(points, degree = 3, count = degree + 1, parameters = \"chord\", fixed = \"ends\", knots "
-     "= \"auto\", error = 1e-9, order = none)",
+    {"fit(points: list of points, degree: integer >= 1 = 3, "
+     "count: integer or list of 2 integers = degree + 1, "
+     "parameters: \"chord\" or \"uniform\" or \"centripetal\" or list of numbers = \"chord\", "
+     "fixed: \"ends\" or \"none\" or \"x\" or \"y\" or \"z\" = \"ends\", "
+     "knots: \"auto\" or \"open\" or \"averaged\" or list of numbers = \"auto\", "
+     "error: number = 1e-9, order: integer = none)",
      cag_splines_fit, "curve",
      "The B-spline of this degree with so many control points that is nearest to the data in the "
      "sense of least squares. `fixed`: \"ends\" passes the first and last point, \"none\" is plain "
@@ -116,8 +134,12 @@ const CagBuiltin cag_builtins_splines[] = {
      "c = fit([[0, 0], [1.5, 2], [3, 2.5], [4.5, 2], [6, 0]], degree: 2, count: 4)\n"
      "print near(points(c)[1], [0.788487526, 2.413257869], 1e-8) // expect: true",
      LISTS, data},
-    {"fit_report(points, degree = 3, count = degree + 1, parameters = \"chord\", fixed = "
-     "\"ends\", knots = \"auto\", error = 1e-9, order = none)",
+    {"fit_report(points: list of points, degree: integer >= 1 = 3, "
+     "count: integer or list of 2 integers = degree + 1, "
+     "parameters: \"chord\" or \"uniform\" or \"centripetal\" or list of numbers = \"chord\", "
+     "fixed: \"ends\" or \"none\" or \"x\" or \"y\" or \"z\" = \"ends\", "
+     "knots: \"auto\" or \"open\" or \"averaged\" or list of numbers = \"auto\", "
+     "error: number = 1e-9, order: integer = none)",
      cag_splines_fit_report, "record",
      "As fit, with its figures: curve, parameters, residuals (the curve less the data), rms (their "
      "root mean square), largest, and the rounds taken to hold a coordinate. Of rows of points, "
@@ -129,31 +151,34 @@ const CagBuiltin cag_builtins_splines[] = {
      LISTS, data},
 
     // --- Segments and bases ---
-    {"polynomials(C)", cag_splines_polynomials, "list",
+    {"polynomials(C: curve)", cag_splines_polynomials, "list",
      "The coefficients of a polynomial curve's pieces, each by the parameter from the piece's "
      "start, lowest power first. Rational curves have none: an error (not-polynomial).",
      "print polynomials(bezier([[0, 0], [1, 2], [2, 0]])) // expect: [[[0, 0], [2, 4], [0, -4]]]",
      CURVES, segments},
-    {"basis_matrix(kind, degree = 3, alpha = 0.5, beta = 0.5)", cag_splines_basis_matrix, "list",
+    {"basis_matrix(kind: \"bezier\" or \"bspline\" or \"hermite\" or \"catmull_rom\" or "
+     "\"parabolic\", "
+     "degree: integer >= 1 = 3, alpha: number in 0..1 = 0.5, beta: number in 0..1 = 0.5)",
+     cag_splines_basis_matrix, "list",
      "The matrix N of [t^n ... t 1] N G for one segment over 0..1, G its points: of a \"bezier\" "
      "or uniform \"bspline\" segment of this degree, of a \"hermite\" segment (G = start, end, "
      "tangents), a \"catmull_rom\" or \"parabolic\" blend (with alpha and beta) of four points.",
      "print basis_matrix(\"bezier\", 2) // expect: [[1, -2, 1], [-2, 2, 0], [1, 0, 0]]", TEXTS,
      segments},
-    {"bezier_matrices(n)", cag_splines_bezier_matrices, "record",
+    {"bezier_matrices(n: integer)", cag_splines_bezier_matrices, "record",
      "The matrix N of a Bezier curve of degree n and its factors: N = C D, D diagonal.",
      "m = bezier_matrices(2)\n"
      "print m.C, m.N == multiply(m.C, m.D) // expect: [[1, -1, 1], [-2, 1, 0], [1, 0, 0]] true",
      NUMBERS, segments},
-    {"bernstein_maxima(n)", cag_splines_bernstein_maxima, "record",
+    {"bernstein_maxima(n: integer)", cag_splines_bernstein_maxima, "record",
      "Where each Bernstein polynomial of degree n is largest (t = i / n), and how large.",
      "print bernstein_maxima(2) // expect: {t: [0, 0.5, 1], value: [1, 0.5, 1]}", NUMBERS,
      segments},
-    {"hermite_basis(t, length = 1)", cag_splines_hermite_basis, "list",
+    {"hermite_basis(t: number or angle, length: number = 1)", cag_splines_hermite_basis, "list",
      "The weights of start, end and both tangents of a Hermite segment of this parameter length "
      "at its part t, 0..1.",
      "print hermite_basis(0.5) // expect: [0.5, 0.5, 0.125, -0.125]", NUMBERS, segments},
-    {"hermite_shape(P, Q, V, W)", cag_splines_hermite_shape, "record",
+    {"hermite_shape(P: point, Q: point, V: vector, W: vector)", cag_splines_hermite_shape, "record",
      "The shape of the plane segment from P to Q with the tangents V and W over 0..1: chord, the "
      "tangents' lengths k0 k1, in chords ratio0 ratio1, along the chord projection0 projection1, "
      "within_limit (neither is longer than 3 chords), the parameters of its inflections, of a cusp "
@@ -161,27 +186,33 @@ const CagBuiltin cag_builtins_splines[] = {
      "s = hermite_shape([0, 0], [1, 0], [3, 3], [3, -3])\n"
      "print s.cusp, s.loop, s.within_limit // expect: 0.5 none false",
      LISTS, segments},
-    {"hermite_by_curvature(P, Q, V, W, start, finish)", cag_splines_hermite_by_curvature, "list",
+    {"hermite_by_curvature(P: point, Q: point, V: vector, W: vector, start: curvature, "
+     "finish: curvature)",
+     cag_splines_hermite_by_curvature, "list",
      "The plane segments from P to Q in the directions V and W with these curvatures (1/mm, "
      "positive to the left) at both ends: none to four.",
      "c = hermite_by_curvature([0, 0], [1, 1], [1, 0], [0, 1], 4, 4)\n"
      "print any(c, h => near(derivative(h, 0), [1, 0])) // expect: true",
      LISTS, segments},
-    {"convert_cubic(points, from = \"bezier\")", cag_splines_convert_cubic, "record",
+    {"convert_cubic(points: list of 4 points or vectors, "
+     "from: \"bezier\" or \"hermite\" or \"power\" or \"parabolic\" = \"bezier\")",
+     cag_splines_convert_cubic, "record",
      "A cubic segment over 0..1 in all forms: bezier (control points), hermite (start, end, both "
      "tangents), power (coefficients, lowest first), parabolic (the four points whose uniform "
      "blend it is); `from` says which one the four points are.",
      "print convert_cubic([[1, 1], [2, 3], [4, 3], [3, 1]]).power // expect: [[1, 1], [3, 6], [3, "
      "-6], [-4, 0]]",
      LISTS, segments},
-    {"bezier_join(C, degree = 3, order = 1, ratio = 1)", cag_splines_bezier_join, "list",
+    {"bezier_join(C: curve, degree: integer >= 1 = 3, order: integer in 0..2 = 1, "
+     "ratio: number = 1)",
+     cag_splines_bezier_join, "list",
      "The first control points of a Bezier curve of this degree that continues C: its end, and so "
      "many further ones that derivatives up to the order (0, 1, 2) agree, after division by the "
      "ratio of the speeds.",
      "print bezier_join(bezier([[1, 1], [2, 3], [4, 3], [3, 1]]), 3, order: 2) // expect: [[3, 1], "
      "[2, -1], [-2, -5]]",
      CURVES, segments},
-    {"continuity(C, D, tolerance = 1e-9)", cag_splines_continuity, "record",
+    {"continuity(C: curve, D: curve, tolerance: number = 1e-9)", cag_splines_continuity, "record",
      "How the start of D goes on from the end of C: class, the strongest of \"none\" \"C0\" \"G1\" "
      "\"C1\" \"G2\" \"C2\"; which of these hold; the gap (mm), the angle of the tangents, the "
      "ratio of their lengths, and the jumps of the first and second derivative and of the "
@@ -189,14 +220,16 @@ const CagBuiltin cag_builtins_splines[] = {
      "a = bezier([[1, 1], [2, 3], [4, 3], [3, 1]])\n"
      "print continuity(a, bezier([[3, 1], [2, -1], [0, 0]])).class // expect: G1",
      CURVES, segments},
-    {"line_crossings(C, normal, offset)", cag_splines_line_crossings, "record",
+    {"line_crossings(C: curve, normal: vector, offset: number)", cag_splines_line_crossings,
+     "record",
      "Where a curve meets the line (or plane) of all points whose product with the normal is the "
      "offset: parameters t, points, curve_crossings, their number, and polygon_crossings, how "
      "often the control polygon changes sides, which is never less for crossings.",
      "r = line_crossings(bezier([[1, 1], [2, 3], [4, 3], [3, 1]]), [0, 1], 2)\n"
      "print r.curve_crossings, r.polygon_crossings // expect: 2 2",
      CURVES, segments},
-    {"hulls_disjoint(points, others)", cag_splines_hulls_disjoint, "bool",
+    {"hulls_disjoint(points: list of points, others: list of points)", cag_splines_hulls_disjoint,
+     "bool",
      "Whether the convex hulls of two lists of points have nothing in common. Curves whose control "
      "points are so do not meet.",
      "print hulls_disjoint([[0, 0], [1, 0], [0, 1]], [[2, 0], [3, 0], [2, 2]]) // expect: true",

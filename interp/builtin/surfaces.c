@@ -19,130 +19,142 @@ static const char quadrics[] = "Quadrics";
 
 const CagBuiltin cag_builtins_surfaces[] = {
     // --- At one place, and data ---
-    {"at(S, u, v, unit = false)", cag_surfaces_at, "list",
+    {"at(S: surface, u: number or angle, v: number or angle, unit: bool = false)", cag_surfaces_at,
+     "list",
      "The point of the surface at u, v, as S(u, v) does. Parameters are natural: knots, or angles "
      "of what is turned; with `unit` both are shares of the domain, 0..1. Outside of the domain is "
      "an error (parameter-range).",
      "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]\n"
      "print near(at(sphere_surface(3), 0.5, 0, unit: true), [3, 0, 0]) // expect: true",
      SIDES, asked},
-    {"partial(S, u, v, du = 1, dv = 0, side = \"right\")", cag_surfaces_partial, "list",
+    {"partial(S: surface, u: number or angle, v: number or angle, du: integer = 1, "
+     "dv: integer = 0, side: \"right\" or \"left\" = \"right\")",
+     cag_surfaces_partial, "list",
      "The partial derivative, du times by u and dv times by v (by angles: per radian). Where it "
      "jumps, at a knot, it is the limit from the right (at the end of the domain from the left), "
      "or "
      "from the `side`, one for both directions or two for u and v.",
      "print partial(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [4, 0, 0]", SIDES,
      asked},
-    {"normal(S, u, v)", cag_surfaces_normal, "list",
+    {"normal(S: surface, u: number or angle, v: number or angle)", cag_surfaces_normal, "list",
      "The unit normal, along partial u x partial v; at a pole its limit where there is one.",
      "print near(normal(sphere_surface(2), 90deg, 0deg), X) // expect: true", SIDES, asked},
-    {"tangent_plane(S, u, v)", cag_surfaces_tangent_plane, "plane",
-     "The plane that touches the surface at u, v.",
+    {"tangent_plane(S: surface, u: number or angle, v: number or angle)",
+     cag_surfaces_tangent_plane, "plane", "The plane that touches the surface at u, v.",
      "print near(tangent_plane(sphere_surface(2), 90deg, 0deg).normal, X) // expect: true", SIDES,
      asked},
-    {"domain(S)", cag_surfaces_domain, "record", "The ranges u and v of the parameters.",
+    {"domain(S: surface)", cag_surfaces_domain, "record", "The ranges u and v of the parameters.",
      "print domain(sphere_surface(1)) // expect: {u: 0deg..180deg, v: 0deg..360deg}", SIDES, asked},
-    {"degree(S)", cag_surfaces_degree, "list",
+    {"degree(S: surface)", cag_surfaces_degree, "list",
      "The degrees in u and v of a Bezier or B-spline surface; others have none: an error "
      "(no-control-points).",
      "print degree(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]])) // expect: "
      "[1, "
      "1]",
      SURFACES, asked},
-    {"knots(S)", cag_surfaces_knots, "list", "The knots in u and in v.",
+    {"knots(S: surface)", cag_surfaces_knots, "list", "The knots in u and in v.",
      "print knots(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]))[0] // expect: "
      "[0, 0, 1, 1]",
      SURFACES, asked},
-    {"points(S)", cag_surfaces_points, "list", "The net of control points, by rows of u.",
+    {"points(S: surface)", cag_surfaces_points, "list", "The net of control points, by rows of u.",
      "print points(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]))[1][1] // "
      "expect: [1, 1, 1]",
      SURFACES, asked},
-    {"weights(S)", cag_surfaces_weights, "list",
+    {"weights(S: surface)", cag_surfaces_weights, "list",
      "The weights of the control points, by rows of u; 1 each where none were given.",
      "print weights(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]])) // expect: "
      "[[1, 1], [1, 1]]",
      SURFACES, asked},
-    {"is_closed(S)", cag_surfaces_is_closed, "bool", "Whether the surface has no boundary.",
-     "print is_closed(sphere_surface(1)) // expect: true", SURFACES, asked},
-    {"closed_in(S)", cag_surfaces_closed_in, "record",
+    {"is_closed(S: surface)", cag_surfaces_is_closed, "bool",
+     "Whether the surface has no boundary.", "print is_closed(sphere_surface(1)) // expect: true",
+     SURFACES, asked},
+    {"closed_in(S: surface)", cag_surfaces_closed_in, "record",
      "Whether the edges u meet, and whether the edges v do.",
      "print closed_in(torus_surface(3, 1)) // expect: {u: true, v: true}", SURFACES, asked},
 
     // --- Curvature ---
-    {"first_form(S, u, v)", cag_surfaces_first_form, "list",
-     "The first fundamental form [E, F, G]: the products of the partials.",
+    {"first_form(S: surface, u: number or angle, v: number or angle)", cag_surfaces_first_form,
+     "list", "The first fundamental form [E, F, G]: the products of the partials.",
      "print first_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [16, 0, 4]",
      SIDES, curvature},
-    {"second_form(S, u, v)", cag_surfaces_second_form, "list",
+    {"second_form(S: surface, u: number or angle, v: number or angle)", cag_surfaces_second_form,
+     "list",
      "The second fundamental form [L, M, N]: the second partials along the normal. At a pole there "
      "is none: an error (degenerate-normal).",
      "print second_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [0, 0, 0]",
      SIDES, curvature},
-    {"gaussian_curvature(S, u, v)", cag_surfaces_gaussian_curvature, "number",
+    {"gaussian_curvature(S: surface, u: number or angle, v: number or angle)",
+     cag_surfaces_gaussian_curvature, "number",
      "The product of the principal curvatures, in 1/mm2.",
      "print near(gaussian_curvature(sphere_surface(2), 60deg, 10deg), 0.25) // expect: true", SIDES,
      curvature},
-    {"mean_curvature(S, u, v)", cag_surfaces_mean_curvature, "number",
+    {"mean_curvature(S: surface, u: number or angle, v: number or angle)",
+     cag_surfaces_mean_curvature, "number",
      "The mean of the principal curvatures, in 1/mm; negative where the surface bends away from "
      "its "
      "normal.",
      "print near(mean_curvature(sphere_surface(2), 60deg, 10deg), -0.5) // expect: true", SIDES,
      curvature},
-    {"normal_curvature(S, u, v, V)", cag_surfaces_normal_curvature, "number",
+    {"normal_curvature(S: surface, u: number or angle, v: number or angle, V: vector)",
+     cag_surfaces_normal_curvature, "number",
      "The curvature of the cut along the direction V (taken along the surface), in 1/mm.",
      "print near(normal_curvature(sphere_surface(2), 90deg, 0deg, Y), -0.5) // expect: true", SIDES,
      curvature},
-    {"principal_curvatures(S, u, v)", cag_surfaces_principal_curvatures, "record",
+    {"principal_curvatures(S: surface, u: number or angle, v: number or angle)",
+     cag_surfaces_principal_curvatures, "record",
      "The least and the greatest normal curvature, min and max, with min_direction and "
      "max_direction (unit, square to each other).",
      "k = principal_curvatures(torus_surface(3, 1), 0deg, 0deg)\n"
      "print near(k.min * k.max, 0.25) // expect: true",
      SIDES, curvature},
-    {"curvature_class(S, u, v)", cag_surfaces_curvature_class, "text",
+    {"curvature_class(S: surface, u: number or angle, v: number or angle)",
+     cag_surfaces_curvature_class, "text",
      "\"elliptic\", \"hyperbolic\", \"parabolic\" or \"planar\".",
      "print curvature_class(sphere_surface(1), 90deg, 0deg) // expect: elliptic", SIDES, curvature},
 
     // --- Of the whole ---
-    {"area(S)", cag_surfaces_area, "number", "The area in mm2, to 1e-8.",
+    {"area(S: surface)", cag_surfaces_area, "number", "The area in mm2, to 1e-8.",
      "print near(area(sphere_surface(1)), 4 * pi, relative: 1e-8) // expect: true", SURFACES,
      asked},
-    {"volume(S)", cag_surfaces_volume, "number",
+    {"volume(S: surface)", cag_surfaces_volume, "number",
      "The volume in mm3 within a closed surface, to 1e-8. An open surface is an error "
      "(surface-open).",
      "print near(volume(sphere_surface(3)), 36 * pi, relative: 1e-8) // expect: true", SURFACES,
      asked},
-    {"centroid(S)", cag_surfaces_centroid, "list",
+    {"centroid(S: surface)", cag_surfaces_centroid, "list",
      "The centroid of the body within a closed surface, or of an open surface itself.",
      "print near(centroid(trim(sphere_surface(3), u: 0deg..90deg)), [0, 0, 1.5]) // expect: true",
      SURFACES, asked},
-    {"is_developable(S, tolerance = 1e-9)", cag_surfaces_is_developable, "bool",
+    {"is_developable(S: surface, tolerance: number = 1e-9)", cag_surfaces_is_developable, "bool",
      "Whether the surface can be unrolled into the plane without stretching: its Gaussian "
      "curvature, times the square of its size, is nowhere larger than the tolerance.",
      "print is_developable(revolve(line([1, 0], [2, 4]))), is_developable(sphere_surface(1)) // "
      "expect: true false",
      SURFACES, asked},
-    {"sample(S, nu, nv)", cag_surfaces_sample, "list",
+    {"sample(S: surface, nu: integer, nv: integer)", cag_surfaces_sample, "list",
      "Rows of points: nu by nv (2 at least) in equal steps of the parameters. Of a swept solid "
      "those of its side.",
      "print sample(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 2, 3)[1] // expect: [[4, 0, 0], [4, "
      "1, "
      "0], [4, 2, 0]]",
      SIDES, asked},
-    {"to_nurbs(S)", cag_surfaces_to_nurbs, "surface",
+    {"to_nurbs(S: surface)", cag_surfaces_to_nurbs, "surface",
      "The exact rational B-spline of the surface, or of the side of a swept solid; one that has "
      "none "
      "is an error (no-exact-form).",
      "print degree(to_nurbs(sphere_surface(1))) // expect: [2, 2]", SIDES, changed},
-    {"flip(S)", cag_surfaces_flip, "surface", "The same surface with its normals turned over.",
+    {"flip(S: surface)", cag_surfaces_flip, "surface",
+     "The same surface with its normals turned over.",
      "s = flip(sphere_surface(1))\n"
      "print near(normal(s, 90deg, 0deg), -X) // expect: true",
      SURFACES, changed},
-    {"isocurve(S, u = none, v = none)", cag_surfaces_isocurve, "curve",
+    {"isocurve(S: surface, u: number or angle = none, v: number or angle = none)",
+     cag_surfaces_isocurve, "curve",
      "The curve on the surface, or on the side of a swept solid, where u, or v, has this value.",
      "print near(length(isocurve(sphere_surface(1), u: 90deg)), tau) // expect: true\n"
      "print near(length(isocurve(prism(circle(2), 5), v: 0.5)), 4 * pi) // expect: true",
      SIDES, changed},
-    {"boundary(S)", cag_surfaces_boundary, "list",
+    {"boundary(S: surface)", cag_surfaces_boundary, "list",
      "The curves around the surface: its open edges, or its outlines if it is trimmed or unrolled; "
      "none where it is closed.",
      "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4\n"
@@ -150,7 +162,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print len(sheet), near(length(sheet[0]), 2 * (5 + tau)) // expect: 1 true",
      SURFACES, changed},
 
-    {"trim(S, curves = none, u = none, v = none)", cag_surfaces_trim, "surface",
+    {"trim(S: surface, curves: list of closed curves = none, "
+     "u: range of numbers or angles = none, v: range of numbers or angles = none)",
+     cag_surfaces_trim, "surface",
      "The part over ranges of the parameters, which stay as they are; exact control points where "
      "the surface has some. Or the part within closed curves [u, v] of the parameter plane "
      "(radians "
@@ -163,39 +177,44 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "rings = [circle(0.25, center: [0.5, 0.5]), circle(0.125, center: [0.5, 0.5])]\n"
      "print near(area(trim(flat, rings)), 3 * pi, relative: 1e-8) // expect: true",
      SURFACES, changed},
-    {"split(S, u = none, v = none)", cag_surfaces_split, "list",
-     "The two parts below and above this u, or v.",
+    {"split(S: surface, u: number or angle = none, v: number or angle = none)", cag_surfaces_split,
+     "list", "The two parts below and above this u, or v.",
      "parts = split(sphere_surface(1), u: 90deg)\n"
      "print near(area(parts[1]), tau, relative: 1e-8) // expect: true",
      SURFACES, changed},
-    {"insert_knot(S, u = none, v = none, times = 1)", cag_surfaces_insert_knot, "surface",
+    {"insert_knot(S: surface, u: number or angle = none, v: number or angle = none, "
+     "times: integer = 1)",
+     cag_surfaces_insert_knot, "surface",
      "The same surface with one knot more in u, or in v, and so one more row of control points.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(points(insert_knot(s, v: 0.5))[0]) // expect: 4",
      SURFACES, changed},
-    {"refine(S, u = true, v = true)", cag_surfaces_refine, "surface",
+    {"refine(S: surface, u: bool or \"midpoints\" or list of numbers = true, "
+     "v: bool or \"midpoints\" or list of numbers = true)",
+     cag_surfaces_refine, "surface",
      "The same surface with a knot more in the middle of every knot interval, in both directions "
      "or in one (closed directions stay closed); or with a whole new list of knots for u, for v, "
      "which holds the old ones: else an error (knots-not-superset). \"midpoints\" says the first.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(points(refine(s))), len(points(refine(s))[0]) // expect: 3 4",
      SURFACES, changed},
-    {"elevate(S, u = 0, v = 0)", cag_surfaces_elevate, "surface",
+    {"elevate(S: surface, u: integer = 0, v: integer = 0)", cag_surfaces_elevate, "surface",
      "The same surface with its degrees raised by so much.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print degree(elevate(s, u: 2, v: 1)) // expect: [3, 3]",
      SURFACES, changed},
-    {"to_bezier(S)", cag_surfaces_to_bezier, "list",
+    {"to_bezier(S: surface)", cag_surfaces_to_bezier, "list",
      "The Bezier pieces of the surface, in rows of u, each over 0..1.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(to_bezier(refine(s))[1]) // expect: 2",
      SURFACES, changed},
-    {"transpose_uv(S)", cag_surfaces_transpose_uv, "surface",
+    {"transpose_uv(S: surface)", cag_surfaces_transpose_uv, "surface",
      "The same surface with u and v exchanged, which turns its normal over.",
      "s = transpose_uv(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))\n"
      "print s(0.5, 0.25) // expect: [1, 1, 0]",
      SURFACES, changed},
-    {"join_surfaces(A, B, tolerance = 1e-9)", cag_surfaces_join_surfaces, "surface",
+    {"join_surfaces(A: surface, B: surface, tolerance: number = 1e-9)", cag_surfaces_join_surfaces,
+     "surface",
      "Two surfaces that share an edge as one: u runs over the first, then over the second. The "
      "tolerance is a part of their size. Without a common edge it is an error "
      "(edges-do-not-match).",
@@ -203,8 +222,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "parts = split(s, u: 0.5)\n"
      "print near(area(join_surfaces(parts[0], parts[1])), area(s), relative: 1e-8) // expect: true",
      SURFACES, changed},
-    {"continuity(A, B, edge = none, tolerance = 1e-9, edges = none)", cag_surfaces_continuity,
-     "record",
+    {"continuity(A: surface, B: surface, edge: text or list of 2 texts = none, "
+     "tolerance: number = 1e-9, edges: list of 2 texts = none)",
+     cag_surfaces_continuity, "record",
      "How two surfaces meet along the edges nearest to each other, or along an `edge` of both "
      "(such "
      "as \"u1\", or [\"u1\", \"u0\"] of A and of B; also said as `edges`): class (\"none\", "
@@ -217,7 +237,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "parts = split(sphere_surface(1), u: 60deg)\n"
      "print continuity(parts[0], parts[1]).class // expect: G2",
      SURFACES, asked},
-    {"unroll(S)", cag_surfaces_unroll, "surface",
+    {"unroll(S: surface)", cag_surfaces_unroll, "surface",
      "A cylinder, cone, plane or other developable surface laid flat into z = 0, with the "
      "parameters "
      "and all lengths it has; it is straight along u or v. One that would have to be stretched is "
@@ -226,7 +246,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "flat = unroll(revolve(line([1, 0], [1, 5])))\n"
      "print near(bounds(flat).size, [5, tau, 0]) // expect: true",
      SURFACES, changed},
-    {"map_onto(G, S, tolerance = none)", cag_surfaces_map_onto, "curve, surface, mesh or group",
+    {"map_onto(G: shape or group, S: surface, tolerance: length = none)", cag_surfaces_map_onto,
+     "curve, surface, mesh or group",
      "A shape laid onto a surface: x and y of G are its u and v (radians where these are angles), "
      "z goes along its normal. Curves and surfaces have exact derivatives; regions, solids and "
      "meshes become meshes within the tolerance (none: a thousandth of the size), closed ones "
@@ -239,25 +260,28 @@ const CagBuiltin cag_builtins_surfaces[] = {
      CURVES | SURFACES | CAG_TAKES(REGION) | CAG_TAKES(SOLID) | CAG_TAKES(MESH) | CAG_TAKES(GROUP) |
          CAG_TAKES(LIST),
      changed},
-    {"remap(S, f, u = none, v = none)", cag_surfaces_remap, "surface",
+    {"remap(S: surface, f: function (u, v) => [u, v], u: range of numbers or angles = none, "
+     "v: range of numbers or angles = none)",
+     cag_surfaces_remap, "surface",
      "The surface S(f(u, v)) with other parameters: f gives the old u and v for the new ones, over "
      "these ranges (none: those of S). Exact derivatives.",
      "s = remap(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), (u, v) => [u^2, 1 - v])\n"
      "print near(s(0.5, 0.25), [1, 1.5, 0]) // expect: true",
      SURFACES, changed},
-    {"offset(S, d)", cag_surfaces_offset, "surface",
+    {"offset(S: surface, d: length)", cag_surfaces_offset, "surface",
      "The surface at this distance (mm) along its normals.",
      "print near(area(offset(sphere_surface(2), 1)), 36 * pi, relative: 1e-7) // expect: true",
      SURFACES, changed},
-    {"thicken(S, d)", cag_surfaces_thicken, "solid",
+    {"thicken(S: surface, d: length)", cag_surfaces_thicken, "solid",
      "The plate between a surface and its offset by the distance (mm).",
      "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
      "print near(volume(thicken(s, 0.5)), 4, relative: 1e-8) // expect: true",
      SURFACES, changed},
 
     // --- Of curves ---
-    {"revolve(C, axis = Z, through = origin, angle = 0deg..360deg)", cag_surfaces_revolve,
-     "surface or solid",
+    {"revolve(C: curve or region or list of points, axis: vector = Z, "
+     "through: point = origin, angle: range of angles or angle = 0deg..360deg)",
+     cag_surfaces_revolve, "surface or solid",
      "A curve turned about the axis through a point, over a range of angles (an angle a is "
      "0deg..a): a surface with u as in the curve and v the angle. Of a region, or a list of "
      "points, "
@@ -266,7 +290,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(revolve(polygon([[0, 0], [2, 0], [0, 3]]))), 4 * pi) // expect: true\n"
      "print near(area(revolve(line([2, 0], [2, 5]))), 20 * pi) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"extrude(C, height, twist = 0deg, scale = 1, caps = true, centered = false)",
+    {"extrude(C: curve or region or list of points, height: length or vector, "
+     "twist: angle = 0deg, scale: number = 1, caps: bool = true, centered: bool = false)",
      cag_surfaces_extrude, "solid or surface",
      "A curve carried along a vector, or up by a height (mm): a surface with u as in the curve and "
      "v "
@@ -280,20 +305,22 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(extrude(rectangle(4, 3), 5)), 60) // expect: true\n"
      "print near(area(extrude(line([0, 0], [4, 0]), [0, 0, 5])), 20) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"ruled(A, B)", cag_surfaces_ruled, "surface",
+    {"ruled(A: curve, B: curve)", cag_surfaces_ruled, "surface",
      "Straight between two curves: u = 1 is the first, u = 0 the second, v in 0..1 along both.",
      "s = ruled(line([0, 0, 1], [4, 0, 1]), line([0, 0, 0], [4, 0, 0]))\n"
      "print s(1, 0.5) // expect: [2, 0, 1]",
      CURVES, made},
-    {"bilinear(P, Q, R, S)", cag_surfaces_bilinear, "surface",
+    {"bilinear(P: point, Q: point, R: point, S: point)", cag_surfaces_bilinear, "surface",
      "Between four corners: P at u = 0, v = 0, Q at u = 0, v = 1, R at u = 1, v = 0 and S at u = "
      "1, "
      "v = 1.",
      "print bilinear([0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 4])(0.5, 0.5) // expect: [0.5, 0.5, "
      "1]",
      LISTS, made},
-    {"sweep(C, path, orient = \"rmf\", twist = 0deg, scale = 1, caps = true)", cag_surfaces_sweep,
-     "solid or surface",
+    {"sweep(C: curve or region or list of points, path: curve, "
+     "orient: text or vector = \"rmf\", twist: angle or function of t = 0deg, "
+     "scale: number or function of t = 1, caps: bool = true)",
+     cag_surfaces_sweep, "solid or surface",
      "A section carried along a path, square to it: its x goes along the frame's normal and its y "
      "along the binormal. The frame does not turn about the path (\"rmf\"), is that of Frenet "
      "(\"frenet\"), keeps the place it has at the start (\"fixed\"), or has y as near to a "
@@ -311,14 +338,17 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(sweep(rectangle(4, 2), path)), 40, relative: 1e-8) // expect: true\n"
      "print near(volume(sweep(circle(1), circle(5))), 10 * pi^2, relative: 1e-8) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"sweep_by(C, map, range, caps = true)", cag_surfaces_sweep_by, "solid or surface",
+    {"sweep_by(C: curve, map: function t => transform, range: range of numbers or angles, "
+     "caps: bool = true)",
+     cag_surfaces_sweep_by, "solid or surface",
      "A section moved by a transform that depends on one parameter: S(u, v) = map(v) applied to "
      "C(u), v over the range. Of a region, a list of points or a closed plane curve a solid with "
      "caps. A map that jumps is an error (function-jumps).",
      "s = sweep_by(rectangle(2, 2), t => translate([0, 0, t]) * rotate(Z, t * 10deg), 0..3)\n"
      "print near(volume(s), 12, relative: 1e-8) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"tube(path, radius, caps = true)", cag_surfaces_tube, "solid or surface",
+    {"tube(path: curve, radius: number or function of t, caps: bool = true)", cag_surfaces_tube,
+     "solid or surface",
      "A round tube of this radius (mm), or of a radius that is a function of the path's parameter: "
      "a solid with its caps, or with `caps: false` the side alone, u the angle around and v as in "
      "the path.",
@@ -326,7 +356,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(tube(path, 2)), 20 * pi, relative: 1e-8) // expect: true\n"
      "print near(volume(tube(path, t => 2 - t)), 35 * pi / 3, relative: 1e-8) // expect: true",
      CURVES, made},
-    {"loft(curves, degree = 3, closed = false, caps = true)", cag_surfaces_loft, "solid or surface",
+    {"loft(curves: list of curves or regions, degree: integer >= 1 = 3, "
+     "closed: bool = false, caps: bool = true)",
+     cag_surfaces_loft, "solid or surface",
      "The surface through curves, or regions without holes, in order: u runs along them over 0..1, "
      "v = i is curve i. In v it "
      "is a spline of the degree; `closed` leads from the last curve back to the first. Of closed "
@@ -336,21 +368,21 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "tower = loft([for z in [0, 3, 5]: translate(a, [0, 0, z])])\n"
      "print near(volume(tower), 20 * pi, relative: 1e-8) // expect: true",
      LISTS, made},
-    {"translational(A, B)", cag_surfaces_translational, "surface",
+    {"translational(A: curve, B: curve)", cag_surfaces_translational, "surface",
      "Curve A carried along curve B, from B's start.",
      "s = translational(line([0, 0, 0], [4, 0, 0]), line([0, 0, 0], [0, 3, 0]))\n"
      "print near(area(s), 12) // expect: true",
      CURVES, made},
-    {"sphere_surface(radius)", cag_surfaces_sphere_surface, "surface",
+    {"sphere_surface(radius: length)", cag_surfaces_sphere_surface, "surface",
      "The sphere about the origin as a surface: u the polar angle from Z, v the azimuth.",
      "print near(sphere_surface(2)(90deg, 90deg), [0, 2, 0]) // expect: true", NUMBERS, made},
-    {"torus_surface(major, minor)", cag_surfaces_torus_surface, "surface",
+    {"torus_surface(major: length, minor: length)", cag_surfaces_torus_surface, "surface",
      "The torus about Z as a surface: a circle of radius `minor` turned at the radius `major`.",
      "print near(area(torus_surface(3, 1)), 12 * pi^2, relative: 1e-8) // expect: true", NUMBERS,
      made},
 
     // --- Patches ---
-    {"developable(A, B)", cag_surfaces_developable, "surface",
+    {"developable(A: curve, B: curve)", cag_surfaces_developable, "surface",
      "The developable surface between two curves, as `ruled` (u = 1 is the first, u = 0 the "
      "second), "
      "but with rulings that lie in one plane with the tangents at both ends, so that it can be "
@@ -363,7 +395,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "3]))) "
      "// expect: true false",
      CURVES, patches},
-    {"coons(u0, u1, v0, v1)", cag_surfaces_coons, "surface",
+    {"coons(u0: curve, u1: curve, v0: curve, v1: curve)", cag_surfaces_coons, "surface",
      "The surface between four edges, named by the side they lie on: u0 and u1 run along v, v0 and "
      "v1 along u, all in the sense of growing parameters. Edges that do not meet are an error "
      "(coons-corner-mismatch), which tells the corner, the gap and what to reverse.",
@@ -372,7 +404,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "line([0, 2, 0], [2, 2, 4]))\n"
      "print s(0.5, 0.5) // expect: [1, 1, 1]",
      CURVES, patches},
-    {"coons_bicubic(corners, tangents_u, tangents_v, twists = \"zero\")",
+    {"coons_bicubic(corners: list of 2 rows of points, "
+     "tangents_u: list of 2 rows of vectors, tangents_v: list of 2 rows of vectors, "
+     "twists: \"zero\" or \"adini\" or list of 2 rows of vectors = \"zero\")",
      cag_surfaces_coons_bicubic, "surface",
      "The bicubic patch over 0..1 from tables of 2 rows of 2, [[at u = 0, v = 0; at v = 1], [at u "
      "= 1 ...]]: points, derivatives by u and by v, and twists, \"zero\" (Ferguson's patch) or "
@@ -382,7 +416,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "3, 0]], [[0, 3, 0], [0, 3, 0]]])\n"
      "print s(0.5, 0.5) // expect: [1.5, 1.5, 2]",
      LISTS, patches},
-    {"hermite_patch(Q, u = 0..1, v = 0..1)", cag_surfaces_hermite_patch, "surface",
+    {"hermite_patch(Q: list of rows of points and vectors, "
+     "u: range of numbers or angles = 0..1, v: range of numbers or angles = 0..1)",
+     cag_surfaces_hermite_patch, "surface",
      "The bicubic patch of a 4 by 4 table of vectors: rows at u = 0, at u = 1, and the derivatives "
      "by u there; columns likewise for v. Derivatives are by the true parameters of the ranges.",
      "q = [[[0, 0, 0], [0, 3, 0], [0, 3, 0], [0, 3, 0]], [[3, 0, 0], [3, 3, 0], [0, 3, 0], [0, 3, "
@@ -390,7 +426,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "0]]]\n"
      "print near(hermite_patch(q)(0.5, 0.25), [1.5, 0.75, 0]) // expect: true",
      LISTS, patches},
-    {"hermite_surface(grid, edge_tangents, corner_twists, lengths = none)",
+    {"hermite_surface(grid: list of rows of points, "
+     "edge_tangents: record of lists of vectors, corner_twists: list of 2 rows of vectors, "
+     "lengths: list of lists of numbers = none)",
      cag_surfaces_hermite_surface, "surface",
      "The bicubic surface with continuous curvature through a grid of points, by rows of u: point "
      "[i][j] is at u = i, v = j (or at the sums of `lengths`, steps for u and for v). "
@@ -405,13 +443,14 @@ const CagBuiltin cag_builtins_surfaces[] = {
      LISTS, patches},
 
     // --- Nets ---
-    {"bezier_surface(net, weights = none)", cag_surfaces_bezier_surface, "surface",
+    {"bezier_surface(net: list of rows of points, weights: list of numbers = none)",
+     cag_surfaces_bezier_surface, "surface",
      "The Bezier surface of a net of points, given by rows of u, over 0..1 in both directions; "
      "rational with weights, in rows as the points.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
      "print s(0.5, 0.5) // expect: [0.5, 0.5, 1]",
      LISTS, nets},
-    {"bezier_triangle(net)", cag_surfaces_bezier_triangle, "surface",
+    {"bezier_triangle(net: list of rows of points)", cag_surfaces_bezier_triangle, "surface",
      "The triangular Bezier surface from rows of 1, 2, 3 ... points: the first row is the corner "
      "at "
      "u = 0, the last the edge u = 1, along which v runs. Barycentric coordinates of u, v are 1 - "
@@ -421,8 +460,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "0]]])\n"
      "print near(s(2 / 3, 0.5), [2 / 3, 2 / 3, 2 / 3]) // expect: true",
      LISTS, nets},
-    {"bspline_surface(net, degree = [3, 3], knots = [\"open\", \"open\"], closed = [false, false], "
-     "weights = none, order = none)",
+    {"bspline_surface(net: list of rows of points, "
+     "degree: integer or list of 2 integers = [3, 3], "
+     "knots: list of \"open\" or \"periodic\" or list of numbers = [\"open\", \"open\"], "
+     "closed: bool or list of 2 bools = [false, false], weights: list of numbers = none, "
+     "order: integer or list of 2 integers = none)",
      cag_surfaces_bspline_surface, "surface",
      "The B-spline surface of a net of points, given by rows of u. `degree`, `knots` and `closed` "
      "are one value for both directions, or a list of two for u and v; knots as of bspline, except "
@@ -430,8 +472,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "net = [for i in 0..3: [for j in 0..3: [i, j, 0]]]\n"
      "print near(area(bspline_surface(net)), 9) // expect: true",
      LISTS, nets},
-    {"nurbs_surface(net, degree = [3, 3], knots = [\"open\", \"open\"], closed = [false, false], "
-     "weights = none, order = none)",
+    {"nurbs_surface(net: list of rows of points, "
+     "degree: integer or list of 2 integers = [3, 3], "
+     "knots: list of \"open\" or \"periodic\" or list of numbers = [\"open\", \"open\"], "
+     "closed: bool or list of 2 bools = [false, false], weights: list of numbers = none, "
+     "order: integer or list of 2 integers = none)",
      cag_surfaces_nurbs_surface, "surface",
      "As bspline_surface, with weights (in rows as the points) required.",
      "s = nurbs_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], degree: 1, weights: [[1, "
@@ -439,8 +484,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(area(s), 1) // expect: true",
      LISTS, nets},
 
-    {"interpolate_surface(grid, degree = [3, 3], parameters = \"chord\", knots = none, closed = "
-     "[false, false])",
+    {"interpolate_surface(grid: list of rows of points, "
+     "degree: integer or list of 2 integers = [3, 3], "
+     "parameters: \"chord\" or \"mean\" or \"uniform\" or list of 2 lists of numbers = \"chord\", "
+     "knots: list of 2 lists of numbers = none, closed: bool or list of 2 bools = [false, "
+     "false])",
      cag_surfaces_interpolate_surface, "surface",
      "The B-spline surface through a grid of points, given by rows of u, over 0..1. Parameters by "
      "chord length (its mean over the rows, and over the columns), \"uniform\", or a record with "
@@ -454,8 +502,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "t = interpolate_surface(ring, closed: [false, true], parameters: \"uniform\")\n"
      "print near(t(0, 5), [2, 0, 0]), closed_in(t).v // expect: true true",
      LISTS, nets},
-    {"fit_surface(grid, degree, count, parameters = \"chord\", knots = none, closed = [false, "
-     "false], corrections = 0, fixed = \"none\", planes = none, error = 1e-9)",
+    {"fit_surface(grid: list of rows of points, degree: integer or list of 2 integers, "
+     "count: integer or list of 2 integers, "
+     "parameters: \"chord\" or \"mean\" or \"uniform\" or list of 2 lists of numbers = \"chord\", "
+     "knots: list of 2 lists of numbers = none, closed: bool or list of 2 bools = [false, "
+     "false], corrections: integer = 0, fixed: \"none\" or \"x\" or \"y\" or \"z\" = \"none\", "
+     "planes: list of numbers or \"auto\" or record = none, error: length >= 0 = 1e-9)",
      cag_surfaces_fit_surface, "surface",
      "The B-spline surface with `count` control points (two numbers, for u and v) that comes "
      "nearest to a grid of points in the sense of least squares, on open uniform knots or on those "
@@ -473,8 +525,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "hull = fit_surface(grid, 2, [3, 4], fixed: \"x\", planes: [0, 2.5, 4])\n"
      "print [for row in points(hull): row[1].x] // expect: [0, 2.5, 4]",
      LISTS, nets},
-    {"fit_surface_report(grid, degree, count, parameters = \"chord\", knots = none, closed = "
-     "[false, false], corrections = 0, fixed = \"none\", planes = none, error = 1e-9)",
+    {"fit_surface_report(grid: list of rows of points, "
+     "degree: integer or list of 2 integers, count: integer or list of 2 integers, "
+     "parameters: \"chord\" or \"mean\" or \"uniform\" or list of 2 lists of numbers = \"chord\", "
+     "knots: list of 2 lists of numbers = none, closed: bool or list of 2 bools = [false, "
+     "false], corrections: integer = 0, fixed: \"none\" or \"x\" or \"y\" or \"z\" = \"none\", "
+     "planes: list of numbers or \"auto\" or record = none, error: length >= 0 = 1e-9)",
      cag_surfaces_fit_surface_report, "record",
      "surface, as fit_surface gives it; the parameters u and v of each point; the residuals, "
      "points of the surface less the data; rms and largest of their lengths (mm); rounds in which "
@@ -483,7 +539,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print fit_surface_report(grid, 2, [3, 4], \"uniform\").largest < 1e-12 // expect: true",
      LISTS, nets},
-    {"grid_parameters(grid, parameters = \"chord\", ends = [1, 1], closed = [false, false])",
+    {"grid_parameters(grid: list of rows of points, "
+     "parameters: \"chord\" or \"mean\" or \"uniform\" or list of 2 lists of numbers = \"chord\", "
+     "ends: list of 2 numbers = [1, 1], closed: bool or list of 2 bools = [false, false])",
      cag_surfaces_grid_parameters, "record",
      "The parameters u and v of each point of a grid, from 0 to the ends: by chord length along "
      "each row and column, by their \"mean\", or \"uniform\". In a closed direction the way "
@@ -493,7 +551,9 @@ const CagBuiltin cag_builtins_surfaces[] = {
      LISTS, nets},
 
     // --- Quadrics ---
-    {"quadric(coefficients, within = none)", cag_surfaces_quadric, "surface or group",
+    {"quadric(coefficients: list of 10 numbers or list of 4 rows, "
+     "within: box or range of z = none)",
+     cag_surfaces_quadric, "surface or group",
      "The real surface of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + g x + h y + j z + k = 0 "
      "from "
      "its ten numbers, or from 4 rows of 4; two sheets or planes are a group. `within` cuts it at "
@@ -509,45 +569,53 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "expect: "
      "true",
      LISTS, quadrics},
-    {"ellipsoid(a, b, c, within = none)", cag_surfaces_ellipsoid, "surface or group",
+    {"ellipsoid(a: length, b: length, c: length, within: box or range of z = none)",
+     cag_surfaces_ellipsoid, "surface or group",
      "x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, whole, or what lies in the box or range of z of `within`.",
      "print near(bounds(ellipsoid(3, 2, 1)).size, [6, 4, 2]) // expect: true\n"
      "print near(area(ellipsoid(2, 2, 2, within: 0..1)), 4 * pi) // expect: true",
      NUMBERS, quadrics},
-    {"hyperboloid(a, b, c, sheets = 1, within = none)", cag_surfaces_hyperboloid,
-     "surface or group",
+    {"hyperboloid(a: length, b: length, c: length, sheets: 1 or 2 = 1, "
+     "within: box or range of z = none)",
+     cag_surfaces_hyperboloid, "surface or group",
      "x^2/a^2 + y^2/b^2 - z^2/c^2 = 1, or -1 with `sheets: 2`, cut by `within`.",
      "print classify(hyperboloid(1, 1, 1, within: -2..2)).class // expect: hyperboloid-1", NUMBERS,
      quadrics},
-    {"paraboloid(a, b, within = none)", cag_surfaces_paraboloid, "surface or group",
-     "z = x^2/a^2 + y^2/b^2, cut by `within`.",
+    {"paraboloid(a: length, b: length, within: box or range of z = none)", cag_surfaces_paraboloid,
+     "surface or group", "z = x^2/a^2 + y^2/b^2, cut by `within`.",
      "print near(bounds(paraboloid(1, 1, within: 0..4)).max, [2, 2, 4]) // expect: true", NUMBERS,
      quadrics},
-    {"hyperbolic_paraboloid(a, b, within = none)", cag_surfaces_hyperbolic_paraboloid,
-     "surface or group", "The saddle z = x^2/a^2 - y^2/b^2, cut by `within`.",
+    {"hyperbolic_paraboloid(a: length, b: length, within: box or range of z = none)",
+     cag_surfaces_hyperbolic_paraboloid, "surface or group",
+     "The saddle z = x^2/a^2 - y^2/b^2, cut by `within`.",
      "s = hyperbolic_paraboloid(1, 1, within: box(2, centered: true))\n"
      "print classify(s).class // expect: hyperbolic-paraboloid",
      NUMBERS, quadrics},
-    {"elliptic_cone(a, b, c, within = none)", cag_surfaces_elliptic_cone, "surface or group",
+    {"elliptic_cone(a: length, b: length, c: length, within: box or range of z = none)",
+     cag_surfaces_elliptic_cone, "surface or group",
      "x^2/a^2 + y^2/b^2 - z^2/c^2 = 0, cut by `within`.",
      "print classify(elliptic_cone(1, 2, 1, within: -1..1)).class // expect: cone", NUMBERS,
      quadrics},
-    {"elliptic_cylinder(a, b, within = none)", cag_surfaces_elliptic_cylinder, "surface or group",
+    {"elliptic_cylinder(a: length, b: length, within: box or range of z = none)",
+     cag_surfaces_elliptic_cylinder, "surface or group",
      "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`; a box may leave a group of strips.",
      "print near(area(elliptic_cylinder(1, 1, within: 0..3)), 6 * pi, relative: 1e-8) // expect: "
      "true",
      NUMBERS, quadrics},
-    {"parabolic_cylinder(a, within = none)", cag_surfaces_parabolic_cylinder, "surface or group",
+    {"parabolic_cylinder(a: length, within: box or range of z = none)",
+     cag_surfaces_parabolic_cylinder, "surface or group",
      "y^2 = 4 a x along Z, a the focal distance, cut by `within`.",
      "s = parabolic_cylinder(1, within: box(2, centered: true))\n"
      "print classify(s).class // expect: parabolic-cylinder",
      NUMBERS, quadrics},
-    {"hyperbolic_cylinder(a, b, within = none)", cag_surfaces_hyperbolic_cylinder,
-     "surface or group", "x^2/a^2 - y^2/b^2 = 1 along Z, cut by `within`.",
+    {"hyperbolic_cylinder(a: length, b: length, within: box or range of z = none)",
+     cag_surfaces_hyperbolic_cylinder, "surface or group",
+     "x^2/a^2 - y^2/b^2 = 1 along Z, cut by `within`.",
      "s = hyperbolic_cylinder(1, 1, within: box(4, centered: true))\n"
      "print classify(s).class // expect: hyperbolic-cylinder",
      NUMBERS, quadrics},
-    {"classify(Q)", cag_surfaces_classify, "record",
+    {"classify(Q: quadric or list of 10 numbers or list of 4 rows)", cag_surfaces_classify,
+     "record",
      "Of a quadric or sphere, or of ten numbers or four rows: `class` (17 kinds, imaginary ones "
      "too), "
      "the "

@@ -69,7 +69,7 @@ static bool call_intersect(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_meetings[] = {
-    {"closest(S, P)", call_closest, "record",
+    {"closest(S: surface, P: point)", call_closest, "record",
      "The point of the surface nearest to P: u, v, point and distance (mm). If several are equally "
      "near, it is one of them. Bounds guarantee that no other point is nearer for surfaces with an "
      "exact NURBS form, and for tubes, sweeps and twisted extrusions of lines, arcs, helices, "
@@ -81,7 +81,8 @@ const CagBuiltin cag_builtins_meetings[] = {
      "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
      "90deg",
      CAG_TAKES(SURFACE), MEETINGS},
-    {"intersect(S, A, tolerance = none)", call_intersect, "list",
+    {"intersect(S: surface, A: curve or surface or plane, tolerance: length = none)",
+     call_intersect, "list",
      "Where the surface meets a curve: records of point, u, v, t of the curve, and multiplicity (2 "
      "where they touch), in the order of t. Where it meets another surface or a plane: curves, "
      "lines and conics exactly, others as "

@@ -4,13 +4,7 @@
 
 #include <string.h>
 
-#include "interp/doc/doc.h"
 #include "lang/foreign.h"
-
-// Places for all parameters of all built-ins, and how many are looked at before the words are read
-// again.
-#define TAKEN_SIZE ((size_t)4096)
-#define TAKEN_TRIES 16
 
 // ---- calls ----
 
@@ -108,21 +102,6 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
   return true;
 }
 
-// What a parameter takes. The words of the documentation are read once for each.
-static CagTypes types_taken(Check *c, const CagBuiltin *row, const CagSignature *s, size_t k) {
-  if (k >= s->count) return cag_types_taken(row, s, k);
-  if (!c->taken) c->taken = cag_arena_alloc(&c->memory, TAKEN_SIZE * sizeof *c->taken);
-  const char *const *key = &s->parameters[k];
-  size_t i = ((size_t)key >> 3) * 0x9E3779B97F4A7C15u >> 20 & (TAKEN_SIZE - 1);
-  for (size_t tries = 0; tries < TAKEN_TRIES; tries++, i = (i + 1) & (TAKEN_SIZE - 1)) {
-    if (c->taken[i].parameter == key) return c->taken[i].types;
-    if (c->taken[i].parameter) continue;
-    c->taken[i].parameter = key;
-    return c->taken[i].types = cag_types_taken(row, s, k);
-  }
-  return cag_types_taken(row, s, k);
-}
-
 // An argument that a parameter does not take.
 typedef struct Misfit {
   const CagExpr *value;
@@ -130,38 +109,36 @@ typedef struct Misfit {
   CagTypes taken, found;
 } Misfit;
 
-static bool fits(Check *c, const CagBuiltin *row, const CagSignature *s, size_t k, CagTypes types,
+static bool fits(const CagBuiltin *row, const CagSignature *s, size_t k, CagTypes types,
                  const CagExpr *value, Misfit *out) {
-  const CagTypes taken = types_taken(c, row, s, k);
+  const CagTypes taken = cag_types_taken(row, s, k);
   *out = (Misfit){value, k, taken, types};
   return types & taken;
 }
 
 // Whether the arguments are of types that a row takes; else the first that is not.
-static bool types_fit(Check *c, const CagBuiltin *row, const CagSignature *s, const CallView *v,
+static bool types_fit(const CagBuiltin *row, const CagSignature *s, const CallView *v,
                       Misfit *out) {
   size_t k = 0;
-  if (v->piped && !fits(c, row, s, k++, v->piped_types, v->piped, out)) return false;
+  if (v->piped && !fits(row, s, k++, v->piped_types, v->piped, out)) return false;
   const Callee f = callee_of(s);
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
     const CagArgument *a = &v->e->as.call.arguments[i];
     const size_t parameter = a->name ? parameter_named(&f, a->name) : k++;
-    if (!fits(c, row, s, parameter, v->types[i], a->value, out)) return false;
+    if (!fits(row, s, parameter, v->types[i], a->value, out)) return false;
   }
   return true;
 }
 
-// "a number", or in the words of the documentation where these are many: "a list of points".
+// "a number", or in the words of the signature if these are many: "a list of points".
 static const char *expected_text(const CagSignature *s, const Misfit *m, char *buffer,
                                  size_t size) {
   const CagTypes taken = m->taken & ~CAG_TYPES(NONE);
   size_t count = 0;
   for (size_t i = 0; i < CAG_TYPE_COUNT; i++) count += taken >> i & 1;
-  const CagDocParameter *said =
-      m->parameter < s->count ? cag_doc_parameter(s->name, s->parameters[m->parameter]) : NULL;
-  if (count <= 5 || !said) return cag_types_text(taken, buffer, size);
-  snprintf(buffer, size, "%s %.*s", cag_article(said->type), (int)strcspn(said->type, ","),
-           said->type);
+  if (count <= 5 || m->parameter >= s->count) return cag_types_text(taken, buffer, size);
+  const char *words = s->words[m->parameter];
+  snprintf(buffer, size, "%s %s", cag_article(words), words);
   return buffer;
 }
 
@@ -206,7 +183,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     if (!check_arguments(c, &f, v, false)) continue;
     fitting++;
     result |= result_of(&row[i], first);
-    if (types_fit(c, &row[i], s, v, &misfit)) continue;
+    if (types_fit(&row[i], s, v, &misfit)) continue;
     // Of several rows, that is meant which takes the most of the arguments.
     if (misfits++ > 0 && misfit.parameter <= nearest.parameter) continue;
     nearest = misfit;

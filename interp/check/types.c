@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "interp/doc/doc.h"
 
 #define SHAPES                                                                                     \
   (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
@@ -105,8 +104,8 @@ CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t pa
       if (strcmp(takers[i].function, s->name) == 0) return takers[i].types;
   if (parameter >= s->count) return CAG_TYPES_ANY;
   if (s->variadic) return CAG_TYPES_ANY; // several values, or a list of them
-  const CagDocParameter *said = cag_doc_parameter(s->name, s->parameters[parameter]);
-  return said ? cag_types_of_words(said->type) : CAG_TYPES_ANY;
+  const CagTypes accepted = s->types[parameter].accepts;
+  return accepted ? accepted : CAG_TYPES_ANY;
 }
 
 // --- Operators ---

@@ -18,8 +18,6 @@ typedef uint64_t CagTypes; // bits 1 << CagType
 CagTypes cag_types_of_result(const char *result);
 // The types that parameter number `parameter` of a row takes.
 CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t parameter);
-// What the documentation's words for a parameter leave; any where they say nothing.
-CagTypes cag_types_of_words(const char *words);
 // What an operator gives of operands of these types; 0: it joins none of them.
 CagTypes cag_types_joined(CagBinaryOp op, CagTypes left, CagTypes right);
 // "a number or an angle"; buffer of `size`.

@@ -14,19 +14,12 @@ typedef struct Known {
   CagTypes types;
 } Known;
 
-// What a parameter of a built-in takes, by the place of its name in the signature.
-typedef struct Taken {
-  const char *const *parameter;
-  CagTypes types;
-} Taken;
-
 typedef struct Check {
   CagVm *vm;
   const CagModuleUnit *unit;
   const CagModuleAst *ast;
   Known *known; // open addressing by the address of the declaration
   size_t known_count, known_size;
-  Taken *taken; // open addressing; NULL before the first
   // Definitions of the top level: what is known of them, and which others they use.
   CagTypes *top_types;
   bool *top_done, *top_busy, *reached;

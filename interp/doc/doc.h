@@ -19,9 +19,9 @@ typedef struct CagDocParameter {
   const char *functions, *name, *type, *meaning; // functions: words, "" for all others
 } CagDocParameter;
 
-// What a parameter of a function takes; NULL where no row tells it.
-const CagDocParameter *cag_doc_parameter(const char *function, const char *parameter);
-// The same of a function of a library module ("std.robots"); of scripts nothing is known.
+// What a parameter of a built-in means; "" if no row says it. Its type is in the signature.
+const char *cag_doc_meaning(const char *function, const char *parameter);
+// A parameter of a function of a library module ("std.robots"); NULL if no row describes it.
 const CagDocParameter *cag_doc_module_parameter(const char *module, const char *function,
                                                 const char *parameter);
 

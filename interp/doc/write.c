@@ -92,10 +92,9 @@ char *cag_doc_text(const char *format, ...) {
 
 // --- Built-ins ---
 
-static void write_parameter(FILE *out, const CagDocParameter *p, const char *name,
+static void write_parameter(FILE *out, const char *type, const char *meaning, const char *name,
                             const char *fallback) {
   const int used = fprintf(out, "    %s", name);
-  const char *type = p ? p->type : "any value", *meaning = p ? p->meaning : "";
   char *text = cag_doc_text(
       "%s%s%s%s%.*s", type, *meaning ? ": " : "", meaning, fallback ? "; default " : "",
       fallback ? (int)cag_doc_default(fallback) : 0, fallback ? fallback : "");
@@ -125,9 +124,10 @@ static void write_row(const CagDocWriter *w, const CagBuiltin *row) {
   const CagSignature *s = cag_builtin_signature_of(row);
   if (s && (s->count || s->variadic)) fputs("\n  Parameters\n", w->out);
   for (size_t i = 0; s && i < s->count; i++)
-    write_parameter(w->out, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
-                    s->defaults[i]);
-  if (s && s->variadic) write_parameter(w->out, cag_doc_parameter(s->name, "..."), "...", NULL);
+    write_parameter(w->out, s->words[i], cag_doc_meaning(s->name, s->parameters[i]),
+                    s->parameters[i], s->defaults[i]);
+  if (s && s->variadic)
+    write_parameter(w->out, "as the first", cag_doc_meaning(s->name, "..."), "...", NULL);
   Errors errors = {w->out, 0};
   cag_doc_reasons(row->summary, write_error, &errors);
   fputs("\n  Example\n", w->out);
@@ -157,9 +157,11 @@ static void write_arguments(FILE *out, const CagDocModule *m, const CagDocEntry 
   if (e->argument_count) fputs("\n  Parameters\n", out);
   for (size_t i = 0; i < e->argument_count; i++) {
     const CagDocArgument *a = &e->arguments[i];
-    const CagDocParameter said = {"", a->name, a->meaning, ""};
-    write_parameter(out, a->meaning ? &said : cag_doc_module_parameter(m->name, e->name, a->name),
-                    a->name, a->fallback);
+    const CagDocParameter *known = cag_doc_module_parameter(m->name, e->name, a->name);
+    if (a->meaning) write_parameter(out, a->meaning, "", a->name, a->fallback);
+    else
+      write_parameter(out, known ? known->type : "any value", known ? known->meaning : "", a->name,
+                      a->fallback);
   }
 }
 

@@ -101,10 +101,10 @@ void cag_site_write(CagSite *s, const char *path, const char *text, size_t lengt
 void cag_site_find(CagSite *s, const char *name, const char *kind, const char *url,
                    const char *summary, size_t summary_length);
 
-// The table of parameters: its head, and a line, of which `known` may be NULL.
+// The table of parameters: its head, and a line.
 void cag_site_begin_parameters(const CagSitePage *p);
-void cag_site_parameter(const CagSitePage *p, const CagDocParameter *known, const char *name,
-                        const char *fallback);
+void cag_site_parameter(const CagSitePage *p, const char *type, const char *meaning,
+                        const char *name, const char *fallback);
 
 // Reads the scripts that the site is to tell of; false: a diagnostic says what is wrong.
 bool cag_site_read_scripts(CagSite *s);

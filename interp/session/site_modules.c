@@ -12,12 +12,12 @@ static void write_text(FILE *out, const char *text) { cag_html_text(out, text, s
 
 // --- Parameters ---
 
-void cag_site_parameter(const CagSitePage *p, const CagDocParameter *known, const char *name,
-                        const char *fallback) {
+void cag_site_parameter(const CagSitePage *p, const char *type, const char *meaning,
+                        const char *name, const char *fallback) {
   fputs("<tr><td><code>", p->out);
   write_text(p->out, name);
   fputs("</code></td><td>", p->out);
-  if (known) write_text(p->out, known->type);
+  write_text(p->out, type);
   fputs("</td><td>", p->out);
   if (fallback) {
     fputs("<code>", p->out);
@@ -25,7 +25,7 @@ void cag_site_parameter(const CagSitePage *p, const CagDocParameter *known, cons
     fputs("</code>", p->out);
   }
   fputs("</td><td>", p->out);
-  if (known) cag_html_prose(p->out, p->root, known->meaning, strlen(known->meaning));
+  cag_html_prose(p->out, p->root, meaning, strlen(meaning));
   fputs("</td></tr>\n", p->out);
 }
 
@@ -40,8 +40,7 @@ static void write_said_parameter(const CagSitePage *p, const CagDocArgument *a) 
   const char *colon = strstr(a->meaning, ": ");
   char *type = cag_strndup(a->meaning, colon ? (size_t)(colon - a->meaning) : 0);
   if (!type) cag_memory_leave();
-  const CagDocParameter said = {"", a->name, type, colon ? colon + 2 : a->meaning};
-  cag_site_parameter(p, &said, a->name, a->fallback);
+  cag_site_parameter(p, type, colon ? colon + 2 : a->meaning, a->name, a->fallback);
   cag_free(type);
 }
 
@@ -119,8 +118,11 @@ static void write_arguments(const CagSitePage *p, const Book *b, const CagDocEnt
   cag_site_begin_parameters(p);
   for (size_t i = 0; i < e->argument_count; i++) {
     const CagDocArgument *a = &e->arguments[i];
+    const CagDocParameter *known = known_parameter(b, e, i);
     if (a->meaning) write_said_parameter(p, a);
-    else cag_site_parameter(p, known_parameter(b, e, i), a->name, a->fallback);
+    else
+      cag_site_parameter(p, known ? known->type : "", known ? known->meaning : "", a->name,
+                         a->fallback);
   }
   fputs("</tbody></table>\n", p->out);
 }

@@ -64,9 +64,10 @@ static void write_row(const CagSitePage *p, const CagBuiltin *row) {
   if (s && (s->count || s->variadic)) {
     cag_site_begin_parameters(p);
     for (size_t i = 0; i < s->count; i++)
-      cag_site_parameter(p, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
-                         s->defaults[i]);
-    if (s->variadic) cag_site_parameter(p, cag_doc_parameter(s->name, "..."), "...", NULL);
+      cag_site_parameter(p, s->words[i], cag_doc_meaning(s->name, s->parameters[i]),
+                         s->parameters[i], s->defaults[i]);
+    if (s->variadic)
+      cag_site_parameter(p, "as the first", cag_doc_meaning(s->name, "..."), "...", NULL);
     fputs("</tbody></table>\n", p->out);
   }
   Errors errors = {p, 0};

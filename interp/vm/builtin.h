@@ -1,18 +1,17 @@
 // Built-in functions: one table row each, from which dispatch, arity checks, documentation,
 // completion and `cag doc` are made.
 //
-// A row's signature is text in the language of the documentation and is parsed once when the
-// machine starts:
+// A row's signature states the parameters with their types, ranges, and defaults (signature.h):
 //
-//     "revolve(C, axis = Z, through = origin, angle = 0deg..360deg)"
+//     "cone(height: length > 0, radius: length > 0, centered: bool = false)"
 //
-// Parameters with `= default` may be left out; the function then sees CAG_UNSET and supplies the
-// default that the text promises. A parameter named with a single capital (C, P, V, T, G, S, A, B,
-// Q, R) goes by position only; others by position or name. `...` as last parameter: any number of
-// further positional arguments. One name may serve several types of first argument: it then has
-// several rows, and the first whose `accepts` takes the arguments is called. All built-ins of a
-// family stand in one file and are declared as an array `const CagBuiltin cag_builtins_NAME[]`
-// ending with an empty row; builtins.c lists the arrays.
+// cag_bind reads all arguments of a call into a structure. Parameters with `= default` are
+// optional; an argument that is not given is CAG_UNSET. A parameter named with a single capital (C,
+// P, V, T, G, S, A, B, Q, R) goes by position only; others by position or name. `...` as last
+// parameter: any number of further positional arguments. One name may serve several types of first
+// argument: it then has several rows, and the first whose `accepts` takes the arguments is called.
+// All built-ins of a family stand in one file and are declared as an array `const CagBuiltin
+// cag_builtins_NAME[]` ending with an empty row; builtins.c lists the arrays.
 
 #ifndef CAG_INTERP_VM_BUILTIN_H
 #define CAG_INTERP_VM_BUILTIN_H
@@ -20,6 +19,7 @@
 #include "base/diagnostic.h"
 #include "base/memory.h"
 #include "interp/vm/heap.h"
+#include "interp/vm/signature.h"
 #include "interp/vm/value.h"
 
 // Arguments of one call. Given ones stand in `values` by parameter order; parameters left out are
@@ -105,6 +105,18 @@ bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
 bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 
+// Reads all arguments into a structure with a field for each parameter, in the order of the
+// signature and of the type that signature.h gives for its kind:
+//
+//     struct { double height, radius; bool centered; } a;
+//     if (!cag_bind(call, &a, sizeof a)) return false;
+//
+// Optional arguments that are not given have their default. If the function itself supplies the
+// default (such as `none`), the field is zero, and cag_given(call, i) is false; `none` given for a
+// default of `none` counts as not given. Returns false, with the error set, if an argument has the
+// wrong type or is out of range.
+bool cag_bind(CagCall *call, void *out, size_t size);
+
 // --- What a built-in holds besides values ---
 // A built-in may end at any allocation of a value, by a jump. What it holds is therefore released
 // by the machine when the built-in ends, in whatever way, the last thing first.
@@ -141,17 +153,6 @@ const char *const *cag_builtin_names(void);                     // NULL at the e
 bool cag_builtins_ready(void);
 size_t cag_builtin_jet(size_t index); // cag_jet_row of its name
 
-// A row's signature, parsed. All signatures are parsed together when the first is asked for and
-// never change afterwards.
-typedef struct CagSignature {
-  const char *name;
-  size_t count;            // parameters; `...` is not one of them
-  size_t required;         // parameters without default; they come first
-  const char **parameters; // names
-  const char **defaults;   // the default's text, NULL where there is none
-  bool *positional_only;   // a single capital: by position only
-  bool variadic;           // `...`: any number of further arguments by position
-} CagSignature;
 // NULL for a constant.
 const CagSignature *cag_builtin_signature(size_t index, size_t row);
 const CagSignature *cag_builtin_signature_of(const CagBuiltin *row); // row: of cag_builtin_rows

@@ -1,0 +1,104 @@
+// Signatures of built-ins.
+//
+//     signature = name [ "(" parameter { "," parameter } [ "," "..." ] ")" ]
+//     parameter = name ":" type [ " = " default ]
+//     type      = alternative { " or " alternative } [ range ]
+//     range     = "> a" | ">= a" | "in a..b"
+//
+// An alternative is a text in quotes, which the argument may be, or words of parameter_types.def.
+// Other words are for the reader, and accept any value. Text within brackets belongs to the words:
+// "function (u, v) => point", "record {point, direction}".
+//
+// The type says how cag_bind reads an argument, and which types `cag check` accepts. Documentation
+// and messages show it as it is written.
+
+#ifndef CAG_INTERP_VM_SIGNATURE_H
+#define CAG_INTERP_VM_SIGNATURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "geom/linalg/transform.h"
+
+// How an argument is read, and the type of its field in the structure of cag_bind.
+typedef enum CagParameterKind {
+  CAG_BIND_VALUE,     // CagValue: any, or several alternatives
+  CAG_BIND_NUMBER,    // double
+  CAG_BIND_FINITE,    // double, finite
+  CAG_BIND_INTEGER,   // long
+  CAG_BIND_ANGLE,     // double: radians
+  CAG_BIND_BOOL,      // bool
+  CAG_BIND_TEXT,      // const char *
+  CAG_BIND_CHOICE,    // int: the index of the text
+  CAG_BIND_POINT,     // CagPoint: a point or vector of 2 or 3 finite numbers
+  CAG_BIND_DIRECTION, // CagPoint: a unit vector along a vector that is not 0
+  CAG_BIND_POINTS,    // CagPoints
+  CAG_BIND_NUMBERS,   // CagNumbers
+  CAG_BIND_RANGE,     // CagRangeEnds
+  CAG_BIND_LIST,      // CagList *: a list or range
+  CAG_BIND_RECORD,    // CagRecord *
+  CAG_BIND_FUNCTION,  // CagValue: a function, curve, or surface
+  CAG_BIND_TRANSFORM, // CagTransform
+  CAG_BIND_PLANE,     // CagPlane
+  CAG_BIND_CURVE,     // CagCurve *: borrowed
+  CAG_BIND_SURFACE,   // CagSurface *: borrowed
+  CAG_BIND_SOLID,     // CagSolid *: borrowed
+  CAG_BIND_MESH,      // CagMesh *: borrowed
+  CAG_BIND_ROBOT      // CagRobot *: borrowed
+} CagParameterKind;
+
+typedef struct CagParameterType {
+  CagParameterKind kind;
+  uint64_t accepts; // types that may be right, as bits (1 << CAG_NUMBER ...); 0: any
+  double low, high; // of numbers and integers
+  bool above_low;   // low itself is out of range
+  bool ranged;
+  const char *const *choices; // of CHOICE; ends with NULL
+  size_t offset;              // of its field in the structure of cag_bind
+  // The value if no argument is given, from the text of the default: radians, the index of a text,
+  // coordinates, or the ends of a range. It is 0 for defaults that the function itself supplies.
+  double fallback[3];
+  int dimension;    // of a point
+  bool same_as_set; // the default is the value of an earlier parameter
+  size_t same_as;
+} CagParameterType;
+
+// Fields of several numbers.
+typedef struct CagPoint {
+  CagVec3 at; // z = 0 in the plane
+  int dimension;
+} CagPoint;
+typedef struct CagPoints {
+  CagVec3 *items; // held by the call
+  size_t count;
+  int dimension; // the highest
+} CagPoints;
+typedef struct CagNumbers {
+  const double *items; // live as long as the argument
+  size_t count;
+} CagNumbers;
+typedef struct CagRangeEnds {
+  double start, end; // degrees if `angle`
+  bool angle;
+} CagRangeEnds;
+
+typedef struct CagSignature {
+  const char *name;
+  const char *text;        // without types: "cone(height, radius, centered = false)"
+  size_t count;            // parameters; `...` is not one of them
+  size_t required;         // parameters without default; they come first
+  const char **parameters; // names
+  const char **words;      // types as written: "length > 0"
+  CagParameterType *types;
+  const char **defaults; // the default's text, NULL where there is none
+  bool *positional_only; // a single capital: by position only
+  bool variadic;         // `...`: any number of further arguments by position
+  size_t size;           // of the structure of cag_bind
+} CagSignature;
+
+// Parses a signature. All that it points to is in the arena. Leaves the guard if memory runs out.
+void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena);
+
+#endif
