@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/atomic_file.h"
 #include "cli/batch.h"
 #include "cli/frames.h"
@@ -178,13 +179,7 @@ static bool check_row(CagBatch *b, size_t i) {
 // --- Tasks ---
 
 static CagTask *add_task(CagBatch *b, size_t row, long frame) {
-  if (b->task_count == b->task_capacity) {
-    const size_t capacity = 2 * b->task_capacity + 64;
-    CagTask *tasks = realloc(b->tasks, capacity * sizeof *tasks);
-    if (!tasks) return NULL;
-    b->tasks = tasks;
-    b->task_capacity = capacity;
-  }
+  if (!CAG_RESERVE(b->tasks, b->task_capacity, b->task_count + 1)) return NULL;
   CagTask *task = &b->tasks[b->task_count++];
   *task = (CagTask){.row = row, .frame = frame, .tile = -1};
   b->rows[row].task_count++;

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/diagnostic.h"
 #include "cli/scripts.h"
 #include "lang/foreign.h"
@@ -20,13 +21,7 @@ typedef struct Names {
 
 static void keep_name(void *context, const char *name) {
   Names *n = context;
-  if (n->count == n->capacity) {
-    const size_t capacity = n->capacity ? 2 * n->capacity : 1024;
-    char **items = realloc(n->items, capacity * sizeof *items);
-    if (!items) return;
-    n->items = items;
-    n->capacity = capacity;
-  }
+  if (!CAG_RESERVE(n->items, n->capacity, n->count + 1)) return;
   char *copy = strdup(name);
   if (copy) n->items[n->count++] = copy;
 }

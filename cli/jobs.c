@@ -13,6 +13,7 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "base/array.h"
 #include "base/diagnostic.h"
 
 const char *const cag_job_column_names[CAG_JOB_COLUMN_COUNT] = {
@@ -28,13 +29,7 @@ const char *const cag_job_column_names[CAG_JOB_COLUMN_COUNT] = {
 
 bool cag_jobs_problem(CagJobs *jobs, const CagJob *row, const char *code, const char *help,
                       const char *format, ...) {
-  if (jobs->problem_count == jobs->problem_capacity) {
-    const size_t capacity = 2 * jobs->problem_capacity + 16;
-    CagJobProblem *problems = realloc(jobs->problems, capacity * sizeof *problems);
-    if (!problems) return false;
-    jobs->problems = problems;
-    jobs->problem_capacity = capacity;
-  }
+  if (!CAG_RESERVE(jobs->problems, jobs->problem_capacity, jobs->problem_count + 1)) return false;
   CagJobProblem p = {.row = row ? row->number : 0, .line = row ? row->line : 0, .code = code};
   va_list args;
   va_start(args, format);
@@ -47,13 +42,7 @@ bool cag_jobs_problem(CagJobs *jobs, const CagJob *row, const char *code, const 
 }
 
 static CagJob *add_row(CagJobs *jobs, size_t line) {
-  if (jobs->count == jobs->capacity) {
-    const size_t capacity = 2 * jobs->capacity + 16;
-    CagJob *rows = realloc(jobs->rows, capacity * sizeof *rows);
-    if (!rows) return NULL;
-    jobs->rows = rows;
-    jobs->capacity = capacity;
-  }
+  if (!CAG_RESERVE(jobs->rows, jobs->capacity, jobs->count + 1)) return NULL;
   CagJob *row = &jobs->rows[jobs->count++];
   *row = (CagJob){.number = jobs->count, .line = line};
   return row;
@@ -160,15 +149,9 @@ static void free_record(Record *r) {
 
 static bool add_field(Record *r, char *text) {
   if (!text) return false;
-  if (r->count == r->capacity) {
-    const size_t capacity = 2 * r->capacity + 16;
-    char **fields = realloc(r->fields, capacity * sizeof *fields);
-    if (!fields) {
-      free(text);
-      return false;
-    }
-    r->fields = fields;
-    r->capacity = capacity;
+  if (!CAG_RESERVE(r->fields, r->capacity, r->count + 1)) {
+    free(text);
+    return false;
   }
   r->fields[r->count++] = text;
   return true;

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "cli/junit.h"
 #include "cli/scripts.h"
 #include "interp/session/expect.h"
@@ -240,13 +241,7 @@ static int run_all(Testing *t, CagTestCounts *counts, int *file_status) {
 
 static int add_script(void *context, const char *path) {
   Testing *t = context;
-  if (t->count == t->capacity) {
-    const size_t capacity = 2 * t->capacity + 16;
-    Script *scripts = realloc(t->scripts, capacity * sizeof *scripts);
-    if (!scripts) return CAG_STATUS_LIMIT;
-    t->scripts = scripts;
-    t->capacity = capacity;
-  }
+  if (!CAG_RESERVE(t->scripts, t->capacity, t->count + 1)) return CAG_STATUS_LIMIT;
   char *copy = strdup(path);
   if (!copy) return CAG_STATUS_LIMIT;
   t->scripts[t->count++] = (Script){.testing = t, .path = copy};

@@ -7,6 +7,7 @@
 
 #include "lang/damage.h"
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Parameters in deeper brackets are ignored.
@@ -49,11 +50,7 @@ static Sequel sequel(const Search *s, uint32_t p) {
 }
 
 static void add_word(Search *s, const CagToken *t) {
-  if (s->count == s->capacity) {
-    const size_t capacity = 2 * s->capacity + 64;
-    s->words = cag_checked(cag_realloc(s->words, capacity * sizeof *s->words));
-    s->capacity = capacity;
-  }
+  if (!CAG_RESERVE(s->words, s->capacity, s->count + 1)) cag_memory_leave();
   const bool defined = s->head || s->loop || s->import || sequel(s, t->span.end) != OTHER;
   s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 // Comments at the ends of neighboring lines stand one below the other while the code of all of
@@ -371,11 +372,7 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
     return;
   }
   if (l->trailing_count && !joins_trailing(l)) align_trailing(l);
-  if (l->trailing_count == l->trailing_capacity) {
-    const size_t capacity = l->trailing_capacity * 2 + 64;
-    l->trailing = cag_checked(cag_realloc(l->trailing, capacity * sizeof *l->trailing));
-    l->trailing_capacity = capacity;
-  }
+  if (!CAG_RESERVE(l->trailing, l->trailing_capacity, l->trailing_count + 1)) cag_memory_leave();
   l->trailing[l->trailing_count++] = (LayoutTrailing){l->length, l->line, l->column, l->indent};
   put(l, text->text, text->length);
   l->closed = true;

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // ---- tokens ----
@@ -412,12 +413,7 @@ bool cag_parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *be
 size_t cag_parse_list_begin(Parser *p) { return p->stack_size; }
 
 void cag_parse_list_push(Parser *p, const void *item, size_t size) {
-  if (p->stack_size + size > p->stack_capacity) {
-    size_t capacity = p->stack_capacity ? 2 * p->stack_capacity : 4096;
-    while (capacity < p->stack_size + size) capacity *= 2;
-    p->stack = cag_checked(cag_realloc(p->stack, capacity));
-    p->stack_capacity = capacity;
-  }
+  if (!CAG_RESERVE(p->stack, p->stack_capacity, p->stack_size + size)) cag_memory_leave();
   memcpy(p->stack + p->stack_size, item, size);
   p->stack_size += size;
 }

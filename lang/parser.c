@@ -1,6 +1,7 @@
 // Statements, and the parse as a whole.
 
 #include "lang/parser.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "lang/damage.h"
 #include "lang/parse.h"
@@ -53,11 +54,7 @@ static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
   d->statement = s;
   d->index = p->top_count;
   d->doc = s->doc;
-  if (p->top_count == p->top_capacity) {
-    size_t capacity = p->top_capacity ? 2 * p->top_capacity : 64;
-    p->tops = cag_checked(cag_realloc(p->tops, capacity * sizeof(CagDecl *)));
-    p->top_capacity = capacity;
-  }
+  if (!CAG_RESERVE(p->tops, p->top_capacity, p->top_count + 1)) cag_memory_leave();
   p->tops[p->top_count++] = d;
   return d;
 }
@@ -507,11 +504,8 @@ static void recover(Parser *p, uint32_t start) {
 
 static void add_damaged_name(void *context, const char *name) {
   Parser *p = context;
-  if (p->damaged_name_count == p->damaged_name_capacity) {
-    const size_t capacity = 2 * p->damaged_name_capacity + 64;
-    p->damaged_names = cag_checked(cag_realloc(p->damaged_names, capacity * sizeof(char *)));
-    p->damaged_name_capacity = capacity;
-  }
+  if (!CAG_RESERVE(p->damaged_names, p->damaged_name_capacity, p->damaged_name_count + 1))
+    cag_memory_leave();
   p->damaged_names[p->damaged_name_count++] = name;
 }
 
@@ -556,11 +550,8 @@ static void statements(Parser *p) {
       if (p->errors->count + p->errors->dropped == p->first_error) hand_over(p, s);
       continue;
     }
-    if (p->statement_count == p->statement_capacity) {
-      size_t capacity = p->statement_capacity ? 2 * p->statement_capacity : 64;
-      p->statements = cag_checked(cag_realloc(p->statements, capacity * sizeof *p->statements));
-      p->statement_capacity = capacity;
-    }
+    if (!CAG_RESERVE(p->statements, p->statement_capacity, p->statement_count + 1))
+      cag_memory_leave();
     p->statements[p->statement_count++] = s;
   }
 }

@@ -5,6 +5,7 @@
 // stack of declarations; closing it puts back what each of them covered. So a look-up takes one
 // step, however many names a scope has.
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "lang/foreign.h"
 #include "lang/lexer.h"
@@ -187,11 +188,7 @@ static void declare(Resolver *r, CagDecl *d) {
     cag_diagnostic_add_note(e, CAG_NOTE_RELATED, r->module->source, c->decl->span, "the outer %s",
                             d->name);
   }
-  if (r->count == r->capacity) {
-    size_t capacity = r->capacity ? 2 * r->capacity : 64;
-    r->entries = cag_checked(cag_realloc(r->entries, capacity * sizeof *r->entries));
-    r->capacity = capacity;
-  }
+  if (!CAG_RESERVE(r->entries, r->capacity, r->count + 1)) cag_memory_leave();
   r->entries[r->count++] = (Entry){d, c->decl, c->scope};
   c->decl = d;
   c->scope = r->scope;

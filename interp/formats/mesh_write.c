@@ -5,6 +5,7 @@
 #include <float.h>
 #include <stdio.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 static const char two_digits[] = "00010203040506070809101112131415161718192021222324252627282930313"
@@ -160,13 +161,7 @@ bool cag_material_list_add(CagMaterialList *l, const CagMaterial *material, size
   const uint64_t hash = cag_hash_word(CAG_HASH_START, (uintptr_t)material);
   for (CagHashWalk w = cag_hash_walk(&l->index, hash); cag_hash_next(&w, number);)
     if (l->items[*number] == material) return true;
-  if (l->count == l->capacity) {
-    const size_t capacity = l->capacity ? 2 * l->capacity : 16;
-    const CagMaterial **more = cag_realloc(l->items, capacity * sizeof *more);
-    if (!more) return false;
-    l->items = more;
-    l->capacity = capacity;
-  }
+  if (!CAG_RESERVE(l->items, l->capacity, l->count + 1)) return false;
   if (!cag_hash_add(&l->index, hash, l->count)) return false;
   l->items[l->count] = material;
   *number = l->count++;

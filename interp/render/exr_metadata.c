@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/render/exr.h"
 
@@ -32,15 +33,9 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *e
     m->items[i].text = NULL;
     return &m->items[i];
   }
-  if (m->count == m->capacity) {
-    size_t capacity = m->capacity ? 2 * m->capacity : 16;
-    CagExrAttribute *items = cag_realloc(m->items, capacity * sizeof *items);
-    if (!items) {
-      cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
-      return NULL;
-    }
-    m->items = items;
-    m->capacity = capacity;
+  if (!CAG_RESERVE(m->items, m->capacity, m->count + 1)) {
+    cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    return NULL;
   }
   CagExrAttribute *a = &m->items[m->count++];
   *a = (CagExrAttribute){0};

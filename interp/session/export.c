@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/tessellate/orient.h"
 #include "interp/formats/iges.h"
@@ -33,15 +34,9 @@ static void free_parts(Parts *p) {
 }
 
 static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
-  if (p->count == p->capacity) {
-    const size_t capacity = p->capacity ? 2 * p->capacity : 16;
-    CagMeshPart *more = cag_realloc(p->items, capacity * sizeof *more);
-    if (!more) {
-      cag_mesh_release((CagMesh *)part.mesh);
-      return cag_fail_memory(err);
-    }
-    p->items = more;
-    p->capacity = capacity;
+  if (!CAG_RESERVE(p->items, p->capacity, p->count + 1)) {
+    cag_mesh_release((CagMesh *)part.mesh);
+    return cag_fail_memory(err);
   }
   p->items[p->count++] = part;
   return CAG_OK;

@@ -8,6 +8,7 @@
 #include <cmark-gfm.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/session/site.h"
 
@@ -156,11 +157,9 @@ static void change_all(const Document *d, cmark_node *root) {
   cmark_event_type event;
   while ((event = cmark_iter_next(it)) != CMARK_EVENT_DONE) {
     if (event != CMARK_EVENT_ENTER) continue;
-    if (count == capacity) {
-      capacity = capacity ? 2 * capacity : 256;
-      cmark_node **more = cag_realloc(nodes, capacity * sizeof *nodes);
-      if (!more) cag_free(nodes);
-      nodes = cag_checked(more);
+    if (!CAG_RESERVE(nodes, capacity, count + 1)) {
+      cag_free(nodes);
+      cag_memory_leave();
     }
     nodes[count++] = cmark_iter_get_node(it);
   }

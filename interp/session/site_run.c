@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "interp/render/povray.h"
@@ -33,11 +34,7 @@ const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, cons
   for (size_t i = 0; i < s->count; i++)
     if (is_same(&s->examples[i], spot->folder, text, length)) return &s->examples[i];
   if (s->final) return NULL;
-  if (s->count == s->capacity) {
-    const size_t capacity = s->capacity ? 2 * s->capacity : 512;
-    s->examples = cag_checked(cag_realloc(s->examples, capacity * sizeof *s->examples));
-    s->capacity = capacity;
-  }
+  if (!CAG_RESERVE(s->examples, s->capacity, s->count + 1)) cag_memory_leave();
   CagSiteExample *e = &s->examples[s->count++];
   *e = (CagSiteExample){.about = spot->about};
   e->text = cag_checked(cag_strndup(text, length));

@@ -5,6 +5,7 @@
 // of memory ends in the status of the evaluation, and the collector leaves alone what is older than
 // the call (heap.c).
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
@@ -18,13 +19,7 @@ size_t cag_vm_keep(CagVm *vm, CagValue v) {
     vm->kept[slot] = v;
     return slot;
   }
-  if (vm->kept_count == vm->kept_capacity) {
-    size_t capacity = vm->kept_capacity ? vm->kept_capacity * 2 : 16;
-    CagValue *kept = cag_realloc(vm->kept, capacity * sizeof *kept);
-    if (!kept) cag_vm_out_of_memory(vm);
-    vm->kept = kept;
-    vm->kept_capacity = capacity;
-  }
+  if (!CAG_RESERVE(vm->kept, vm->kept_capacity, vm->kept_count + 1)) cag_vm_out_of_memory(vm);
   vm->kept[vm->kept_count] = v;
   return vm->kept_count++;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
@@ -42,11 +43,7 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
 // --- Growing arrays ---
 
 static void *grown(CagVm *vm, void *p, size_t count, size_t *capacity, size_t size) {
-  if (count < *capacity) return p;
-  size_t n = *capacity ? *capacity * 2 : 16;
-  p = cag_realloc(p, n * size);
-  if (!p) cag_vm_out_of_memory(vm);
-  *capacity = n;
+  if (!cag_array_reserve(&p, capacity, count + 1, size)) cag_vm_out_of_memory(vm);
   return p;
 }
 

@@ -14,6 +14,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/solid/csg.h"
@@ -101,13 +102,7 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size) {
 }
 
 void cag_root_push(CagVm *vm, CagValue v) {
-  if (vm->root_count == vm->root_capacity) {
-    size_t capacity = vm->root_capacity ? vm->root_capacity * 2 : 64;
-    CagValue *roots = cag_realloc(vm->roots, capacity * sizeof *roots);
-    if (!roots) cag_vm_out_of_memory(vm);
-    vm->roots = roots;
-    vm->root_capacity = capacity;
-  }
+  if (!CAG_RESERVE(vm->roots, vm->root_capacity, vm->root_count + 1)) cag_vm_out_of_memory(vm);
   vm->roots[vm->root_count++] = v;
 }
 

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
@@ -13,19 +14,9 @@ void cag_vm_release_held(CagVm *vm, size_t count) {
   }
 }
 
-static bool reserve_one(CagVm *vm) {
-  if (vm->held_count < vm->held_capacity) return true;
-  const size_t capacity = vm->held_capacity ? 2 * vm->held_capacity : 32;
-  struct CagHeld *held = cag_realloc(vm->held, capacity * sizeof *held);
-  if (!held) return false;
-  vm->held = held;
-  vm->held_capacity = capacity;
-  return true;
-}
-
 void cag_hold_for(CagCall *call, void (*release)(void *what), void *what) {
   if (!what) return;
-  if (!reserve_one(call->vm)) {
+  if (!CAG_RESERVE(call->vm->held, call->vm->held_capacity, call->vm->held_count + 1)) {
     release(what);
     cag_vm_out_of_memory(call->vm);
   }

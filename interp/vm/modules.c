@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/vm/stdlib.h"
 #include "interp/vm/vm.h"
@@ -16,13 +17,8 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode);
 
 static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, const char *text,
                                size_t length) {
-  if (vm->module_count == vm->module_capacity) {
-    size_t capacity = vm->module_capacity ? vm->module_capacity * 2 : 16;
-    CagModuleUnit **modules = cag_realloc(vm->modules, capacity * sizeof(CagModuleUnit *));
-    if (!modules) cag_vm_out_of_memory(vm);
-    vm->modules = modules;
-    vm->module_capacity = capacity;
-  }
+  if (!CAG_RESERVE(vm->modules, vm->module_capacity, vm->module_count + 1))
+    cag_vm_out_of_memory(vm);
   CagModuleUnit *m = cag_calloc(1, sizeof *m);
   if (!m) cag_vm_out_of_memory(vm);
   m->name = cag_strdup(name);

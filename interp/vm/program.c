@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // --- Params ---
@@ -205,13 +206,7 @@ static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
 }
 
 static bool add_shown(CagVm *vm, CagModuleUnit *m, const CagExpr *e, CagValue v) {
-  if (vm->shown_count == vm->shown_capacity) {
-    size_t capacity = vm->shown_capacity ? vm->shown_capacity * 2 : 16;
-    CagShown *shown = cag_realloc(vm->shown, capacity * sizeof *shown);
-    if (!shown) cag_vm_out_of_memory(vm);
-    vm->shown = shown;
-    vm->shown_capacity = capacity;
-  }
+  if (!CAG_RESERVE(vm->shown, vm->shown_capacity, vm->shown_count + 1)) cag_vm_out_of_memory(vm);
   vm->shown[vm->shown_count++] =
       (CagShown){.value = v, .expr = e, .source = m->source, .span = e->span};
   return true;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Values that the stack can hold: reserved address space, of which only what is used costs memory.
@@ -49,13 +50,8 @@ static void make_builtins(CagVm *vm) {
 }
 
 size_t cag_vm_add_global(CagVm *vm, const char *name) {
-  if (vm->global_count == vm->global_capacity) {
-    size_t capacity = vm->global_capacity ? vm->global_capacity * 2 : 64;
-    CagGlobal *globals = cag_realloc(vm->globals, capacity * sizeof *globals);
-    if (!globals) cag_vm_out_of_memory(vm);
-    vm->globals = globals;
-    vm->global_capacity = capacity;
-  }
+  if (!CAG_RESERVE(vm->globals, vm->global_capacity, vm->global_count + 1))
+    cag_vm_out_of_memory(vm);
   vm->globals[vm->global_count] = (CagGlobal){.name = name};
   return vm->global_count++;
 }
