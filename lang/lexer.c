@@ -9,6 +9,7 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "lang/foreign.h"
 
@@ -51,11 +52,8 @@ static void finish(CagLexer *lx, CagToken *t, CagTokenKind kind, uint32_t end) {
   lx->position = end;
 }
 
-static void *grown(void *items, size_t *capacity, size_t size) {
-  size_t wanted = *capacity ? 2 * *capacity : 16;
-  void *p = cag_checked(cag_realloc(items, wanted * size));
-  *capacity = wanted;
-  return p;
+static void reserve_buffer(CagLexer *lx, size_t size) {
+  if (!CAG_RESERVE(lx->buffer, lx->buffer_capacity, size)) cag_memory_leave();
 }
 
 // ---- characters ----
@@ -133,8 +131,7 @@ static bool begins_name(const CagLexer *lx, uint32_t offset) {
 
 static void keep_comment(CagLexer *lx, uint32_t start, uint32_t end, bool doc, bool block) {
   if (!lx->keep_comments) return;
-  if (lx->comment_count == lx->comment_capacity)
-    lx->comments = grown(lx->comments, &lx->comment_capacity, sizeof *lx->comments);
+  if (!CAG_RESERVE(lx->comments, lx->comment_capacity, lx->comment_count + 1)) cag_memory_leave();
   lx->comments[lx->comment_count++] = (CagComment){{start, end}, doc, block};
 }
 
@@ -296,7 +293,7 @@ static bool exact_value(uint64_t mantissa, long exponent, double *value) {
 // The number in [start, end) times 10^shift, by the C library in its own locale.
 static double slow_value(CagLexer *lx, uint32_t start, uint32_t end, int shift) {
   size_t needed = end - start + 1, n = 0;
-  while (lx->buffer_capacity < needed) lx->buffer = grown(lx->buffer, &lx->buffer_capacity, 1);
+  reserve_buffer(lx, needed);
   for (uint32_t i = start; i < end; i++)
     if (at(lx, i) != '_') lx->buffer[n++] = (char)at(lx, i);
   lx->buffer[n] = 0;
@@ -417,13 +414,13 @@ static void lex_name(CagLexer *lx, CagToken *t) {
 // ---- texts ----
 
 static void put_bytes(CagLexer *lx, size_t *length, const char *bytes, size_t n) {
-  while (lx->buffer_capacity - *length < n) lx->buffer = grown(lx->buffer, &lx->buffer_capacity, 1);
+  reserve_buffer(lx, *length + n);
   memcpy(lx->buffer + *length, bytes, n);
   *length += n;
 }
 
 static void put_byte(CagLexer *lx, size_t *length, char c) {
-  if (*length == lx->buffer_capacity) lx->buffer = grown(lx->buffer, &lx->buffer_capacity, 1);
+  reserve_buffer(lx, *length + 1);
   lx->buffer[(*length)++] = c;
 }
 
@@ -525,8 +522,7 @@ static void lex_text(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t p, bool
          p + 1);
   if (inside && last) lx->text_count--;
   if (!inside && !last) {
-    if (lx->text_count == lx->text_capacity)
-      lx->texts = grown(lx->texts, &lx->text_capacity, sizeof *lx->texts);
+    if (!CAG_RESERVE(lx->texts, lx->text_capacity, lx->text_count + 1)) cag_memory_leave();
     lx->texts[lx->text_count++] = (CagOpenText){quote, 0};
   }
 }
@@ -830,7 +826,7 @@ void cag_lexer_init(CagLexer *lx, const CagSource *source, CagArena *arena, CagN
                     CagDiagnostics *errors) {
   *lx = (CagLexer){.source = source, .arena = arena, .names = names, .errors = errors};
   lx->keep_comments = true;
-  lx->buffer = grown(NULL, &lx->buffer_capacity, 1);
+  reserve_buffer(lx, 1);
   for (size_t k = CAG_TOKEN_FIRST_WORD; k < TOKEN_COUNT; k++) {
     const char *word;
     size_t n = reserved_word(k, &word);
@@ -841,7 +837,7 @@ void cag_lexer_init(CagLexer *lx, const CagSource *source, CagArena *arena, CagN
 void cag_lexer_probe(CagLexer *probe, const CagLexer *lx, uint32_t position) {
   *probe = (CagLexer){.source = lx->source, .arena = lx->arena, .names = lx->names};
   probe->position = position;
-  probe->buffer = grown(NULL, &probe->buffer_capacity, 1);
+  reserve_buffer(probe, 1);
 }
 
 void cag_lexer_release(CagLexer *lx) {

@@ -28,9 +28,6 @@ typedef struct CagBrepWork {
   size_t first_face, first_loop, first_edge;
 } CagBrepWork;
 
-// Grows an array of `size`-byte elements for one more; NULL: memory is out (the array stays).
-void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size);
-
 // Makes room for `more` elements behind the first `count` of an array that grows only by this
 // function: its length is then a power of two. Returns false if memory ran out (the array stays).
 bool cag_brep_reserve(void **array, size_t count, size_t more, size_t size);

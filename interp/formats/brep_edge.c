@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "geom/curve/nurbs_ops.h"
@@ -27,9 +28,8 @@ static int by_x(const void *a, const void *b) {
 }
 
 static CagStatus add_vertex(CagBrep *b, size_t *room, CagVec3 p, size_t *index, CagError *err) {
-  void *grown = cag_brep_grow(b->vertices, b->vertex_count, room, sizeof *b->vertices);
-  if (!grown) return cag_fail_memory(err);
-  b->vertices = grown;
+  if (!cag_array_reserve(&b->vertices, room, b->vertex_count + 1, sizeof *b->vertices))
+    return cag_fail_memory(err);
   *index = b->vertex_count;
   b->vertices[b->vertex_count++] = p;
   return CAG_OK;
@@ -188,13 +188,11 @@ static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err)
   CagCurve *parts[2];
   CagStatus status = cag_curve_split(w->sides[index].curve, t, parts, err);
   if (status) return status;
-  void *grown = cag_brep_grow(w->sides, w->side_count, &w->side_room, sizeof *w->sides);
-  if (!grown) {
+  if (!CAG_RESERVE(w->sides, w->side_room, w->side_count + 1)) {
     cag_curve_release(parts[0]);
     cag_curve_release(parts[1]);
     return cag_fail_memory(err);
   }
-  w->sides = grown;
   CagBrepSide *s = &w->sides[index], *second = &w->sides[w->side_count++];
   // Orders stay apart: those behind in the loop move on by one.
   size_t order = s->order;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
@@ -16,14 +17,6 @@
 #define FLAT 1e-12
 // A flat face's rectangle stands off its outline by this part of its size.
 #define MARGIN 1e-3
-
-void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size) {
-  if (count < *room) return array;
-  size_t more = *room ? 2 * *room : 16;
-  void *grown = cag_realloc(array, more * size);
-  if (grown) *room = more;
-  return grown;
-}
 
 static size_t power_of_two(size_t least) {
   size_t n = 16;
@@ -60,12 +53,10 @@ static CagStatus add_loop(CagBrepWork *w, size_t face, size_t *index, CagError *
 // Takes the reference to the curve.
 static CagStatus add_side(CagBrepWork *w, CagCurve *curve, bool reversed, size_t face, size_t loop,
                           size_t order, CagError *err) {
-  void *grown = cag_brep_grow(w->sides, w->side_count, &w->side_room, sizeof *w->sides);
-  if (!grown) {
+  if (!CAG_RESERVE(w->sides, w->side_room, w->side_count + 1)) {
     cag_curve_release(curve);
     return cag_fail_memory(err);
   }
-  w->sides = grown;
   w->sides[w->side_count++] = (CagBrepSide){.curve = curve,
                                             .reversed = reversed,
                                             .face = face,
