@@ -97,6 +97,28 @@ static void reducing_tells_what_it_moves(void **state) {
   cag_curve_release(down);
 }
 
+// (t, t^3 - t) over [-1, 1] is farthest from (t, 0) at t = 1 / sqrt 3, between two samples.
+static void the_largest_gap_lies_between_samples(void **state) {
+  (void)state;
+  static const CagVec3 wave[4] = {
+      {-1, 0, 0}, {-1. / 3, 4. / 3, 0}, {1. / 3, -4. / 3, 0}, {1, 0, 0}};
+  static const CagVec3 flat[2] = {{-1, 0, 0}, {1, 0, 0}};
+  for (int k = 0; k < 3; k++) {
+    CagCurve *made[2], *c[2];
+    double gap;
+    OK(cag_curve_bezier(wave, NULL, 4, 2, &made[0], &err));
+    OK(cag_curve_bezier(flat, NULL, 2, 2, &made[1], &err));
+    for (int i = 0; i < 2; i++) {
+      OK(cag_curve_reparametrize(made[i], k - 1, k == 0 ? 1 : 2 * k + 3, &c[i], &err));
+      cag_curve_release(made[i]);
+    }
+    OK(cag_curve_deviation(c[0], c[1], &gap, &err));
+    NEAR(gap, 2 / (3 * sqrt(3)), 1e-9);
+    cag_curve_release(c[0]);
+    cag_curve_release(c[1]);
+  }
+}
+
 static void midpoints_keep_uniform_and_closed_curves(void **state) {
   (void)state;
   CagCurve *c, *fine;
@@ -364,6 +386,7 @@ int main(void) {
       cmocka_unit_test(removing_a_knot_tells_what_it_moves),
       cmocka_unit_test(reducing_an_elevated_curve_gives_it_back),
       cmocka_unit_test(reducing_tells_what_it_moves),
+      cmocka_unit_test(the_largest_gap_lies_between_samples),
       cmocka_unit_test(midpoints_keep_uniform_and_closed_curves),
       cmocka_unit_test(derivatives_of_the_basis_are_those_of_its_pieces),
       cmocka_unit_test(an_approximated_helix_is_within_the_tolerance),

@@ -1,6 +1,7 @@
 // Frames along random paths: what defines each kind of them, their derivatives, and their corners.
 
 #include "geom/surface/motion.h"
+#include "geom/surface/motion_parts.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -250,6 +251,63 @@ static void corners_are_halved(void **state) {
   }
 }
 
+static bool is_within(const CagInterval3 *range, CagVec3 p) {
+  const double slack = 1e-9 * (1 + cag_norm(p));
+  const double lo[] = {range->x.lo, range->y.lo, range->z.lo};
+  const double hi[] = {range->x.hi, range->y.hi, range->z.hi}, x[] = {p.x, p.y, p.z};
+  for (int i = 0; i < 3; i++)
+    if (!(x[i] >= lo[i] - slack && x[i] <= hi[i] + slack)) return false;
+  return true;
+}
+
+// The frame that cag_motion_at finds anywhere in an interval lies within the ranges of the
+// interval, and so do its Taylor coefficients. Short intervals have narrow ranges.
+static void ranges_hold_the_frames_of_an_interval(void **state) {
+  (void)state;
+  enum { N = 2, INTERVALS = 8, SAMPLES = 5 };
+  seed = 43;
+  int held = 0;
+  for (int round = 0; round < 60; round++) {
+    CagPathMotion how = {.orient = (CagOrient)(round % 4), .up = anywhere(1)};
+    how.twist = (CagAlong){.start = uniform(-2, 2), .end = uniform(-2, 2)};
+    how.scale = (CagAlong){.start = uniform(0.5, 2), .end = uniform(0.5, 2)};
+    CagCurve *c = random_path(round % 3 == 0);
+    CagMotion *m;
+    CagError refused;
+    double *joints;
+    size_t n;
+    if (cag_motion_along(c, &how, &m, &refused)) {
+      cag_curve_release(c);
+      continue;
+    }
+    OK(cag_motion_joints(m, &joints, &n, &err));
+    for (size_t i = 0; i < n * INTERVALS; i++) {
+      const double start = joints[i / INTERVALS], end = joints[i / INTERVALS + 1];
+      const double a = start + (end - start) * (double)(i % INTERVALS) / INTERVALS;
+      const double b = a + (end - start) / 64;
+      CagMotionRanges r;
+      CagMotionSeries at;
+      if (!cag_motion_ranges(m, a, b, N, &r)) continue;
+      held++;
+      for (int k = 0; k <= SAMPLES; k++) {
+        OK(cag_motion_at(m, a + (b - a) * k / SAMPLES, N, CAG_SIDE_RIGHT, &at, &err));
+        for (int j = 0; j <= N; j++) {
+          assert_true(is_within(&r.origin[j], at.origin[j]));
+          assert_true(is_within(&r.x[j], at.x[j]));
+          assert_true(is_within(&r.y[j], at.y[j]));
+          assert_true(is_within(&r.z[j], at.z[j]));
+        }
+      }
+      // The image of the x axis moves by less than its size.
+      assert_true(r.x[0].x.hi - r.x[0].x.lo < 2.5);
+    }
+    free(joints);
+    cag_motion_release(m);
+    cag_curve_release(c);
+  }
+  assert_true(held > 200);
+}
+
 static void what_has_no_frame_is_told(void **state) {
   (void)state;
   CagCurve *line, *back, *arc;
@@ -295,6 +353,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frames_are_what_defines_them),
       cmocka_unit_test(corners_are_halved),
+      cmocka_unit_test(ranges_hold_the_frames_of_an_interval),
       cmocka_unit_test(what_has_no_frame_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
