@@ -297,6 +297,47 @@ static void a_hull_in_its_stations_is_found_again(void **state) {
   cag_surface_release(s);
 }
 
+// Lengths times a power of two give the same fit in another unit, to the bit.
+static void a_fit_does_not_depend_on_the_unit(void **state) {
+  (void)state;
+  enum { R = 9, S = 7, N = R * S };
+  double rms[3], u[3][N], plain_rms = 0;
+  int rounds[3];
+  for (int k = -1; k < 3; k++) {
+    static const double units[] = {1, 1. / (1 << 24), 1 << 20};
+    const double unit = k < 0 ? 1 : units[k];
+    CagVec3 data[N];
+    for (int i = 0; i < R; i++)
+      for (int j = 0; j < S; j++)
+        data[i * S + j] =
+            cag_scaled(cag_vec3(i + 0.3 * sin(j), j * j / 4., sin(i) * cos(0.7 * j)), unit);
+    CagGridData g = {.points = data,
+                     .r = R,
+                     .s = S,
+                     .degree_u = 3,
+                     .degree_v = 2,
+                     .spacing = CAG_GRID_CHORD,
+                     .corrections = k < 0 ? 0 : 8};
+    CagSurface *s = NULL;
+    CagGridReport report;
+    MUST(cag_surface_fit(&g, 5, 4, &s, &report, err));
+    if (k < 0) plain_rms = report.rms;
+    else {
+      rms[k] = report.rms / unit;
+      rounds[k] = report.rounds;
+      memcpy(u[k], report.u, sizeof u[k]);
+    }
+    cag_grid_report_free(&report);
+    cag_surface_release(s);
+  }
+  assert_true(rounds[0] > 1 && rms[0] < plain_rms);
+  for (int k = 1; k < 3; k++) {
+    assert_int_equal(rounds[k], rounds[0]);
+    assert_true(rms[k] == rms[0]);
+    assert_memory_equal(u[k], u[0], sizeof u[0]);
+  }
+}
+
 static void planes_that_cannot_hold_the_data_are_refused(void **state) {
   (void)state;
   CagVec3 data[STATIONS * DEPTHS];
@@ -355,6 +396,7 @@ int main(void) {
       cmocka_unit_test(fits_of_the_reference),
       cmocka_unit_test(interpolation_meets_every_point),
       cmocka_unit_test(a_hull_in_its_stations_is_found_again),
+      cmocka_unit_test(a_fit_does_not_depend_on_the_unit),
       cmocka_unit_test(planes_that_cannot_hold_the_data_are_refused),
       cmocka_unit_test(parameters_move_to_the_coordinate),
   };
