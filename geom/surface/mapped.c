@@ -92,12 +92,9 @@ static bool make_table(Mapping *m) {
   m->slots = slots;
   m->keys = cag_malloc(slots * sizeof *m->keys);
   m->middles = cag_malloc(slots * sizeof *m->middles);
-  if (!m->keys || !m->middles) {
-    m->status = cag_fail_memory(m->err);
-    return false;
-  }
-  memset(m->keys, 0xff, slots * sizeof *m->keys);
-  return true;
+  if (m->keys && m->middles) memset(m->keys, 0xff, slots * sizeof *m->keys);
+  else m->status = cag_fail_memory(m->err);
+  return m->status == CAG_OK;
 }
 
 static size_t slot_of(const Mapping *m, uint64_t key) {
