@@ -80,12 +80,12 @@ void cag_atomic_files_cleanup(void) {
   errno = saved;
 }
 
-static bool fail_open(CagIoError *err, const char *path, int code) {
+static bool fail_open(CagError *err, const char *path, int code) {
   const char *help = code == ENOENT || code == ENOTDIR ? "create the folder first, or name another"
                      : code == EACCES || code == EPERM || code == EROFS
                          ? "choose a place that you may write to"
                          : NULL;
-  return cag_io_error_set(err, CAG_EXIT_FILE, help, "cannot write '%s': %s", path, strerror(code));
+  return cag_fail_io(err, CAG_E_FILE, help, "cannot write '%s': %s", path, strerror(code));
 }
 
 // What stands at the place already decides how it is written.
@@ -93,15 +93,14 @@ typedef enum { PLACE_RENAMED, PLACE_DIRECT, PLACE_REFUSED } PlaceKind;
 
 // Looks at what is at `path`, following symbolic links. `mode` becomes the permission bits to keep,
 // or 0 when nothing is there.
-static PlaceKind place_inspect(const char *path, mode_t *mode, CagIoError *err) {
+static PlaceKind place_inspect(const char *path, mode_t *mode, CagError *err) {
   struct stat st;
   *mode = 0;
   if (stat(path, &st) != 0) {
     int code = errno;
     if (code == ENOENT && lstat(path, &st) == 0) {
-      cag_io_error_set(err, CAG_EXIT_FILE, "remove the link, or name its target",
-                       "cannot write '%s': it is a symbolic link to a file that does not exist",
-                       path);
+      cag_fail_io(err, CAG_E_FILE, "remove the link, or name its target",
+                  "cannot write '%s': it is a symbolic link to a file that does not exist", path);
       return PLACE_REFUSED;
     }
     if (code == ENOENT) return PLACE_RENAMED;
@@ -113,14 +112,14 @@ static PlaceKind place_inspect(const char *path, mode_t *mode, CagIoError *err) 
     const char *what = S_ISDIR(st.st_mode)    ? "a folder"
                        : S_ISSOCK(st.st_mode) ? "a socket"
                                               : "a disk";
-    cag_io_error_set(err, CAG_EXIT_FILE, S_ISDIR(st.st_mode) ? "name a file in it" : NULL,
-                     "cannot write '%s': it is %s", path, what);
+    cag_fail_io(err, CAG_E_FILE, S_ISDIR(st.st_mode) ? "name a file in it" : NULL,
+                "cannot write '%s': it is %s", path, what);
     return PLACE_REFUSED;
   }
   if (faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) != 0) {
     int code = errno;
-    cag_io_error_set(err, CAG_EXIT_FILE, "allow writing with chmod, or choose another name",
-                     "cannot write '%s': the file is write-protected (%s)", path, strerror(code));
+    cag_fail_io(err, CAG_E_FILE, "allow writing with chmod, or choose another name",
+                "cannot write '%s': the file is write-protected (%s)", path, strerror(code));
     return PLACE_REFUSED;
   }
   *mode = st.st_mode & 0777;
@@ -140,12 +139,11 @@ static void temporary_name(const char *name, char out[NAME_MAX + 1]) {
 }
 
 // Creates the temporary in s->folder and enters it into the registry.
-static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, CagIoError *err) {
+static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, CagError *err) {
   s->slot = slot_take();
   if (!s->slot)
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, "close some of them first",
-                            "cannot write '%s': %d output files are open already", s->shown,
-                            SLOT_COUNT);
+    return cag_fail_io(err, CAG_E_LIMIT, "close some of them first",
+                       "cannot write '%s': %d output files are open already", s->shown, SLOT_COUNT);
   s->slot->folder = s->folder;
   s->slot->owner = getpid();
   int code = EEXIST;
@@ -166,15 +164,15 @@ static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, Cag
 
 // Splits the place into an open folder and a name, links resolved, so that later steps cannot be
 // led elsewhere.
-static bool open_folder(struct CagAtomicFileState *s, bool exists, CagIoError *err) {
+static bool open_folder(struct CagAtomicFileState *s, bool exists, CagError *err) {
   char *resolved = exists ? cag_realpath(s->shown) : cag_strdup(s->shown);
   if (!resolved) return fail_open(err, s->shown, errno);
   char *slash = strrchr(resolved, '/');
   const char *name = slash ? slash + 1 : resolved;
   bool ok = false;
   if (!*name || !strcmp(name, ".") || !strcmp(name, "..")) {
-    cag_io_error_set(err, CAG_EXIT_FILE, "name a file", "cannot write '%s': it is a folder's name",
-                     s->shown);
+    cag_fail_io(err, CAG_E_FILE, "name a file", "cannot write '%s': it is a folder's name",
+                s->shown);
     goto done;
   }
   s->name = cag_strdup(name);
@@ -202,7 +200,7 @@ static void dispose(struct CagAtomicFileState *s) {
   cag_free(s);
 }
 
-static bool open_place(struct CagAtomicFileState *s, const char *path, CagIoError *err) {
+static bool open_place(struct CagAtomicFileState *s, const char *path, CagError *err) {
   if (!strcmp(path, "-")) {
     fflush(stdout); // what was printed before stands before
     s->fd = STDOUT_FILENO;
@@ -220,7 +218,7 @@ static bool open_place(struct CagAtomicFileState *s, const char *path, CagIoErro
 }
 
 // An unopened file with an empty buffer, shown as `shown` in messages.
-static struct CagAtomicFileState *new_state(const char *shown, CagIoError *err) {
+static struct CagAtomicFileState *new_state(const char *shown, CagError *err) {
   struct CagAtomicFileState *s = cag_malloc(sizeof *s);
   char *copy = cag_strdup(shown);
   if (!s || !copy) {
@@ -237,17 +235,17 @@ static struct CagAtomicFileState *new_state(const char *shown, CagIoError *err) 
   return s;
 }
 
-CagAtomicFile *cag_atomic_file_open_memory(CagIoError *err) {
+CagAtomicFile *cag_atomic_file_open_memory(CagError *err) {
   struct CagAtomicFileState *s = new_state("memory", err);
   if (!s) return NULL;
   s->in_memory = true;
   return &s->file;
 }
 
-CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err) {
+CagAtomicFile *cag_atomic_file_open(const char *path, CagError *err) {
   if (!*path) {
-    cag_io_error_set(err, CAG_EXIT_FILE, "name a file, or - for standard output",
-                     "cannot write a file with an empty name");
+    cag_fail_io(err, CAG_E_FILE, "name a file, or - for standard output",
+                "cannot write a file with an empty name");
     return NULL;
   }
   struct CagAtomicFileState *s = new_state(strcmp(path, "-") ? path : "standard output", err);
@@ -261,7 +259,7 @@ CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err) {
 
 // Opens a file without a name in the folder of the place: it goes when its owner does. *known is
 // false where the file system has none such, or something stands in the way that an open tells of.
-static bool try_folder(const char *path, bool exists, bool *known, CagIoError *err) {
+static bool try_folder(const char *path, bool exists, bool *known, CagError *err) {
   struct CagAtomicFileState *s = new_state(path, err);
   *known = true;
   if (!s) return false;
@@ -277,7 +275,7 @@ static bool try_folder(const char *path, bool exists, bool *known, CagIoError *e
   return good;
 }
 
-bool cag_atomic_file_try(const char *path, CagIoError *err) {
+bool cag_atomic_file_try(const char *path, CagError *err) {
   mode_t mode;
   if (!strcmp(path, "-")) return true;
   bool known = false, good = false;
@@ -388,20 +386,20 @@ uint64_t cag_atomic_file_size(const CagAtomicFile *f) {
   return f->state->taken + (uint64_t)(f->at - f->state->buffer);
 }
 
-static void fail_write(const struct CagAtomicFileState *s, int code, CagIoError *err) {
+static void fail_write(const struct CagAtomicFileState *s, int code, CagError *err) {
   if (code == ECANCELED) {
-    cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
+    cag_fail_io(err, CAG_E_CALLBACK, NULL, "interrupted");
     return;
   }
   const char *help = code == ENOSPC || code == EDQUOT ? "free some space, or write to another disk"
                      : code == EFBIG ? "raise the limit of a file's size (ulimit -f), or write less"
                      : code == EPIPE ? "the program that reads the output ended early"
                                      : NULL;
-  cag_io_error_set(err, CAG_EXIT_FILE, help, "writing '%s' failed: %s%s", s->shown, strerror(code),
-                   s->slot ? "; the earlier file, if any, is unchanged" : "");
+  cag_fail_io(err, CAG_E_FILE, help, "writing '%s' failed: %s%s", s->shown, strerror(code),
+              s->slot ? "; the earlier file, if any, is unchanged" : "");
 }
 
-bool cag_atomic_file_commit(CagAtomicFile *f, CagIoError *err) {
+bool cag_atomic_file_commit(CagAtomicFile *f, CagError *err) {
   struct CagAtomicFileState *s = f->state;
   cag_atomic_file_flush(f);
   // Some file systems report a full disk only at close.
@@ -421,7 +419,7 @@ bool cag_atomic_file_commit(CagAtomicFile *f, CagIoError *err) {
   return ok;
 }
 
-bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagIoError *err) {
+bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagError *err) {
   struct CagAtomicFileState *s = f->state;
   cag_atomic_file_flush(f);
   const bool ok = s->error == 0;

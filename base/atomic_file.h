@@ -5,7 +5,7 @@
 // writing are sticky: a writer need not look at each call, it learns of the first error from
 // cag_atomic_file_commit (or, to stop early, from cag_atomic_file_failed). Every opened file ends
 // with exactly one commit or abort. Work that is asked to end (base/stop.h) meets an error of
-// status CAG_EXIT_INTERRUPTED at its next write.
+// status CAG_E_CALLBACK at its next write.
 //
 //     CagAtomicFile *f = cag_atomic_file_open(path, &err);
 //     if (!f) return false;
@@ -30,7 +30,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 
 // The most that one cag_atomic_file_reserve may ask for. The buffer is many times larger, so that
 // the system is called seldom.
@@ -42,18 +42,18 @@ typedef struct CagAtomicFile {
   struct CagAtomicFileState *state;
 } CagAtomicFile;
 
-// Opens the output `path`. NULL and an error of exit status CAG_EXIT_FILE when it cannot be written
+// Opens the output `path`. NULL and an error of exit status CAG_E_FILE when it cannot be written
 // there.
-CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err);
+CagAtomicFile *cag_atomic_file_open(const char *path, CagError *err);
 
 // Whether cag_atomic_file_open would open the output, without leaving anything when it is killed
 // meanwhile; false, with `err`, when not. Of pipes and devices, which would notice, only that they
 // are there.
-bool cag_atomic_file_try(const char *path, CagIoError *err);
+bool cag_atomic_file_try(const char *path, CagError *err);
 
 // Opens a target in memory instead, for what is handed on (a scene for the renderer) and for tests:
 // the same writers serve both. End it with cag_atomic_file_commit_memory or cag_atomic_file_abort.
-CagAtomicFile *cag_atomic_file_open_memory(CagIoError *err);
+CagAtomicFile *cag_atomic_file_open_memory(CagError *err);
 
 // Tells that about `bytes` bytes will come: a file system then finds room for them in one piece,
 // which is quicker. Telling more or less, or nothing, changes nothing else.
@@ -91,10 +91,10 @@ uint64_t cag_atomic_file_size(const CagAtomicFile *f);
 
 // Writes the rest, closes, renames into place, and releases `f`. On failure the temporary is
 // removed, what was at the place before is untouched, and `err` says why.
-bool cag_atomic_file_commit(CagAtomicFile *f, CagIoError *err);
+bool cag_atomic_file_commit(CagAtomicFile *f, CagError *err);
 
 // Ends a target in memory: what was written, with a zero byte behind it, is the caller's to free.
-bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagIoError *err);
+bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagError *err);
 
 // Removes the temporary and releases `f`, which may be NULL. Nothing at the place itself changes.
 void cag_atomic_file_abort(CagAtomicFile *f);

@@ -16,11 +16,60 @@ CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *a
   err->id = id;
   snprintf(err->argument, sizeof err->argument, "%s", argument ? argument : "");
   err->index = index;
+  err->help[0] = 0;
   va_list values;
   va_start(values, format);
   vsnprintf(err->message, sizeof err->message, format, values);
   va_end(values);
   return status;
+}
+
+// --- Files and renderers ---
+
+// Takes an incomplete UTF-8 character off the end of a text that was cut to fit.
+static void trim_cut_character(char *text) {
+  size_t n = strlen(text), tail = 0;
+  while (tail < n && tail < 4 && ((unsigned char)text[n - 1 - tail] & 0xC0) == 0x80) tail++;
+  if (tail == n) return;
+  unsigned char lead = (unsigned char)text[n - 1 - tail];
+  size_t want = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
+  if (tail < want) text[n - 1 - tail] = '\0';
+}
+
+static CagErrorId general_id(CagStatus status) {
+  switch (status) {
+  case CAG_E_CALLBACK: return CAG_ERR_interrupted;
+  case CAG_E_LIMIT: return CAG_ERR_limit_time;
+  case CAG_E_RENDERER: return CAG_ERR_renderer;
+  case CAG_E_USAGE: return CAG_ERR_picture_size;
+  default: return CAG_ERR_output_file;
+  }
+}
+
+bool cag_fail_io(CagError *err, CagStatus status, const char *help, const char *format, ...) {
+  if (!err) return false;
+  *err = (CagError){.status = status, .id = general_id(status), .index = -1};
+  va_list values;
+  va_start(values, format);
+  vsnprintf(err->message, sizeof err->message, format, values);
+  va_end(values);
+  snprintf(err->help, sizeof err->help, "%s", help ? help : "");
+  trim_cut_character(err->message);
+  trim_cut_character(err->help);
+  return false;
+}
+
+int cag_exit_status(const CagError *err) {
+  switch (err->status) {
+  case CAG_OK: return 0;
+  case CAG_E_USAGE: return 2;
+  case CAG_E_FILE: return 3;
+  case CAG_E_RENDERER: return 4;
+  case CAG_E_LIMIT:
+  case CAG_E_MEMORY: return 5;
+  case CAG_E_CALLBACK: return 130;
+  default: return 1;
+  }
 }
 
 bool cag_is_empty_shape(const CagError *err) { return err->id == CAG_ERR_empty_shape; }

@@ -1,9 +1,10 @@
-// How the geometry core reports errors: a status, and a CagError that carries the argument and the
-// element at fault.
+// The one way in which functions report errors: a status, and a CagError that carries the message,
+// the argument, and the element at fault.
 //
 // A function that can fail returns CagStatus and takes `CagError *err` last (never NULL). Outputs
-// are initialized only on CAG_OK. Nothing in geom/ prints, exits, or keeps global state, except for
-// a per-thread flag that records exhausted memory.
+// are initialized only on CAG_OK. Nothing in base/ and geom/ prints, exits, or keeps global
+// state, except for a flag of each thread that records exhausted memory. Functions of files return
+// bool instead.
 
 #ifndef CAG_BASE_STATUS_H
 #define CAG_BASE_STATUS_H
@@ -24,7 +25,11 @@ typedef enum CagStatus {
   CAG_E_CONVERGENCE, // an iteration met its limit
   CAG_E_LIMIT,       // a limit of the run (triangles) would be crossed
   CAG_E_MEMORY,
-  CAG_E_CALLBACK // a function of the caller failed; it keeps its own error
+  CAG_E_CALLBACK, // a function of the caller failed and keeps its own error, or the work was
+                  // stopped
+  CAG_E_FILE,     // a file cannot be read or written
+  CAG_E_RENDERER, // the renderer cannot be run, or failed
+  CAG_E_USAGE     // an option of the program is wrong
 } CagStatus;
 
 typedef struct CagError {
@@ -32,8 +37,9 @@ typedef struct CagError {
   CagErrorId id;     // CAG_ERR_parameter_range: its row gives the reason that scripts see
   char argument[32]; // the argument's name as the language has it: "knots"; empty: none
   long index;        // offending element; -1: none
-  char message[400]; // what was expected and what was found, without the function's name: "`knots`
-                     // must not decrease: knots[5] = ..."
+  char message[512]; // what was expected and what was found, without the function's name: "`knots`
+                     // must not decrease: knots[5] = ..."; renderers add their last lines
+  char help[256];    // how to fix it; may be empty
 } CagError;
 
 // Fills err and gives status back: `return cag_fail(err, CAG_E_ARGUMENT,
@@ -41,6 +47,13 @@ typedef struct CagError {
 CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
                    const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
+// The same for files and renderers: fills err, which may be NULL, and returns false. Texts that are
+// too long for their fields are cut at a whole UTF-8 character. `help` may be NULL. The error's id
+// is the general one of its status.
+bool cag_fail_io(CagError *err, CagStatus status, const char *help, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+// The exit status of a program that ends with this error: 1 to 5, or 130 if it was interrupted.
+int cag_exit_status(const CagError *err);
 // Records that memory ran out, as cag_fail_memory does, where a function cannot return a status.
 void cag_note_memory(void);
 // Returns whether memory ran out on this thread since the last call. Callers check this even after

@@ -18,6 +18,7 @@ CagStatus cag_stop_fail(CagError *err) {
   err->id = CAG_ERR_interrupted;
   err->argument[0] = 0;
   err->index = -1;
+  err->help[0] = 0;
   strcpy(err->message, "it was stopped");
   return err->status;
 }

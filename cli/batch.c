@@ -102,18 +102,18 @@ static bool has_film(const CagBatch *b) {
 
 // Runs what is missing; gives the status of the program.
 static int run_missing(CagBatch *b) {
-  CagIoError err;
+  CagError err;
   cag_batch_recall(b);
   int status = b->tool->queue ? cag_slurm_run(b) : cag_batch_run(b);
   const bool interrupted = status == CAG_STATUS_INTERRUPTED;
   if (!cag_batch_write_report(b, &err))
-    return cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
+    return cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
   const int closed = cag_batch_close(b, interrupted);
   return status == CAG_STATUS_OK ? closed : status;
 }
 
 static int run(CagBatch *b) {
-  CagIoError err;
+  CagError err;
   if (!find_places(b) || !settle_module_path(b))
     return cag_tool_fail(b->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
   settle_workers(b);
@@ -129,7 +129,7 @@ static int run(CagBatch *b) {
   if (!cag_batch_make_keys(b))
     return cag_tool_fail(b->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
   if (!cag_journal_open(&b->journal, b->journal_path, b->tool->fresh, &err))
-    return cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
+    return cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
   return run_missing(b);
 }
 

@@ -125,7 +125,7 @@ void cag_batch_fail_joins(CagBatch *b);
 void cag_batch_tell_problems(CagBatch *b);
 // Says what is wrong with a row on standard error.
 void cag_batch_tell_row(const CagBatch *b, size_t row, const char *code, const char *message);
-bool cag_batch_write_report(const CagBatch *b, CagIoError *err);
+bool cag_batch_write_report(const CagBatch *b, CagError *err);
 // The closing line, and the status of the program.
 int cag_batch_close(const CagBatch *b, bool interrupted);
 

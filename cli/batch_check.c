@@ -304,7 +304,7 @@ static bool check_place(CagBatch *b, size_t i) {
   const CagTask *task =
       row->task_count ? &b->tasks[row->task + (size_t)(row->tile_columns * row->lines)] : NULL;
   if (!task) return true;
-  CagIoError err;
+  CagError err;
   char *path = cag_batch_path(b, task->output);
   if (!path) return false;
   const bool good = cag_tool_try_place(path, &err);

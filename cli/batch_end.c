@@ -66,9 +66,9 @@ int cag_batch_end_task(CagBatch *b, CagTask *task) {
     cag_tool_say(b->tool, "row %zu: wrote %s in %.1f s with %.0f MB",
                  b->jobs.rows[task->row].number, task->output, task->seconds,
                  (double)task->memory / 1e6);
-  CagIoError err;
+  CagError err;
   if (cag_journal_write(&b->journal, &entry, &err)) return CAG_STATUS_OK;
-  return cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
+  return cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
 }
 
 CagRowSum cag_batch_sum(const CagBatch *b, size_t row) {

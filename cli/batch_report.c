@@ -99,7 +99,7 @@ static void write_row(CagAtomicFile *f, const CagBatch *b, size_t i) {
   cag_atomic_file_text(f, "\n");
 }
 
-bool cag_batch_write_report(const CagBatch *b, CagIoError *err) {
+bool cag_batch_write_report(const CagBatch *b, CagError *err) {
   CagAtomicFile *f = cag_atomic_file_open(b->report_path, err);
   if (!f) return false;
   cag_atomic_file_text(f, "row,script,output,status,seconds,memory_mb,attempts,exit,message\n");

@@ -86,7 +86,7 @@ static int join(void *context) {
   const CagBatchRow *row = &j->batch->rows[task->row];
   char **tiles = calloc((size_t)task->joins, sizeof *tiles);
   char *output = cag_batch_path(j->batch, task->output);
-  CagIoError err = {.exit_status = CAG_STATUS_LIMIT, .message = "out of memory"};
+  CagError err = {.status = CAG_E_LIMIT, .message = "out of memory"};
   bool ok = tiles && output;
   for (int i = 0; ok && i < task->joins; i++)
     ok = (tiles[i] = cag_batch_path(j->batch, task[i - task->joins].output)) != NULL;
@@ -97,7 +97,7 @@ static int join(void *context) {
   free(output);
   if (ok) return CAG_STATUS_OK;
   fprintf(stderr, "%s\n", err.message);
-  return err.exit_status;
+  return cag_exit_status(&err);
 }
 
 static void remove_tiles(const CagBatch *b, const CagTask *task) {
@@ -245,9 +245,10 @@ static void begin_more(Run *r) {
 }
 
 static void sync_journal(Run *r) {
-  CagIoError err;
+  CagError err;
   if (cag_journal_sync(&r->batch->journal, &err)) return;
-  const int status = cag_tool_fail(r->batch->tool, err.exit_status, err.help, "%s", err.message);
+  const int status =
+      cag_tool_fail(r->batch->tool, cag_exit_status(&err), err.help, "%s", err.message);
   if (r->status == CAG_STATUS_OK) r->status = status;
 }
 

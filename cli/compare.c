@@ -13,11 +13,11 @@ static bool is_png(const char *path) {
   return n > 4 && !strcasecmp(path + n - 4, ".png");
 }
 
-static bool read_picture(const char *path, CagImage *out, CagIoError *err) {
+static bool read_picture(const char *path, CagImage *out, CagError *err) {
   return is_png(path) ? cag_png_read(path, out, err) : cag_exr_read(path, out, NULL, err);
 }
 
-static bool write_heatmap(const CagTool *t, const CagImage *a, const CagImage *b, CagIoError *err) {
+static bool write_heatmap(const CagTool *t, const CagImage *a, const CagImage *b, CagError *err) {
   CagImage map;
   if (!cag_compare_heatmap(a, b, &map, err)) return false;
   const CagPngOptions plain = {.keep_linear = true};
@@ -39,7 +39,7 @@ static int check_heatmap(const CagTool *t) {
 
 // Compares two pictures that were read.
 static bool compare(const CagTool *t, char **names, const CagImage *a, const CagImage *b,
-                    bool *differ, CagIoError *err) {
+                    bool *differ, CagError *err) {
   CagCompareReport report;
   if (!cag_compare_images(a, names[0], b, names[1], t->threshold, &report, err)) return false;
   // The figures give way to a heatmap on standard output.
@@ -53,7 +53,7 @@ static bool compare(const CagTool *t, char **names, const CagImage *a, const Cag
 int cag_tool_compare(CagTool *t, int argc, char **argv) {
   (void)argc;
   CagImage a = {0}, b = {0};
-  CagIoError err = {0};
+  CagError err = {0};
   bool differ = false;
   if (!strcmp(argv[0], "-") && !strcmp(argv[1], "-"))
     return cag_tool_fail(t, CAG_STATUS_USAGE, "name a file for one of them",
@@ -64,6 +64,6 @@ int cag_tool_compare(CagTool *t, int argc, char **argv) {
                   compare(t, argv, &a, &b, &differ, &err);
   cag_image_free(&a);
   cag_image_free(&b);
-  if (!ok) return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+  if (!ok) return cag_tool_fail(t, cag_exit_status(&err), err.help, "%s", err.message);
   return differ ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
 }

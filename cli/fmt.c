@@ -22,7 +22,7 @@ static void remember(Formatting *f, int status) {
 }
 
 static void write_back(Formatting *f, const char *path, const char *text, size_t length) {
-  CagIoError err = {0};
+  CagError err = {0};
   struct stat st;
   if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) { // what was read from a pipe is gone
     remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE,

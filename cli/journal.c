@@ -18,8 +18,8 @@ static const char *const WHATS[] = {"done", "failed", "submitted", "collected"};
 // The longest line that cag_journal_add writes.
 #define LINE_MAX_BYTES 256
 
-static bool fail(const CagJournal *j, const char *help, const char *problem, CagIoError *err) {
-  return cag_io_error_set(err, CAG_EXIT_FILE, help, "the journal '%s' %s", j->path, problem);
+static bool fail(const CagJournal *j, const char *help, const char *problem, CagError *err) {
+  return cag_fail_io(err, CAG_E_FILE, help, "the journal '%s' %s", j->path, problem);
 }
 
 // --- Reading ---
@@ -69,7 +69,7 @@ static bool begins_as_ours(const char *line, size_t length) {
 
 // Takes the whole lines of the text. A file that has no line of ours and something that could not
 // become one is somebody else's.
-static bool read_lines(CagJournal *j, const char *text, size_t length, CagIoError *err) {
+static bool read_lines(CagJournal *j, const char *text, size_t length, CagError *err) {
   size_t capacity = 0, others = 0, ours = 0;
   for (const char *at = text, *end = text + length; at < end;) {
     const char *newline = memchr(at, '\n', (size_t)(end - at));
@@ -79,7 +79,7 @@ static bool read_lines(CagJournal *j, const char *text, size_t length, CagIoErro
     CagJournalEntry e;
     const bool good = read_entry(at, n, &e);
     if (good && !keep_entry(j, &capacity, &e))
-      return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "out of memory");
+      return cag_fail_io(err, CAG_E_LIMIT, NULL, "out of memory");
     ours += good;
     at = newline + 1;
   }
@@ -140,7 +140,7 @@ const CagJournalEntry *cag_journal_find(const CagJournal *j, const char *key) {
   return bsearch(&wanted, j->entries, j->count, sizeof *j->entries, by_key);
 }
 
-static bool read_journal(CagJournal *j, CagIoError *err) {
+static bool read_journal(CagJournal *j, CagError *err) {
   size_t length = 0;
   char *text = read_file(j->fd, &length);
   if (!text) return fail(j, NULL, strerror(errno), err);
@@ -148,20 +148,20 @@ static bool read_journal(CagJournal *j, CagIoError *err) {
   // What is added is not to become part of a torn line.
   if (ok && length && text[length - 1] != '\n' && write(j->fd, "\n", 1) != 1)
     ok = fail(j, NULL, strerror(errno), err);
-  if (ok && !sort_entries(j)) ok = cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "out of memory");
+  if (ok && !sort_entries(j)) ok = cag_fail_io(err, CAG_E_LIMIT, NULL, "out of memory");
   free(text);
   return ok;
 }
 
-bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagIoError *err) {
+bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagError *err) {
   struct stat st;
   *j = (CagJournal){.fd = -1, .path = path};
   j->fd = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
   if (j->fd < 0)
-    return cag_io_error_set(err, CAG_EXIT_FILE,
-                            "the journal stands beside the jobs; it must be "
-                            "possible to write there",
-                            "the journal '%s' cannot be opened: %s", path, strerror(errno));
+    return cag_fail_io(err, CAG_E_FILE,
+                       "the journal stands beside the jobs; it must be "
+                       "possible to write there",
+                       "the journal '%s' cannot be opened: %s", path, strerror(errno));
   bool ok = true;
   if (fstat(j->fd, &st) != 0 || !S_ISREG(st.st_mode))
     ok = fail(j, "move it away", "is not a file", err);
@@ -187,12 +187,12 @@ void cag_journal_close(CagJournal *j) {
 
 // --- Writing ---
 
-static bool fail_write(const CagJournal *j, CagIoError *err) {
-  return cag_io_error_set(err, CAG_EXIT_FILE, "free some space: what is done is not kept otherwise",
-                          "the journal '%s' cannot be written: %s", j->path, strerror(errno));
+static bool fail_write(const CagJournal *j, CagError *err) {
+  return cag_fail_io(err, CAG_E_FILE, "free some space: what is done is not kept otherwise",
+                     "the journal '%s' cannot be written: %s", j->path, strerror(errno));
 }
 
-bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagIoError *err) {
+bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagError *err) {
   char line[LINE_MAX_BYTES];
   const int n = snprintf(line, sizeof line,
                          "{\"what\":\"%s\",\"key\":\"%s\",\"seconds\":%.3f,\"memory\":%zu,"
@@ -206,12 +206,12 @@ bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagIoError *err)
   return fail_write(j, err);
 }
 
-bool cag_journal_sync(CagJournal *j, CagIoError *err) {
+bool cag_journal_sync(CagJournal *j, CagError *err) {
   if (!j->unsynced) return true;
   j->unsynced = false;
   return fdatasync(j->fd) == 0 || fail_write(j, err);
 }
 
-bool cag_journal_add(CagJournal *j, const CagJournalEntry *e, CagIoError *err) {
+bool cag_journal_add(CagJournal *j, const CagJournalEntry *e, CagError *err) {
   return cag_journal_write(j, e, err) && cag_journal_sync(j, err);
 }

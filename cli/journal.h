@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 
 // 128 bits as hexadecimal digits, and a zero.
 #define CAG_JOURNAL_KEY_SIZE 33
@@ -46,7 +46,7 @@ typedef struct CagJournal {
 // Opens and reads the journal, and makes it where there is none; a `fresh` one forgets what it
 // held. Fails with the reason in `err`: a file that cannot be read or written, one that is no
 // journal, a batch that holds it.
-bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagIoError *err);
+bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagError *err);
 void cag_journal_close(CagJournal *j);
 
 // The newest of the key that was there when the journal was opened, or NULL.
@@ -54,10 +54,10 @@ const CagJournalEntry *cag_journal_find(const CagJournal *j, const char *key);
 
 // Adds a line, which a kill leaves there; when power fails, the disk may not have it before the
 // next cag_journal_sync.
-bool cag_journal_write(CagJournal *j, const CagJournalEntry *entry, CagIoError *err);
+bool cag_journal_write(CagJournal *j, const CagJournalEntry *entry, CagError *err);
 // Waits until the disk has all lines.
-bool cag_journal_sync(CagJournal *j, CagIoError *err);
+bool cag_journal_sync(CagJournal *j, CagError *err);
 // Both.
-bool cag_journal_add(CagJournal *j, const CagJournalEntry *entry, CagIoError *err);
+bool cag_journal_add(CagJournal *j, const CagJournalEntry *entry, CagError *err);
 
 #endif

@@ -70,7 +70,7 @@ static void write_case(CagAtomicFile *f, const char *suite, const CagJunitCase *
   }
 }
 
-bool cag_junit_write(const char *path, const CagJunitSuite *suites, size_t count, CagIoError *err) {
+bool cag_junit_write(const char *path, const CagJunitSuite *suites, size_t count, CagError *err) {
   CagAtomicFile *f = cag_atomic_file_open(path, err);
   if (!f) return false;
   Sums all = {0};

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 
 typedef struct CagJunitCase {
   char *name;
@@ -22,6 +22,6 @@ typedef struct CagJunitSuite {
 } CagJunitSuite;
 
 // Writes the file whole or not at all. False with the reason in `err`.
-bool cag_junit_write(const char *path, const CagJunitSuite *suites, size_t count, CagIoError *err);
+bool cag_junit_write(const char *path, const CagJunitSuite *suites, size_t count, CagError *err);
 
 #endif

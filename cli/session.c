@@ -38,12 +38,12 @@ CagSession *cag_tool_session(CagTool *t) {
 }
 
 int cag_tool_check_output(const CagTool *t, const char *path) {
-  CagIoError err;
+  CagError err;
   if (cag_atomic_file_try(path, &err)) return CAG_STATUS_OK;
-  return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+  return cag_tool_fail(t, cag_exit_status(&err), err.help, "%s", err.message);
 }
 
-bool cag_tool_try_place(const char *path, CagIoError *err) {
+bool cag_tool_try_place(const char *path, CagError *err) {
   char above[PATH_MAX], place[PATH_MAX];
   struct stat st;
   snprintf(above, sizeof above, "%s", path);
@@ -58,9 +58,9 @@ bool cag_tool_try_place(const char *path, CagIoError *err) {
 }
 
 int cag_tool_check_place(const CagTool *t, const char *path) {
-  CagIoError err;
+  CagError err;
   if (cag_tool_try_place(path, &err)) return CAG_STATUS_OK;
-  return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+  return cag_tool_fail(t, cag_exit_status(&err), err.help, "%s", err.message);
 }
 
 void cag_tool_make_folder(const char *path) {

@@ -111,7 +111,7 @@ static void write_quoted(CagAtomicFile *f, const char *text) {
   cag_atomic_file_text(f, "'");
 }
 
-static bool write_script(const Array *a, const char *path, CagIoError *err) {
+static bool write_script(const Array *a, const char *path, CagError *err) {
   CagAtomicFile *f = cag_atomic_file_open(path, err);
   if (!f) return false;
   cag_atomic_file_text(f, "#!/bin/sh\n# An element of the array job of `cag batch`.\nexec ");
@@ -125,7 +125,7 @@ static bool write_script(const Array *a, const char *path, CagIoError *err) {
   return cag_atomic_file_commit(f, err);
 }
 
-static bool write_plan(const Array *a, const char *path, CagIoError *err) {
+static bool write_plan(const Array *a, const char *path, CagError *err) {
   const CagBatch *b = a->batch;
   const double max_time = b->tool->session.max_time;
   CagPlan plan = {.elements = a->elements,
@@ -141,8 +141,7 @@ static bool write_plan(const Array *a, const char *path, CagIoError *err) {
     p->words = cag_batch_command(b, a->tasks[i], b->tool->threads ? b->tool->threads : 1);
     ok = p->words != NULL;
   }
-  ok = ok ? cag_plan_write(&plan, path, err)
-          : cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "out of memory");
+  ok = ok ? cag_plan_write(&plan, path, err) : cag_fail_io(err, CAG_E_LIMIT, NULL, "out of memory");
   for (size_t i = 0; i < plan.count; i++) free(plan.tasks[i].words);
   free(plan.tasks);
   return ok;
@@ -166,12 +165,12 @@ static bool settle_names(Array *a) {
 }
 
 // Makes the folder with plan and script.
-static bool prepare(const Array *a, char **script, CagIoError *err) {
+static bool prepare(const Array *a, char **script, CagError *err) {
   const CagBatch *b = a->batch;
   char *plan = NULL;
   mkdir(b->queue_folder, 0777);
   bool ok = mkdir(a->folder, 0777) == 0 ||
-            cag_io_error_set(err, CAG_EXIT_FILE, NULL, "the folder '%s' cannot be made", a->folder);
+            cag_fail_io(err, CAG_E_FILE, NULL, "the folder '%s' cannot be made", a->folder);
   ok = ok && asprintf(&plan, "%s/plan.json", a->folder) >= 0 &&
        asprintf(script, "%s/array.sh", a->folder) >= 0 && write_plan(a, plan, err) &&
        write_script(a, *script, err);
@@ -353,11 +352,11 @@ static int remove_entry(const char *path, const struct stat *st, int type, struc
 }
 
 static int keep_in_journal(CagBatch *b, CagJournalWhat what, const char *name) {
-  CagIoError err;
+  CagError err;
   CagJournalEntry entry = {.what = what};
   strcpy(entry.key, name);
   if (cag_journal_add(&b->journal, &entry, &err)) return CAG_STATUS_OK;
-  return cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
+  return cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
 }
 
 // The job is over and its results are in the journal: nothing of it is needed any more.
@@ -444,7 +443,7 @@ static int hand_in(CagBatch *b) {
   Array a = {.batch = b};
   char *script = NULL;
   bool over = true;
-  CagIoError err = {.exit_status = CAG_STATUS_LIMIT, .message = "out of memory"};
+  CagError err = {.status = CAG_E_LIMIT, .message = "out of memory"};
   if (!gather(&a) || !settle_names(&a)) return free_array(&a), CAG_STATUS_LIMIT;
   const size_t most = a.count ? ask_elements(b) : 0;
   if (cag_tool_interrupt) return free_array(&a), CAG_STATUS_INTERRUPTED;
@@ -453,7 +452,7 @@ static int hand_in(CagBatch *b) {
   a.missed = calloc(a.elements, 1);
   int status = CAG_STATUS_OK;
   if (!a.missed || !prepare(&a, &script, &err))
-    status = cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
+    status = cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
   if (status == CAG_STATUS_OK) status = keep_in_journal(b, CAG_JOURNAL_SUBMITTED, a.name);
   if (status == CAG_STATUS_OK && submit(&a, script)) status = follow(&a, &over);
   if (status == CAG_STATUS_OK && over) status = finish(&a);

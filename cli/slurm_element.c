@@ -38,7 +38,7 @@ static void run_once(const CagPlan *plan, char *const *words, CagTask *task) {
 static int run_task(CagTool *t, const CagPlan *plan, const CagPlanTask *p, const char *folder) {
   char *path = cag_plan_result_path(folder, p->key);
   CagTask task = {0};
-  CagIoError err;
+  CagError err;
   int status = CAG_STATUS_OK;
   if (!path) return CAG_STATUS_LIMIT;
   if (!cag_plan_read_result(path, &task) || task.status != CAG_STATUS_OK) {
@@ -49,7 +49,7 @@ static int run_task(CagTool *t, const CagPlan *plan, const CagPlanTask *p, const
            !cag_tool_interrupt);
     if (cag_tool_interrupt) status = CAG_STATUS_INTERRUPTED;
     else if (!cag_plan_write_result(path, &task, &err))
-      status = cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+      status = cag_tool_fail(t, cag_exit_status(&err), err.help, "%s", err.message);
   }
   free(task.message);
   free(path);

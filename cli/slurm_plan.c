@@ -18,7 +18,7 @@ static double number_of(const cJSON *object, const char *name) {
   return cJSON_IsNumber(item) ? item->valuedouble : 0;
 }
 
-static bool write_json(const char *path, const cJSON *object, CagIoError *err) {
+static bool write_json(const char *path, const cJSON *object, CagError *err) {
   CagAtomicFile *f = cag_atomic_file_open(path, err);
   if (!f) return false;
   char *text = cJSON_PrintUnformatted(object);
@@ -30,7 +30,7 @@ static bool write_json(const char *path, const cJSON *object, CagIoError *err) {
 
 // --- Plans ---
 
-bool cag_plan_write(const CagPlan *plan, const char *path, CagIoError *err) {
+bool cag_plan_write(const CagPlan *plan, const char *path, CagError *err) {
   cJSON *object = cJSON_CreateObject();
   cJSON_AddNumberToObject(object, "elements", (double)plan->elements);
   cJSON_AddNumberToObject(object, "retries", (double)plan->retries);
@@ -115,7 +115,7 @@ char *cag_plan_result_path(const char *folder, const char *key) {
   return asprintf(&path, "%s/%s.json", folder, key) < 0 ? NULL : path;
 }
 
-bool cag_plan_write_result(const char *path, const CagTask *task, CagIoError *err) {
+bool cag_plan_write_result(const char *path, const CagTask *task, CagError *err) {
   cJSON *object = cJSON_CreateObject();
   cJSON_AddNumberToObject(object, "status", task->status);
   cJSON_AddNumberToObject(object, "seconds", task->seconds);

@@ -19,13 +19,13 @@ typedef struct CagPlan {
 } CagPlan;
 
 // Writes and reads a plan. Reading gives NULL or false, after a message, for a file that is none.
-bool cag_plan_write(const CagPlan *plan, const char *path, CagIoError *err);
+bool cag_plan_write(const CagPlan *plan, const char *path, CagError *err);
 bool cag_plan_read(const CagTool *t, CagPlan *plan, const char *path);
 void cag_plan_free(CagPlan *plan);
 
 // A task's result. The path is malloc'd.
 char *cag_plan_result_path(const char *folder, const char *key);
-bool cag_plan_write_result(const char *path, const CagTask *task, CagIoError *err);
+bool cag_plan_write_result(const char *path, const CagTask *task, CagError *err);
 // False where there is none yet.
 bool cag_plan_read_result(const char *path, CagTask *task);
 

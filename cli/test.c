@@ -269,7 +269,7 @@ static int write_report(const Testing *t) {
   if (!suites) return cag_tool_fail(t->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
   for (size_t i = 0; i < t->count; i++)
     suites[i] = (CagJunitSuite){t->scripts[i].path, t->scripts[i].cases, t->scripts[i].case_count};
-  CagIoError err = {0};
+  CagError err = {0};
   const bool ok = cag_junit_write(t->tool->report, suites, t->count, &err);
   free(suites);
   return ok ? CAG_STATUS_OK : cag_tool_fail(t->tool, CAG_STATUS_FILE, err.help, "%s", err.message);

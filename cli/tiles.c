@@ -51,7 +51,7 @@ static void paste(CagImage *into, size_t to, const CagImage *from, size_t channe
 }
 
 // Begins the picture with the first tile's channels.
-static bool begin(CagImage *picture, const CagImage *tile, int width, int height, CagIoError *err) {
+static bool begin(CagImage *picture, const CagImage *tile, int width, int height, CagError *err) {
   if (!cag_image_create(picture, (size_t)width, (size_t)height, tile->channel_count, err))
     return false;
   for (size_t c = 0; c < tile->channel_count; c++)
@@ -60,7 +60,7 @@ static bool begin(CagImage *picture, const CagImage *tile, int width, int height
 }
 
 static bool add_tile(CagImage *picture, const CagImage *tile, CagRenderRegion r, const char *path,
-                     CagIoError *err) {
+                     CagError *err) {
   bool fits = tile->width == (size_t)r.width && tile->height == (size_t)r.height &&
               tile->channel_count == picture->channel_count;
   for (size_t c = 0; fits && c < picture->channel_count; c++) {
@@ -68,8 +68,8 @@ static bool add_tile(CagImage *picture, const CagImage *tile, CagRenderRegion r,
     fits = cag_image_find(tile, picture->channels[c].name, &from);
     if (fits) paste(picture, c, tile, from, r);
   }
-  return fits || cag_io_error_set(err, CAG_EXIT_FILE, "remove it, so that it is made again",
-                                  "the tile '%s' does not fit its picture", path);
+  return fits || cag_fail_io(err, CAG_E_FILE, "remove it, so that it is made again",
+                             "the tile '%s' does not fit its picture", path);
 }
 
 static bool is_png(const char *path) {
@@ -78,7 +78,7 @@ static bool is_png(const char *path) {
 }
 
 static bool write_picture(const CagImage *picture, const CagExrMetadata *m, const char *output,
-                          CagIoError *err) {
+                          CagError *err) {
   if (!is_png(output)) return cag_exr_write(output, picture, CAG_EXR_HALF, m, err);
   const CagExrAttribute *script = cag_exr_metadata_find(m, "cag.script");
   CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
@@ -87,7 +87,7 @@ static bool write_picture(const CagImage *picture, const CagExrMetadata *m, cons
 }
 
 bool cag_tiles_join(const char *const *tiles, int columns, int lines, int width, int height,
-                    const char *output, CagIoError *err) {
+                    const char *output, CagError *err) {
   CagImage picture = {0};
   CagExrMetadata metadata = {0};
   bool ok = true;

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "cag.h"
 
 // Pixels of the side of the blocks in which POV-Ray 3.7 renders. No tile is smaller.
@@ -29,6 +29,6 @@ CagRenderRegion cag_tile(int width, int height, int columns, int lines, int i);
 // Puts the EXR files of the tiles (columns * lines, in order) together and writes the picture to
 // `output`, an .exr with the first tile's facts or a .png.
 bool cag_tiles_join(const char *const *tiles, int columns, int lines, int width, int height,
-                    const char *output, CagIoError *err);
+                    const char *output, CagError *err);
 
 #endif

@@ -17,7 +17,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "cag.h"
 
 typedef struct CagTool CagTool;
@@ -121,7 +121,7 @@ int cag_tool_check_output(const CagTool *t, const char *path);
 // The same where folders that are missing will be made; and makes them. That they cannot be made is
 // told when the file is opened.
 int cag_tool_check_place(const CagTool *t, const char *path);
-bool cag_tool_try_place(const char *path, CagIoError *err);
+bool cag_tool_try_place(const char *path, CagError *err);
 void cag_tool_make_folder(const char *path);
 
 // Nonzero after Ctrl-C or SIGTERM; t->session.interrupt points to it. A second signal ends the

@@ -434,7 +434,7 @@ static void write_embedded(const Text *t, const CagGltfData *d, CagAtomicFile *f
 }
 
 static CagStatus make_data(const Plan *p, const char *stem, CagGltfData *out, CagError *err) {
-  CagIoError io;
+  CagError io;
   if (p->data_bytes == 0) return CAG_OK;
   CagAtomicFile *memory = cag_atomic_file_open_memory(&io);
   if (!memory) return cag_fail_memory(err);

@@ -375,7 +375,7 @@ static void write_global(Writer *w, const char *script) {
 }
 
 // Appends a section made in memory; counts its lines.
-static bool append(CagAtomicFile *to, CagAtomicFile *section, CagIoError *io) {
+static bool append(CagAtomicFile *to, CagAtomicFile *section, CagError *io) {
   char *bytes;
   size_t size;
   if (!cag_atomic_file_commit_memory(section, &bytes, &size, io)) return false;
@@ -411,7 +411,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
     return status;
   }
   cag_atomic_file_printf(file, "%-72sS%7d\n", "Exact geometry, in millimeters.", 1);
-  CagIoError io = {0};
+  CagError io = {0};
   bool whole = append(file, s->global, &io);
   whole = append(file, s->directory, &io) && whole;
   whole = append(file, s->parameters, &io) && whole;
@@ -427,7 +427,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
 
 CagStatus cag_export_iges(const CagBrep *brep, const char *script, CagAtomicFile *file,
                           CagError *err) {
-  CagIoError io = {0};
+  CagError io = {0};
   Sections s = {cag_atomic_file_open_memory(&io), cag_atomic_file_open_memory(&io),
                 cag_atomic_file_open_memory(&io)};
   if (!s.global || !s.directory || !s.parameters) {

@@ -42,7 +42,7 @@ typedef struct Model {
 
 // Packs the text so far, once there is enough of it.
 static CagStatus pack_xml(Model *m, bool all, CagError *err) {
-  CagIoError io;
+  CagError io;
   char *xml;
   size_t size;
   if (!all && cag_atomic_file_size(m->xml) < XML_KEPT) return CAG_OK;
@@ -294,7 +294,7 @@ static CagStatus begin(Model *m, CagError *err) {
       " <Relationship Target=\"/3D/3dmodel.model\" Id=\"model\" "
       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
       "</Relationships>\n";
-  CagIoError io;
+  CagError io;
   m->material_of = cag_calloc(m->count + 1, sizeof *m->material_of);
   if (!m->material_of) return cag_fail_memory(err);
   for (size_t i = 0; i < m->count; i++) {

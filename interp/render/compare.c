@@ -12,16 +12,16 @@ static const double PI = 3.14159265358979323846;
 
 // The index in b of each channel of a, or an error that names what is missing.
 static size_t *match_channels(const CagImage *a, const char *a_name, const CagImage *b,
-                              const char *b_name, CagIoError *err) {
+                              const char *b_name, CagError *err) {
   if (a->width != b->width || a->height != b->height) {
-    cag_io_error_set(err, CAG_EXIT_SCRIPT, "compare pictures of one size",
-                     "'%s' is %zu by %zu pixels, but '%s' is %zu by %zu", a_name, a->width,
-                     a->height, b_name, b->width, b->height);
+    cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures of one size",
+                "'%s' is %zu by %zu pixels, but '%s' is %zu by %zu", a_name, a->width, a->height,
+                b_name, b->width, b->height);
     return NULL;
   }
   size_t *match = cag_malloc(a->channel_count * sizeof *match);
   if (!match) {
-    cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
     return NULL;
   }
   const char *missing = NULL, *holder = a_name, *other = b_name;
@@ -35,9 +35,8 @@ static size_t *match_channels(const CagImage *a, const char *a_name, const CagIm
     other = a_name;
   }
   if (!missing) return match;
-  cag_io_error_set(err, CAG_EXIT_SCRIPT, "compare pictures with the same channels",
-                   "'%s' has a channel '%.80s', but '%s' has none of that name", holder, missing,
-                   other);
+  cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures with the same channels",
+              "'%s' has a channel '%.80s', but '%s' has none of that name", holder, missing, other);
   cag_free(match);
   return NULL;
 }
@@ -117,13 +116,13 @@ static void compare_colors(const CagImage *a, const CagImage *b, CagCompareRepor
 
 bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b,
                         const char *b_name, double threshold, CagCompareReport *out,
-                        CagIoError *err) {
+                        CagError *err) {
   size_t *match = match_channels(a, a_name, b, b_name, err);
   if (!match) return false;
   CagCompareChannel *channels = cag_calloc(a->channel_count, sizeof *channels);
   if (!channels) {
     cag_free(match);
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    return cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
   }
   *out = (CagCompareReport){.width = a->width,
                             .height = a->height,
@@ -175,7 +174,7 @@ static void heat(double t, float *r, float *g, float *b) {
   *b = (float)fmin(fmax(3 * t - 2, 0), 1);
 }
 
-bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagIoError *err) {
+bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagError *err) {
   static const char *const NAMES[4] = {"R", "G", "B", "difference"};
   size_t *match = match_channels(a, "the first picture", b, "the second picture", err);
   if (!match) return false;

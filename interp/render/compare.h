@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "interp/render/image.h"
 
 typedef struct CagCompareChannel {
@@ -45,10 +45,9 @@ typedef struct CagCompareReport {
 
 // Compares `b` with the reference `a`. A pixel differs when a channel of it differs by more than
 // `threshold` (at least 0). The names are for messages. Pictures of different sizes or channels are
-// an error of status CAG_EXIT_SCRIPT. Release the report with cag_compare_report_free.
+// an error of status CAG_E_ARGUMENT. Release the report with cag_compare_report_free.
 bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b,
-                        const char *b_name, double threshold, CagCompareReport *out,
-                        CagIoError *err);
+                        const char *b_name, double threshold, CagCompareReport *out, CagError *err);
 
 void cag_compare_report_free(CagCompareReport *report);
 
@@ -59,7 +58,7 @@ void cag_compare_print(const CagCompareReport *report, FILE *out);
 // red and yellow to white as the pixel's largest difference goes from 0 to that of the worst pixel,
 // magenta marks pixels that are unlike (see above), and the channel `difference` holds the number
 // itself (infinity for unlike ones). Release with cag_image_free.
-bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagIoError *err);
+bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagError *err);
 
 // CIEDE2000 of two CIELAB colors, all weights 1.
 double cag_compare_delta_e(const double lab1[3], const double lab2[3]);

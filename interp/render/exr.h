@@ -11,7 +11,7 @@
 // Written: scanlines, ZIP, half or float, any channel names, and metadata. A file is written whole
 // or not at all. Values outside the range of half become infinite there.
 //
-// Everything damaged, truncated or hostile is an error of status CAG_EXIT_FILE that names the file
+// Everything damaged, truncated or hostile is an error of status CAG_E_FILE that names the file
 // and what is wrong with it.
 
 #ifndef CAG_INTERP_RENDER_EXR_H
@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "interp/render/image.h"
 
 typedef enum { CAG_EXR_TEXT, CAG_EXR_NUMBER, CAG_EXR_MATRIX } CagExrAttributeKind;
@@ -46,10 +46,10 @@ typedef struct CagExrMetadata {
 // ...) are refused. Texts are stored as EXR's `string`, numbers as `double`, matrices as `m44f` in
 // EXR's convention for row vectors, so that the standard attribute `worldToCamera` means to other
 // programs what it says. False, with `err`, for a name that cannot be or no memory.
-bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagIoError *err);
-bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number, CagIoError *err);
+bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagError *err);
+bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number, CagError *err);
 bool cag_exr_metadata_matrix(CagExrMetadata *m, const char *name, const double matrix[16],
-                             CagIoError *err);
+                             CagError *err);
 
 // The fact of that name, or NULL.
 const CagExrAttribute *cag_exr_metadata_find(const CagExrMetadata *m, const char *name);
@@ -59,11 +59,11 @@ void cag_exr_metadata_free(CagExrMetadata *m);
 // Reads the picture, and into `metadata` (may be NULL; begins as {0}) the texts, numbers and 4x4
 // matrices of its first part's header.
 // `-` is standard input. Nothing to release on failure.
-bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, CagIoError *err);
+bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, CagError *err);
 
 // The same from memory; `shown` is the file's name in messages.
 bool cag_exr_read_memory(const void *bytes, size_t size, const char *shown, CagImage *out,
-                         CagExrMetadata *metadata, CagIoError *err);
+                         CagExrMetadata *metadata, CagError *err);
 
 // Whether the bytes are an EXR of scanlines to which nothing is missing; pixels are not decoded. A
 // file has its table of chunks filled in last of all.
@@ -74,17 +74,17 @@ typedef enum { CAG_EXR_HALF, CAG_EXR_FLOAT } CagExrPixels;
 // Writes the picture with its metadata (may be NULL). `-` is standard output. Channels must have
 // names, each once.
 bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
-                   const CagExrMetadata *metadata, CagIoError *err);
+                   const CagExrMetadata *metadata, CagError *err);
 
 // Takes an EXR in memory (as a renderer left it), and writes the same picture to `path` with the
 // metadata added: half if all its channels were half, else float. `picture` (may be NULL) receives
 // the image, for a PNG of it.
 bool cag_exr_rewrite(const void *bytes, size_t size, const char *shown, const char *path,
-                     const CagExrMetadata *metadata, CagImage *picture, CagIoError *err);
+                     const CagExrMetadata *metadata, CagImage *picture, CagError *err);
 
 // What the two sides share; not for other files.
 bool cag_exr_name_is_reserved(const char *name);
 bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagImage *out,
-                         CagExrMetadata *metadata, bool *all_half, CagIoError *err);
+                         CagExrMetadata *metadata, bool *all_half, CagError *err);
 
 #endif

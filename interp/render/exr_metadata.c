@@ -20,11 +20,11 @@ bool cag_exr_name_is_reserved(const char *name) {
 }
 
 // The entry of that name, made if it is not there, emptied if it is.
-static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *err) {
+static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagError *err) {
   size_t length = strlen(name);
   if (!length || length > CAG_IMAGE_NAME_MAX || cag_exr_name_is_reserved(name)) {
-    cag_io_error_set(err, CAG_EXIT_USAGE, "choose a name of 1 to 255 bytes that EXR does not use",
-                     "'%s' cannot be the name of an EXR attribute", name);
+    cag_fail_io(err, CAG_E_USAGE, "choose a name of 1 to 255 bytes that EXR does not use",
+                "'%s' cannot be the name of an EXR attribute", name);
     return NULL;
   }
   for (size_t i = 0; i < m->count; i++) {
@@ -34,7 +34,7 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *e
     return &m->items[i];
   }
   if (!CAG_RESERVE(m->items, m->capacity, m->count + 1)) {
-    cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
     return NULL;
   }
   CagExrAttribute *a = &m->items[m->count++];
@@ -43,12 +43,11 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *e
   return a;
 }
 
-bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagIoError *err) {
+bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagError *err) {
   char *copy = cag_strdup(text);
   CagExrAttribute *a = copy ? entry(m, name, err) : NULL;
   if (!a) {
-    if (!copy)
-      cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    if (!copy) cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
     cag_free(copy);
     return false;
   }
@@ -57,7 +56,7 @@ bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text
   return true;
 }
 
-bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number, CagIoError *err) {
+bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number, CagError *err) {
   CagExrAttribute *a = entry(m, name, err);
   if (!a) return false;
   a->kind = CAG_EXR_NUMBER;
@@ -66,7 +65,7 @@ bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number,
 }
 
 bool cag_exr_metadata_matrix(CagExrMetadata *m, const char *name, const double matrix[16],
-                             CagIoError *err) {
+                             CagError *err) {
   CagExrAttribute *a = entry(m, name, err);
   if (!a) return false;
   a->kind = CAG_EXR_MATRIX;

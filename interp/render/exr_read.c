@@ -33,15 +33,14 @@ typedef struct {
   CagExrComplaint complaint;
 } Source;
 
-static bool fail(CagIoError *err, const Source *source, const char *what) {
-  return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot read '%s' as EXR: %s", source->shown,
-                          what);
+static bool fail(CagError *err, const Source *source, const char *what) {
+  return cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s' as EXR: %s", source->shown, what);
 }
 
-static bool fail_code(CagIoError *err, const Source *source, exr_result_t code) {
+static bool fail_code(CagError *err, const Source *source, exr_result_t code) {
   if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
-    return cag_io_error_set(
-        err, CAG_EXIT_FILE, "store it with ZIP, PIZ, RLE or no compression",
+    return cag_fail_io(
+        err, CAG_E_FILE, "store it with ZIP, PIZ, RLE or no compression",
         "cannot read '%s' as EXR: its compression, for channels like these, is not one that "
         "OpenEXRCore decodes rightly",
         source->shown);
@@ -250,7 +249,7 @@ static void name_channel(CagImage *image, size_t c, exr_context_t file, int part
 // where OpenEXRCore 3.1 errs for coarser samplings, and in B44 for channels that are not half, up
 // to reading beyond its memory: such files are refused.
 static bool survey_channels(exr_context_t file, const Source *source, int part,
-                            const exr_attr_chlist_t *list, bool *all_half, CagIoError *err) {
+                            const exr_attr_chlist_t *list, bool *all_half, CagError *err) {
   exr_compression_t kind;
   exr_result_t rv = exr_get_compression(file, part, &kind);
   if (rv) return fail_code(err, source, rv);
@@ -268,7 +267,7 @@ static bool survey_channels(exr_context_t file, const Source *source, int part,
 
 // Checks every part and counts the channels of all.
 static bool survey(exr_context_t file, const Source *source, int parts, size_t *channels,
-                   bool *all_half, CagIoError *err) {
+                   bool *all_half, CagError *err) {
   *channels = 0;
   *all_half = true;
   for (int p = 0; p < parts; p++) {
@@ -286,7 +285,7 @@ static bool survey(exr_context_t file, const Source *source, int parts, size_t *
 }
 
 // Takes the facts of the header that the list can hold.
-static bool read_metadata(exr_context_t file, CagExrMetadata *out, CagIoError *err) {
+static bool read_metadata(exr_context_t file, CagExrMetadata *out, CagError *err) {
   bool ok = true;
   const exr_attribute_t *a;
   for (int32_t i = 0; ok && exr_get_attribute_by_index(file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &a) ==
@@ -316,7 +315,7 @@ static bool read_metadata(exr_context_t file, CagExrMetadata *out, CagIoError *e
 }
 
 static bool read_open(exr_context_t file, const Source *source, CagImage *out, bool *all_half,
-                      CagIoError *err) {
+                      CagError *err) {
   int parts = 0;
   exr_attr_box2i_t display;
   exr_result_t rv = exr_get_count(file, &parts);
@@ -327,10 +326,10 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
 
   int64_t width = (int64_t)display.max.x - display.min.x + 1;
   int64_t height = (int64_t)display.max.y - display.min.y + 1;
-  CagIoError inner;
+  CagError inner;
   if (!cag_image_create(out, (size_t)width, (size_t)height, channels, &inner))
-    return cag_io_error_set(err, inner.exit_status, inner.help, "cannot read '%s' as EXR: %.300s",
-                            source->shown, inner.message);
+    return cag_fail_io(err, cag_exit_status(&inner), inner.help, "cannot read '%s' as EXR: %.300s",
+                       source->shown, inner.message);
 
   size_t next = 0;
   for (int p = 0; !rv && p < parts; p++) {
@@ -360,7 +359,7 @@ static exr_result_t open_source(Source *source, exr_context_t *file) {
 }
 
 static bool read_source(Source *source, CagImage *out, CagExrMetadata *metadata, bool *all_half,
-                        CagIoError *err) {
+                        CagError *err) {
   exr_context_t file;
   const exr_result_t rv = open_source(source, &file);
   if (rv) return fail_code(err, source, rv);
@@ -374,7 +373,7 @@ static bool read_source(Source *source, CagImage *out, CagExrMetadata *metadata,
 }
 
 bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagImage *out,
-                         CagExrMetadata *metadata, bool *all_half, CagIoError *err) {
+                         CagExrMetadata *metadata, bool *all_half, CagError *err) {
   Source source = {.bytes = bytes, .size = size, .shown = shown};
   if (!size) return fail(err, &source, "the file is empty");
   if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
@@ -404,17 +403,17 @@ bool cag_exr_is_whole(const void *bytes, size_t size) {
 }
 
 bool cag_exr_read_memory(const void *bytes, size_t size, const char *shown, CagImage *out,
-                         CagExrMetadata *metadata, CagIoError *err) {
+                         CagExrMetadata *metadata, CagError *err) {
   bool all_half;
   return cag_exr_read_pixels(bytes, size, shown, out, metadata, &all_half, err);
 }
 
-static bool fail_file(CagIoError *err, const char *shown, const char *why) {
-  return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot read '%s': %s", shown, why);
+static bool fail_file(CagError *err, const char *shown, const char *why) {
+  return cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s': %s", shown, why);
 }
 
 // Reads everything from an open file; its size is only a first guess.
-static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size, CagIoError *err) {
+static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size, CagError *err) {
   struct stat st;
   if (fstat(fd, &st) != 0) return fail_file(err, shown, strerror(errno));
   if (S_ISDIR(st.st_mode)) return fail_file(err, shown, "it is a folder");
@@ -438,7 +437,7 @@ static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size
   }
 }
 
-bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, CagIoError *err) {
+bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, CagError *err) {
   const bool standard_input = !strcmp(path, "-");
   const char *shown = standard_input ? "standard input" : path;
   int fd = standard_input ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);

@@ -116,24 +116,24 @@ static exr_result_t write_chunks(exr_context_t file, const CagImage *image) {
   return rv;
 }
 
-static bool check_names(const char *path, const CagImage *image, CagIoError *err) {
+static bool check_names(const char *path, const CagImage *image, CagError *err) {
   for (size_t c = 0; c < image->channel_count; c++) {
     size_t first = c;
     const char *name = image->channels[c].name;
     if (!*name)
-      return cag_io_error_set(err, CAG_EXIT_USAGE, "name every channel",
-                              "cannot write '%s': channel %zu has no name", path, c);
+      return cag_fail_io(err, CAG_E_USAGE, "name every channel",
+                         "cannot write '%s': channel %zu has no name", path, c);
     cag_image_find(image, name, &first);
     if (first != c)
-      return cag_io_error_set(err, CAG_EXIT_USAGE, "give each channel a name of its own",
-                              "cannot write '%s': two channels are named '%s'", path, name);
+      return cag_fail_io(err, CAG_E_USAGE, "give each channel a name of its own",
+                         "cannot write '%s': two channels are named '%s'", path, name);
   }
   return true;
 }
 
 // Compresses the picture into the sink.
 static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
-                   const CagExrMetadata *metadata, CagIoError *err) {
+                   const CagExrMetadata *metadata, CagError *err) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   setup.error_handler_fn = cag_exr_complaint_keep;
   setup.user_data = sink;
@@ -149,12 +149,12 @@ static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
   }
   cag_exr_complaint_listen(NULL);
   if (rv == EXR_ERR_SUCCESS) return true;
-  return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot write '%s' as EXR: %s", sink->shown,
-                          cag_exr_complaint_text(&sink->complaint, rv));
+  return cag_fail_io(err, CAG_E_FILE, NULL, "cannot write '%s' as EXR: %s", sink->shown,
+                     cag_exr_complaint_text(&sink->complaint, rv));
 }
 
 bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
-                   const CagExrMetadata *metadata, CagIoError *err) {
+                   const CagExrMetadata *metadata, CagError *err) {
   if (!check_names(path, image, err)) return false;
   // Opened first: a place that cannot be written to is told before the work of compressing.
   CagAtomicFile *out = cag_atomic_file_open(path, err);
@@ -172,7 +172,7 @@ bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
 }
 
 bool cag_exr_rewrite(const void *bytes, size_t size, const char *shown, const char *path,
-                     const CagExrMetadata *metadata, CagImage *picture, CagIoError *err) {
+                     const CagExrMetadata *metadata, CagImage *picture, CagError *err) {
   CagImage image;
   bool all_half;
   if (!cag_exr_read_pixels(bytes, size, shown, &image, NULL, &all_half, err)) return false;

@@ -8,28 +8,28 @@
 #include "base/memory.h"
 
 bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
-                      CagIoError *err) {
+                      CagError *err) {
   if (!width || !height || !channel_count)
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL,
-                            "an image of %zu by %zu pixels with %zu channels has no samples", width,
-                            height, channel_count);
+    return cag_fail_io(err, CAG_E_LIMIT, NULL,
+                       "an image of %zu by %zu pixels with %zu channels has no samples", width,
+                       height, channel_count);
   // The first three bounds keep the product below 2^64.
   if (width > CAG_IMAGE_SIDE_MAX || height > CAG_IMAGE_SIDE_MAX ||
       channel_count > CAG_IMAGE_CHANNELS_MAX ||
       width * height * channel_count > CAG_IMAGE_SAMPLES_MAX)
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, "make it smaller",
-                            "an image of %zu by %zu pixels with %zu channels is too large (at most "
-                            "%zu samples, %zu pixels on a side, %zu channels)",
-                            width, height, channel_count, CAG_IMAGE_SAMPLES_MAX, CAG_IMAGE_SIDE_MAX,
-                            CAG_IMAGE_CHANNELS_MAX);
+    return cag_fail_io(err, CAG_E_LIMIT, "make it smaller",
+                       "an image of %zu by %zu pixels with %zu channels is too large (at most "
+                       "%zu samples, %zu pixels on a side, %zu channels)",
+                       width, height, channel_count, CAG_IMAGE_SAMPLES_MAX, CAG_IMAGE_SIDE_MAX,
+                       CAG_IMAGE_CHANNELS_MAX);
   CagImageChannel *channels = cag_calloc(channel_count, sizeof *channels);
   float *data = cag_calloc(width * height * channel_count, sizeof *data);
   if (!channels || !data) {
     cag_free(channels);
     cag_free(data);
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, "make it smaller",
-                            "no memory for an image of %zu by %zu pixels with %zu channels", width,
-                            height, channel_count);
+    return cag_fail_io(err, CAG_E_LIMIT, "make it smaller",
+                       "no memory for an image of %zu by %zu pixels with %zu channels", width,
+                       height, channel_count);
   }
   *out = (CagImage){width, height, channel_count, channels, data};
   return true;

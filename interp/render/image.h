@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 
 // Longest channel name, in bytes: the limit of EXR files with long names.
 #define CAG_IMAGE_NAME_MAX 255
@@ -32,9 +32,9 @@ typedef struct CagImage {
 } CagImage;
 
 // Makes an image of zeros with unnamed channels; release it with cag_image_free. A size of zero or
-// above the limits is an error of status CAG_EXIT_LIMIT.
+// above the limits is an error of status CAG_E_LIMIT.
 bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
-                      CagIoError *err);
+                      CagError *err);
 
 // Releases the image and makes it empty; an empty one ({0}) is allowed.
 void cag_image_free(CagImage *image);

@@ -143,22 +143,21 @@ static bool encode(Session *s, const Tone *t, const CagPngText *texts, size_t te
 }
 
 static bool prepare_tone(const char *path, const CagImage *image, const CagPngOptions *options,
-                         Tone *t, CagIoError *err) {
+                         Tone *t, CagError *err) {
   *t = (Tone){.image = image, .gain = exp2(options->exposure), .clip = options->keep_linear};
   t->bits = options->bits ? options->bits : 8;
   if (t->bits != 8 && t->bits != 16)
-    return cag_io_error_set(err, CAG_EXIT_USAGE, "use 8 or 16",
-                            "cannot write '%s': PNG has no %d bits per channel here", path,
-                            t->bits);
+    return cag_fail_io(err, CAG_E_USAGE, "use 8 or 16",
+                       "cannot write '%s': PNG has no %d bits per channel here", path, t->bits);
   if (!cag_image_find_color(image, t->rgb))
-    return cag_io_error_set(err, CAG_EXIT_USAGE, "name channels R, G and B, or Y",
-                            "cannot write '%s': the image has no color channels", path);
+    return cag_fail_io(err, CAG_E_USAGE, "name channels R, G and B, or Y",
+                       "cannot write '%s': the image has no color channels", path);
   t->has_alpha = !options->drop_alpha && cag_image_find(image, "A", &t->alpha);
   return true;
 }
 
 bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions *options,
-                   const CagPngText *texts, size_t text_count, CagIoError *err) {
+                   const CagPngText *texts, size_t text_count, CagError *err) {
   static const CagPngOptions PLAIN = {0};
   Tone tone;
   if (!prepare_tone(path, image, options ? options : &PLAIN, &tone, err)) return false;
@@ -174,8 +173,8 @@ bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions 
   cag_free(s.row);
   if (ok || refused) return cag_atomic_file_commit(s.file, err);
   cag_atomic_file_abort(s.file);
-  return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot write '%s' as PNG: %s", path,
-                          s.message[0] ? s.message : "no memory");
+  return cag_fail_io(err, CAG_E_FILE, NULL, "cannot write '%s' as PNG: %s", path,
+                     s.message[0] ? s.message : "no memory");
 }
 
 // Reading.
@@ -186,7 +185,7 @@ static void on_read(png_structp png, png_bytep data, png_size_t n) {
 }
 
 // Decodes into s->pixels: 16-bit samples of `channels` (3 or 4) per pixel.
-static bool decode(Session *s, size_t *width, size_t *height, size_t *channels, CagIoError *err) {
+static bool decode(Session *s, size_t *width, size_t *height, size_t *channels, CagError *err) {
   if (setjmp(png_jmpbuf(s->png))) return false;
   png_set_read_fn(s->png, s, on_read);
   png_set_user_limits(s->png, (png_uint_32)CAG_IMAGE_SIDE_MAX, (png_uint_32)CAG_IMAGE_SIDE_MAX);
@@ -224,11 +223,11 @@ static void to_linear(const Session *s) {
   }
 }
 
-static bool fail_read(CagIoError *err, const char *path, const char *why) {
-  return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot read '%s' as PNG: %s", path, why);
+static bool fail_read(CagError *err, const char *path, const char *why) {
+  return cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s' as PNG: %s", path, why);
 }
 
-bool cag_png_read(const char *path, CagImage *out, CagIoError *err) {
+bool cag_png_read(const char *path, CagImage *out, CagError *err) {
   Session s = {.shown = path};
   s.input = fopen(path, "rbe");
   if (!s.input) return fail_read(err, path, strerror(errno));
@@ -240,13 +239,13 @@ bool cag_png_read(const char *path, CagImage *out, CagIoError *err) {
   size_t width = 0, height = 0, channels = 0;
   s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, on_error, on_warning);
   s.info = s.png ? png_create_info_struct(s.png) : NULL;
-  CagIoError inner = {0};
+  CagError inner = {0};
   bool ok = s.info && decode(&s, &width, &height, &channels, &inner);
   if (!ok) {
     fail_read(err, path, s.message[0] ? s.message : "no memory");
   } else if (!s.image.data) {
-    ok = cag_io_error_set(err, inner.exit_status, inner.help, "cannot read '%s' as PNG: %.300s",
-                          path, inner.message);
+    ok = cag_fail_io(err, cag_exit_status(&inner), inner.help, "cannot read '%s' as PNG: %.300s",
+                     path, inner.message);
   } else {
     to_linear(&s);
     *out = s.image;

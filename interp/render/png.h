@@ -19,7 +19,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "interp/render/image.h"
 
 // Where the roll-off of highlights begins, in linear light after exposure.
@@ -47,13 +47,13 @@ double cag_png_srgb_decode(double encoded);
 double cag_png_shoulder(double x);
 
 // Writes the image's color (R G B, or Y) and alpha. `-` is standard output. `options` may be NULL,
-// `texts` too when the count is 0. Fails with CAG_EXIT_FILE (cannot be written), CAG_EXIT_USAGE (no
+// `texts` too when the count is 0. Fails with CAG_E_FILE (cannot be written), CAG_E_USAGE (no
 // color channels, bits that PNG does not have).
 bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions *options,
-                   const CagPngText *texts, size_t text_count, CagIoError *err);
+                   const CagPngText *texts, size_t text_count, CagError *err);
 
 // Reads a PNG of any kind into linear R, G, B, and A (premultiplied, as in EXR) if it has
 // transparency, taking its colors as sRGB.
-bool cag_png_read(const char *path, CagImage *out, CagIoError *err);
+bool cag_png_read(const char *path, CagImage *out, CagError *err);
 
 #endif

@@ -28,7 +28,7 @@
 
 // Where POV-Ray is.
 
-static bool find_program(char path[PATH_MAX], CagIoError *err) {
+static bool find_program(char path[PATH_MAX], CagError *err) {
   const char *list = getenv("PATH");
   if (!list || !*list) list = "/usr/local/bin:/usr/bin:/bin";
   while (*list) {
@@ -43,9 +43,9 @@ static bool find_program(char path[PATH_MAX], CagIoError *err) {
     }
     list += n + (list[n] == ':');
   }
-  return cag_io_error_set(err, CAG_EXIT_RENDERER,
-                          "install it (apt-get install povray), or use --engine preview",
-                          "POV-Ray is not installed: no program povray on PATH");
+  return cag_fail_io(err, CAG_E_RENDERER,
+                     "install it (apt-get install povray), or use --engine preview",
+                     "POV-Ray is not installed: no program povray on PATH");
 }
 
 // The temporary folder.
@@ -61,7 +61,7 @@ static void remove_folder(const char *folder) {
   if (*folder) nftw(folder, remove_entry, OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
 }
 
-static bool make_folder(char folder[PATH_MAX], CagIoError *err) {
+static bool make_folder(char folder[PATH_MAX], CagError *err) {
   const char *base = getenv("TMPDIR");
   if (!base || *base != '/') base = "/tmp";
   char pattern[PATH_MAX];
@@ -70,19 +70,19 @@ static bool make_folder(char folder[PATH_MAX], CagIoError *err) {
   if (n < PATH_MAX && mkdtemp(pattern) && realpath(pattern, folder)) return true;
   const int code = n < PATH_MAX ? errno : ENAMETOOLONG;
   *folder = '\0';
-  return cag_io_error_set(err, CAG_EXIT_FILE, "set TMPDIR to a folder that you may write to",
-                          "no temporary folder for POV-Ray in '%.300s': %s", base, strerror(code));
+  return cag_fail_io(err, CAG_E_FILE, "set TMPDIR to a folder that you may write to",
+                     "no temporary folder for POV-Ray in '%.300s': %s", base, strerror(code));
 }
 
-static bool fail_temporary(CagIoError *err, const char *path, int code) {
-  return cag_io_error_set(err, CAG_EXIT_FILE,
-                          code == ENOSPC ? "free some space, or set TMPDIR to another disk" : NULL,
-                          "cannot write the temporary file '%s': %s", path, strerror(code));
+static bool fail_temporary(CagError *err, const char *path, int code) {
+  return cag_fail_io(err, CAG_E_FILE,
+                     code == ENOSPC ? "free some space, or set TMPDIR to another disk" : NULL,
+                     "cannot write the temporary file '%s': %s", path, strerror(code));
 }
 
 // Writes `size` bytes to the file `name` of the folder.
 static bool put_file(const char *folder, const char *name, const void *bytes, size_t size,
-                     CagIoError *err) {
+                     CagError *err) {
   char path[PATH_MAX];
   if (snprintf(path, sizeof path, "%s/%s", folder, name) >= PATH_MAX)
     return fail_temporary(err, name, ENAMETOOLONG);
@@ -101,11 +101,10 @@ static bool is_plain_name(const char *name) {
   return *name && *name != '.' && !strchr(name, '/') && strlen(name) <= NAME_MAX;
 }
 
-static bool copy_file(const char *folder, const CagPovrayFile *file, CagIoError *err) {
+static bool copy_file(const char *folder, const CagPovrayFile *file, CagError *err) {
   if (!is_plain_name(file->name))
-    return cag_io_error_set(err, CAG_EXIT_USAGE, "use a name without folders",
-                            "'%s' cannot be the name of a file beside the POV-Ray scene",
-                            file->name);
+    return cag_fail_io(err, CAG_E_USAGE, "use a name without folders",
+                       "'%s' cannot be the name of a file beside the POV-Ray scene", file->name);
   FILE *in = fopen(file->source, "rbe");
   char *bytes = NULL;
   size_t size = 0;
@@ -119,8 +118,8 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagIoError 
   ok = ok && !ferror(in);
   const int code = errno;
   if (!ok)
-    cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot read '%s', which the scene uses: %s",
-                     file->source, in && !bytes ? "it is not an ordinary file" : strerror(code));
+    cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s', which the scene uses: %s", file->source,
+                in && !bytes ? "it is not an ordinary file" : strerror(code));
   // An include is part of the scene.
   const char *ending = strrchr(file->name, '.');
   if (ok && ending && !strcmp(ending, ".inc")) ok = cag_povray_check_files(bytes, size, err);
@@ -146,7 +145,7 @@ static void library_path(const char *program, char out[PATH_MAX]) {
 }
 
 // The configuration that POV-Ray looks for in its user's home, which is the folder.
-static bool put_configuration(const char *folder, const char *library, CagIoError *err) {
+static bool put_configuration(const char *folder, const char *library, CagError *err) {
   char text[3 * PATH_MAX], path[PATH_MAX];
   static const char *const LEVELS[] = {".povray", ".povray/3.7"};
   for (size_t i = 0; i < 2; i++) {
@@ -231,49 +230,46 @@ static void scene_line(const CagPovrayJob *job, size_t line, char *out, size_t s
   snprintf(out, size, "%.*s", (int)(n < size ? n : size - 1), at);
 }
 
-static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagIoError *err) {
+static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagError *err) {
   char text[121] = "";
   if (!strcmp(log->error_file, "scene.pov")) scene_line(job, log->error_line, text, sizeof text);
-  return cag_io_error_set(
-      err, CAG_EXIT_RENDERER, "cag export -o scene.pov writes the scene to look at",
-      "POV-Ray refused the scene at line %zu of '%.80s': %.240s%s%s", log->error_line,
-      log->error_file, log->error_text, *text ? "\n" : "", text);
+  return cag_fail_io(err, CAG_E_RENDERER, "cag export -o scene.pov writes the scene to look at",
+                     "POV-Ray refused the scene at line %zu of '%.80s': %.240s%s%s",
+                     log->error_line, log->error_file, log->error_text, *text ? "\n" : "", text);
 }
 
 // Fills the error of a run that gave no picture.
 static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayLog *log,
-                     CagIoError *err) {
+                     CagError *err) {
   char last[CAG_POVRAY_LAST_LINES * CAG_POVRAY_LINE_MAX];
   cag_povray_log_last(log, last, sizeof last);
   switch (end.kind) {
-  case CAG_POVRAY_INTERRUPTED:
-    return cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
+  case CAG_POVRAY_INTERRUPTED: return cag_fail_io(err, CAG_E_CALLBACK, NULL, "interrupted");
   case CAG_POVRAY_TIME:
-    return cag_io_error_set(err, CAG_EXIT_LIMIT, "raise --max-time, or use --quality draft",
-                            "POV-Ray was stopped after the time limit of %g s", job->time_limit);
+    return cag_fail_io(err, CAG_E_LIMIT, "raise --max-time, or use --quality draft",
+                       "POV-Ray was stopped after the time limit of %g s", job->time_limit);
   case CAG_POVRAY_NO_START:
-    return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL, "POV-Ray could not be started: %s",
-                            strerror(end.code));
+    return cag_fail_io(err, CAG_E_RENDERER, NULL, "POV-Ray could not be started: %s",
+                       strerror(end.code));
   case CAG_POVRAY_SIGNALED:
-    return cag_io_error_set(err, CAG_EXIT_RENDERER,
-                            end.code == SIGKILL
-                                ? "the system does so when memory runs out: try a coarser tolerance"
-                                : NULL,
-                            "POV-Ray was killed by signal %d (%s)%s%.380s", end.code,
-                            strsignal(end.code), *last ? "; its last lines were:" : "", last);
+    return cag_fail_io(err, CAG_E_RENDERER,
+                       end.code == SIGKILL
+                           ? "the system does so when memory runs out: try a coarser tolerance"
+                           : NULL,
+                       "POV-Ray was killed by signal %d (%s)%s%.380s", end.code,
+                       strsignal(end.code), *last ? "; its last lines were:" : "", last);
   case CAG_POVRAY_EXITED: break;
   }
   if (log->error_line) return fail_scene(job, log, err);
   if (end.code == CAG_POVRAY_EXEC_FAILED && !log->line_count)
-    return cag_io_error_set(err, CAG_EXIT_RENDERER,
-                            "check that povray on PATH is a program that runs",
-                            "POV-Ray could not be started");
+    return cag_fail_io(err, CAG_E_RENDERER, "check that povray on PATH is a program that runs",
+                       "POV-Ray could not be started");
   if (end.code == 0)
-    return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL,
-                            "POV-Ray ended without an error but wrote no picture%s%.380s",
-                            *last ? "; its last lines were:" : "", last);
-  return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL, "POV-Ray failed (exit status %d)%s%.380s",
-                          end.code, *last ? "; its last lines were:" : "", last);
+    return cag_fail_io(err, CAG_E_RENDERER, NULL,
+                       "POV-Ray ended without an error but wrote no picture%s%.380s",
+                       *last ? "; its last lines were:" : "", last);
+  return cag_fail_io(err, CAG_E_RENDERER, NULL, "POV-Ray failed (exit status %d)%s%.380s", end.code,
+                     *last ? "; its last lines were:" : "", last);
 }
 
 // Takes the picture into memory; false when there is none.
@@ -323,7 +319,7 @@ static const struct {
 };
 
 static bool prepare_folder(const CagPovrayJob *job, const char *folder, const char *library,
-                           CagIoError *err) {
+                           CagError *err) {
   return put_configuration(folder, library, err) &&
          put_file(folder, "scene.pov", job->scene, job->scene_size, err) &&
          (!job->file || copy_file(folder, job->file, err));
@@ -381,13 +377,12 @@ static CagPovrayEnd render_in_folder(const CagPovrayJob *job, const char *progra
   return run_in_folder(program, arguments, folder, library, process, log);
 }
 
-bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError *err) {
+bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagError *err) {
   char program[PATH_MAX], library[PATH_MAX], folder[PATH_MAX] = "";
   if (job->width < 1 || job->height < 1 || (size_t)job->width > CAG_IMAGE_SIDE_MAX ||
       (size_t)job->height > CAG_IMAGE_SIDE_MAX)
-    return cag_io_error_set(err, CAG_EXIT_USAGE, "give --size as 1280x720",
-                            "a picture of %d by %d pixels cannot be rendered", job->width,
-                            job->height);
+    return cag_fail_io(err, CAG_E_USAGE, "give --size as 1280x720",
+                       "a picture of %d by %d pixels cannot be rendered", job->width, job->height);
   if (!cag_povray_check_files(job->scene, job->scene_size, err)) return false;
   if (!find_program(program, err) || !make_folder(folder, err)) return false;
   library_path(program, library);
@@ -414,7 +409,7 @@ void cag_povray_result_free(CagPovrayResult *result) {
   *result = (CagPovrayResult){0};
 }
 
-bool cag_povray_find(char *path, size_t path_size, char version[64], CagIoError *err) {
+bool cag_povray_find(char *path, size_t path_size, char version[64], CagError *err) {
   char program[PATH_MAX], library[PATH_MAX], folder[PATH_MAX] = "";
   if (!find_program(program, err)) return false;
   if (path) snprintf(path, path_size, "%s", program);

@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 
 typedef enum {
   CAG_POVRAY_DRAFT,  // no antialiasing, no media and radiosity
@@ -64,23 +64,23 @@ typedef struct CagPovrayResult {
 } CagPovrayResult;
 
 // Renders. Release the result with cag_povray_result_free. Errors, by exit status:
-//   CAG_EXIT_RENDERER     POV-Ray is missing, refuses the scene (with the line of the scene),
+//   CAG_E_RENDERER     POV-Ray is missing, refuses the scene (with the line of the scene),
 //   fails, dies of a signal (with its last
 //                         lines), or the scene wants a file that it may not have
-//   CAG_EXIT_LIMIT        the time limit
-//   CAG_EXIT_INTERRUPTED  the flag
-//   CAG_EXIT_USAGE        a size that cannot be
-//   CAG_EXIT_FILE         a file of the job that cannot be read, no temporary folder
-bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError *err);
+//   CAG_E_LIMIT        the time limit
+//   CAG_E_CALLBACK  the flag
+//   CAG_E_USAGE        a size that cannot be
+//   CAG_E_FILE         a file of the job that cannot be read, no temporary folder
+bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagError *err);
 
 void cag_povray_result_free(CagPovrayResult *result);
 
 // Finds POV-Ray on PATH and asks for its version. `path` (of path_size bytes) and `version` (of 64)
 // may be NULL.
-bool cag_povray_find(char *path, size_t path_size, char version[64], CagIoError *err);
+bool cag_povray_find(char *path, size_t path_size, char version[64], CagError *err);
 
 // Checks that the scene names no file outside its folder and POV-Ray's library: absolute names,
 // `..`, and names that are computed are refused with the line. Part of cag_povray_render.
-bool cag_povray_check_files(const char *scene, size_t size, CagIoError *err);
+bool cag_povray_check_files(const char *scene, size_t size, CagError *err);
 
 #endif

@@ -114,32 +114,30 @@ static bool stays_inside(const Scan *s) {
   return true;
 }
 
-static bool check_name(const Scan *s, CagIoError *err) {
+static bool check_name(const Scan *s, CagError *err) {
   if (stays_inside(s)) return true;
-  return cag_io_error_set(
-      err, CAG_EXIT_RENDERER, "name files by their plain name in the scene's folder",
-      "line %zu of the POV-Ray scene names the file '%.*s', which is outside the "
-      "scene's folder",
-      s->line, (int)(s->length < 120 ? s->length : 120), s->start);
+  return cag_fail_io(err, CAG_E_RENDERER, "name files by their plain name in the scene's folder",
+                     "line %zu of the POV-Ray scene names the file '%.*s', which is outside the "
+                     "scene's folder",
+                     s->line, (int)(s->length < 120 ? s->length : 120), s->start);
 }
 
-static bool refuse_computed(const Scan *s, CagIoError *err) {
-  return cag_io_error_set(
-      err, CAG_EXIT_RENDERER, "write the file's name as a text in quotes",
-      "line %zu of the POV-Ray scene computes the name of a file, which cannot be "
-      "checked",
-      s->line);
+static bool refuse_computed(const Scan *s, CagError *err) {
+  return cag_fail_io(err, CAG_E_RENDERER, "write the file's name as a text in quotes",
+                     "line %zu of the POV-Ray scene computes the name of a file, which cannot be "
+                     "checked",
+                     s->line);
 }
 
 // After #include, or after #fopen and its identifier: only a text will do.
-static bool check_directive(Scan *s, CagIoError *err) {
+static bool check_directive(Scan *s, CagError *err) {
   if (is(s, "fopen")) next(s);
   next(s);
   return s->kind == TOKEN_TEXT ? check_name(s, err) : refuse_computed(s, err);
 }
 
 // After a word for a kind of file. Its name may stand in braces, and a kind may come between.
-static bool check_word(Scan *s, CagIoError *err) {
+static bool check_word(Scan *s, CagError *err) {
   const bool block = IS_ONE_OF(s, BLOCK_WORDS);
   Scan ahead = *s;
   next(&ahead);
@@ -152,7 +150,7 @@ static bool check_word(Scan *s, CagIoError *err) {
   return true;
 }
 
-bool cag_povray_check_files(const char *scene, size_t size, CagIoError *err) {
+bool cag_povray_check_files(const char *scene, size_t size, CagError *err) {
   Scan s = {.at = scene, .end = scene + size, .line = 1};
   bool directive = false, ok = true;
   for (next(&s); ok && s.kind != TOKEN_END; next(&s)) {

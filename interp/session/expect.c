@@ -504,7 +504,7 @@ static char *find_reference(const char *path) {
   return NULL;
 }
 
-static bool read_picture(const char *path, CagImage *out, CagIoError *err) {
+static bool read_picture(const char *path, CagImage *out, CagError *err) {
   return ends_with(path, ".exr") ? cag_exr_read(path, out, NULL, err)
                                  : cag_png_read(path, out, err);
 }
@@ -514,7 +514,7 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
                              const char *path) {
   CagImage image;
   CagCompareReport report;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!read_picture(path, &image, &err)) {
     fail(r, 0, err.message, NULL, NULL, NULL);
     return false;
@@ -587,7 +587,7 @@ static int test_picture(Run *r, CagSession *s, const char *reference_path) {
   char version[256];
   double begin = cag_clock_seconds();
   CagImage reference;
-  CagIoError err = {0};
+  CagError err = {0};
   const char *remark = NULL;
   r->failed = false;
   if (!cag_find_povray(version, sizeof version)) {

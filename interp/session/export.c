@@ -187,7 +187,7 @@ static CagStatus write_3mf(const MeshOutput *m, CagError *err) {
 }
 
 static int commit(CagSession *s, CagAtomicFile *f) {
-  CagIoError io = {0};
+  CagError io = {0};
   return cag_atomic_file_commit(f, &io) ? CAG_STATUS_OK
                                         : cag_session_fail_io(s, CAG_ERR_output_file, &io);
 }
@@ -209,7 +209,7 @@ static int commit_both(CagSession *s, MeshOutput *m) {
 
 static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const char *beside,
                         MeshWriter write) {
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   const char *slash = beside ? strrchr(beside, '/') : NULL;
   m->beside_name = slash ? slash + 1 : beside;
@@ -248,7 +248,7 @@ static char *former_data(const char *path, const char *stem) {
 // Writes the data under the name of its content first and renames the JSON last: whenever the
 // program is stopped, the JSON that stands there has its own data.
 static int write_gltf_data(CagSession *s, const CagGltfData *data, const char *folder) {
-  CagIoError io = {0};
+  CagError io = {0};
   char *path = NULL;
   if (!data->name) return CAG_STATUS_OK;
   if (cag_asprintf(&path, "%s%s", folder, data->name) < 0) return CAG_STATUS_LIMIT;
@@ -279,7 +279,7 @@ static int commit_gltf(CagSession *s, CagAtomicFile *f, const CagGltfData *data,
 // before the name.
 static int write_gltf_files(CagSession *s, const Parts *parts, const char *path, const char *stem,
                             const char *folder) {
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   CagGltfData data;
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
@@ -368,7 +368,7 @@ static int export_3mf(CagSession *s, const char *path) {
 
 static int export_text(CagSession *s, const char *path,
                        CagStatus (*write)(CagSession *s, CagAtomicFile *f, CagError *err)) {
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
@@ -415,7 +415,7 @@ static void tell_approximate(const CagSession *s, const CagBrep *b) {
 }
 
 static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWriter write) {
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
@@ -479,11 +479,11 @@ static int find_robot(CagSession *s, const CagRobotValue **robot) {
 }
 
 static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder) {
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-    cag_io_error_set(&io, CAG_EXIT_FILE, "the meshes of a .urdf file lie in this folder beside it",
-                     "cannot make the folder %s: %s", folder, strerror(errno));
+    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file lie in this folder beside it",
+                "cannot make the folder %s: %s", folder, strerror(errno));
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }
   int status = CAG_STATUS_OK;
@@ -507,7 +507,7 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
 
 // The meshes come first: a file that stands there whole finds what it names.
 static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
-  CagIoError io = {0};
+  CagError io = {0};
   if (u->meshes && strcmp(path, "-") == 0) {
     CagDiagnostic *d =
         cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_output, NULL, (CagSpan){0, 0},

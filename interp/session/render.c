@@ -16,7 +16,7 @@
 void cag_render_options_init(CagRenderOptions *o) { *o = (CagRenderOptions){.quality = "normal"}; }
 
 const char *cag_find_povray(char *buffer, size_t size) {
-  CagIoError err = {0};
+  CagError err = {0};
   char version[64];
   if (!cag_povray_find(NULL, 0, version, &err)) {
     snprintf(buffer, size, "%s", err.message);
@@ -88,8 +88,7 @@ bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out) {
 
 // --- Metadata ---
 
-static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *t,
-                       CagIoError *err) {
+static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *t, CagError *err) {
   double rows[16];
   for (int i = 0; i < 16; i++) rows[i] = t->m[i / 4][i % 4];
   return cag_exr_metadata_matrix(m, name, rows, err);
@@ -97,7 +96,7 @@ static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *
 
 // What a picture tells of itself: script, camera, tolerance, versions.
 static bool make_metadata(const CagSession *s, const CagCamera *camera, const char *renderer,
-                          CagExrMetadata *m, CagIoError *err) {
+                          CagExrMetadata *m, CagError *err) {
   CagTransform frame = cag_camera_frame(camera), inverse;
   CagError ignored = {0};
   bool ok = cag_exr_metadata_text(m, "cag.version", CAG_VERSION, err) &&
@@ -133,7 +132,7 @@ typedef struct Job {
 
 static int write_source(CagSession *s, void *context) {
   Job *j = context;
-  CagIoError io = {0};
+  CagError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
@@ -158,7 +157,7 @@ static int write_source(CagSession *s, void *context) {
 }
 
 static int render(Job *j) {
-  CagIoError io = {0};
+  CagError io = {0};
   const CagScene *scene = &j->session->scene;
   CagPovrayFile sky = {SKY_FILE, scene->sky.image};
   CagPovrayJob job = {.scene = j->source,
@@ -188,7 +187,7 @@ static bool is_png(const char *path) {
 }
 
 // Reads the renderer's picture: the part of it that was asked for.
-static bool read_picture(const Job *j, CagImage *out, CagIoError *io) {
+static bool read_picture(const Job *j, CagImage *out, CagError *io) {
   const CagRenderRegion r = j->options->region;
   CagImage whole;
   if (!cag_exr_read_memory(j->result.exr, j->result.exr_size, "the renderer's picture", &whole,
@@ -210,7 +209,7 @@ static bool read_picture(const Job *j, CagImage *out, CagIoError *io) {
   return ok;
 }
 
-static bool write_png(Job *j, const char *path, CagIoError *io) {
+static bool write_png(Job *j, const char *path, CagError *io) {
   CagImage image;
   if (!read_picture(j, &image, io)) return false;
   CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
@@ -222,7 +221,7 @@ static bool write_png(Job *j, const char *path, CagIoError *io) {
 }
 
 // POV-Ray's pictures are half floats, and so are parts of them.
-static bool write_part(Job *j, const char *path, const CagExrMetadata *m, CagIoError *io) {
+static bool write_part(Job *j, const char *path, const CagExrMetadata *m, CagError *io) {
   CagImage image;
   if (!read_picture(j, &image, io)) return false;
   const bool ok = cag_exr_write(path, &image, CAG_EXR_HALF, m, io);
@@ -230,7 +229,7 @@ static bool write_part(Job *j, const char *path, const CagExrMetadata *m, CagIoE
   return ok;
 }
 
-static bool write_exr(Job *j, const char *path, CagIoError *io) {
+static bool write_exr(Job *j, const char *path, CagError *io) {
   char renderer[96];
   snprintf(renderer, sizeof renderer, "POV-Ray %s", j->result.version);
   CagExrMetadata m = {0};
@@ -245,7 +244,7 @@ static bool write_exr(Job *j, const char *path, CagIoError *io) {
 
 static int make_picture(CagSession *s, void *context) {
   Job *j = context;
-  CagIoError io = {0};
+  CagError io = {0};
   int status = render(j);
   if (status == CAG_STATUS_OK &&
       !(is_png(j->path) ? write_png(j, j->path, &io) : write_exr(j, j->path, &io)))

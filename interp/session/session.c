@@ -346,15 +346,13 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   return cag_session_status(s);
 }
 
-int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err) {
-  if (err->exit_status == CAG_EXIT_INTERRUPTED) return fail_stopped(s, why_stopped(s));
-  if (err->exit_status == CAG_EXIT_LIMIT) id = CAG_ERR_limit_time;
-  else if (err->exit_status == CAG_EXIT_RENDERER) id = CAG_ERR_renderer;
-  else if (err->exit_status == CAG_EXIT_USAGE) id = CAG_ERR_picture_size;
+int cag_session_fail_io(CagSession *s, CagErrorId id, const CagError *err) {
+  if (err->status == CAG_E_CALLBACK) return fail_stopped(s, why_stopped(s));
+  if (err->status != CAG_E_FILE) id = err->id;
   CagDiagnostic *d =
       cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", err->message);
   if (err->help[0]) cag_diagnostic_set_help(d, "%s", err->help);
-  return err->exit_status;
+  return cag_exit_status(err);
 }
 
 // --- Runs ---

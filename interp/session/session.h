@@ -8,7 +8,7 @@
 
 #include <stdatomic.h>
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "cag.h"
 #include "interp/formats/pov.h"
 #include "interp/scene/scene.h"
@@ -64,7 +64,7 @@ int cag_session_status(const CagSession *s); // by the diagnostics that the call
 int cag_session_fail_memory(CagSession *s);  // adds the error of exhausted memory
 // Adds an error of the core, or of files and renderers, and gives the status.
 int cag_session_fail_geometry(CagSession *s, const CagError *err);
-int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err);
+int cag_session_fail_io(CagSession *s, CagErrorId id, const CagError *err);
 // What set operations become in POV-Ray source, where "auto" means `usual`. False, after a
 // diagnostic: the option is none of its words.
 bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out);

@@ -28,8 +28,8 @@ static bool make_folder(CagSite *s, const char *name) {
   char *path = cag_doc_text("%s%s%s", s->folder, *name ? "/" : "", name);
   const bool made = mkdir(path, 0777) == 0 || errno == EEXIST;
   if (!made)
-    cag_io_error_set(&s->error, CAG_EXIT_FILE, "the folder above it must be there, and writable",
-                     "cannot make the folder %s: %s", path, strerror(errno));
+    cag_fail_io(&s->error, CAG_E_FILE, "the folder above it must be there, and writable",
+                "cannot make the folder %s: %s", path, strerror(errno));
   cag_free(path);
   return made;
 }

@@ -7,7 +7,7 @@
 #ifndef CAG_INTERP_SESSION_SITE_H
 #define CAG_INTERP_SESSION_SITE_H
 
-#include "base/io_error.h"
+#include "base/status.h"
 #include "interp/doc/doc.h"
 
 // What pictures of examples measure, in pixels.
@@ -46,7 +46,7 @@ typedef struct CagSite {
   size_t module_count;
   CagSiteScript *scripts;
   size_t script_count;
-  CagIoError error; // of the first file that could not be written
+  CagError error; // of the first file that could not be written
   bool failed;
 } CagSite;
 

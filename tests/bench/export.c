@@ -92,7 +92,7 @@ typedef struct Format {
 } Format;
 
 static double time_ours(const Format *format, const CagMeshPart *part, const char *path) {
-  CagIoError io;
+  CagError io;
   CagError err;
   remove(path);
   double t = now();

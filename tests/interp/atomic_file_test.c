@@ -62,7 +62,7 @@ static void assert_content(const char *path, const char *text) {
 }
 
 static CagAtomicFile *open_file(const char *path) {
-  CagIoError err = {0};
+  CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &err);
   if (!f) fail_msg("%s", err.message);
   return f;
@@ -181,10 +181,10 @@ static void places_that_are_no_files_are_refused(void **state) {
   put_file("file", "");
   assert_int_equal(symlink("nowhere", "dangling"), 0);
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
-    CagIoError err = {0};
+    CagError err = {0};
     assert_null(cag_atomic_file_open(ROWS[i].path, &err));
     if (!strstr(err.message, ROWS[i].says)) fail_msg("%s: %s", ROWS[i].path, err.message);
-    assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+    assert_int_equal(err.status, CAG_E_FILE);
   }
   close(s);
   unlink("socket");
@@ -270,7 +270,7 @@ static void a_device_that_cannot_be_opened_is_told(void **state) {
   const pid_t child = fork();
   if (child == 0) {
     setsid(); // a process without a terminal has no /dev/tty
-    CagIoError err = {0};
+    CagError err = {0};
     CagAtomicFile *f = cag_atomic_file_open("/dev/tty", &err);
     _exit(!f && strstr(err.message, "cannot write '/dev/tty'") ? 0 : 1);
   }
@@ -286,10 +286,10 @@ static void a_full_disk_is_an_error(void **state) {
   assert_false(cag_atomic_file_failed(f)); // still in the buffer
   cag_atomic_file_flush(f);
   assert_true(cag_atomic_file_failed(f));
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_atomic_file_commit(f, &err));
   assert_non_null(strstr(err.message, "'/dev/full' failed: No space left on device"));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
 }
 
 static void a_file_that_cannot_grow_leaves_the_old_one(void **state) {
@@ -305,7 +305,7 @@ static void a_file_that_cannot_grow_leaves_the_old_one(void **state) {
   setrlimit(RLIMIT_FSIZE, &small);
   CagAtomicFile *f = open_file("a");
   for (int i = 0; i < 300000; i++) cag_atomic_file_text(f, "0123456789");
-  CagIoError err = {0};
+  CagError err = {0};
   bool ok = cag_atomic_file_commit(f, &err);
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, SIG_DFL);
@@ -356,7 +356,7 @@ static void a_file_cleaned_up_cannot_be_committed(void **state) {
   put_file("a", "old");
   CagAtomicFile *f = open_file("a");
   cag_atomic_files_cleanup();
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_atomic_file_commit(f, &err));
   assert_content("a", "old");
   unlink("a");
@@ -366,7 +366,7 @@ static void many_files_may_be_open_but_not_endlessly(void **state) {
   (void)state;
   CagAtomicFile *files[300];
   size_t n = 0;
-  CagIoError err = {0};
+  CagError err = {0};
   char name[16];
   for (; n < 300; n++) {
     snprintf(name, sizeof name, "f%zu", n);
@@ -407,19 +407,19 @@ static void memory_takes_the_same_writes(void **state) {
   free(bytes);
   cag_atomic_file_abort(cag_atomic_file_open_memory(NULL));
   volatile int stop = 1;
-  CagIoError err = {0};
+  CagError err = {0};
   f = cag_atomic_file_open_memory(NULL);
   cag_atomic_file_text(f, "text");
   cag_stop_lend(&stop);
   const bool written = cag_atomic_file_commit_memory(f, &bytes, &size, &err);
   cag_stop_lend(NULL);
   assert_false(written);
-  assert_int_equal(err.exit_status, CAG_EXIT_INTERRUPTED);
+  assert_int_equal(err.status, CAG_E_CALLBACK);
 }
 
 static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
   (void)state;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_true(cag_atomic_file_try("new", &err));
   assert_true(cag_atomic_file_try("-", &err));
   assert_true(cag_atomic_file_try("/dev/null", &err));
@@ -433,10 +433,10 @@ static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
   assert_int_equal(access("/cag-file-of-a-test", F_OK), -1);
   static const char *const REFUSED[] = {"", "dir", "link", "none/a", "old/a", "/proc/a", ".."};
   for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; i++) {
-    CagIoError other = {0};
+    CagError other = {0};
     assert_false(cag_atomic_file_try(REFUSED[i], &err));
     assert_null(cag_atomic_file_open(REFUSED[i], &other));
-    assert_int_equal(err.exit_status, other.exit_status);
+    assert_int_equal(cag_exit_status(&err), cag_exit_status(&other));
     assert_string_equal(err.message, other.message);
   }
   unlink("old");
@@ -447,7 +447,7 @@ static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
 static void work_that_is_to_end_writes_nothing(void **state) {
   (void)state;
   volatile int stop = 0;
-  CagIoError err = {0};
+  CagError err = {0};
   put_file("a", "earlier");
   cag_stop_lend(&stop);
   CagAtomicFile *f = open_file("a");
@@ -458,7 +458,7 @@ static void work_that_is_to_end_writes_nothing(void **state) {
   const bool written = cag_atomic_file_commit(f, &err);
   cag_stop_lend(NULL);
   assert_false(written);
-  assert_int_equal(err.exit_status, CAG_EXIT_INTERRUPTED);
+  assert_int_equal(err.status, CAG_E_CALLBACK);
   assert_content("a", "earlier");
   assert_int_equal(count_entries(), 1);
   unlink("a");

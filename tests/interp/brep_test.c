@@ -265,7 +265,7 @@ static void a_weight_of_zero_is_an_error(void **state) {
 static char *written(const Fixture *f, CagStatus (*write)(const CagBrep *, const char *,
                                                           CagAtomicFile *, CagError *)) {
   CagBrep b = boundary_of(f);
-  CagIoError io;
+  CagError io;
   char *bytes;
   size_t size;
   CagAtomicFile *file = cag_atomic_file_open_memory(&io);
@@ -320,7 +320,7 @@ static void a_number_that_is_not_finite_is_an_error(void **state) {
   const double numbers[] = {NAN, INFINITY, -INFINITY};
   Fixture f;
   CagBrep b;
-  CagIoError io;
+  CagError io;
   fixture_begin(&f);
   fixture_solid(&f, "can", cylinder());
   OK(cag_brep_of_scene(&f.scene, &b, &err));

@@ -130,7 +130,7 @@ static void put_row(Bytes *b, int32_t y, const uint16_t *halves, uint32_t count)
 
 static CagImage read_file(const Bytes *b, CagExrMetadata *facts) {
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_exr_read_memory(b->bytes, b->size, "hand.exr", &image, facts, &err))
     fail_msg("%s", err.message);
   return image;
@@ -376,7 +376,7 @@ static void headers_that_cannot_be_are_refused(void **state) {
     put_header(&b, &ROWS[i].header);
     put_row(&b, 0, (const uint16_t[]){0x3c00, 0x3c00, 0x3c00, 0x3c00}, 4);
     CagImage image;
-    CagIoError err = {0};
+    CagError err = {0};
     if (cag_exr_read_memory(b.bytes, b.size, "hand.exr", &image, NULL, &err))
       fail_msg("read: %s", ROWS[i].what);
     if (!strstr(err.message, "'hand.exr'") || !strstr(err.message, ROWS[i].says))
@@ -405,7 +405,7 @@ static void chunks_of_a_wrong_size_are_refused(void **state) {
     put_u32(&b, ROWS[i].size);
     put(&b, "\1\2\3\4\5\6\7\10", 8);
     CagImage image;
-    CagIoError err = {0};
+    CagError err = {0};
     if (cag_exr_read_memory(b.bytes, b.size, "hand.exr", &image, NULL, &err))
       fail_msg("read: %u bytes, compression %u", ROWS[i].size, ROWS[i].compression);
   }
@@ -435,12 +435,12 @@ static void names_of_facts_have_1_to_255_bytes(void **state) {
     memset(name, 'n', LENGTHS[i]);
     name[LENGTHS[i]] = 0;
     CagExrMetadata facts = {0};
-    CagIoError err = {0};
+    CagError err = {0};
     const bool good = LENGTHS[i] >= 1 && LENGTHS[i] <= 255;
     assert_true(cag_exr_metadata_matrix(&facts, name, matrix, &err) == good);
     assert_true(cag_exr_metadata_text(&facts, name, "x", &err) == good);
     assert_int_equal(facts.count, good);
-    assert_int_equal(err.exit_status, good ? 0 : CAG_EXIT_USAGE);
+    assert_int_equal(err.status, good ? 0 : CAG_E_USAGE);
     cag_exr_metadata_free(&facts);
   }
 }
@@ -482,7 +482,7 @@ static void standard_input_may_be_a_pipe(void **state) {
   const int saved = dup(STDIN_FILENO);
   FILE *pipe = popen(command, "r");
   dup2(fileno(pipe), STDIN_FILENO);
-  CagIoError err = {0};
+  CagError err = {0};
   const bool good = cag_exr_read("-", &again, NULL, &err);
   dup2(saved, STDIN_FILENO);
   close(saved);
@@ -496,7 +496,7 @@ static void standard_input_may_be_a_pipe(void **state) {
 static void what_cannot_be_read_is_named(void **state) {
   (void)state;
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   const int saved = dup(STDIN_FILENO);
   close(STDIN_FILENO);
   const bool good = cag_exr_read("-", &image, NULL, &err);
@@ -533,11 +533,11 @@ static void without_memory_there_is_an_error(void **state) {
   exr_set_default_memory_routines(allocate, free);
   size_t failures[2] = {0}, last = 1;
   for (failing = 1; failing <= last + 1; failing++) {
-    CagIoError err = {0};
+    CagError err = {0};
     allocations = 0;
     if (!cag_exr_write(path, &image, CAG_EXR_FLOAT, &facts, &err)) {
       failures[0]++;
-      assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+      assert_int_equal(err.status, CAG_E_FILE);
       assert_non_null(strstr(err.message, path));
     } else {
       const size_t now = failing;
@@ -553,7 +553,7 @@ static void without_memory_there_is_an_error(void **state) {
   assert_true(cag_exr_write(path, &image, CAG_EXR_FLOAT, &facts, NULL));
   last = 1;
   for (failing = 1; failing <= last + 1; failing++) {
-    CagIoError err = {0};
+    CagError err = {0};
     allocations = 0;
     if (!cag_exr_read(path, &again, &found, &err)) {
       failures[1]++;

@@ -81,7 +81,7 @@ static void what_is_written_is_read_back(void **state) {
   for (int pixels = CAG_EXR_HALF; pixels <= CAG_EXR_FLOAT; pixels++) {
     CagImage image = ramp(37, 50), again;
     const char *path = place("a.exr");
-    CagIoError err = {0};
+    CagError err = {0};
     assert_true(cag_exr_write(path, &image, (CagExrPixels)pixels, NULL, &err));
     assert_true(cag_exr_read(path, &again, NULL, &err));
     assert_ramp(&again, 37, 50);
@@ -158,9 +158,9 @@ static void the_stored_matrix_is_for_row_vectors(void **state) {
 static void names_that_exr_needs_are_refused(void **state) {
   (void)state;
   CagExrMetadata facts = {0};
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_exr_metadata_number(&facts, "channels", 1, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+  assert_int_equal(err.status, CAG_E_USAGE);
   assert_false(cag_exr_metadata_text(&facts, "", "x", &err));
   assert_int_equal(facts.count, 0);
   cag_exr_metadata_free(&facts);
@@ -263,7 +263,7 @@ static void a_file_made_by_hand_is_read(void **state) {
   (void)state;
   Bytes b = file_by_hand();
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_exr_read_memory(b.bytes, b.size, "hand.exr", &image, NULL, &err))
     fail_msg("%s", err.message);
   assert_int_equal(image.width, 4);
@@ -326,7 +326,7 @@ static void a_coarse_channel_is_repeated(void **state) {
   (void)state;
   Bytes b = file_with_coarse_channel(2);
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_exr_read_memory(b.bytes, b.size, "c.exr", &image, NULL, &err))
     fail_msg("%s", err.message);
   for (size_t i = 0; i < 8; i++) {
@@ -382,7 +382,7 @@ static void tiles_are_put_together(void **state) {
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     write_tiled(place("t.exr"), 37, 21, kinds[k]);
     CagImage image;
-    CagIoError err = {0};
+    CagError err = {0};
     if (!cag_exr_read(place("t.exr"), &image, NULL, &err))
       fail_msg("%d: %s", kinds[k], err.message);
     assert_int_equal(image.width, 37);
@@ -397,10 +397,10 @@ static void what_the_library_would_decode_wrongly_is_refused(void **state) {
   (void)state;
   write_tiled(place("t.exr"), 37, 21, EXR_COMPRESSION_B44);
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_exr_read(place("t.exr"), &image, NULL, &err));
   assert_non_null(strstr(err.message, "compression"));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
   unlink(place("t.exr"));
 }
 
@@ -436,7 +436,7 @@ static void parts_become_named_layers(void **state) {
   }
   assert_int_equal(exr_finish(&file), 0);
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_exr_read(place("m.exr"), &image, NULL, &err)) fail_msg("%s", err.message);
   assert_int_equal(image.channel_count, 2);
   assert_string_equal(image.channels[0].name, "Y");
@@ -449,10 +449,10 @@ static void parts_become_named_layers(void **state) {
 static void bad_files_are_named_with_their_fault(void **state) {
   (void)state;
   CagImage image;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_exr_read("/nowhere/a.exr", &image, NULL, &err));
   assert_non_null(strstr(err.message, "/nowhere/a.exr"));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
   assert_false(cag_exr_read(folder, &image, NULL, &err));
   assert_non_null(strstr(err.message, "folder"));
   assert_false(cag_exr_read_memory("", 0, "e.exr", &image, NULL, &err));
@@ -474,10 +474,10 @@ static void a_file_cut_anywhere_is_an_error(void **state) {
     unsigned char *cut = malloc(n ? n : 1); // its own block, so that a read beyond it is seen
     memcpy(cut, bytes, n);
     CagImage out;
-    CagIoError err = {0};
+    CagError err = {0};
     assert_false(cag_exr_read_memory(cut, n, "cut.exr", &out, NULL, &err));
     assert_non_null(strstr(err.message, "'cut.exr'"));
-    assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+    assert_int_equal(err.status, CAG_E_FILE);
     free(cut);
   }
   fflush(stderr);
@@ -530,9 +530,9 @@ static void flip_and_read(const unsigned char *bytes, size_t size, unsigned seed
     }
     CagImage out;
     CagExrMetadata facts = {0};
-    CagIoError err = {0};
+    CagError err = {0};
     if (cag_exr_read_memory(damaged, size, "flip.exr", &out, &facts, &err)) cag_image_free(&out);
-    else assert_true(err.message[0] && err.exit_status);
+    else assert_true(err.message[0] && cag_exit_status(&err));
     cag_exr_metadata_free(&facts);
   }
   free(damaged);
@@ -569,7 +569,7 @@ static void damaged_files_never_crash(void **state) {
 static void a_refused_image_leaves_the_old_file(void **state) {
   (void)state;
   CagImage image = ramp(2, 2), again;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_true(cag_exr_write(place("a.exr"), &image, CAG_EXR_HALF, NULL, NULL));
   cag_image_set_name(&image, 1, "R");
   assert_false(cag_exr_write(place("a.exr"), &image, CAG_EXR_HALF, NULL, &err));

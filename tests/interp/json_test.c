@@ -12,7 +12,7 @@ static char folder[64];
 
 static cJSON *export_tree(const Fixture *f) {
   char path[128];
-  CagIoError io;
+  CagError io;
   snprintf(path, sizeof path, "%s/scene.json", folder);
   CagAtomicFile *file = cag_atomic_file_open(path, &io);
   assert_non_null(file);

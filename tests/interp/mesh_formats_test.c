@@ -60,7 +60,7 @@ static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   close(fd);
-  CagIoError io;
+  CagError io;
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   assert_non_null(f);
   CagStatus status = CAG_OK;
@@ -360,7 +360,7 @@ static void what_single_precision_cannot_hold_is_an_error(void **state) {
   CagMesh *m = tetrahedron();
   m->positions[3].z = 1e60;
   CagMeshPart part = {"far", m, NULL};
-  CagIoError io;
+  CagError io;
   CagAtomicFile *f = cag_atomic_file_open("/dev/null", &io);
   assert_non_null(f);
   assert_int_equal(cag_export_stl(&part, 1, NULL, f, &err), CAG_E_DEGENERATE);

@@ -37,7 +37,7 @@ static void limits_hold_before_memory_is_taken(void **state) {
 static Bytes exported(CagMesh *m, CagStatus (*write)(const CagMeshPart *, size_t, CagAtomicFile *,
                                                      CagError *)) {
   const CagMeshPart parts[2] = {{"a", m, NULL}, {"b", m, NULL}};
-  CagIoError io;
+  CagError io;
   Bytes b = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
   assert_non_null(f);

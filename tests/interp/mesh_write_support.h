@@ -162,7 +162,7 @@ static inline CagStatus export_gltf(const CagMeshPart *parts, size_t n, CagAtomi
 
 // With a zero behind it.
 static inline char *bytes_of(const CagMeshPart *parts, size_t n, Export *export, size_t *size) {
-  CagIoError io;
+  CagError io;
   char *bytes, *text;
   CagAtomicFile *file = cag_atomic_file_open_memory(&io);
   assert_non_null(file);

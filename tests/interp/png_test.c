@@ -166,7 +166,7 @@ static void texts_are_stored(void **state) {
 static void bad_requests_and_files_are_errors(void **state) {
   (void)state;
   CagImage image, out;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_true(cag_image_create(&image, 2, 2, 2, NULL));
   cag_image_set_name(&image, 0, "Z");
   assert_false(cag_png_write(path, &image, NULL, NULL, 0, &err));
@@ -174,11 +174,11 @@ static void bad_requests_and_files_are_errors(void **state) {
   cag_image_set_name(&image, 0, "Y");
   const CagPngOptions odd = {.bits = 12};
   assert_false(cag_png_write(path, &image, &odd, NULL, 0, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+  assert_int_equal(err.status, CAG_E_USAGE);
   assert_false(cag_png_write("/dev/full", &image, NULL, NULL, 0, &err));
   assert_non_null(strstr(err.message, "No space left"));
   assert_false(cag_png_read("/nowhere.png", &out, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
   assert_false(cag_png_read("/tmp", &out, &err));
   FILE *f = fopen(path, "wb");
   fputs("no picture at all", f);
@@ -196,7 +196,7 @@ static void texts_with_odd_keywords_do_no_harm(void **state) {
   memset(long_key, 'k', sizeof long_key - 1);
   const CagPngText texts[3] = {{" Two  spaces ", "a"}, {long_key, "b"}, {"Title", "c"}};
   CagImage image = gray_row(light, 1), again;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_png_write(path, &image, NULL, texts, 3, &err)) fail_msg("%s", err.message);
   assert_true(cag_png_read(path, &again, NULL));
   assert_int_equal(again.width, 1);
@@ -250,7 +250,7 @@ static void a_png_too_large_is_refused(void **state) {
     put_chunk(f, "IEND", "", 0);
     fclose(f);
     CagImage out;
-    CagIoError err = {0};
+    CagError err = {0};
     assert_false(cag_png_read(path, &out, &err));
     if (!strstr(err.message, path) || !strstr(err.message, ROWS[i].says))
       fail_msg("%u by %u: %s", w, h, err.message);
@@ -269,7 +269,7 @@ static void a_full_disk_is_told_under_way(void **state) {
   for (size_t i = 0; i < 4 * SIDE * SIDE; i++)
     image.data[i] = (float)((x = x * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
   const CagPngOptions deep = {.bits = 16, .drop_alpha = true};
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_png_write("/dev/full", &image, &deep, NULL, 0, &err));
   assert_non_null(strstr(err.message, "No space left"));
   assert_false(cag_png_write("/nowhere/a.png", &image, &deep, NULL, 0, &err));
@@ -291,9 +291,9 @@ static void a_png_cut_anywhere_is_an_error(void **state) {
     f = fopen(path, "wb");
     fwrite(bytes, 1, n, f);
     fclose(f);
-    CagIoError err = {0};
+    CagError err = {0};
     assert_false(cag_png_read(path, &out, &err));
-    assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+    assert_int_equal(err.status, CAG_E_FILE);
   }
   cag_image_free(&image);
 }

@@ -12,7 +12,7 @@
 static char *source_of(const char *script, CagPovOptions options) {
   CagSession *s = new_session();
   CagShownCounts counts;
-  CagIoError io;
+  CagError io;
   if (cag_session_run_text(s, "script", script, strlen(script)) != CAG_STATUS_OK ||
       cag_session_scene(s, &counts) != CAG_STATUS_OK) {
     cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);

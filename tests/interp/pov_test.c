@@ -9,7 +9,7 @@
 static char folder[64];
 
 static void export_to(const Fixture *f, const CagPovOptions *options, char path[128]) {
-  CagIoError io;
+  CagError io;
   static int counter;
   snprintf(path, 128, "%s/scene%d.pov", folder, counter++);
   CagAtomicFile *file = cag_atomic_file_open(path, &io);
@@ -42,7 +42,7 @@ static void run_povray(const char *pov, const char *picture, int width, int heig
 static void render(const Fixture *f, bool meshes_only, CagImage *out) {
   CagPovOptions options = CAG_POV_OPTIONS_DEFAULT;
   char pov[128], picture[160];
-  CagIoError io;
+  CagError io;
   options.quality = CAG_POV_DRAFT;
   options.meshes_only = meshes_only;
   export_to(f, &options, pov);
@@ -522,7 +522,7 @@ static void an_empty_scene_and_a_missing_camera_are_errors(void **state) {
   (void)state;
   Fixture f;
   CagError err;
-  CagIoError io;
+  CagError io;
   CagPovOptions options = CAG_POV_OPTIONS_DEFAULT;
   fixture_begin(&f);
   CagAtomicFile *file = cag_atomic_file_open("/dev/null", &io);

@@ -13,7 +13,7 @@
 
 #include "interp/render/povray.h"
 
-static CagIoError err;
+static CagError err;
 static uint64_t seed;
 
 static unsigned random_below(unsigned n) {
@@ -26,10 +26,10 @@ static bool passes(const char *scene) {
   const size_t n = strlen(scene);
   char *copy = malloc(n ? n : 1);
   memcpy(copy, scene, n);
-  err = (CagIoError){0};
+  err = (CagError){0};
   const bool ok = cag_povray_check_files(copy, n, &err);
   free(copy);
-  assert_true(ok || err.exit_status == CAG_EXIT_RENDERER);
+  assert_true(ok || err.status == CAG_E_RENDERER);
   return ok;
 }
 

@@ -92,7 +92,7 @@ static void the_picture_is_linear_light(void **state) {
     job.progress = note;
     job.progress_user = &seen;
     CagPovrayResult result;
-    CagIoError err = {0};
+    CagError err = {0};
     if (!cag_povray_render(&job, &result, &err)) fail_msg("%s", err.message);
     assert_int_equal(strncmp(result.version, "3.", 2), 0);
     assert_true(seen.calls > 1 && seen.saw_parsing && seen.saw_rendering && seen.in_range);
@@ -125,7 +125,7 @@ static void alpha_is_written_when_asked_for(void **state) {
                                   "sphere { 0, 0.2 pigment { rgb 1 } finish { emission 1 } }\n");
   job.alpha = true;
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   if (!cag_povray_render(&job, &result, &err)) fail_msg("%s", err.message);
   CagImage image;
   size_t a;
@@ -149,7 +149,7 @@ static void files_of_the_job_are_there(void **state) {
       job_for(HEAD "#include \"red.inc\"\n#include \"colors.inc\"\nbackground { Red }\n");
   job.file = &file;
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   bool ok = cag_povray_render(&job, &result, &err);
   unlink(source);
   if (!ok) fail_msg("%s", err.message);
@@ -157,11 +157,11 @@ static void files_of_the_job_are_there(void **state) {
   const CagPovrayFile missing = {"a.inc", source}, elsewhere = {"../a.inc", source};
   job.file = &missing;
   assert_false(cag_povray_render(&job, &result, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
   assert_non_null(strstr(err.message, source));
   job.file = &elsewhere;
   assert_false(cag_povray_render(&job, &result, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+  assert_int_equal(err.status, CAG_E_USAGE);
 }
 
 static void a_broken_scene_shows_its_line(void **state) {
@@ -169,9 +169,9 @@ static void a_broken_scene_shows_its_line(void **state) {
   if (!installed) skip();
   CagPovrayJob job = job_for(HEAD "// fine\n  sphere { <0,0,0> 1 pigmint { rgb 1 } }\n");
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   assert_false(cag_povray_render(&job, &result, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+  assert_int_equal(err.status, CAG_E_RENDERER);
   assert_non_null(strstr(err.message, "line 5 of 'scene.pov'"));
   assert_non_null(strstr(err.message, "undeclared identifier 'pigmint' found instead"));
   assert_non_null(strstr(err.message, "\nsphere { <0,0,0> 1 pigmint { rgb 1 } }"));
@@ -190,11 +190,11 @@ static void an_endless_scene_ends_at_the_time_limit(void **state) {
   CagPovrayJob job = job_for(ENDLESS);
   job.time_limit = 0.5;
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   const double begun = seconds();
   assert_false(cag_povray_render(&job, &result, &err));
   assert_true(seconds() - begun < 10);
-  assert_int_equal(err.exit_status, CAG_EXIT_LIMIT);
+  assert_int_equal(err.status, CAG_E_LIMIT);
   assert_non_null(strstr(err.message, "time limit of 0.5 s"));
   assert_int_equal(count_entries(), 0);
 }
@@ -214,7 +214,7 @@ static void an_interrupt_ends_the_run(void **state) {
   CagPovrayJob job = job_for(ENDLESS);
   job.interrupted = &interrupted;
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   pthread_t thread;
   interrupted = 0;
   assert_int_equal(pthread_create(&thread, NULL, interrupt_soon, NULL), 0);
@@ -222,7 +222,7 @@ static void an_interrupt_ends_the_run(void **state) {
   assert_false(cag_povray_render(&job, &result, &err));
   assert_true(seconds() - begun < 10);
   pthread_join(thread, NULL);
-  assert_int_equal(err.exit_status, CAG_EXIT_INTERRUPTED);
+  assert_int_equal(err.status, CAG_E_CALLBACK);
   assert_int_equal(count_entries(), 0);
 }
 
@@ -254,10 +254,10 @@ static void files_outside_the_folder_are_refused(void **state) {
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(ROWS[i].scene);
     CagPovrayResult result;
-    CagIoError err = {0};
+    CagError err = {0};
     assert_false(cag_povray_render(&job, &result, &err));
     if (!strstr(err.message, ROWS[i].says)) fail_msg("%zu: %s", i, err.message);
-    assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+    assert_int_equal(err.status, CAG_E_RENDERER);
   }
 }
 
@@ -289,7 +289,7 @@ static void names_in_the_folder_and_other_texts_are_let_through(void **state) {
       "",
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
-    CagIoError err = {0};
+    CagError err = {0};
     if (!cag_povray_check_files(ROWS[i], strlen(ROWS[i]), &err))
       fail_msg("%zu: %s", i, err.message);
   }
@@ -314,14 +314,14 @@ static void end_fake(void) {
 }
 
 // Puts it there while `job` runs, expects the job to fail, and gives the error.
-static CagIoError run_fake(const char *script, CagPovrayJob job) {
+static CagError run_fake(const char *script, CagPovrayJob job) {
   char list[4300];
   const size_t files_before = count_entries();
   begin_fake(script);
   snprintf(list, sizeof list, "%s:%s", fake_bin, real_path);
   setenv("PATH", list, 1);
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   bool ok = cag_povray_render(&job, &result, &err);
   setenv("PATH", real_path, 1);
   end_fake();
@@ -334,21 +334,21 @@ static void a_missing_povray_is_named(void **state) {
   (void)state;
   CagPovrayJob job = job_for(SQUARE);
   CagPovrayResult result;
-  CagIoError err = {0};
+  CagError err = {0};
   setenv("PATH", folder, 1);
   bool ok = cag_povray_render(&job, &result, &err);
   setenv("PATH", real_path, 1);
   assert_false(ok);
-  assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+  assert_int_equal(err.status, CAG_E_RENDERER);
   assert_non_null(strstr(err.message, "not installed"));
   assert_non_null(strstr(err.help, "apt-get install povray"));
 }
 
 static void a_killed_povray_is_told_with_its_last_lines(void **state) {
   (void)state;
-  CagIoError err =
+  CagError err =
       run_fake("for i in 1 2 3 4 5 6 7; do echo line $i >&2; done; kill -SEGV $$", job_for(SQUARE));
-  assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+  assert_int_equal(err.status, CAG_E_RENDERER);
   assert_non_null(strstr(err.message, "killed by signal 11"));
   assert_non_null(strstr(err.message, "\nline 3\nline 4\nline 5\nline 6\nline 7"));
   assert_null(strstr(err.message, "line 2"));
@@ -356,15 +356,15 @@ static void a_killed_povray_is_told_with_its_last_lines(void **state) {
 
 static void a_failing_povray_is_told_with_its_status(void **state) {
   (void)state;
-  CagIoError err = run_fake("echo no more memory; exit 9", job_for(SQUARE));
-  assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+  CagError err = run_fake("echo no more memory; exit 9", job_for(SQUARE));
+  assert_int_equal(err.status, CAG_E_RENDERER);
   assert_non_null(strstr(err.message, "exit status 9"));
   assert_non_null(strstr(err.message, "\nno more memory"));
 }
 
 static void a_povray_without_picture_is_told(void **state) {
   (void)state;
-  CagIoError err = run_fake("exit 0", job_for(SQUARE));
+  CagError err = run_fake("exit 0", job_for(SQUARE));
   assert_non_null(strstr(err.message, "wrote no picture"));
   static const char *const SCRIPTS[] = {": > out.exr", "mkdir out.exr", "echo x > out.exr; exit 3",
                                         "echo The disk is full; exit 0",
@@ -392,14 +392,14 @@ static void the_line_of_an_error_is_shown(void **state) {
     char script[128];
     snprintf(script, sizeof script, "echo \"File '%s' line %s: Parse Error: Bad\"; exit 1",
              ROWS[i].file, ROWS[i].line);
-    const CagIoError err = run_fake(script, job_for("one\n \t two\r\n\t\nfour"));
+    const CagError err = run_fake(script, job_for("one\n \t two\r\n\t\nfour"));
     const size_t n = strlen(err.message), k = strlen(ROWS[i].says);
     if (n < k || strcmp(err.message + n - k, ROWS[i].says) != 0) fail_msg("%s", err.message);
   }
   char scene[400];
   memset(scene, 'x', sizeof scene - 1);
   scene[sizeof scene - 1] = 0;
-  const CagIoError err =
+  const CagError err =
       run_fake("echo \"File 'scene.pov' line 1: Error: Bad\"; exit 1", job_for(scene));
   assert_int_equal(strspn(strrchr(err.message, '\n') + 1, "x"), 120); // of a long line
 }
@@ -425,15 +425,15 @@ static void a_job_becomes_arguments(void **state) {
     job.scene_size = strlen(SQUARE);
     job.width = 64;
     job.height = 48;
-    const CagIoError err = run_fake("echo \"$*\" | cut -c 1-99; exit 1", job);
+    const CagError err = run_fake("echo \"$*\" | cut -c 1-99; exit 1", job);
     if (!strstr(err.message, ROWS[i].arguments)) fail_msg("%zu: %s", i, err.message);
   }
 }
 
 static void a_povray_that_is_no_program_is_told(void **state) {
   (void)state;
-  CagIoError err = run_fake("#\nexec /nowhere/interpreter", job_for(SQUARE));
-  assert_int_equal(err.exit_status, CAG_EXIT_RENDERER);
+  CagError err = run_fake("#\nexec /nowhere/interpreter", job_for(SQUARE));
+  assert_int_equal(err.status, CAG_E_RENDERER);
 }
 
 static void a_stubborn_group_is_killed_whole(void **state) {
@@ -442,16 +442,16 @@ static void a_stubborn_group_is_killed_whole(void **state) {
   CagPovrayJob job = job_for(SQUARE);
   job.time_limit = 0.4;
   const double begun = seconds();
-  CagIoError err =
+  CagError err =
       run_fake("trap '' TERM INT HUP; sleep 30 & exec >/dev/null 2>&1; sleep 30; sleep 30", job);
   assert_true(seconds() - begun < 10);
-  assert_int_equal(err.exit_status, CAG_EXIT_LIMIT);
+  assert_int_equal(err.status, CAG_E_LIMIT);
 }
 
 static void a_child_that_stays_does_not_hold_the_run(void **state) {
   (void)state;
   const double begun = seconds();
-  CagIoError err = run_fake("sleep 30 & exit 3", job_for(SQUARE));
+  CagError err = run_fake("sleep 30 & exit 3", job_for(SQUARE));
   assert_true(seconds() - begun < 10);
   assert_non_null(strstr(err.message, "exit status 3"));
 }
@@ -460,7 +460,7 @@ static void the_process_sees_no_configuration_and_no_secrets(void **state) {
   (void)state;
   setenv("CAG_TEST_SECRET", "hidden", 1);
   setenv("POVINI", "/etc/elsewhere.ini", 1);
-  CagIoError err =
+  CagError err =
       run_fake("echo \"[$CAG_TEST_SECRET$POVINI]\"; test \"$HOME\" = \"$(pwd)\" || echo home; "
                "cat .povray/3.7/povray.conf | head -2 | tail -1; exit 1",
                job_for(SQUARE));
@@ -481,7 +481,7 @@ static void the_process_is_kept_in_its_folder(void **state) {
       outside);
   CagPovrayJob job = job_for(SQUARE);
   // Where the kernel has no Landlock the file is written, and there is nothing to test.
-  CagIoError err = run_fake(script, job);
+  CagError err = run_fake(script, job);
   assert_non_null(strstr(err.message, "works"));
   if (access(outside, F_OK) == 0) {
     unlink(outside);
@@ -497,11 +497,11 @@ static void impossible_sizes_are_refused(void **state) {
   for (size_t i = 0; i < sizeof SIZES / sizeof *SIZES; i++) {
     CagPovrayJob job = job_for(SQUARE);
     CagPovrayResult result;
-    CagIoError err = {0};
+    CagError err = {0};
     job.width = SIZES[i][0];
     job.height = SIZES[i][1];
     assert_false(cag_povray_render(&job, &result, &err));
-    assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+    assert_int_equal(err.status, CAG_E_USAGE);
   }
 }
 
@@ -537,7 +537,7 @@ static void only_ordinary_files_stand_beside_the_scene(void **state) {
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(SQUARE);
     job.file = &ROWS[i].file;
-    const CagIoError err = run_fake("exit 1", job);
+    const CagError err = run_fake("exit 1", job);
     if (!strstr(err.message, ROWS[i].says ? ROWS[i].says : "exit status 1"))
       fail_msg("%s from %s: %s", ROWS[i].file.name, ROWS[i].file.source, err.message);
   }
@@ -571,7 +571,7 @@ static void povray_is_found_on_any_path(void **state) {
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     char found[4096], version[64];
-    CagIoError err = {0};
+    CagError err = {0};
     assert_int_equal(chdir(ROWS[i].folder), 0);
     setenv("PATH", ROWS[i].list, 1);
     const bool good = cag_povray_find(found, sizeof found, version, &err);
@@ -614,7 +614,7 @@ static void a_povray_that_tells_no_version_is_told(void **state) {
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     begin_fake(ROWS[i].script);
     setenv("PATH", fake_bin, 1);
-    CagIoError err = {0};
+    CagError err = {0};
     const bool good = cag_povray_find(NULL, 0, version, &err);
     setenv("PATH", real_path, 1);
     end_fake();
@@ -637,7 +637,7 @@ static void a_temporary_folder_that_cannot_be_is_told(void **state) {
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(SQUARE);
     CagPovrayResult result;
-    CagIoError found = {0}, rendered = {0};
+    CagError found = {0}, rendered = {0};
     setenv("TMPDIR", ROWS[i].folder, 1);
     setenv("PATH", fake_bin, 1);
     const bool good = cag_povray_find(NULL, 0, version, &found);
@@ -648,7 +648,7 @@ static void a_temporary_folder_that_cannot_be_is_told(void **state) {
     if (good) continue;
     assert_non_null(strstr(found.message, ROWS[i].says));
     assert_non_null(strstr(rendered.message, ROWS[i].says));
-    assert_int_equal(rendered.exit_status, CAG_EXIT_FILE);
+    assert_int_equal(rendered.status, CAG_E_FILE);
     assert_non_null(strstr(rendered.help, "TMPDIR"));
   }
   end_fake();

@@ -159,9 +159,9 @@ static void pictures_have_limits(void **state) {
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagImage image;
-    CagIoError err = {0};
+    CagError err = {0};
     assert_false(cag_image_create(&image, ROWS[i].width, ROWS[i].height, ROWS[i].channels, &err));
-    assert_int_equal(err.exit_status, CAG_EXIT_LIMIT);
+    assert_int_equal(err.status, CAG_E_LIMIT);
     assert_non_null(strstr(err.message, ROWS[i].says));
   }
 }
@@ -209,8 +209,8 @@ static void messages_are_cut_between_characters(void **state) {
       char text[1000] = "";
       memset(text, '.', shift);
       while (strlen(text) + width < sizeof text) strcat(text, CHARACTERS[i]);
-      CagIoError err = {0};
-      assert_false(cag_io_error_set(&err, CAG_EXIT_FILE, text, "%s", text));
+      CagError err = {0};
+      assert_false(cag_fail_io(&err, CAG_E_FILE, text, "%s", text));
       const struct {
         const char *text;
         size_t size;
@@ -225,9 +225,9 @@ static void messages_are_cut_between_characters(void **state) {
       }
     }
   }
-  assert_false(cag_io_error_set(NULL, CAG_EXIT_FILE, NULL, "nobody asks"));
-  CagIoError err;
-  cag_io_error_set(&err, CAG_EXIT_FILE, NULL, "%s", "");
+  assert_false(cag_fail_io(NULL, CAG_E_FILE, NULL, "nobody asks"));
+  CagError err;
+  cag_fail_io(&err, CAG_E_FILE, NULL, "%s", "");
   assert_true(!err.message[0] && !err.help[0]);
 }
 

@@ -10,7 +10,7 @@ static char folder[64];
 
 static CagStatus export_to(const Fixture *f, char **text, CagError *err) {
   char path[128];
-  CagIoError io;
+  CagError io;
   snprintf(path, sizeof path, "%s/picture.svg", folder);
   CagAtomicFile *file = cag_atomic_file_open(path, &io);
   assert_non_null(file);

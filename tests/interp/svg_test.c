@@ -8,7 +8,7 @@ static char folder[64];
 
 static char *export_text(const Fixture *f) {
   char path[128];
-  CagIoError io;
+  CagError io;
   snprintf(path, sizeof path, "%s/picture.svg", folder);
   CagAtomicFile *file = cag_atomic_file_open(path, &io);
   assert_non_null(file);
@@ -237,7 +237,7 @@ static void a_scene_without_curves_is_an_error(void **state) {
   (void)state;
   Fixture f;
   CagError err;
-  CagIoError io;
+  CagError io;
   fixture_begin(&f);
   fixture_item(&f, CAG_ITEM_GROUND, "ground");
   CagAtomicFile *file = cag_atomic_file_open("/dev/null", &io);

@@ -80,7 +80,7 @@ static void test_lines(void **state) {
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     CagJournal j;
-    CagIoError err = {0};
+    CagError err = {0};
     write_text("journal", rows[i].text);
     assert_true(cag_journal_open(&j, "journal", false, &err));
     const CagJournalEntry *e = cag_journal_find(&j, rows[i].key);
@@ -101,7 +101,7 @@ static void test_round_trip(void **state) {
   enum { KEYS = 200, ENTRIES = 500 };
   double newest[KEYS];
   CagJournal j;
-  CagIoError err = {0};
+  CagError err = {0};
   seed = 3;
   for (int k = 0; k < KEYS; k++) newest[k] = -1;
   write_text("journal", "");
@@ -137,7 +137,7 @@ static void test_round_trip(void **state) {
 static void test_job(void **state) {
   (void)state;
   CagJournal j;
-  CagIoError err = {0};
+  CagError err = {0};
   static const CagJournalEntry SUBMITTED = {.what = CAG_JOURNAL_SUBMITTED, .key = "cag-1"},
                                COLLECTED = {.what = CAG_JOURNAL_COLLECTED, .key = "cag-1"};
   write_text("journal", "");
@@ -164,7 +164,7 @@ static void test_refused(void **state) {
       {"{\"what\":\"lost\",\"key\":\"a\"}\nmine\n", "is another file"},
   };
   CagJournal j, other;
-  CagIoError err = {0};
+  CagError err = {0};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     write_text("journal", rows[i].text);
     assert_false(cag_journal_open(&j, "journal", false, &err));
@@ -195,14 +195,14 @@ static void test_journal_without_memory(void **state) {
   (void)state;
   for (size_t at = 1; at <= 4; at++) {
     CagJournal j;
-    CagIoError err = {0};
+    CagError err = {0};
     write_text("journal", DONE("a", ",\"seconds\":1") DONE("b", ",\"seconds\":2"));
     made = 0;
     failing = at;
     const bool ok = cag_journal_open(&j, "journal", false, &err);
     failing = 0;
     assert_true(ok == (at == 4)); // three allocations: the text, the entries, their order
-    assert_true(ok || err.exit_status);
+    assert_true(ok || cag_exit_status(&err));
     cag_journal_close(&j);
   }
 }
@@ -222,7 +222,7 @@ static void test_plans(void **state) {
                         .limit = 2.65,
                         .folder = "/some where",
                         .tasks = tasks};
-  CagIoError err = {0};
+  CagError err = {0};
   CagTool tool = {.style = CAG_STYLE_JSON};
   for (size_t at = 0; at <= 12; at++) {
     CagPlan back;
@@ -277,7 +277,7 @@ static void test_no_plans(void **state) {
 
 static void test_results(void **state) {
   (void)state;
-  CagIoError err = {0};
+  CagError err = {0};
   CagTask back = {0};
   char *path = cag_plan_result_path(folder, "plan");
   assert_non_null(path);

@@ -82,7 +82,7 @@ static void test_cover(void **state) {
 static void write_tile(const char *path, CagRenderRegion r, const char *const *channels,
                        size_t count) {
   CagImage image;
-  CagIoError err;
+  CagError err;
   assert_true(cag_image_create(&image, (size_t)r.width, (size_t)r.height, count, &err));
   for (size_t c = 0; c < count; c++) {
     cag_image_set_name(&image, c, channels[c]);
@@ -106,7 +106,7 @@ static void write_tiles(void) {
 
 static void test_join(void **state) {
   (void)state;
-  CagIoError err = {0};
+  CagError err = {0};
   CagImage image;
   write_tiles();
   assert_true(cag_tiles_join(TILES, 2, 2, WIDTH, HEIGHT, "out.exr", &err));
@@ -141,7 +141,7 @@ static void test_misfits(void **state) {
     size_t count;
   } misfits[] = {
       {wide, RGB, 3}, {high, RGB, 3}, {third, RGB, 2}, {third, RGB, 4}, {third, OTHER, 3}};
-  CagIoError err = {0};
+  CagError err = {0};
   for (size_t i = 0; i < sizeof misfits / sizeof *misfits; i++) {
     write_tiles();
     write_tile("2.exr", misfits[i].region, misfits[i].channels, misfits[i].count);
@@ -151,12 +151,12 @@ static void test_misfits(void **state) {
   write_tiles();
   remove("3.exr");
   assert_false(cag_tiles_join(TILES, 2, 2, WIDTH, HEIGHT, "out.exr", &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_int_equal(err.status, CAG_E_FILE);
 }
 
 static void test_join_without_memory(void **state) {
   (void)state;
-  CagIoError err = {0};
+  CagError err = {0};
   write_tiles();
   made = 0;
   assert_true(cag_tiles_join(TILES, 2, 2, WIDTH, HEIGHT, "out.exr", &err));
@@ -166,7 +166,7 @@ static void test_join_without_memory(void **state) {
     failing = at;
     const bool ok = cag_tiles_join(TILES, 2, 2, WIDTH, HEIGHT, "out.exr", &err);
     failing = 0;
-    assert_true(ok || err.exit_status);
+    assert_true(ok || cag_exit_status(&err));
   }
 }
 
