@@ -5,7 +5,7 @@ try doc insert_knot
 status 0
 prints 'insert_knot(C, t, times = 1) -> curve'
 prints 'insert_knot(S, u = none, v = none, times = 1) -> surface'
-prints 'whole number: how often; default 1'
+prints 'integer: how often; default 1'
 prints 'knot-multiplicity'
 prints 'Example'
 
@@ -98,7 +98,7 @@ it 'every function has a page'
 while read -r name; do exists "site/functions/$name.html"; done < names
 
 it 'pages show signature, parameters, example and output'
-grep -q 'whole number, 1 or more' site/functions/bspline.html || wrong 'no parameters'
+grep -q 'integer &gt;= 1' site/functions/bspline.html || wrong 'no parameters'
 grep -q 'class="output"' site/functions/bspline.html || wrong 'no output'
 grep -q 'cag_session_new' site/guide/embedding.html || wrong 'the program of the embedding guide is missing'
 [ "$(grep -c '<section class="recipe">' site/cookbook/index.html)" -ge 25 ] || wrong 'fewer than 25 recipes'
