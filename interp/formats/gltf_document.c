@@ -9,10 +9,13 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "base/aside.h"
 #include "base/memory.h"
+#include "base/stop.h"
 
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 #define JSON_CHUNK 0x4e4f534au
@@ -47,6 +50,43 @@ bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_
 
 // --- JSON ---
 
+// From this size on, cJSON works long enough for a stop to wait for it.
+#define LARGE_JSON ((size_t)1 << 20)
+
+typedef struct Parsing {
+  const char *text; // followed by its copy, if it is large
+  size_t n, end;    // where the parser has stopped
+  cJSON *json;
+} Parsing;
+
+static void parse(void *data) {
+  Parsing *p = data;
+  const char *end = NULL;
+  p->json = cJSON_ParseWithLengthOpts(p->text, p->n, &end, false);
+  p->end = end && end > p->text ? (size_t)(end - p->text) : 0;
+}
+
+static void free_parsing(void *data) {
+  cJSON_Delete(((Parsing *)data)->json);
+  free(data);
+}
+
+// A large text is parsed aside, so that the work can be stopped.
+static CagStatus run_parser(CagGltf *g, const char *text, size_t n, size_t *end, CagError *err) {
+  const bool large = n >= LARGE_JSON;
+  CagStatus status = large ? cag_draft_take(g->draft, n, 1, err) : CAG_OK;
+  Parsing *p = status == CAG_OK ? malloc(sizeof *p + (large ? n : 0)) : NULL;
+  if (!p) return status == CAG_OK ? cag_fail_memory(err) : status;
+  *p = (Parsing){.text = text, .n = n};
+  if (large) p->text = memcpy(p + 1, text, n);
+  if (!large) parse(p);
+  else if (!cag_run_aside(parse, free_parsing, p)) return cag_stop_fail(err);
+  g->json = p->json;
+  *end = p->end;
+  free(p);
+  return CAG_OK;
+}
+
 static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *err) {
   size_t values = 1;
   long depth = 0;
@@ -64,11 +104,10 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
   }
   CagStatus status = cag_draft_take(g->draft, values, JSON_VALUE_BYTES, err);
   if (status == CAG_OK) status = cag_draft_take(g->draft, n, 1, err);
+  size_t at = 0;
+  if (status == CAG_OK) status = run_parser(g, text, n, &at, err);
   if (status != CAG_OK) return status;
-  const char *end = NULL;
-  g->json = cJSON_ParseWithLengthOpts(text, n, &end, false);
   if (g->json && cJSON_IsObject(g->json)) return CAG_OK;
-  size_t at = end && end > text ? (size_t)(end - text) : 0;
   bool ended = quoted || depth > 0;
   return cag_mesh_file_fail_line(g->draft->file, err,
                                  ended ? CAG_ERR_mesh_file_truncated : CAG_ERR_mesh_file_syntax,
