@@ -6,9 +6,12 @@
 // in the tessellator object of the call.
 
 #include <GL/glu.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/aside.h"
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/mesh.h"
 
@@ -67,46 +70,82 @@ static bool is_faster_turned(const double *xy, const size_t *counts, size_t loop
 // faces, of the queue of events, and of the regions under the sweep line.
 #define GLU_BYTES ((size_t)512)
 
-static bool sweep_points(const double *xy, const size_t *counts, size_t loops, size_t points,
-                         Sweep *s) {
+// From so many points on, GLU works long enough for a stop to wait for it.
+#define MANY_POINTS ((size_t)20000)
+
+// The polygon, on its way through GLU. All of it is in one block of memory, because a stop may
+// leave it to a thread that goes on alone.
+typedef struct Polygon {
+  Sweep sweep;
+  bool failed; // GLU could not begin
+  size_t loops;
+  size_t *counts;
+  GLdouble (*coordinates)[3];
+} Polygon;
+
+static void sweep_polygon(void *data) {
+  Polygon *p = data;
   GLUtesselator *glu = gluNewTess();
-  if (!glu) return false;
-  GLdouble(*coordinates)[3] = cag_malloc((points + 1) * sizeof *coordinates);
-  if (!coordinates) {
-    gluDeleteTess(glu);
-    return false;
-  }
+  p->failed = !glu;
+  if (!glu) return;
   gluTessCallback(glu, GLU_TESS_VERTEX_DATA, (GluCallback)on_vertex);
   gluTessCallback(glu, GLU_TESS_EDGE_FLAG_DATA, (GluCallback)on_edge_flag);
   gluTessCallback(glu, GLU_TESS_COMBINE_DATA, (GluCallback)on_combine);
   gluTessCallback(glu, GLU_TESS_ERROR_DATA, (GluCallback)on_error);
   gluTessProperty(glu, GLU_TESS_WINDING_RULE, GLU_TESS_WINDING_ODD);
   gluTessNormal(glu, 0, 0, 1);
-  bool turned = is_faster_turned(xy, counts, loops);
-  gluTessBeginPolygon(glu, s);
-  for (size_t l = 0, k = 0; l < loops; l++) {
+  gluTessBeginPolygon(glu, &p->sweep);
+  for (size_t l = 0, k = 0; l < p->loops; l++) {
     gluTessBeginContour(glu);
-    for (size_t end = k + counts[l]; k < end; k++) {
-      coordinates[k][0] = turned ? xy[2 * k + 1] : xy[2 * k];
-      coordinates[k][1] = turned ? -xy[2 * k] : xy[2 * k + 1];
-      coordinates[k][2] = 0;
-      gluTessVertex(glu, coordinates[k], (void *)(uintptr_t)(k + 1));
-    }
+    for (size_t end = k + p->counts[l]; k < end; k++)
+      gluTessVertex(glu, p->coordinates[k], (void *)(uintptr_t)(k + 1));
     gluTessEndContour(glu);
   }
   gluTessEndPolygon(glu);
   gluDeleteTess(glu);
-  cag_free(coordinates);
-  return true;
 }
 
-static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Sweep *s) {
-  size_t points = 0;
-  for (size_t l = 0; l < loops; l++) points += counts[l];
-  if (!cag_account_hold(points * GLU_BYTES)) return false;
-  const bool done = sweep_points(xy, counts, loops, points, s);
+static Polygon *new_polygon(const double *xy, const size_t *counts, size_t loops, size_t points,
+                            size_t corners) {
+  Polygon *p = cag_malloc(sizeof *p + points * sizeof *p->coordinates + loops * sizeof *p->counts +
+                          corners * sizeof *p->sweep.triangles);
+  if (!p) return NULL;
+  *p = (Polygon){.sweep = {.capacity = corners}, .loops = loops};
+  p->coordinates = (GLdouble(*)[3])(p + 1);
+  p->counts = (size_t *)(p->coordinates + points);
+  p->sweep.triangles = (uint32_t *)(p->counts + loops);
+  memcpy(p->counts, counts, loops * sizeof *counts);
+  const bool turned = is_faster_turned(xy, counts, loops);
+  for (size_t k = 0; k < points; k++) {
+    p->coordinates[k][0] = turned ? xy[2 * k + 1] : xy[2 * k];
+    p->coordinates[k][1] = turned ? -xy[2 * k] : xy[2 * k + 1];
+    p->coordinates[k][2] = 0;
+  }
+  return p;
+}
+
+// Sweeps a polygon of many points aside, so that the work can be stopped.
+static CagStatus sweep_points(const double *xy, const size_t *counts, size_t loops, size_t points,
+                              Sweep *s, CagError *err) {
+  if (!cag_account_hold(points * GLU_BYTES)) return cag_fail_memory(err);
+  Polygon *p = new_polygon(xy, counts, loops, points, s->capacity);
+  CagStatus status = p ? CAG_OK : cag_fail_memory(err);
+  if (p && points < MANY_POINTS) sweep_polygon(p);
+  else if (p) {
+    cag_disown(p); // the other thread may have to free it
+    if (cag_run_aside(sweep_polygon, free, p)) cag_adopt(p);
+    else status = cag_stop_fail(err);
+  }
   cag_account_drop(points * GLU_BYTES);
-  return done;
+  if (status != CAG_OK) return status;
+  memcpy(s->triangles, p->sweep.triangles, p->sweep.corners * sizeof *s->triangles);
+  uint32_t *triangles = s->triangles;
+  *s = p->sweep;
+  s->triangles = triangles;
+  s->xy = xy;
+  if (p->failed || s->error == GLU_OUT_OF_MEMORY) status = cag_fail_memory(err);
+  cag_free(p);
+  return status;
 }
 
 // --- Delaunay flips ---
@@ -272,8 +311,8 @@ static CagStatus crosses(const double *xy, size_t point, CagError *err) {
 
 static CagStatus sweep_and_check(const double *xy, const size_t *counts, size_t loops,
                                  size_t points, Sweep *s, size_t *across, CagError *err) {
-  if (!run_sweep(xy, counts, loops, s) || s->error == GLU_OUT_OF_MEMORY)
-    return cag_fail_memory(err);
+  CagStatus status = sweep_points(xy, counts, loops, points, s, err);
+  if (status != CAG_OK) return status;
   if (s->crossing || s->no_memory || s->error) return crosses(xy, s->near_crossing, err);
   size_t bad = 0;
   bool no_memory;
