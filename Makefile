@@ -49,7 +49,7 @@ INTERP_SRC := $(shell find interp -name '*.c' | sort)
 MAIN_SRC   := cli/main.c
 CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
-DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))
+DOCUMENTS  := $(filter-out docs/architecture.md docs/contributing.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 BASE_OBJ := $(call obj,$(BASE_SRC))

@@ -6,13 +6,13 @@ set -eu
 cd "$(dirname "$0")/.."
 here=$PWD/packaging
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
-command -v dpkg-shlibdeps > /dev/null || { echo "make deb needs a package that is not here: apt-get install dpkg-dev" >&2; exit 1; }
+command -v dpkg-shlibdeps > /dev/null || { echo "make deb requires dpkg-dev: apt-get install dpkg-dev" >&2; exit 1; }
 umask 022
 out=$BUILD/deb
 architecture=$(dpkg-architecture -qDEB_HOST_ARCH)
 triplet=$(dpkg-architecture -qDEB_HOST_MULTIARCH)
 version=$(dpkg-parsechangelog -l "$here/changelog" -S Version)
-[ "${version%-*}" = "$VERSION" ] || { echo "packaging/changelog is of version ${version%-*}, the program of $VERSION" >&2; exit 1; }
+[ "${version%-*}" = "$VERSION" ] || { echo "packaging/changelog has version ${version%-*}, but the program has version $VERSION" >&2; exit 1; }
 SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -l "$here/changelog" -S Timestamp)
 export SOURCE_DATE_EPOCH
 maintainer=${DEBFULLNAME:-$(dpkg-parsechangelog -l "$here/changelog" -S Maintainer | sed 's/ <.*//')}
@@ -37,7 +37,7 @@ take libcag0 "lib/$triplet/libcag.so.$VERSION" "lib/$triplet/libcag.so.0"
 take libcag-dev "lib/$triplet/libcag.so" "lib/$triplet/libcag.a" "lib/$triplet/pkgconfig/libcag.pc" include/cag.h
 take cag bin share
 find "$all" ! -type d > "$out/work/left"
-[ ! -s "$out/work/left" ] || { echo "no package takes these:" >&2; cat "$out/work/left" >&2; exit 1; }
+[ ! -s "$out/work/left" ] || { echo "these files belong to no package:" >&2; cat "$out/work/left" >&2; exit 1; }
 
 # As Debian has it: zsh looks into vendor-completions, pages are compressed, nothing has symbols of a debugger.
 share=$out/work/cag/usr/share

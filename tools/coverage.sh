@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 if ! command -v gcovr > /dev/null; then
-  echo "make coverage needs gcovr: apt-get install gcovr" >&2
+  echo "make coverage requires gcovr: apt-get install gcovr" >&2
   exit 1
 fi
 

@@ -80,23 +80,23 @@ page() {
       name = command == "" ? "cag" : "cag-" command
       heading(name, 1)
       print ".SH NAME"
-      print plain(name) " \\- " rich(command == "" ? "scripts of geometry as meshes, scenes and pictures" : summary[command])
+      print plain(name) " \\- " rich(command == "" ? "turn geometry scripts into meshes, scenes, and pictures" : summary[command])
       print ".SH SYNOPSIS"
       if (command == "") {
         print ".B cag\n.I COMMAND\n.RI [ OPERAND \" ...]\" \" \" [ OPTION \" ...]\"\n.br\n.B cag"
         print ".SH DESCRIPTION"
-        sentences("`cag` is a small declarative language for geometry: a script says what curves, surfaces, solids and scenes are. The program turns it into meshes, scenes, drawings and pictures. Without a command it works interactively.")
+        sentences("`cag` is a small declarative language for geometry. A script defines curves, surfaces, solids, and scenes. The program turns scripts into meshes, exact CAD files, scenes, drawings, and pictures. Without a command, it works interactively.")
         print ".SH COMMANDS"
         for (i = 1; i <= command_count; i++) print term("\\fB" names[i] "\\fP" (operands[names[i]] != "-" ? " " rich(operands[names[i]]) : ""), summary[names[i]])
         listed("SHARED OPTIONS", shared, shared_count)
         print ".SH OPERANDS"
-        sentences("`-` is standard input or output wherever a file may stand. `--` ends the options.")
+        sentences("Instead of a file, `-` stands for standard input or output. `--` ends the options.")
         print ".SH ENVIRONMENT"
         print term("\\fBVISUAL\\fP, \\fBEDITOR\\fP", "the editor of `:edit` in the REPL (vi)")
-        print term("\\fBXDG_STATE_HOME\\fP", "the folder that has `cag/history`, the lines of the REPL (`~/.local/state`)")
-        print term("\\fBNO_COLOR\\fP", "when set, errors have no colors")
+        print term("\\fBXDG_STATE_HOME\\fP", "the folder of `cag/history`, the history of the REPL (`~/.local/state`)")
+        print term("\\fBNO_COLOR\\fP", "if set, errors have no colors")
         print term("\\fBTMPDIR\\fP", "the folder of temporary files (`/tmp`)")
-        print term("\\fBPATH\\fP", "where POV-Ray is looked for")
+        print term("\\fBPATH\\fP", "the folders in which POV-Ray is searched")
         examples()
       } else {
         print ".B cag " plain(command)
@@ -109,7 +109,7 @@ page() {
         finish()
       }
       print ".SH EXIT STATUS"
-      n = split("0|well;1|the script, a test or the comparison failed;2|wrong usage;3|a file named on the command line could not be read or written;4|the renderer failed;5|a limit was crossed;130|interrupted", statuses, ";")
+      n = split("0|success;1|the script, a test, or the comparison failed;2|wrong usage;3|a file could not be read or written;4|the renderer failed;5|a limit was exceeded;130|interrupted", statuses, ";")
       for (i = 1; i <= n; i++) { split(statuses[i], part, "|"); print term(part[1], part[2]) }
       print ".SH SEE ALSO"
       line = ""
@@ -163,7 +163,7 @@ done
     print "In the REPL,"
     print ".B :help"
     print ".I NAME"
-    print "tells what one is."
+    print "shows the documentation of a name."
     for (i = 1; i <= families; i++) { print ".TP"; print start(plain(order[i])); text(names[order[i]]) }
     print ".SH STANDARD LIBRARY"
     text(modules ".")

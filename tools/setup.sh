@@ -6,4 +6,4 @@ cd "$(dirname "$0")/.."
 install_packages $BUILD_PACKAGES
 make -j"$(nproc)"
 build/cag render examples/vase.cag -o vase.png
-echo "build/cag is built, vase.png is rendered"
+echo "built build/cag and rendered vase.png"

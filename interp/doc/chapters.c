@@ -12,16 +12,22 @@ const CagDocument *cag_document(const char *path) {
 
 static const CagDocChapter chapters[] = {
     {"docs/getting-started.md", "getting-started", "Getting started",
-     "from nothing to a picture, in ten minutes"},
+     "from installation to a first picture, in ten minutes"},
     {"docs/language.md", "language", "The language",
-     "words, values, functions, blocks, params, modules"},
+     "values, functions, blocks, params, and modules"},
     {"docs/geometry.md", "geometry", "Geometry",
-     "each family of shapes with its formula and picture"},
-    {"docs/robots.md", "robots", "Robots", "chains of links, their motion, and files of others"},
-    {"docs/batch.md", "batch", "Rendering and batch", "pictures, films, many jobs at once"},
-    {"docs/embedding.md", "embedding", "Embedding libcag", "scripts within programs in C"},
-    {"docs/manual-additions.md", "manual-additions", "Finer points",
-     "functions by subject, as a reference"},
+     "transforms, measures, sections, and empty shapes"},
+    {"docs/curves-and-regions.md", "curves-and-regions", "Curves and regions",
+     "each family of curves with its formula and picture"},
+    {"docs/surfaces-and-quadrics.md", "surfaces-and-quadrics", "Surfaces and quadrics",
+     "each family of surfaces with its formula and picture"},
+    {"docs/solids-and-meshes.md", "solids-and-meshes", "Solids and meshes",
+     "basic solids, set operations, and meshes"},
+    {"docs/robots.md", "robots", "Robots", "chains of links, their motion, and URDF files"},
+    {"docs/scenes-and-files.md", "scenes-and-files", "Scenes and files",
+     "cameras, lights, materials, and exported files"},
+    {"docs/batch.md", "batch", "Rendering and batches", "pictures, films, and many jobs at once"},
+    {"docs/embedding.md", "embedding", "Embedding libcag", "scripts in programs written in C"},
 };
 
 const CagDocChapter *cag_doc_chapter(size_t i) {

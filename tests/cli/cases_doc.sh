@@ -88,7 +88,7 @@ try doc --html site --no-pictures
 status 0
 says 'scripts run'
 for file in index.html index.js search.js style.css errors.html guide/getting-started.html guide/language.html \
-  guide/geometry.html guide/embedding.html cookbook/index.html library/robots.html functions/bspline.html; do
+  guide/geometry.html guide/curves-and-regions.html guide/embedding.html cookbook/index.html library/robots.html functions/bspline.html; do
   exists "site/$file"
 done
 
