@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-
 #define SHAPES                                                                                     \
   (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
    CAG_TYPES(MESH) | CAG_TYPES(GROUP))

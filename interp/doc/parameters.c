@@ -4,11 +4,13 @@
 
 #include "interp/doc/doc.h"
 
-static const CagDocParameter builtins[] = {
+static const CagDocParameter builtins[] =
+    {
 #define CAG_PARAMETER(functions, name, meaning) {functions, name, "", meaning},
 #include "interp/doc/parameters.def"
 #undef CAG_PARAMETER
-}, library[] = {
+},
+                             library[] = {
 #define CAG_LIBRARY_PARAMETER(functions, name, type, meaning) {functions, name, type, meaning},
 #include "interp/doc/library_parameters.def"
 #undef CAG_LIBRARY_PARAMETER
