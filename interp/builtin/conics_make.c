@@ -15,14 +15,6 @@ bool cag_conics_said(const CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
 }
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, *made);
-  return true;
-}
-
 // --- Parabola and hyperbola ---
 
 // As of circles: z along the normal, x level; of a normal along Z x is X.
@@ -81,12 +73,12 @@ static bool hyperbola_at(CagCall *call, double a, double b, double value, bool i
 // range, reversed.
 static bool give_ranged(CagCall *call, CagStatus status, const CagError *err, bool backwards,
                         CagCurve **made, CagValue *result) {
-  if (status || !backwards) return give(call, status, err, made, result);
+  if (status || !backwards) return cag_curve_result(call, status, err, made, result);
   CagCurve *reversed = NULL;
   CagError why;
   status = cag_curve_reverse(*made, &reversed, &why);
   cag_curve_release(*made);
-  return give(call, status, &why, &reversed, result);
+  return cag_curve_result(call, status, &why, &reversed, result);
 }
 
 // Exactly one of range, x and y, of which the last two stand at `x_at` and after.
@@ -188,7 +180,7 @@ bool cag_conics_conic(CagCall *call, CagValue *result) {
     k.c[3] *= 2;
     k.c[4] *= 2;
   }
-  return give(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
 }
 
 bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
@@ -196,7 +188,7 @@ bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   CagError err;
   if (!cag_arg_conic(call, 0, &k)) return false;
-  return give(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
 }
 
 typedef struct Branches { // held
@@ -236,7 +228,7 @@ static bool make_by(CagCall *call, const CagVec3 *points, size_t n, const CagCon
   CagError err;
   CagStatus status = cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err);
   if (!status) status = cag_curve_conic(&k, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 static bool check_plane(CagCall *call, int argument, int dimension) {
@@ -337,7 +329,8 @@ bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
   } else if (!cag_arg_finite(call, 5, &weight)) {
     return false;
   }
-  return give(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, &err), &err,
+                          &c, result);
 }
 
 bool cag_conics_conic_segment(CagCall *call, CagValue *result) {
@@ -350,7 +343,7 @@ bool cag_conics_conic_segment(CagCall *call, CagValue *result) {
   if (!cag_arg_conic(call, 0, &k) || !cag_arg_interval(call, 1, &from, &to, NULL) ||
       !cag_arg_choice(call, 2, sides, &upper))
     return false;
-  return give(call, cag_conic_segment(&k, from, to, upper, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_conic_segment(&k, from, to, upper, &c, &err), &err, &c, result);
 }
 
 // --- Points ---

@@ -5,21 +5,11 @@
 #include "geom/curve/nurbs_ops.h"
 #include "interp/builtin/bsplines.h"
 
-// The new curve, with what was said about the old one.
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, *made);
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
-}
-
 bool cag_curves_reverse(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return give(call, cag_curve_reverse(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_reverse(c, &out, &err), &err, &out, result);
 }
 
 bool cag_curves_trim(CagCall *call, CagValue *result) {
@@ -29,7 +19,7 @@ bool cag_curves_trim(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
     return false;
   CagStatus status = cag_curve_trim(c, from, to, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
@@ -43,7 +33,7 @@ bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
     to *= CAG_RADIANS_PER_DEGREE;
   }
   CagStatus status = cag_curve_reparametrize_as(c, from, to, angle, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 // Parts of a curve, held.
@@ -117,7 +107,7 @@ bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return give(call, cag_curve_to_nurbs(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_to_nurbs(c, &out, &err), &err, &out, result);
 }
 
 // No limit of the turn: only the distance counts.
@@ -136,7 +126,7 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
   CagStatus status = cag_curve_eval_many(c, t, n, 0, points, &err);
   if (status == CAG_OK)
     status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 // --- Another form of the same points ---
@@ -161,7 +151,7 @@ bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer_or(call, 1, 1, 0, TIMES_MAX, &times))
     return false;
   CagStatus status = cag_curve_elevate(c, (int)times, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 // A tolerance in mm, positive or inf.
@@ -177,7 +167,7 @@ bool cag_bsplines_reduce_degree(CagCall *call, CagValue *result) {
   double tolerance;
   if (!cag_arg_curve(call, 0, &c) || !read_tolerance(call, 1, &tolerance)) return false;
   CagStatus status = cag_curve_reduce_degree(c, tolerance, &out, NULL, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
@@ -192,7 +182,7 @@ bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
   double knots[TIMES_MAX];
   for (long i = 0; i < times; i++) knots[i] = t;
   CagStatus status = cag_curve_insert_knots(c, knots, (size_t)times, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 // Part of the size of the curve within which a knot counts as one without effect.
@@ -221,7 +211,7 @@ bool cag_bsplines_remove_knot(CagCall *call, CagValue *result) {
       !cag_arg_integer_or(call, 3, 1, 1, TIMES_MAX, &times))
     return false;
   CagStatus status = cag_curve_remove_knot(c, t, (int)times, tolerance, &out, NULL, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 bool cag_bsplines_refine(CagCall *call, CagValue *result) {
@@ -240,14 +230,14 @@ bool cag_bsplines_refine(CagCall *call, CagValue *result) {
     if (!cag_arg_choice(call, 1, ways, &way)) return false;
     status = cag_curve_insert_midpoints(c, &out, &err);
   }
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return give(call, cag_curve_clamp(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_clamp(c, &out, &err), &err, &out, result);
 }
 
 // --- Curves near it ---
@@ -269,7 +259,7 @@ bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
   double tolerance;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance)) return false;
   CagStatus status = cag_curve_approximate(c, tolerance, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
 // How exact an offset is where nothing is said, as part of its curve's size.
@@ -285,5 +275,5 @@ bool cag_bsplines_offset(CagCall *call, CagValue *result) {
   if (!(tolerance > 0))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a positive `tolerance`");
   CagStatus status = cag_curve_offset(c, d, tolerance, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &err, &out, result);
 }

@@ -4,14 +4,6 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, *made);
-  return true;
-}
-
 bool cag_curves_line(CagCall *call, CagValue *result) {
   CagVec3 p, q;
   int dp, dq;
@@ -19,7 +11,7 @@ bool cag_curves_line(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_vec(call, 0, &p, &dp) || !cag_arg_vec(call, 1, &q, &dq)) return false;
   CagStatus status = cag_curve_line(p, q, dp > dq ? dp : dq, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 bool cag_curves_polyline(CagCall *call, CagValue *result) {
@@ -34,7 +26,7 @@ bool cag_curves_polyline(CagCall *call, CagValue *result) {
     return false;
   cag_hold(call, points);
   CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 // --- Circles and ellipses ---
@@ -78,11 +70,11 @@ static bool give_arc(CagCall *call, double a, double b, double from, double to, 
   CagError err;
   if (!cag_arg_circle_frame(call, frame_at, &frame)) return false;
   CagStatus status = cag_curve_arc(a, b, fmin(from, to), fmax(from, to), &frame, &c, &err);
-  if (status != CAG_OK || from < to) return give(call, status, &err, &c, result);
+  if (status != CAG_OK || from < to) return cag_curve_result(call, status, &err, &c, result);
   CagCurve *clockwise = NULL;
   status = cag_curve_reverse(c, &clockwise, &err);
   cag_curve_release(c);
-  return give(call, status, &err, &clockwise, result);
+  return cag_curve_result(call, status, &err, &clockwise, result);
 }
 
 bool cag_curves_circle(CagCall *call, CagValue *result) {
@@ -148,7 +140,7 @@ bool cag_curves_circle_through(CagCall *call, CagValue *result) {
   if (dimension == 3) status = level_frame(center, normal, &frame, &err);
   frame.planar = dimension == 2;
   if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 bool cag_curves_arc_through(CagCall *call, CagValue *result) {
@@ -168,7 +160,7 @@ bool cag_curves_arc_through(CagCall *call, CagValue *result) {
   CagStatus status = cag_axes(center, x, y, &frame, &err);
   frame.planar = dimension == 2;
   if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 bool cag_curves_helix(CagCall *call, CagValue *result) {
@@ -179,5 +171,5 @@ bool cag_curves_helix(CagCall *call, CagValue *result) {
       !cag_arg_finite(call, 2, &turns) || !cag_arg_number_or(call, 3, 0, &taper))
     return false;
   CagStatus status = cag_curve_helix(radius, pitch, turns, taper, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }

@@ -6,14 +6,6 @@
 #include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, *made);
-  return true;
-}
-
 static bool is_set(CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
 }
@@ -55,7 +47,8 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   cag_hold(call, points);
   if (!cag_arg_weights(call, 1, n, &weights)) return false;
-  return give(call, cag_curve_bezier(points, weights, n, dimension, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_curve_bezier(points, weights, n, dimension, &c, &err), &err, &c,
+                          result);
 }
 
 // Knots from a name or a list.
@@ -99,11 +92,11 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
     const CagVec3 a = points[0], b = points[n - 1];
     const bool again = n > 2 && a.x == b.x && a.y == b.y && a.z == b.z;
     status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, &err);
-    return give(call, status, &err, &c, result);
+    return cag_curve_result(call, status, &err, &c, result);
   }
   if (!read_knots(call, 2, n, degree, points, &knots)) return false;
   status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err);
-  return give(call, status, &err, &c, result);
+  return cag_curve_result(call, status, &err, &c, result);
 }
 
 bool cag_curves_bspline(CagCall *call, CagValue *result) {

@@ -10,14 +10,6 @@
 #include "interp/builtin/solids.h"
 #include "interp/vm/vm.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_mesh_value(call->vm, *made);
-  return true;
-}
-
 // A mesh, or that which bounds a polyhedron.
 static bool read_mesh(CagCall *call, const CagMesh **m) {
   *m = NULL;
@@ -154,7 +146,8 @@ bool cag_solids_weld(CagCall *call, CagValue *result) {
   CagError err;
   double tolerance;
   if (!read_mesh(call, &m) || !cag_arg_finite(call, 1, &tolerance)) return false;
-  if (!give(call, cag_mesh_weld(m, tolerance, &out, &err), &err, &out, result)) return false;
+  if (!cag_mesh_result(call, cag_mesh_weld(m, tolerance, &out, &err), &err, &out, result))
+    return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -164,7 +157,7 @@ bool cag_solids_flip(CagCall *call, CagValue *result) {
   CagMesh *out = NULL;
   CagError err;
   if (!read_mesh(call, &m)) return false;
-  if (!give(call, cag_mesh_flip(m, &out, &err), &err, &out, result)) return false;
+  if (!cag_mesh_result(call, cag_mesh_flip(m, &out, &err), &err, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -237,7 +230,7 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   cag_release_held(call, meshes);
   if (!status) status = keep_edges(&whole, &how, &err);
   if (status) cag_mesh_release(whole);
-  if (!give(call, status, &err, &whole, result)) return false;
+  if (!cag_mesh_result(call, status, &err, &whole, result)) return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;
 }

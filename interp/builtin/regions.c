@@ -5,14 +5,6 @@
 #include "interp/builtin/curves.h"
 #include "interp/builtin/holds.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagRegion **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_region_value(call->vm, *made, NULL);
-  return true;
-}
-
 // A closed plane curve from a curve or a list of points; *out has one reference. `argument` is
 // where it was given.
 static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
@@ -75,7 +67,7 @@ static bool bounded_by_none(CagCall *call, CagValue *result) {
       holes && holes->length ? cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
                                         "the outline is empty, so holes[0] does not lie within it")
                              : cag_region_empty(&region, &err);
-  return give(call, status, &err, &region, result);
+  return cag_region_result(call, status, &err, &region, result);
 }
 
 static bool is_empty_list(CagValue v) { return v.type == CAG_LIST && CAG_AS_LIST(v)->length == 0; }
@@ -113,7 +105,7 @@ bool cag_curves_rectangle(CagCall *call, CagValue *result) {
       !cag_arg_number_or(call, 2, 0, &radius))
     return false;
   CagStatus status = cag_region_rectangle(w, h, radius, &region, &err);
-  return give(call, status, &err, &region, result);
+  return cag_region_result(call, status, &err, &region, result);
 }
 
 // More corners than any polygon of a drawing; a circle says it better.
@@ -127,7 +119,7 @@ bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
   if (!cag_arg_integer(call, 0, 3, CORNERS_MAX, &n) || !cag_arg_positive(call, 1, &radius))
     return false;
   CagStatus status = cag_region_regular_polygon((size_t)n, radius, &region, &err);
-  return give(call, status, &err, &region, result);
+  return cag_region_result(call, status, &err, &region, result);
 }
 
 bool cag_curves_boundary(CagCall *call, CagValue *result) {

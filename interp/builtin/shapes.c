@@ -179,6 +179,29 @@ bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
   return cag_builder_add(call->vm, into, v);
 }
 
+// --- Results ---
+
+static CagValue region_in_plane(CagVm *vm, CagRegion *r) { return cag_region_value(vm, r, NULL); }
+#define cag_region_value(vm, r) region_in_plane(vm, r)
+#define X(Type, name)                                                                              \
+  bool cag_##name##_result(CagCall *call, CagStatus status, const CagError *err, Type **made,      \
+                           CagValue *result) {                                                     \
+    if (!cag_geometry_ok(call, status, err)) return false;                                         \
+    *result = cag_##name##_value(call->vm, *made);                                                 \
+    return true;                                                                                   \
+  }                                                                                                \
+  bool cag_changed_##name##_result(CagCall *call, CagStatus status, const CagError *err,           \
+                                   Type **made, CagValue *result) {                                \
+    if (!cag_##name##_result(call, status, err, made, result)) return false;                       \
+    cag_shape_say_alike(*result, call->values[0]);                                                 \
+    return true;                                                                                   \
+  }
+CAG_SHAPE_RESULTS(X)
+#undef X
+#undef cag_region_value
+
+// --- Reading ---
+
 bool cag_arg_direction(CagCall *call, int argument, CagVec3 fallback, CagVec3 *out,
                        int *dimension) {
   if (!cag_arg_vec_or(call, argument, fallback, out, dimension)) return false;

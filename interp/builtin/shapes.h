@@ -27,6 +27,21 @@ static inline bool cag_geometry_ok(CagCall *call, CagStatus status, const CagErr
   return status == CAG_OK || cag_fail_geometry(call, err);
 }
 
+// The result of a call of the core that makes a shape: its value, or the machine's error. These take
+// the address of what was made because the call that fills it in is an argument before it. The
+// `changed` ones keep what was said about the first argument: material, name, and so on.
+// clang-format off
+#define CAG_SHAPE_RESULTS(X) \
+  X(CagCurve, curve) X(CagRegion, region) X(CagSurface, surface) X(CagSolid, solid) X(CagMesh, mesh)
+// clang-format on
+#define X(Type, name)                                                                              \
+  bool cag_##name##_result(CagCall *call, CagStatus status, const CagError *err, Type **made,      \
+                           CagValue *result);                                                      \
+  bool cag_changed_##name##_result(CagCall *call, CagStatus status, const CagError *err,           \
+                                   Type **made, CagValue *result);
+CAG_SHAPE_RESULTS(X)
+#undef X
+
 // The degrees that a person would write for these radians: the shortest decimal whose radians are
 // the same double (or its neighbor), so that a full circle is 360deg and not
 // 360.00000000000006deg.

@@ -10,14 +10,6 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_solid_value(call->vm, *made);
-  return true;
-}
-
 // What was said of the material and tolerance of the first operand holds of the whole; names and
 // hiding are its own.
 static void say_body(CagValue to, const CagShape *from) {
@@ -257,7 +249,8 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
         !read_operand(call, items[i], i, &paint, &operands[i], i == 0 ? &said : &unused))
       return false;
-  if (!give(call, combine(call, op, operands, n, &made, &err), &err, &made, result)) return false;
+  if (!cag_solid_result(call, combine(call, op, operands, n, &made, &err), &err, &made, result))
+    return false;
   if (said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
   if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
   return true;
@@ -282,7 +275,7 @@ bool cag_solids_half_space(CagCall *call, CagValue *result) {
   if (!cag_arg_plane(call, 0, &plane)) return false;
   const CagStatus status = cag_solid_half_space(&plane, &s, &err);
   if (!status) say_place(call, s);
-  return give(call, status, &err, &s, result);
+  return cag_solid_result(call, status, &err, &s, result);
 }
 
 // The part of a form's side within a box, or between two heights.
@@ -326,7 +319,7 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
   }
   CagStatus status = bounded_form(call, q, ends, n, &made, &err);
   if (!status) say_place(call, made);
-  return give(call, status, &err, &made, result);
+  return cag_solid_result(call, status, &err, &made, result);
 }
 
 // --- clip ---

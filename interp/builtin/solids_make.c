@@ -8,14 +8,6 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// Takes the address of `made` because the call that fills it in is an argument before it.
-static bool solid_result(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
-                         CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_solid_value(call->vm, *made);
-  return true;
-}
-
 bool cag_solids_box(CagCall *call, CagValue *result) {
   CagVec3 size;
   int dimension = 3;
@@ -33,7 +25,7 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
     if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
   }
   if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
-  return solid_result(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
+  return cag_solid_result(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, CagValue *result) {
@@ -43,7 +35,7 @@ bool cag_solids_sphere(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         solid_result(call, cag_solid_sphere(a.radius, &s, &err), &err, &s, result);
+         cag_solid_result(call, cag_solid_sphere(a.radius, &s, &err), &err, &s, result);
 }
 
 // A cylinder or frustum about Z, on z = 0 or with its middle there.
@@ -52,11 +44,11 @@ static bool upright_result(CagCall *call, double height, double radius, double t
   CagSolid *s = NULL, *moved = NULL;
   CagError err;
   CagStatus status = cag_solid_cylinder(height, radius, top, &s, &err);
-  if (status != CAG_OK || !centered) return solid_result(call, status, &err, &s, result);
+  if (status != CAG_OK || !centered) return cag_solid_result(call, status, &err, &s, result);
   const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
   status = cag_solid_transform(s, &down, &moved, &err);
   cag_solid_release(s);
-  return solid_result(call, status, &err, &moved, result);
+  return cag_solid_result(call, status, &err, &moved, result);
 }
 
 bool cag_solids_cylinder(CagCall *call, CagValue *result) {
@@ -118,8 +110,8 @@ bool cag_solids_rod(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, &err), &err, &s,
-                      result);
+         cag_solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, &err), &err, &s,
+                          result);
 }
 
 bool cag_solids_torus(CagCall *call, CagValue *result) {
@@ -129,7 +121,7 @@ bool cag_solids_torus(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         solid_result(call, cag_solid_torus(a.major, a.minor, &s, &err), &err, &s, result);
+         cag_solid_result(call, cag_solid_torus(a.major, a.minor, &s, &err), &err, &s, result);
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
@@ -163,8 +155,8 @@ static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSol
 static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  if (!solid_result(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s,
-                    result))
+  if (!cag_solid_result(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s,
+                        result))
     return false;
   cag_shape_say_alike(*result, v);
   return true;
@@ -175,7 +167,7 @@ static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *resul
   CagSolid *s = NULL;
   CagSurface **faces = cag_hold_surface_array(call, shapes->length);
   if (!collect_faces(call, shapes, faces) ||
-      !solid_result(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
+      !cag_solid_result(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
     return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;

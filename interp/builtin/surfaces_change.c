@@ -4,15 +4,6 @@
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/surfaces.h"
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
-}
-
 bool cag_surfaces_area(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 centroid;
@@ -93,14 +84,14 @@ bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
   if (!cag_arg_side(call, 0, &s)) return false;
-  return give(call, cag_surface_to_nurbs(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_to_nurbs(s, &out, &err), &err, &out, result);
 }
 
 bool cag_surfaces_flip(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  return give(call, cag_surface_flip(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_flip(s, &out, &err), &err, &out, result);
 }
 
 bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {

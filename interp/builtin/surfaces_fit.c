@@ -11,13 +11,6 @@
 // How far a coordinate that is held may be off, in mm, unless said otherwise: as of curves.
 #define HELD_WITHIN 1e-9
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  return true;
-}
-
 // Two whole numbers, or one for both.
 static bool read_pair(CagCall *call, int argument, long fallback, long low, long high,
                       long out[2]) {
@@ -265,7 +258,7 @@ bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   return read_data(call, 2, 4, &d) && read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
-         give(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
+         cag_surface_result(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
 }
 
 static void release_report(void *report) { cag_grid_report_free(report); }
@@ -291,7 +284,7 @@ static bool fit(CagCall *call, bool report, CagValue *result) {
   CagGridReport *found = cag_hold_array(call, 1, sizeof *found);
   cag_hold_for(call, release_report, found);
   CagStatus status = cag_surface_fit(&d.g, net[0], net[1], &s, found, &err);
-  return give(call, status, &err, &s, result) &&
+  return cag_surface_result(call, status, &err, &s, result) &&
          (!report || give_report(call, s, &d.g, net, found, result));
 }
 
@@ -365,7 +358,7 @@ bool cag_surfaces_unroll(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
   if (!cag_arg_surface(call, 0, &s) ||
-      !give(call, cag_surface_unroll(s, &out, &err), &err, &out, result))
+      !cag_surface_result(call, cag_surface_unroll(s, &out, &err), &err, &out, result))
     return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;

@@ -7,14 +7,6 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
-// `made` is read after the call that fills it: pass its address.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  return true;
-}
-
 static bool give_solid(CagCall *call, CagStatus status, const CagError *err, CagSolid *s,
                        CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
@@ -137,7 +129,7 @@ bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
     CagSurface *s = NULL;
     CagStatus status =
         revolve_curve(c, along_z && c->dimension == 2, axis, through, from, to, &s, &err);
-    if (!give(call, status, &err, &s, result)) return false;
+    if (!cag_surface_result(call, status, &err, &s, result)) return false;
     cag_shape_say_alike(*result, v);
     return true;
   }
@@ -186,7 +178,8 @@ static bool extrude_sides(CagCall *call, const CagRegion *region, const Extrusio
     CagStatus status = cag_surface_extrude(region->loops[i], e->v, e->twist, e->scale, &s, &err);
     if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, &err);
     cag_surface_release(s);
-    if (!give(call, status, &err, &placed, &side) || !cag_builder_add(call->vm, sides, side))
+    if (!cag_surface_result(call, status, &err, &placed, &side) ||
+        !cag_builder_add(call->vm, sides, side))
       return false;
   }
   *result =
@@ -223,7 +216,7 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
   if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
     CagSurface *s = NULL;
     CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, &err);
-    if (!give(call, status, &err, &s, result)) return false;
+    if (!cag_surface_result(call, status, &err, &s, result)) return false;
   } else {
     if (!cag_arg_region(call, 0, &region, &place)) return false;
     cag_hold_for(call, release_region, region);
@@ -245,7 +238,7 @@ bool cag_surfaces_ruled(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
-  return give(call, cag_surface_ruled(a, b, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_ruled(a, b, &s, &err), &err, &s, result);
 }
 
 bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
@@ -255,7 +248,7 @@ bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
   for (int i = 0; i < 4; i++)
     if (!cag_arg_vec(call, i, &p[i], NULL)) return false;
   CagStatus status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &s, &err);
-  return give(call, status, &err, &s, result);
+  return cag_surface_result(call, status, &err, &s, result);
 }
 
 bool cag_surfaces_translational(CagCall *call, CagValue *result) {
@@ -263,7 +256,7 @@ bool cag_surfaces_translational(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
-  return give(call, cag_surface_translational(a, b, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_translational(a, b, &s, &err), &err, &s, result);
 }
 
 // The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
@@ -280,7 +273,7 @@ bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
     status =
         revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s, &err);
   cag_curve_release(meridian);
-  return give(call, status, &err, &s, result);
+  return cag_surface_result(call, status, &err, &s, result);
 }
 
 bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
@@ -288,5 +281,5 @@ bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
-  return give(call, cag_surface_torus(major, minor, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_torus(major, minor, &s, &err), &err, &s, result);
 }

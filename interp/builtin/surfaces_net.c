@@ -79,20 +79,13 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
   return cag_fail_geometry(call, &err);
 }
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  return true;
-}
-
 bool cag_surfaces_bezier_surface(CagCall *call, CagValue *result) {
   Net net;
   CagSurface *s = NULL;
   CagError err;
   if (!read_net(call, &net) || !read_weights(call, 1, &net)) return false;
   CagStatus status = cag_surface_bezier(net.points, net.weights, net.nu, net.nv, &s, &err);
-  return give(call, status, &err, &s, result);
+  return cag_surface_result(call, status, &err, &s, result);
 }
 
 // --- B-splines: degree, knots and closed are one value for both directions, or a list of two ---
@@ -185,7 +178,7 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
                                      knots[0], knots[1], closed[0], closed[1], &s, &err)
           : cag_surface_nurbs(net.points, net.weights, net.nu, net.nv, degree[0], degree[1],
                               knots[0], knots[1], &s, &err);
-  return give(call, status, &err, &s, result);
+  return cag_surface_result(call, status, &err, &s, result);
 }
 
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {

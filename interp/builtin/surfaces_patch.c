@@ -7,21 +7,14 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  return true;
-}
-
 bool cag_surfaces_coons(CagCall *call, CagValue *result) {
   CagCurve *side[4];
   CagSurface *s = NULL;
   CagError err;
   for (int k = 0; k < 4; k++)
     if (!cag_arg_curve(call, k, &side[k])) return false;
-  return give(call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, &err), &err, &s,
-              result);
+  return cag_surface_result(call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, &err),
+                            &err, &s, result);
 }
 
 bool cag_surfaces_developable(CagCall *call, CagValue *result) {
@@ -29,7 +22,8 @@ bool cag_surfaces_developable(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &first) || !cag_arg_curve(call, 1, &second)) return false;
-  return give(call, cag_surface_developable(first, second, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_developable(first, second, &s, &err), &err, &s,
+                            result);
 }
 
 // --- Tables of vectors ---
@@ -94,7 +88,7 @@ bool cag_surfaces_coons_bicubic(CagCall *call, CagValue *result) {
     if (!cag_arg_choice(call, 3, modes, &mode)) return false;
     if (mode == 1) cag_hermite_adini(&c);
   }
-  return give(call, cag_surface_hermite(&c, 0, 1, 0, 1, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_hermite(&c, 0, 1, 0, 1, &s, &err), &err, &s, result);
 }
 
 bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
@@ -114,7 +108,8 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
       c.pu[i][j] = q[4 * (2 + i) + j];
       c.puv[i][j] = q[4 * (2 + i) + 2 + j];
     }
-  return give(call, cag_surface_hermite(&c, u0, u1, v0, v1, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_hermite(&c, u0, u1, v0, v1, &s, &err), &err, &s,
+                            result);
 }
 
 // --- Composite ---
@@ -183,7 +178,7 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   g.points = d.points;
   g.steps_u = d.steps[0];
   g.steps_v = d.steps[1];
-  return give(call, cag_surface_hermite_grid(&g, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_hermite_grid(&g, &s, &err), &err, &s, result);
 }
 
 // --- Triangles ---
@@ -221,5 +216,6 @@ bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
   cag_hold(call, net);
-  return give(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s,
+                            result);
 }

@@ -20,13 +20,6 @@ static const char family[] = "Surfaces: control points";
 
 static const char *const directions[] = {"u", "v"};
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  return true;
-}
-
 static CagValue vector_value(CagVm *vm, CagVec3 p) {
   return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
 }
@@ -407,7 +400,7 @@ static bool edit_corner(CagCall *call, CagValue *result) {
   e.v = (int)v;
   for (int k = 0; k < 3; k++)
     if (!read_edit(call, 3 + k, &e, k)) return false;
-  return give(call, cag_surface_edit_corner(s, &e, &out, &err), &err, &out, result);
+  return cag_surface_result(call, cag_surface_edit_corner(s, &e, &out, &err), &err, &out, result);
 }
 
 static bool set_point(CagCall *call, CagValue *result) {
@@ -429,7 +422,7 @@ static bool set_point(CagCall *call, CagValue *result) {
     }
   }
   CagStatus status = cag_surface_set_point(s, (size_t)i, (size_t)j, p, weight, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_surface_result(call, status, &err, &out, result);
 }
 
 // --- Edges ---
@@ -527,7 +520,7 @@ static bool match_edge(CagCall *call, CagValue *result) {
       !read_match(call, 2, 3, &how) || !cag_arg_edges(call, 4, edges, &given))
     return false;
   CagStatus status = cag_surface_match(a, b, &how, given ? edges : NULL, &out, &err);
-  if (!give(call, status, &err, &out, result)) return false;
+  if (!cag_surface_result(call, status, &err, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[1]);
   return true;
 }

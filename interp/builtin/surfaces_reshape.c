@@ -5,14 +5,6 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
-                 CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *made);
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
-}
-
 static bool named(const CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
 }
@@ -64,13 +56,14 @@ bool cag_surfaces_trim(CagCall *call, CagValue *result) {
     if (!read_loops(call, 1, &region)) return false;
     CagStatus status = cag_surface_trimmed(s, region, &out, &err);
     cag_region_release(region);
-    return give(call, status, &err, &out, result);
+    return cag_changed_surface_result(call, status, &err, &out, result);
   }
   double u0 = s->u0, u1 = s->u1, v0 = s->v0, v1 = s->v1;
   if ((named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_u, &u0, &u1)) ||
       (named(call, 3) && !cag_arg_parameter_range(call, 3, s->angular_v, &v0, &v1)))
     return false;
-  return give(call, cag_surface_part(s, u0, u1, v0, v1, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_part(s, u0, u1, v0, v1, &out, &err), &err,
+                                    &out, result);
 }
 
 bool cag_surfaces_split(CagCall *call, CagValue *result) {
@@ -97,7 +90,9 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
     CagStatus status = direction == 0 ? cag_surface_part(s, lo, hi, s->v0, s->v1, &part, &err)
                                       : cag_surface_part(s, s->u0, s->u1, lo, hi, &part, &err);
     CagValue v;
-    if (!give(call, status, &err, &part, &v) || !cag_builder_add(call->vm, parts, v)) return false;
+    if (!cag_changed_surface_result(call, status, &err, &part, &v) ||
+        !cag_builder_add(call->vm, parts, v))
+      return false;
   }
   *result = cag_builder_finish(call->vm, parts);
   return true;
@@ -113,7 +108,7 @@ bool cag_surfaces_insert_knot(CagCall *call, CagValue *result) {
       !cag_arg_integer_or(call, 3, 1, 1, 25, &times))
     return false;
   CagStatus status = cag_surface_insert_knot(s, direction, t, (int)times, &out, &err);
-  return give(call, status, &err, &out, result);
+  return cag_changed_surface_result(call, status, &err, &out, result);
 }
 
 // What is done in one direction: whether at all, and to which knots (NULL: midpoints).
@@ -141,7 +136,8 @@ bool cag_surfaces_refine(CagCall *call, CagValue *result) {
   if (!cag_arg_surface(call, 0, &s) || !read_refinement(call, 1, &r[0]) ||
       !read_refinement(call, 2, &r[1]))
     return false;
-  return give(call, cag_surface_refine_by(s, r, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_refine_by(s, r, &out, &err), &err, &out,
+                                    result);
 }
 
 bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
@@ -151,7 +147,8 @@ bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer_or(call, 1, 0, 0, 20, &u) ||
       !cag_arg_integer_or(call, 2, 0, 0, 20, &v))
     return false;
-  return give(call, cag_surface_elevate(s, (int)u, (int)v, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_elevate(s, (int)u, (int)v, &out, &err), &err,
+                                    &out, result);
 }
 
 bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
@@ -181,7 +178,7 @@ bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  return give(call, cag_surface_transpose(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_transpose(s, &out, &err), &err, &out, result);
 }
 
 // --- Two surfaces ---
@@ -195,7 +192,8 @@ bool cag_surfaces_join_surfaces(CagCall *call, CagValue *result) {
   if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
       !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance))
     return false;
-  return give(call, cag_surface_join(a, b, tolerance, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_join(a, b, tolerance, &out, &err), &err, &out,
+                                    result);
 }
 
 bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
@@ -241,7 +239,7 @@ bool cag_surfaces_offset(CagCall *call, CagValue *result) {
   CagError err;
   double d;
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_finite(call, 1, &d)) return false;
-  return give(call, cag_surface_offset(s, d, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_offset(s, d, &out, &err), &err, &out, result);
 }
 
 bool cag_surfaces_thicken(CagCall *call, CagValue *result) {

@@ -105,20 +105,6 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
 
 // --- Results ---
 
-static bool give_surface(CagCall *call, CagStatus status, const CagError *err, CagSurface **s,
-                         CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_surface_value(call->vm, *s);
-  return true;
-}
-
-static bool give_solid(CagCall *call, CagStatus status, const CagError *err, CagSolid **s,
-                       CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_solid_value(call->vm, *s);
-  return true;
-}
-
 // --- Sections ---
 
 // What is swept: a curve for a surface, else a region of the plane. A region that stands in space
@@ -156,7 +142,8 @@ static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *
     CagSurface *s = NULL;
     const CagCurve *c = section->curve ? section->curve : section->region->loops[i];
     CagStatus status = cag_surface_sweep(c, motion, &s, &err);
-    if (!give_surface(call, status, &err, &s, &side) || !cag_builder_add(call->vm, sides, side))
+    if (!cag_surface_result(call, status, &err, &s, &side) ||
+        !cag_builder_add(call->vm, sides, side))
       return false;
   }
   *result = n == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
@@ -168,7 +155,8 @@ static bool sweep_section(CagCall *call, const Section *section, const CagMotion
   if (section->curve || !caps) return sweep_sides(call, section, motion, result);
   CagError err;
   CagSolid *s = NULL;
-  return give_solid(call, cag_solid_sweep(section->region, motion, &s, &err), &err, &s, result);
+  return cag_solid_result(call, cag_solid_sweep(section->region, motion, &s, &err), &err, &s,
+                          result);
 }
 
 // --- Sweeps ---
@@ -253,11 +241,11 @@ bool cag_surfaces_tube(CagCall *call, CagValue *result) {
   if (caps) {
     CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, &err)
                                 : cag_solid_tube(path, radius.end, &solid, &err);
-    if (!give_solid(call, status, &err, &solid, result)) return false;
+    if (!cag_solid_result(call, status, &err, &solid, result)) return false;
   } else {
     CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, &err)
                                 : cag_surface_tube(path, radius.end, &s, &err);
-    if (!give_surface(call, status, &err, &s, result)) return false;
+    if (!cag_surface_result(call, status, &err, &s, result)) return false;
   }
   cag_shape_say_alike(*result, call->values[0]);
   return true;
@@ -311,8 +299,8 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   if (caps && all_closed && status == CAG_OK) {
     status = cag_solid_loft(side, &solid, &err);
     cag_surface_release(side);
-    if (!give_solid(call, status, &err, &solid, result)) return false;
-  } else if (!give_surface(call, status, &err, &side, result)) {
+    if (!cag_solid_result(call, status, &err, &solid, result)) return false;
+  } else if (!cag_surface_result(call, status, &err, &side, result)) {
     return false;
   }
   cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
