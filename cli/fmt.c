@@ -1,4 +1,4 @@
-// cag fmt [--check] [--diff] PATH ...: the one layout of scripts.
+// cag fmt [--check] [--diff] PATH ...: formats scripts.
 //
 // A script that has errors stays as it is. A file is written only when its layout changes, and
 // appears whole or not at all.

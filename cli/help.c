@@ -105,15 +105,20 @@ static void program_help(FILE *out) {
   fputs("\nShared options:\n", out);
   write_options(~0u, true, out);
   fputs(
-      "\n`cag COMMAND --help` shows the options and examples of a command. - is standard input or\n"
-      "output wherever a file may stand, -- ends the options.\n\n"
+      "\n`cag COMMAND --help` shows the options and examples of a command. Use - for standard input or\n"
+      "output, and -- to end the options.\n\n"
       "Examples:\n"
       "  cag render vase.cag -o vase.png\n"
       "  cag export vase.cag -o vase.stl -D height=200\n"
       "  cag eval 'volume(sphere(10))'\n\n"
-      "Exit status: 0 well; 1 the script or the comparison failed; 2 wrong usage; 3 a file named "
-      "on the\ncommand line could not be read or written; 4 the renderer failed; 5 a limit was "
-      "crossed;\n130 interrupted.\n",
+      "Exit status:\n"
+      "    0  success\n"
+      "    1  the script, a test, or the comparison failed\n"
+      "    2  incorrect usage\n"
+      "    3  a file named on the command line could not be read or written\n"
+      "    4  the renderer failed\n"
+      "    5  a limit was exceeded\n"
+      "  130  interrupted\n",
       out);
 }
 

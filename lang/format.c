@@ -1,4 +1,4 @@
-// The one layout of scripts: from the tree to documents (layout.h), statement by statement.
+// Formats scripts: from the tree to documents (layout.h), statement by statement.
 //
 // Words are copied from the source by their spans. Comments stand in a list of their own; each is
 // put before the word that follows it, and the printer sees to it that one which stood at the end

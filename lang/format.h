@@ -1,4 +1,4 @@
-// The one layout of scripts.
+// Formatting of scripts.
 //
 // Formatting looks at the tree and at nothing of the old layout but comments and blank lines, and
 // never changes the tree: what is written stays written (units, parentheses, texts), only spaces,

@@ -10,8 +10,8 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 
-// Axes count as equal and square to this part of their length: circles keep their name through
-// rounding.
+// Axes count as equal and perpendicular to this part of their length: circles keep their name
+// through rounding.
 #define ROUND 1e-12
 
 typedef struct Arc {

@@ -131,7 +131,7 @@ static void turn_axes(const double *c, CagConicClass *out) {
 }
 
 typedef struct Eigen {
-  double l1, l2; // l1 belongs to the axis at `angle`, l2 to the one square to it
+  double l1, l2; // l1 belongs to the axis at `angle`, l2 to the one perpendicular to it
   double angle;
 } Eigen;
 

@@ -63,7 +63,7 @@ CagStatus cag_project_parallel(const CagPlane *onto, CagVec3 along, CagTransform
                                CagError *err); // along zero: at right angles
 CagStatus cag_project_central(const CagPlane *onto, CagVec3 from, CagTransform *out, CagError *err);
 CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out,
-                   CagError *err); // orthonormal: y is made square to x
+                   CagError *err); // orthonormal: y is made perpendicular to x
 CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, CagError *err);
 // Turns about the moving axes that `order` names ("zyx", "zyz" ...: all 12).
 CagStatus cag_euler(double a, double b, double c, const char *order, CagTransform *out,

@@ -145,9 +145,9 @@ static int steps_for(const Disk *disks) {
   return (int)fmin(TUBE_MANY, fmax(TUBE_FEW, 4 * length / least));
 }
 
-// Whether no pair of neighbors of i and k is nearer: the line between them is then square to the
-// path at both ends, and their disks lie in one plane. Of neighbors on a path the nearer pair is
-// between them.
+// Whether no pair of neighbors of i and k is nearer: the line between them is then perpendicular to
+// the path at both ends, and their disks lie in one plane. Of neighbors on a path the nearer pair
+// is between them.
 static bool is_least_distance(const Disk *disks, int i, int k, double d) {
   const double alike = 1e-9; // of the distance: along a helix all are the same
   for (int a = -1; a <= 1; a++)

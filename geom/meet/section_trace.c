@@ -144,7 +144,7 @@ static bool middle_by_newton(CagTracer *t, const CagTraceNode *a, const CagTrace
 }
 
 // The same where that fails, as by a pole, where the curve may turn sharply in the parameters: the
-// crossing nearest to the middle on the line square to the way from a to b.
+// crossing nearest to the middle on the line perpendicular to the way from a to b.
 static bool middle_across(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b,
                           CagTraceNode *out) {
   const int places = 16;

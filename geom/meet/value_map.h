@@ -34,8 +34,8 @@ CagStatus cag_surface_value_mesh(const CagSurface *s, CagSurfaceValue value,
 void cag_mesh_value_span(CagMesh *const *meshes, size_t n, double least, double *from, double *to);
 
 // The values of zebra stripes: `across` . r, -1..1, where r is the direction to the eye mirrored
-// at the normal, r = 2 (n . e) n - e. Both are unit vectors, square to each other. In place, by
-// the mesh's normals.
+// at the normal, r = 2 (n . e) n - e. Both are unit vectors, perpendicular to each other. In place,
+// by the mesh's normals.
 CagStatus cag_mesh_reflect(CagMesh *m, CagVec3 eye, CagVec3 across, CagError *err);
 
 #endif

@@ -1,9 +1,9 @@
-// Chains with parallel axes: the motion in the plane square to them is solved apart.
+// Chains with parallel axes: the motion in the plane perpendicular to them is solved apart.
 //
-// Axes 2, 3, 4 parallel, and axis 5 square to them: how far the point where link 5 begins lies
-// along their direction depends on joint 1 alone; the direction of the last axis against theirs
-// gives joint 5, the turn about it joint 6, and what is left is a motion in the plane, two links
-// and a turn. All axes parallel: the same motion in the plane, and the slide.
+// Axes 2, 3, 4 parallel, and axis 5 perpendicular to them: how far the point where link 5 begins
+// lies along their direction depends on joint 1 alone; the direction of the last axis against
+// theirs gives joint 5, the turn about it joint 6, and what is left is a motion in the plane, two
+// links and a turn. All axes parallel: the same motion in the plane, and the slide.
 
 #include "geom/robot/inverse_parts.h"
 

@@ -158,8 +158,8 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
     return false;
   double low, high;
   if (radial(a, 2, center, &low, &high) && square(a->z[1], a->z[2])) {
-    // The elevation of the slide over the plane square to the first axis; it falls as joint 2
-    // turns.
+    // The elevation of the slide over the plane perpendicular to the first axis; it falls as joint
+    // 2 turns.
     CagVec3 level = cag_cross(a->z[1], a->z[0]);
     double f = atan2(cag_dot(a->z[2], a->z[0]), cag_dot(a->z[2], level));
     double f1 = remainder(f - (link_of(a, 1)->high - a->q[1]), 2 * M_PI), f2 = f1 + span(a, 1);

@@ -154,7 +154,7 @@ static void meet(CagBounds *a, const CagBounds *b) {
   a->max = cag_vec3(fmin(a->max.x, b->max.x), fmin(a->max.y, b->max.y), fmin(a->max.z, b->max.z));
 }
 
-// A half space square to an axis ends there.
+// A half space perpendicular to an axis ends there.
 static CagBounds plane_reach(const CagQuadric *q) {
   const double *n = q->c + 6, k = q->c[9];
   CagBounds b = EVERYWHERE;

@@ -53,7 +53,7 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
 typedef struct Setting {
   CagTransform plane;
   CagVec3 axis, through; // unit axis
-  CagVec3 cross;         // in region coordinates: unit, square to the axis
+  CagVec3 cross;         // in region coordinates: unit, perpendicular to the axis
   double offset, size;
   double sense; // +1 or -1: on which side of the axis the region lies
 } Setting;

@@ -202,7 +202,7 @@ static CagStatus tangent_series(const CagMotion *t, const CagMotionSegment *g, d
   return unit_tangent(t, g, v, n, side, velocity, out->t, err);
 }
 
-// y is the direction `toward` made square to the tangent, x = y x T.
+// y is the direction `toward` made perpendicular to the tangent, x = y x T.
 static void square_to(const CagVec3 *toward, int n, Frame *f) {
   CagVec3 across[ORDER];
   series_cross(toward, f->t, n, across); // along x
@@ -535,7 +535,7 @@ static CagStatus transport(CagMotion *t, CagError *err) {
   return CAG_OK;
 }
 
-// Shift along the tangent that takes each spoke into the plane square to m.
+// Shift along the tangent that takes each spoke into the plane perpendicular to m.
 static void miter(const Frame *f, CagVec3 m, double *out) {
   double along = cag_dot(f->t[0], m);
   out[0] = -cag_dot(f->n1[0], m) / along;

@@ -460,8 +460,8 @@ static void cylinder(const Reduced *r, int zero, CagQuadricForm *f) {
   set_frame(e, fixed, from_basis(r, r->center), &f->frame);
 }
 
-// One eigenvalue: y along its vector; the linear rest spans a direction w of the plane square to
-// it.
+// One eigenvalue: y along its vector; the linear rest spans a direction w of the plane
+// perpendicular to it.
 static void single(const Reduced *r, int one, CagQuadricForm *f) {
   if (r->g == 0) {
     f->class_id = r->k1 == 0                ? CAG_QUADRIC_COINCIDENT_PLANES

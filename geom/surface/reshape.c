@@ -376,7 +376,7 @@ static CagStatus edge_gap(const CagSurface *a, int i, const CagSurface *b, int j
   return CAG_OK;
 }
 
-// Normal curvature in the direction of the surface that is square to the edge.
+// Normal curvature in the direction of the surface that is perpendicular to the edge.
 static double across_curvature(CagVec3 along, CagVec3 across, const CagVec3 second[3]) {
   CagVec3 n = cag_unit(cag_cross(across, along)), w = cag_cross(along, n);
   // w = x across + y along in the tangent plane.

@@ -1,8 +1,8 @@
 // Surfaces of revolution: a curve turned about an axis.
 //
 // S(u, v) = A + axial(u) + cos v radial(u) + sin v (w x radial(u)), where P(u) - A splits into its
-// part along the unit axis w and the rest. A turn by v of a vector is one of the plane square to w,
-// so the j-th derivative by v is the radial part turned by j right angles more.
+// part along the unit axis w and the rest. A turn by v of a vector is one of the plane
+// perpendicular to w, so the j-th derivative by v is the radial part turned by j right angles more.
 
 #include <math.h>
 #include <stdio.h>

@@ -48,8 +48,8 @@ static CagStatus partials(const Unrolling *w, double s, double t, CagVec3 *d, Ca
   return CAG_OK;
 }
 
-// Unit ruling e and f, square to it in the tangent plane. The plane is taken at the end of the
-// ruling where the partials are less parallel: the other may be an apex.
+// Unit ruling e and f, perpendicular to it in the tangent plane. The plane is taken at the end of
+// the ruling where the partials are less parallel: the other may be an apex.
 static CagStatus axes_at(const Unrolling *w, double t, CagVec3 d[5], CagVec3 *e, CagVec3 *f,
                          CagError *err) {
   CagVec3 far[5];

@@ -9,9 +9,9 @@
 
 static const char bases[] = "B-splines: knots and bases";
 static const char spans[] = "B-splines: spans and control points";
-static const char forms[] = "Curves: other forms";
-static const char near[] = "Curves: near and across";
-static const char shown[] = "Curves: pictures";
+static const char forms[] = "Curves: conversion";
+static const char near[] = "Curves: distances and intersections";
+static const char shown[] = "Curves: display";
 
 const CagBuiltin cag_builtins_bsplines[] = {
     // --- Knots and bases ---
@@ -226,9 +226,13 @@ const CagBuiltin cag_builtins_bsplines[] = {
     {"control_net(C: curve)", cag_bsplines_control_net, "curve",
      "The control polygon of a Bezier or B-spline curve, to show.",
      "print length(control_net(bezier([[0, 0], [3, 4], [6, 0]]))) // expect: 10", CURVES, shown},
-    {"hedgehog(C: curve, n: integer = none, scale: number = none)", cag_bsplines_hedgehog, "group",
-     "A comb of the curvature: n lines from the curve away from its center of curvature, their "
-     "length the curvature times the scale (mm2; none: the longest is a quarter of the size), and "
-     "the line along their tips.",
-     "show hedgehog(bezier([[0, 0], [1, 2], [3, 2], [4, 0]]), 30)", CURVES, shown},
+    {"curvature_comb(C: curve, n: integer = none, scale: number = none)",
+     cag_bsplines_curvature_comb, "group",
+     "The curvature comb of a curve: n lines that point away from the center of curvature. Their "
+     "length is the curvature times `scale` (mm2). A further line connects their tips. By default, "
+     "the longest line is a quarter of the size of the curve.",
+     "show curvature_comb(bezier([[0, 0], [1, 2], [3, 2], [4, 0]]), 30)", CURVES, shown},
+    {"hedgehog(C: curve, n: integer = none, scale: number = none)", cag_bsplines_curvature_comb,
+     "group", "Deprecated: use `curvature_comb`.",
+     "print len(hedgehog(circle(10), 4).items) // expect: 5", CURVES, shown},
     {0}};

@@ -12,7 +12,7 @@
   X(basis_dependency) X(oslo) X(phantom_points) \
   /* bsplines_ask.c: spans and control points of a curve */ \
   X(spans) X(support) X(acting_points) X(straight_spans) X(denominator) X(nurbs_circle) X(nurbs_arc) \
-  X(control_net) X(hedgehog) \
+  X(control_net) X(curvature_comb) \
   /* curves_change.c: another form of a curve */ \
   X(to_bezier) X(elevate) X(reduce_degree) X(insert_knot) X(remove_knot) X(refine) \
   X(clamp_ends) X(deviation) X(approximate) X(offset) \

@@ -302,7 +302,7 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
 }
 
 // C, n, scale
-bool cag_bsplines_hedgehog(CagCall *call, CagValue *result) {
+bool cag_bsplines_curvature_comb(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagBounds box;
   CagError err;

@@ -7,10 +7,10 @@
 #define NUMBERS CAG_TAKES(NUMBER)
 #define EQUATIONS (CAG_TAKES(CURVE) | CAG_TAKES(LIST))
 
-static const char axes[] = "Conics: by their axes";
-static const char general[] = "Conics: by their equation";
-static const char touching[] = "Circles and lines that touch";
-static const char coordinates[] = "Plane curves by their coordinates";
+static const char axes[] = "Conics: from axes";
+static const char general[] = "Conics: from equations";
+static const char touching[] = "Tangent circles and lines";
+static const char coordinates[] = "Analytic geometry of the plane";
 
 const CagBuiltin cag_builtins_conics[] = {
     // --- By their axes ---

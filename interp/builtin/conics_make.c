@@ -361,7 +361,7 @@ static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
     return cag_fail_call(call, 0, CAG_ERR_value, "takes this `by` of circles and ellipses only");
   // Any two conjugate half diameters will do for an arc; from them to the axes the angle shifts.
-  const double same = 1e-9; // cosine of axes square to each other, and angles that are one
+  const double same = 1e-9; // cosine of axes perpendicular to each other, and angles that are one
   if (fabs(cag_dot(x, y)) > same * cag_norm(x) * cag_norm(y)) {
     const double shift = atan2(2 * cag_dot(x, y), cag_dot(x, x) - cag_dot(y, y)) / 2;
     const CagVec3 axis = cag_madd(cag_scaled(x, cos(shift)), sin(shift), y);

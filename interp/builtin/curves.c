@@ -6,9 +6,9 @@
 #define LISTS CAG_TAKES_LISTS
 #define NUMBERS CAG_TAKES(NUMBER)
 
-static const char asked[] = "Curves: questions";
-static const char changed[] = "Curves: changed";
-static const char made[] = "Curves: made";
+static const char asked[] = "Curves: queries";
+static const char changed[] = "Curves: editing";
+static const char made[] = "Curves: construction";
 static const char splines[] = "Curves: Bezier and B-splines";
 static const char regions[] = "Regions";
 

@@ -289,8 +289,8 @@ static bool call_constant_curve(CagCall *call, CagValue *result) {
   return true;
 }
 
-static const char asked[] = "Curves: questions";
-static const char theory[] = "Curves: theory";
+static const char asked[] = "Curves: queries";
+static const char theory[] = "Curves: differential geometry";
 
 const CagBuiltin cag_builtins_frenet[] = {
     {"special_points(C: curve)", call_special_points, "record",

@@ -377,7 +377,7 @@ const CagBuiltin cag_builtins_functions[] = {
      "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
      "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
      "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
-     FUNCTIONS, "Curves: made"},
+     FUNCTIONS, "Curves: construction"},
     {"natural_curve(curvature: function s => number or curvature, length: length, "
      "torsion: function s => number or curvature = none, frame: transform = identity)",
      call_natural_curve, "curve",
@@ -389,7 +389,7 @@ const CagBuiltin cag_builtins_functions[] = {
      "may be pieced together by `if`.",
      "c = natural_curve(s => 0.5, pi) // a quarter of a circle of radius 2\n"
      "print near(end_point(c), [2, 2]), near(curvature(c, 1), 0.5) // expect: true true",
-     FUNCTIONS, "Curves: made"},
+     FUNCTIONS, "Curves: construction"},
     {"surface(f: function (u, v) => point, u: range of numbers or angles = 0..1, "
      "v: range of numbers or angles = 0..1)",
      call_surface, "surface",
@@ -398,5 +398,5 @@ const CagBuiltin cag_builtins_functions[] = {
      "are found, so that a closed formula is a closed surface.",
      "s = surface((u, v) => [u, v, u * v], u: 0..2, v: 0..2)\n"
      "print s(1, 2), near(normal(s, 0, 0), Z) // expect: [1, 2, 2] true",
-     FUNCTIONS, "Surfaces: made"},
+     FUNCTIONS, "Surfaces: construction"},
     {0}};

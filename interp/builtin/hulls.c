@@ -461,12 +461,12 @@ const CagBuiltin cag_builtins_hulls[] = {
      "print area(convex_hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1], [2, 0]])) // expect: 8\n"
      "h = convex_hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])\n"
      "print len(vertices(tessellate(h))), near(volume(h), 1 / 6) // expect: 4 true",
-     0, "The plane"},
+     0, "Convex hulls"},
     {"hull(points: list of points)", call_convex_hull, "region or solid",
      "Another name of `convex_hull`: the smallest convex shape that holds all points or shapes.",
      "print area(hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1]])) // expect: 8\n"
      "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
-     0, "The plane"},
+     0, "Convex hulls"},
     {"curve_on(S: surface, C: curve)", call_curve_on, "curve",
      "The curve on the surface, or on the side of a swept solid, whose u and v are x and y of a "
      "plane curve; angles of the surface "
@@ -475,7 +475,7 @@ const CagBuiltin cag_builtins_hulls[] = {
      "along others it must stay in the domain (curve-outside). It has no exact NURBS form.",
      "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
      "print is_closed(c), length(c) > 3 * tau // expect: true true",
-     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: made"},
+     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: construction"},
     {"contains(G: shape or group, P: point or shape)", call_contains, "bool",
      "Whether a solid or closed mesh contains P; its boundary, to 1e-9 of its size, belongs to it. "
      "Solids are asked exactly but for walls and gaps thinner than 1e-3 of their size.",

@@ -266,7 +266,8 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
   return status;
 }
 
-// `across` made square to the view; where none is said the world's Z, or Y for a view along it.
+// `across` made perpendicular to the view; where none is said the world's Z, or Y for a view along
+// it.
 static bool read_across(CagCall *call, int argument, CagVec3 eye, CagVec3 *out) {
   const double parallel = 1e-9; // sine
   CagVec3 v = cag_vec3(0, 0, 1);
@@ -415,7 +416,8 @@ const CagBuiltin cag_builtins_quality[] = {
      call_zebra, "mesh",
      "What a mirror of this shape shows of long lamps: as many light and dark stripes, a mesh. "
      "`view` is the direction to the eye (none: from the front, a little above), wherever the "
-     "camera stands; r = 2 (n . view) n - view the mirrored one; `across` the direction square to "
+     "camera stands; r = 2 (n . view) n - view the mirrored one; `across` the direction "
+     "perpendicular to "
      "the view in which the stripes follow each other (none: up). The value is r . across, -1..1 "
      "(`values_of`), and the stripes are even parts of that. A bend in a stripe shows a jump of "
      "the tangent plane, a kink one of the curvature.",

@@ -6,7 +6,7 @@
 
 static const char links[] = "Robots: links";
 static const char motion[] = "Robots: forward kinematics";
-static const char rates[] = "Robots: rates and forces";
+static const char rates[] = "Robots: velocities and forces";
 static const char ranges[] = "Robots: limits and motors";
 static const char inverse[] = "Robots: inverse kinematics";
 static const char paths[] = "Robots: paths";

@@ -7,7 +7,7 @@
 #define STAGE (CAG_TAKES(CAMERA) | CAG_TAKES(LIGHT) | CAG_TAKES(SETTING))
 
 static const char stage[] = "Scene";
-static const char said[] = "Looks and names";
+static const char said[] = "Appearance and names";
 
 const CagBuiltin cag_builtins_scene[] = {
     {"camera(eye: point, target: point = origin, up: vector = Z, fov: angle = 40deg, "
@@ -25,7 +25,8 @@ const CagBuiltin cag_builtins_scene[] = {
      "print camera([100, -200, 80]).fov // expect: 40deg", LISTS, stage},
     {"sun(direction: vector, color: color = \"white\", strength: number = 1)", cag_scenes_sun,
      "light",
-     "Parallel light that goes along `direction`. With strength 1 a white matte face square to it "
+     "Parallel light that goes along `direction`. With strength 1 a white matte face perpendicular "
+     "to it "
      "looks white.",
      "print sun([1, 1, -2]).direction // expect: [1, 1, -2]", LISTS, stage},
     {"point_light(position: point, color: color = \"white\", strength: number = 1)",

@@ -8,9 +8,9 @@
 #define NUMBERS CAG_TAKES(NUMBER)
 #define TEXTS CAG_TAKES(TEXT)
 
-static const char through[] = "Curves: through points";
-static const char data[] = "Curves: from data";
-static const char segments[] = "Curves: segments and bases";
+static const char through[] = "Curves: interpolation";
+static const char data[] = "Curves: fitting";
+static const char segments[] = "Curves: cubic segments and bases";
 
 const CagBuiltin cag_builtins_splines[] = {
     // --- Through points ---

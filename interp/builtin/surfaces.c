@@ -9,12 +9,12 @@
 #define LISTS CAG_TAKES_LISTS
 #define NUMBERS CAG_TAKES(NUMBER)
 
-static const char asked[] = "Surfaces: questions";
+static const char asked[] = "Surfaces: queries";
 static const char curvature[] = "Surfaces: curvature";
-static const char changed[] = "Surfaces: changed";
-static const char made[] = "Surfaces: made of curves";
+static const char changed[] = "Surfaces: editing";
+static const char made[] = "Surfaces: construction from curves";
 static const char patches[] = "Surfaces: patches";
-static const char nets[] = "Surfaces: nets of points";
+static const char nets[] = "Surfaces: control nets";
 static const char quadrics[] = "Quadrics";
 
 const CagBuiltin cag_builtins_surfaces[] = {
@@ -103,7 +103,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"principal_curvatures(S: surface, u: number or angle, v: number or angle)",
      cag_surfaces_principal_curvatures, "record",
      "The least and the greatest normal curvature, min and max, with min_direction and "
-     "max_direction (unit, square to each other).",
+     "max_direction (unit, perpendicular to each other).",
      "k = principal_curvatures(torus_surface(3, 1), 0deg, 0deg)\n"
      "print near(k.min * k.max, 0.25) // expect: true",
      SIDES, curvature},
@@ -321,7 +321,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "orient: text or vector = \"rmf\", twist: angle or function of t = 0deg, "
      "scale: number or function of t = 1, caps: bool = true)",
      cag_surfaces_sweep, "solid or surface",
-     "A section carried along a path, square to it: its x goes along the frame's normal and its y "
+     "A section carried along a path, perpendicular to it: its x goes along the frame's normal and "
+     "its y "
      "along the binormal. The frame does not turn about the path (\"rmf\"), is that of Frenet "
      "(\"frenet\"), keeps the place it has at the start (\"fixed\"), or has y as near to a "
      "direction "

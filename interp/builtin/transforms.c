@@ -9,7 +9,7 @@
 #define OF_TRANSFORM CAG_TAKES(TRANSFORM)
 
 static const char family[] = "Transforms";
-static const char in_the_plane[] = "In the plane";
+static const char in_the_plane[] = "Plane geometry";
 
 const CagBuiltin cag_builtins_transforms[] = {
     // --- Made, or applied at once ---
@@ -115,7 +115,8 @@ const CagBuiltin cag_builtins_transforms[] = {
      "2]",
      LISTS, family},
     {"axes(origin: point, x: vector, y: vector)", cag_transforms_axes, "transform",
-     "The frame with this origin, its x axis along x and its y axis on y's side, made square to x; "
+     "The frame with this origin, its x axis along x and its y axis on y's side, made "
+     "perpendicular to x; "
      "z "
      "is x cross y. Parallel x and y are an error.",
      "print axes([1, 0, 0], Y, Z) * [2, 0, 0] // expect: [1, 2, 0]", LISTS, family},

@@ -4,7 +4,7 @@
 #include "geom/surface/triangle.h"
 #include "interp/builtin/surfaces.h"
 
-static const char triangles[] = "Surfaces: nets of points";
+static const char triangles[] = "Surfaces: control nets";
 
 static CagValue vector_value(CagVm *vm, CagVec3 p) {
   return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);

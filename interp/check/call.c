@@ -158,6 +158,17 @@ static void report_misfit(Check *c, const CagSignature *s, const Misfit *m) {
     cag_diagnostic_set_help(d, "write %s", cag_foreign_call(s->name));
 }
 
+// Warns about a row whose summary says what to use instead.
+static void check_deprecated_row(Check *c, const CagBuiltin *row, const char *name, CagSpan span) {
+  static const char mark[] = "Deprecated: ";
+  if (strncmp(row->summary, mark, strlen(mark)) != 0) return;
+  char text[160];
+  snprintf(text, sizeof text, "%s is deprecated", name);
+  CagDiagnostic *d = cag_check_warn(c, CAG_ERR_deprecated, span, text);
+  cag_diagnostic_set_help(d, "%.*s", (int)strcspn(row->summary + strlen(mark), "."),
+                          row->summary + strlen(mark));
+}
+
 static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
   if (strcmp(row->signature, "error(message)") == 0) return CAG_TYPES_ANY; // it gives nothing back
   if (row->result && strncmp(row->result, "as ", 3) == 0) return first ? first : CAG_TYPES_ANY;
@@ -165,7 +176,7 @@ static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
 }
 
 // Rows of one name are tried in order: a call is good when one of them takes it.
-static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
+static CagTypes check_builtin(Check *c, size_t index, const CallView *v, CagSpan callee) {
   size_t rows, candidates = 0, only = 0, fitting = 0, misfits = 0;
   Misfit misfit, nearest = {0};
   const CagSignature *missed = NULL;
@@ -201,6 +212,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     return CAG_TYPES_ANY;
   }
   if (misfits == fitting) report_misfit(c, missed, &nearest);
+  else if (candidates == 1) check_deprecated_row(c, &row[only], s->name, callee);
   return result;
 }
 
@@ -274,7 +286,7 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   CagTypes result = CAG_TYPES_ANY;
   const char *name = NULL;
   const CagFunctionAst *fn = function_of(c, callee, &name);
-  if (names_builtin(callee)) result = check_builtin(c, callee->as.name.index, v);
+  if (names_builtin(callee)) result = check_builtin(c, callee->as.name.index, v, callee->span);
   else if (fn) result = check_function(c, name, fn, v);
   else if (!(called &
              (CAG_TYPES_FUNCTION | CAG_TYPES(CURVE) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID)))) {

@@ -19,17 +19,17 @@ static bool is_quick(const CagBuiltin *row) {
                                          "Angles",
                                          "Vectors",
                                          "Transforms",
-                                         "In the plane",
-                                         "Curves: made",
+                                         "Plane geometry",
+                                         "Curves: construction",
                                          "Curves: Bezier and B-splines",
-                                         "Conics: by their axes",
+                                         "Conics: from axes",
                                          "Regions",
-                                         "Surfaces: made of curves",
+                                         "Surfaces: construction from curves",
                                          "Quadrics",
                                          "Solids",
                                          "Robots: links",
                                          "Scene",
-                                         "Looks and names"};
+                                         "Appearance and names"};
   for (size_t i = 0; i < sizeof families / sizeof *families; i++)
     if (row->family && strcmp(row->family, families[i]) == 0)
       return strncmp(row->signature, "read_", strlen("read_")) != 0;

@@ -25,7 +25,7 @@ static CagTypes infer_binary(Check *c, const CagExpr *e) {
   const CagTypes result = cag_types_joined(e->as.binary.op, a, b);
   if (result) return result;
   const CagSpan op = e->as.binary.op_span;
-  snprintf(text, sizeof text, "%.*s does not join %s and %s", (int)(op.end - op.start),
+  snprintf(text, sizeof text, "cannot apply %.*s to %s and %s", (int)(op.end - op.start),
            c->ast->source->text + op.start, cag_types_text(a, left, sizeof left),
            cag_types_text(b, right, sizeof right));
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_operand, e->span, text);

@@ -10,7 +10,7 @@
 // of its default camera only: the camera here gives its own right, up and direction, from
 // cag_camera_frame, so that pictures are never mirrored. Turned things carry a `matrix`.
 //
-// Light: `assumed_gamma 1`; all colors are linear. A white matte face square to a light of
+// Light: `assumed_gamma 1`; all colors are linear. A white matte face perpendicular to a light of
 // strength 1 is 1.0 (white). No light fades with distance, so a strength says the same thing
 // everywhere. A sun stands very far away and casts slightly soft shadows; an area light casts those
 // of its size. Without radiosity (draft and normal quality) the sky's mean color, or where there

@@ -20,7 +20,7 @@ static bool nearly(CagVec3 a, CagVec3 b, double size) {
 // --- Lathes ---
 
 typedef struct Turn {
-  CagVec3 axis, through, out; // out: unit, square to the axis, in the profile's half plane
+  CagVec3 axis, through, out; // out: unit, perpendicular to the axis, in the profile's half plane
   bool has_out;
   CagTransform map; // the whole is seen through it
 } Turn;

@@ -6,7 +6,7 @@
 
 #include "interp/formats/pov_write.h"
 
-// Columns of unit length and square to each other, to rounding.
+// Columns of unit length and perpendicular to each other, to rounding.
 static bool is_rigid(const CagTransform *t) {
   const double rounding = 1e-12;
   for (int j = 0; j < 3; j++)

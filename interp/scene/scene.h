@@ -117,7 +117,7 @@ typedef struct CagLabel {
 
 typedef struct CagCamera {
   char *name;
-  CagVec3 eye, target, up; // up square to the view
+  CagVec3 eye, target, up; // up perpendicular to the view
   bool orthographic;
   double fov;             // horizontal, radians (perspective)
   double width;           // mm (orthographic)
@@ -139,7 +139,7 @@ typedef struct CagLight {
   double angle;                // SPOT: full cone, radians
   double size;                 // AREA: side of its square, mm
   CagColor color;
-  double strength; // 1: a white matte face square to it looks white
+  double strength; // 1: a white matte face perpendicular to it looks white
 } CagLight;
 
 typedef struct CagSky {

@@ -1,4 +1,4 @@
-// The one layout of a script.
+// Formats a script.
 
 #include "lang/format.h"
 

@@ -350,7 +350,7 @@ static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
 
 static const CagVec3 none = {0, 0, 0};
 
-// Up made square to the view; along the view, Y is up.
+// Up made perpendicular to the view; along the view, Y is up.
 static CagVec3 square_up(CagVec3 view, CagVec3 up) {
   const double along_view = 1e-9; // sine below which up and view are one direction
   CagVec3 v = cag_unit(view), u = cag_unit(up);

@@ -21,7 +21,7 @@ static bool fail_operands(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, con
   cag_describe_value(vm, &s, a);
   cag_string_add(&s, " and ", 5);
   cag_describe_value(vm, &s, b);
-  cag_vm_fail(vm, CAG_ERR_operand, "`%s` does not join %s", symbol(op), s.bytes);
+  cag_vm_fail(vm, CAG_ERR_operand, "cannot apply `%s` to %s", symbol(op), s.bytes);
   cag_string_free(&s);
   if (help) cag_fail_help(vm, "%s", help);
   return false;

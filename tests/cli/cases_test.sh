@@ -243,7 +243,7 @@ prints_exactly 'FAILED wrong.cag -D h=2
     got:      2
 FAILED broken.cag
   broken.cag:2: an error that is not expected: E0321
-  error: `+` does not join the number 1 and the text ""
+  error: cannot apply `+` to the number 1 and the text ""
    --> broken.cag:2:7
     |
   2 | print x + ""
