@@ -107,32 +107,32 @@ static bool call_in_radians(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_angles[] = {
     {"sin(angle: angle)", call_sin, "number",
-     "The sine of an angle, exact where it is 0, 0.5 or 1 (either sign).",
+     "Returns the sine of an angle. Exact for results 0, ±0.5, and ±1.",
      "print sin(30deg), sin(180deg) // expect: 0.5 0", 0, FAMILY},
     {"cos(angle: angle)", call_cos, "number",
-     "The cosine of an angle, exact where it is 0, 0.5 or 1 (either sign).",
+     "Returns the cosine of an angle. Exact for results 0, ±0.5, and ±1.",
      "print cos(60deg), cos(90deg) // expect: 0.5 0", 0, FAMILY},
     {"tan(angle: angle)", call_tan, "number",
-     "The tangent of an angle, exact where it is 0 or 1 (either sign). An error where it is "
-     "infinite, at 90deg and 270deg.",
+     "Returns the tangent of an angle. Exact for results 0 and ±1. At 90deg and 270deg, the "
+     "tangent is infinite, which is an error.",
      "print tan(45deg), tan(-45deg), tan(180deg) // expect: 1 -1 0", 0, FAMILY},
     {"asin(x: number)", call_asin, "angle",
-     "The angle in -90deg..90deg whose sine is x. A number up to 1e-12 outside of -1..1 is taken "
-     "for the end.",
+     "Returns the angle in -90deg..90deg whose sine is x. Values that exceed the range -1..1 by "
+     "at most 1e-12 are clamped to it.",
      "print asin(0.5) // expect: 30deg", 0, FAMILY},
     {"acos(x: number)", call_acos, "angle",
-     "The angle in 0deg..180deg whose cosine is x. A number up to 1e-12 outside of -1..1 is taken "
-     "for the end.",
+     "Returns the angle in 0deg..180deg whose cosine is x. Values that exceed the range -1..1 by "
+     "at most 1e-12 are clamped to it.",
      "print acos(0.5), acos(-1) // expect: 60deg 180deg", 0, FAMILY},
     {"atan(x: number)", call_atan, "angle",
-     "The angle between -90deg and 90deg whose tangent is x.", "print atan(1) // expect: 45deg", 0,
-     FAMILY},
+     "Returns the angle between -90deg and 90deg whose tangent is x.",
+     "print atan(1) // expect: 45deg", 0, FAMILY},
     {"atan2(y: number, x: number)", call_atan2, "angle",
-     "The angle of the point [x, y] seen from the origin, above -180deg, at most 180deg; of the "
-     "origin itself 0deg.",
+     "Returns the direction of the point [x, y] from the origin, greater than -180deg and at "
+     "most 180deg. The direction of the origin itself is 0deg.",
      "print atan2(1, -1), atan2(0, -1) // expect: 135deg 180deg", 0, FAMILY},
-    {"in_degrees(a: angle)", call_in_degrees, "number", "The number of degrees of an angle.",
+    {"in_degrees(a: angle)", call_in_degrees, "number", "Returns an angle as a number of degrees.",
      "print in_degrees(0.5turn) // expect: 180", 0, FAMILY},
-    {"in_radians(a: angle)", call_in_radians, "number", "The number of radians of an angle.",
+    {"in_radians(a: angle)", call_in_radians, "number", "Returns an angle as a number of radians.",
      "print in_radians(180deg) == pi // expect: true", 0, FAMILY},
     {0}};

@@ -558,27 +558,27 @@ static bool call_find_root(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_calculus[] = {
     {"integrate(f: function x => number, range: range of numbers or angles)", call_integrate,
      "number or list",
-     "The integral of a function that gives numbers or vectors, to about 11 digits; ends may be "
-     "infinite. Over a range of angles f is called with angles, and the "
-     "integral is by radians. f is not asked at the ends. An error where the integral does not "
-     "settle.",
+     "Returns the integral of a function whose values are numbers or vectors, to about 11 "
+     "digits. The ends of the range may be infinite. Over a range of angles, f takes angles, and "
+     "the integral is with respect to radians. f is not evaluated at the ends. It is an error if "
+     "the integral does not converge.",
      "print near(integrate(x => x^2, 0..3), 9), near(integrate(x => exp(-x^2), -inf..inf), "
      "sqrt(pi)) // expect: true true",
      0, FAMILY},
     {"minimize(f: function x => number, range: range of numbers or angles)", call_minimize, "list",
-     "[x, f(x)] at the least value of f over a finite range: of 129 samples the four lowest "
-     "valleys are refined by Brent's method, so a valley narrower than a "
-     "128th of the range may be missed. x is accurate to about 8 digits, as a minimum is.",
+     "Returns [x, f(x)] at the minimum of f over a finite range. The four lowest of 129 samples "
+     "are refined by Brent's method, so a minimum narrower than 1/128 of the range may be "
+     "missed. x is accurate to about 8 digits, the limit for a minimum.",
      "m = minimize(x => (x - 2)^2 + 1, 0..5)\nprint near(m, [2, 1], 1e-6) // expect: true", 0,
      FAMILY},
     {"maximize(f: function x => number, range: range of numbers or angles)", call_maximize, "list",
-     "[x, f(x)] at the greatest value of f over a finite range, as minimize finds the least.",
+     "Returns [x, f(x)] at the maximum of f over a finite range. Works like minimize.",
      "m = maximize(a => sin(a), 0deg..180deg)\nprint near(m[0], 90deg, 1e-5), near(m[1], 1) // "
      "expect: true true",
      0, FAMILY},
     {"find_root(f: function x => number, range: range of numbers or angles)", call_find_root,
      "number or angle",
-     "Where f is 0 in a range at whose ends it has different signs, to the accuracy of the numbers "
-     "(Brent's method).",
+     "Returns the x in a range at which f(x) is 0, to machine precision, by Brent's method. f "
+     "must have different signs at the ends of the range.",
      "print near(find_root(x => x^2 - 2, 0..2), sqrt(2)) // expect: true", 0, FAMILY},
     {0}};

@@ -29,15 +29,15 @@ static bool call_trace(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_control[] = {
     {"error(message: text)", call_error, "none",
-     "Stops the script with this message, or the attempt around it.",
+     "Stops the script with this message, or ends the enclosing attempt.",
      "print attempt(() => error(\"no such size\"), err => err.message) // expect: no such size", 0,
      FAMILY},
     {"attempt(f: function () => value, handler: function err => value)", call_attempt, "any",
-     "f(), or handler(err) when f stops with an error. err is a record: message, code, reason, "
-     "file, line, column. The limits of a run (memory, time, depth) "
-     "pass through.",
+     "Returns f(). If f stops with an error, returns handler(err) instead. err is a record with "
+     "the fields message, code, reason, file, line, and column. Limits of the run (memory, time, "
+     "depth) are not caught.",
      "print attempt(() => 1/0, err => err.code) // expect: E0307", 0, FAMILY},
     {"trace(x: any value, label: text = \"\")", call_trace, "as x",
-     "Writes x with its place in the script to standard error, and gives x.",
+     "Writes x and its location in the script to standard error, and returns x.",
      "print trace(1 + 1, \"sum\") * 2 // expect: 4", 0, FAMILY},
     {0}};

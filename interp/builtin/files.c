@@ -584,22 +584,24 @@ static bool call_json(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_files[] = {
     {"read_csv(path: text, separator: text = \",\", header: bool = none)", call_read_csv, "list",
-     "The rows of a table in a text file: as records where it has a header, else as lists. header: "
-     "none takes the first row for a header when it has no number. What "
-     "reads as a number is one, an empty cell is none; cells in quotes may hold separators and "
-     "line ends. Files lie below the script's folder or on the module path.",
+     "Reads a table from a text file: a list of records if the table has a header, otherwise a "
+     "list of lists. With header: none, the first row is a header if it contains no number. "
+     "Cells that look like numbers become numbers, and empty cells become none. Quoted cells may "
+     "contain separators and line breaks. The file must be in the script's folder, below it, or "
+     "on the module path.",
      "rows = attempt(() => read_csv(\"none.csv\"), err => err.reason)\nprint rows // expect: file",
      0, FAMILY},
     {"read_json(path: text)", call_read_json, "any",
-     "The value of a JSON file: objects are records, arrays lists, null is none. Files lie below "
-     "the script's folder or on the module path.",
+     "Reads a JSON file. Objects become records, arrays become lists, and null becomes none. The "
+     "file must be in the script's folder, below it, or on the module path.",
      "print attempt(() => read_json(\"none.json\"), err => err.code) // expect: E0317", 0, FAMILY},
     {"read_text(path: text)", call_read_text, "text",
-     "The text of a UTF-8 file below the script's folder or on the module path.",
+     "Reads a UTF-8 text file. The file must be in the script's folder, below it, or on the "
+     "module path.",
      "print attempt(() => read_text(\"none.txt\"), err => err.code) // expect: E0317", 0, FAMILY},
     {"json(x: any value)", call_json, "text",
-     "x as JSON text: records as objects, none as null, numbers in their shortest form, angles by "
-     "their degrees, transforms as rows.",
+     "Returns x as JSON text. Records become objects, none becomes null, numbers are written in "
+     "their shortest form, angles as degrees, and transforms as rows.",
      "print json({a: 1, b: [true, none, \"x\"]}) // expect: {\"a\": 1, \"b\": [true, null, \"x\"]}",
      0, FAMILY},
     {0}};

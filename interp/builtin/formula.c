@@ -359,11 +359,10 @@ static bool call_formula(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_formula[] = {
     {"formula(text: text, parameters: list of texts)", call_formula, "function",
-     "The function of these parameters that a formula in text is: numbers, + - * / % ^, "
-     "parentheses, pi, tau, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh "
-     "exp ln "
-     "log10 log2 sqrt cbrt abs sign floor ceil round hypot min max. Trigonometric functions take "
-     "and give radians.",
+     "Compiles a formula given as text to a function of these parameters. A formula may contain "
+     "numbers, + - * / % ^, parentheses, pi, tau, and the functions sin cos tan asin acos atan "
+     "atan2 sinh cosh tanh asinh acosh atanh exp ln log10 log2 sqrt cbrt abs sign floor ceil "
+     "round hypot min max. Trigonometric functions work in radians.",
      "f = formula(\"a*cos(t)\", [\"a\", \"t\"])\nprint f(2, pi) // expect: -2\nprint f(t: 0, a: 3) "
      "// expect: 3",
      0, FAMILY},

@@ -592,39 +592,40 @@ static bool call_complex_roots(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_matrices[] = {
     {"solve(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)", call_solve,
      "list",
-     "The x with matrix * x = rhs, of a square matrix (a list of rows) and a vector, or a matrix "
-     "of several columns. An error where the matrix is singular.",
+     "Returns the solution x of matrix * x = rhs. The matrix is a list of rows and must be "
+     "square. rhs is a vector, or a matrix of several columns. A singular matrix is an error.",
      "print solve([[2, 1], [1, 3]], [3, 5]) // expect: [0.8, 1.4]", 0, FAMILY},
     {"least_squares(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)",
      call_least_squares, "list",
-     "The x for which the squares of matrix * x - rhs have the least sum; where there are several, "
-     "the shortest.",
+     "Returns the x that minimizes the sum of the squares of matrix * x - rhs. If there are "
+     "several, returns the one of minimum norm.",
      "print round(least_squares([[1, 0], [1, 1], [1, 2]], [1, 3, 5]), 9) // expect: [1, 2]", 0,
      FAMILY},
     {"multiply(A: list of rows of numbers, B: list of rows of numbers or vector)", call_multiply,
-     "list", "The product of two matrices, or of a matrix and a vector.",
+     "list", "Returns the product of two matrices, or of a matrix and a vector.",
      "print multiply([[1, 2], [3, 4]], [1, 1]), multiply([[1, 2], [3, 4]], [[0, 1], [1, 0]]) // "
      "expect: [3, 7] [[2, 1], [4, 3]]",
      LISTS, FAMILY},
     {"determinant(A: list of rows of numbers)", call_determinant, "number",
-     "The determinant of a square matrix.", "print determinant([[1, 2], [3, 4]]) // expect: -2",
-     LISTS, FAMILY},
+     "Returns the determinant of a square matrix.",
+     "print determinant([[1, 2], [3, 4]]) // expect: -2", LISTS, FAMILY},
     {"inverse(A: list of rows of numbers)", call_inverse, "list",
-     "The inverse of a square matrix. An error where it is singular.",
+     "Returns the inverse of a square matrix. A singular matrix is an error.",
      "print inverse([[2, 0], [0, 4]]) // expect: [[0.5, 0], [0, 0.25]]", LISTS, FAMILY},
     {"transpose(A: list of rows of numbers)", call_transpose, "list",
-     "The matrix whose rows are the columns of A.",
+     "Returns the transpose of a matrix.",
      "print transpose([[1, 2, 3], [4, 5, 6]]) // expect: [[1, 4], [2, 5], [3, 6]]", LISTS, FAMILY},
     {"eigen(symmetric: list of rows of numbers)", call_eigen, "record",
-     "Eigenvalues of a symmetric matrix in rising order, and as `vectors` the unit eigenvector of "
-     "each, its largest component positive.",
+     "Returns the eigenvalues of a symmetric matrix in ascending order, and their unit "
+     "eigenvectors as `vectors`. The largest component of each eigenvector is positive.",
      "e = eigen([[2, 0], [0, 1]])\nprint e.values, e.vectors // expect: [1, 2] [[0, 1], [1, 0]]", 0,
      FAMILY},
     {"roots(coefficients: list of numbers)", call_roots, "list",
-     "The real roots of c0 + c1 x + c2 x^2 + ... in rising order, multiple ones as often as they "
-     "are roots. An error where all coefficients are 0.",
+     "Returns the real roots of c0 + c1 x + c2 x^2 + ... in ascending order, repeated according "
+     "to their multiplicity. It is an error if all coefficients are 0.",
      "print roots([-6, 11, -6, 1]), roots([1, 0, 1]) // expect: [1, 2, 3] []", 0, FAMILY},
     {"complex_roots(coefficients: list of numbers)", call_complex_roots, "list",
-     "All roots of c0 + c1 x + c2 x^2 + ... as [re, im], by real, then imaginary part.",
+     "Returns all roots of c0 + c1 x + c2 x^2 + ... as [re, im], sorted by real part, then by "
+     "imaginary part.",
      "print complex_roots([1, 0, 1]) // expect: [[0, -1], [0, 1]]", 0, FAMILY},
     {0}};

@@ -104,9 +104,9 @@ static bool call_random(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_random[] = {
     {"random(seed: integer, n: integer, over: range = 0..1)", call_random, "list",
-     "n numbers or angles spread evenly over an interval; with a step, such as 1..6 by 1, elements "
-     "of the range. Pure: the same seed gives the same list, on every "
-     "machine (xoshiro256** seeded by splitmix64).",
+     "Returns n uniformly distributed random numbers or angles in a range. With a step, such as "
+     "1..6 by 1, returns elements of the range. The function is pure: a seed gives the same list "
+     "on every machine (xoshiro256**, seeded by splitmix64).",
      "print random(1, 3) == random(1, 3), random(1, 3) == random(2, 3) // expect: true false\n"
      "print all(random(7, 100, over: 5..6), x => x in 5..6) // expect: true",
      0, FAMILY},

@@ -95,17 +95,19 @@ static bool call_type_of(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_records[] = {
-    {"keys(r: record)", call_keys, "list", "The names of a record's fields, in their order.",
+    {"keys(r: record)", call_keys, "list",
+     "Returns the names of a record's fields, in their order.",
      "print keys({x: 1, y: 2}) // expect: [\"x\", \"y\"]", 0, FAMILY},
-    {"values(r: record)", call_values, "list", "The values of a record's fields, in their order.",
+    {"values(r: record)", call_values, "list",
+     "Returns the values of a record's fields, in their order.",
      "print values({x: 1, y: 2}) // expect: [1, 2]", 0, FAMILY},
     {"record(pairs: list of pairs [name, value])", call_record, "record",
-     "The record of a list of pairs [name, value]. A name may stand once.",
+     "Returns the record of a list of pairs [name, value]. Names must be distinct.",
      "print record([[\"x\", 1], [\"y\", 2]]) // expect: {x: 1, y: 2}", 0, FAMILY},
     {"get(r: record, key: text, default: any value = none)", call_get, "any",
-     "The field of this name, or the default where the record has none.",
+     "Returns the field with this name, or the default if the record does not have it.",
      "print get({x: 1}, \"x\", 0), get({x: 1}, \"y\", 0) // expect: 1 0", 0, FAMILY},
     {"type_of(x: any value)", call_type_of, "text",
-     "The name of the type of a value: \"number\", \"angle\", \"list\", \"curve\" ...",
+     "Returns the name of the type of a value, such as \"number\", \"angle\", \"list\", or \"curve\".",
      "print type_of(3), type_of(30deg), type_of([]) // expect: number angle list", 0, FAMILY},
     {0}};

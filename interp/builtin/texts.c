@@ -178,29 +178,30 @@ static bool call_lower(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_texts[] = {
     {"text(x: any value, digits: integer = none)", call_text, "text",
-     "x as print shows it. With `digits`, numbers and angles, alone or in lists, have exactly so "
-     "many places after the point, halves rounded away from 0.",
+     "Returns x as text, as print shows it. With `digits`, numbers and angles, alone or in "
+     "lists, have exactly this number of decimal places; halves are rounded away from 0.",
      "print text([1, \"a\"]), text(2/3, digits: 3), text(2, digits: 2) // expect: [1, \"a\"] 0.667 "
      "2.00",
      0, FAMILY},
     {"split(t: text or number or angle, separator: text)", call_split, "list",
-     "The parts of a text between the separators; with \"\" its characters.",
+     "Splits a text at each separator. With the separator \"\", returns its characters.",
      "print split(\"a,b,,c\", \",\") // expect: [\"a\", \"b\", \"\", \"c\"]", CAG_TYPE_BIT(TEXT),
      FAMILY},
     {"join(xs: list or range or text, separator: text = \"\")", call_join, "text",
-     "The elements, as print shows them, in one text with the separator between them.",
+     "Joins the elements, as print shows them, to one text with the separator between them.",
      "print join([\"a\", \"b\", 3], \"-\") // expect: a-b-3", 0, FAMILY},
-    {"upper(t: text)", call_upper, "text", "The text in capital letters.",
+    {"upper(t: text)", call_upper, "text", "Returns the text in uppercase.",
      "print upper(\"bézier θ\") // expect: BÉZIER Θ", 0, FAMILY},
-    {"lower(t: text)", call_lower, "text", "The text in small letters.",
+    {"lower(t: text)", call_lower, "text", "Returns the text in lowercase.",
      "print lower(\"ABC Θ\") // expect: abc θ", 0, FAMILY},
     {"starts_with(t: text, part: text)", call_starts_with, "bool",
-     "Whether a text begins with another.",
+     "Tests whether a text begins with another text.",
      "print starts_with(\"spring\", \"spr\") // expect: true", 0, FAMILY},
     {"replace(t: text, old: text, new: text)", call_replace, "text",
-     "The text with `new` wherever `old` stood, from left to right.",
+     "Replaces each occurrence of `old` with `new`, from left to right.",
      "print replace(\"a-b-c\", \"-\", \"+\") // expect: a+b+c", 0, FAMILY},
     {"number_of(t: text)", call_number_of, "number",
-     "The number that a text is, spaces around it aside. An error where it is none, or has a unit.",
+     "Converts a text to a number. Spaces around it are ignored. It is an error if the text is "
+     "not a number or has a unit.",
      "print number_of(\"3.5\"), number_of(\" -2e3 \") // expect: 3.5 -2000", 0, FAMILY},
     {0}};

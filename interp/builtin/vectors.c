@@ -238,29 +238,30 @@ static bool call_near(CagCall *call, CagValue *result) {
 }
 
 const CagBuiltin cag_builtins_vectors[] = {
-    {"dot(A: vector, B: vector)", call_dot, "number", "The scalar product of two vectors.",
+    {"dot(A: vector, B: vector)", call_dot, "number", "Returns the dot product of two vectors.",
      "print dot([1, 2, 3], [4, 5, 6]) // expect: 32", 0, FAMILY},
     {"cross(A: vector, B: vector)", call_cross, "list",
-     "The vector product in space; plane vectors have z = 0.",
+     "Returns the cross product of two vectors. A vector of the plane has z = 0.",
      "print cross(X, Y), cross([2, 0], [0, 3]) // expect: [0, 0, 1] [0, 0, 6]", 0, FAMILY},
     {"norm(V: vector)", call_norm, "number",
-     "The length of a vector: the root of the sum of its squares.",
+     "Returns the length of a vector, the square root of the sum of its squares.",
      "print norm([3, 4]), norm([2, 3, 6]) // expect: 5 7", 0, FAMILY},
     {"unit(V: vector)", call_unit, "list",
-     "The vector of length 1 in the direction of V. An error for a zero vector.",
+     "Returns the unit vector in the direction of V. A zero vector is an error.",
      "print unit([0, 5]) // expect: [0, 1]", 0, FAMILY},
     {"distance(P: point or shape, Q: point)", call_distance, "number",
-     "The distance of two points.", "print distance([1, 1], [4, 5]) // expect: 5", LISTS, FAMILY},
+     "Returns the distance between two points.", "print distance([1, 1], [4, 5]) // expect: 5",
+     LISTS, FAMILY},
     {"angle_between(A: vector, B: vector)", call_angle_between, "angle",
-     "The angle between two vectors, in 0deg..180deg, accurate for small angles too. An error for "
-     "a zero vector.",
+     "Returns the angle between two vectors, in 0deg..180deg. Accurate for small angles, too. A "
+     "zero vector is an error.",
      "print angle_between(X, [1, 1, 0]) // expect: 45deg", 0, FAMILY},
     {"near(a: number or angle or vector, b: number or angle or vector, "
      "tolerance: number or angle = 1e-9, relative: number = 0)",
      call_near, "bool",
-     "Whether two numbers, angles, vectors, transforms, or lists of these, are equal element by "
-     "element within the larger of `tolerance` and "
-     "`relative` times the size of b's element. Angles are compared by their degrees.",
+     "Tests whether two numbers, angles, vectors, transforms, or lists of these are equal to "
+     "within a tolerance: each element may differ by the larger of `tolerance` and `relative` "
+     "times the magnitude of b's element. Angles are compared in degrees.",
      "print near(0.1 + 0.2, 0.3), near([1, 2], [1, 2.1]), near(99, 100, relative: 0.02) // expect: "
      "true false true",
      0, FAMILY},
