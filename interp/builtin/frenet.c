@@ -294,73 +294,72 @@ static const char theory[] = "Curves: differential geometry";
 
 const CagBuiltin cag_builtins_frenet[] = {
     {"special_points(C: curve)", call_special_points, "record",
-     "The parameters where the curve stands still for a moment (singular: the first derivative is "
-     "0), where its curvature is 0 (straightening) and where its torsion is 0 (flattening); a "
-     "parameter is in the first of these lists that it belongs to. Pieces between knots and "
-     "corners "
-     "along which it is so throughout are ranges: still, straight, planar.",
+     "Returns the parameters at which the curve is singular (its first derivative is 0), "
+     "straightening (its curvature is 0), or flattening (its torsion is 0). Each parameter is in "
+     "the first list that applies. Pieces between knots and corners on which this holds "
+     "everywhere are returned as ranges: still, straight, and planar.",
      "s = special_points(curve(t => [t, t^3], -1..1))\n"
      "print near(s.straightening, [0], 1e-9), s.singular, s.planar // expect: true [] [-1..1]",
      CURVES, asked},
     {"plane_contact(C: curve, t: number or angle, normal: vector)", call_plane_contact, "record",
-     "How the curve meets the plane through C(t) with this normal: the coefficients [c1, c2, c3] "
-     "of its signed distance c1 h + c2 h^2 + c3 h^3 + ... at t + h, the order of contact (0: it "
-     "goes through at an angle, 1: it touches, 2: the osculating plane; inf: it lies in the "
-     "plane), "
-     "the side before and after (-1, 0, 1), and whether it crosses from one to the other.",
+     "Describes how the curve meets the plane through C(t) with this normal: the coefficients "
+     "[c1, c2, c3] of its signed distance c1 h + c2 h^2 + c3 h^3 + ... at t + h, the order of "
+     "contact (0: it crosses at an angle; 1: tangent; 2: osculating; inf: it lies in the plane), "
+     "the side before and after (-1, 0, or 1), and whether it crosses.",
      "c = curve(t => [t, t^2, t^3], -1..1)\n"
      "print plane_contact(c, 0, Y).order, plane_contact(c, 0, Z).crosses // expect: 1 true",
      CURVES, asked},
     {"osculating_circle(C: curve, t: number or angle)", call_osculating_circle, "record",
-     "The circle of curvature: radius, center, and the circle as a curve that starts at C(t) and "
-     "runs along with C. Where the curvature is 0 there is none: an error (no-normal).",
+     "Returns the osculating circle: its radius, its center, and the circle as a curve that "
+     "starts at C(t) and runs in the direction of C. If the curvature is 0, there is none, which "
+     "is an error (no-normal).",
      "print near(osculating_circle(ellipse(2, 1), 0deg).center, [1.5, 0]) // expect: true", CURVES,
      asked},
     {"tangent_line(C: curve, t: number or angle, length: length = 1)", call_tangent_line, "curve",
-     "The line from C(t) along the tangent, of this length; a negative one runs backwards.",
+     "Returns the line from C(t) along the tangent, of this length. A negative length extends "
+     "backward.",
      "print end_point(tangent_line(bezier([[0, 0], [1, 0], [2, 2]]), 0, 3)) // expect: [3, 0]",
      CURVES, asked},
     {"frame_derivative(C: curve, t: number or angle)", call_frame_derivative, "record",
-     "How the Frenet frame turns: the derivatives of tangent, normal and binormal by the arc "
-     "length, "
-     "and as rows of coefficients in the frame by_length and by_parameter (skew matrices).",
+     "Returns how the Frenet frame rotates: the derivatives of tangent, normal, and binormal "
+     "with respect to arc length, and the skew-symmetric matrices by_length and by_parameter of "
+     "their coefficients in the frame.",
      "f = frame_derivative(circle(2), 0deg)\n"
      "print near(f.by_length, [[0, 0.5, 0], [-0.5, 0, 0], [0, 0, 0]]) // expect: true",
      CURVES, asked},
     {"frenet_of(derivatives: list of vectors)", call_frenet_of, "record",
-     "Frame of a curve with these derivatives of order 1, 2 (and 3): speed, tangent, normal, "
-     "binormal, curvature, torsion and radius of curvature. What does not exist is none. A first "
-     "derivative of 0 is an error (singular-point).",
+     "Returns the Frenet frame of a curve with these derivatives of order 1, 2, and optionally "
+     "3: the speed, tangent, normal, binormal, curvature, torsion, and radius of curvature. "
+     "Fields that are undefined are none. A first derivative of 0 is an error (singular-point).",
      "print frenet_of([[2, 0, 0], [0, 2, 0], [0, 0, 3]]).curvature // expect: 0.5", CAG_TAKES_LISTS,
      theory},
     {"triad_derivative(triad: list of 3 vectors, derivatives: list of vectors)",
      call_triad_derivative, "list",
-     "Of three unit vectors at right angles that turn: the rows of coefficients of their "
-     "derivatives in the vectors themselves, a skew matrix.",
+     "For three rotating orthonormal vectors, returns the skew-symmetric matrix whose rows are "
+     "the coefficients of their derivatives in the vectors themselves.",
      "print triad_derivative([X, Y, Z], [2 * Y, -2 * X, [0, 0, 0]]) // expect: [[0, 2, 0], [-2, 0, "
      "0], [0, 0, 0]]",
      CAG_TAKES_LISTS, theory},
     {"chain_derivatives(derivatives: list of vectors, by: list of numbers)", call_chain_derivatives,
      "list",
-     "The derivatives of order 1, 2, .. of C(t(u)) by u, from those of C by t and those of t by u, "
-     "as many of both.",
+     "Returns the derivatives of order 1, 2, ... of C(t(u)) with respect to u, from those of C "
+     "with respect to t and those of t with respect to u. Both lists have the same length.",
      "print chain_derivatives([[1, 2], [0, 4]], [2, 3]) // expect: [[2, 4], [3, 22]]",
      CAG_TAKES_LISTS, theory},
     {"circular_vectors(t: angle)", call_circular_vectors, "record",
-     "The unit vectors of the turning axes: e = [cos t, sin t, 0] and g = [-sin t, cos t, 0], its "
-     "derivative.",
+     "Returns the rotating unit vectors e = [cos t, sin t, 0] and its derivative g = [-sin t, "
+     "cos t, 0].",
      "print circular_vectors(90deg) // expect: {e: [0, 1, 0], g: [-1, 0, 0]}", 0, theory},
     {"helix_motion(radius: length, turning: angle, speed: number, time: number)", call_helix_motion,
      "record",
-     "A point that starts at [radius, 0, 0], turns about z by the angle `turning` each second and "
-     "climbs at this speed: point, velocity, angle turned, rise per radian, pitch per turn, length "
-     "of its way, curvature and torsion.",
+     "Describes a point that starts at [radius, 0, 0], rotates about z by the angle `turning` "
+     "per second, and rises at this speed: its point, velocity, angle of rotation, rise per "
+     "radian, pitch per turn, distance traveled, curvature, and torsion.",
      "m = helix_motion(2, 90deg, 3, 1)\nprint m.point, m.angle // expect: [0, 2, 3] 90deg", 0,
      theory},
     {"constant_curve(curvature: curvature, torsion: curvature)", call_constant_curve, "record",
-     "The curve of constant curvature and torsion: kind (\"line\", \"circle\" or \"helix\"), "
-     "radius, "
-     "rise per radian and pitch per turn, as `helix` takes it.",
+     "Returns the curve of constant curvature and torsion: its kind (\"line\", \"circle\", or "
+     "\"helix\"), radius, rise per radian, and pitch per turn, as `helix` takes it.",
      "print constant_curve(0.25, 0.25).radius, constant_curve(0.4, 0).kind // expect: 2 circle", 0,
      theory},
     {0}};

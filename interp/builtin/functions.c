@@ -369,11 +369,12 @@ static bool call_surface(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_functions[] = {
     {"curve(f: function t => point, range: range of numbers or angles)", call_curve, "curve",
-     "The curve of the points f(t), t in a range of numbers or of angles. f gives [x, y], or [x, "
-     "y, z]. Derivatives, and with them tangents, lengths and meshes, are computed exactly along "
-     "with the formula, not by differences; of an angle they are per radian. floor, round, sign "
-     "and what searches cannot be differentiated, nor can abs at 0: an error (not-differentiable). "
-     "All questions to curves work but for to_nurbs: there is no exact form.",
+     "Returns the curve of the points f(t), with t in a range of numbers or angles. f returns "
+     "[x, y] or [x, y, z]. Derivatives, and with them tangents, lengths, and meshes, are exact: "
+     "they are computed by automatic differentiation of the formula. For an angle, they are per "
+     "radian. floor, round, sign, searches, and abs at 0 cannot be differentiated "
+     "(not-differentiable). All queries of curves work, except for to_nurbs, since there is no "
+     "exact form.",
      "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
      "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
      "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
@@ -381,21 +382,20 @@ const CagBuiltin cag_builtins_functions[] = {
     {"natural_curve(curvature: function s => number or curvature, length: length, "
      "torsion: function s => number or curvature = none, frame: transform = identity)",
      call_natural_curve, "curve",
-     "The curve whose curvature (1/mm) and torsion are these functions of the arc length s in "
-     "0..length, which is its parameter. It starts at the frame's origin along its x axis and "
-     "bends "
-     "towards its y axis. Without torsion it is a plane curve, and negative curvature bends to the "
-     "other side. Points are accurate to 1e-12 of the length where the functions are smooth; they "
-     "may be pieced together by `if`.",
+     "Returns the curve whose curvature (1/mm) and torsion are these functions of the arc length "
+     "s in 0..length, which is its parameter. It starts at the frame's origin along its x axis "
+     "and bends toward its y axis. Without torsion, it is a plane curve, and a negative "
+     "curvature bends to the other side. Points are accurate to 1e-12 of the length where the "
+     "functions are smooth; they may be piecewise, by `if`.",
      "c = natural_curve(s => 0.5, pi) // a quarter of a circle of radius 2\n"
      "print near(end_point(c), [2, 2]), near(curvature(c, 1), 0.5) // expect: true true",
      FUNCTIONS, "Curves: construction"},
     {"surface(f: function (u, v) => point, u: range of numbers or angles = 0..1, "
      "v: range of numbers or angles = 0..1)",
      call_surface, "surface",
-     "The surface of the points f(u, v) = [x, y, z], u and v in ranges of numbers or of angles. "
-     "Partial derivatives are exact, as of `curve`. Edges that meet and edges that are one point "
-     "are found, so that a closed formula is a closed surface.",
+     "Returns the surface of the points f(u, v) = [x, y, z], with u and v in ranges of numbers "
+     "or angles. Partial derivatives are exact, as for `curve`. Coincident edges, and edges that "
+     "are a single point, are recognized, so a closed formula gives a closed surface.",
      "s = surface((u, v) => [u, v, u * v], u: 0..2, v: 0..2)\n"
      "print s(1, 2), near(normal(s, 0, 0), Z) // expect: [1, 2, 2] true",
      FUNCTIONS, "Surfaces: construction"},

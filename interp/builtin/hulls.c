@@ -451,46 +451,46 @@ static bool call_distance(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_hulls[] = {
     {"convex_hull(points: list of points)", call_convex_hull, "region or solid",
-     "The smallest convex shape that holds all points: of points of the plane a region, "
-     "counter-clockwise from the leftmost; of points in space, or of a shape or list of shapes, a "
-     "solid bounded by triangles. Sides are decided exactly. Points within rounding of a "
-     "side, edge or face are no corners of it. Curved shapes are replaced by points of them, to "
-     "their own tolerance, without one to 1e-4 of their size. Points on one line or in "
-     "one plane have no hull in space: errors (coincident-points, collinear-points, "
-     "coplanar-points).",
+     "Returns the convex hull. For points of the plane, it is a region, counter-clockwise from "
+     "the leftmost point. For points in space, a shape, or a list of shapes, it is a solid "
+     "bounded by triangles. Orientation tests are exact. Points within rounding of a side, edge, "
+     "or face are not vertices. Curved shapes are approximated by points, to their own "
+     "tolerance, or to 1e-4 of their size. Degenerate points in space are errors "
+     "(coincident-points, collinear-points, coplanar-points).",
      "print area(convex_hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1], [2, 0]])) // expect: 8\n"
      "h = convex_hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])\n"
      "print len(vertices(tessellate(h))), near(volume(h), 1 / 6) // expect: 4 true",
      0, "Convex hulls"},
     {"hull(points: list of points)", call_convex_hull, "region or solid",
-     "Another name of `convex_hull`: the smallest convex shape that holds all points or shapes.",
+     "Another name of `convex_hull`.",
      "print area(hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1]])) // expect: 8\n"
      "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
      0, "Convex hulls"},
     {"curve_on(S: surface, C: curve)", call_curve_on, "curve",
-     "The curve on the surface, or on the side of a swept solid, whose u and v are x and y of a "
-     "plane curve; angles of the surface "
-     "are radians there. It has the plane curve's parameter and domain, and exact derivatives up "
-     "to order 8. Along a direction in which the surface is closed it may go round several times; "
-     "along others it must stay in the domain (curve-outside). It has no exact NURBS form.",
+     "Returns the curve on a surface, or on the side of a swept solid, whose u and v are the x "
+     "and y of a plane curve (radians for angles). It has the parameter and domain of the plane "
+     "curve, and exact derivatives up to order 8. In a direction in which the surface is closed, "
+     "it may wrap around several times; otherwise, it must stay in the domain (curve-outside). "
+     "It has no exact NURBS form.",
      "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
      "print is_closed(c), length(c) > 3 * tau // expect: true true",
      CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: construction"},
     {"contains(G: shape or group, P: point or shape)", call_contains, "bool",
-     "Whether a solid or closed mesh contains P; its boundary, to 1e-9 of its size, belongs to it. "
-     "Solids are asked exactly but for walls and gaps thinner than 1e-3 of their size.",
+     "Tests whether a solid or closed mesh contains P. The boundary, to 1e-9 of the size, is "
+     "included. For solids, the test is exact, except for walls and gaps thinner than 1e-3 of "
+     "their size.",
      "print contains(sphere(2), [0, 0, 1.999]), contains(box(1), [1, 1, 1.001]) // expect: true "
      "false",
      CAG_TAKES(SOLID) | CAG_TAKES(MESH), "Solids: measures"},
     {"distance(G: shape or group, P: point or shape)", call_distance, "number",
-     "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
-     "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
-     "meshes: every place whose mesh is near enough is tried by Newton's method. "
-     "Spheres, cylinders, circles, planes and lines at a constant distance from each other have a "
-     "certain one. For other shapes that run along each other, the search stops when thousands of "
-     "pairs have the same distance. If 100,000 pairs have different distances and others may be "
-     "closer, it is an error "
-     "(convergence). `distance(P, G)` is the same.",
+     "Returns the smallest distance (mm) between a shape or group and a point or another shape. "
+     "It is 0 where they meet, and inside a solid or closed mesh. It is the distance of the "
+     "exact shapes, not of their meshes: each pair of places whose meshes are near enough is "
+     "refined by Newton's method. The result is certain for spheres, cylinders, circles, planes, "
+     "and lines at a constant distance from each other. For other shapes that run along each "
+     "other, the search stops when thousands of pairs have the same distance. If 100,000 pairs "
+     "have different distances and others may be closer, it is an error (convergence). "
+     "`distance(P, G)` is the same.",
      "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
      "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"
      "print distance(box(2), [1, 1, 1]) // expect: 0",

@@ -72,10 +72,10 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_mesh_files[] = {
     {"read_mesh(path: text)", call_read_mesh, "mesh",
-     "The mesh of a file: STL (binary and text), OBJ, PLY (binary and text), glTF and GLB, all its "
-     "parts together. Lengths are taken as millimeters and Z as up; those of glTF are meters with "
-     "Y up and are turned into ours. Points at one place are one point of the mesh; normals and "
-     "parameters are kept. What is wrong with a file is told with its line or byte. Files lie "
-     "below the script's folder or on the module path.",
+     "Reads all parts of a file as one mesh: STL (binary and text), OBJ, PLY (binary and text), "
+     "glTF, and GLB. Lengths are millimeters, and Z is up. For glTF, meters with Y up are "
+     "converted. Coincident points become one vertex; normals and texture parameters are kept. "
+     "Errors state the line or byte of the file. The file must be in the script's folder, below "
+     "it, or on the module path.",
      "print attempt(() => read_mesh(\"none.stl\"), err => err.reason) // expect: file", 0, meshes},
     {0}};

@@ -70,27 +70,26 @@ static bool call_intersect(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_meetings[] = {
     {"closest(S: surface, P: point)", call_closest, "record",
-     "The point of the surface nearest to P: u, v, point and distance (mm). If several are equally "
-     "near, it is one of them. Bounds guarantee that no other point is nearer for surfaces with an "
-     "exact NURBS form, and for tubes, sweeps and twisted extrusions of lines, arcs, helices, "
-     "splines and curves joined from them. For points outside offsets and away from their ends, "
-     "they do as well. Other surfaces are sampled as finely as they bend: nothing is known of a "
-     "formula between its points. The nearest point of `interpolate_surface(sample(S, nu, nv))`, "
-     "a NURBS near such a surface, is certain.",
+     "Returns the point of the surface nearest to P, with u, v, point, and distance (mm). If "
+     "several points are equally near, returns one of them. The result is guaranteed by bounds "
+     "for surfaces with an exact NURBS form, and for tubes, sweeps, and twisted extrusions of "
+     "lines, arcs, helices, splines, and curves joined from them; for points outside of offsets "
+     "and away from their ends as well. Other surfaces, such as formulas, are sampled as finely "
+     "as they bend. For a guaranteed result, use `interpolate_surface(sample(S, nu, nv))`, a "
+     "NURBS surface near S.",
      "c = closest(sphere_surface(2), [0, 5, 0])\n"
      "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
      "90deg",
      CAG_TAKES(SURFACE), MEETINGS},
     {"intersect(S: surface, A: curve or surface or plane, tolerance: length = none)",
      call_intersect, "list",
-     "Where the surface meets a curve: records of point, u, v, t of the curve, and multiplicity (2 "
-     "where they touch), in the order of t. Where it meets another surface or a plane: curves, "
-     "lines and conics exactly, others as "
-     "cubics within the tolerance (none: a millionth of the size). These are the curves where "
-     "they cross and the curves along which they touch; along the latter the normals of both are "
-     "parallel. With a plane, edges and creases of the surface that lie in it are among them. "
-     "Surfaces that touch at single points have no curve there. Of many tiny loops side by side "
-     "some may be missed. Where they share a piece it is an error (overlap).",
+     "Returns the points in which the surface meets a curve: records of point, u, v, t of the "
+     "curve, and multiplicity (2 where they touch), sorted by t. For another surface or a plane, "
+     "returns the curves in which they cross or touch: lines and conics are exact, and others "
+     "are cubics within the tolerance (none: a millionth of the size). Edges and creases of the "
+     "surface that lie in a plane are included. Isolated points of contact are not. Very small "
+     "loops that are close together may be missed. It is an error if the surfaces share a piece "
+     "(overlap).",
      "c = intersect(sphere_surface(5), translate([0, 0, 3]) * bilinear([-9, -9], [-9, 9], [9, -9], "
      "[9, 9]))\n"
      "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true\n"

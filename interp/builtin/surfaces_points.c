@@ -644,115 +644,113 @@ static bool net_mesh(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_tensors[] = {
     {"spans(S: surface)", spans, "record",
-     "The ranges between the knots of a Bezier or B-spline surface, lists u and v: over each "
-     "rectangle of them it is one polynomial, or quotient of two.",
+     "Returns the knot intervals of a Bezier or B-spline surface, as lists u and v. Over each "
+     "rectangle of intervals, the surface is polynomial or rational.",
      PATCH "print spans(refine(s)).u // expect: [0..0.5, 0.5..1]", SURFACES, family},
     {"support(S: surface, i: integer, j: integer)", support, "record",
-     "The ranges u and v over which control point [i, j] has an influence: what changes when it is "
-     "moved. In a closed direction a list of ranges.",
+     "Returns the ranges u and v that control point [i, j] influences. In a closed direction, it "
+     "is a list of ranges.",
      "s = bspline_surface([for i in 0..6: [for j in 0..6: [i, j, 0]]])\n"
      "print support(s, 3, 0) // expect: {u: 0..4, v: 0..1}",
      SURFACES, family},
     {"acting_points(S: surface, u: number or angle, v: number or angle, "
      "side: \"right\" or \"left\" = \"right\")",
      acting_points, "record",
-     "The control points that the surface at u, v is made of: the spans u and v between knots, the "
-     "`rows` and `columns` of the net (a closed direction goes round), and their `points`. The "
-     "surface over the spans lies in their convex hull.",
+     "Returns the control points that influence the surface at u, v: the knot intervals u and v, "
+     "the `rows` and `columns` of the net (a closed direction wraps around), and their `points`. "
+     "The surface over these intervals lies in the convex hull of the points.",
      "s = bspline_surface([for i in 0..5: [for j in 0..4: [i, j, 0]]], degree: [3, 2])\n"
      "a = acting_points(s, 2.5, 1.5)\n"
      "print a.rows, a.columns // expect: [2, 3, 4, 5] [1, 2, 3]",
      SURFACES, family},
     {"basis(S: surface, u: number or angle, v: number or angle)", basis, "list",
-     "By what each control point is multiplied at u, v, in rows as the net; they sum to 1.",
+     "Returns the factor of each control point at u, v, in rows like the net. Their sum is 1.",
      PATCH "print basis(s, 0, 0)[0] // expect: [1, 0, 0, 0]", SURFACES, family},
     {"numerator(S: surface, u: number or angle, v: number or angle, du: integer = 0, "
      "dv: integer = 0)",
      numerator, "list",
-     "The sum of the control points times their weights and basis functions, or its partial "
-     "derivative, du times by u and dv times by v; the point is this by the denominator.",
+     "Returns the sum of the control points times their weights and basis functions, or its "
+     "partial derivative of order du in u and dv in v. The surface is this sum divided by the "
+     "denominator.",
      PATCH "print numerator(s, 0.5, 0.5) // expect: [1.5, 1.5, 2.25]", SURFACES, family},
     {"denominator(S: surface, u: number or angle, v: number or angle, du: integer = 0, "
      "dv: integer = 0)",
      denominator, "number",
-     "The sum of the weights times the basis functions, or its partial derivative; 1 of a surface "
-     "that is not rational.",
+     "Returns the sum of the weights times the basis functions, or its partial derivative. It is "
+     "1 if the surface is not rational.",
      "s = bezier_surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]], weights: [[1, 1], [1, 3]])\n"
      "print denominator(s, 0.5, 0.5), denominator(s, 0, 0, 1, 1) // expect: 1.5 2",
      SURFACES, family},
     {"polynomials(S: surface)", polynomials, "list",
-     "Of each polynomial piece of the surface, in rows of u, the table of its coefficients: [i][j] "
-     "is the vector by u^i v^j, u and v from the piece's own start. Exact to rounding, which grows "
-     "with the degree (below 8 it is no concern).",
+     "Returns the coefficients of each polynomial piece of the surface, in rows of u: [i][j] is "
+     "the vector for u^i v^j, with u and v from the start of the piece. Exact to rounding, which "
+     "is negligible for degrees below 8.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
      "print polynomials(s)[0][0] // expect: [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 0, 4]]]",
      SURFACES, family},
     {"patch_corners(S: surface)", patch_corners, "record",
-     "Points, derivatives by u and by v, and twists (by both) at the corners of a surface, as "
-     "coons_bicubic takes them: `corners`, `tangents_u`, `tangents_v`, `twists`, each [[at u = "
-     "start, v = start; v = end], [at u = end ...]].",
+     "Returns the points, derivatives in u and v, and twists at the corners of a surface, as "
+     "coons_bicubic takes them: `corners`, `tangents_u`, `tangents_v`, and `twists`.",
      PATCH "print patch_corners(s).twists[1] // expect: [[0, 0, 9], [0, 0, 9]]", SURFACES, family},
     {"hermite_matrix(S: surface)", hermite_matrix, "list",
-     "The 4 by 4 table of a bicubic patch (or one of lower degrees), as hermite_patch takes it: "
-     "rows at u = start, at u = end and the derivatives by u there; columns likewise for v. "
-     "Surfaces of several patches (not-one-patch), of higher degrees (degree-too-high) or with "
-     "weights (rational-patch) have none.",
+     "Returns the 4 by 4 table of a patch that is at most bicubic, as hermite_patch takes it. "
+     "Surfaces of several patches (not-one-patch), of higher degrees (degree-too-high), or with "
+     "weights (rational-patch) are errors.",
      PATCH "q = hermite_matrix(s)\n"
            "print near(hermite_patch(q)(0.3, 0.7), s(0.3, 0.7)) // expect: true",
      SURFACES, family},
     {"edit_corner(S: surface, u: 0 or 1, v: 0 or 1, tangent_u: number or vector = 1, "
      "tangent_v: number or vector = 1, twist: number or vector = 1)",
      edit_corner, "surface",
-     "The surface with another corner, that at the ends u and v (0 or 1 each): tangents and twist "
-     "are multiplied by a number, or become a vector. The three control points beside the corner "
-     "move; all other ones, and what is not named at this corner, stay.",
+     "Changes the corner at the ends u and v (0 or 1 each): tangents and twist are multiplied by "
+     "a number, or replaced by a vector. The three control points next to the corner move. "
+     "Everything else, and what is not given, stays the same.",
      PATCH "t = edit_corner(s, 0, 0, tangent_u: 2, twist: [0, 0, 5])\n"
            "c = patch_corners(t)\n"
            "print c.tangents_u[0][0], c.twists[0][0] // expect: [6, 0, 0] [0, 0, 5]",
      SURFACES, family},
     {"set_point(S: surface, i: integer, j: integer, P: point, weight: number = none)", set_point,
-     "surface",
-     "The surface with control point [i, j] put to P, and its weight changed where one is given.",
+     "surface", "Moves control point [i, j] to P, and changes its weight if one is given.",
      PATCH "print points(set_point(s, 1, 2, [0, 0, 7]))[1][2] // expect: [0, 0, 7]", SURFACES,
      family},
     {"bezier_join(S: surface, edge: \"u0\" or \"u1\" or \"v0\" or \"v1\" = \"u1\", ratio: number = "
      "1, "
      "shear: number or list of 2 numbers = 0, degree: integer >= 1 = none)",
      bezier_join, "record",
-     "The first two lines of control points, `points` and `weights`, of a Bezier surface that "
-     "continues S across an edge (u0, u1, v0, v1): its derivative across is that of S times the "
-     "ratio, and the derivative along the edge times the shear, a number or two for the ends of "
-     "the edge. Ratio 1 without shear is C1, else G1. The degree across is that of S, or the one "
-     "given.",
+     "Returns the first two rows of control points, as `points` and `weights`, of a Bezier "
+     "surface that continues S across an edge (u0, u1, v0, or v1). Its cross derivative is that "
+     "of S times the ratio, plus the derivative along the edge times the shear (a number, or two "
+     "for the ends of the edge). Ratio 1 without shear is C1; otherwise, the surfaces are G1. "
+     "The degree across the edge is that of S, or the given one.",
      PATCH "print bezier_join(s, ratio: 2).points[1] // expect: [[5, 0, 0], [5, 1, 5], [5, 2, "
            "10], [5, 3, 15]]",
      SURFACES, family},
     {"match_edge(A: surface, B: surface, ratio: number = 1, "
      "shear: number or list of 2 numbers = 0, edges: list of 2 texts = none)",
      match_edge, "surface",
-     "B with its two lines of control points next to an edge moved so that it continues A there: "
-     "across the edges that are nearest to each other, or those of `edges` (such as [\"u1\", "
-     "\"u0\"]). Ratio and shear as of bezier_join, by the parameters as they are: 1 and 0 give C1. "
-     "B gets the degree and knots that A has along the edge.",
+     "Moves the two rows of control points of B next to an edge, so that B continues A there: "
+     "across the nearest edges, or across `edges` (such as [\"u1\", \"u0\"]). Ratio and shear are as "
+     "for bezier_join; 1 and 0 give C1. B gets the degree and knots of A along the edge.",
      PATCH "t = bezier_surface([for i in 0..3: [for j in 0..3: [i + 3.5, j, 1]]])\n"
            "print continuity(s, match_edge(s, t)).class // expect: C1",
      SURFACES, family},
     {"creases(S: surface)", creases, "record",
-     "The lines u = `at`, in the list u, and v = `at` along which the tangents from both sides "
-     "differ, by the `angle` at most: where control points or knots coincide.",
+     "Returns the lines of constant u and of constant v, at parameter `at`, along which the "
+     "tangents from both sides differ, with the largest `angle`. They occur where control points "
+     "or knots coincide.",
      "s = bspline_surface([for x in [0, 1, 2, 3, 4]: [for y in [0, 1]: [x, y, -abs(x - 2)]]], "
      "degree: [2, 1], knots: [[0, 0, 0, 1, 1, 2, 2, 2], \"open\"])\n"
      "print creases(s).u[0].at, near(creases(s).u[0].angle, 90deg) // expect: 1 true",
      SURFACES, family},
     {"flat_spans(S: surface)", flat_spans, "list",
-     "The rectangles between knots, records u and v, over which the surface is plane because all "
-     "control points that act there lie in a plane.",
+     "Returns the rectangles between knots, as records u and v, over which the surface is plane "
+     "because its control points lie in a plane.",
      "s = bspline_surface([for i in 0..4: [for j in 0..2: [i, j, if i == 4 then 1 else 0]]], "
      "degree: 2)\n"
      "print flat_spans(s) // expect: [{u: 0..1, v: 0..1}, {u: 1..2, v: 0..1}]",
      SURFACES, family},
     {"net_mesh(S: surface)", net_mesh, "mesh",
-     "The net of control points as a mesh, a coarse picture of the surface: each quadrilateral is "
-     "cut along its shorter diagonal.",
+     "Returns the control net as a mesh. Each quadrilateral is divided along its shorter "
+     "diagonal.",
      PATCH "print len(faces(net_mesh(s))) // expect: 18", SURFACES, family},
     {0}};

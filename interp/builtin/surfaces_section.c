@@ -389,100 +389,100 @@ static bool call_path_frame(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_sections[] = {
     {"coefficients(Q: quadric or list of 10 numbers or list of 4 rows)", call_coefficients, "list",
-     "The ten numbers of a quadric, as `quadric` takes them.",
+     "Returns the ten numbers of a quadric, as `quadric` takes them.",
      "print coefficients(ellipsoid(1, 0.5, 0.5))[0..2] // expect: [1, 4, 4]",
      CAG_TAKES(SURFACE) | CAG_TAKES(SOLID) | CAG_TAKES(GROUP), QUADRICS},
     {"quadric_rows(Q: quadric or list of 10 numbers or list of 4 rows)", call_rows, "list",
-     "The symmetric matrix of a quadric: p A p = 0 for the points p = [x, y, z, 1].",
+     "Returns the symmetric matrix A of a quadric: p A p = 0 for its points p = [x, y, z, 1].",
      "print quadric_rows([1, 1, 1, 4, 0, 0, 0, 0, 6, -9])[0] // expect: [1, 2, 0, 0]", EQUATIONS,
      QUADRICS},
     {"quadric_at(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_at, "record",
-     "The `value` of a quadric's form at a point, negative inside of a closed one, and its "
-     "`gradient`.",
+     "Returns the `value` of a quadric's form at a point, which is negative inside of a closed "
+     "quadric, and its `gradient`.",
      "print quadric_at([1, 1, 1, 0, 0, 0, 0, 0, 0, -9], [1, 2, 2]) // expect: {value: 0, gradient: "
      "[2, 4, 4]}",
      EQUATIONS, QUADRICS},
     {"quadric_center(Q: quadric or list of 10 numbers or list of 4 rows)", call_center, "list",
-     "The center of a quadric. One without center, or with a line or plane of them, is an error "
+     "Returns the center of a quadric. A quadric without a unique center is an error "
      "(quadric-not-central).",
      "print quadric_center([1, 2, 1, 0, 0, 0, -2, 0, 6, 0]) // expect: [1, 0, -3]", EQUATIONS,
      QUADRICS},
     {"quadric_tangent(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_tangent,
      "plane",
-     "The plane that touches a quadric in a point of it, its normal along the gradient; errors "
-     "point-not-on-surface and singular-point.",
+     "Returns the tangent plane of a quadric at one of its points, with the normal along the "
+     "gradient. Errors: point-not-on-surface and singular-point.",
      "print quadric_tangent([1, 1, 1, 0, 0, 0, 0, 0, 0, -9], [0, 0, 3]).row // expect: [0, 0, 1, "
      "-3]",
      EQUATIONS, QUADRICS},
     {"quadric_rulings(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_rulings,
      "record",
-     "The straight lines of a quadric through a point of it: `count` is 0, 1, 2 or \"all\" (of "
-     "planes), `directions` are unit vectors. Errors as of quadric_tangent.",
+     "Returns the straight lines on a quadric through one of its points: `count` is 0, 1, 2, or "
+     "\"all\" (for planes), and `directions` are unit vectors. Errors are as for quadric_tangent.",
      "print quadric_rulings([1, 1, 0, 0, 0, 0, 0, 0, 0, -25], [3, 4, 5]).count // expect: 1",
      EQUATIONS, QUADRICS},
     {"quadric_moved(Q: quadric or list of 10 numbers or list of 4 rows, T: transform)", call_moved,
-     "list", "The ten numbers of the image of a quadric.",
+     "list", "Returns the ten numbers of the image of a quadric.",
      "print quadric_moved([1, 1, 1, 0, 0, 0, 0, 0, 0, -1], translate([1, 0, 0])) // expect: [1, 1, "
      "1, 0, 0, 0, -2, 0, 0, 0]",
      EQUATIONS, QUADRICS},
     {"section_conic(Q: quadric or list of 10 numbers or list of 4 rows, plane: plane)",
      call_section_conic, "record",
-     "The section of a quadric with a plane, in the coordinates of a frame of the plane: `conic` "
-     "is a curve value for `classify`, `branches` and the other functions of conics, "
-     "`coefficients` its equation, `frame` the frame (of a plane: its point, and x as near to X as "
-     "may be; a transform is itself the frame), `class` as of conics. Where the plane belongs to "
-     "the quadric the class is \"plane\" and `conic` none.",
+     "Returns the section of a quadric with a plane, in the coordinates of a frame of the plane: "
+     "`conic` is a curve value for `classify`, `branches`, and other functions of conics; "
+     "`coefficients` is its equation; `frame` is the frame (for a plane: its point, with x as "
+     "near to X as possible; a transform is itself the frame); and `class` is as for conics. If "
+     "the plane is part of the quadric, the class is \"plane\", and `conic` is none.",
      "s = section_conic(ellipsoid(2, 1, 1), plane([0, 0, 0.6], Z))\n"
      "print s.class, near(classify(s.conic).axes, [1.6, 0.8]) // expect: ellipse true",
      EQUATIONS, QUADRICS},
     {"section(G: shape or group, plane: plane, tolerance: length = none)", call_section, "list",
-     "The curves in which a plane cuts surfaces, solids, meshes and regions. Lines and conics are "
-     "exact, closed ones whole; other curves are cubics within the tolerance (none: a millionth of "
-     "the size), of meshes polylines. Curves that meet end to end are joined, so that a solid "
-     "gives closed curves. Sections of surfaces include the curves along which the plane touches "
-     "them, and edges and creases that lie in it.",
+     "Returns the curves in which a plane cuts surfaces, solids, meshes, and regions. Lines and "
+     "conics are exact; other curves are cubics within the tolerance (none: a millionth of the "
+     "size), or polylines for meshes. Curves that meet end to end are joined, so a solid gives "
+     "closed curves. Sections of surfaces include curves along which the plane touches, and "
+     "edges and creases in the plane.",
      "c = section(sphere(5), plane([0, 0, 3], Z))\n"
      "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
     {"contour(G: shape or group, direction: vector = none, from: point = none, "
      "tolerance: length = none)",
      call_contour, "list",
-     "The outlines of smooth surfaces and faces, seen along a direction or from an eye: the curves "
-     "on which the line of sight touches the surface, as exact as sections. Edges of solids are "
-     "not among them.",
+     "Returns the outlines of smooth surfaces and faces, seen along a direction or from an eye "
+     "point: the curves along which the line of sight touches the surface. They are as exact as "
+     "sections. Edges of solids are not included.",
      "c = contour(sphere(5), from: [0, 0, 10])\n"
      "print near(start_point(c[0]).z, 2.5) // expect: true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
     {"curvature_line(S: surface, u: number or angle, v: number or angle, "
      "by: \"max\" or \"min\" = \"max\")",
      call_curvature_line, "curve",
-     "The line of curvature through a place: it follows the direction of the larger (\"max\") or "
-     "smaller (\"min\") principal curvature until it closes, leaves the surface or meets an "
-     "umbilic; over a smooth pole of the parameters it goes on straight. Lines and arcs of conics "
-     "are exact, others cubics to 1e-8 of the size. An umbilic "
-     "has no such line: an error (umbilic).",
+     "Returns the line of curvature through a point: it follows the direction of the larger "
+     "(\"max\") or smaller (\"min\") principal curvature until it closes, leaves the surface, or "
+     "reaches an umbilic. It continues straight over smooth poles. Lines and arcs of conics are "
+     "exact; others are cubics to 1e-8 of the size. It is an error to start at an umbilic "
+     "(umbilic).",
      "c = curvature_line(torus_surface(5, 2), 0deg, 0deg, \"min\")\n"
      "print near(length(c), 4 * pi) or near(length(c), 14 * pi) // expect: true",
      CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), SECTIONS},
     {"curvature_contours(G: shape or group, levels: number or list of numbers, "
      "of: \"gaussian\" or \"mean\" or \"max\" or \"min\" = \"gaussian\", tolerance: length = none)",
      call_curvature_contours, "list",
-     "The lines along which surfaces, or the faces of solids, bend alike: for each level a record "
-     "of `level`, `curves` (a list, as exact as that of `section`, empty where the level is not "
-     "reached) and `everywhere`, true where the whole has this curvature and no lines. `levels` is "
-     "a number or a list of them, signed by the normal: in 1/mm of the \"mean\" curvature or the "
-     "\"max\" or \"min\" of both principal ones, in 1/mm2 of the \"gaussian\". At a knot where "
-     "the curvature jumps each side has its own lines, that end there unless both agree. What "
-     "merely touches a level need not show.",
+     "Returns the lines of constant curvature on surfaces, or on the faces of solids: for each "
+     "level, a record of `level`, `curves` (as exact as for `section`), and `everywhere`, which "
+     "is true if the entire surface has this curvature and there are no lines. `levels` is a "
+     "number or a list, signed with respect to the normal: in 1/mm for the \"mean\", \"max\", or "
+     "\"min\" curvature, and in 1/mm2 for the \"gaussian\" curvature. At a knot where the curvature "
+     "jumps, each side has its own lines. Lines along which a level is only touched may be "
+     "missing.",
      "c = curvature_contours(torus_surface(5, 2), [0, 1 / 20])\n"
      "print [for l in c[0].curves: near(length(l), 10 * pi)] // expect: [true, true]\n"
      "print [for l in c[1].curves: near(length(l), 2 * pi * 25 / 4)] // expect: [true, true]",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
     {"path_frame(C: curve, t: number or angle, orient: text or vector = \"rmf\")", call_path_frame,
      "transform",
-     "The frame that `sweep` carries along a path, at the parameter t: x along the frame's normal, "
-     "y along its binormal, z along the tangent. `orient` as of sweep; fixed keeps the frame of "
-     "the start.",
+     "Returns the frame that `sweep` uses at the parameter t of a path: x along the normal, y "
+     "along the binormal, and z along the tangent. `orient` is as for sweep; \"fixed\" keeps the "
+     "frame of the start.",
      "print near(path_frame(line([0, 0, 0], [0, 0, 4]), 0.5).z, Z) // expect: true",
      CAG_TAKES(CURVE), SECTIONS},
     {0}};

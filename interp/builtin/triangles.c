@@ -90,23 +90,23 @@ static bool triangle_split(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_triangles[] = {
     {"triangle_point(net: list of rows of points, W: list of 3 numbers)", triangle_point, "record",
-     "Of the triangular Bezier surface of a net, as bezier_triangle takes it, at barycentric "
-     "coordinates [u, v, w]: point, ds and dt, the derivatives along [1, 0, -1] and [0, 1, -1], "
-     "and the unit normal, none where there is none. The first row of the net is the corner u = "
-     "1; the last runs from v = 1 to w = 1. Coordinates that do not sum to 1 (to 1e-9), and "
-     "negative ones, are an error (parameter-range).",
+     "Evaluates the triangular Bezier surface of a net, as bezier_triangle takes it, at the "
+     "barycentric coordinates [u, v, w]: point, the derivatives ds and dt along [1, 0, -1] and "
+     "[0, 1, -1], and the unit normal (none if it is undefined). The first row of the net is the "
+     "corner u = 1; the last runs from v = 1 to w = 1. Coordinates that are negative, or whose "
+     "sum is not 1 (to 1e-9), are an error (parameter-range).",
      "net = [[[2, 0, 0]], [[1, 1, 1], [1, 0, 1]], [[0, 2, 0], [0, 1, 2], [0, 0, 0]]]\n"
      "print triangle_point(net, [0.5, 0.25, 0.25]).point // expect: [1, 0.5, 0.75]",
      CAG_TAKES_LISTS, triangles},
     {"triangle_elevate(net: list of rows of points, times: integer = 1)", triangle_elevate, "list",
-     "The net of the same triangular Bezier surface with its degree raised.",
+     "Returns the net of the same triangular Bezier surface with a higher degree.",
      "print triangle_elevate([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]])[1] // expect: [[1, 1, 0], [1, "
      "0, 2]]",
      CAG_TAKES_LISTS, triangles},
     {"triangle_split(net: list of rows of points, W: list of 3 numbers)", triangle_split, "list",
-     "The nets of the three triangular Bezier surfaces between the point at barycentric "
-     "coordinates and two corners of a net: in the first the point takes the place of the first "
-     "corner, and so on. At a point of an edge one of them has no area.",
+     "Returns the nets of the three triangular Bezier surfaces between a point, given by its "
+     "barycentric coordinates, and each pair of corners of a net. In the first net, the point "
+     "replaces the first corner, and so on. If the point is on an edge, one of them has no area.",
      "parts = triangle_split([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]], [0.5, 0.25, 0.25])\n"
      "print parts[0][0] // expect: [[1, 0.5, 1]]",
      CAG_TAKES_LISTS, triangles},
