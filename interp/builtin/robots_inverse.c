@@ -92,24 +92,24 @@ static bool configuration(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_inverse[] = {
     {"ik_all(robot: robot, T: transform or point, near: list of joint values = home)", ik_all,
      "record",
-     "Every joint position that brings the tool to the pose T, by closed form, the limits not "
-     "asked: `status` (\"ok\", \"unreachable\", \"infeasible-orientation\" of arms with fewer than "
-     "six joints, \"singular\"), `solutions` (records of `q`, `config` with the branch, 1 or -1, "
-     "as shoulder, elbow and wrist, and `free`), `free`: the joints, from 1, that are free in a "
-     "singular family and stand where `near` has them. Arms are known by their structure: any with "
-     "a spherical wrist or with axes 2, 3, 4 parallel, SCARA and planar arms, those of slides. A "
-     "point as T leaves the tool's orientation open, for arms that reach it in finitely many ways: "
-     "planar and SCARA arms of two turning joints, and any three turning joints.",
+     "Returns all joint values that bring the tool to the pose T, by closed form and regardless "
+     "of limits: the `status` (\"ok\", \"unreachable\", \"infeasible-orientation\" for arms with fewer "
+     "than six joints, or \"singular\"); the `solutions`, records of `q`, `config` with the branch "
+     "(1 or -1 for shoulder, elbow, and wrist), and `free`; and `free`, the joints (from 1) that "
+     "are free in a singular family and have the values of `near`. Supported are arms with a "
+     "spherical wrist or with axes 2, 3, and 4 parallel, SCARA and planar arms, and arms of "
+     "prismatic joints. If T is a point, the orientation of the tool is free, for arms that "
+     "reach it in finitely many ways: planar and SCARA arms with two revolute joints, and any "
+     "three revolute joints.",
      ARM "all = ik_all(puma, fk(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]))\n"
          "print all.status, len(all.solutions), all.solutions[0].config // expect: ok 8 {shoulder: "
          "1, elbow: 1, wrist: 1}",
      CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
     {"configuration(robot: robot, q: list of joint values)", configuration, "record",
-     "The branch that joint values belong to, 1 or -1 each: shoulder (before or behind the first "
-     "axis), elbow (the side to which it is bent), wrist (the sign of the sine of joint 5), as far "
-     "as the arm has them; the elbow of a planar or SCARA arm is the sign of the sine of its "
-     "second "
-     "turning joint.",
+     "Returns the branch of joint values, each 1 or -1: shoulder (in front of or behind the "
+     "first axis), elbow (the side to which it is bent), and wrist (the sign of the sine of "
+     "joint 5), if the arm has them. For a planar or SCARA arm, the elbow is the sign of the "
+     "sine of its second revolute joint.",
      ARM "print configuration(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]) // expect: "
          "{shoulder: 1, elbow: -1, wrist: -1}",
      CAG_TAKES(ROBOT), "Robots: inverse kinematics"},

@@ -306,12 +306,12 @@ static bool call_read_urdf(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_robot_files[] = {
     {"read_urdf(path: text, tip: text = none, base: text = none, shapes: bool = true)",
      call_read_urdf, "robot",
-     "The robot of a URDF file, as the chain of links from `base` (none: the first) down to `tip` "
-     "(none: the end of what does not branch), in mm. Its rows are classic ones, with fixed links "
-     "where no row leads from one axis to the next; `continuous` joints have -360deg..360deg; "
-     "velocity and effort are kept. Links without bodies go into the rows before them. The visual "
-     "bodies are the shapes of the links, `shapes: false` leaves them away; meshes (.stl .obj .ply "
-     ".gltf .glb) and package:// names are looked for beside the file. Files lie below the "
-     "script's folder or on the module path.",
+     "Reads the robot of a URDF file: the chain of links from `base` (none: the first) to `tip` "
+     "(none: the end of the unbranched chain), in mm. Its rows are standard Denavit-Hartenberg "
+     "parameters, with fixed links where a row does not suffice. `continuous` joints have the "
+     "limits -360deg..360deg. Velocity and effort are kept. Links without bodies are merged into "
+     "the preceding rows. The visual bodies are the shapes of the links, unless `shapes: false`. "
+     "Meshes (.stl .obj .ply .gltf .glb) and package:// names are resolved next to the file. The "
+     "file must be in the script's folder, below it, or on the module path.",
      "print attempt(() => read_urdf(\"none.urdf\"), err => err.reason) // expect: file", 0, family},
     {0}};

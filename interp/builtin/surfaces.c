@@ -422,10 +422,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "edge_tangents: record of lists of vectors, corner_twists: list of 2 rows of vectors, "
      "lengths: list of lists of numbers = none)",
      cag_surfaces_hermite_surface, "surface",
-     "The bicubic surface with continuous curvature through a grid of points, by rows of u: point "
-     "[i][j] is at u = i, v = j (or at the sums of `lengths`, steps for u and for v). "
-     "edge_tangents is a record: u0 and u1 the derivatives by u along the first and last row, v0 "
-     "and v1 those by v along the first and last column; corner_twists 2 rows of 2.",
+     "Returns the bicubic surface with continuous curvature through a grid of points, given by "
+     "rows of u: point [i][j] is at u = i, v = j, or at the cumulative sums of `lengths`, the "
+     "steps in u and v. edge_tangents is a record: u0 and u1 are the derivatives in u along the "
+     "first and the last row, v0 and v1 those in v along the first and the last column. "
+     "corner_twists is a table of 2 by 2.",
      "grid = [for i in 0..2: [for j in 0..2: [i, j, 0]]]\n"
      "x = [for i in 0..2: X]\n"
      "y = [for i in 0..2: Y]\n"
