@@ -5,9 +5,8 @@
 
 #include "lang/parse.h"
 
-const char cag_parse_minus_help[] =
-    "a line that begins with `-` starts a new statement; to go on with "
-    "the line above, end that line with `-`";
+const char cag_parse_minus_help[] = "a line that starts with `-` is a new statement; to continue "
+                                    "the line above, end that line with `-`";
 
 // Reports a form, in panic. Gives true.
 static bool report_form(Parser *p, CagSpan span, CagForeignSyntax id, const char *message) {
@@ -37,19 +36,19 @@ static bool braces_behind(Parser *p, const CagExpr *before) {
                     {"intersection", CAG_FOREIGN_intersection_braces},
                     {"hull", CAG_FOREIGN_hull_braces}};
   if (is_name(before, "try"))
-    return report_form(p, before->span, CAG_FOREIGN_try_braces, "there is no `try`");
+    return report_form(p, before->span, CAG_FOREIGN_try_braces, "`try` does not exist in cag");
   if (is_called(before, "switch") || is_called(before, "match"))
     return report_form(p, before->span, CAG_FOREIGN_switch_word, "a choice is an `if`");
   for (size_t i = 0; i < sizeof operations / sizeof *operations; i++)
     if (is_called(before, operations[i].name) || is_name(before, operations[i].name))
       return report_form(p, cag_parse_here(p), operations[i].id,
-                         "a set operation takes its operands in parentheses, not in { }");
+                         "the operands of a set operation are in parentheses, not in { }");
   if (before->kind == CAG_EXPR_CALL)
     return report_form(p, cag_parse_here(p), CAG_FOREIGN_call_braces,
-                       "a function takes its arguments in parentheses, not in { }");
+                       "the arguments of a function are in parentheses, not in { }");
   if (before->kind == CAG_EXPR_NAME)
     return report_form(p, cag_parse_here(p), CAG_FOREIGN_object_braces,
-                       "a function takes its arguments in parentheses, not in { }");
+                       "the arguments of a function are in parentheses, not in { }");
   return false;
 }
 
@@ -103,7 +102,7 @@ static bool name_behind(Parser *p, const CagExpr *before) {
   if (is_name(before, "lambda"))
     return report_form(p, before->span, CAG_FOREIGN_lambda_word, "a function is written with =>");
   if (is_name(before, "new"))
-    return report_form(p, before->span, CAG_FOREIGN_new_word, "there is no `new`");
+    return report_form(p, before->span, CAG_FOREIGN_new_word, "`new` does not exist in cag");
   if (before->kind == CAG_EXPR_CALL) return modifiers_behind(p, before);
   return false;
 }
@@ -172,12 +171,13 @@ bool cag_parse_foreign_value(Parser *p) {
   const CagSpan here = cag_parse_here(p);
   switch (parse_kind(p)) {
   case CAG_TOKEN_LESS:
-    return report_form(p, here, CAG_FOREIGN_angle_vector, "a point or vector stands in [ ]");
+    return report_form(p, here, CAG_FOREIGN_angle_vector, "points and vectors are written in [ ]");
   case CAG_TOKEN_BAR:
     return report_form(p, here, CAG_FOREIGN_bars, "a function is written with =>");
   case CAG_TOKEN_PLUS:
     if (p->previous.kind != CAG_TOKEN_PLUS || p->previous.span.end != here.start) return false;
-    return report_form(p, here, CAG_FOREIGN_increment, "nothing changes in cag: there is no ++");
+    return report_form(p, here, CAG_FOREIGN_increment,
+                       "values cannot be changed, so there is no ++");
   default: return false;
   }
 }
@@ -212,7 +212,7 @@ bool cag_parse_foreign_word(Parser *p) {
   if (next != CAG_TOKEN_NAME) return false;
   if (is_word(&word, "class", "struct", "interface"))
     return report_form(p, word.span, CAG_FOREIGN_class_word,
-                       "there are no classes: a function gives a record or a shape");
+                       "there are no classes; a function can return a record or a shape");
   if (is_word(&word, "from", "using", "require"))
     return report_form(p, word.span, CAG_FOREIGN_from_import, "a module is read by `import`");
   return false;

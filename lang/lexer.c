@@ -171,12 +171,12 @@ static bool skip_block_comment(CagLexer *lx, bool *newline) {
 static void report_hash(CagLexer *lx, uint32_t start) {
   const char *word = lx->source->text + start + 1;
   CagDiagnostic *d =
-      report(lx, CAG_ERR_hash_comment, start, start + 1, "a comment does not begin with #");
+      report(lx, CAG_ERR_hash_comment, start, start + 1, "comments do not start with #");
   if (strncmp(word, "include", 7) == 0)
     help(d, "write %s", cag_foreign_syntax(CAG_FOREIGN_include_line));
   else if (strncmp(word, "declare", 7) == 0 || strncmp(word, "local", 5) == 0)
     help(d, "write %s", cag_foreign_syntax(CAG_FOREIGN_declare_line));
-  else help(d, "a comment begins with //; a color is a text: \"#ff8000\"");
+  else help(d, "a comment starts with //; a color is a text: \"#ff8000\"");
 }
 
 // Passes blanks and comments. Gives false after an error that ends the text.
@@ -244,7 +244,7 @@ static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t
   }
   if (text[start] == '_') {
     help(report(lx, CAG_ERR_number_underscore, number, end,
-                "`_` in a number stands between two digits"),
+                "`_` in a number must be between two digits"),
          "write %.*s", digits, text + number);
     return;
   }
@@ -560,7 +560,7 @@ static void lex_single_quotes(CagLexer *lx, CagToken *t) {
   bool closed = at(lx, p) == '\'';
   uint32_t end = closed ? p + 1 : start + 1;
   CagDiagnostic *d =
-      report(lx, CAG_ERR_single_quotes, start, end, "a text stands in double quotes");
+      report(lx, CAG_ERR_single_quotes, start, end, "texts are written in double quotes");
   if (closed && p - start - 1 <= 60)
     help(d, "write \"%.*s\"", (int)(p - start - 1), lx->source->text + start + 1);
   else help(d, "write \"text\"");

@@ -275,7 +275,7 @@ static void report_unclosed(Parser *p) {
   CagDiagnostic *d = cag_parse_error(p, CAG_ERR_bracket_not_closed, b->span,
                                      "this bracket is not closed: %s is missing", closer);
   cag_parse_help(d, "opened here");
-  cag_parse_related(p, d, next, "still open where the next statement begins");
+  cag_parse_related(p, d, next, "still open where the next statement starts");
 }
 
 static void unexpected_closer(Parser *p, const char *found) {
@@ -318,12 +318,12 @@ static void report_habit(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_QUESTION: report_ternary(p, before); return;
   case CAG_TOKEN_EQUALS:
     d = cag_parse_error(p, CAG_ERR_equals_in_expression, here,
-                        "`=` defines a name, and cannot stand here");
+                        "`=` defines a name, and is not allowed here");
     cag_parse_help(d, "to compare write ==");
     return;
   case CAG_TOKEN_ASSIGN_OPERATOR:
     d = cag_parse_error(p, CAG_ERR_assignment_operator, here,
-                        "nothing changes in cag: no value can be assigned");
+                        "values cannot be changed: no value can be assigned");
     cag_parse_help(d, "define a new name for the new value");
     return;
   case CAG_TOKEN_NOT:
@@ -346,7 +346,7 @@ static void report_habit(Parser *p, const CagExpr *before) {
     return;
   case CAG_TOKEN_ARROW:
     d = cag_parse_error(p, CAG_ERR_function_parameters, here,
-                        "before `=>` stand the names of the parameters");
+                        "expected the names of the parameters before `=>`");
     cag_parse_help(d, "write x => e or (x, y) => e");
     return;
   case CAG_TOKEN_COLON:
@@ -388,7 +388,7 @@ void cag_parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const
     cag_parse_help(d, "an operator is missing before it, or a line break");
   else if (kind == CAG_TOKEN_SPREAD) cag_parse_help(d, "a range is written 0..3");
   else if (kind == CAG_TOKEN_SEMICOLON)
-    cag_parse_help(d, "a comma separates what stands in brackets");
+    cag_parse_help(d, "separate the items in brackets with commas");
 }
 
 // ---- brackets ----

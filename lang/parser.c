@@ -285,15 +285,16 @@ static bool name_habit(Parser *p) {
                        (next.kind != CAG_TOKEN_LEFT_PAREN || next.span.start > word.span.end);
   if (!value_follows) return false;
   if (IS_ONE_OF(word.as.name, "return", "yield")) {
-    cag_parse_help(cag_parse_mend(p, CAG_ERR_return, word.span, "there is no `%s`", word.as.name),
-                   "the last expression of a block is its value");
+    cag_parse_help(
+        cag_parse_mend(p, CAG_ERR_return, word.span, "`%s` does not exist in cag", word.as.name),
+        "the last expression of a block is its value");
     cag_parse_advance(p);
     return false;
   }
   if (IS_ONE_OF(word.as.name, "while", "foreach", "repeat", "until", "loop")) {
     if (next.kind == CAG_TOKEN_LEFT_PAREN && strcmp(word.as.name, "repeat") == 0) return false;
     cag_parse_help(cag_parse_error(p, CAG_ERR_loop, word.span,
-                                   "there is no `%s`: nothing changes in cag", word.as.name),
+                                   "there is no `%s`; values cannot be changed", word.as.name),
                    "a list is built by [for x in xs: ...], a value by %s",
                    cag_foreign_syntax(CAG_FOREIGN_while_loop));
     return true;
@@ -303,7 +304,7 @@ static bool name_habit(Parser *p) {
                 "function", "local", "auto", "int", "float", "double", "string", "bool", "number",
                 "module", "export", "final", "static", "set")) {
     cag_parse_help(cag_parse_mend(p, CAG_ERR_definition_keyword, word.span,
-                                  "a definition begins with its name"),
+                                  "a definition starts with its name"),
                    "leave `%s` out", word.as.name);
     p->habit = word.span.start;
     cag_parse_advance(p);
@@ -327,9 +328,9 @@ bool cag_parse_habit(Parser *p, bool in_block) {
     return true;
   }
   if (kind == CAG_TOKEN_FOR) {
-    cag_parse_help(
-        cag_parse_error(p, CAG_ERR_loop, here, "`for` is not a statement: it stands in a list"),
-        "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
+    cag_parse_help(cag_parse_error(p, CAG_ERR_loop, here,
+                                   "`for` is not a statement; it is only allowed in a list"),
+                   "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
     return true;
   }
   if (!in_block) return false;
@@ -340,7 +341,7 @@ bool cag_parse_habit(Parser *p, bool in_block) {
       return true;
     }
     CagDiagnostic *d = cag_parse_error(p, CAG_ERR_block_statement, here,
-                                       "`%s` stands at the top level only", found);
+                                       "`%s` is only allowed at the top level", found);
     cag_parse_help(d, kind == CAG_TOKEN_PRINT ? "write trace(x) to see a value from within"
                                               : "a block has definitions, asserts and its value");
     return true;
@@ -386,7 +387,7 @@ static CagStatement *name_statement(Parser *p) {
     const char *name = parse_current(p)->as.name;
     const char *op = cag_parse_quote(p, next->span, text, sizeof text, "=");
     CagDiagnostic *d = cag_parse_error(p, CAG_ERR_assignment_operator, next->span,
-                                       "nothing changes in cag: %s keeps its value", name);
+                                       "values cannot be changed: %s keeps its value", name);
     cag_parse_help(d, "define a new name: %s2 = %s %.*s ...", name, name, (int)strlen(op) - 1, op);
     return NULL;
   }
@@ -415,7 +416,7 @@ static CagStatement *statement(Parser *p) {
     cag_parse_help(cag_parse_error(p, CAG_ERR_expected_statement, cag_parse_here(p),
                                    "expected a statement, found %s",
                                    cag_parse_found(p, word, sizeof word)),
-                   "a line that begins so goes on with nothing before it");
+                   "there is nothing before this line to continue");
   return NULL;
 }
 

@@ -29,13 +29,13 @@ static CagClause clause(Parser *p) {
   } else {
     if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN)
       cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, cag_parse_here(p),
-                                     "the loop of a comprehension stands without parentheses"),
+                                     "the loop of a comprehension is written without parentheses"),
                      "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
     clause_name(p, &list);
     if (parse_kind(p) == CAG_TOKEN_COMMA && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
       cag_parse_help(
           cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p), "expected `in`, found `,`"),
-          "to take elements apart write [for [a, b] in xs: ...]");
+          "to unpack elements, write [for [a, b] in xs: ...]");
     }
   }
   c.names = cag_parse_list_end(p, list, sizeof *c.names, &c.name_count);
@@ -204,13 +204,13 @@ static void close_block(Parser *p, Opened o, const CagExpr *value) {
     cag_parse_help(
         cag_parse_error(p, CAG_ERR_expression_statement, value->span,
                         "this value is not the last thing of its block, so nothing uses it"),
-        "%s", kind == CAG_TOKEN_MINUS ? cag_parse_minus_help : "give it a name, or leave it out");
+        "%s", kind == CAG_TOKEN_MINUS ? cag_parse_minus_help : "give it a name, or remove it");
     return;
   }
   if (kind == CAG_TOKEN_COMMA && !ended)
     cag_parse_help(
         cag_parse_error(p, CAG_ERR_tuple, o.span, "this brace opens a block, which has one value"),
-        "a list stands in [ ], the fields of a record have names: { a: 1 }");
+        "a list is written in [ ]; the fields of a record have names: { a: 1 }");
   else if (kind == CAG_TOKEN_COLON && value->kind == CAG_EXPR_TEMPLATE)
     cag_parse_help(cag_parse_error(p, CAG_ERR_text_not_plain, value->span,
                                    "the name of a field has no { } in it"),
@@ -323,7 +323,7 @@ static void report_tuple(Parser *p, CagSpan span) {
                        : p->statement_kind == CAG_TOKEN_SHOW ? "show"
                                                              : "assert";
     CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_print_parentheses, span,
-                                      "%s is a statement and takes no parentheses", word);
+                                      "%s is a statement, without parentheses", word);
     cag_parse_help(d, "write %s %s", word, cag_parse_quote(p, inside, text, sizeof text, "a, b"));
     return;
   }
@@ -331,7 +331,7 @@ static void report_tuple(Parser *p, CagSpan span) {
     cag_parse_help(cag_parse_mend(p, CAG_ERR_tuple, span, "there is nothing in these parentheses"),
                    "an empty list is [], a function without parameters () => e");
   else
-    cag_parse_help(cag_parse_mend(p, CAG_ERR_tuple, span, "a list stands in [ ]"), "write [%s]",
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_tuple, span, "a list is written in [ ]"), "write [%s]",
                    cag_parse_quote(p, inside, text, sizeof text, "a, b"));
 }
 
@@ -381,10 +381,11 @@ CagExpr *cag_parse_missing(Parser *p) {
     d = cag_parse_error(p, CAG_ERR_open_range, here, "this range has no start");
     cag_parse_help(d, "the first element is number 0: 0..3");
   } else if (kind == CAG_TOKEN_SPREAD) {
-    d = cag_parse_error(p, CAG_ERR_spread_misplaced, here, "`...` stands in a list or a record");
+    d = cag_parse_error(p, CAG_ERR_spread_misplaced, here,
+                        "`...` is only allowed in a list or a record");
     cag_parse_help(d, "a list is spread into another: [...xs, 4]");
   } else if (kind == CAG_TOKEN_FOR) {
-    d = cag_parse_error(p, CAG_ERR_loop, here, "`for` stands in a list");
+    d = cag_parse_error(p, CAG_ERR_loop, here, "`for` is only allowed in a list");
     cag_parse_help(d, "write [for x in xs: ...]");
   } else if (cag_parse_at_next_definition(p) || kind == CAG_TOKEN_END) {
     const char *after = cag_parse_quote(p, p->previous.span, before, sizeof before, NULL);
@@ -402,7 +403,7 @@ CagExpr *cag_parse_missing(Parser *p) {
     else if (kind == CAG_TOKEN_EQUALS && p->previous.kind == CAG_TOKEN_GREATER)
       cag_parse_help(d, "write >=");
     else if (kind == CAG_TOKEN_SHOW || kind == CAG_TOKEN_PRINT || kind == CAG_TOKEN_ASSERT)
-      cag_parse_help(d, "a statement begins with it, and no value");
+      cag_parse_help(d, "it starts a statement, not a value");
     else if (kind == CAG_TOKEN_COMMA && p->previous.kind == CAG_TOKEN_COMMA)
       cag_parse_help(d, "one comma too many");
   }
@@ -416,7 +417,7 @@ static CagExpr *in_parentheses(Parser *p, CagExpr *(*read)(Parser *), const char
   if (e->kind == CAG_EXPR_ERROR) return e;
   char text[QUOTE_SIZE];
   CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_needs_parentheses, here,
-                                    "inside an operation %s in parentheses", what);
+                                    "put %s in parentheses inside of an operation", what);
   cag_parse_help(d, "write (%s)", cag_parse_quote(p, e->span, text, sizeof text, "..."));
   return e;
 }
@@ -443,7 +444,7 @@ static CagExpr *primary(Parser *p) {
   case CAG_TOKEN_NAME:
     if (t->newline_before && cag_parse_at_next_definition(p)) return cag_parse_missing(p);
     if (parse_kind_at(p, 1) == CAG_TOKEN_ARROW)
-      return in_parentheses(p, cag_parse_lambda, "a function stands");
+      return in_parentheses(p, cag_parse_lambda, "a function");
     t = parse_current(p);
     e = cag_parse_new(p, CAG_EXPR_NAME, t->span.start);
     e->as.name.id = t->as.name;
@@ -458,12 +459,12 @@ static CagExpr *primary(Parser *p) {
   case CAG_TOKEN_FALSE: return simple(p, CAG_EXPR_FALSE);
   case CAG_TOKEN_NONE: return simple(p, CAG_EXPR_NONE);
   case CAG_TOKEN_LEFT_PAREN:
-    if (cag_parse_opens_lambda(p)) return in_parentheses(p, cag_parse_lambda, "a function stands");
+    if (cag_parse_opens_lambda(p)) return in_parentheses(p, cag_parse_lambda, "a function");
     return cag_parse_group(p);
   case CAG_TOKEN_LEFT_SQUARE: return list_expression(p);
   case CAG_TOKEN_LEFT_BRACE: return braces(p);
-  case CAG_TOKEN_IF: return in_parentheses(p, cag_parse_branch, "an `if` stands");
-  case CAG_TOKEN_NOT: return in_parentheses(p, cag_parse_negation, "a `not` stands");
+  case CAG_TOKEN_IF: return in_parentheses(p, cag_parse_branch, "an `if`");
+  case CAG_TOKEN_NOT: return in_parentheses(p, cag_parse_negation, "a `not`");
   default: return cag_parse_missing(p);
   }
 }
@@ -491,9 +492,9 @@ static CagArgument argument(Parser *p, bool *named) {
     return a;
   }
   if (parse_kind(p) == CAG_TOKEN_SPREAD) {
-    cag_parse_help(
-        cag_parse_error(p, CAG_ERR_spread_misplaced, t->span, "`...` stands in a list or a record"),
-        "a call takes each argument by itself");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_spread_misplaced, t->span,
+                                   "`...` is only allowed in a list or a record"),
+                   "pass each argument separately");
     a.value = cag_parse_error_node(p);
     return a;
   }
@@ -501,7 +502,7 @@ static CagArgument argument(Parser *p, bool *named) {
   if (*named && !p->panic && a.value->kind != CAG_EXPR_ERROR)
     cag_parse_help(cag_parse_mend(p, CAG_ERR_position_after_name, a.value->span,
                                   "arguments by position come before those by name"),
-                   "give it a name too, or move it to the front");
+                   "name it as well, or move it to the front");
   return a;
 }
 

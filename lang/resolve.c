@@ -122,7 +122,7 @@ static void unknown_name(Resolver *r, const CagExpr *e) {
     if (p->name != name) continue;
     CagDiagnostic *d =
         report(r, CAG_ERR_used_before, e->span, "%s is a parameter that comes later", name);
-    cag_diagnostic_set_help(d, "a default may use the parameters before it");
+    cag_diagnostic_set_help(d, "a default can use the parameters before it");
     cag_diagnostic_add_note(d, CAG_NOTE_RELATED, r->module->source, p->span, "the parameter");
     return;
   }
@@ -205,7 +205,7 @@ static bool allowed_in_param(Resolver *r, const CagExpr *e, const CagDecl *d) {
     return true;
   CagDiagnostic *error = report(
       r, CAG_ERR_param_not_builtin, e->span,
-      "the param %s may use built-in names only, and %s is defined in the file", r->param, d->name);
+      "the param %s can use built-in names only, but %s is defined in the file", r->param, d->name);
   cag_diagnostic_set_help(error, "write its value");
   cag_diagnostic_add_note(error, CAG_NOTE_RELATED, r->module->source, d->span, "defined here");
   return false;
@@ -215,8 +215,8 @@ static void walk_name(Resolver *r, CagExpr *e) {
   const char *name = e->as.name.id;
   if (is_blank(name)) {
     CagDiagnostic *d =
-        report(r, CAG_ERR_underscore_value, e->span, "`_` stands for a value that is not used");
-    cag_diagnostic_set_help(d, "give it a name where it is defined");
+        report(r, CAG_ERR_underscore_value, e->span, "`_` is a value that is not used");
+    cag_diagnostic_set_help(d, "give it a name in its definition");
     return;
   }
   CagDecl *decl = current_of(r, name)->decl;
@@ -249,7 +249,7 @@ static void check_in_module(Resolver *r, const CagStatement *import, const char 
   if (name[0] == '_') {
     CagDiagnostic *d =
         report(r, CAG_ERR_private_name, span, "%s is private to %s", name, import->as.import.path);
-    cag_diagnostic_set_help(d, "names that begin with _ are seen in their own file only");
+    cag_diagnostic_set_help(d, "names that start with _ are private to their file");
     return;
   }
   const CagResolveEnv *env = r->env;

@@ -476,8 +476,8 @@ static void words_that_are_wrong_are_marked(void **state) {
       {"x = «\"a{1»\n}\"", "E0104", "does not end on its line", "hold an expression"},
       {"x = «`»abc", "E0105", "has no end", "close it with `"},
       {"x = 1 «/*» abc /* */", "E0103", "has no end", "close it with */"},
-      {"«#»include <x>\ny = 1", NULL, "does not begin with #", "write import"},
-      {"«#» note\ny = 1", NULL, "does not begin with #", "begins with //"},
+      {"«#»include <x>\ny = 1", NULL, "do not start with #", "write import"},
+      {"«#» note\ny = 1", NULL, "do not start with #", "starts with //"},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
