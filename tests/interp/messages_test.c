@@ -36,7 +36,7 @@ static void expect(const char *script, const char *code, const char *message, co
 
 static void a_line_that_begins_with_minus_is_explained(void **state) {
   (void)state;
-  static const char help[] = "a line that begins with `-` starts a new statement";
+  static const char help[] = "a line that starts with `-` is a new statement";
   expect("a = box(3)\n  - translate(box(1), [1, 1, 1])\nshow a", "E0150", "alone", help);
   expect("a = box(3)\n- box(1) - box(2)\nshow a", "E0150", "alone", help);
   expect("a = {\n  b = box(3)\n  b\n  - box(1)\n}\nshow a", "E0150", "not the last", help);
