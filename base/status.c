@@ -88,7 +88,7 @@ bool cag_memory_was_out(void) {
 CagStatus cag_fail_memory(CagError *err) {
   if (cag_stopped()) return cag_stop_fail(err);
   cag_note_memory();
-  return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "there is no memory left");
+  return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "out of memory");
 }
 
 // 17 digits always read back the same, 15 often do and are what a person would write.

@@ -83,7 +83,7 @@ static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
   if (!format)
     return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help,
                             "the output '%s' has no ending that says its format", output);
-  return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help, "there is no format '.%s'", format);
+  return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help, "unknown format '.%s'", format);
 }
 
 // Tries the fields on a scratch command line, which keeps what they say.

@@ -24,7 +24,6 @@ int cag_tool_check(CagTool *t, int argc, char **argv) {
   CagToolScripts scripts = {.tool = t, .each = check_script, .context = &c};
   const int status = cag_tool_each_script(&scripts, argc, argv);
   if (status != CAG_STATUS_OK) return status;
-  if (scripts.count == 0 && scripts.status == CAG_STATUS_OK)
-    cag_tool_say(t, "there is no script here");
+  if (scripts.count == 0 && scripts.status == CAG_STATUS_OK) cag_tool_say(t, "no scripts found");
   return scripts.status > c.status ? scripts.status : c.status;
 }

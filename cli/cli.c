@@ -72,7 +72,7 @@ static bool one_of(const CagTool *t, const char *option, const char *value,
                    const char *const *choices, size_t count, const char *help, size_t *index) {
   for (*index = 0; *index < count; ++*index)
     if (!strcmp(value, choices[*index])) return true;
-  return reject(t, help, option, value, "there is no such choice");
+  return reject(t, help, option, value, "unknown choice");
 }
 
 static bool set_output(CagTool *t, const char *value) {
@@ -444,8 +444,7 @@ static bool reject_option(const CagTool *t, const Given *g) {
     snprintf(help, sizeof help, "`cag %s --help` lists the options%s", t->command->name,
              expression ? "; an expression that begins with - comes after --" : "");
   cag_tool_fail(t, CAG_STATUS_USAGE, help,
-                g->option ? "%s is an option of other commands" : "there is no option %s",
-                g->shown);
+                g->option ? "%s is an option of other commands" : "unknown option %s", g->shown);
   return false;
 }
 
@@ -537,7 +536,7 @@ static bool reject_command(CagTool *t, const char *word) {
     snprintf(help, sizeof help, "to run the script write `cag run %.200s`", word);
   else if (nearest) snprintf(help, sizeof help, "did you mean `cag %s`?", nearest);
   else snprintf(help, sizeof help, "`cag --help` lists the commands");
-  cag_tool_fail(t, CAG_STATUS_USAGE, help, "there is no command '%s'", word);
+  cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown command `%s`", word);
   return false;
 }
 

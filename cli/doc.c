@@ -35,7 +35,7 @@ static int reject(CagTool *t, CagSession *s, const char *name) {
   if (form) snprintf(help, sizeof help, "in cag write %.280s", form);
   else if (nearest) snprintf(help, sizeof help, "did you mean `cag doc %.200s`?", nearest);
   const int status = cag_tool_fail(t, CAG_STATUS_USAGE, help,
-                                   "there is no function, module or error code '%s'", name);
+                                   "unknown function, module, or error code `%s`", name);
   for (size_t i = 0; i < names.count; i++) free(names.items[i]);
   free(names.items);
   return status;

@@ -21,6 +21,6 @@ int cag_tool_explain(CagTool *t, int argc, char **argv) {
   }
   const char *nearest = cag_nearest_name(argv[0], names, count);
   return cag_tool_fail(t, CAG_STATUS_USAGE, "`cag explain` lists all codes",
-                       "there is no error code '%s'%s%s%s", argv[0],
-                       nearest ? "; the nearest is " : "", nearest ? nearest : "", "");
+                       "unknown error code `%s`%s%s%s", argv[0], nearest ? "; the nearest is " : "",
+                       nearest ? nearest : "", "");
 }

@@ -25,7 +25,7 @@ static int reject_format(const CagTool *t, const char *format) {
                          "'.%s' is the ending of a picture", format);
   for (const char *const *f = cag_export_formats(); *f; f++)
     snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
-  return cag_tool_fail(t, CAG_STATUS_USAGE, help, "there is no format '.%s'", format);
+  return cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown format '.%s'", format);
 }
 
 // Checks the command line before anything runs: 0, or the status after a message.

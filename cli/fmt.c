@@ -85,7 +85,7 @@ int cag_tool_fmt(CagTool *t, int argc, char **argv) {
   const int status = cag_tool_each_script(&scripts, argc, argv);
   if (status != CAG_STATUS_OK) return status;
   remember(&f, scripts.status);
-  if (scripts.count == 0 && f.status == CAG_STATUS_OK) cag_tool_say(t, "there is no script here");
+  if (scripts.count == 0 && f.status == CAG_STATUS_OK) cag_tool_say(t, "no scripts found");
   if (f.status == CAG_STATUS_OK && f.changed && (t->check || t->diff)) return CAG_STATUS_SCRIPT;
   return f.status;
 }

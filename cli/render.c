@@ -41,7 +41,7 @@ static int check_ending(const CagTool *t) {
   static const char HELP[] = "a picture is .exr or .png; `cag export` writes meshes and scenes";
   const char *format = t->format;
   if (format && strcasecmp(format, "exr") != 0 && strcasecmp(format, "png") != 0)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "there is no picture format '.%s'", format);
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "unknown picture format '.%s'", format);
   if (!strcmp(t->output, "-"))
     return format ? CAG_STATUS_OK
                   : cag_tool_fail(t, CAG_STATUS_USAGE, "add --format exr or --format png",
@@ -96,7 +96,7 @@ static int find_length(const CagTool *t, double *frames) {
   }
   if (*frames > (double)t->last_frame) return CAG_STATUS_OK;
   return cag_tool_fail(t, CAG_STATUS_USAGE, "the frames of a film of N are 0..N-1",
-                       "--frames %ld..%ld reaches beyond the film of %.0f frames", t->first_frame,
+                       "--frames %ld..%ld exceeds the film of %.0f frames", t->first_frame,
                        t->last_frame, *frames);
 }
 

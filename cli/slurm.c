@@ -313,7 +313,7 @@ static int ask(Array *a, bool *silent) {
 }
 
 static int tell_interrupted(const Array *a) {
-  cag_tool_say(a->batch->tool, "Slurm's job goes on; the same command takes it up again");
+  cag_tool_say(a->batch->tool, "the Slurm job continues; run the same command to resume");
   return CAG_STATUS_INTERRUPTED;
 }
 

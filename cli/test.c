@@ -311,7 +311,7 @@ int cag_tool_test(CagTool *tool, int argc, char **argv) {
   if (status == CAG_STATUS_OK) status = run_all(&t, &counts, &file_status);
   if (status == CAG_STATUS_LIMIT) cag_tool_fail(tool, status, NULL, "out of memory");
   if (status == CAG_STATUS_OK && t.count == 0 && scripts.status == CAG_STATUS_OK)
-    cag_tool_say(tool, "there is no script to test");
+    cag_tool_say(tool, "no scripts found");
   if (status == CAG_STATUS_OK) status = write_report(&t);
   printf("%zu passed, %zu failed, %zu skipped\n", counts.passed, counts.failed, counts.skipped);
   release(&t);

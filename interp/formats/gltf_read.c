@@ -110,7 +110,7 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
   size_t i = (size_t)k, mesh;
   if (w->seen[i])
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_syntax,
-                         "nodes[%zu] stands twice in the scene", i);
+                         "nodes[%zu] occurs twice in the scene", i);
   w->seen[i] = true;
   const cJSON *node = w->g->nodes.items[i];
   CagTransform own;

@@ -93,9 +93,9 @@ static CagStatus fail_word(const CagMeshDraft *d, CagTextScan *s, const char *ex
                            CagError *err) {
   const char *word;
   if (!cag_scan_to_word(s))
-    return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_truncated, s->at,
-                                   "the file ends where %s must stand; write or fetch it again",
-                                   expected);
+    return cag_mesh_file_fail_line(
+        d->file, err, CAG_ERR_mesh_file_truncated, s->at,
+        "unexpected end of file, expected %s; write or download the file again", expected);
   const char *at = s->at;
   size_t n = cag_scan_word(s, &word);
   return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_syntax, at,

@@ -487,7 +487,7 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   if (!status && !whole) status = cag_fail_memory(err);
   if (!status && !(p.box.min.x <= p.box.max.x))
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_svg_nothing_visible, "camera", (long)camera,
-                      "all curves lie behind the camera");
+                      "all curves are behind the camera");
   if (!status) write_file(&p, file, paths, n);
   if (!status && p.undefined)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,

@@ -627,7 +627,7 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
   if (!f) {
     CagDiagnostic *d =
         *name ? cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
-                                    "there is no format `%s`", name)
+                                    "unknown format `%s`", name)
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no ending that tells the format", path);
     cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0

@@ -65,7 +65,7 @@ int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
     if (n < 64) names[n++] = cag_standard_view(i);
   }
   CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, CAG_ERR_camera_unknown, NULL,
-                                         (CagSpan){0, 0}, "there is no camera `%s`", name);
+                                         (CagSpan){0, 0}, "unknown camera `%s`", name);
   const char *nearest = cag_nearest_name(name, names, n);
   if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
   else
@@ -265,8 +265,8 @@ static bool check_region(const Job *j) {
     return true;
   CagDiagnostic *d =
       cag_diagnostics_add(&j->session->diagnostics, CAG_ERR_region_outside, NULL, (CagSpan){0, 0},
-                          "the region %dx%d+%d+%d reaches beyond the picture of %d by %d pixels",
-                          r.width, r.height, r.x, r.y, size[0], size[1]);
+                          "the region %dx%d+%d+%d exceeds the picture of %d by %d pixels", r.width,
+                          r.height, r.x, r.y, size[0], size[1]);
   cag_diagnostic_set_help(d, "a region is WxH+X+Y within --size");
   return false;
 }

@@ -166,7 +166,7 @@ prints_nothing
 says "bad.csv:2: E0913: row 1: the script 'nothere.cag' cannot be read"
 says "bad.csv:3: E0912: row 2: size '64x': expected a size"
 says "bad.csv:4: E0912: row 3: quality 'best'"
-says "bad.csv:5: E0916: row 4: there is no format '.foo'"
+says "bad.csv:5: E0916: row 4: unknown format '.foo'"
 says 'bad.csv:6: E0915: row 5: cannot write'
 says 'bad.csv:7: E0914: row 6: all frames would be written to the one output'
 says 'bad.csv:8: E0912: row 7: '
@@ -417,7 +417,7 @@ try compare region.exr whole.exr
 status 1
 try render ball.cag -o region.exr --size 200x150 --region 64x32+150+64
 status 2
-says 'reaches beyond the picture'
+says 'exceeds the picture'
 try render ball.cag -o region.exr --region 64x32
 status 2
 

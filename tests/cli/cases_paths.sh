@@ -70,14 +70,14 @@ mkdir bare
 for command in test fmt check; do
   try $command bare
   status 0
-  says 'there is no script'
+  says 'no scripts found'
   try $command bare -q
   says_nothing
 done
 cd bare
 try fmt
 cd ..
-grep -q 'there is no script' bare/err || wrong 'the folder one is in has scripts'
+grep -q 'no scripts found' bare/err || wrong 'the folder one is in has scripts'
 
 it 'standard input is a test'
 with_input one.cag test - -D unused=1

@@ -296,7 +296,7 @@ status 0
 prints_exactly '21 passed, 0 failed, 0 skipped'
 try test empty
 status 0
-says 'cag test: there is no script to test'
+says 'cag test: no scripts found'
 prints_exactly '0 passed, 0 failed, 0 skipped'
 try test nowhere.cag good.cag
 [ "$code" -ne 0 ] || wrong 'the status is 0'

@@ -175,7 +175,7 @@ static void rows_become_tasks(void **state) {
       {"a.cag,x.d/noending",
        "! 1 E0916 the output 'x.d/noending' has no ending that says its format (" FORMATS ")\n"},
       {"a.cag,x.", "! 1 E0916 the output 'x.' has no ending that says its format (" FORMATS ")\n"},
-      {"a.cag,x.gif", "! 1 E0916 there is no format '.gif' (" FORMATS ")\n"},
+      {"a.cag,x.gif", "! 1 E0916 unknown format '.gif' (" FORMATS ")\n"},
       // Tiles.
       {"a.cag,t.png,,,2x2",
        "! 1 E0912 a picture in tiles needs its size (fill in size, such as 7680x4320)\n"},

@@ -330,11 +330,11 @@ static void what_is_wrong_is_said(void **state) {
   static const struct {
     const char *line, *said;
   } rows[] = {
-      {"cag rnu a.cag", "cag: there is no command 'rnu'\n  did you mean `cag run`?\n"},
+      {"cag rnu a.cag", "cag: unknown command `rnu`\n  did you mean `cag run`?\n"},
       {"cag a.cag",
-       "cag: there is no command 'a.cag'\n  to run the script write `cag run a.cag`\n"},
-      {"cag .cag", "cag: there is no command '.cag'\n  `cag --help` lists the commands\n"},
-      {"cag xyzzyx", "cag: there is no command 'xyzzyx'\n  `cag --help` lists the commands\n"},
+       "cag: unknown command `a.cag`\n  to run the script write `cag run a.cag`\n"},
+      {"cag .cag", "cag: unknown command `.cag`\n  `cag --help` lists the commands\n"},
+      {"cag xyzzyx", "cag: unknown command `xyzzyx`\n  `cag --help` lists the commands\n"},
       {"cag run", "cag run: FILE is missing\n  write `cag run FILE`; `cag run --help` shows "
                   "examples\n"},
       {"cag run a b", "cag run: 'b' is one too many\n  write `cag run FILE`; `cag run --help` "
@@ -343,18 +343,18 @@ static void what_is_wrong_is_said(void **state) {
                         "`cag compare --help` shows examples\n"},
       {"cag info a", "cag info: 'a' is one too many\n  write `cag info `; `cag info --help` shows "
                      "examples\n"},
-      {"cag run a --sizes 3", "cag run: there is no option --sizes\n  `cag run --help` lists the "
+      {"cag run a --sizes 3", "cag run: unknown option --sizes\n  `cag run --help` lists the "
                               "options\n"},
       {"cag render a --sizes 3",
-       "cag render: there is no option --sizes\n  did you mean --size?\n"},
+       "cag render: unknown option --sizes\n  did you mean --size?\n"},
       {"cag run a --size 3x4", "cag run: --size is an option of other commands\n  `cag run "
                                "--help` lists the options\n"},
-      {"cag eval -x", "cag eval: there is no option -x\n  `cag eval --help` lists the options; an "
+      {"cag eval -x", "cag eval: unknown option -x\n  `cag eval --help` lists the options; an "
                       "expression that begins with - comes after --\n"},
-      {"cag run a -a", "cag run: there is no option -a\n  `cag run --help` lists the options\n"},
-      {"cag run a -z", "cag run: there is no option -z\n  `cag run --help` lists the options\n"},
-      {"cag run a -A", "cag run: there is no option -A\n  `cag run --help` lists the options\n"},
-      {"cag run a -Z", "cag run: there is no option -Z\n  `cag run --help` lists the options\n"},
+      {"cag run a -a", "cag run: unknown option -a\n  `cag run --help` lists the options\n"},
+      {"cag run a -z", "cag run: unknown option -z\n  `cag run --help` lists the options\n"},
+      {"cag run a -A", "cag run: unknown option -A\n  `cag run --help` lists the options\n"},
+      {"cag run a -Z", "cag run: unknown option -Z\n  `cag run --help` lists the options\n"},
       {"cag run a -[", "cag run: '-[' is one too many\n  write `cag run FILE`; `cag run --help` "
                        "shows examples\n"},
       {"cag run a -o", "cag run: -o is an option of other commands\n  `cag run --help` lists the "

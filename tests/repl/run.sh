@@ -215,7 +215,7 @@ complains ':save reports where it cannot write' 3 'cannot write missing/x.cag' '
 :save missing/x.cag'
 complains ':export reports where it cannot write' 3 'missing' 'show box(1)
 :export missing/x.stl'
-complains ':export rejects an unknown format' 2 'there is no format `qqq`' 'show box(1)
+complains ':export rejects an unknown format' 2 'unknown format `qqq`' 'show box(1)
 :export x.qqq'
 complains ':time rejects a statement' 2 ':time expects an expression' ':time x = 1'
 complains ':type of an error is the error' 1 'sin expects an angle' ':type sin(1)'
