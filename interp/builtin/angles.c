@@ -85,9 +85,11 @@ static bool call_atan(CagCall *call, CagValue *result) {
 }
 
 static bool call_atan2(CagCall *call, CagValue *result) {
-  double y, x;
-  if (!cag_arg_number(call, 0, &y) || !cag_arg_number(call, 1, &x)) return false;
-  *result = cag_angle(cag_atan2_degrees(y, x));
+  struct {
+    double y, x;
+  } a;
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  *result = cag_angle(cag_atan2_degrees(a.y, a.x));
   return true;
 }
 

@@ -145,7 +145,7 @@ const CagBuiltin cag_builtins_bsplines[] = {
      "c = bspline([[0, 0], [1, 1], [2, 1], [3, 0]], degree: 2)\n"
      "print points(to_bezier(c)[0]) // expect: [[0, 0], [1, 1], [1.5, 1]]",
      CURVES, forms},
-    {"elevate(C: curve, times: integer = 1)", cag_bsplines_elevate, "curve",
+    {"elevate(C: curve, times: integer in 0..1000 = 1)", cag_bsplines_elevate, "curve",
      "Raises the degree without changing the curve. The multiplicity of each knot increases, so "
      "the smoothness stays the same.",
      "print degree(elevate(bezier([[0, 0], [1, 2], [2, 0]]))) // expect: 3", CURVES, forms},
@@ -192,7 +192,7 @@ const CagBuiltin cag_builtins_bsplines[] = {
      "Returns the largest distance (mm) between points of equal parameters. The domain of D is "
      "mapped to that of C.",
      "print deviation(line([0, 0], [2, 0]), line([0, 1], [2, 3])) // expect: 3", CURVES, near},
-    {"approximate(C: curve, tolerance: length)", cag_bsplines_approximate, "curve",
+    {"approximate(C: curve, tolerance: length > 0)", cag_bsplines_approximate, "curve",
      "Returns a B-spline curve within the tolerance (mm) of the curve: the exact form if there "
      "is one, otherwise a cubic that is continuously differentiable where the curve is.",
      "h = helix(10, 5, 2)\n"

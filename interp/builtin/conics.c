@@ -181,7 +181,7 @@ const CagBuiltin cag_builtins_conics[] = {
      "c = circle_tangent(line([-1, 0], [1, 0]), line([0, -1], [0, 1]), 2, side: \"left\")\n"
      "print near(classify(c).center, [2, 2]) // expect: true",
      CURVES, touching},
-    {"fillet(A: curve, B: curve, radius: length)", cag_conics_fillet, "curve",
+    {"fillet(A: curve, B: curve, radius: length > 0)", cag_conics_fillet, "curve",
      "Returns the arc of this radius that rounds the corner where the plane curves A and B meet: "
      "where the end of A is the start of B, or else at their last intersection along A. It is an "
      "error if the arc does not fit (radius-too-large).",

@@ -85,12 +85,15 @@ bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
 }
 
 bool cag_conics_fillet(CagCall *call, CagValue *result) {
-  CagCurve *a, *b, *arc = NULL;
+  struct {
+    CagCurve *a, *b;
+    double radius;
+  } given;
+  CagCurve *arc = NULL;
   CagError err;
-  double radius, t, t2;
-  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
-      !cag_arg_positive(call, 2, &radius) ||
-      !cag_geometry_ok(call, cag_fillet(a, b, radius, &arc, &t, &t2, &err), &err))
+  double t, t2;
+  if (!cag_bind(call, &given, sizeof given) ||
+      !cag_geometry_ok(call, cag_fillet(given.a, given.b, given.radius, &arc, &t, &t2, &err), &err))
     return false;
   *result = cag_curve_value(call->vm, arc);
   return true;

@@ -104,7 +104,7 @@ const CagBuiltin cag_builtins_curves[] = {
      "Returns the parameter at arc length s (mm) from the start. It is an error if s exceeds the "
      "length of the curve.",
      "print near(parameter_at_length(circle(1), pi), 180deg) // expect: true", CURVES, asked},
-    {"sample(C: curve, n: integer)", cag_curves_sample, "list",
+    {"sample(C: curve, n: integer in 2..100000000)", cag_curves_sample, "list",
      "Returns n points (at least 2) at equal steps of the parameter, including both ends.",
      "print sample(line([0, 0], [2, 4]), 3) // expect: [[0, 0], [1, 2], [2, 4]]", CURVES, asked},
     {"divide(C: curve, n: integer, by: \"length\" or \"chord\" or \"parameter\" = \"length\")",
@@ -163,7 +163,7 @@ const CagBuiltin cag_builtins_curves[] = {
      "Returns the curve as an exact rational B-spline. A helix has no such form, which is an "
      "error (no-exact-form).",
      "print degree(to_nurbs(circle(1))) // expect: 2", CURVES, changed},
-    {"polygonize(C: curve, tolerance: length)", cag_curves_polygonize, "curve",
+    {"polygonize(C: curve, tolerance: length > 0)", cag_curves_polygonize, "curve",
      "Approximates the curve by a polyline whose distance (mm) from the curve is at most the "
      "tolerance.",
      "print abs(length(polygonize(circle(1), 0.001)) - tau) < 0.01 // expect: true", CURVES,
@@ -204,8 +204,8 @@ const CagBuiltin cag_builtins_curves[] = {
      "Returns the circle through three points. Collinear points are an error (collinear).",
      "print near(bounds(circle_through([2, 0], [0, 2], [-2, 0])).center, [0, 0]) // expect: true",
      LISTS, made},
-    {"helix(radius: length, pitch: length, turns: number, taper: length = 0)", cag_curves_helix,
-     "curve",
+    {"helix(radius: length, pitch: length, turns: finite number, taper: number = 0)",
+     cag_curves_helix, "curve",
      "Returns the helix that starts at [radius, 0, 0] and rises along Z, parametrized by its "
      "angle. In each turn, it rises by the pitch, and its radius grows by the taper (mm). A "
      "negative number of turns makes it left-handed.",
@@ -263,11 +263,12 @@ const CagBuiltin cag_builtins_curves[] = {
     {"polygon(points: list of points, holes: list of closed curves = [])", cag_curves_polygon,
      "region", "Returns the region inside a polygon, without its holes.",
      "print area(polygon([[0, 0], [4, 0], [0, 3]])) // expect: 6", LISTS, regions},
-    {"rectangle(w: length, h: length, radius: length = 0)", cag_curves_rectangle, "region",
+    {"rectangle(w: length > 0, h: length > 0, radius: number = 0)", cag_curves_rectangle, "region",
      "Returns a rectangle of this width and height, centered at the origin. Its corners are "
      "rounded by the radius, at most half of the shorter side.",
      "print area(rectangle(4, 3)) // expect: 12", NUMBERS, regions},
-    {"regular_polygon(n: integer >= 3, radius: length)", cag_curves_regular_polygon, "region",
+    {"regular_polygon(n: integer in 3..1000000, radius: length > 0)", cag_curves_regular_polygon,
+     "region",
      "Returns the regular polygon with n sides, centered at the origin. Its vertices are at "
      "distance `radius`, the first one on the positive x axis.",
      "print near(area(regular_polygon(4, 1)), 2) // expect: true", NUMBERS, regions},

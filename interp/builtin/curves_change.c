@@ -114,18 +114,23 @@ bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
 #define ANY_TURN 3.14159265358979323846
 
 bool cag_curves_polygonize(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+  struct {
+    CagCurve *c;
+    double tolerance;
+  } a;
+  CagCurve *out = NULL;
   CagError err;
-  double tolerance, *t = NULL;
+  double *t = NULL;
   size_t n;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance) ||
-      !cag_geometry_ok(call, cag_curve_discretize(c, tolerance, ANY_TURN, &t, &n, &err), &err))
+  if (!cag_bind(call, &a, sizeof a) ||
+      !cag_geometry_ok(call, cag_curve_discretize(a.c, a.tolerance, ANY_TURN, &t, &n, &err), &err))
     return false;
   cag_hold(call, t);
   CagVec3 *points = cag_hold(call, cag_malloc(n * sizeof *points));
-  CagStatus status = cag_curve_eval_many(c, t, n, 0, points, &err);
+  CagStatus status = cag_curve_eval_many(a.c, t, n, 0, points, &err);
   if (status == CAG_OK)
-    status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
+    status = cag_curve_polyline(points, a.c->closed ? n - 1 : n, a.c->closed, a.c->dimension, &out,
+                                &err);
   return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
@@ -145,12 +150,14 @@ bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
 #define TIMES_MAX 1000
 
 bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+  struct {
+    CagCurve *c;
+    long times;
+  } a;
+  CagCurve *out = NULL;
   CagError err;
-  long times;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer_or(call, 1, 1, 0, TIMES_MAX, &times))
-    return false;
-  CagStatus status = cag_curve_elevate(c, (int)times, &out, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_curve_elevate(a.c, (int)a.times, &out, &err);
   return cag_changed_curve_result(call, status, &err, &out, result);
 }
 
@@ -243,22 +250,27 @@ bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
 // --- Curves near it ---
 
 bool cag_bsplines_deviation(CagCall *call, CagValue *result) {
-  CagCurve *a, *b;
+  struct {
+    CagCurve *a, *b;
+  } given;
   CagError err;
   double most;
-  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
-      !cag_geometry_ok(call, cag_curve_deviation(a, b, &most, &err), &err))
+  if (!cag_bind(call, &given, sizeof given) ||
+      !cag_geometry_ok(call, cag_curve_deviation(given.a, given.b, &most, &err), &err))
     return false;
   *result = cag_number(most);
   return true;
 }
 
 bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+  struct {
+    CagCurve *c;
+    double tolerance;
+  } a;
+  CagCurve *out = NULL;
   CagError err;
-  double tolerance;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance)) return false;
-  CagStatus status = cag_curve_approximate(c, tolerance, &out, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_curve_approximate(a.c, a.tolerance, &out, &err);
   return cag_changed_curve_result(call, status, &err, &out, result);
 }
 

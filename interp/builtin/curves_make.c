@@ -5,12 +5,14 @@
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
 bool cag_curves_line(CagCall *call, CagValue *result) {
-  CagVec3 p, q;
-  int dp, dq;
+  struct {
+    CagPoint p, q;
+  } a;
   CagCurve *c = NULL;
   CagError err;
-  if (!cag_arg_vec(call, 0, &p, &dp) || !cag_arg_vec(call, 1, &q, &dq)) return false;
-  CagStatus status = cag_curve_line(p, q, dp > dq ? dp : dq, &c, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_curve_line(
+      a.p.at, a.q.at, a.p.dimension > a.q.dimension ? a.p.dimension : a.q.dimension, &c, &err);
   return cag_curve_result(call, status, &err, &c, result);
 }
 
@@ -164,12 +166,12 @@ bool cag_curves_arc_through(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_helix(CagCall *call, CagValue *result) {
-  double radius, pitch, turns, taper;
+  struct {
+    double radius, pitch, turns, taper;
+  } a;
   CagCurve *c = NULL;
   CagError err;
-  if (!cag_arg_finite(call, 0, &radius) || !cag_arg_finite(call, 1, &pitch) ||
-      !cag_arg_finite(call, 2, &turns) || !cag_arg_number_or(call, 3, 0, &taper))
-    return false;
-  CagStatus status = cag_curve_helix(radius, pitch, turns, taper, &c, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_curve_helix(a.radius, a.pitch, a.turns, a.taper, &c, &err);
   return cag_curve_result(call, status, &err, &c, result);
 }

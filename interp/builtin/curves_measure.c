@@ -30,13 +30,16 @@ bool cag_curves_length(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_parameter_at_length(CagCall *call, CagValue *result) {
-  CagCurve *c;
+  struct {
+    CagCurve *c;
+    double s;
+  } a;
   CagError err;
-  double s, t;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_finite(call, 1, &s) ||
-      !cag_geometry_ok(call, cag_curve_parameter_at_length(c, s, &t, &err), &err))
+  double t;
+  if (!cag_bind(call, &a, sizeof a) ||
+      !cag_geometry_ok(call, cag_curve_parameter_at_length(a.c, a.s, &t, &err), &err))
     return false;
-  *result = cag_parameter_value(c->angular, t);
+  *result = cag_parameter_value(a.c->angular, t);
   return true;
 }
 
@@ -48,11 +51,13 @@ static double step(const CagCurve *c, size_t i, size_t n) {
 #define SAMPLE_BATCH 512
 
 bool cag_curves_sample(CagCall *call, CagValue *result) {
-  CagCurve *c;
+  struct {
+    CagCurve *c;
+    long n;
+  } given;
   CagError err;
-  long n;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer(call, 1, 2, PARTS_MAX, &n)) return false;
-  const size_t count = (size_t)n, dimension = (size_t)c->dimension;
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  const size_t count = (size_t)given.n, dimension = (size_t)given.c->dimension;
   double t[SAMPLE_BATCH], *to;
   CagVec3 points[SAMPLE_BATCH];
   CagValue list = cag_list_vectors(call->vm, count, dimension, &to);
@@ -62,8 +67,8 @@ bool cag_curves_sample(CagCall *call, CagValue *result) {
     const size_t m = count - from < SAMPLE_BATCH ? count - from : SAMPLE_BATCH;
     // Vectors of a list in space lie as those of the core do.
     CagVec3 *out = dimension == 3 ? (CagVec3 *)to : points;
-    for (size_t i = 0; i < m; i++) t[i] = step(c, from + i, count - 1);
-    ok = cag_geometry_ok(call, cag_curve_eval_many(c, t, m, 0, out, &err), &err);
+    for (size_t i = 0; i < m; i++) t[i] = step(given.c, from + i, count - 1);
+    ok = cag_geometry_ok(call, cag_curve_eval_many(given.c, t, m, 0, out, &err), &err);
     for (size_t i = 0; ok && dimension == 2 && i < m; i++) {
       to[2 * i] = points[i].x;
       to[2 * i + 1] = points[i].y;
@@ -280,16 +285,19 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_closest(CagCall *call, CagValue *result) {
+  struct {
+    CagCurve *c;
+    CagPoint p;
+  } a;
   static const char *const names[] = {"t", "point", "distance"};
-  CagCurve *c;
-  CagVec3 p, point;
+  CagVec3 point;
   CagError err;
   double t, distance;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_curve_closest(c, p, &t, &point, &distance, &err), &err))
+  if (!cag_bind(call, &a, sizeof a) ||
+      !cag_geometry_ok(call, cag_curve_closest(a.c, a.p.at, &t, &point, &distance, &err), &err))
     return false;
-  CagValue values[] = {cag_parameter_value(c->angular, t), cag_point(call->vm, point, c->dimension),
-                       cag_number(distance)};
+  CagValue values[] = {cag_parameter_value(a.c->angular, t),
+                       cag_point(call->vm, point, a.c->dimension), cag_number(distance)};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }

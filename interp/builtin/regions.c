@@ -98,13 +98,13 @@ bool cag_curves_polygon(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_rectangle(CagCall *call, CagValue *result) {
-  double w, h, radius;
+  struct {
+    double w, h, radius;
+  } a;
   CagRegion *region = NULL;
   CagError err;
-  if (!cag_arg_positive(call, 0, &w) || !cag_arg_positive(call, 1, &h) ||
-      !cag_arg_number_or(call, 2, 0, &radius))
-    return false;
-  CagStatus status = cag_region_rectangle(w, h, radius, &region, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_region_rectangle(a.w, a.h, a.radius, &region, &err);
   return cag_region_result(call, status, &err, &region, result);
 }
 
@@ -112,13 +112,14 @@ bool cag_curves_rectangle(CagCall *call, CagValue *result) {
 #define CORNERS_MAX 1000000
 
 bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
-  long n;
-  double radius;
+  struct {
+    long n;
+    double radius;
+  } a;
   CagRegion *region = NULL;
   CagError err;
-  if (!cag_arg_integer(call, 0, 3, CORNERS_MAX, &n) || !cag_arg_positive(call, 1, &radius))
-    return false;
-  CagStatus status = cag_region_regular_polygon((size_t)n, radius, &region, &err);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagStatus status = cag_region_regular_polygon((size_t)a.n, a.radius, &region, &err);
   return cag_region_result(call, status, &err, &region, result);
 }
 

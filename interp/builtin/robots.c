@@ -180,7 +180,7 @@ const CagBuiltin cag_builtins_robots[] = {
      PLANAR "print near(closest_pose(arm, [600, 0, 0]).distance, 100) // expect: true", ROBOTS,
      inverse},
 
-    {"workspace(robot: robot, n: integer = 2000)", cag_robots_workspace, "record",
+    {"workspace(robot: robot, n: integer in 1..1000000 = 2000)", cag_robots_workspace, "record",
      "Returns the workspace of the robot: points (the tool at n configurations that fill the "
      "joint limits), hull (their convex hull, a mesh or region), cloud (the points as a mesh of "
      "dots), and bounds. For classical arms (kind \"cartesian\" \"cylindrical\" \"spherical\" "

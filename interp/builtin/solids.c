@@ -222,7 +222,7 @@ const CagBuiltin cag_builtins_solids[] = {
      "Returns an arrow that starts at P and extends by V. By default, its thickness depends on "
      "its length.",
      "print near(bounds(arrow(origin, [0, 0, 10])).max.z, 10) // expect: true", LISTS, figures},
-    {"triad(T: transform, size: length)", cag_solids_triad, "group",
+    {"triad(T: transform, size: length > 0)", cag_solids_triad, "group",
      "Returns the axes of a frame as arrows of this length (mm): x red, y green, and z blue.",
      "print near(bounds(triad(identity, 5)).max.x, 5) // expect: true", CAG_TAKES(TRANSFORM),
      figures},

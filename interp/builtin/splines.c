@@ -226,7 +226,7 @@ const CagBuiltin cag_builtins_splines[] = {
      "a = bezier([[1, 1], [2, 3], [4, 3], [3, 1]])\n"
      "print continuity(a, bezier([[3, 1], [2, -1], [0, 0]])).class // expect: G1",
      CURVES, segments},
-    {"line_crossings(C: curve, normal: vector, offset: number)", cag_splines_line_crossings,
+    {"line_crossings(C: curve, normal: vector, offset: finite number)", cag_splines_line_crossings,
      "record",
      "Returns where a curve meets the line (or plane) of all points whose dot product with the "
      "normal is the offset: the parameters t, the points, their number curve_crossings, and "

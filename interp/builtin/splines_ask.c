@@ -323,20 +323,21 @@ static CagValue number_or_none(double x) { return isnan(x) ? cag_none() : cag_nu
 
 // continuity(C, D, tolerance = 1e-9)
 bool cag_splines_continuity(CagCall *call, CagValue *result) {
+  struct {
+    CagCurve *a, *b;
+    double tolerance;
+  } given;
   static const char *const names[] = {"class", "C0",         "C1",          "C2",
                                       "G1",    "G2",         "gap",         "angle",
                                       "ratio", "first_jump", "second_jump", "curvature_jump"};
-  CagCurve *a, *b;
-  double tolerance;
   CagJoint j;
   CagError err;
-  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
-      !cag_arg_number_or(call, 2, 1e-9, &tolerance))
-    return false;
-  if (!(tolerance >= 0))
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  if (!(given.tolerance >= 0))
     return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
-                            "the tolerance is 0 or more");
-  if (!cag_geometry_ok(call, cag_curve_joint(a, b, tolerance, &j, &err), &err)) return false;
+                            "the given.tolerance is 0 or more");
+  if (!cag_geometry_ok(call, cag_curve_joint(given.a, given.b, given.tolerance, &j, &err), &err))
+    return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
                        cag_bool(j.c0),
                        cag_bool(j.c1),
@@ -377,33 +378,34 @@ static size_t polygon_crossings(const CagCurve *curve, CagVec3 normal, double of
 
 // line_crossings(C, normal, offset)
 bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
+  struct {
+    CagCurve *c;
+    CagPoint normal;
+    double offset;
+  } given;
   static const char *const names[] = {"t", "points", "curve_crossings", "polygon_crossings"};
-  CagCurve *c;
-  CagVec3 normal;
-  double offset;
   CagMeeting *meetings;
   size_t n;
-  int d;
   CagError err;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_vec(call, 1, &normal, &d) ||
-      !cag_arg_finite(call, 2, &offset))
-    return false;
-  const double square = cag_dot(normal, normal);
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  const double square = cag_dot(given.normal.at, given.normal.at);
   if (!(square > 0))
     return cag_splines_fail(call, CAG_ERR_zero_vector, "normal", -1,
-                            "the normal of a line or plane is not the zero vector");
-  const CagPlane plane = {cag_scaled(normal, offset / square), cag_unit(normal)};
-  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))
+                            "the given.normal.at of a line or plane is not the zero vector");
+  const CagPlane plane = {cag_scaled(given.normal.at, given.offset / square),
+                          cag_unit(given.normal.at)};
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(given.c, &plane, &meetings, &n, &err), &err))
     return false;
   cag_hold_for(call, cag_free, meetings);
   CagBuilder *t = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
   for (size_t i = 0; i < n; i++)
-    if (!cag_builder_add(call->vm, t, cag_parameter_value(c->angular, meetings[i].t)) ||
-        !cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, c->dimension)))
+    if (!cag_builder_add(call->vm, t, cag_parameter_value(given.c->angular, meetings[i].t)) ||
+        !cag_builder_add(call->vm, points,
+                         cag_point(call->vm, meetings[i].point, given.c->dimension)))
       return false;
-  CagValue values[] = {cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points),
-                       cag_number((double)n),
-                       cag_number((double)polygon_crossings(c, normal, offset))};
+  CagValue values[] = {
+      cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points), cag_number((double)n),
+      cag_number((double)polygon_crossings(given.c, given.normal.at, given.offset))};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }

@@ -199,8 +199,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(points(refine(s))), len(points(refine(s))[0]) // expect: 3 4",
      SURFACES, changed},
-    {"elevate(S: surface, u: integer = 0, v: integer = 0)", cag_surfaces_elevate, "surface",
-     "Raises the degrees in u and v without changing the surface.",
+    {"elevate(S: surface, u: integer in 0..20 = 0, v: integer in 0..20 = 0)", cag_surfaces_elevate,
+     "surface", "Raises the degrees in u and v without changing the surface.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print degree(elevate(s, u: 2, v: 1)) // expect: [3, 3]",
      SURFACES, changed},
@@ -366,7 +366,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "Returns the sphere about the origin as a surface: u is the polar angle from Z, and v the "
      "azimuth.",
      "print near(sphere_surface(2)(90deg, 90deg), [0, 2, 0]) // expect: true", NUMBERS, made},
-    {"torus_surface(major: length, minor: length)", cag_surfaces_torus_surface, "surface",
+    {"torus_surface(major: length > 0, minor: length > 0)", cag_surfaces_torus_surface, "surface",
      "Returns the torus about Z as a surface: a circle of radius `minor` whose center moves on a "
      "circle of radius `major`.",
      "print near(area(torus_surface(3, 1)), 12 * pi^2, relative: 1e-8) // expect: true", NUMBERS,

@@ -326,21 +326,25 @@ bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
 #define PROBES 24
 
 bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
-  CagSurface *s;
+  struct {
+    CagSurface *s;
+    double tolerance;
+  } given;
   CagBounds box;
   CagError err;
-  double tolerance, worst = 0;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_number_or(call, 1, 1e-9, &tolerance)) return false;
-  if (!(tolerance >= 0)) return cag_fail_value(call, 1, "a tolerance of 0 or more");
-  if (!cag_geometry_ok(call, cag_surface_bounds(s, &box, &err), &err)) return false;
+  double worst = 0;
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  if (!(given.tolerance >= 0)) return cag_fail_value(call, 1, "a given.tolerance of 0 or more");
+  if (!cag_geometry_ok(call, cag_surface_bounds(given.s, &box, &err), &err)) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
     for (int j = 0; j < PROBES; j++) {
       // Off the ends, where poles lie, and off the middles, where knots like to be.
-      double u = s->u0 + (s->u1 - s->u0) * (i + 0.431) / PROBES;
-      double v = s->v0 + (s->v1 - s->v0) * (j + 0.567) / PROBES;
+      double u = given.s->u0 + (given.s->u1 - given.s->u0) * (i + 0.431) / PROBES;
+      double v = given.s->v0 + (given.s->v1 - given.s->v0) * (j + 0.567) / PROBES;
       CagVec3 d[9];
-      CagStatus status = cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err);
+      CagStatus status =
+          cag_surface_eval(given.s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err);
       if (!cag_geometry_ok(call, status, &err)) return false;
       CagVec3 n = cag_cross(d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]);
       double length = cag_norm(n);
@@ -350,7 +354,7 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
       double k = (a * c - b * b) / (length * length * length * length);
       worst = fmax(worst, fabs(k) * size * size);
     }
-  *result = cag_bool(worst <= tolerance);
+  *result = cag_bool(worst <= given.tolerance);
   return true;
 }
 

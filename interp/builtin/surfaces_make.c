@@ -234,11 +234,13 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
 // --- Others ---
 
 bool cag_surfaces_ruled(CagCall *call, CagValue *result) {
-  CagCurve *a, *b;
+  struct {
+    CagCurve *a, *b;
+  } given;
   CagSurface *s = NULL;
   CagError err;
-  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
-  return cag_surface_result(call, cag_surface_ruled(a, b, &s, &err), &err, &s, result);
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  return cag_surface_result(call, cag_surface_ruled(given.a, given.b, &s, &err), &err, &s, result);
 }
 
 bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
@@ -252,11 +254,14 @@ bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_translational(CagCall *call, CagValue *result) {
-  CagCurve *a, *b;
+  struct {
+    CagCurve *a, *b;
+  } given;
   CagSurface *s = NULL;
   CagError err;
-  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
-  return cag_surface_result(call, cag_surface_translational(a, b, &s, &err), &err, &s, result);
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  return cag_surface_result(call, cag_surface_translational(given.a, given.b, &s, &err), &err, &s,
+                            result);
 }
 
 // The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
@@ -277,9 +282,11 @@ bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
-  double major, minor;
+  struct {
+    double major, minor;
+  } a;
   CagSurface *s = NULL;
   CagError err;
-  if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
-  return cag_surface_result(call, cag_surface_torus(major, minor, &s, &err), &err, &s, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return cag_surface_result(call, cag_surface_torus(a.major, a.minor, &s, &err), &err, &s, result);
 }

@@ -10,16 +10,18 @@
 static const char MEETINGS[] = "Surfaces: near and across";
 
 static bool call_closest(CagCall *call, CagValue *result) {
+  struct {
+    CagSurface *s;
+    CagPoint p;
+  } a;
   static const char *const names[] = {"u", "v", "point", "distance"};
-  CagSurface *s;
-  CagVec3 p;
   CagError err;
   CagSurfaceNearest found;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_surface_closest(s, p, &found, &err), &err))
+  if (!cag_bind(call, &a, sizeof a) ||
+      !cag_geometry_ok(call, cag_surface_closest(a.s, a.p.at, &found, &err), &err))
     return false;
-  CagValue values[] = {cag_parameter_value(s->angular_u, found.u),
-                       cag_parameter_value(s->angular_v, found.v),
+  CagValue values[] = {cag_parameter_value(a.s->angular_u, found.u),
+                       cag_parameter_value(a.s->angular_v, found.v),
                        cag_point(call->vm, found.point, 3), cag_number(found.distance)};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;

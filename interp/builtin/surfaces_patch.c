@@ -18,11 +18,13 @@ bool cag_surfaces_coons(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_developable(CagCall *call, CagValue *result) {
-  CagCurve *first, *second;
+  struct {
+    CagCurve *first, *second;
+  } a;
   CagSurface *s = NULL;
   CagError err;
-  if (!cag_arg_curve(call, 0, &first) || !cag_arg_curve(call, 1, &second)) return false;
-  return cag_surface_result(call, cag_surface_developable(first, second, &s, &err), &err, &s,
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return cag_surface_result(call, cag_surface_developable(a.first, a.second, &s, &err), &err, &s,
                             result);
 }
 

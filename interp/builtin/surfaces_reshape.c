@@ -141,14 +141,15 @@ bool cag_surfaces_refine(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
+  struct {
+    CagSurface *s;
+    long u, v;
+  } a;
+  CagSurface *out = NULL;
   CagError err;
-  long u, v;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer_or(call, 1, 0, 0, 20, &u) ||
-      !cag_arg_integer_or(call, 2, 0, 0, 20, &v))
-    return false;
-  return cag_changed_surface_result(call, cag_surface_elevate(s, (int)u, (int)v, &out, &err), &err,
-                                    &out, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return cag_changed_surface_result(call, cag_surface_elevate(a.s, (int)a.u, (int)a.v, &out, &err),
+                                    &err, &out, result);
 }
 
 bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
@@ -235,21 +236,27 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
 // --- Offsets ---
 
 bool cag_surfaces_offset(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
+  struct {
+    CagSurface *s;
+    double d;
+  } a;
+  CagSurface *out = NULL;
   CagError err;
-  double d;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_finite(call, 1, &d)) return false;
-  return cag_changed_surface_result(call, cag_surface_offset(s, d, &out, &err), &err, &out, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return cag_changed_surface_result(call, cag_surface_offset(a.s, a.d, &out, &err), &err, &out,
+                                    result);
 }
 
 bool cag_surfaces_thicken(CagCall *call, CagValue *result) {
-  CagSurface *s;
+  struct {
+    CagSurface *s;
+    double d;
+  } given;
   CagSolid *out = NULL;
   CagError err;
-  double d;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_finite(call, 1, &d)) return false;
-  if (d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
-  if (!cag_geometry_ok(call, cag_solid_thicken(s, d, &out, &err), &err)) return false;
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  if (given.d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
+  if (!cag_geometry_ok(call, cag_solid_thicken(given.s, given.d, &out, &err), &err)) return false;
   *result = cag_solid_value(call->vm, out);
   cag_shape_say_alike(*result, call->values[0]);
   return true;

@@ -227,7 +227,7 @@ const CagBuiltin cag_builtins_transforms[] = {
      "coordinates are 0.",
      "print dehomogenize([2, 4, 6, 2]), dehomogenize([2, 4, 2]) // expect: [1, 2, 3] [1, 2]", LISTS,
      family},
-    {"mix(A: transform, B: transform, t: number)", cag_transforms_mix, "transform",
+    {"mix(A: transform, B: transform, t: finite number)", cag_transforms_mix, "transform",
      "Interpolates between two rigid transforms: the rotation by slerp, and the position along a "
      "line.",
      "print near(mix(identity, rotate(Z, 90deg), 0.5), rotate(Z, 45deg)) // expect: true",

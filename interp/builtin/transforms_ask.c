@@ -58,14 +58,16 @@ static bool give_angles(CagCall *call, const char *const *names, const double an
 }
 
 bool cag_transforms_euler_of(CagCall *call, CagValue *result) {
+  struct {
+    CagTransform t;
+    const char *order;
+  } given;
   static const char *const names[] = {"a", "b", "c", "singular"};
-  CagTransform t;
   CagError err;
-  const char *order;
   double angles[3];
   bool singular;
-  if (!cag_arg_transform(call, 0, &t) || !cag_arg_text(call, 1, &order) ||
-      !cag_geometry_ok(call, cag_euler_of(&t, order, angles, &singular, &err), &err))
+  if (!cag_bind(call, &given, sizeof given) ||
+      !cag_geometry_ok(call, cag_euler_of(&given.t, given.order, angles, &singular, &err), &err))
     return false;
   return give_angles(call, names, angles, singular, result);
 }
@@ -133,12 +135,14 @@ bool cag_transforms_classify(CagCall *call, CagValue *result) {
 }
 
 bool cag_transforms_homogeneous(CagCall *call, CagValue *result) {
-  CagVec3 p;
-  double w;
-  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_number_or(call, 1, 1, &w)) return false;
+  struct {
+    CagPoint p;
+    double w;
+  } a;
+  if (!cag_bind(call, &a, sizeof a)) return false;
   // A point at infinity keeps its direction; any other is scaled, so that dividing gives it back.
-  double scale = w == 0 ? 1 : w;
-  double h[] = {scale * p.x, scale * p.y, scale * p.z, w};
+  double scale = a.w == 0 ? 1 : a.w;
+  double h[] = {scale * a.p.at.x, scale * a.p.at.y, scale * a.p.at.z, a.w};
   for (int i = 0; i < 4; i++)
     if (!isfinite(h[i])) return cag_fail_call(call, 1, CAG_ERR_not_finite, "overflows");
   *result = cag_vector(call->vm, h, 4);
@@ -167,14 +171,16 @@ bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
 }
 
 bool cag_transforms_mix(CagCall *call, CagValue *result) {
-  CagTransform a, b, out;
+  struct {
+    CagTransform a, b;
+    double t;
+  } given;
+  CagTransform out;
   CagError err;
-  double t;
-  if (!cag_arg_transform(call, 0, &a) || !cag_arg_transform(call, 1, &b) ||
-      !cag_arg_finite(call, 2, &t) ||
-      !cag_geometry_ok(call, cag_transform_mix(&a, &b, t, &out, &err), &err))
+  if (!cag_bind(call, &given, sizeof given) ||
+      !cag_geometry_ok(call, cag_transform_mix(&given.a, &given.b, given.t, &out, &err), &err))
     return false;
-  out.planar = a.planar && b.planar;
+  out.planar = given.a.planar && given.b.planar;
   *result = cag_transform_value(call->vm, &out);
   return true;
 }

@@ -13,12 +13,14 @@ static bool give(CagCall *call, CagStatus status, const CagError *err, CagTransf
 }
 
 bool cag_transforms_reflect_line(CagCall *call, CagValue *result) {
-  CagVec3 p, q;
-  int dp, dq;
+  struct {
+    CagPoint p, q;
+  } a;
   CagTransform t;
   CagError err;
-  if (!cag_arg_vec(call, 0, &p, &dp) || !cag_arg_vec(call, 1, &q, &dq)) return false;
-  return give(call, cag_reflect_line(p, q, &t, &err), &err, &t, dp == 2 && dq == 2, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give(call, cag_reflect_line(a.p.at, a.q.at, &t, &err), &err, &t,
+              a.p.dimension == 2 && a.q.dimension == 2, result);
 }
 
 bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
@@ -78,42 +80,43 @@ bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
 }
 
 bool cag_transforms_axes(CagCall *call, CagValue *result) {
-  CagVec3 origin, x, y;
+  struct {
+    CagPoint origin, x, y;
+  } a;
   CagTransform t;
   CagError err;
-  if (!cag_arg_vec(call, 0, &origin, NULL) || !cag_arg_vec(call, 1, &x, NULL) ||
-      !cag_arg_vec(call, 2, &y, NULL))
-    return false;
-  return give(call, cag_axes(origin, x, y, &t, &err), &err, &t, false, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, &err), &err, &t, false, result);
 }
 
 bool cag_transforms_look_at(CagCall *call, CagValue *result) {
-  CagVec3 from, to, up;
+  struct {
+    CagPoint from, to, up;
+  } a;
   CagTransform t;
   CagError err;
-  if (!cag_arg_vec(call, 0, &from, NULL) || !cag_arg_vec(call, 1, &to, NULL) ||
-      !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 1), &up, NULL))
-    return false;
-  return give(call, cag_look_at(from, to, up, &t, &err), &err, &t, false, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, &err), &err, &t, false, result);
 }
 
 bool cag_transforms_euler(CagCall *call, CagValue *result) {
-  double a, b, c;
-  const char *order;
+  struct {
+    double a, b, c;
+    const char *order;
+  } given;
   CagTransform t;
   CagError err;
-  if (!cag_arg_angle(call, 0, &a) || !cag_arg_angle(call, 1, &b) || !cag_arg_angle(call, 2, &c) ||
-      !cag_arg_text(call, 3, &order))
-    return false;
-  return give(call, cag_euler(a, b, c, order, &t, &err), &err, &t, false, result);
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  return give(call, cag_euler(given.a, given.b, given.c, given.order, &t, &err), &err, &t, false,
+              result);
 }
 
 bool cag_transforms_rpy(CagCall *call, CagValue *result) {
-  double roll, pitch, yaw;
-  if (!cag_arg_angle(call, 0, &roll) || !cag_arg_angle(call, 1, &pitch) ||
-      !cag_arg_angle(call, 2, &yaw))
-    return false;
-  CagTransform t = cag_rpy(roll, pitch, yaw);
+  struct {
+    double roll, pitch, yaw;
+  } a;
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  CagTransform t = cag_rpy(a.roll, a.pitch, a.yaw);
   return give(call, CAG_OK, NULL, &t, false, result);
 }
 
@@ -127,12 +130,15 @@ bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
 }
 
 bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
-  CagVec3 axis;
-  double angle;
+  struct {
+    CagPoint axis;
+    double angle;
+  } a;
   CagTransform t;
   CagError err;
-  if (!cag_arg_vec(call, 0, &axis, NULL) || !cag_arg_angle(call, 1, &angle)) return false;
-  return give(call, cag_rotate(axis, angle, cag_vec3(0, 0, 0), &t, &err), &err, &t, false, result);
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, &err), &err, &t, false,
+              result);
 }
 
 // Turn about Z by the first angle, then about the turned Y by the second, then a step along the
@@ -146,21 +152,21 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
 }
 
 bool cag_transforms_cylindrical(CagCall *call, CagValue *result) {
-  double r, theta, z;
-  bool orient;
-  if (!cag_arg_finite(call, 0, &r) || !cag_arg_angle(call, 1, &theta) ||
-      !cag_arg_finite(call, 2, &z) || !cag_arg_bool_or(call, 3, false, &orient))
-    return false;
-  return give_position(call, theta, 0, cag_vec3(r, 0, z), orient, result);
+  struct {
+    double r, theta, z;
+    bool orient;
+  } a;
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give_position(call, a.theta, 0, cag_vec3(a.r, 0, a.z), a.orient, result);
 }
 
 bool cag_transforms_spherical(CagCall *call, CagValue *result) {
-  double r, azimuth, polar;
-  bool orient;
-  if (!cag_arg_finite(call, 0, &r) || !cag_arg_angle(call, 1, &azimuth) ||
-      !cag_arg_angle(call, 2, &polar) || !cag_arg_bool_or(call, 3, false, &orient))
-    return false;
-  return give_position(call, azimuth, polar, cag_vec3(0, 0, r), orient, result);
+  struct {
+    double r, azimuth, polar;
+    bool orient;
+  } a;
+  if (!cag_bind(call, &a, sizeof a)) return false;
+  return give_position(call, a.azimuth, a.polar, cag_vec3(0, 0, a.r), a.orient, result);
 }
 
 // theta, d, a, alpha

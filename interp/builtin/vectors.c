@@ -64,10 +64,11 @@ static bool call_dot(CagCall *call, CagValue *result) {
 }
 
 static bool call_cross(CagCall *call, CagValue *result) {
-  CagVec3 a, b;
-  int dimension;
-  if (!cag_arg_vec(call, 0, &a, &dimension) || !cag_arg_vec(call, 1, &b, &dimension)) return false;
-  *result = cag_point(call->vm, cag_cross(a, b), 3);
+  struct {
+    CagPoint a, b;
+  } given;
+  if (!cag_bind(call, &given, sizeof given)) return false;
+  *result = cag_point(call->vm, cag_cross(given.a.at, given.b.at), 3);
   return true;
 }
 

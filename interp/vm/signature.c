@@ -83,11 +83,12 @@ static Part parse_range(Part p, CagParameterType *out) {
   for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
     const char *at = find_outside(p, signs[i]);
     if (at == p.end) continue;
-    char *after;
     out->ranged = true;
     out->above_low = i == 1;
-    out->low = strtod(at + strlen(signs[i]), &after);
-    out->high = i == 2 && strncmp(after, "..", 2) == 0 ? strtod(after + 2, NULL) : HUGE_VAL;
+    out->low = strtod(at + strlen(signs[i]), NULL);
+    // Of "1..5", strtod reads "1.".
+    const char *dots = find_outside((Part){at, p.end}, "..");
+    out->high = i == 2 && dots < p.end ? strtod(dots + 2, NULL) : HUGE_VAL;
     return (Part){p.start, at};
   }
   return p;
@@ -161,6 +162,8 @@ static double parse_number(const char *text, const char **end) {
   char *after;
   const double x = strncmp(text, "inf", 3) == 0 ? HUGE_VAL : strtod(text, &after);
   *end = isinf(x) ? text + 3 : after;
+  // Of "0..1", strtod reads "0.".
+  if (!isinf(x) && after > text && after[-1] == '.' && *after == '.') --*end;
   if (strncmp(*end, "deg", 3) == 0) *end += 3;
   return x;
 }
