@@ -109,7 +109,6 @@ bool cag_curves_rectangle(CagCall *call, CagValue *result) {
 }
 
 // More corners than any polygon of a drawing; a circle says it better.
-#define CORNERS_MAX 1000000
 
 bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
   struct {

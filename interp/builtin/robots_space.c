@@ -11,8 +11,6 @@
 
 // --- Workspace ---
 
-#define SAMPLES_DEFAULT 2000
-#define SAMPLES_MAX 1000000
 // Size of a dot of the cloud as a part of the cloud's.
 #define DOT 0.004
 // Points are in a plane when their heights differ by less than this part of the cloud.

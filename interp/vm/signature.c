@@ -21,10 +21,12 @@
 
 static const struct {
   const char *words;
+  size_t length;
   CagParameterKind kind;
   uint64_t accepts;
 } known[] = {
-#define CAG_PARAMETER_TYPE(words, kind, accepts) {words, CAG_BIND_##kind, accepts},
+#define CAG_PARAMETER_TYPE(words, kind, accepts)                                                   \
+  {words, sizeof words - 1, CAG_BIND_##kind, accepts},
 #include "interp/vm/parameter_types.def"
 #undef CAG_PARAMETER_TYPE
 };
@@ -54,8 +56,9 @@ static const char *find_outside(Part p, const char *what) {
   int depth = 0;
   bool quoted = false;
   const size_t n = strlen(what);
+  if (p.start >= p.end || !memmem(p.start, part_length(p), what, n)) return p.end;
   for (const char *s = p.start; s + n <= p.end; s++) {
-    if (!quoted && depth == 0 && strncmp(s, what, n) == 0) return s;
+    if (*s == *what && !quoted && depth == 0 && memcmp(s, what, n) == 0) return s;
     if (*s == '"') quoted = !quoted;
     if (quoted) continue;
     if (*s == '(' || *s == '[' || *s == '{') depth++;
@@ -68,8 +71,9 @@ static const char *find_outside(Part p, const char *what) {
 static size_t find_words(Part p) {
   size_t best = KNOWN_COUNT, length = 0;
   for (size_t i = 0; i < KNOWN_COUNT; i++) {
-    const size_t n = strlen(known[i].words);
-    if (n <= length || n > part_length(p) || strncmp(p.start, known[i].words, n) != 0) continue;
+    const size_t n = known[i].length;
+    if (*known[i].words != *p.start || n <= length || n > part_length(p)) continue;
+    if (memcmp(p.start, known[i].words, n) != 0) continue;
     if (n < part_length(p) && p.start[n] != ' ') continue;
     best = i;
     length = n;
@@ -77,37 +81,37 @@ static size_t find_words(Part p) {
   return best;
 }
 
-// Takes the range off the end of a type.
-static Part parse_range(Part p, CagParameterType *out) {
-  static const char *const signs[] = {" >= ", " > ", " in "};
-  for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
-    const char *at = find_outside(p, signs[i]);
-    if (at == p.end) continue;
-    out->ranged = true;
-    out->above_low = i == 1;
-    out->low = strtod(at + strlen(signs[i]), NULL);
-    // Of "1..5", strtod reads "1.".
-    const char *dots = find_outside((Part){at, p.end}, "..");
-    out->high = i == 2 && dots < p.end ? strtod(dots + 2, NULL) : HUGE_VAL;
-    return (Part){p.start, at};
-  }
-  return p;
+// Parses a range such as " > 0", from its space on.
+static void parse_range(CagParameterType *out, const char *range) {
+  const bool within = strncmp(range, " in ", 4) == 0;
+  out->ranged = true;
+  out->above_low = !within && range[2] != '=';
+  out->low = strtod(range + (within ? 4 : out->above_low ? 2 : 3), NULL);
+  // Of "1..5", strtod reads "1.".
+  const char *dots = within ? strstr(range, "..") : NULL;
+  out->high = dots ? strtod(dots + 2, NULL) : HUGE_VAL;
 }
 
-static void parse_type(CagParameterType *out, Part p, CagArena *arena) {
+// The parts of a parameter.
+typedef struct Pieces {
+  Part name, type, fallback; // the fallback starts with NULL if there is none
+  const char *range;         // within the type, or NULL
+  size_t alternatives;
+  bool quoted; // the type has texts
+} Pieces;
+
+static void parse_type(CagParameterType *out, const Pieces *pieces, CagArena *arena) {
   static const char or [] = " or ";
   *out = (CagParameterType){.low = -HUGE_VAL, .high = HUGE_VAL};
-  p = parse_range(p, out);
-  size_t count = 1, texts = 0;
-  for (Part rest = p; rest.start < rest.end; rest.start += strlen(or)) {
-    rest.start = find_outside(rest, or);
-    if (rest.start == rest.end) break;
-    count++;
-  }
-  const char **choices = cag_arena_alloc(arena, (count + 1) * sizeof *choices);
+  Part p = {pieces->type.start, pieces->range ? pieces->range : pieces->type.end};
+  const size_t count = pieces->alternatives;
+  size_t texts = 0;
+  if (pieces->range) parse_range(out, pieces->range);
+  const char **choices = NULL; // most types have none
+  if (pieces->quoted) choices = cag_arena_alloc(arena, (count + 1) * sizeof *choices);
   bool any = false;
   for (size_t i = 0; i < count; i++) {
-    const Part one = {p.start, find_outside(p, or)};
+    const Part one = {p.start, i + 1 < count ? find_outside(p, or) : p.end};
     if (*one.start == '"') {
       choices[texts++] = part_text((Part){one.start + 1, one.end - 1}, arena);
       out->accepts |= TYPE(TEXT);
@@ -211,28 +215,69 @@ static void parse_default(CagSignature *s, CagParameterType *out, const char *te
   }
 }
 
-static void parse_parameter(CagSignature *out, Part p, CagArena *arena) {
-  if (part_length(p) == 3 && strncmp(p.start, "...", 3) == 0) {
+// Finds the parts of the parameter that starts at `s`. Returns its end: a comma, or `end`.
+static const char *scan_parameter(const char *s, const char *end, Pieces *out) {
+  int depth = 0;
+  bool quoted = false;
+  *out = (Pieces){.name = {s, NULL}, .alternatives = 1};
+  for (; s < end; s++) {
+    const bool in_type = out->type.start && !out->fallback.start;
+    if (*s == '"') {
+      quoted = !quoted;
+      out->quoted |= in_type;
+    }
+    if (quoted) continue;
+    if (*s == '(' || *s == '[' || *s == '{') depth++;
+    else if (*s == ')' || *s == ']' || *s == '}') depth--;
+    if (depth > 0) continue;
+    if (*s == ',') break;
+    if (*s == ':' && !out->type.start) {
+      out->name.end = s;
+      out->type.start = s + 1;
+    }
+    if (*s != ' ' || out->fallback.start) continue;
+    if (s[1] == '=' && s[2] == ' ') {
+      out->type.end = s;
+      out->fallback.start = s + 3;
+    } else if (in_type && strncmp(s, " or ", 4) == 0) out->alternatives++;
+    else if (in_type && (s[1] == '>' || strncmp(s, " in ", 4) == 0)) out->range = s;
+  }
+  if (out->fallback.start) out->fallback.end = s;
+  else out->type.end = s;
+  if (!out->type.start) { // a name without a type, or `...`
+    out->type.start = out->name.end = out->type.end;
+  }
+  return s;
+}
+
+// Ends a part of the copied text, where a separator follows.
+static const char *ended(Part p) {
+  p = trimmed(p);
+  *(char *)p.end = 0;
+  return p.start;
+}
+
+static void parse_parameter(CagSignature *out, const Pieces *pieces, CagArena *arena) {
+  if (strncmp(pieces->name.start, "...", 3) == 0) {
     out->variadic = true;
     return;
   }
-  const Part head = {p.start, find_outside(p, " = ")};
-  const char *colon = find_outside(head, ":");
-  const Part name = trimmed((Part){p.start, colon});
-  const Part type = trimmed((Part){colon < head.end ? colon + 1 : colon, head.end});
   const size_t i = out->count++;
-  out->parameters[i] = part_text(name, arena);
-  out->words[i] = part_text(type, arena);
-  parse_type(&out->types[i], type, arena);
-  out->positional_only[i] = part_length(name) == 1 && *name.start >= 'A' && *name.start <= 'Z';
+  const Part type = trimmed(pieces->type);
+  Pieces p = *pieces;
+  p.type = type;
+  parse_type(&out->types[i], &p, arena);
   add_field(out, &out->types[i]);
-  if (head.end == p.end) {
+  out->words[i] = ended(type);
+  out->parameters[i] = ended(pieces->name);
+  out->positional_only[i] =
+      out->parameters[i][1] == 0 && out->parameters[i][0] >= 'A' && out->parameters[i][0] <= 'Z';
+  if (!pieces->fallback.start) {
     out->required = i + 1;
     return;
   }
-  const char *fallback = part_text(trimmed((Part){head.end + strlen(" = "), p.end}), arena);
-  out->defaults[i] = fallback;
-  parse_default(out, &out->types[i], fallback);
+  out->defaults[i] = ended(pieces->fallback);
+  parse_default(out, &out->types[i], out->defaults[i]);
 }
 
 // The signature as documentation and messages show it.
@@ -251,23 +296,28 @@ static const char *plain_text(const CagSignature *s, size_t most, CagArena *aren
 }
 
 void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena) {
-  const char *open = strchr(text, '(');
+  const char *start = strchr(text, '(');
   *out = (CagSignature){.name = text, .text = text};
-  if (!open) return;
-  out->name = part_text((Part){text, open}, arena);
+  if (!start) return;
+  // The parts are pieces of one copy.
+  char *copy = part_text((Part){text, text + strlen(text)}, arena);
+  char *open = copy + (start - text);
+  *open = 0;
+  out->name = copy;
   // No signature has more parameters than commas, and one.
   size_t most = 1;
-  for (const char *s = open; *s; s++) most += *s == ',';
+  for (const char *s = start; *s; s++) most += *s == ',';
   out->parameters = cag_arena_alloc(arena, most * sizeof *out->parameters);
   out->words = cag_arena_alloc(arena, most * sizeof *out->words);
   out->types = cag_arena_alloc(arena, most * sizeof *out->types);
   out->defaults = cag_arena_alloc(arena, most * sizeof *out->defaults);
   out->positional_only = cag_arena_alloc(arena, most * sizeof *out->positional_only);
-  Part rest = trimmed((Part){open + 1, strrchr(text, ')')});
-  while (rest.start < rest.end) {
-    const char *comma = find_outside(rest, ",");
-    parse_parameter(out, trimmed((Part){rest.start, comma}), arena);
-    rest.start = comma < rest.end ? comma + 1 : comma;
+  const char *end = strrchr(open + 1, ')');
+  for (const char *s = open + 1; s < end; s++) {
+    while (*s == ' ' || *s == '\n') s++;
+    Pieces pieces;
+    s = scan_parameter(s, end, &pieces);
+    parse_parameter(out, &pieces, arena);
   }
   out->text = plain_text(out, strlen(text), arena);
 }
