@@ -96,11 +96,12 @@ static bool bind_argument(CagCall *call, int argument, const CagParameterType *t
 }
 
 // The default of an argument that was not given. The field is zero.
-static void set_default(const CagSignature *s, const CagParameterType *type, char *structure) {
+static void set_default(const CagParameterTypes *types, const CagParameterType *type,
+                        char *structure) {
   void *field = structure + type->offset;
   const double *x = type->fallback;
   if (type->same_as_set) {
-    const CagParameterType *other = &s->types[type->same_as];
+    const CagParameterType *other = &types->items[type->same_as];
     const size_t size = type->kind == CAG_BIND_POINT || type->kind == CAG_BIND_DIRECTION
                             ? sizeof(CagPoint)
                             : sizeof(double);
@@ -126,18 +127,19 @@ static void set_default(const CagSignature *s, const CagParameterType *type, cha
 
 bool cag_bind(CagCall *call, void *out, size_t size) {
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
+  const CagParameterTypes *types = cag_signature_types(s);
   // The structure may end with padding.
-  if (size < s->size || size >= s->size + _Alignof(max_align_t))
+  if (size < types->size || size >= types->size + _Alignof(max_align_t))
     return cag_fail_call(call, -1, CAG_ERR_internal, "has a structure of %zu bytes, not %zu", size,
-                         s->size);
+                         types->size);
   memset(out, 0, size);
   for (size_t i = 0; i < s->count; i++) {
-    const CagParameterType *type = &s->types[i];
+    const CagParameterType *type = &types->items[i];
     CagValue *v = &call->values[i];
     if (v->type == CAG_NONE && type->kind != CAG_BIND_VALUE && s->defaults[i] &&
         strcmp(s->defaults[i], "none") == 0)
       *v = cag_unset();
-    if (v->type == CAG_UNSET) set_default(s, type, out);
+    if (v->type == CAG_UNSET) set_default(types, type, out);
     else if (!bind_argument(call, (int)i, type, (char *)out + type->offset)) return false;
   }
   return true;

@@ -103,7 +103,7 @@ CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t pa
       if (strcmp(takers[i].function, s->name) == 0) return takers[i].types;
   if (parameter >= s->count) return CAG_TYPES_ANY;
   if (s->variadic) return CAG_TYPES_ANY; // several values, or a list of them
-  const CagTypes accepted = s->types[parameter].accepts;
+  const CagTypes accepted = cag_signature_types(s)->items[parameter].accepts;
   return accepted ? accepted : CAG_TYPES_ANY;
 }
 

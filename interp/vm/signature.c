@@ -3,6 +3,7 @@
 #include "interp/vm/signature.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,28 +93,61 @@ static void parse_range(CagParameterType *out, const char *range) {
   out->high = dots ? strtod(dots + 2, NULL) : HUGE_VAL;
 }
 
-// The parts of a parameter.
-typedef struct Pieces {
-  Part name, type, fallback; // the fallback starts with NULL if there is none
-  const char *range;         // within the type, or NULL
-  size_t alternatives;
-  bool quoted; // the type has texts
-} Pieces;
+// Room for what types point to, after the types themselves.
+typedef struct Room {
+  char *at;
+} Room;
 
-static void parse_type(CagParameterType *out, const Pieces *pieces, CagArena *arena) {
+static void *room_for(Room *r, size_t size) {
+  const size_t align = _Alignof(max_align_t);
+  char *taken = r->at;
+  r->at += (size + align - 1) / align * align;
+  return taken;
+}
+
+static char *copy_to_room(Part p, Room *room) {
+  char *text = room_for(room, part_length(p) + 1);
+  memcpy(text, p.start, part_length(p));
+  text[part_length(p)] = 0;
+  return text;
+}
+
+// Finds the range at the end of a type, and the number of its alternatives.
+static size_t scan_type(Part p, const char **range) {
+  int depth = 0;
+  bool quoted = false;
+  size_t alternatives = 1;
+  *range = NULL;
+  for (const char *s = p.start; s < p.end; s++) {
+    if (*s == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (*s == '(' || *s == '[' || *s == '{') depth++;
+    else if (*s == ')' || *s == ']' || *s == '}') depth--;
+    if (depth > 0 || *s != ' ') continue;
+    if (strncmp(s, " or ", 4) == 0) alternatives++;
+    else if (s[1] == '>' || strncmp(s, " in ", 4) == 0) *range = s;
+  }
+  return alternatives;
+}
+
+static void parse_type(CagParameterType *out, const char *words, Room *room) {
   static const char or [] = " or ";
-  *out = (CagParameterType){.low = -HUGE_VAL, .high = HUGE_VAL};
-  Part p = {pieces->type.start, pieces->range ? pieces->range : pieces->type.end};
-  const size_t count = pieces->alternatives;
+  Part p = {words, words + strlen(words)};
+  const char *range;
+  const size_t count = scan_type(p, &range);
   size_t texts = 0;
-  if (pieces->range) parse_range(out, pieces->range);
+  *out = (CagParameterType){.low = -HUGE_VAL, .high = HUGE_VAL};
+  if (range) {
+    parse_range(out, range);
+    p.end = range;
+  }
   const char **choices = NULL; // most types have none
-  if (pieces->quoted) choices = cag_arena_alloc(arena, (count + 1) * sizeof *choices);
+  if (strchr(words, '"')) choices = room_for(room, (count + 1) * sizeof *choices);
   bool any = false;
   for (size_t i = 0; i < count; i++) {
     const Part one = {p.start, i + 1 < count ? find_outside(p, or) : p.end};
     if (*one.start == '"') {
-      choices[texts++] = part_text((Part){one.start + 1, one.end - 1}, arena);
+      choices[texts++] = copy_to_room((Part){one.start + 1, one.end - 1}, room);
       out->accepts |= TYPE(TEXT);
     } else {
       const size_t k = find_words(one);
@@ -124,6 +158,7 @@ static void parse_type(CagParameterType *out, const Pieces *pieces, CagArena *ar
     }
     p.start = one.end + strlen(or);
   }
+  if (choices) choices[texts] = NULL;
   if (texts == count) {
     out->kind = CAG_BIND_CHOICE;
     out->choices = choices;
@@ -136,7 +171,7 @@ static void parse_type(CagParameterType *out, const Pieces *pieces, CagArena *ar
 
 // --- Fields of the structure of cag_bind ---
 
-static void add_field(CagSignature *s, CagParameterType *type) {
+static void add_field(CagParameterTypes *types, CagParameterType *type) {
   static const struct {
     size_t size, align;
   } fields[] = {
@@ -153,8 +188,8 @@ static void add_field(CagSignature *s, CagParameterType *type) {
 #undef FIELD
   };
   const size_t align = fields[type->kind].align;
-  type->offset = (s->size + align - 1) / align * align;
-  s->size = type->offset + fields[type->kind].size;
+  type->offset = (types->size + align - 1) / align * align;
+  types->size = type->offset + fields[type->kind].size;
 }
 
 // --- Defaults ---
@@ -185,10 +220,11 @@ static void parse_point(CagParameterType *out, const char *text) {
     out->fallback[out->dimension] = parse_number(text + 1, &text);
 }
 
-static void parse_default(CagSignature *s, CagParameterType *out, const char *text) {
+static void parse_default(const CagSignature *s, const CagParameterTypes *types,
+                          CagParameterType *out, const char *text) {
   const char *end;
-  for (size_t i = 0; i + 1 < s->count; i++)
-    if (strcmp(s->parameters[i], text) == 0 && s->types[i].kind == out->kind) {
+  for (size_t i = 0; &types->items[i] < out; i++)
+    if (strcmp(s->parameters[i], text) == 0 && types->items[i].kind == out->kind) {
       out->same_as_set = true;
       out->same_as = i;
     }
@@ -215,17 +251,20 @@ static void parse_default(CagSignature *s, CagParameterType *out, const char *te
   }
 }
 
+// --- Parameters ---
+
+// The parts of a parameter. Those that it lacks are empty.
+typedef struct Pieces {
+  Part name, type, fallback;
+} Pieces;
+
 // Finds the parts of the parameter that starts at `s`. Returns its end: a comma, or `end`.
 static const char *scan_parameter(const char *s, const char *end, Pieces *out) {
   int depth = 0;
   bool quoted = false;
-  *out = (Pieces){.name = {s, NULL}, .alternatives = 1};
+  *out = (Pieces){.name = {s, NULL}};
   for (; s < end; s++) {
-    const bool in_type = out->type.start && !out->fallback.start;
-    if (*s == '"') {
-      quoted = !quoted;
-      out->quoted |= in_type;
-    }
+    if (*s == '"') quoted = !quoted;
     if (quoted) continue;
     if (*s == '(' || *s == '[' || *s == '{') depth++;
     else if (*s == ')' || *s == ']' || *s == '}') depth--;
@@ -235,18 +274,13 @@ static const char *scan_parameter(const char *s, const char *end, Pieces *out) {
       out->name.end = s;
       out->type.start = s + 1;
     }
-    if (*s != ' ' || out->fallback.start) continue;
-    if (s[1] == '=' && s[2] == ' ') {
-      out->type.end = s;
-      out->fallback.start = s + 3;
-    } else if (in_type && strncmp(s, " or ", 4) == 0) out->alternatives++;
-    else if (in_type && (s[1] == '>' || strncmp(s, " in ", 4) == 0)) out->range = s;
+    if (*s != ' ' || out->fallback.start || s[1] != '=' || s[2] != ' ') continue;
+    out->type.end = s;
+    out->fallback.start = s + 3;
   }
   if (out->fallback.start) out->fallback.end = s;
   else out->type.end = s;
-  if (!out->type.start) { // a name without a type, or `...`
-    out->type.start = out->name.end = out->type.end;
-  }
+  if (!out->type.start) out->type.start = out->name.end = out->type.end;
   return s;
 }
 
@@ -257,27 +291,48 @@ static const char *ended(Part p) {
   return p.start;
 }
 
-static void parse_parameter(CagSignature *out, const Pieces *pieces, CagArena *arena) {
+static void add_parameter(CagSignature *out, const Pieces *pieces) {
   if (strncmp(pieces->name.start, "...", 3) == 0) {
     out->variadic = true;
     return;
   }
   const size_t i = out->count++;
-  const Part type = trimmed(pieces->type);
-  Pieces p = *pieces;
-  p.type = type;
-  parse_type(&out->types[i], &p, arena);
-  add_field(out, &out->types[i]);
-  out->words[i] = ended(type);
-  out->parameters[i] = ended(pieces->name);
-  out->positional_only[i] =
-      out->parameters[i][1] == 0 && out->parameters[i][0] >= 'A' && out->parameters[i][0] <= 'Z';
-  if (!pieces->fallback.start) {
-    out->required = i + 1;
-    return;
+  out->words[i] = ended(pieces->type);
+  const char *name = out->parameters[i] = ended(pieces->name);
+  out->positional_only[i] = name[1] == 0 && name[0] >= 'A' && name[0] <= 'Z';
+  if (pieces->fallback.start) out->defaults[i] = ended(pieces->fallback);
+  else out->required = i + 1;
+}
+
+// Bytes for the types of a signature and what they point to.
+static size_t types_size(const CagSignature *s) {
+  size_t size = sizeof(CagParameterTypes) + s->count * sizeof(CagParameterType);
+  for (size_t i = 0; i < s->count; i++) {
+    const size_t n = strlen(s->words[i]); // each alternative has at least 4 bytes
+    size += n + (n / 4 + 2) * (sizeof(char *) + 2 * _Alignof(max_align_t));
   }
-  out->defaults[i] = ended(pieces->fallback);
-  parse_default(out, &out->types[i], out->defaults[i]);
+  return size + _Alignof(max_align_t);
+}
+
+const CagParameterTypes *cag_signature_types(const CagSignature *signature) {
+  CagSignature *s = (CagSignature *)signature;
+  CagParameterTypes *types = __atomic_load_n(&s->parsed, __ATOMIC_ACQUIRE), *none = NULL;
+  if (types) return types;
+  // They outlive the run, so no account is charged.
+  types = cag_checked(calloc(1, types_size(s)));
+  Room room = {(char *)types};
+  room_for(&room, sizeof *types + s->count * sizeof *types->items);
+  for (size_t i = 0; i < s->count; i++) {
+    CagParameterType *type = &types->items[i];
+    parse_type(type, s->words[i], &room);
+    add_field(types, type);
+    if (s->defaults[i]) parse_default(s, types, type, s->defaults[i]);
+  }
+  if (__atomic_compare_exchange_n(&s->parsed, &none, types, false, __ATOMIC_ACQ_REL,
+                                  __ATOMIC_ACQUIRE))
+    return types;
+  free(types); // another thread was faster
+  return none;
 }
 
 // The signature as documentation and messages show it.
@@ -309,7 +364,6 @@ void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena) {
   for (const char *s = start; *s; s++) most += *s == ',';
   out->parameters = cag_arena_alloc(arena, most * sizeof *out->parameters);
   out->words = cag_arena_alloc(arena, most * sizeof *out->words);
-  out->types = cag_arena_alloc(arena, most * sizeof *out->types);
   out->defaults = cag_arena_alloc(arena, most * sizeof *out->defaults);
   out->positional_only = cag_arena_alloc(arena, most * sizeof *out->positional_only);
   const char *end = strrchr(open + 1, ')');
@@ -317,7 +371,7 @@ void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena) {
     while (*s == ' ' || *s == '\n') s++;
     Pieces pieces;
     s = scan_parameter(s, end, &pieces);
-    parse_parameter(out, &pieces, arena);
+    add_parameter(out, &pieces);
   }
   out->text = plain_text(out, strlen(text), arena);
 }

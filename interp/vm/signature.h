@@ -84,21 +84,28 @@ typedef struct CagRangeEnds {
   bool angle;
 } CagRangeEnds;
 
+typedef struct CagParameterTypes {
+  size_t size; // of the structure of cag_bind
+  CagParameterType items[];
+} CagParameterTypes;
+
 typedef struct CagSignature {
   const char *name;
-  const char *text;        // without types: "cone(height, radius, centered = false)"
-  size_t count;            // parameters; `...` is not one of them
-  size_t required;         // parameters without default; they come first
-  const char **parameters; // names
-  const char **words;      // types as written: "length > 0"
-  CagParameterType *types;
-  const char **defaults; // the default's text, NULL where there is none
-  bool *positional_only; // a single capital: by position only
-  bool variadic;         // `...`: any number of further arguments by position
-  size_t size;           // of the structure of cag_bind
+  const char *text;          // without types: "cone(height, radius, centered = false)"
+  size_t count;              // parameters; `...` is not one of them
+  size_t required;           // parameters without default; they come first
+  const char **parameters;   // names
+  const char **words;        // types as written: "length > 0"
+  const char **defaults;     // the default's text, NULL where there is none
+  bool *positional_only;     // a single capital: by position only
+  bool variadic;             // `...`: any number of further arguments by position
+  CagParameterTypes *parsed; // see cag_signature_types
 } CagSignature;
 
 // Parses a signature. All that it points to is in the arena. Leaves the guard if memory runs out.
 void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena);
+// The types of the parameters, parsed when they are first asked for and never freed. Several
+// threads may call this. Leaves the guard if memory runs out.
+const CagParameterTypes *cag_signature_types(const CagSignature *s);
 
 #endif

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "interp/vm/signature.h"
@@ -46,6 +47,7 @@ static void ranges_have_two_ends_or_one(void **state) {
   (void)state;
   const CagSignature s = parsed("f(a: length > 0, b: number >= -1.5, c: integer in 2..100000000, "
                                 "d: finite number, e: integer in 0..1 = 1, g: number in 0.5..1e3)");
+  const CagParameterTypes *types = cag_signature_types(&s);
   const struct {
     CagParameterKind kind;
     double low, high;
@@ -59,13 +61,14 @@ static void ranges_have_two_ends_or_one(void **state) {
       {CAG_BIND_NUMBER, 0.5, 1000, true, false},
   };
   for (size_t i = 0; i < s.count; i++) {
-    const CagParameterType *t = &s.types[i];
+    const CagParameterType *t = &types->items[i];
     assert_int_equal(t->kind, expected[i].kind);
     assert_true(t->low == expected[i].low && t->high == expected[i].high);
     assert_true(t->ranged == expected[i].ranged && t->above_low == expected[i].above_low);
     assert_true(ACCEPTS(*t, NUMBER) && ACCEPTS(*t, NONE) && !ACCEPTS(*t, TEXT));
   }
-  assert_true(s.types[4].fallback[0] == 1);
+  assert_true(types->items[4].fallback[0] == 1);
+  free((void *)types);
 }
 
 static void alternatives_join_their_types(void **state) {
@@ -73,20 +76,22 @@ static void alternatives_join_their_types(void **state) {
   const CagSignature s = parsed(
       "f(a: \"left\" or \"right\" = \"right\", b: number or angle, c: number or text, "
       "d: something else, e: list of points, g: list of curves, h: function (u, v) => point)");
+  const CagParameterTypes *types = cag_signature_types(&s);
   assert_int_equal(s.count, 7);
-  assert_int_equal(s.types[0].kind, CAG_BIND_CHOICE);
-  assert_string_equal(s.types[0].choices[0], "left");
-  assert_string_equal(s.types[0].choices[1], "right");
-  assert_null(s.types[0].choices[2]);
-  assert_true(s.types[0].fallback[0] == 1);
-  for (int i = 1; i < 4; i++) assert_int_equal(s.types[i].kind, CAG_BIND_VALUE);
-  assert_true(ACCEPTS(s.types[1], ANGLE) && ACCEPTS(s.types[1], NUMBER));
-  assert_false(ACCEPTS(s.types[1], TEXT));
-  assert_true(ACCEPTS(s.types[2], TEXT) && !ACCEPTS(s.types[2], ANGLE));
-  assert_true(s.types[3].accepts == 0); // any
-  assert_int_equal(s.types[4].kind, CAG_BIND_POINTS);
-  assert_int_equal(s.types[5].kind, CAG_BIND_VALUE);
-  assert_int_equal(s.types[6].kind, CAG_BIND_FUNCTION);
+  assert_int_equal(types->items[0].kind, CAG_BIND_CHOICE);
+  assert_string_equal(types->items[0].choices[0], "left");
+  assert_string_equal(types->items[0].choices[1], "right");
+  assert_null(types->items[0].choices[2]);
+  assert_true(types->items[0].fallback[0] == 1);
+  for (int i = 1; i < 4; i++) assert_int_equal(types->items[i].kind, CAG_BIND_VALUE);
+  assert_true(ACCEPTS(types->items[1], ANGLE) && ACCEPTS(types->items[1], NUMBER));
+  assert_false(ACCEPTS(types->items[1], TEXT));
+  assert_true(ACCEPTS(types->items[2], TEXT) && !ACCEPTS(types->items[2], ANGLE));
+  assert_true(types->items[3].accepts == 0); // any
+  assert_int_equal(types->items[4].kind, CAG_BIND_POINTS);
+  assert_int_equal(types->items[5].kind, CAG_BIND_VALUE);
+  assert_int_equal(types->items[6].kind, CAG_BIND_FUNCTION);
+  free((void *)types);
 }
 
 static void defaults_are_values(void **state) {
@@ -95,19 +100,21 @@ static void defaults_are_values(void **state) {
       parsed("f(a: number, b: number = a, c: angle = 90deg, d: point = [1, -2], e: direction = Z, "
              "g: range = 0..1, h: range of angles = -180deg..180deg, i: bool = true, "
              "j: number = inf, k: text = none, l: number = 1e-9)");
-  assert_true(s.types[1].same_as_set && s.types[1].same_as == 0);
-  assert_true(fabs(s.types[2].fallback[0] - acos(0)) < 1e-15);
-  assert_true(s.types[3].fallback[0] == 1 && s.types[3].fallback[1] == -2);
-  assert_int_equal(s.types[3].dimension, 2);
-  assert_true(s.types[4].fallback[2] == 1 && s.types[4].dimension == 3);
-  assert_true(s.types[5].fallback[0] == 0 && s.types[5].fallback[1] == 1);
-  assert_int_equal(s.types[5].dimension, 0);
-  assert_true(s.types[6].fallback[0] == -180 && s.types[6].fallback[1] == 180);
-  assert_int_equal(s.types[6].dimension, 1); // an angle
-  assert_true(s.types[7].fallback[0] == 1);
-  assert_true(s.types[8].fallback[0] == HUGE_VAL);
-  assert_true(s.types[9].fallback[0] == 0);
-  assert_true(s.types[10].fallback[0] == 1e-9);
+  const CagParameterTypes *types = cag_signature_types(&s);
+  assert_true(types->items[1].same_as_set && types->items[1].same_as == 0);
+  assert_true(fabs(types->items[2].fallback[0] - acos(0)) < 1e-15);
+  assert_true(types->items[3].fallback[0] == 1 && types->items[3].fallback[1] == -2);
+  assert_int_equal(types->items[3].dimension, 2);
+  assert_true(types->items[4].fallback[2] == 1 && types->items[4].dimension == 3);
+  assert_true(types->items[5].fallback[0] == 0 && types->items[5].fallback[1] == 1);
+  assert_int_equal(types->items[5].dimension, 0);
+  assert_true(types->items[6].fallback[0] == -180 && types->items[6].fallback[1] == 180);
+  assert_int_equal(types->items[6].dimension, 1); // an angle
+  assert_true(types->items[7].fallback[0] == 1);
+  assert_true(types->items[8].fallback[0] == HUGE_VAL);
+  assert_true(types->items[9].fallback[0] == 0);
+  assert_true(types->items[10].fallback[0] == 1e-9);
+  free((void *)types);
 }
 
 static void fields_lie_as_in_a_structure_of_c(void **state) {
@@ -115,6 +122,7 @@ static void fields_lie_as_in_a_structure_of_c(void **state) {
   const CagSignature s =
       parsed("f(a: bool, b: length, c: \"x\" or \"y\", d: point, e: bool, g: integer, h: curve, "
              "i: transform, j: any value, k: list of numbers, l: bool)");
+  const CagParameterTypes *types = cag_signature_types(&s);
   typedef struct Fields {
     bool a;
     double b;
@@ -132,8 +140,9 @@ static void fields_lie_as_in_a_structure_of_c(void **state) {
                             offsetof(Fields, d), offsetof(Fields, e), offsetof(Fields, g),
                             offsetof(Fields, h), offsetof(Fields, i), offsetof(Fields, j),
                             offsetof(Fields, k), offsetof(Fields, l)};
-  for (size_t i = 0; i < s.count; i++) assert_int_equal(s.types[i].offset, offsets[i]);
-  assert_int_equal(s.size, offsetof(Fields, l) + sizeof(bool));
+  for (size_t i = 0; i < s.count; i++) assert_int_equal(types->items[i].offset, offsets[i]);
+  assert_int_equal(types->size, offsetof(Fields, l) + sizeof(bool));
+  free((void *)types);
 }
 
 int main(void) {

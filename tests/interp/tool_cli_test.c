@@ -331,8 +331,7 @@ static void what_is_wrong_is_said(void **state) {
     const char *line, *said;
   } rows[] = {
       {"cag rnu a.cag", "cag: unknown command `rnu`\n  did you mean `cag run`?\n"},
-      {"cag a.cag",
-       "cag: unknown command `a.cag`\n  to run the script write `cag run a.cag`\n"},
+      {"cag a.cag", "cag: unknown command `a.cag`\n  to run the script write `cag run a.cag`\n"},
       {"cag .cag", "cag: unknown command `.cag`\n  `cag --help` lists the commands\n"},
       {"cag xyzzyx", "cag: unknown command `xyzzyx`\n  `cag --help` lists the commands\n"},
       {"cag run", "cag run: FILE is missing\n  write `cag run FILE`; `cag run --help` shows "
@@ -345,8 +344,7 @@ static void what_is_wrong_is_said(void **state) {
                      "examples\n"},
       {"cag run a --sizes 3", "cag run: unknown option --sizes\n  `cag run --help` lists the "
                               "options\n"},
-      {"cag render a --sizes 3",
-       "cag render: unknown option --sizes\n  did you mean --size?\n"},
+      {"cag render a --sizes 3", "cag render: unknown option --sizes\n  did you mean --size?\n"},
       {"cag run a --size 3x4", "cag run: --size is an option of other commands\n  `cag run "
                                "--help` lists the options\n"},
       {"cag eval -x", "cag eval: unknown option -x\n  `cag eval --help` lists the options; an "
