@@ -28,7 +28,7 @@ static const double PATIENCE = 4;
 // --- Starting ---
 
 // In the child, after fork: what is inherited and is not its business is put right.
-static bool settle(int output, bool whole, const char *folder, pid_t parent) {
+static bool reset_child(int output, bool whole, const char *folder, pid_t parent) {
   static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
   sigset_t none;
   sigemptyset(&none);
@@ -54,7 +54,7 @@ static int begin(CagChild *c, const char *folder, double limit, bool whole) {
   const pid_t parent = getpid();
   c->pid = fork();
   if (c->pid == 0) {
-    if (!settle(ends[1], whole, folder, parent)) _exit(EXEC_FAILED);
+    if (!reset_child(ends[1], whole, folder, parent)) _exit(EXEC_FAILED);
     return 0;
   }
   const int code = errno;

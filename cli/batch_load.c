@@ -106,7 +106,7 @@ static bool was_idle(CagLoad *l, double now) {
   return share * processors < BUSY * (double)l->workers;
 }
 
-static void look(CagLoad *l, size_t running) {
+static void measure_load(CagLoad *l, size_t running) {
   const double now = cag_clock_seconds(), passed = now - l->looked;
   if (passed < LOOK_INTERVAL) return;
   l->looked = now;
@@ -121,7 +121,7 @@ static void look(CagLoad *l, size_t running) {
 }
 
 size_t cag_load_limit(CagLoad *l, size_t running, size_t waiting) {
-  look(l, running);
+  measure_load(l, running);
   if (running < l->workers) return l->workers;
   size_t limit = (size_t)l->limit;
   const bool sleep = l->largest && l->limit >= SLEEPERS * (double)l->workers;

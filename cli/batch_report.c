@@ -30,8 +30,8 @@ static void tell_json(const CagBatch *b, size_t row, size_t line, const char *co
 }
 
 // "jobs.csv:5: E0913: row 4: the script ..."
-static void tell(const CagBatch *b, size_t row, size_t line, const char *code, const char *message,
-                 const char *help) {
+static void report_problem(const CagBatch *b, size_t row, size_t line, const char *code,
+                           const char *message, const char *help) {
   if (b->tool->style == CAG_STYLE_JSON) {
     tell_json(b, row, line, code, message, help);
     return;
@@ -55,7 +55,7 @@ void cag_batch_tell_problems(CagBatch *b) {
   qsort(jobs->problems, jobs->problem_count, sizeof *jobs->problems, by_row);
   for (size_t i = 0; i < jobs->problem_count && i < PROBLEMS_TOLD; i++) {
     const CagJobProblem *p = &jobs->problems[i];
-    tell(b, p->row, p->line, p->code, p->message, p->help);
+    report_problem(b, p->row, p->line, p->code, p->message, p->help);
   }
   cag_tool_fail(b->tool, CAG_STATUS_USAGE,
                 jobs->problem_count > PROBLEMS_TOLD ? "the first of them are told" : NULL,
@@ -64,7 +64,7 @@ void cag_batch_tell_problems(CagBatch *b) {
 }
 
 void cag_batch_tell_row(const CagBatch *b, size_t row, const char *code, const char *message) {
-  tell(b, b->jobs.rows[row].number, b->jobs.rows[row].line, code, message, NULL);
+  report_problem(b, b->jobs.rows[row].number, b->jobs.rows[row].line, code, message, NULL);
 }
 
 // --- The report ---

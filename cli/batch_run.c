@@ -176,7 +176,7 @@ static void end(Run *r, Slot *slot) {
   if (task->state == CAG_TASK_DONE) remove_tiles(b, task);
 }
 
-static void look(Run *r) {
+static void check_children(Run *r) {
   for (size_t i = 0; i < r->running;) {
     Slot slot = r->slots[i];
     if (!cag_child_look(&r->slots[i].child)) {
@@ -264,7 +264,7 @@ static void run_all(Run *r, struct pollfd *waiting) {
     begin_more(r);
     if (!r->running) return;
     wait_for_news(r, waiting);
-    look(r);
+    check_children(r);
     begin_more(r); // processes first: the disk takes its time
     sync_journal(r);
     see_to_memory(r);

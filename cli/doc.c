@@ -67,7 +67,9 @@ static int document_script(CagTool *t, CagSession *s, const char *path) {
 
 // --- The site ---
 
-static void say(void *context, const char *message) { cag_tool_say(context, "%s", message); }
+static void say_to_tool(void *context, const char *message) {
+  cag_tool_say(context, "%s", message);
+}
 
 typedef struct Paths {
   char **items;
@@ -109,7 +111,7 @@ static int make_site(CagTool *t, CagSession *s, int argc, char **argv) {
                             .jobs = t->jobs,
                             .scripts = (const char *const *)paths.items,
                             .script_count = paths.count,
-                            .say = say,
+                            .say = say_to_tool,
                             .context = t};
   if (status == CAG_STATUS_OK)
     status = cag_tool_finish(t, s, cag_session_write_site(s, t->html, &options));

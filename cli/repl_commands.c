@@ -260,7 +260,7 @@ static void take_value(void *context, const char *text, const char *type) {
 }
 
 // Evaluates an expression; false when it failed or is none.
-static bool ask(CagRepl *repl, const char *command, const char *text, bool only_type) {
+static bool evaluate_operand(CagRepl *repl, const char *command, const char *text, bool only_type) {
   Answer answer = {.only_type = only_type};
   int status = cag_session_input(repl->session, text, strlen(text), take_value, &answer);
   cag_repl_finish(repl, status);
@@ -270,11 +270,11 @@ static bool ask(CagRepl *repl, const char *command, const char *text, bool only_
   return answer.count > 0;
 }
 
-static void show_type(CagRepl *repl, char *text) { ask(repl, ":type", text, true); }
+static void show_type(CagRepl *repl, char *text) { evaluate_operand(repl, ":type", text, true); }
 
 static void show_time(CagRepl *repl, char *text) {
   double begin = cag_clock_seconds();
-  if (!ask(repl, ":time", text, false)) return;
+  if (!evaluate_operand(repl, ":time", text, false)) return;
   double seconds = cag_clock_seconds() - begin;
   if (seconds < 1) printf("%.3g ms\n", seconds * 1e3);
   else printf("%.3g s\n", seconds);

@@ -287,7 +287,7 @@ static int read_states(Array *a, char *said) {
 }
 
 // Asks Slurm for the states of the elements; `*silent` when it has not answered for long.
-static int ask(Array *a, bool *silent) {
+static int query_states(Array *a, bool *silent) {
   char name[64], *said = NULL;
   snprintf(name, sizeof name, "--name=%s", a->name);
   char *const words[] = {"squeue", "--noheader",     "--array", "--states=all",
@@ -330,7 +330,7 @@ static int follow(Array *a, bool *over) {
       cag_batch_progress_clear(&a->progress);
       return tell_interrupted(a);
     }
-    if (cag_clock_seconds() - a->asked > ASK_INTERVAL) status = ask(a, &silent);
+    if (cag_clock_seconds() - a->asked > ASK_INTERVAL) status = query_states(a, &silent);
     cag_batch_progress_show(&a->progress, a->batch, open);
     poll(NULL, 0, LOOK_INTERVAL);
     if (status == CAG_STATUS_OK) status = collect(a, &open);
@@ -400,7 +400,7 @@ static bool match(Array *a, const CagPlan *plan) {
 // Whether Slurm knows the job; also when it does not answer, which the following tells.
 static bool is_known(Array *a) {
   bool silent;
-  if (ask(a, &silent) != CAG_STATUS_OK) return true;
+  if (query_states(a, &silent) != CAG_STATUS_OK) return true;
   memset(a->missed, 0, a->elements);
   return !a->gone;
 }

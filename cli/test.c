@@ -188,7 +188,7 @@ static void *work(void *context) {
 }
 
 // Tells of the scripts in their order, as each is done. Gives the first status that ends it all.
-static int tell(Testing *t, CagTestCounts *counts, int *file_status) {
+static int report_scripts(Testing *t, CagTestCounts *counts, int *file_status) {
   int status = CAG_STATUS_OK;
   for (size_t i = 0; i < t->count && status == CAG_STATUS_OK; i++) {
     Script *s = &t->scripts[i];
@@ -226,7 +226,7 @@ static int run_all(Testing *t, CagTestCounts *counts, int *file_status) {
   while (threads && started < jobs && pthread_create(&threads[started], NULL, work, t) == 0)
     started++;
   if (started == 0) work(t); // the system gives no thread
-  const int status = tell(t, counts, file_status);
+  const int status = report_scripts(t, counts, file_status);
   pthread_mutex_lock(&t->mutex);
   t->next = t->count; // after a failure of all: nothing more is begun
   pthread_mutex_unlock(&t->mutex);

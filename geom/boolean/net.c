@@ -24,7 +24,7 @@ static void relink(BoolNet *n, uint32_t cell, uint32_t from, uint32_t to) {
   c->neighbor[place_of_neighbor(c, from)] = to;
 }
 
-static void settle(BoolNet *n, uint32_t cell) {
+static void register_cell(BoolNet *n, uint32_t cell) {
   for (int k = 0; k < 3; k++) n->cell_of[bool_cells(n)[cell].v[k]] = cell;
   n->last = cell;
 }
@@ -58,7 +58,7 @@ bool cag_bool_net_start(BoolNet *n, const uint32_t corners[3]) {
                                 {BOOL_NONE, BOOL_NONE, BOOL_NONE}};
   n->cells.n = 1;
   for (int k = 0; k < 3; k++) note_vertex(n, corners[k]);
-  settle(n, 0);
+  register_cell(n, 0);
   return true;
 }
 
@@ -89,8 +89,8 @@ static void flip(BoolNet *n, uint32_t cell, int e) {
       {p, d, b}, {u.neighbor[f2], t.neighbor[e1], cell}, {u.fixed[f2], t.fixed[e1], BOOL_NONE}};
   relink(n, u.neighbor[f1], other, cell);
   relink(n, t.neighbor[e1], cell, other);
-  settle(n, other);
-  settle(n, cell);
+  register_cell(n, other);
+  register_cell(n, cell);
 }
 
 // Is d well inside the circle through a, b, c? Of rounded points, and only where rounding could not
@@ -224,9 +224,9 @@ static void split_cell(BoolNet *n, uint32_t cell, uint32_t p) {
       (BoolCell){{c, a, p}, {cell, second, t.neighbor[1]}, {BOOL_NONE, BOOL_NONE, t.fixed[1]}};
   relink(n, t.neighbor[0], cell, second);
   relink(n, t.neighbor[1], cell, third);
-  settle(n, third);
-  settle(n, second);
-  settle(n, cell);
+  register_cell(n, third);
+  register_cell(n, second);
+  register_cell(n, cell);
 }
 
 // The half of a cell at an edge that p splits: its apex, the edge's start, p, and the rest of the
@@ -244,8 +244,8 @@ static void split_edge(BoolNet *n, uint32_t cell, int e, uint32_t p) {
   bool_cells(n)[second] = (BoolCell){
       {c, p, b}, {two ? fourth : BOOL_NONE, t.neighbor[e1], cell}, {fixed, t.fixed[e1], BOOL_NONE}};
   relink(n, t.neighbor[e1], cell, second);
-  settle(n, second);
-  settle(n, cell);
+  register_cell(n, second);
+  register_cell(n, cell);
   if (!two) return;
   const BoolCell u = bool_cells(n)[other];
   const int f = place_of_neighbor(&u, cell), f1 = (f + 1) % 3, f2 = (f + 2) % 3;
@@ -255,8 +255,8 @@ static void split_edge(BoolNet *n, uint32_t cell, int e, uint32_t p) {
   bool_cells(n)[fourth] =
       (BoolCell){{d, b, p}, {second, other, u.neighbor[f2]}, {fixed, BOOL_NONE, u.fixed[f2]}};
   relink(n, u.neighbor[f2], other, fourth);
-  settle(n, fourth);
-  settle(n, other);
+  register_cell(n, fourth);
+  register_cell(n, other);
 }
 
 // The cells around a new point: the edges opposite to it may want a flip.

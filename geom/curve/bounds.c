@@ -128,8 +128,8 @@ static bool climb(const CagCurve *c, const Samples *s, int top, int direction, d
 
 // Whether the part has, in each direction in which its hull leaves the box, one summit; these are
 // then in the box.
-static CagStatus settle(const CagCurve *c, double a, double b, const CagBounds *hull, double slack,
-                        CagBounds *box, bool *settled, CagError *err) {
+static CagStatus bound_by_summits(const CagCurve *c, double a, double b, const CagBounds *hull,
+                                  double slack, CagBounds *box, bool *settled, CagError *err) {
   Samples s;
   for (int i = 0; i <= STEPS; i++) {
     s.t[i] = i == STEPS ? b : a + (b - a) * i / STEPS;
@@ -159,7 +159,7 @@ static CagStatus grow_sampled(const CagCurve *c, double a, double b, double slac
   cag_bounds_add(box, p);
   if (depth >= SETTLED_DEPTH && over <= SETTLED_SHRINK * before) {
     bool settled;
-    status = settle(c, a, b, &hull, slack, box, &settled, err);
+    status = bound_by_summits(c, a, b, &hull, slack, box, &settled, err);
     if (status || settled) return status;
   }
   status = grow_sampled(c, a, middle, slack, depth + 1, over, box, err);

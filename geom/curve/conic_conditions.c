@@ -95,7 +95,7 @@ static void clean(double *c, const double unit[6]) {
 }
 
 // Back from the frame of unit size.
-static CagConic place(const Frame *f, const double c[6]) {
+static CagConic from_unit_frame(const Frame *f, const double c[6]) {
   const double s = f->size, m = f->center.x, n = f->center.y;
   const double a = c[0] / (s * s), b = c[1] / (s * s), d = c[2] / (s * s), e = c[3] / s,
                g = c[4] / s;
@@ -178,7 +178,7 @@ static CagStatus solve(const CagVec3 *points, size_t n, const CagConicTangent *t
   if (status) return status;
   spread(shape, v, c);
   clean(c, even);
-  *out = place(&f, c);
+  *out = from_unit_frame(&f, c);
   const double s = cag_norm(f.center) + f.size;
   const double unit[6] = {s * s, s * s, s * s, s, s, 1};
   clean(out->c, unit);

@@ -40,7 +40,7 @@ static double around(double x, double low, double high, bool closed) {
 }
 
 // The shorter way from a to b.
-static double way(double a, double b, double low, double high, bool closed) {
+static double shorter_step(double a, double b, double low, double high, bool closed) {
   const double d = b - a, range = high - low;
   if (closed && d > range / 2) return d - range;
   if (closed && d < -range / 2) return d + range;
@@ -48,11 +48,11 @@ static double way(double a, double b, double low, double high, bool closed) {
 }
 
 static double way_along(const CagCurve *c, double a, double b) {
-  return way(a, b, c->start, c->end, c->closed);
+  return shorter_step(a, b, c->start, c->end, c->closed);
 }
 
 static double way_on(const CagContactTask *k, int i, double a, double b) {
-  return way(a, b, k->low[i], k->high[i], k->closed[i]);
+  return shorter_step(a, b, k->low[i], k->high[i], k->closed[i]);
 }
 
 // Whether two contacts are one place, found twice.
@@ -256,7 +256,8 @@ static CagStatus order_at(const CagContactTask *k, double t, const double place[
 }
 
 // The contact of a group.
-static CagStatus settle(const CagContactTask *k, const Group *g, CagContact *out, CagError *err) {
+static CagStatus contact_of_group(const CagContactTask *k, const Group *g, CagContact *out,
+                                  CagError *err) {
   const double least = 1e-4, range = k->c->end - k->c->start;
   double low, high, at[2] = {g->best.at[0], g->best.at[1]}, t, gap, sine;
   *out = g->best;
@@ -300,7 +301,7 @@ CagStatus cag_contacts_merge(const CagContactTask *k, CagContact *items, size_t 
     status = is_overlap(k, &groups[i], overlap, err);
   for (size_t i = 0; !status && i < count && !*overlap; i++) {
     CagContact found;
-    status = settle(k, &groups[i], &found, err);
+    status = contact_of_group(k, &groups[i], &found, err);
     if (status) break;
     open_seams(k, &found);
     // Two groups that settled in one place.

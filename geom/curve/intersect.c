@@ -79,7 +79,8 @@ static CagStatus give_contacts(const CagContact *contacts, size_t count, CagMeet
   return CAG_OK;
 }
 
-static CagStatus give(Found *found, CagStatus status, CagMeeting **out, size_t *n, CagError *err) {
+static CagStatus merged_meetings(Found *found, CagStatus status, CagMeeting **out, size_t *n,
+                                 CagError *err) {
   if (!status) status = merge(found, err);
   if (!status) status = give_contacts(found->items, found->n, out, n, err);
   cag_free(found->items);
@@ -241,7 +242,7 @@ CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, Ca
   if (status) return status;
   for (size_t i = 0; !status && i < count; i++) status = plane_part(&s, &parts[i], DEPTH, err);
   cag_free(parts);
-  return give(&s.found, status, out, n, err);
+  return merged_meetings(&s.found, status, out, n, err);
 }
 
 // --- Another curve ---
@@ -488,5 +489,5 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
   }
   cag_free(parts_a);
   cag_free(parts_b);
-  return give(&s.found, status, out, n, err);
+  return merged_meetings(&s.found, status, out, n, err);
 }

@@ -26,7 +26,7 @@ CagPartPair cag_part_pair(const CagPart *a, const CagPart *b) {
   return pair;
 }
 
-static CagStatus look(const CagPart *part, const double *x, Place *out, CagError *err) {
+static CagStatus part_point(const CagPart *part, const double *x, Place *out, CagError *err) {
   *out = (Place){.p = part->p[0]};
   if (part->curve) {
     CagVec3 d[3];
@@ -63,8 +63,8 @@ typedef struct Slope {
 static CagStatus slope(const CagPartPair *pair, const double *x, Slope *out, CagError *err) {
   Place place[2];
   CagVec3 d[4];
-  CagStatus status = look(pair->part[0], x, &place[0], err);
-  if (!status) status = look(pair->part[1], x + pair->free[0], &place[1], err);
+  CagStatus status = part_point(pair->part[0], x, &place[0], err);
+  if (!status) status = part_point(pair->part[1], x + pair->free[0], &place[1], err);
   if (status) return status;
   const CagVec3 r = cag_sub(place[0].p, place[1].p);
   *out = (Slope){.value = cag_dot(r, r) / 2};
@@ -183,7 +183,7 @@ CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, C
   if (status) return status;
   Place place;
   *out = sqrt(2 * here.value);
-  status = look(pair->part[1], pair->x + pair->free[0], &place, err);
+  status = part_point(pair->part[1], pair->x + pair->free[0], &place, err);
   *point = place.p;
   return status;
 }
@@ -218,7 +218,7 @@ bool cag_part_pair_leave_corner(CagPartPair *pair, double distance, CagStatus *s
     if (!pair->part[side]->flat) continue;
     Place other;
     double share[2], *x = pair->x + (side ? pair->free[0] : 0);
-    *status = look(pair->part[1 - side], pair->x + (side ? 0 : pair->free[0]), &other, err);
+    *status = part_point(pair->part[1 - side], pair->x + (side ? 0 : pair->free[0]), &other, err);
     if (*status || !(nearest_in_triangle(other.p, pair->part[side]->p, share) < nearer * distance))
       return false;
     x[0] = fmin(1, share[0] + share[1]);

@@ -122,7 +122,7 @@ bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *se
 }
 
 // The parameter of a seed on a facet of side k, in the patch that the facet lies in.
-static void settle(CagMarch *m, int k, const Facet *f, int d, CagMarchNode *seed) {
+static void set_seed_parameter(CagMarch *m, int k, const Facet *f, int d, CagMarchNode *seed) {
   const CagSurface *s = m->side[k].s;
   const double low = d ? s->v0 : s->u0, high = d ? s->v1 : s->u1;
   const bool closed = d ? s->closed_v : s->closed_u;
@@ -140,7 +140,7 @@ static bool add_seed(CagMarch *m, const Facet *f, const Facet *g) {
   for (int k = 0; k < 2; k++)
     for (int d = 0; d < 2; d++) {
       sum.at[k][d] /= count;
-      settle(m, k, k ? g : f, d, &sum);
+      set_seed_parameter(m, k, k ? g : f, d, &sum);
     }
   sum.x = cag_scaled(sum.x, 1.0 / count);
   return cag_march_add_seed(m, &m->crossings, &sum);
@@ -190,7 +190,7 @@ static bool add_touch_seed(CagMarch *m, const Facet *f, const Facet *g, double m
   const CagVec3 on_g = foot_on(g, middle, seed.at[1]), on_f = foot_on(f, on_g, seed.at[0]);
   seed.x = cag_lerp(on_f, on_g, 0.5);
   for (int k = 0; k < 2; k++)
-    for (int d = 0; d < 2; d++) settle(m, k, k ? g : f, d, &seed);
+    for (int d = 0; d < 2; d++) set_seed_parameter(m, k, k ? g : f, d, &seed);
   return cag_march_add_seed(m, &m->touches, &seed);
 }
 

@@ -101,8 +101,8 @@ static void add_point(const Cut *c, CagVec3 *out, size_t *n, CagVec3 p) {
   out[(*n)++] = p;
 }
 
-static CagStatus give(const Cut *c, CagVec3 *points, size_t n, bool closed, CagCurveList *out,
-                      CagError *err) {
+static CagStatus add_polyline(const Cut *c, CagVec3 *points, size_t n, bool closed,
+                              CagCurveList *out, CagError *err) {
   double same = SAME * c->size;
   while (closed && n > 1 && cag_norm(cag_sub(points[n - 1], points[0])) <= same) n--;
   if (closed && n > 2) {
@@ -145,7 +145,7 @@ static CagStatus walk_all(const Cut *c, CagCurveList *out, CagError *err) {
       int open = c->next[i][0] == NO_END ? 0 : c->next[i][1] == NO_END ? 1 : -1;
       if (seen[i] || (round == 0 && open < 0)) continue;
       size_t n = walk(c, i, open < 0 ? 0 : open, seen, points);
-      status = give(c, points, n, open < 0, out, err);
+      status = add_polyline(c, points, n, open < 0, out, err);
     }
   cag_free(seen);
   cag_free(points);

@@ -461,7 +461,7 @@ static double contour_scale(CagTracer *t) {
 }
 
 // Sets what counts as 0 on this patch; false where all of it does.
-static bool settle(CagTracer *t, CagLevel *own) {
+static bool set_patch_zero(CagTracer *t, CagLevel *own) {
   const double rounding = 1e-13;
   if (own->zero > 0) return true;
   if (own->sided) {
@@ -478,7 +478,7 @@ static bool trace_grid(CagTracer *t, CagLevel *own, size_t finer, CagTraces *out
   double zero = own->zero;
   t->torn = false;
   bool ok = cag_tracer_make_grid(t, finer);
-  bool settled = ok && settle(t, own);
+  bool settled = ok && set_patch_zero(t, own);
   *constant = ok && !settled && !t->status;
   if (!*constant) ok = settled && cag_tracer_link(t) && walk_all(t, out);
   own->zero = zero;

@@ -11,7 +11,7 @@
 
 __extension__ typedef unsigned __int128 Wide;
 
-static uint64_t *take(CagExactSpace *s, size_t n) {
+static uint64_t *new_limbs(CagExactSpace *s, size_t n) {
   if (s->used + n > s->size) {
     s->full = true;
     s->used = 0;
@@ -33,13 +33,13 @@ CagExact cag_exact(CagExactSpace *s, double x) {
   const double fraction = frexp(fabs(x), &exponent);
   uint64_t mantissa = (uint64_t)ldexp(fraction, MANTISSA_BITS);
   const int zeros = __builtin_ctzll(mantissa);
-  uint64_t *limb = take(s, 1);
+  uint64_t *limb = new_limbs(s, 1);
   *limb = mantissa >> zeros;
   return (CagExact){limb, 1, exponent - MANTISSA_BITS + zeros, x > 0 ? 1 : -1};
 }
 
 // Writes a, moved up by `shift` bits, into n limbs.
-static void place(const CagExact *a, int shift, uint64_t *to, int n) {
+static void write_shifted(const CagExact *a, int shift, uint64_t *to, int n) {
   const int limbs = shift / LIMB_BITS, bits = shift % LIMB_BITS;
   memset(to, 0, (size_t)n * sizeof *to);
   for (int i = 0; i < a->n; i++) {
@@ -61,9 +61,9 @@ CagExact cag_exact_sum(CagExactSpace *s, CagExact a, CagExact b) {
   const int up_a = a.exponent - exponent, up_b = b.exponent - exponent;
   const int n_a = a.n + up_a / LIMB_BITS + 1, n_b = b.n + up_b / LIMB_BITS + 1;
   const int n = (n_a > n_b ? n_a : n_b) + 1;
-  uint64_t *large = take(s, 2 * (size_t)n), *small = large + n;
-  place(&a, up_a, large, n);
-  place(&b, up_b, small, n);
+  uint64_t *large = new_limbs(s, 2 * (size_t)n), *small = large + n;
+  write_shifted(&a, up_a, large, n);
+  write_shifted(&b, up_b, small, n);
   int sign = a.sign;
   if (a.sign == b.sign) {
     uint64_t carry = 0;
@@ -92,7 +92,7 @@ CagExact cag_exact_sum(CagExactSpace *s, CagExact a, CagExact b) {
 CagExact cag_exact_product(CagExactSpace *s, CagExact a, CagExact b) {
   if (a.sign == 0 || b.sign == 0) return (CagExact){NULL, 0, 0, 0};
   const int n = a.n + b.n;
-  uint64_t *limb = take(s, (size_t)n);
+  uint64_t *limb = new_limbs(s, (size_t)n);
   memset(limb, 0, (size_t)n * sizeof *limb);
   for (int i = 0; i < a.n; i++) {
     uint64_t carry = 0;

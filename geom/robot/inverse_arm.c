@@ -59,7 +59,7 @@ static int elbow_of(const InverseChain *c, CagVec3 point, CagVec3 f) {
 }
 
 // Finishes a branch: g.x = u and g.y = v are known.
-static void place(Arm *a, CagVec3 point, double q3, CagVec3 f, CagVec3 k, double u, double v) {
+static void add_branch(Arm *a, CagVec3 point, double q3, CagVec3 f, CagVec3 k, double u, double v) {
   if (a->count == INVERSE_ARMS_MAX) return;
   const InverseRow *r1 = &a->chain->row[0], *r2 = &a->chain->row[1];
   const double nothing = INVERSE_NOTHING * a->chain->reach;
@@ -92,8 +92,8 @@ static bool root_of(double x, double scale, double *root) {
 static void both_sides(Arm *a, CagVec3 point, double q3, double center, double root, double v) {
   const CagVec3 f = seen_from2(a, q3), k = before_joint2(a, f);
   const double nothing = INVERSE_NOTHING * a->chain->reach;
-  place(a, point, q3, f, k, center + root, v);
-  if (root > nothing) place(a, point, q3, f, k, center - root, v);
+  add_branch(a, point, q3, f, k, center + root, v);
+  if (root > nothing) add_branch(a, point, q3, f, k, center - root, v);
 }
 
 // Axes 2 and 3 parallel: the height gives v, the distance then u, and u and v the length of k.
@@ -112,7 +112,7 @@ static void parallel23(Arm *a, CagVec3 point) {
     for (int i = 0; i < n; i++) {
       const double q3 = x[i] - r3->angle;
       const CagVec3 f = seen_from2(a, q3);
-      place(a, point, q3, f, before_joint2(a, f), u, v);
+      add_branch(a, point, q3, f, before_joint2(a, f), u, v);
     }
   }
 }
@@ -171,8 +171,8 @@ static void parallel12(Arm *a, CagVec3 point) {
     if (fabs(r1->a) < INVERSE_NOTHING * a->chain->reach) continue; // axes 1 and 2 are one
     const double u = (w2 - cag_dot(k, k) - r1->a * r1->a) / (2 * r1->a);
     if (!root_of(k.x * k.x + k.y * k.y - u * u, scale, &root)) continue;
-    place(a, point, q3, f, k, u, root);
-    if (root > INVERSE_NOTHING * a->chain->reach) place(a, point, q3, f, k, u, -root);
+    add_branch(a, point, q3, f, k, u, root);
+    if (root > INVERSE_NOTHING * a->chain->reach) add_branch(a, point, q3, f, k, u, -root);
   }
 }
 
@@ -237,7 +237,7 @@ static void keep_general(Arm *a, CagVec3 point, double q3) {
   double u, v;
   misfit(a, q3, &u, &v);
   const CagVec3 f = seen_from2(a, q3);
-  place(a, point, q3, f, before_joint2(a, f), u, v);
+  add_branch(a, point, q3, f, before_joint2(a, f), u, v);
 }
 
 // No two axes meet or are parallel: a trigonometric polynomial of the second degree in joint 3,

@@ -373,7 +373,7 @@ static double apart(const Problem *p, const double *a, const double *b) {
 }
 
 // Moves a solution towards `near` along the motions that leave the tool alone.
-static void settle(const Problem *p, State *s, const double *near) {
+static void approach_near(const Problem *p, State *s, const double *near) {
   const double widest = 0.3, gain_least = 1e-9, share_least = 1.0 / 64;
   const int rounds = 60;
   double share = 1, want[CAG_ROBOT_JOINTS_MAX] = {0}, step[CAG_ROBOT_JOINTS_MAX];
@@ -478,7 +478,7 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
     rest_nearest(&p, &best);
   }
   if (found || search->starts == 1) polish(&p, &best);
-  if (found && search->stay_near && p.n > p.rows) settle(&p, &best, near);
+  if (found && search->stay_near && p.n > p.rows) approach_near(&p, &best, near);
   memcpy(q, best.q, p.n * sizeof *q);
   return (CagRobotFound){content(&p, &best), best.position, best.rotation, steps};
 }

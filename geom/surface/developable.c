@@ -96,7 +96,7 @@ static CagStatus solve(const Match *m, bool of_s, double fixed, double lo, doubl
 
 // --- The first ruling ---
 
-static double place(double lo, double hi, int i) { return lo + (hi - lo) * i / PLACES; }
+static double sample_parameter(double lo, double hi, int i) { return lo + (hi - lo) * i / PLACES; }
 
 // The root nearest to the start of one curve, the parameter of the other fixed at its own start.
 // Tangents must run the same way there.
@@ -107,12 +107,13 @@ static CagStatus first_root(const Match *m, bool of_s, bool *found, double *out,
   Condition last = {0}, c;
   *found = false;
   for (int i = 0; i <= PLACES; i++) {
-    double x = place(free_->start, free_->end, i), root = x;
+    double x = sample_parameter(free_->start, free_->end, i), root = x;
     CagStatus status = condition(m, of_s ? x : fixed, of_s ? fixed : x, &c, err);
     if (status) return status;
     bool hit = fabs(c.f) <= SAME_PLANE, crossing = i > 0 && last.f * c.f < 0;
     if (!hit && crossing)
-      status = solve(m, of_s, fixed, place(free_->start, free_->end, i - 1), x, &root, err);
+      status =
+          solve(m, of_s, fixed, sample_parameter(free_->start, free_->end, i - 1), x, &root, err);
     if (status) return status;
     double away = root - free_->start;
     if (free_->closed && !of_s) away = fmin(away, period - away);
@@ -302,8 +303,8 @@ static CagStatus is_plain(const Match *m, bool *out, CagError *err) {
   *out = true;
   for (int i = 0; *out && i <= PLACES; i++) {
     Condition c;
-    CagStatus status =
-        condition(m, place(m->a->start, m->a->end, i), place(m->b->start, m->b->end, i), &c, err);
+    CagStatus status = condition(m, sample_parameter(m->a->start, m->a->end, i),
+                                 sample_parameter(m->b->start, m->b->end, i), &c, err);
     if (status) return status;
     *out = fabs(c.f) <= SAME_PLANE;
     longest = fmax(longest, c.length);

@@ -253,8 +253,8 @@ static CagStatus hold_planes(CagGridFit *f, int *rounds, CagError *err) {
 // --- The coordinate of a first fit ---
 
 // Point and first partials of the surface at a point of the data.
-static CagStatus look(const CagGridFit *f, const CagSurface *s, size_t i, CagVec3 d[4],
-                      CagError *err) {
+static CagStatus data_partials(const CagGridFit *f, const CagSurface *s, size_t i, CagVec3 d[4],
+                               CagError *err) {
   return cag_surface_eval(s, f->parameters[0][i], f->parameters[1][i], 1, CAG_SIDE_RIGHT,
                           CAG_SIDE_RIGHT, d, err);
 }
@@ -305,7 +305,7 @@ static CagStatus take_step(CagGridFit *f, const CagSurface *s, size_t i, double 
       f->parameters[k][i] =
           cag_grid_moved(a, from[k], part * step[k] * (cag_grid_end(a) - cag_grid_start(a)));
     }
-    CagStatus status = look(f, s, i, d, err);
+    CagStatus status = data_partials(f, s, i, d, err);
     if (status) return status;
     *gained = fabs(gap_of(f, i, d)) < fabs(gap);
   }
@@ -320,7 +320,7 @@ static CagStatus match_point(CagGridFit *f, const CagSurface *s, size_t i, doubl
     CagVec3 d[4];
     double step[2];
     bool gained;
-    CagStatus status = look(f, s, i, d, err);
+    CagStatus status = data_partials(f, s, i, d, err);
     if (status) return status;
     gap = gap_of(f, i, d);
     if (fabs(gap) <= slack) return CAG_OK;
@@ -403,7 +403,7 @@ CagStatus cag_grid_correct_held(CagGridFit *f, const CagSurface *s, CagError *er
   for (size_t i = 0; i < f->rows; i++) {
     CagVec3 d[4];
     double way[2];
-    CagStatus status = look(f, s, i, d, err);
+    CagStatus status = data_partials(f, s, i, d, err);
     if (status) return status;
     level_direction(f, i, d, way);
     const CagVec3 along = cag_add(cag_scaled(d[cag_partial(1, 1, 0)], way[0]),

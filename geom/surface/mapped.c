@@ -192,7 +192,7 @@ static double size_of(const Mapping *m) {
   return m->count > 0 ? cag_norm(cag_sub(b.max, b.min)) : 0;
 }
 
-static CagStatus give(const Mapping *m, bool sheet, CagMesh **out, CagError *err) {
+static CagStatus mapped_mesh(const Mapping *m, bool sheet, CagMesh **out, CagError *err) {
   CagStatus status = cag_mesh_new(m->count, m->triangle_count, sheet, false, false, out, err);
   for (size_t i = 0; i < m->count && !status; i++) {
     (*out)->positions[i] = m->vertices[i].to;
@@ -213,7 +213,7 @@ CagStatus cag_mesh_onto_surface(const CagMesh *mesh, const CagSurface *s, double
     if (!(tolerance > 0)) m.tolerance = DEFAULT_TOLERANCE * size_of(&m);
     if (!divide_all(&m, &changed)) break;
   }
-  CagStatus status = m.status ? m.status : give(&m, sheet, out, err);
+  CagStatus status = m.status ? m.status : mapped_mesh(&m, sheet, out, err);
   cag_free(m.vertices);
   cag_free(m.triangles);
   cag_free(m.keys);

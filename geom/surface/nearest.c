@@ -130,8 +130,8 @@ typedef struct Place {
   CagVec3 r, d[9];
 } Place;
 
-static CagStatus look(const Search *f, const Piece *in, CagVec3 p, const double at[2], Place *out,
-                      CagError *err) {
+static CagStatus surface_place(const Search *f, const Piece *in, CagVec3 p, const double at[2],
+                               Place *out, CagError *err) {
   CagSide side[2];
   for (int k = 0; k < 2; k++) {
     out->at[k] = at[k];
@@ -159,7 +159,7 @@ static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const doub
                          CagSurfaceNearest *out, CagError *err) {
   Place here, there;
   const double same = ROUNDING * f->cells.size;
-  CagStatus status = look(f, in, p, start, &here, err);
+  CagStatus status = surface_place(f, in, p, start, &here, err);
   for (int i = 0; !status && i < STEPS; i++) {
     double step[2];
     model_step(here.d, here.r, here.fixed, step);
@@ -169,7 +169,7 @@ static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const doub
       const double at[2] = {stepped(in, 0, here.at[0], part * step[0]),
                             stepped(in, 1, here.at[1], part * step[1])};
       if (at[0] == here.at[0] && at[1] == here.at[1]) break;
-      status = look(f, in, p, at, &there, err);
+      status = surface_place(f, in, p, at, &there, err);
       const bool level = fabs(there.distance - here.distance) <= same;
       better = !status && (level ? there.off < here.off / 2 : there.distance < here.distance);
     }

@@ -7,8 +7,8 @@
 #include "geom/surface/reshape.h"
 #include "geom/surface/swept.h"
 
-static CagStatus take(const CagSurface *s, CagVec3 p, double u, double v, CagSurfaceNearest *out,
-                      CagError *err) {
+static CagStatus candidate_at(const CagSurface *s, CagVec3 p, double u, double v,
+                              CagSurfaceNearest *out, CagError *err) {
   *out = (CagSurfaceNearest){.u = u, .v = v};
   CagStatus status = cag_surface_point(s, u, v, &out->point, err);
   out->distance = cag_norm(cag_sub(out->point, p));
@@ -29,7 +29,7 @@ static CagStatus by_line(const CagSurface *s, const CagCurve *center, double rad
   double u = atan2(cag_dot(r, cag_sub(y, foot)), cag_dot(r, cag_sub(x, foot)));
   if (u < 0) u += 2 * M_PI;
   *bound = distance - radius;
-  return take(s, p, u, v, out, err);
+  return candidate_at(s, p, u, v, out, err);
 }
 
 CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bound,
@@ -46,7 +46,7 @@ CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bo
     status = cag_surface_closest(inner, p, out, err);
     if (status) return status;
     *bound = out->distance - fabs(distance);
-    return take(s, p, out->u, out->v, out, err);
+    return candidate_at(s, p, out->u, out->v, out, err);
   }
   *known = false;
   if (!cag_surface_placed_view(s, &inner, &map) || !cag_transform_is_similarity(&map, &scale))
@@ -60,8 +60,8 @@ CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bo
   // v may run in the opposite direction.
   CagSurfaceNearest other;
   const double u = out->u, v = out->v;
-  status = take(s, p, u, v, out, err);
-  if (!status) status = take(s, p, u, s->v0 + s->v1 - v, &other, err);
+  status = candidate_at(s, p, u, v, out, err);
+  if (!status) status = candidate_at(s, p, u, s->v0 + s->v1 - v, &other, err);
   if (!status && other.distance < out->distance) *out = other;
   return status;
 }

@@ -11,7 +11,9 @@
 #define BARYCENTRIC_SLACK 1e-9
 
 // Where b_ijk stands: row j + k, place k.
-static size_t place(int j, int k) { return (size_t)(j + k) * (size_t)(j + k + 1) / 2 + (size_t)k; }
+static size_t triangle_index(int j, int k) {
+  return (size_t)(j + k) * (size_t)(j + k + 1) / 2 + (size_t)k;
+}
 
 static CagStatus check_coordinates(const double w[3], CagError *err) {
   double sum = w[0] + w[1] + w[2];
@@ -38,7 +40,8 @@ static void step(CagVec3 *net, int degree, const double w[3]) {
   for (int row = 0; row < degree; row++)
     for (int k = 0; k <= row; k++) {
       int j = row - k;
-      net[place(j, k)] = blend(w, net[place(j, k)], net[place(j + 1, k)], net[place(j, k + 1)]);
+      net[triangle_index(j, k)] = blend(w, net[triangle_index(j, k)], net[triangle_index(j + 1, k)],
+                                        net[triangle_index(j, k + 1)]);
     }
 }
 
@@ -72,10 +75,10 @@ void cag_triangle_elevate(const CagVec3 *net, int degree, CagVec3 *out) {
     for (int k = 0; k <= row; k++) {
       int j = row - k, i = n - row;
       CagVec3 sum = {0, 0, 0};
-      if (i > 0) sum = cag_madd(sum, (double)i / n, net[place(j, k)]);
-      if (j > 0) sum = cag_madd(sum, (double)j / n, net[place(j - 1, k)]);
-      if (k > 0) sum = cag_madd(sum, (double)k / n, net[place(j, k - 1)]);
-      out[place(j, k)] = sum;
+      if (i > 0) sum = cag_madd(sum, (double)i / n, net[triangle_index(j, k)]);
+      if (j > 0) sum = cag_madd(sum, (double)j / n, net[triangle_index(j - 1, k)]);
+      if (k > 0) sum = cag_madd(sum, (double)k / n, net[triangle_index(j, k - 1)]);
+      out[triangle_index(j, k)] = sum;
     }
 }
 
@@ -90,9 +93,9 @@ CagStatus cag_triangle_split(const CagVec3 *net, int degree, const double uvw[3]
   for (int r = 0; r <= degree; r++) {
     int left = degree - r;
     for (int m = 0; m <= left; m++) {
-      out[0][place(m, left - m)] = b[place(m, left - m)];
-      out[1][place(r, m)] = b[place(0, m)];
-      out[2][place(m, r)] = b[place(m, 0)];
+      out[0][triangle_index(m, left - m)] = b[triangle_index(m, left - m)];
+      out[1][triangle_index(r, m)] = b[triangle_index(0, m)];
+      out[2][triangle_index(m, r)] = b[triangle_index(m, 0)];
     }
     if (left > 0) step(b, left, uvw);
   }

@@ -87,7 +87,7 @@ static CagVec3 off_normal(CagVec3 x, CagVec3 normal) {
 }
 
 // Evaluates a sample. Returns false if the surface has no second partials or no normal there.
-static bool look(const CagSurface *s, int along, double across, double at, Bend *out) {
+static bool bend_at(const CagSurface *s, int along, double across, double at, Bend *out) {
   const double parallel = 1e-6; // sine of the angle between the partials
   CagVec3 d[9];
   CagError ignored;
@@ -127,8 +127,8 @@ static void judge_cell(const Run *r, const Cell *c, bool *usable, bool *worthwhi
   for (int i = 0; i < LOOKS && *usable; i++)
     for (int j = 0; j < LOOKS && *usable; j++) {
       Bend b;
-      *usable = look(r->surface, r->along, sample_at(c->from, c->to, (i + 0.5) / LOOKS),
-                     sample_at(r->from, r->to, (j + 0.5) / LOOKS), &b) &&
+      *usable = bend_at(r->surface, r->along, sample_at(c->from, c->to, (i + 0.5) / LOOKS),
+                        sample_at(r->from, r->to, (j + 0.5) / LOOKS), &b) &&
                 fabs(b.vv) * length * length / 8 > r->tolerance;
       if (!*usable) break;
       straight += sqrt(fabs(b.uu * b.vv - b.uv * b.uv));
@@ -140,8 +140,8 @@ static void judge_cell(const Run *r, const Cell *c, bool *usable, bool *worthwhi
 static bool sample_cell(const Run *r, Cell *c) {
   for (int i = 0; i <= c->pieces; i++)
     for (int j = 0; j < ALONG; j++)
-      if (!look(r->surface, r->along, sample_at(c->from, c->to, (double)i / c->pieces),
-                sample_at(r->from, r->to, (j + 0.5) / ALONG), &c->bends[i * ALONG + j]))
+      if (!bend_at(r->surface, r->along, sample_at(c->from, c->to, (double)i / c->pieces),
+                   sample_at(r->from, r->to, (j + 0.5) / ALONG), &c->bends[i * ALONG + j]))
         return false;
   return true;
 }

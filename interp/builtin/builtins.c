@@ -104,7 +104,7 @@ static CagArena table_arena;
 static atomic_bool table_ready;
 static pthread_mutex_t table_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-static void *take(size_t n, size_t size) { return cag_arena_alloc(&table_arena, n * size); }
+static void *table_alloc(size_t n, size_t size) { return cag_arena_alloc(&table_arena, n * size); }
 
 // --- Building ---
 
@@ -125,7 +125,7 @@ static const CagBuiltin *const families[] = {
 
 // Numbers the names in the order of their first rows and counts the rows of each.
 static size_t *number_names(CagSignature *signatures) {
-  size_t *name_of = take(table.row_count, sizeof *name_of);
+  size_t *name_of = table_alloc(table.row_count, sizeof *name_of);
   for (size_t r = 0; r < table.row_count; r++) {
     const char *name = signatures[r].name;
     name_of[r] = find_name(name);
@@ -145,18 +145,18 @@ static void build_table(void *context) {
   // Collect the rows in the order of the families.
   for (size_t f = 0; f < FAMILY_COUNT; f++)
     for (const CagBuiltin *b = families[f]; b->signature; b++) table.row_count++;
-  const CagBuiltin **all = take(table.row_count, sizeof *all);
-  CagSignature *parsed = take(table.row_count, sizeof *parsed);
+  const CagBuiltin **all = table_alloc(table.row_count, sizeof *all);
+  CagSignature *parsed = table_alloc(table.row_count, sizeof *parsed);
   size_t n = 0;
   for (size_t f = 0; f < FAMILY_COUNT; f++)
     for (const CagBuiltin *b = families[f]; b->signature; b++) {
       cag_signature_parse(&parsed[n], b->signature, &table_arena);
       all[n++] = b;
     }
-  table.names = take(table.row_count, sizeof *table.names);
+  table.names = table_alloc(table.row_count, sizeof *table.names);
   size_t *name_of = number_names(parsed);
   // Group by name.
-  table.name_texts = take(table.name_count + 1, sizeof *table.name_texts);
+  table.name_texts = table_alloc(table.name_count + 1, sizeof *table.name_texts);
   size_t first = 0;
   for (size_t i = 0; i < table.name_count; i++) {
     table.name_texts[i] = table.names[i].name;
@@ -164,9 +164,9 @@ static void build_table(void *context) {
     table.names[i].jet = cag_jet_row(table.names[i].name);
     first += table.names[i].count;
   }
-  table.rows = take(table.row_count, sizeof *table.rows);
-  table.signatures = take(table.row_count, sizeof *table.signatures);
-  size_t *filled = take(table.name_count, sizeof *filled);
+  table.rows = table_alloc(table.row_count, sizeof *table.rows);
+  table.signatures = table_alloc(table.row_count, sizeof *table.signatures);
+  size_t *filled = table_alloc(table.name_count, sizeof *filled);
   for (size_t r = 0; r < table.row_count; r++) {
     size_t to = table.names[name_of[r]].first + filled[name_of[r]]++;
     table.rows[to] = *all[r];

@@ -162,7 +162,7 @@ static char peek(Parser *p) {
   return *p->at;
 }
 
-static bool take(Parser *p, char c) {
+static bool accept_char(Parser *p, char c) {
   if (peek(p) != c) return false;
   p->at++;
   return true;
@@ -223,9 +223,9 @@ static bool parse_arguments(Parser *p, const Function *f, const char *place) {
       write_text(p, f->takes_radians ? "(" : "");
       if (!parse_sum(p)) return false;
       write_text(p, f->takes_radians ? ")*1rad" : "");
-    } while (take(p, ','));
+    } while (accept_char(p, ','));
   }
-  if (!take(p, ')'))
+  if (!accept_char(p, ')'))
     return fail_here(p, p->at, "expected `)` at the end of the arguments of %s", f->name);
   write_text(p, f->gives_radians ? ")/1rad)" : ")");
   if (count >= f->fewest && count <= f->most) return true;
@@ -239,7 +239,7 @@ static bool parse_name(Parser *p) {
   p->at += w.n;
   const Function *f = find_function(w);
   if (f) {
-    if (take(p, '(')) return parse_arguments(p, f, w.s);
+    if (accept_char(p, '(')) return parse_arguments(p, f, w.s);
     return fail_here(p, w.s, "%s expects its argument in parentheses: %s(...)", f->name, f->name);
   }
   if (!is_parameter(p, w) && !is_constant(w)) return fail_unknown(p, w);
@@ -256,7 +256,7 @@ static bool parse_primary(Parser *p) {
     p->at++;
     write_text(p, "(");
     if (!parse_sum(p)) return false;
-    if (!take(p, ')')) return fail_here(p, p->at, "expected `)`");
+    if (!accept_char(p, ')')) return fail_here(p, p->at, "expected `)`");
     write_text(p, ")");
     return true;
   }
@@ -270,7 +270,7 @@ static bool parse_power(Parser *p) {
   if (!parse_primary(p)) return false;
   skip_blank(p);
   if (p->at[0] == '*' && p->at[1] == '*') return fail_here(p, p->at, "write ^ for a power");
-  if (!take(p, '^')) return true;
+  if (!accept_char(p, '^')) return true;
   write_text(p, "^");
   return parse_signed(p);
 }
@@ -281,12 +281,12 @@ static bool parse_signed(Parser *p) {
   if (++p->depth > DEPTH_MOST)
     return fail_here(p, p->at, "brackets and signs nest deeper than %d", DEPTH_MOST);
   bool good;
-  if (take(p, '-')) {
+  if (accept_char(p, '-')) {
     write_text(p, "(-");
     good = parse_signed(p);
     write_text(p, ")");
   } else {
-    good = take(p, '+') ? parse_signed(p) : parse_power(p);
+    good = accept_char(p, '+') ? parse_signed(p) : parse_power(p);
   }
   p->depth--;
   return good;

@@ -68,7 +68,7 @@ static bool plain_result(CagCall *call, CagValue *value) {
   return call->builtin->function(&with, value);
 }
 
-static CagValue give(CagVm *vm, CagSeries *s, CagValue value) {
+static CagValue jet_of_series(CagVm *vm, CagSeries *s, CagValue value) {
   s->c[0] = value.as.number;
   return cag_jet_value(vm, s, value.type == CAG_ANGLE);
 }
@@ -89,7 +89,7 @@ static bool unary(CagCall *call, Unary f, CagValue *result) {
   if (j->angle) cag_series_scale(&x, CAG_RADIANS_PER_DEGREE, &x);
   if (!f(&x, j->c[0], value.as.number, &out)) return fail_at(call, 0);
   if (value.type == CAG_ANGLE) cag_series_scale(&out, DEGREES_PER_RADIAN, &out);
-  *result = give(call->vm, &out, value);
+  *result = jet_of_series(call->vm, &out, value);
   return true;
 }
 
@@ -264,7 +264,7 @@ static bool jet_atan2(CagCall *call, CagValue *result) {
   else cag_series_divide(&y, &x, &q);
   inverse(&q, 1, 1, -1, steep ? -1 : 1, &out);
   cag_series_scale(&out, DEGREES_PER_RADIAN, &out);
-  *result = give(call->vm, &out, value);
+  *result = jet_of_series(call->vm, &out, value);
   return true;
 }
 
@@ -301,7 +301,7 @@ static bool jet_hypot(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < call->count; i++)
     if (!read_series(call, call->values[i], &like, &x[i])) return false;
   if (!root_of_squares(x, call->count, value.as.number, &out)) return fail_at(call, 0);
-  *result = give(call->vm, &out, value);
+  *result = jet_of_series(call->vm, &out, value);
   return true;
 }
 
@@ -330,7 +330,7 @@ static bool jet_extreme(CagCall *call, CagValue *result) {
     found = x;
     any = true;
   }
-  *result = give(call->vm, &found, value);
+  *result = jet_of_series(call->vm, &found, value);
   return true;
 }
 
@@ -478,7 +478,7 @@ static bool norm_of(CagCall *call, const Vector *v, CagValue *result) {
     value = hypot(value, x[i].c[0]);
   }
   if (!root_of_squares(x, v->n, value, &out)) return fail_at(call, 0);
-  *result = give(call->vm, &out, cag_number(value));
+  *result = jet_of_series(call->vm, &out, cag_number(value));
   return true;
 }
 

@@ -165,7 +165,7 @@ static bool call_map(CagCall *call, CagValue *result) {
 }
 
 // Calls the function, which must give a bool, for x.
-static bool ask(Loop *loop, CagValue x, bool *answer) {
+static bool test_element(Loop *loop, CagValue x, bool *answer) {
   CagValue y;
   if (!cag_call(loop->call->vm, loop->function, &x, 1, &y)) return false;
   *answer = y.type == CAG_BOOL && y.as.boolean;
@@ -184,7 +184,7 @@ static bool call_filter(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < loop.source.length && good; i++) {
     CagValue x = cag_sequence_element(call->vm, &loop.source, i);
     cag_root_push(call->vm, x);
-    good = ask(&loop, x, &kept) && (!kept || cag_builder_add(call->vm, loop.built, x));
+    good = test_element(&loop, x, &kept) && (!kept || cag_builder_add(call->vm, loop.built, x));
     cag_root_pop(call->vm, 1);
   }
   return loop_close(&loop, good, result);
@@ -220,7 +220,7 @@ static bool search(CagCall *call, bool wanted, CagValue *result) {
   for (size_t i = 0; i < loop.source.length && good && !found; i++) {
     CagValue x = cag_sequence_element(call->vm, &loop.source, i);
     bool answer = x.type == CAG_BOOL && x.as.boolean;
-    if (with_function) good = ask(&loop, x, &answer);
+    if (with_function) good = test_element(&loop, x, &answer);
     else if (x.type != CAG_BOOL)
       good = cag_fail_element(call, 0, i, x, "bools, or a function `f` to ask,");
     else good = may_go_on(call, i);

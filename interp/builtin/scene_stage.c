@@ -57,8 +57,8 @@ CagValue cag_color_value(CagVm *vm, CagColor c) {
   return cag_vector(vm, x, 3);
 }
 
-static bool give(CagCall *call, CagType type, const char *kind, const char *const *names,
-                 const CagValue *fields, size_t n, CagValue *result) {
+static bool scene_result(CagCall *call, CagType type, const char *kind, const char *const *names,
+                         const CagValue *fields, size_t n, CagValue *result) {
   *result = cag_scene_value(call->vm, type, kind, cag_record_new(call->vm, names, fields, n));
   CAG_AS_SCENE(*result)->placement = cag_transform_identity();
   return true;
@@ -128,7 +128,7 @@ bool cag_scenes_camera(CagCall *call, CagValue *result) {
                        size,
                        focus > 0 ? cag_number(focus) : cag_none(),
                        cag_number(aperture)};
-  return give(call, CAG_CAMERA, kinds[kind], names, fields, 9, result);
+  return scene_result(call, CAG_CAMERA, kinds[kind], names, fields, 9, result);
 }
 
 // --- Lights ---
@@ -154,7 +154,7 @@ bool cag_scenes_sun(CagCall *call, CagValue *result) {
       !read_light(call, 1, &fields[1], &fields[2]))
     return false;
   fields[0] = cag_point(call->vm, direction, 3);
-  return give(call, CAG_LIGHT, "sun", names, fields, 3, result);
+  return scene_result(call, CAG_LIGHT, "sun", names, fields, 3, result);
 }
 
 bool cag_scenes_point_light(CagCall *call, CagValue *result) {
@@ -164,7 +164,7 @@ bool cag_scenes_point_light(CagCall *call, CagValue *result) {
   if (!cag_arg_vec(call, 0, &position, NULL) || !read_light(call, 1, &fields[1], &fields[2]))
     return false;
   fields[0] = cag_point(call->vm, position, 3);
-  return give(call, CAG_LIGHT, "point", names, fields, 3, result);
+  return scene_result(call, CAG_LIGHT, "point", names, fields, 3, result);
 }
 
 // Position and target, which must differ.
@@ -189,7 +189,7 @@ bool cag_scenes_spot_light(CagCall *call, CagValue *result) {
   if (!(angle > 0 && angle < 180 * CAG_RADIANS_PER_DEGREE))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects an `angle` above 0deg and below 180deg");
   fields[2] = cag_angle(cag_degrees_shown(angle));
-  return give(call, CAG_LIGHT, "spot", names, fields, 5, result);
+  return scene_result(call, CAG_LIGHT, "spot", names, fields, 5, result);
 }
 
 bool cag_scenes_area_light(CagCall *call, CagValue *result) {
@@ -200,7 +200,7 @@ bool cag_scenes_area_light(CagCall *call, CagValue *result) {
       !read_light(call, 3, &fields[3], &fields[4]))
     return false;
   fields[2] = cag_number(size);
-  return give(call, CAG_LIGHT, "area", names, fields, 5, result);
+  return scene_result(call, CAG_LIGHT, "area", names, fields, 5, result);
 }
 
 // --- Settings ---
@@ -219,7 +219,7 @@ bool cag_scenes_sky(CagCall *call, CagValue *result) {
   size_t n;
   if (is_image(v)) {
     fields[1] = v;
-    return give(call, CAG_SETTING, "sky", names, fields, 2, result);
+    return scene_result(call, CAG_SETTING, "sky", names, fields, 2, result);
   }
   bool one = v.type == CAG_TEXT || (v.type == CAG_LIST && cag_as_vector(v, &x, &n));
   if (!one && v.type != CAG_LIST)
@@ -234,7 +234,7 @@ bool cag_scenes_sky(CagCall *call, CagValue *result) {
   }
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one color");
   fields[0] = cag_builder_finish(call->vm, colors);
-  return give(call, CAG_SETTING, "sky", names, fields, 2, result);
+  return scene_result(call, CAG_SETTING, "sky", names, fields, 2, result);
 }
 
 bool cag_scenes_background(CagCall *call, CagValue *result) {
@@ -242,7 +242,7 @@ bool cag_scenes_background(CagCall *call, CagValue *result) {
   CagColor c;
   if (!cag_color_read(call, 0, "color", call->values[0], &c)) return false;
   CagValue field = cag_color_value(call->vm, c);
-  return give(call, CAG_SETTING, "background", names, &field, 1, result);
+  return scene_result(call, CAG_SETTING, "background", names, &field, 1, result);
 }
 
 bool cag_scenes_ground(CagCall *call, CagValue *result) {
@@ -253,5 +253,5 @@ bool cag_scenes_ground(CagCall *call, CagValue *result) {
   if (!isfinite(z)) return cag_fail_call(call, 0, CAG_ERR_value, "expects a finite `z`");
   if (!(size > 0)) return cag_fail_call(call, 1, CAG_ERR_value, "expects a `size` greater than 0");
   CagValue fields[] = {cag_number(z), cag_number(size), cag_none(), cag_none()};
-  return give(call, CAG_SETTING, "ground", names, fields, 4, result);
+  return scene_result(call, CAG_SETTING, "ground", names, fields, 4, result);
 }

@@ -21,7 +21,7 @@ static bool call_row(CagCall *call, CagValue *out) {
 }
 
 // A call of a built-in of one argument, for members that are functions as well.
-static bool ask(CagVm *vm, const char *function, CagValue v, CagValue *out) {
+static bool call_unary(CagVm *vm, const char *function, CagValue v, CagValue *out) {
   size_t index = cag_builtin_find(function), count;
   if (index == (size_t)-1) return false;
   const CagBuiltin *rows = cag_builtin_rows(index, &count);
@@ -75,7 +75,7 @@ bool cag_value_member(CagVm *vm, CagValue object, const char *name, CagValue *ou
     return true;
   }
   if (object.type == CAG_MESH && is_one_of(name, mesh_members, COUNT(mesh_members)))
-    return ask(vm, name, object, out);
+    return call_unary(vm, name, object, out);
   if (object.type == CAG_GROUP && !strcmp(name, "items")) {
     *out = cag_object(CAG_LIST, CAG_AS_SHAPE(object)->as.items);
     return true;

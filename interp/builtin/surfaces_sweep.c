@@ -27,7 +27,7 @@ typedef struct Question {
   CagValue answer;
 } Question;
 
-static bool ask(CagVm *vm, void *question) {
+static bool call_sampled(CagVm *vm, void *question) {
   Question *q = question;
   const Sampled *s = q->sampled;
   CagValue at = cag_parameter_value(s->angular, q->t);
@@ -37,7 +37,7 @@ static bool ask(CagVm *vm, void *question) {
 // Running out of memory in the script must not leave the fit by a jump.
 static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
   Question q = {s, t, cag_none()};
-  if (!cag_vm_call_back(s->call->vm, ask, &q)) return stopped(err);
+  if (!cag_vm_call_back(s->call->vm, call_sampled, &q)) return stopped(err);
   *out = q.answer;
   return CAG_OK;
 }

@@ -4,8 +4,8 @@
 
 #include "interp/builtin/transforms.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagTransform *t, bool planar,
-                 CagValue *result) {
+static bool transform_result(CagCall *call, CagStatus status, const CagError *err, CagTransform *t,
+                             bool planar, CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
   t->planar = planar;
   *result = cag_transform_value(call->vm, t);
@@ -19,8 +19,8 @@ bool cag_transforms_reflect_line(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return give(call, cag_reflect_line(a.p.at, a.q.at, &t, &err), &err, &t,
-              a.p.dimension == 2 && a.q.dimension == 2, result);
+  return transform_result(call, cag_reflect_line(a.p.at, a.q.at, &t, &err), &err, &t,
+                          a.p.dimension == 2 && a.q.dimension == 2, result);
 }
 
 bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
@@ -28,7 +28,7 @@ bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
   int dimension;
   if (!cag_arg_vec(call, 0, &p, &dimension)) return false;
   CagTransform t = cag_reflect_point(p);
-  return give(call, CAG_OK, NULL, &t, dimension == 2, result);
+  return transform_result(call, CAG_OK, NULL, &t, dimension == 2, result);
 }
 
 // Rows of numbers, 2 to 4 of 2 to 4; *columns and *count tell the shape.
@@ -76,7 +76,7 @@ bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects 2x2, 3x3, 3x4 or 4x4 rows, found %zu rows of %zu", rows, columns);
   }
-  return give(call, CAG_OK, NULL, &t, planar, result);
+  return transform_result(call, CAG_OK, NULL, &t, planar, result);
 }
 
 bool cag_transforms_axes(CagCall *call, CagValue *result) {
@@ -86,7 +86,8 @@ bool cag_transforms_axes(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return give(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, &err), &err, &t, false, result);
+  return transform_result(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, &err), &err, &t, false,
+                          result);
 }
 
 bool cag_transforms_look_at(CagCall *call, CagValue *result) {
@@ -96,7 +97,8 @@ bool cag_transforms_look_at(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return give(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, &err), &err, &t, false, result);
+  return transform_result(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, &err), &err, &t, false,
+                          result);
 }
 
 bool cag_transforms_euler(CagCall *call, CagValue *result) {
@@ -107,8 +109,8 @@ bool cag_transforms_euler(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
-  return give(call, cag_euler(given.a, given.b, given.c, given.order, &t, &err), &err, &t, false,
-              result);
+  return transform_result(call, cag_euler(given.a, given.b, given.c, given.order, &t, &err), &err,
+                          &t, false, result);
 }
 
 bool cag_transforms_rpy(CagCall *call, CagValue *result) {
@@ -117,7 +119,7 @@ bool cag_transforms_rpy(CagCall *call, CagValue *result) {
   } a;
   if (!cag_bind(call, &a, sizeof a)) return false;
   CagTransform t = cag_rpy(a.roll, a.pitch, a.yaw);
-  return give(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, NULL, &t, false, result);
 }
 
 bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
@@ -126,7 +128,7 @@ bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
   CagError err;
   for (int i = 0; i < 4; i++)
     if (!cag_arg_finite(call, i, &wxyz[i])) return false;
-  return give(call, cag_quaternion(wxyz, &t, &err), &err, &t, false, result);
+  return transform_result(call, cag_quaternion(wxyz, &t, &err), &err, &t, false, result);
 }
 
 bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
@@ -137,8 +139,8 @@ bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return give(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, &err), &err, &t, false,
-              result);
+  return transform_result(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, &err), &err,
+                          &t, false, result);
 }
 
 // Turn about Z by the first angle, then about the turned Y by the second, then a step along the
@@ -148,7 +150,7 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
   CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
   CagTransform t = cag_transform_multiply(&tilted, &place);
   if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
-  return give(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, NULL, &t, false, result);
 }
 
 bool cag_transforms_cylindrical(CagCall *call, CagValue *result) {
@@ -179,14 +181,14 @@ bool cag_transforms_dh(CagCall *call, CagValue *result) {
   double link[4];
   if (!read_link(call, link)) return false;
   CagTransform t = cag_dh(link[0], link[1], link[2], link[3]);
-  return give(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, NULL, &t, false, result);
 }
 
 bool cag_transforms_mdh(CagCall *call, CagValue *result) {
   double link[4];
   if (!read_link(call, link)) return false;
   CagTransform t = cag_mdh(link[0], link[1], link[2], link[3]);
-  return give(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, NULL, &t, false, result);
 }
 
 bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
@@ -203,8 +205,8 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 1, CAG_ERR_length,
                          "expects one image for each of %zu points, found %zu", n, m);
   const bool planar = d == 2 && e == 2;
-  return give(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t, planar,
-              result);
+  return transform_result(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t,
+                          planar, result);
 }
 
 // --- solve_frame ---

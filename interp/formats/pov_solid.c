@@ -18,7 +18,7 @@ static bool is_rigid(const CagTransform *t) {
   return t->m[3][3] == 1;
 }
 
-static void place(CagPovWriter *w, const CagTransform *t) {
+static void write_placement(CagPovWriter *w, const CagTransform *t) {
   if (!w->in_operation && is_rigid(t)) w->placement = *t;
   else cag_pov_placement(w, "  ", t);
 }
@@ -31,7 +31,7 @@ static void write_box(CagPovWriter *w, const CagSolid *s) {
   cag_pov_text(w, ", ");
   cag_pov_vec(w, cag_add(low, size));
   cag_pov_text(w, "\n");
-  place(w, &s->placement);
+  write_placement(w, &s->placement);
   cag_pov_text(w, "}");
 }
 
@@ -39,7 +39,7 @@ static void write_sphere(CagPovWriter *w, const CagSolid *s) {
   cag_pov_text(w, "sphere {\n  <0, 0, 0>, ");
   cag_pov_number(w, s->a);
   cag_pov_text(w, "\n");
-  place(w, &s->placement);
+  write_placement(w, &s->placement);
   cag_pov_text(w, "}");
 }
 
@@ -54,7 +54,7 @@ static void write_cylinder(CagPovWriter *w, const CagSolid *s) {
   cag_pov_text(w, ", ");
   cag_pov_number(w, s->c);
   cag_pov_text(w, "\n");
-  place(w, &s->placement);
+  write_placement(w, &s->placement);
   cag_pov_text(w, "}");
 }
 
@@ -64,7 +64,7 @@ static void write_torus(CagPovWriter *w, const CagSolid *s) {
   cag_pov_text(w, ", ");
   cag_pov_number(w, s->b);
   cag_pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
-  place(w, &s->placement);
+  write_placement(w, &s->placement);
   cag_pov_text(w, "}");
 }
 

@@ -214,7 +214,8 @@ typedef struct Sample {
   bool visible;
 } Sample;
 
-static bool look(const Picture *p, const CagCurve *c, double t, CagSide side, Sample *out) {
+static bool projected_sample(const Picture *p, const CagCurve *c, double t, CagSide side,
+                             Sample *out) {
   CagError err;
   CagVec3 e[2];
   if (cag_curve_eval(c, t, 1, side, e, &err)) return false;
@@ -234,7 +235,7 @@ static bool fits(const Picture *p, const CagCurve *c, const Sample *a, const Sam
   static const double at[] = {0.2, 0.4, 0.5, 0.6, 0.8};
   for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
     Sample s;
-    if (!look(p, c, a->t + at[i] * (b->t - a->t), CAG_SIDE_RIGHT, &s)) return true;
+    if (!projected_sample(p, c, a->t + at[i] * (b->t - a->t), CAG_SIDE_RIGHT, &s)) return true;
     if (!s.visible) return false;
     if (cag_norm(cag_sub(s.p, cubic_at(cubic, at[i]))) > TOLERANCE_PART * p->size) return false;
   }
@@ -257,7 +258,8 @@ static void draw_between(Picture *p, const CagCurve *c, const Sample *a, const S
   if (depth == 0 || (!a->visible && !b->visible && depth < coarse)) return;
   Sample left, right;
   double middle = (a->t + b->t) / 2;
-  if (!look(p, c, middle, CAG_SIDE_LEFT, &left) || !look(p, c, middle, CAG_SIDE_RIGHT, &right))
+  if (!projected_sample(p, c, middle, CAG_SIDE_LEFT, &left) ||
+      !projected_sample(p, c, middle, CAG_SIDE_RIGHT, &right))
     return;
   draw_between(p, c, a, &left, depth - 1);
   draw_between(p, c, &right, b, depth - 1);
@@ -274,7 +276,8 @@ static CagStatus draw_approximate(Picture *p, const CagCurve *c, CagError *err) 
   at[n + 1] = c->end;
   for (size_t i = 0; i <= n; i++) {
     Sample a, b;
-    if (look(p, c, at[i], CAG_SIDE_RIGHT, &a) && look(p, c, at[i + 1], CAG_SIDE_LEFT, &b))
+    if (projected_sample(p, c, at[i], CAG_SIDE_RIGHT, &a) &&
+        projected_sample(p, c, at[i + 1], CAG_SIDE_LEFT, &b))
       draw_between(p, c, &a, &b, DEPTH_MAX);
   }
   cag_free(at);

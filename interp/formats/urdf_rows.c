@@ -120,7 +120,7 @@ static bool has_bodies(const Walk *w, size_t node) {
   return w->bodies && (n->visuals || n->collisions);
 }
 
-static void place(Walk *w, size_t node) {
+static void add_bodies(Walk *w, size_t node) {
   if (!has_bodies(w, node)) return;
   w->out->placed[w->placed_count++] = (CagUrdfPlaced){node, w->at};
   // Bodies before the first joint are counted when there is a row for them.
@@ -245,7 +245,7 @@ static CagStatus add_edges(Walk *w, const size_t *chain, size_t n, CagError *err
     } else {
       return fail_joint(t, e, err);
     }
-    place(w, e->child);
+    add_bodies(w, e->child);
   }
   return CAG_OK;
 }
@@ -261,7 +261,7 @@ CagStatus cag_urdf_rows(const CagUrdfTree *t, const char *base, const size_t *ch
                        .tool = cag_transform_identity()};
   if (!out->rows || !out->placed) return cag_fail_memory(err);
   Walk w = {.tree = t, .out = out, .at = cag_transform_identity(), .bodies = bodies};
-  if (first != CAG_URDF_NONE) place(&w, first);
+  if (first != CAG_URDF_NONE) add_bodies(&w, first);
   CagStatus status = add_edges(&w, chain, n, err);
   if (status != CAG_OK) return status;
   if (out->row_count == 0) { // no joint at all

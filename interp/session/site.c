@@ -174,9 +174,10 @@ static bool make_folders(CagSite *s) {
   return s->script_count == 0 || make_folder(s, "scripts");
 }
 
-static void say(const CagSite *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void report_site(const CagSite *s, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-static void say(const CagSite *s, const char *format, ...) {
+static void report_site(const CagSite *s, const char *format, ...) {
   char *message;
   va_list args;
   va_start(args, format);
@@ -191,7 +192,7 @@ static void find_renderer(CagSite *s) {
   char found[256];
   if (s->options->no_pictures) return;
   s->renders = cag_find_povray(found, sizeof found) != NULL;
-  if (!s->renders) say(s, "pictures are left out, other than drawings: %s", found);
+  if (!s->renders) report_site(s, "pictures are left out, other than drawings: %s", found);
 }
 
 // An example that does not do what it says is an error of the documentation.
@@ -206,8 +207,8 @@ static int judge(CagSite *s) {
                         "an example of %s does not do what it says:\n%s\nit printed:\n%s", e->about,
                         e->text, e->failure);
   }
-  say(s, "%zu scripts run", s->count);
-  if (pictures) say(s, "%zu pictures", pictures);
+  report_site(s, "%zu scripts run", s->count);
+  if (pictures) report_site(s, "%zu pictures", pictures);
   return wrong ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
 }
 

@@ -75,7 +75,7 @@ static size_t emit_wide(Unit *u, CagSpan span, CagOpcode op, uint32_t a, int32_t
   return at;
 }
 
-static uint32_t take(Unit *u, uint32_t n) {
+static uint32_t take_registers(Unit *u, uint32_t n) {
   uint32_t first = u->next;
   u->next += n;
   if (u->next > CAG_MAX_REGISTERS) {
@@ -336,15 +336,15 @@ static void add_site_span(Unit *u, CagSpan span) {
 static uint32_t compile_call(Unit *u, const CagExpr *whole, const CagExpr *callee,
                              const CagExpr *piped, const CagArgument *arguments, size_t n,
                              bool tail) {
-  uint32_t base = take(u, 1);
+  uint32_t base = take_registers(u, 1);
   compile_to(u, callee, base);
   size_t total = n + (piped ? 1 : 0), named = 0;
   if (piped) {
-    uint32_t r = take(u, 1);
+    uint32_t r = take_registers(u, 1);
     compile_to(u, piped, r);
   }
   for (size_t i = 0; i < n; i++) {
-    uint32_t r = take(u, 1);
+    uint32_t r = take_registers(u, 1);
     compile_to(u, arguments[i].value, r);
     if (arguments[i].name) named++;
   }
@@ -386,11 +386,11 @@ static void compile_list(Unit *u, const CagExpr *e, uint32_t target) {
   for (size_t i = 0; i < n; i++) spread |= e->as.list.items[i]->kind == CAG_EXPR_SPREAD;
   uint32_t mark = u->next;
   if (!spread && n <= LIST_IN_REGISTERS) {
-    uint32_t first = take(u, (uint32_t)n);
+    uint32_t first = take_registers(u, (uint32_t)n);
     for (size_t i = 0; i < n; i++) compile_to(u, e->as.list.items[i], first + (uint32_t)i);
     emit(u, e->span, CAG_CODE_LIST, target, first, (uint32_t)n);
   } else {
-    uint32_t builder = take(u, 1);
+    uint32_t builder = take_registers(u, 1);
     emit(u, e->span, CAG_CODE_BUILDER, builder, 0, 0);
     for (size_t i = 0; i < n; i++) {
       const CagExpr *item = e->as.list.items[i];
@@ -410,7 +410,7 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
   size_t n = e->as.record.count, plain = 0;
   while (plain < n && e->as.record.fields[plain].name) plain++;
   uint32_t mark = u->next;
-  uint32_t first = take(u, (uint32_t)plain);
+  uint32_t first = take_registers(u, (uint32_t)plain);
   CagCleanup cleanup;
   CagText **names = cag_temporary(&cleanup, plain, sizeof *names);
   for (size_t i = 0; i < plain; i++) {
@@ -420,7 +420,7 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
   }
   CagLayout *layout = cag_layout_new(u->vm, names, plain);
   cag_cleanup_run(&cleanup);
-  uint32_t r = plain == n ? target : take(u, 1);
+  uint32_t r = plain == n ? target : take_registers(u, 1);
   emit(u, e->span, CAG_CODE_RECORD, r, first,
        (uint32_t)add_constant(u, cag_object(CAG_INTERNAL, layout)));
   for (size_t i = plain; i < n; i++) { // from the first spread on: one field after the other
@@ -445,7 +445,7 @@ static void compile_block_head(Unit *u, const CagExpr *e) {
       compile_assert(u, s);
       continue;
     }
-    uint32_t r = take(u, 1);
+    uint32_t r = take_registers(u, 1);
     compile_to(u, s->as.definition.value, r);
     s->as.definition.decl->index = r;
   }
@@ -461,14 +461,14 @@ static void compile_clause(Unit *u, const CagExpr *e, size_t k, uint32_t builder
   }
   const CagClause *clause = &e->as.comprehension.clauses[k];
   uint32_t mark = u->next;
-  uint32_t iterator = take(u, 4);
+  uint32_t iterator = take_registers(u, 4);
   uint32_t source = compile_any(u, clause->source);
   emit(u, clause->source->span, CAG_CODE_ITERATE, iterator, source, 0);
   u->next = iterator + 4;
   size_t start = here(u);
   size_t next = emit_wide(u, clause->source->span, CAG_CODE_NEXT, iterator, 0);
   if (clause->pattern) {
-    uint32_t first = take(u, (uint32_t)clause->name_count);
+    uint32_t first = take_registers(u, (uint32_t)clause->name_count);
     emit(u, clause->span, CAG_CODE_UNPACK, first, iterator + 3, (uint32_t)clause->name_count);
     for (size_t i = 0; i < clause->name_count; i++)
       if (clause->names[i]) clause->names[i]->index = first + i;
@@ -487,7 +487,7 @@ static void compile_clause(Unit *u, const CagExpr *e, size_t k, uint32_t builder
 
 static void compile_comprehension(Unit *u, const CagExpr *e, uint32_t target) {
   uint32_t mark = u->next;
-  uint32_t builder = take(u, 1);
+  uint32_t builder = take_registers(u, 1);
   emit(u, e->span, CAG_CODE_BUILDER, builder, 0, 0);
   compile_clause(u, e, 0, builder);
   emit(u, e->span, CAG_CODE_FINISH, target, builder, 0);
@@ -508,7 +508,7 @@ static void compile_logical(Unit *u, const CagExpr *e, uint32_t target) {
   Patches end = {0};
   // The target may be a register of a name that the right side reads: work in a fresh one.
   uint32_t mark = u->next;
-  uint32_t r = take(u, 1);
+  uint32_t r = take_registers(u, 1);
   compile_to(u, e->as.binary.left, r);
   bool is_and = e->kind == CAG_EXPR_AND;
   add_patch(u, &end,
@@ -537,7 +537,7 @@ static void compile_binary(Unit *u, const CagExpr *e, uint32_t target) {
     u->next = mark;
     return;
   }
-  uint32_t left = take(u, 1);
+  uint32_t left = take_registers(u, 1);
   compile_to(u, e->as.binary.left, left);
   uint32_t right = operand(u, e->as.binary.right);
   emit(u, e->span, op >= CAG_OP_EQUAL ? CAG_CODE_COMPARE : CAG_CODE_BINARY, left, right,
@@ -548,7 +548,7 @@ static void compile_binary(Unit *u, const CagExpr *e, uint32_t target) {
 
 static void compile_range(Unit *u, const CagExpr *e, uint32_t target) {
   uint32_t mark = u->next;
-  uint32_t first = take(u, 3);
+  uint32_t first = take_registers(u, 3);
   compile_to(u, e->as.range.low, first);
   compile_to(u, e->as.range.high, first + 1);
   if (e->as.range.step) compile_to(u, e->as.range.step, first + 2);
@@ -572,7 +572,7 @@ static void compile_lambda(Unit *u, const CagExpr *e, uint32_t target) {
 static void compile_template(Unit *u, const CagExpr *e, uint32_t target) {
   uint32_t mark = u->next;
   size_t n = e->as.list.count;
-  uint32_t first = take(u, (uint32_t)n);
+  uint32_t first = take_registers(u, (uint32_t)n);
   for (size_t i = 0; i < n; i++) compile_to(u, e->as.list.items[i], first + (uint32_t)i);
   emit(u, e->span, CAG_CODE_TEMPLATE, target, first, (uint32_t)n);
   u->next = mark;
@@ -653,7 +653,7 @@ static uint32_t compile_any(Unit *u, const CagExpr *e) {
     return compile_call(u, e, e->as.call.callee, NULL, e->as.call.arguments, e->as.call.count,
                         false);
   if (e->kind == CAG_EXPR_PIPE) return compile_pipe(u, e, false);
-  uint32_t r = take(u, 1);
+  uint32_t r = take_registers(u, 1);
   compile_to(u, e, r);
   return r;
 }
@@ -706,7 +706,7 @@ static bool is_literal(const CagExpr *e) {
 // Evaluates one part of a failed condition again, for the message: its text and its value.
 static uint32_t compile_part(Unit *u, const CagExpr *e) {
   if (is_literal(e) || e->kind == CAG_EXPR_LAMBDA) return 0;
-  uint32_t r = take(u, 2);
+  uint32_t r = take_registers(u, 2);
   const char *text = u->proto->source->text + e->span.start;
   CagValue v = cag_text_new(u->vm, text, e->span.end - e->span.start);
   emit_wide(u, e->span, CAG_CODE_CONSTANT, r, add_constant(u, v));
@@ -726,7 +726,7 @@ static void compile_assert_failure(Unit *u, const CagStatement *s, const CagExpr
     return;
   }
   uint32_t mark = u->next;
-  uint32_t message = take(u, 1);
+  uint32_t message = take_registers(u, 1);
   if (s->as.assertion.message) compile_to(u, s->as.assertion.message, message);
   else emit(u, s->span, CAG_CODE_NONE, message, 0, 0);
   uint32_t parts = 0;
@@ -776,7 +776,7 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
   p->required_count = f->required_count;
   p->parameters = cag_malloc((f->parameter_count ? f->parameter_count : 1) * sizeof *p->parameters);
   if (!p->parameters) cag_vm_out_of_memory(vm);
-  take(&u, (uint32_t)f->parameter_count);
+  take_registers(&u, (uint32_t)f->parameter_count);
   for (size_t i = 0; i < f->parameter_count; i++) {
     p->parameters[i] = f->parameters[i].decl->name;
     f->parameters[i].decl->index = i;
@@ -799,7 +799,7 @@ CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, 
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, free_scratch, &scratch);
   Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, name), .scratch = &scratch};
-  uint32_t r = take(&u, 1);
+  uint32_t r = take_registers(&u, 1);
   compile_to(&u, e, r);
   emit(&u, e->span, CAG_CODE_RETURN, r, 0, 0);
   cag_cleanup_run(&cleanup);
@@ -811,7 +811,7 @@ CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s)
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, free_scratch, &scratch);
   Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, NULL), .scratch = &scratch};
-  uint32_t r = take(&u, 1);
+  uint32_t r = take_registers(&u, 1);
   compile_assert(&u, s);
   emit_wide(&u, s->span, CAG_CODE_BOOL, r, 1);
   emit(&u, s->span, CAG_CODE_RETURN, r, 0, 0);

@@ -19,7 +19,7 @@ static size_t element_size(uint32_t dim) { return dim ? dim * sizeof(double) : s
 #define LARGE_PAGES_FROM ((size_t)8 << 20)
 #define SMALL_PAGE ((uintptr_t)4096)
 
-static void *take(size_t bytes) {
+static void *list_block(size_t bytes) {
   void *p = cag_malloc(bytes);
 #ifdef MADV_HUGEPAGE
   if (p && bytes >= LARGE_PAGES_FROM) {
@@ -41,7 +41,7 @@ static CagList *new_list(CagVm *vm, size_t n, uint32_t dim) {
     l->as.data = l + 1;
   } else {
     l = cag_alloc(vm, CAG_LIST, sizeof *l);
-    l->as.data = take(bytes);
+    l->as.data = list_block(bytes);
     if (!l->as.data) cag_vm_out_of_memory(vm);
     l->allocated = true;
   }
