@@ -240,11 +240,11 @@ const CagBuiltin cag_builtins_numbers[] = {
      "Returns the square root of the sum of the squares, without overflow of intermediate "
      "results.",
      "print hypot(3, 4), hypot(2, 3, 6) // expect: 5 7", 0, FAMILY},
-    {"min(x: number or angle, ...)", call_min, "number, angle or text",
+    {"min(x: number or angle or text, ...)", call_min, "number, angle or text",
      "Returns the smallest of several values or of the elements of a list. The values must be "
      "all numbers, all angles, or all texts.",
      "print min(3, 1, 2), min([30deg, 20deg]) // expect: 1 20deg", 0, FAMILY},
-    {"max(x: number or angle, ...)", call_max, "number, angle or text",
+    {"max(x: number or angle or text, ...)", call_max, "number, angle or text",
      "Returns the largest of several values or of the elements of a list. The values must be all "
      "numbers, all angles, or all texts.",
      "print max(3, 1, 2), max([\"b\", \"a\"]) // expect: 3 b", 0, FAMILY},

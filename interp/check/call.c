@@ -136,8 +136,9 @@ static const char *expected_text(const CagSignature *s, const Misfit *m, char *b
   const CagTypes taken = m->taken & ~CAG_TYPES(NONE);
   size_t count = 0;
   for (size_t i = 0; i < CAG_TYPE_COUNT; i++) count += taken >> i & 1;
-  if (count <= 5 || m->parameter >= s->count) return cag_types_text(taken, buffer, size);
-  const char *words = s->words[m->parameter];
+  const size_t parameter = m->parameter >= s->count && s->variadic ? 0 : m->parameter;
+  if (count <= 5 || parameter >= s->count) return cag_types_text(taken, buffer, size);
+  const char *words = s->words[parameter];
   snprintf(buffer, size, "%s %s", cag_article(words), words);
   return buffer;
 }

@@ -64,47 +64,15 @@ CagTypes cag_types_of_result(const char *result) {
 
 // --- Arguments ---
 
-// What rows take whose masks do not say it: functions whose required parameters are all of these
-// types.
-static const struct {
-  const char *function;
-  CagTypes types;
-} takers[] = {
-#define NUMERIC(name) {#name, NUMBERS},
-    NUMERIC(sqrt) NUMERIC(cbrt) NUMERIC(exp) NUMERIC(ln) NUMERIC(log10) NUMERIC(log2) NUMERIC(sinh)
-        NUMERIC(cosh) NUMERIC(tanh) NUMERIC(asinh) NUMERIC(acosh) NUMERIC(atanh) NUMERIC(floor)
-            NUMERIC(ceil) NUMERIC(hypot) NUMERIC(asin) NUMERIC(acos) NUMERIC(atan) NUMERIC(atan2)
-#undef NUMERIC
-                {"sin", CAG_TYPES(ANGLE)},
-    {"cos", CAG_TYPES(ANGLE)},
-    {"tan", CAG_TYPES(ANGLE)},
-    {"in_degrees", CAG_TYPES(ANGLE)},
-    {"in_radians", CAG_TYPES(ANGLE)},
-    {"norm", LISTS},
-    {"unit", LISTS},
-    {"cross", LISTS},
-    {"dot", LISTS},
-    {"sum", LISTS},
-    {"upper", CAG_TYPES(TEXT)},
-    {"lower", CAG_TYPES(TEXT)},
-    {"starts_with", CAG_TYPES(TEXT)},
-    {"read_csv", CAG_TYPES(TEXT)},
-    {"read_json", CAG_TYPES(TEXT)},
-    {"read_text", CAG_TYPES(TEXT)},
-    {"read_mesh", CAG_TYPES(TEXT)},
-    {"roots", LISTS},
-    {"complex_roots", LISTS},
-};
-
 CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t parameter) {
   if (parameter == 0 && row->first) return row->first;
-  if (!row->first && (parameter < s->required || s->variadic))
-    for (size_t i = 0; i < sizeof takers / sizeof *takers; i++)
-      if (strcmp(takers[i].function, s->name) == 0) return takers[i].types;
+  if (s->variadic && parameter >= s->count) parameter = 0; // further ones are as the first
   if (parameter >= s->count) return CAG_TYPES_ANY;
-  if (s->variadic) return CAG_TYPES_ANY; // several values, or a list of them
   const CagTypes accepted = cag_signature_types(s)->items[parameter].accepts;
-  return accepted ? accepted : CAG_TYPES_ANY;
+  if (!accepted) return CAG_TYPES_ANY;
+  // Instead of several values, one list of them may be given.
+  if (s->variadic) return accepted | LISTS;
+  return parameter < s->required ? accepted & ~CAG_TYPES(NONE) : accepted;
 }
 
 // --- Operators ---
