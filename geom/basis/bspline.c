@@ -142,10 +142,10 @@ static void raise_discrete(const double *x, int p, int q, double u, double *w) {
 }
 
 // The weights of points span - p .. span in the point whose elevated knots are z[0] .. z[p + 2].
-// That point is the mean over l of the blossoms at z[1] .. z[p + 1] without z[l] (reference 05b,
-// BS-46). Each of them is a point of the curve over refined knots, so that its weights are discrete
-// B-splines, which are not negative (Cohen, Lyche, Riesenfeld 1980). `all` leaves out no knot yet,
-// `sum` adds up what leaves out one.
+// That point is the mean over l of the blossoms at z[1] .. z[p + 1] without z[l] (Ramshaw 1989,
+// Blossoms are polar forms). Each of them is a point of the curve over refined knots, so that its
+// weights are discrete B-splines, which are not negative (Cohen, Lyche, Riesenfeld 1980). `all`
+// leaves out no knot yet, `sum` adds up what leaves out one.
 static void elevated_weights(const double *x, int p, const double *z, double *all, double *sum) {
   memset(all, 0, sizeof(double) * (size_t)(p + 1));
   memset(sum, 0, sizeof(double) * (size_t)(p + 1));

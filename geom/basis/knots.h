@@ -12,11 +12,12 @@
 #include "base/status.h"
 #include "geom/linalg/vec.h"
 
-// 0, .., 0, 1, 2, .., m, .., m with m = n - p (reference 05b, 1.6).
+// 0, .., 0, 1, 2, .., m, .., m with m = n - p.
 void cag_knots_open(size_t n, int p, double *knots);
 // 0, 1, 2, ..
 void cag_knots_periodic(size_t n, int p, double *knots);
-// Clamped, inner knots by the length walked along the polygon (reference 05b, 1.6).
+// Clamped, inner knots by the length along the polygon (Hartley and Judd 1978, Parametrization of
+// Bezier-type B-spline curves and surfaces).
 void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots);
 
 // Fails with "order-range", "not-finite", "knots-not-monotone", "knot-multiplicity", "empty-range".
@@ -29,7 +30,8 @@ CagStatus cag_degree_check(size_t n, int p, CagError *err);
 size_t cag_knots_span(const double *knots, size_t n, int p, double t, bool left, size_t hint);
 // How often t occurs.
 int cag_knots_multiplicity(const double *knots, size_t n, int p, double t);
-// "uniform", "open-uniform", "open-nonuniform", "nonuniform" (reference 05b, 1.6).
+// "uniform", "open-uniform", "open-nonuniform", "nonuniform" (Rogers 2001, An
+// Introduction to NURBS, section 3.3).
 const char *cag_knots_class(const double *knots, size_t n, int p);
 
 #endif

@@ -170,7 +170,8 @@ static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int
   return CAG_OK;
 }
 
-// Pieces of at most a quarter turn, knots 0, 0, 0, 1, 1, 2, 2, .. (reference 05b, 6.3).
+// Pieces of at most a quarter turn, knots 0, 0, 0, 1, 1, 2, 2, .. (Piegl and Tiller 1997,
+// section 7.5).
 static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Arc *c = (const Arc *)curve;
   const double from = c->phase + c->rate * curve->start,

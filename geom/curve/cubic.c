@@ -108,7 +108,7 @@ static CagVec3 slope(const Spline *s, size_t i) {
 }
 
 // Weights of the tangents before and after inner point i (their sum is 1), the diagonal, and the
-// right side: the reference's row divided by the two lengths' sum.
+// right side: the equation of the spline divided by the sum of the two lengths.
 static void inner_row(const Spline *s, size_t i, double *before, double *diagonal, double *after,
                       CagVec3 *right) {
   const double h = s->u[i] - s->u[i - 1], g = s->u[i + 1] - s->u[i], sum = h + g;

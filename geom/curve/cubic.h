@@ -40,7 +40,7 @@ typedef struct CagCubicEnds {
 } CagCubicEnds;
 
 // Tangents in all n points of the cubic spline with continuous second derivative that passes them
-// at these parameters (reference 05a, 4): one tridiagonal system, solved in O(n).
+// at these parameters: one tridiagonal system, solved in O(n) (de Boor 1978, chapter IV).
 //
 //   tension  NULL, or n - 2 numbers nu >= 0 of the inner points: the nu-spline, whose P'' jumps by
 //            nu P' there ("bad-tension")
@@ -69,7 +69,8 @@ CagStatus cag_curve_polynomial(const CagVec3 *coefficients, size_t n, double len
 CagStatus cag_curve_coefficients(const CagCurve *c, CagVec3 **out, size_t *pieces, int *degree,
                                  CagError *err);
 
-// The shape of a plane cubic segment with end tangents at unit length (reference 05a, 3).
+// The shape of a plane cubic segment with end tangents over 0..1 (Stone and DeRose 1989, A
+// geometric characterization of parametric cubic curves).
 typedef struct CagHermiteShape {
   double chord;
   double speed[2], ratio[2], projection[2]; // of the tangents: length, in chords, along the chord
@@ -83,12 +84,12 @@ CagStatus cag_hermite_shape(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, CagHer
                             CagError *err);
 // Lengths k0, k1 of the end tangents along the unit vectors dp, dq for which the plane segment has
 // these signed curvatures at its ends: up to four pairs of positive lengths, ascending; returns
-// their number (reference 05a, 7).
+// their number (de Boor, Hollig, and Sabin 1987, High accuracy geometric Hermite interpolation).
 size_t cag_hermite_by_curvature(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, const double k[2],
                                 double out[4][2]);
 
-// Parabolic blends (reference 05a, 5): segment i lies between points i and i + 1 and blends the
-// parabolas through points i - 1, i, i + 1 and i, i + 1, i + 2.
+// Parabolic blends (Overhauser 1968; Brewer and Anderson 1977): segment i lies between points i and
+// i + 1 and blends the parabolas through points i - 1, i, i + 1 and i, i + 1, i + 2.
 typedef enum CagBlendEnds { CAG_BLEND_OPEN, CAG_BLEND_PARABOLA, CAG_BLEND_CLOSED } CagBlendEnds;
 
 //   ratios   where each parabola passes its middle point, in (0, 1): n - 2 numbers for the inner

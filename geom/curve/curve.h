@@ -95,7 +95,7 @@ CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, s
 CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err);
 
 // Knot vectors of n control points: "open" uniform integer 0,0,..,1,..,m,m; "periodic" 0,1,2,...;
-// "chord" by the points (reference 05b, 1.6).
+// "chord" by the points (Hartley and Judd 1978).
 CagStatus cag_knots_make(const char *type, size_t n, int degree, const CagVec3 *points,
                          double *knots, CagError *err);
 

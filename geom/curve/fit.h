@@ -1,4 +1,4 @@
-// B-splines from data points: interpolation and least squares (reference 05b, 4).
+// B-splines from data points: interpolation and least squares (Piegl and Tiller 1997, chapter 9).
 //
 // Both systems are banded since over one span only degree + 1 basis functions act: interpolation
 // is solved by LAPACK's banded elimination with pivoting, least squares by Givens rotations of one

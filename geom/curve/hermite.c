@@ -133,7 +133,7 @@ CagStatus cag_hermite_shape(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, CagHer
     s.projection[i] = cag_dot(tangents[i], d) / (s.chord * s.chord);
   }
   s.within_limit = s.ratio[0] <= 3 && s.ratio[1] <= 3;
-  // Inflections are the roots of 3 A t^2 + 3 B t + C (reference 05a, 3).
+  // Inflections, where P' x P'' = 0, are the roots of 3 A t^2 + 3 B t + C.
   const CagVec3 a1 = dp, a2 = cag_sub(cag_sub(cag_scaled(d, 3), cag_scaled(dp, 2)), dq);
   const CagVec3 a3 = cag_add(cag_add(dp, dq), cag_scaled(d, -2));
   const double a = cross_or_zero(a2, a3), b = cross_or_zero(a1, a3), c = cross_or_zero(a1, a2);

@@ -1,5 +1,5 @@
-// B-spline surfaces from grids of points (reference 06b, 4): interpolation by two banded solutions,
-// least squares in rounds of solving for the net and moving the parameters.
+// B-spline surfaces from grids of points (Piegl and Tiller 1997, chapter 9): interpolation by two
+// banded solutions, least squares in rounds of solving for the net and moving the parameters.
 
 #include <math.h>
 #include <string.h>

@@ -263,7 +263,8 @@ static void put(double *net, size_t row, size_t i, size_t j, CagVec3 p) {
   h[3] = 1;
 }
 
-// The 16 Bezier points of a patch (reference 06b, 2.6) at (i0, j0) of a net with rows of `row`.
+// The 16 Bezier points of a patch, from its corner points, derivatives, and twists, at (i0, j0) of
+// a net with rows of `row`.
 static void put_patch(double *net, size_t row, size_t i0, size_t j0, const CagHermiteCorners *c,
                       double du, double dv) {
   for (size_t i = 0; i < 2; i++)

@@ -29,17 +29,16 @@ typedef enum CagQuadricClass {
   CAG_QUADRIC_PARALLEL_PLANES,
   CAG_QUADRIC_IMAGINARY_PARALLEL_PLANES,
   CAG_QUADRIC_COINCIDENT_PLANES,
-  // Equations without terms of second degree, which the reference lists below its 17 classes.
+  // Equations without terms of second degree, which are not among the 17 classes.
   CAG_QUADRIC_PLANE,
   CAG_QUADRIC_EMPTY
 } CagQuadricClass;
 
 typedef struct CagQuadricForm {
   CagQuadricClass class_id;
-  const char *name;   // as the reference's table names it (06a, 6.4)
+  const char *name;   // of the class (Beyer 1987, CRC Standard Mathematical Tables, quadrics)
   CagTransform frame; // canonical frame: rigid, right-handed; canonical coordinates -> world
-  double semi[3]; // semi-axes a, b, c (or the focal parameters of paraboloids) as in the reference;
-                  // 0 where there is none
+  double semi[3];     // semi-axes a, b, c (or the focal parameters of paraboloids); 0: none
   bool has_center;
   CagVec3 center;
   int rank3, rank4; // of the 3x3 and the 4x4 matrix
