@@ -10,7 +10,7 @@
 #include "geom/curve/curve.h"
 
 // A derivative counts as 0 when its Taylor term over the whole domain is this part of the size of
-// the curve (reference 02-04, 3.2).
+// the curve.
 #define VANISHES 1e-12
 // Speeds this small beside the acceleration are looked at closely.
 #define SUSPECT 1e-6

@@ -1,6 +1,6 @@
 // Elements of curve theory beyond the frame at one parameter: frames from derivatives, changes of
 // the parameter, contact with planes, and the points of a curve where curvature, torsion or speed
-// are 0 (reference 02-04, section 3).
+// are 0 (do Carmo 1976, section 1-5).
 
 #ifndef CAG_GEOM_CURVE_FRENET_H
 #define CAG_GEOM_CURVE_FRENET_H

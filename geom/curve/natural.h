@@ -15,7 +15,7 @@ typedef struct CagNaturalEquations {
 } CagNaturalEquations;
 
 // The curve with these equations over [0, length], its parameter the arc length, that starts at the
-// origin of the frame along its x axis, bending towards its y axis (reference 02-04, 3.4).
+// origin of the frame along its x axis, bending toward its y axis (do Carmo 1976, section 1-5).
 // Dimension 2: a plane curve, whose curvature may be negative; torsion is not asked for. Points are
 // accurate to 1e-12 of the length as far as the equations are smooth; they may jump.
 //

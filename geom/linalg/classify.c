@@ -6,10 +6,9 @@
 
 #include "geom/linalg/transform.h"
 
-// Orthogonality and rank are judged to this part of the entries (reference 02, 2.13).
+// Orthogonality and rank are tested to this fraction of the entries.
 #define CLASS_TOLERANCE 1e-9
 // Points count as on one line or plane when the determinant is this small beside its rows
-// (reference 02, 2.1).
 #define FLAT 1e-12
 
 // --- Class ---

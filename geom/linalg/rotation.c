@@ -8,7 +8,7 @@
 #include "geom/linalg/transform.h"
 
 // Cosine (or sine) of the middle angle under which the outer two turn about the same line
-// (reference 07, 7.8).
+// (Shuster 1993, A survey of attitude representations).
 #define GIMBAL 1e-10
 // Deviation from a rigid motion that the rounding of a chain of products leaves.
 #define RIGID 1e-9

@@ -322,8 +322,7 @@ CagStatus cag_reflect(CagVec3 normal, CagVec3 through, CagTransform *out, CagErr
   return CAG_OK;
 }
 
-// The matrix [[u^2 - v^2, 2uv], [2uv, v^2 - u^2]] of the line's direction (u, v) (reference 02,
-// 2.9).
+// The matrix [[u^2 - v^2, 2uv], [2uv, v^2 - u^2]] of the line's direction (u, v).
 CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out, CagError *err) {
   CagStatus status = finite_vec(p, "P", err);
   if (!status) status = finite_vec(q, "Q", err);

@@ -1,5 +1,5 @@
-// Two NURBS curves with one knot vector (reference 06b, 7.5): both are clamped over 0..1, the lower
-// degree is raised, and each gets the knots it lacks. The shapes do not change.
+// Two NURBS curves with one knot vector (Piegl and Tiller 1997, section 8.1): both are clamped over
+// 0..1, the lower degree is raised, and each gets the knots it lacks. The shapes do not change.
 
 #include "geom/surface/compatible.h"
 

@@ -1,4 +1,4 @@
-// Corners and edges of surfaces changed by their control points (reference 06b, 2.5 to 2.7).
+// Corners and edges of surfaces changed by their control points.
 //
 // All is done on homogeneous points. A join in homogeneous coordinates, with equal points and
 // weights on the edge and N_across = ratio M_across + shear M_along of the homogeneous derivatives,

@@ -1,4 +1,4 @@
-// A fit to a grid of points that holds a coordinate (reference 06b, 4): the control points keep
+// A fit to a grid of points that holds a coordinate: the control points keep
 // theirs, those of given planes or those of a first fit, and the parameters of the data move to
 // where the surface has the data's. Least squares for the others then leaves the match alone.
 //

@@ -1,4 +1,5 @@
-// Lofts: compatible sections, interpolated across by a spline (reference 06b, 4 and 7.5).
+// Lofts: compatible sections, interpolated across by a spline (Piegl and Tiller 1997, section
+// 10.3).
 //
 // Control points are interpolated in homogeneous coordinates, so that every section is met exactly
 // with its weights.

@@ -23,7 +23,7 @@ CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, 
 
 // Parameters of grid data, over the usable range of the knots.
 typedef enum CagGridSpacing {
-  CAG_GRID_CHORD,  // of fits: by chord length along every row and column on its own (06b, 4)
+  CAG_GRID_CHORD,  // of fits: by chord length along every row and column on its own
   CAG_GRID_MEAN,   // the mean of these over all rows, and over all columns
   CAG_GRID_UNIFORM // even
 } CagGridSpacing;

@@ -1,4 +1,4 @@
-// Boehm's knot insertion, degree elevation by Bezier pieces (reference 06b, 5 and 7.3) and banded
+// Boehm's knot insertion (1980), degree elevation by Bezier pieces (Prautzsch 1984), and banded
 // interpolation for coefficients of any width.
 
 #include "geom/surface/net.h"

@@ -107,7 +107,7 @@ static void basis_derivatives(const Direction *d, size_t span, double t, int n, 
 
 // --- One point ---
 
-// Quotient rule for all partials of total order <= n of A / w (reference 06b, 7.2).
+// Quotient rule for all partials of total order <= n of A / w (Piegl and Tiller 1997, section 4.5).
 static CagStatus divide(int n, const double (*h)[4], CagVec3 *out, CagError *err) {
   double w = h[0][3];
   if (!(w > 0))

@@ -1,5 +1,5 @@
-// Patches between given edges and corners: Coons and Hermite (reference 06a, 6.9 and 6.10; 05a, 8
-// and 9).
+// Patches between given edges and corners: Coons and Hermite (Coons 1967; Faux and Pratt
+// 1979, chapter 7).
 
 #ifndef CAG_GEOM_PATCHES_H
 #define CAG_GEOM_PATCHES_H

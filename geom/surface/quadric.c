@@ -3,8 +3,9 @@
 // The symmetric 3x3 matrix of the second-degree terms is diagonalized by Jacobi rotations; in the
 // eigenbasis the square is completed for every eigenvalue that is not zero, and what remains (a
 // constant k1, a linear term of length g along the directions of zero eigenvalues) decides the
-// class (reference 06a, 6.4). Before that, lengths are measured in units of the quadric's own size,
-// so that the decisions do not depend on the unit of the drawing.
+// class (Beyer 1987, CRC Standard Mathematical Tables, quadrics). Before that, lengths are measured
+// in units of the quadric's own size, so that the decisions do not depend on the unit of the
+// drawing.
 
 // Where the coefficients are integers of a moderate size, ranks and the constant are found by exact
 // integers instead: a determinant is then 0 or it is not.

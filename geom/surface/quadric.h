@@ -92,7 +92,7 @@ CagStatus cag_surface_quadric_turn(const CagSurface *s, CagSurface **out, CagErr
 // surface of kind "quadric". Returns their number, which is 0 for another kind.
 size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);
 
-// The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units
+// The parametric forms of real quadrics, each in units
 // of its semi-axes: they are the lengths of the frame's columns.
 typedef enum CagQuadricShape {
   CAG_SHAPE_ELLIPSOID,             // [cos u sin v, sin u sin v, cos v]

@@ -1,4 +1,4 @@
-// Knot vectors and B-spline bases as data (reference 05b, sections 1 and 5).
+// Knot vectors and B-spline bases as data.
 
 #include <limits.h>
 #include <string.h>

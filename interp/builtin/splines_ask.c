@@ -28,7 +28,7 @@ static CagValue matrix_value(CagVm *vm, const double *m, size_t n) {
 }
 
 // C(i, j) = binomial(n - j, n - i - j) (-1)^(n - i - j), D = diag(binomial(n, j)), N = C D
-// (reference 05a, 6).
+// (Rogers and Adams 1990, section 5-8).
 static void bezier_matrix(int n, double *product, double *c, double *d) {
   for (int i = 0; i <= n; i++)
     for (int j = 0; j <= n; j++) {
@@ -41,7 +41,8 @@ static void bezier_matrix(int n, double *product, double *c, double *d) {
     }
 }
 
-// One span of a uniform B-spline (reference 05b, 2.7).
+// One span of a uniform B-spline (Qin 1998, General matrix
+// representations for B-splines).
 static void bspline_matrix(int p, double *out) {
   const int k = p + 1;
   double factorial = 1;
