@@ -36,10 +36,13 @@ static CagStatus open_spline(CagNet *net, CagError *err) {
   return status;
 }
 
+// Of a closed loft.
+#define DEGREE_MOST 31
+
 // With uniform periodic knots the system is circulant: row j has the basis at a knot, shifted.
 static CagStatus solve_circulant(CagNet *net, CagError *err) {
   size_t n = net->count, p = (size_t)net->degree, width = net->width;
-  double knots[64], basis[32];
+  double knots[2 * DEGREE_MOST + 2], basis[DEGREE_MOST + 1];
   for (size_t i = 0; i < 2 * p + 2; i++) knots[i] = (double)i;
   cag_bspline_basis(knots, net->degree, p, (double)p, basis);
   double *a = cag_calloc(n * n, sizeof *a);
@@ -62,6 +65,9 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
 }
 
 static CagStatus check_closed(int degree, size_t n, CagError *err) {
+  if (degree > DEGREE_MOST)
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
+                    "`degree` of a closed loft must be at most %d, it is %d", DEGREE_MOST, degree);
   if (degree % 2 == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "`degree` of a closed loft must be odd, it is %d: take %d", degree, degree + 1);

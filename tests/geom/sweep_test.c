@@ -372,6 +372,9 @@ static void lofts_unify_their_sections(void **state) {
   assert_consistent(s);
   cag_surface_release(s);
   MUST_FAIL(cag_surface_loft((const CagCurve *const *)c, 3, 2, true, &s, err), "order-range");
+  const CagCurve *many[40];
+  for (int i = 0; i < 40; i++) many[i] = c[i % 3];
+  MUST_FAIL(cag_surface_loft(many, 40, 33, true, &s, err), "order-range");
   for (int i = 0; i < 3; i++) cag_curve_release(c[i]);
   CagCurve *ring[6];
   for (int i = 0; i < 6; i++) {
