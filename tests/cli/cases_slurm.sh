@@ -167,7 +167,7 @@ kill -TERM $child
 wait $child
 code=$?
 status 130
-says 'takes it up again'
+says 'run the same command to resume'
 runs_job || wrong 'the job does not go on'
 touch go
 try batch wait.csv --engine-queue slurm

@@ -694,7 +694,7 @@ static void scenes_and_primitives_are_checked(void **state) {
       {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "names node 0.5"},
       {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "names node -1"},
       {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "names node -1"},
-      {TWO ",\"scenes\":[{\"nodes\":[0,0]}]", 0, "mesh-file-syntax", "nodes[0] stands twice"},
+      {TWO ",\"scenes\":[{\"nodes\":[0,0]}]", 0, "mesh-file-syntax", "nodes[0] occurs twice"},
       {"\"nodes\":[{\"children\":[2]},{\"children\":[0]},{\"mesh\":0}]," MESH, 1, NULL, NULL},
       {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index", "names node 5"},
       {"\"nodes\":[{\"mesh\":1}]," MESH, 0, "mesh-file-index", "nodes[0] refers to a mesh"},
