@@ -598,12 +598,12 @@ const CagBuiltin cag_builtins_lists[] = {
      "print len([3, 4]), len(0..10), len(\"θ = 1\"), len({a: 1}) // expect: 2 11 5 1", 0, FAMILY},
     {"sum(xs: list of numbers or list of angles or list of vectors)", call_sum,
      "number, angle or list",
-     "Returns the sum of numbers, angles, or vectors; 0 if there are no elements. Rounding "
+     "Returns the sum of numbers, angles, or vectors. The sum of an empty list is 0. Rounding "
      "errors do not accumulate.",
      "print sum(1..100), sum([30deg, 60deg]), sum([X, Y]) // expect: 5050 90deg [1, 1, 0]", 0,
      FAMILY},
     {"product(xs: list of numbers)", call_product, "number",
-     "Returns the product of numbers; 1 if there are no elements.",
+     "Returns the product of numbers. The product of an empty list is 1.",
      "print product(1..5) // expect: 120", 0, FAMILY},
     {"map(xs: list or range or text, f: function x => value)", call_map, "list",
      "Returns the list of f(x) for each element x.",
@@ -613,7 +613,8 @@ const CagBuiltin cag_builtins_lists[] = {
      "print filter(1..6, x => x % 2 == 0) // expect: [2, 4, 6]", 0, FAMILY},
     {"reduce(xs: list or range or text, start: any value, f: function (acc, x) => value)",
      call_reduce, "any",
-     "Returns f(... f(f(start, x0), x1) ..., xn), or start if there are no elements.",
+     "Combines the elements, from first to last, into one value: f(start, first), then f of that "
+     "result and the second element, and so on. The result for an empty list is start.",
      "print reduce(1..4, 1, (acc, x) => acc * x) // expect: 24", 0, FAMILY},
     {"scan(xs: list or range or text, start: any value, f: function (acc, x) => value)", call_scan,
      "list",

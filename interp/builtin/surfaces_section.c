@@ -468,10 +468,11 @@ const CagBuiltin cag_builtins_sections[] = {
      "of: \"gaussian\" or \"mean\" or \"max\" or \"min\" = \"gaussian\", tolerance: length = none)",
      call_curvature_contours, "list",
      "Returns the lines of constant curvature on surfaces, or on the faces of solids: for each "
-     "level, a record of `level`, `curves` (as exact as for `section`), and `everywhere`, which "
-     "is true if the entire surface has this curvature and there are no lines. `levels` is a "
-     "number or a list, signed with respect to the normal: in 1/mm for the \"mean\", \"max\", or "
-     "\"min\" curvature, and in 1/mm2 for the \"gaussian\" curvature. At a knot where the curvature "
+     "level, a record of `level`, `curves` (as exact as for `section`), and `everywhere`. If the "
+     "curvature is equal to the level everywhere on the surface, `everywhere` is true and "
+     "`curves` is empty. `levels` is a number or a list, signed with respect to the normal: in "
+     "1/mm for the \"mean\", \"max\", or \"min\" curvature, and in 1/mm2 for the \"gaussian\" "
+     "curvature. At a knot where the curvature "
      "jumps, each side has its own lines. Lines along which a level is only touched may be "
      "missing.",
      "c = curvature_contours(torus_surface(5, 2), [0, 1 / 20])\n"

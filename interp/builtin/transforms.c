@@ -201,8 +201,8 @@ const CagBuiltin cag_builtins_transforms[] = {
      "is true and yaw is 0deg.",
      "print near(rpy_of(rotate(X, 20deg)).roll, 20deg) // expect: true", OF_TRANSFORM, family},
     {"axis_angle_of(T: transform)", cag_transforms_axis_angle_of, "record",
-     "Returns the axis and the angle (0deg..180deg) of T's rotation. `singular` is true if there "
-     "is no rotation.",
+     "Returns the axis and the angle (0deg..180deg) of T's rotation. `singular` is true if T does "
+     "not rotate.",
      "print near(axis_angle_of(rotate(Y, 40deg)).angle, 40deg) // expect: true", OF_TRANSFORM,
      family},
     {"quaternion_of(T: transform)", cag_transforms_quaternion_of, "list",

@@ -1,8 +1,8 @@
-// The end of work that takes too long, or that somebody asked to end.
+// Stops work that takes too long or that the caller interrupts.
 //
-// While work runs, a thread of its own looks at the clock and at the caller's interrupt, and sets
-// one flag for both. Everything that runs for long looks at this flag: the machine's loop, the
-// geometry core (base/stop.h), writers of files, and who waits for a renderer.
+// While work runs, a separate thread checks the clock and the caller's interrupt flag, and sets one
+// stop flag for both. Everything that can run for long checks the stop flag: the machine's loop,
+// the geometry core (base/stop.h), the writers of files, and the code that waits for a renderer.
 
 #ifndef CAG_INTERP_SESSION_WATCH_H
 #define CAG_INTERP_SESSION_WATCH_H
@@ -13,11 +13,11 @@
 typedef struct CagWatch {
   volatile int *stop;            // the flag
   const volatile int *interrupt; // may be NULL
-  double seconds;                // that the work may take; 0: as long as it likes
-  // Called once, on the thread of the watch, when work goes on long after its time; may be NULL.
+  double seconds;                // the time limit; 0: no limit
+  // Called once, on the watch's thread, if work continues long after its limit; may be NULL.
   void (*overdue)(void *context);
   void *context;
-  // Kept by the watch itself.
+  // Private to the watch.
   pthread_t thread;
   pthread_mutex_t mutex;
   pthread_cond_t done;
@@ -25,10 +25,10 @@ typedef struct CagWatch {
   bool started, finished;
 } CagWatch;
 
-// Clears the flag and begins to watch; `w` holds what is asked for. Where the system gives no
-// thread, nothing ends the work early.
+// Clears the stop flag and starts the watch described by `w`. If no thread can be created, nothing
+// stops the work early.
 void cag_watch_begin(CagWatch *w);
-// Gives the seconds that the work took.
+// Ends the watch, and returns the seconds that the work took.
 double cag_watch_end(CagWatch *w);
 
 #endif
