@@ -45,20 +45,6 @@ static void write_plane(CagPovWriter *w, const CagQuadric *q, int depth) {
   cag_pov_text(w, "\n}");
 }
 
-// In the order x^2 y^2 z^2, xy xz yz, x y z, 1; negative inside, as here.
-static void write_form(CagPovWriter *w, const CagQuadric *q) {
-  const double *c = q->c;
-  cag_pov_text(w, "quadric {\n  ");
-  cag_pov_vec(w, cag_vec3(c[0], c[1], c[2]));
-  cag_pov_text(w, ", ");
-  cag_pov_vec(w, cag_vec3(c[3], c[5], c[4]));
-  cag_pov_text(w, ", ");
-  cag_pov_vec(w, cag_vec3(c[6], c[7], c[8]));
-  cag_pov_text(w, ", ");
-  cag_pov_number(w, c[9]);
-  cag_pov_text(w, "\n}");
-}
-
 // Objects that are bodies to the renderer: clipped quadrics and flat pieces are none.
 static bool try_leaf(CagPovWriter *w, const CagSolid *s) {
   const CagSurface *const *faces = (const CagSurface *const *)s->faces;
@@ -98,8 +84,12 @@ static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
     return;
   }
   if (cag_solid_form(s, &q)) {
-    if (s->kind == CAG_SOLID_HALF_SPACE) write_plane(w, &q, depth);
-    else write_form(w, &q);
+    if (s->kind == CAG_SOLID_HALF_SPACE) {
+      write_plane(w, &q, depth);
+    } else {
+      cag_pov_equation(w, q.c);
+      cag_pov_text(w, "}");
+    }
     return;
   }
   if (depth > 0) {

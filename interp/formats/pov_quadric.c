@@ -109,19 +109,6 @@ static void write_cut(CagPovWriter *w, const Cut *c) {
   cag_pov_text(w, "    }\n  }\n  bounded_by { clipped_by }\n");
 }
 
-// POV-Ray's order is x^2 y^2 z^2, xy xz yz, x y z, 1.
-static void write_equation(CagPovWriter *w, const double q[10]) {
-  cag_pov_text(w, "quadric {\n  ");
-  cag_pov_vec(w, cag_vec3(q[0], q[1], q[2]));
-  cag_pov_text(w, ", ");
-  cag_pov_vec(w, cag_vec3(q[3], q[5], q[4]));
-  cag_pov_text(w, ", ");
-  cag_pov_vec(w, cag_vec3(q[6], q[7], q[8]));
-  cag_pov_text(w, ", ");
-  cag_pov_number(w, q[9]);
-  cag_pov_text(w, "\n");
-}
-
 static bool common_equation(const CagSurface *const *s, size_t n, CagQuadric *q) {
   if (n == 0 || !cag_surface_quadric_view(s[0], q)) return false;
   for (size_t i = 1; i < n; i++) {
@@ -143,7 +130,7 @@ bool cag_pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n) 
   if (!find_cut(s, n, &form.frame, &cut) && !find_cut(s, n, &own, &cut) &&
       !find_cut(s, n, &world, &cut))
     return false;
-  write_equation(w, q.c);
+  cag_pov_equation(w, q.c);
   if (cuts_anything(&cut)) write_cut(w, &cut);
   cag_pov_text(w, "}");
   return true;

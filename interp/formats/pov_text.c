@@ -63,6 +63,18 @@ void cag_pov_length(CagPovWriter *w, double x) {
   cag_pov_number(w, x);
 }
 
+void cag_pov_equation(CagPovWriter *w, const double q[10]) {
+  cag_pov_text(w, "quadric {\n  ");
+  cag_pov_vec(w, cag_vec3(q[0], q[1], q[2]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(q[3], q[5], q[4]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(q[6], q[7], q[8]));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, q[9]);
+  cag_pov_text(w, "\n");
+}
+
 void cag_pov_vec2(CagPovWriter *w, double x, double y) {
   list_of_numbers(w, (const double[]){x, y}, 2);
 }

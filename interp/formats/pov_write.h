@@ -43,6 +43,9 @@ void cag_pov_length(CagPovWriter *w, double x);     // likewise
 void cag_pov_vec2(CagPovWriter *w, double x, double y);
 void cag_pov_color(CagPovWriter *w, CagColor c); // rgb <r, g, b>, rounded to 5 places
 double cag_pov_round(double x, double unit);     // to a multiple of unit, for readable numbers
+// Begins `quadric { ... }` with the ten coefficients; the caller closes it. POV-Ray orders the terms
+// x^2 y^2 z^2, xy xz yz, x y z, 1, and the values inside are negative, as in CagQuadric.
+void cag_pov_equation(CagPovWriter *w, const double q[10]);
 // One line of comment: line breaks and control characters of `text` become spaces.
 void cag_pov_comment(CagPovWriter *w, const char *indent, const char *text);
 // "  matrix <...>", or `translate` where that is all; nothing for the identity.
