@@ -336,10 +336,12 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
   } while (0)
 #define NUMBERS(x, y) ((x).type == CAG_NUMBER && (y).type == CAG_NUMBER)
 #define FINITE(x) (fabs(x) <= DBL_MAX)
-#define ARITHMETIC(op, expression)                                                                 \
+// `second` is the register or the constant of the second operand; `numbers` tells whether *x and *y
+// are both numbers.
+#define ARITHMETIC_OF(op, second, numbers, expression)                                             \
   do {                                                                                             \
-    CagValue *x = &R(i.b), *y = &R(i.c);                                                           \
-    if (NUMBERS(*x, *y)) {                                                                         \
+    CagValue *x = &R(i.b), *y = &second;                                                           \
+    if (numbers) {                                                                                 \
       double r = (expression);                                                                     \
       if (FINITE(r)) {                                                                             \
         R(i.a) = cag_number(r);                                                                    \
@@ -349,19 +351,8 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
     TRY(cag_arithmetic(vm, op, *x, *y, &R(i.a)));                                                  \
     NEXT_INSTRUCTION;                                                                              \
   } while (0)
-#define ARITHMETIC_K(op, expression)                                                               \
-  do {                                                                                             \
-    CagValue *x = &R(i.b), *y = &K(i.c);                                                           \
-    if (x->type == CAG_NUMBER) {                                                                   \
-      double r = (expression);                                                                     \
-      if (FINITE(r)) {                                                                             \
-        R(i.a) = cag_number(r);                                                                    \
-        NEXT_INSTRUCTION;                                                                          \
-      }                                                                                            \
-    }                                                                                              \
-    TRY(cag_arithmetic(vm, op, *x, *y, &R(i.a)));                                                  \
-    NEXT_INSTRUCTION;                                                                              \
-  } while (0)
+#define ARITHMETIC(op, expression) ARITHMETIC_OF(op, R(i.c), NUMBERS(*x, *y), expression)
+#define ARITHMETIC_K(op, expression) ARITHMETIC_OF(op, K(i.c), x->type == CAG_NUMBER, expression)
 // The comparison holds: skip the jump that follows; else take it.
 #define BRANCH(holds)                                                                              \
   do {                                                                                             \
