@@ -17,6 +17,12 @@
 #define CAG_RESERVE(items, capacity, count)                                                        \
   cag_array_reserve(&(items), &(capacity), (count), sizeof *(items))
 
+// Allocates exactly `count` items, for arrays that share a capacity or that never grow item by item.
+// Returns false if memory ran out; the array is then as it was.
+#define CAG_RESIZE(items, count) cag_array_resize(&(items), (count), sizeof *(items))
+
+bool cag_array_resize(void *items, size_t count, size_t size);
+
 // Called by cag_array_reserve if the capacity is too small.
 bool cag_array_grow(void *items, size_t *capacity, size_t count, size_t size);
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 #define DEGREE 16
@@ -91,13 +92,7 @@ static double clenshaw(const double *c, double x) {
 
 static CagStatus add_piece(CagChebyshev *c, double a, double b, const double *values,
                            CagError *err) {
-  if (c->count == c->room) {
-    size_t room = c->room ? 2 * c->room : 8;
-    Piece *grown = cag_realloc(c->pieces, room * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    c->pieces = grown;
-    c->room = room;
-  }
+  if (!CAG_RESERVE(c->pieces, c->room, c->count + 1)) return cag_fail_memory(err);
   double *series = cag_malloc((size_t)c->parts * ORDERS * COUNT * sizeof *series);
   if (!series) return cag_fail_memory(err);
   for (int part = 0; part < c->parts; part++) {

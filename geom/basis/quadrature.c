@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 
@@ -97,13 +98,7 @@ typedef struct Pool {
 } Pool;
 
 static CagStatus push(Pool *pool, const Interval *interval, CagError *err) {
-  if (pool->count == pool->capacity) {
-    const size_t capacity = pool->capacity ? 2 * pool->capacity : 32;
-    Interval *grown = cag_realloc(pool->items, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    pool->items = grown;
-    pool->capacity = capacity;
-  }
+  if (!CAG_RESERVE(pool->items, pool->capacity, pool->count + 1)) return cag_fail_memory(err);
   size_t i = pool->count++;
   for (; i > 0 && pool->items[(i - 1) / 2].e.error < interval->e.error; i = (i - 1) / 2)
     pool->items[i] = pool->items[(i - 1) / 2];

@@ -5,6 +5,7 @@
 
 #include "geom/boolean/net.h"
 
+#include "base/array.h"
 #include "base/memory.h"
 
 static int turn(const BoolNet *n, uint32_t a, uint32_t b, uint32_t c) {
@@ -35,10 +36,8 @@ static bool reserve(BoolNet *n) {
   if (!cag_bool_list_reserve(&n->vertices, n->vertices.n + 3, sizeof(uint32_t))) return false;
   if (n->points->n <= n->cell_of_room) return true;
   const size_t room = n->points->n + n->points->n / 2;
-  uint32_t *cell_of = cag_realloc(n->cell_of, room * sizeof *cell_of);
-  if (!cell_of) return false;
-  for (size_t i = n->cell_of_room; i < room; i++) cell_of[i] = BOOL_NONE;
-  n->cell_of = cell_of;
+  if (!CAG_RESIZE(n->cell_of, room)) return false;
+  for (size_t i = n->cell_of_room; i < room; i++) n->cell_of[i] = BOOL_NONE;
   n->cell_of_room = room;
   return true;
 }

@@ -7,6 +7,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/boolean/work.h"
 #include "geom/mesh/predicates.h"
@@ -27,14 +28,7 @@ static CagVec3 seen_along(CagVec3 p, int axis) {
 }
 
 bool cag_bool_list_reserve(BoolList *l, size_t n, size_t item_size) {
-  if (n <= l->room) return true;
-  size_t room = l->room ? l->room : 64;
-  while (room < n) room += room / 2;
-  void *items = cag_realloc(l->items, room * item_size);
-  if (!items) return false;
-  l->items = items;
-  l->room = room;
-  return true;
+  return cag_array_reserve(&l->items, &l->room, n, item_size);
 }
 
 // --- The table ---
@@ -88,13 +82,8 @@ static bool grow_points(BoolPoints *p) {
   if (p->n < p->room) return true;
   if (p->n >= UINT32_MAX / 4) return false;
   const size_t room = p->room + p->room / 2;
-  CagVec3 *at = cag_realloc(p->at, room * sizeof *at);
-  if (at) p->at = at;
-  uint32_t *exact = cag_realloc(p->exact, room * sizeof *exact);
-  if (exact) p->exact = exact;
-  uint32_t *next = cag_realloc(p->next, room * sizeof *next);
-  if (next) p->next = next;
-  if (!at || !exact || !next) return false;
+  if (!CAG_RESIZE(p->at, room) || !CAG_RESIZE(p->exact, room) || !CAG_RESIZE(p->next, room))
+    return false;
   p->room = room;
   return true;
 }

@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -42,13 +43,7 @@ static CagVec3 hermite(const Node *a, const Node *b, double t) {
 }
 
 static CagStatus add(Fit *f, Node node, CagError *err) {
-  if (f->n == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 64;
-    Node *grown = cag_realloc(f->nodes, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    f->nodes = grown;
-    f->capacity = capacity;
-  }
+  if (!CAG_RESERVE(f->nodes, f->capacity, f->n + 1)) return cag_fail_memory(err);
   f->nodes[f->n++] = node;
   return CAG_OK;
 }

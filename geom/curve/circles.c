@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 
@@ -140,13 +141,7 @@ static CagStatus keep(Found *f, CagTangentLine line, CagError *err) {
     if (cag_norm(cag_sub(f->items[i].p, line.p)) <= TWICE * f->size &&
         cag_norm(cag_sub(f->items[i].q, line.q)) <= TWICE * f->size)
       return CAG_OK;
-  if (f->n == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 8;
-    CagTangentLine *grown = cag_realloc(f->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    f->items = grown;
-    f->capacity = capacity;
-  }
+  if (!CAG_RESERVE(f->items, f->capacity, f->n + 1)) return cag_fail_memory(err);
   f->items[f->n++] = line;
   return CAG_OK;
 }

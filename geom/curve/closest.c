@@ -9,6 +9,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/family.h"
@@ -39,13 +40,7 @@ typedef struct Parts {
 } Parts;
 
 static CagStatus push(Parts *list, Part part, CagError *err) {
-  if (list->n == list->capacity) {
-    size_t capacity = list->capacity ? 2 * list->capacity : 64;
-    Part *grown = cag_realloc(list->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    list->items = grown;
-    list->capacity = capacity;
-  }
+  if (!CAG_RESERVE(list->items, list->capacity, list->n + 1)) return cag_fail_memory(err);
   list->items[list->n++] = part;
   return CAG_OK;
 }

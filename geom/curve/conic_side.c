@@ -15,6 +15,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Crossings are one if their distance is below this fraction of the rectangle's perimeter.
@@ -363,15 +364,9 @@ typedef struct Chain {
 
 static CagStatus add_curve(Chain *c, CagStatus made, CagCurve *curve, CagError *err) {
   if (made) return made;
-  if (c->n == c->room) {
-    const size_t room = c->room ? 2 * c->room : 16;
-    CagCurve **at = cag_realloc(c->at, room * sizeof *at);
-    if (!at) {
-      cag_curve_release(curve);
-      return cag_fail_memory(err);
-    }
-    c->at = at;
-    c->room = room;
+  if (!CAG_RESERVE(c->at, c->room, c->n + 1)) {
+    cag_curve_release(curve);
+    return cag_fail_memory(err);
   }
   c->at[c->n++] = curve;
   return CAG_OK;

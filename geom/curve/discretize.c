@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/family.h"
@@ -38,13 +39,7 @@ static CagStatus fail_count(CagError *err) {
 static CagStatus append(Output *out, double t, CagError *err) {
   if (out->n >= MOST_POINTS) return fail_count(err);
   if (cag_stop_check(err)) return err->status;
-  if (out->n == out->capacity) {
-    size_t capacity = out->capacity ? 2 * out->capacity : 64;
-    double *grown = cag_realloc(out->t, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    out->t = grown;
-    out->capacity = capacity;
-  }
+  if (!CAG_RESERVE(out->t, out->capacity, out->n + 1)) return cag_fail_memory(err);
   out->t[out->n++] = t;
   return CAG_OK;
 }

@@ -8,6 +8,7 @@
 
 #include <float.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/contact.h"
@@ -51,13 +52,7 @@ static CagStatus merge(Found *found, CagError *err) {
 }
 
 static CagStatus add(Found *found, double t, double t2, CagVec3 point, CagError *err) {
-  if (found->n == found->capacity) {
-    size_t capacity = found->capacity ? 2 * found->capacity : 16;
-    CagContact *grown = cag_realloc(found->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    found->items = grown;
-    found->capacity = capacity;
-  }
+  if (!CAG_RESERVE(found->items, found->capacity, found->n + 1)) return cag_fail_memory(err);
   found->items[found->n++] = (CagContact){t, {t2, 0}, point, 1};
   const bool many = found->n >= FOUND_MANY && (found->n & (found->n - 1)) == 0;
   return many ? merge(found, err) : CAG_OK;

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -42,11 +43,8 @@ static CagStatus add(Stretches *all, Stretch stretch, double from, double to, Ca
   if (!(from < to)) return CAG_OK;
   if (all->n == all->room) {
     const size_t room = all->room ? 2 * all->room : 16;
-    Stretch *items = cag_realloc(all->items, room * sizeof *items);
-    if (items) all->items = items;
-    double(*ranges)[2] = cag_realloc(all->ranges, room * sizeof *ranges);
-    if (ranges) all->ranges = ranges;
-    if (!items || !ranges) return cag_fail_memory(err);
+    if (!CAG_RESIZE(all->items, room) || !CAG_RESIZE(all->ranges, room))
+      return cag_fail_memory(err);
     all->room = room;
   }
   all->items[all->n] = stretch;

@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/function.h"
@@ -138,13 +139,7 @@ static CagStatus add_step(Natural *c, const Step *step, CagError *err) {
                     "curvature and torsion change so fast that at s = %s the curve has taken %d "
                     "steps",
                     cag_number_text(step->start, text), STEPS_MOST);
-  if (c->count == c->capacity) {
-    size_t capacity = c->capacity ? 2 * c->capacity : 16;
-    Step *grown = cag_realloc(c->steps, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    c->steps = grown;
-    c->capacity = capacity;
-  }
+  if (!CAG_RESERVE(c->steps, c->capacity, c->count + 1)) return cag_fail_memory(err);
   c->steps[c->count++] = *step;
   return CAG_OK;
 }

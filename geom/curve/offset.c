@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
@@ -131,15 +132,9 @@ typedef struct Parts {
 } Parts;
 
 static CagStatus add(Parts *p, CagCurve *c, CagError *err) {
-  if (p->n == p->capacity) {
-    size_t capacity = p->capacity ? 2 * p->capacity : 16;
-    CagCurve **grown = cag_realloc(p->items, capacity * sizeof *grown);
-    if (!grown) {
-      cag_curve_release(c);
-      return cag_fail_memory(err);
-    }
-    p->items = grown;
-    p->capacity = capacity;
+  if (!CAG_RESERVE(p->items, p->capacity, p->n + 1)) {
+    cag_curve_release(c);
+    return cag_fail_memory(err);
   }
   p->items[p->n++] = c;
   return CAG_OK;

@@ -18,6 +18,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
@@ -70,11 +71,8 @@ static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out,
   if (*out != none) return CAG_OK;
   if (c->n == c->capacity) {
     const size_t capacity = 2 * c->capacity + 8;
-    CagVec3 *points = cag_realloc(c->points, sizeof *points * capacity);
-    if (points) c->points = points;
-    size_t *next = cag_realloc(c->next, sizeof *next * capacity);
-    if (next) c->next = next;
-    if (!points || !next) return cag_fail_memory(err);
+    if (!CAG_RESIZE(c->points, capacity) || !CAG_RESIZE(c->next, capacity))
+      return cag_fail_memory(err);
     c->capacity = capacity;
   }
   const size_t b = bucket(c, x, y);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
@@ -44,16 +45,8 @@ static CagStatus add_edges(const CagCurve *c, size_t loop, Edges *edges, CagErro
   if (status) return status;
   CagVec3 *p = cag_malloc(sizeof *p * n);
   status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
-  if (!status && edges->n + n > edges->capacity) {
-    size_t capacity = 2 * (edges->n + n);
-    Edge *grown = cag_realloc(edges->items, sizeof *grown * capacity);
-    if (grown) {
-      edges->items = grown;
-      edges->capacity = capacity;
-    } else {
-      status = cag_fail_memory(err);
-    }
-  }
+  if (!status && !CAG_RESERVE(edges->items, edges->capacity, edges->n + n))
+    status = cag_fail_memory(err);
   if (!status) p[n - 1] = p[0];
   for (size_t i = 0; !status && i + 1 < n; i++)
     edges->items[edges->n++] =
@@ -129,13 +122,7 @@ static CagStatus add_pair(Pairs *s, const Edge *e, const Edge *f, bool crosses, 
                .b = e->loop < f->loop ? f->loop : e->loop,
                .cross = crosses};
   if (crosses) pair.at = crossing_of(e, f);
-  if (s->n == s->capacity) {
-    const size_t capacity = s->capacity ? 2 * s->capacity : 16;
-    Pair *grown = cag_realloc(s->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    s->items = grown;
-    s->capacity = capacity;
-  }
+  if (!CAG_RESERVE(s->items, s->capacity, s->n + 1)) return cag_fail_memory(err);
   s->items[s->n++] = pair;
   return CAG_OK;
 }

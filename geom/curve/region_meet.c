@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
@@ -27,13 +28,7 @@ static bool same(CagVec3 p, CagVec3 q) { return p.x == q.x && p.y == q.y; }
 static CagStatus cut(Meetings *m, size_t piece, double t, CagVec3 point, CagError *err) {
   const CagRegionPiece *p = &m->pieces->items[piece];
   if (m->again && (same(point, p->p) || same(point, p->q))) return CAG_OK;
-  if (m->n == m->capacity) {
-    size_t capacity = m->capacity ? 2 * m->capacity : 64;
-    CagRegionCut *grown = cag_realloc(m->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    m->items = grown;
-    m->capacity = capacity;
-  }
+  if (!CAG_RESERVE(m->items, m->capacity, m->n + 1)) return cag_fail_memory(err);
   m->items[m->n++] = (CagRegionCut){piece, fmin(fmax(t, p->a), p->b), point};
   return CAG_OK;
 }

@@ -17,6 +17,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
@@ -45,11 +46,7 @@ typedef struct Raw {
 static CagStatus put(Raw *raw, CagCurve *c, int sign, CagError *err) {
   if (raw->n == raw->capacity) {
     size_t capacity = raw->capacity ? 2 * raw->capacity : 32;
-    CagCurve **curves = cag_realloc(raw->curves, sizeof *curves * capacity);
-    if (curves) raw->curves = curves;
-    CagWalk *walks = curves ? cag_realloc(raw->walks, sizeof *walks * capacity) : NULL;
-    if (walks) raw->walks = walks;
-    if (!walks) {
+    if (!CAG_RESIZE(raw->curves, capacity) || !CAG_RESIZE(raw->walks, capacity)) {
       cag_curve_release(c);
       return cag_fail_memory(err);
     }
@@ -139,16 +136,7 @@ static CagStatus room(const CagCurve *c, double left, double least, double t, do
 // Takes the curve over.
 static CagStatus add_part(Parts *parts, CagCurve *c, bool folds, CagError *err) {
   CagStatus status = CAG_OK;
-  if (parts->n == parts->capacity) {
-    size_t capacity = parts->capacity ? 2 * parts->capacity : 16;
-    Part *grown = cag_realloc(parts->items, sizeof *grown * capacity);
-    if (grown) {
-      parts->items = grown;
-      parts->capacity = capacity;
-    } else {
-      status = cag_fail_memory(err);
-    }
-  }
+  if (!CAG_RESERVE(parts->items, parts->capacity, parts->n + 1)) status = cag_fail_memory(err);
   Part p = {.curve = c, .folds = folds};
   if (!status) status = cag_curve_point(c, c->start, &p.ends[0], err);
   if (!status) status = cag_curve_point(c, c->end, &p.ends[1], err);

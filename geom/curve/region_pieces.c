@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_arrange.h"
@@ -22,13 +23,7 @@
 #define BISECTIONS 100
 
 static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
-  if (s->n == s->capacity) {
-    size_t capacity = s->capacity ? 2 * s->capacity : 64;
-    CagRegionPiece *grown = cag_realloc(s->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    s->items = grown;
-    s->capacity = capacity;
-  }
+  if (!CAG_RESERVE(s->items, s->capacity, s->n + 1)) return cag_fail_memory(err);
   piece.source = s->n;
   s->items[s->n++] = piece;
   return CAG_OK;
@@ -112,13 +107,7 @@ typedef struct Turns {
 } Turns;
 
 static CagStatus add_turn(Turns *turns, double t, CagError *err) {
-  if (turns->n == turns->capacity) {
-    size_t capacity = turns->capacity ? 2 * turns->capacity : 16;
-    double *grown = cag_realloc(turns->t, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    turns->t = grown;
-    turns->capacity = capacity;
-  }
+  if (!CAG_RESERVE(turns->t, turns->capacity, turns->n + 1)) return cag_fail_memory(err);
   turns->t[turns->n++] = t;
   return CAG_OK;
 }

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/frenet.h"
@@ -41,13 +42,7 @@ typedef struct Sample {
 } Sample;
 
 static CagStatus add(CagParameters *list, double t, CagError *err) {
-  if (list->count == list->capacity) {
-    const size_t capacity = list->capacity ? 2 * list->capacity : 8;
-    double *grown = cag_realloc(list->t, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    list->t = grown;
-    list->capacity = capacity;
-  }
+  if (!CAG_RESERVE(list->t, list->capacity, list->count + 1)) return cag_fail_memory(err);
   list->t[list->count++] = t;
   return CAG_OK;
 }

@@ -10,6 +10,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/family.h"
@@ -35,13 +36,7 @@
 // --- Parts ---
 
 static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
-  if (parts->n == parts->capacity) {
-    const size_t capacity = parts->capacity ? 2 * parts->capacity : 64;
-    CagPart *grown = cag_realloc(parts->items, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    parts->items = grown;
-    parts->capacity = capacity;
-  }
+  if (!CAG_RESERVE(parts->items, parts->capacity, parts->n + 1)) return cag_fail_memory(err);
   parts->items[parts->n++] = part;
   return CAG_OK;
 }
@@ -53,9 +48,7 @@ void cag_parts_free(CagParts *parts) {
 
 // Stores the core; *out is one more than its index.
 static CagStatus add_core(CagParts *parts, const CagCore *core, size_t *out, CagError *err) {
-  CagCore *grown = cag_realloc(parts->cores, (parts->core_count + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  parts->cores = grown;
+  if (!CAG_RESIZE(parts->cores, parts->core_count + 1)) return cag_fail_memory(err);
   parts->cores[parts->core_count++] = *core;
   *out = parts->core_count;
   return CAG_OK;
@@ -523,15 +516,9 @@ static bool is_over(const Search *s) {
 
 static void push_task(Search *s, Task task) {
   if (s->status || task.bound >= s->best - equally_near(s)) return;
-  if (s->count == s->room) {
-    const size_t room = s->room ? 2 * s->room : 256;
-    Task *grown = cag_realloc(s->tasks, room * sizeof *grown);
-    if (!grown) {
-      s->status = cag_fail_memory(s->err);
-      return;
-    }
-    s->tasks = grown;
-    s->room = room;
+  if (!CAG_RESERVE(s->tasks, s->room, s->count + 1)) {
+    s->status = cag_fail_memory(s->err);
+    return;
   }
   size_t i = s->count++;
   for (; i > 0 && s->tasks[(i - 1) / 2].bound > task.bound; i = (i - 1) / 2)

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/section.h"
 
@@ -153,11 +154,7 @@ static bool add_point(Walk *w, CagVec3 p, CagVec3 t) {
   CagTrace *a = &w->trace;
   if (a->count == w->capacity) {
     size_t capacity = 2 * w->capacity + 64;
-    CagVec3 *points = cag_realloc(a->points, capacity * sizeof *points);
-    if (points) a->points = points;
-    CagVec3 *tangents = cag_realloc(a->tangents, capacity * sizeof *tangents);
-    if (tangents) a->tangents = tangents;
-    if (!points || !tangents) {
+    if (!CAG_RESIZE(a->points, capacity) || !CAG_RESIZE(a->tangents, capacity)) {
       w->status = cag_fail_memory(w->err);
       return false;
     }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/section_edges.h"
 
@@ -22,15 +23,9 @@ void cag_curve_list_free(CagCurveList *list) {
 }
 
 CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err) {
-  if (list->count == list->capacity) {
-    size_t capacity = list->capacity ? 2 * list->capacity : 8;
-    CagCurve **grown = cag_realloc(list->items, capacity * sizeof *grown);
-    if (!grown) {
-      cag_curve_release(c);
-      return cag_fail_memory(err);
-    }
-    list->items = grown;
-    list->capacity = capacity;
+  if (!CAG_RESERVE(list->items, list->capacity, list->count + 1)) {
+    cag_curve_release(c);
+    return cag_fail_memory(err);
   }
   list->items[list->count++] = c;
   return CAG_OK;
@@ -109,13 +104,7 @@ static End end_of(const CagCurve *c, size_t curve, bool last) {
 }
 
 static bool add_pair(Joints *j, size_t a, size_t b) {
-  if (j->pair_count == j->pair_capacity) {
-    const size_t capacity = j->pair_capacity ? 2 * j->pair_capacity : 64;
-    Pair *grown = cag_realloc(j->pairs, capacity * sizeof *grown);
-    if (!grown) return false;
-    j->pairs = grown;
-    j->pair_capacity = capacity;
-  }
+  if (!CAG_RESERVE(j->pairs, j->pair_capacity, j->pair_count + 1)) return false;
   const CagVec3 sum = cag_add(j->ends[a].way, j->ends[b].way);
   j->pairs[j->pair_count++] =
       (Pair){.a = a,

@@ -12,6 +12,7 @@
 
 #include <float.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/contact.h"
@@ -180,13 +181,7 @@ static CagStatus merge(Search *s, CagError *err) {
 }
 
 static CagStatus add(Search *s, CagContact m, CagError *err) {
-  if (s->n == s->capacity) {
-    size_t capacity = s->capacity ? 2 * s->capacity : 16;
-    CagContact *grown = cag_realloc(s->items, sizeof *grown * capacity);
-    if (!grown) return cag_fail_memory(err);
-    s->items = grown;
-    s->capacity = capacity;
-  }
+  if (!CAG_RESERVE(s->items, s->capacity, s->n + 1)) return cag_fail_memory(err);
   s->items[s->n++] = m;
   return s->n >= FOUND_MANY && (s->n & (s->n - 1)) == 0 ? merge(s, err) : CAG_OK;
 }

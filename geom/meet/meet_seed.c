@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
@@ -110,13 +111,8 @@ static double into(double x, double low, double high, bool closed) {
 }
 
 bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed) {
-  if (list->count == list->capacity) {
-    const size_t capacity = list->capacity ? 2 * list->capacity : 256;
-    CagMarchNode *grown = cag_realloc(list->items, capacity * sizeof *grown);
-    if (!grown) return cag_march_fail(m, cag_fail_memory(m->err));
-    list->items = grown;
-    list->capacity = capacity;
-  }
+  if (!CAG_RESERVE(list->items, list->capacity, list->count + 1))
+    return cag_march_fail(m, cag_fail_memory(m->err));
   list->items[list->count++] = *seed;
   return true;
 }

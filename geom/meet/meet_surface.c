@@ -20,6 +20,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/meet_place.h"
 #include "geom/surface/nearest.h"
@@ -69,11 +70,8 @@ static bool add_node(CagMarch *m, Run *run, const CagMarchNode *node, CagVec3 mi
   if (run->n >= NODES_MOST) return false;
   if (run->n == run->capacity) {
     size_t capacity = run->capacity ? 2 * run->capacity : 64;
-    CagMarchNode *nodes = cag_realloc(run->nodes, capacity * sizeof *nodes);
-    if (nodes) run->nodes = nodes;
-    CagVec3 *middles = cag_realloc(run->middles, capacity * sizeof *middles);
-    if (middles) run->middles = middles;
-    if (!nodes || !middles) return cag_march_fail(m, cag_fail_memory(m->err));
+    if (!CAG_RESIZE(run->nodes, capacity) || !CAG_RESIZE(run->middles, capacity))
+      return cag_march_fail(m, cag_fail_memory(m->err));
     run->capacity = capacity;
   }
   if (run->n) run->middles[run->n - 1] = middle_before;
@@ -551,14 +549,8 @@ static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
 static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
   bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > m->least_run;
   for (size_t k = 0; kept && k < runs->n; k++) kept = !is_twin(m, run, &runs->items[k]);
-  if (kept && runs->n == runs->capacity) {
-    size_t capacity = runs->capacity ? 2 * runs->capacity : 8;
-    Run *grown = cag_realloc(runs->items, capacity * sizeof *grown);
-    if (grown) {
-      runs->items = grown;
-      runs->capacity = capacity;
-    } else kept = cag_march_fail(m, cag_fail_memory(m->err));
-  }
+  if (kept && !CAG_RESERVE(runs->items, runs->capacity, runs->n + 1))
+    kept = cag_march_fail(m, cag_fail_memory(m->err));
   if (!kept) {
     free_run(run);
     return m->status == CAG_OK;

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 
@@ -54,18 +55,15 @@ static bool goes_on(const CagTrace *a, const CagTrace *b, const CagTraceJoint *h
 }
 
 static bool append(CagTrace *a, const CagTrace *b) {
-  CagVec3 *points = cag_realloc(a->points, (a->count + b->count) * sizeof *points);
-  if (points) a->points = points;
-  CagVec3 *tangents = cag_realloc(a->tangents, (a->count + b->count) * sizeof *tangents);
-  if (tangents) a->tangents = tangents;
-  CagVec3 *checks = cag_realloc(a->checks, (a->check_count + b->check_count + 1) * sizeof *checks);
-  if (checks) a->checks = checks;
-  if (!points || !tangents || !checks) return false;
+  if (!CAG_RESIZE(a->points, a->count + b->count) ||
+      !CAG_RESIZE(a->tangents, a->count + b->count) ||
+      !CAG_RESIZE(a->checks, a->check_count + b->check_count + 1))
+    return false;
   // The first point of b is there already.
-  memcpy(points + a->count, b->points + 1, (b->count - 1) * sizeof *points);
-  memcpy(tangents + a->count, b->tangents + 1, (b->count - 1) * sizeof *tangents);
+  memcpy(a->points + a->count, b->points + 1, (b->count - 1) * sizeof *a->points);
+  memcpy(a->tangents + a->count, b->tangents + 1, (b->count - 1) * sizeof *a->tangents);
   if (b->check_count > 0)
-    memcpy(checks + a->check_count, b->checks, b->check_count * sizeof *checks);
+    memcpy(a->checks + a->check_count, b->checks, b->check_count * sizeof *a->checks);
   a->count += b->count - 1;
   a->check_count += b->check_count;
   return true;

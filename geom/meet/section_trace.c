@@ -12,6 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/section_grid.h"
 #include "geom/meet/section_join.h"
@@ -91,25 +92,13 @@ CagLevel cag_level_contour(CagVec3 direction, CagVec3 point, bool central) {
 // --- Refinement ---
 
 static bool add_node(CagTracer *t, const CagTraceNode *node) {
-  if (t->run_count == t->run_capacity) {
-    size_t capacity = t->run_capacity ? 2 * t->run_capacity : 64;
-    CagTraceNode *grown = cag_realloc(t->run, capacity * sizeof *grown);
-    if (!grown) return false;
-    t->run = grown;
-    t->run_capacity = capacity;
-  }
+  if (!CAG_RESERVE(t->run, t->run_capacity, t->run_count + 1)) return false;
   t->run[t->run_count++] = *node;
   return true;
 }
 
 static bool add_check(CagTracer *t, CagVec3 p) {
-  if (t->check_count == t->check_capacity) {
-    size_t capacity = t->check_capacity ? 2 * t->check_capacity : 64;
-    CagVec3 *grown = cag_realloc(t->checks, capacity * sizeof *grown);
-    if (!grown) return false;
-    t->checks = grown;
-    t->check_capacity = capacity;
-  }
+  if (!CAG_RESERVE(t->checks, t->check_capacity, t->check_count + 1)) return false;
   t->checks[t->check_count++] = p;
   return true;
 }
@@ -263,13 +252,7 @@ static bool refine(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b, i
 // --- Runs ---
 
 static bool add_trace(CagTraces *out, const CagTrace *trace) {
-  if (out->count == out->capacity) {
-    size_t capacity = out->capacity ? 2 * out->capacity : 8;
-    CagTrace *grown = cag_realloc(out->items, capacity * sizeof *grown);
-    if (!grown) return false;
-    out->items = grown;
-    out->capacity = capacity;
-  }
+  if (!CAG_RESERVE(out->items, out->capacity, out->count + 1)) return false;
   out->items[out->count++] = *trace;
   return true;
 }

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/curvature_line.h"
 
@@ -105,15 +106,9 @@ typedef struct Draft {
 static bool make_room(Draft *d) {
   if (d->count < d->capacity) return true;
   size_t room = d->capacity + d->capacity / 4 + 64;
-  double *values = cag_realloc(d->values, room * sizeof *values);
-  if (values) d->values = values;
-  uint32_t *origin = cag_realloc(d->origin, room * sizeof *origin);
-  if (origin) d->origin = origin;
-  uint32_t *next = cag_realloc(d->next, room * sizeof *next);
-  if (next) d->next = next;
-  bool *known = cag_realloc(d->known, room * sizeof *known);
-  if (known) d->known = known;
-  if (!values || !origin || !next || !known) return false;
+  if (!CAG_RESIZE(d->values, room) || !CAG_RESIZE(d->origin, room) || !CAG_RESIZE(d->next, room) ||
+      !CAG_RESIZE(d->known, room))
+    return false;
   d->capacity = room;
   return true;
 }

@@ -12,6 +12,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
@@ -156,11 +157,8 @@ static CagStatus new_face(Hull *h, uint32_t a, uint32_t b, uint32_t c, uint32_t 
                           CagError *err) {
   if (h->count == h->capacity) {
     const size_t capacity = h->capacity ? 2 * h->capacity : 256;
-    Face *grown = cag_realloc(h->faces, capacity * sizeof *grown);
-    if (grown) h->faces = grown;
-    uint32_t *seen = cag_realloc(h->seen, 2 * capacity * sizeof *seen);
-    if (seen) h->seen = seen;
-    if (!grown || !seen) return cag_fail_memory(err);
+    if (!CAG_RESIZE(h->faces, capacity) || !CAG_RESIZE(h->seen, 2 * capacity))
+      return cag_fail_memory(err);
     h->capacity = capacity;
   }
   *out = (uint32_t)h->count;

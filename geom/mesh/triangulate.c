@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/aside.h"
 #include "base/memory.h"
 #include "base/stop.h"
@@ -181,13 +182,7 @@ typedef struct Flips {
 // If memory runs out, the edge is not tested again: the triangulation stays valid but is not
 // optimal.
 static void push(Flips *f, size_t place) {
-  if (f->depth == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 256;
-    size_t *stack = cag_realloc(f->stack, capacity * sizeof *stack);
-    if (!stack) return cag_note_memory();
-    f->stack = stack;
-    f->capacity = capacity;
-  }
+  if (!CAG_RESERVE(f->stack, f->capacity, f->depth + 1)) return cag_note_memory();
   f->stack[f->depth++] = place;
 }
 

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/inside.h"
@@ -48,9 +49,7 @@ static CagStatus crossing(CagInside *in, const CagCurve *c, double a, double b, 
 
 static CagStatus add_piece(Pieces *p, const CagCurve *c, double from, double to, CagError *err) {
   if (!(to > from)) return CAG_OK;
-  CagCurve **grown = cag_realloc(p->at, (p->n + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  p->at = grown;
+  if (!CAG_RESIZE(p->at, p->n + 1)) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   if (from == c->start && to == c->end) p->at[p->n] = cag_curve_retain(c);
   else status = cag_curve_trim(c, from, to, &p->at[p->n], err);
@@ -160,13 +159,9 @@ static void work_free(Work *w) {
 static CagStatus room_for_points(Work *w, CagError *err) {
   if (w->n < w->capacity) return CAG_OK;
   size_t capacity = w->capacity ? 2 * w->capacity : 64;
-  CagVec3 *p = cag_realloc(w->p, capacity * sizeof *p);
-  if (p) w->p = p;
-  double *uv = p ? cag_realloc(w->uv, capacity * 2 * sizeof *uv) : NULL;
-  if (uv) w->uv = uv;
-  signed char *inner = uv ? cag_realloc(w->inner, capacity) : NULL;
-  if (!inner) return cag_fail_memory(err);
-  w->inner = inner;
+  if (!CAG_RESIZE(w->p, capacity) || !CAG_RESIZE(w->uv, 2 * capacity) ||
+      !CAG_RESIZE(w->inner, capacity))
+    return cag_fail_memory(err);
   w->capacity = capacity;
   return CAG_OK;
 }
@@ -174,9 +169,7 @@ static CagStatus room_for_points(Work *w, CagError *err) {
 static CagStatus add_triangle(Work *w, uint32_t a, uint32_t b, uint32_t c, CagError *err) {
   if (w->triangles == w->room) {
     size_t room = w->room ? 2 * w->room : 64;
-    uint32_t *t = cag_realloc(w->t, room * 3 * sizeof *t);
-    if (!t) return cag_fail_memory(err);
-    w->t = t;
+    if (!CAG_RESIZE(w->t, 3 * room)) return cag_fail_memory(err);
     w->room = room;
   }
   if (a == b || b == c || c == a) return CAG_OK;

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Faces closer than this part of the size of all operands coincide. Renderers compute distances
@@ -61,29 +62,17 @@ static void search_free(Search *s) {
 
 // Takes the mesh and the surface.
 static bool add_piece(Search *s, CagSurface *surface, CagMesh *mesh, double tolerance) {
-  if (s->count == s->room) {
-    const size_t room = s->room ? 2 * s->room : 16;
-    Piece *more = cag_realloc(s->pieces, room * sizeof *more);
-    if (!more) {
-      cag_surface_release(surface);
-      cag_mesh_release(mesh);
-      return false;
-    }
-    s->pieces = more;
-    s->room = room;
+  if (!CAG_RESERVE(s->pieces, s->room, s->count + 1)) {
+    cag_surface_release(surface);
+    cag_mesh_release(mesh);
+    return false;
   }
   s->pieces[s->count++] = (Piece){surface, mesh, cag_mesh_bounds(mesh), tolerance, s->leaves};
   return true;
 }
 
 static bool add_side(Search *s, const CagQuadric *form) {
-  if (s->side_count == s->side_room) {
-    const size_t room = s->side_room ? 2 * s->side_room : 8;
-    Side *more = cag_realloc(s->sides, room * sizeof *more);
-    if (!more) return false;
-    s->sides = more;
-    s->side_room = room;
-  }
+  if (!CAG_RESERVE(s->sides, s->side_room, s->side_count + 1)) return false;
   s->sides[s->side_count++] = (Side){*form, *form, s->leaves};
   return true;
 }

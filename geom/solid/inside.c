@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/distance/separation.h"
 #include "geom/solid/csg.h"
@@ -81,10 +82,8 @@ static CagStatus leaf_mesh(CagInside *inside, const CagSolid *s, LeafMesh **out,
       *out = &inside->leaves[i];
       return CAG_OK;
     }
-  LeafMesh *grown = cag_realloc(inside->leaves, (inside->count + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  inside->leaves = grown;
-  LeafMesh *made = &grown[inside->count];
+  if (!CAG_RESIZE(inside->leaves, inside->count + 1)) return cag_fail_memory(err);
+  LeafMesh *made = &inside->leaves[inside->count];
   CagStatus status = cag_solid_tessellate(s, &inside->how, &made->mesh, err);
   if (status) return status;
   made->leaf = s;

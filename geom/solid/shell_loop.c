@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/solid/shell.h"
 
@@ -21,13 +22,7 @@ typedef struct Pieces {
 } Pieces;
 
 CagStatus cag_shell_add_link(CagShellLinks *l, CagShellLink link, CagError *err) {
-  if (l->n == l->room) {
-    const size_t room = l->room ? 2 * l->room : 32;
-    CagShellLink *at = cag_realloc(l->at, room * sizeof *at);
-    if (!at) return cag_fail_memory(err);
-    l->at = at;
-    l->room = room;
-  }
+  if (!CAG_RESERVE(l->at, l->room, l->n + 1)) return cag_fail_memory(err);
   l->at[l->n++] = link;
   return CAG_OK;
 }
@@ -81,13 +76,7 @@ static CagStatus pair_sides(CagSolid *s, CagShellBoundaries *all, size_t loop, C
 // --- Pieces ---
 
 static CagStatus add_piece(Pieces *p, Piece piece, CagError *err) {
-  if (p->n == p->room) {
-    const size_t room = p->room ? 2 * p->room : 64;
-    Piece *at = cag_realloc(p->at, room * sizeof *at);
-    if (!at) return cag_fail_memory(err);
-    p->at = at;
-    p->room = room;
-  }
+  if (!CAG_RESERVE(p->at, p->room, p->n + 1)) return cag_fail_memory(err);
   p->at[p->n++] = piece;
   return CAG_OK;
 }

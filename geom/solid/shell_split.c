@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/solid/shell.h"
 #include "geom/surface/reshape.h"
@@ -23,11 +24,7 @@ CagStatus cag_shell_add_face(CagShellFaces *f, const CagSurface *face, size_t or
                              CagError *err) {
   if (f->n == f->room) {
     const size_t room = f->room ? 2 * f->room : 16;
-    CagSurface **at = cag_realloc(f->at, room * sizeof *at);
-    if (at) f->at = at;
-    size_t *numbers = at ? cag_realloc(f->origin, room * sizeof *numbers) : NULL;
-    if (!numbers) return cag_fail_memory(err);
-    f->origin = numbers;
+    if (!CAG_RESIZE(f->at, room) || !CAG_RESIZE(f->origin, room)) return cag_fail_memory(err);
     f->room = room;
   }
   f->at[f->n] = cag_surface_retain(face);
@@ -48,13 +45,7 @@ static CagStatus add_cut(Cuts *c, double t, double low, double high, CagError *e
   size_t place = c->n;
   for (size_t i = 0; i < c->n; i++)
     if (fabs(c->at[i] - t) <= same) return CAG_OK;
-  if (c->n == c->room) {
-    const size_t room = c->room ? 2 * c->room : 8;
-    double *at = cag_realloc(c->at, room * sizeof *at);
-    if (!at) return cag_fail_memory(err);
-    c->at = at;
-    c->room = room;
-  }
+  if (!CAG_RESERVE(c->at, c->room, c->n + 1)) return cag_fail_memory(err);
   for (; place > 0 && c->at[place - 1] > t; place--) c->at[place] = c->at[place - 1];
   c->at[place] = t;
   c->n++;

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
@@ -96,9 +97,7 @@ CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err) {
 
 CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
                              bool reversed, CagError *err) {
-  CagFaceEdge *grown = cag_realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  s->edges = grown;
+  if (!CAG_RESIZE(s->edges, s->edge_count + 1)) return cag_fail_memory(err);
   s->edges[s->edge_count++] = (CagFaceEdge){{face_a, face_b}, {side_a, side_b}, reversed};
   return CAG_OK;
 }

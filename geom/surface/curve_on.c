@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
@@ -138,9 +139,7 @@ typedef struct Numbers {
 } Numbers;
 
 static CagStatus push(Numbers *list, double x, CagError *err) {
-  double *grown = cag_realloc(list->at, (list->n + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  list->at = grown;
+  if (!CAG_RESIZE(list->at, list->n + 1)) return cag_fail_memory(err);
   list->at[list->n++] = x;
   return CAG_OK;
 }

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Part of the domain's diagonal that an edge may span: more could hide a wave between its ends.
@@ -50,15 +51,9 @@ static bool map_vertex(Mapping *m, CagVec3 p, Vertex *out) {
 }
 
 static uint32_t add_vertex(Mapping *m, const Vertex *v) {
-  if (m->count == m->capacity) {
-    size_t capacity = 2 * m->capacity + 64;
-    Vertex *grown = cag_realloc(m->vertices, capacity * sizeof *grown);
-    if (!grown) {
-      m->status = cag_fail_memory(m->err);
-      return NONE;
-    }
-    m->vertices = grown;
-    m->capacity = capacity;
+  if (!CAG_RESERVE(m->vertices, m->capacity, m->count + 1)) {
+    m->status = cag_fail_memory(m->err);
+    return NONE;
   }
   m->vertices[m->count] = *v;
   return (uint32_t)m->count++;

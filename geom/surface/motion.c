@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/motion_parts.h"
@@ -434,13 +435,7 @@ static CagStatus integrate_angle(const CagMotion *t, CagMotionSegment *g, bool *
 }
 
 static CagStatus add_segment(CagMotion *t, const CagMotionSegment *g, CagError *err) {
-  if (t->count == t->room) {
-    size_t room = t->room ? 2 * t->room : 16;
-    CagMotionSegment *grown = cag_realloc(t->segments, room * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    t->segments = grown;
-    t->room = room;
-  }
+  if (!CAG_RESERVE(t->segments, t->room, t->count + 1)) return cag_fail_memory(err);
   t->segments[t->count++] = *g;
   return CAG_OK;
 }

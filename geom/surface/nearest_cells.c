@@ -5,6 +5,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/surface/nearest_swept.h"
@@ -35,13 +36,7 @@ static void sink(CagDistanceCells *c, size_t i) {
 }
 
 CagStatus cag_distance_cells_push(CagDistanceCells *c, const CagDistanceCell *cell, CagError *err) {
-  if (c->count == c->capacity) {
-    const size_t capacity = c->capacity ? 2 * c->capacity : 128;
-    CagDistanceCell *grown = cag_realloc(c->items, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    c->items = grown;
-    c->capacity = capacity;
-  }
+  if (!CAG_RESERVE(c->items, c->capacity, c->count + 1)) return cag_fail_memory(err);
   size_t i = c->count++;
   for (; i > 0 && cell->bound < c->items[(i - 1) / 2].bound; i = (i - 1) / 2)
     c->items[i] = c->items[(i - 1) / 2];
@@ -60,9 +55,7 @@ static CagStatus take_block(CagDistanceCells *c, size_t *block, CagError *err) {
     double *grown = cag_realloc(c->blocks, capacity * c->block_size * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     c->blocks = grown;
-    size_t *unused = cag_realloc(c->unused, capacity * sizeof *unused);
-    if (!unused) return cag_fail_memory(err);
-    c->unused = unused;
+    if (!CAG_RESIZE(c->unused, capacity)) return cag_fail_memory(err);
     c->block_capacity = capacity;
   }
   *block = c->block_count++;

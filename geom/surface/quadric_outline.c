@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/surface/quadric_within.h"
 #include "geom/surface/trimmed.h"
@@ -192,15 +193,9 @@ typedef struct Spline {
 
 static void push(Spline *s, CagVec3 p) {
   if (s->failed) return;
-  if (s->count == s->room) {
-    const size_t room = s->room ? 2 * s->room : 256;
-    CagVec3 *more = cag_realloc(s->points, room * sizeof *more);
-    if (!more) {
-      s->failed = true;
-      return;
-    }
-    s->points = more;
-    s->room = room;
+  if (!CAG_RESERVE(s->points, s->room, s->count + 1)) {
+    s->failed = true;
+    return;
   }
   s->points[s->count++] = p;
 }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/surface/family.h"
 
@@ -218,9 +219,7 @@ static CagStatus find_meets(Revolution *r, double from, double to, CagError *err
         least_distance(r, from + (i - 1) * step, from + (i + 1) * step, &at, &distance, err);
     if (status) return status;
     if (distance > r->on_axis) continue;
-    double *more = cag_realloc(r->meets, (r->meet_count + 1) * sizeof *more);
-    if (!more) return cag_fail_memory(err);
-    r->meets = more;
+    if (!CAG_RESIZE(r->meets, r->meet_count + 1)) return cag_fail_memory(err);
     r->meets[r->meet_count++] = at;
   }
   return CAG_OK;

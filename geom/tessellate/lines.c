@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "geom/tessellate/tessellation.h"
@@ -104,9 +105,9 @@ static int by_place(const void *a, const void *b) {
 }
 
 static CagStatus add_mark(Marks *m, Mark mark, CagError *err) {
-  const CagStatus status = cag_tess_grow(&m->all, m->count, &m->capacity, sizeof *m->all, err);
-  if (status == CAG_OK) m->all[m->count++] = mark;
-  return status;
+  if (!CAG_RESERVE(m->all, m->capacity, m->count + 1)) return cag_fail_memory(err);
+  m->all[m->count++] = mark;
+  return CAG_OK;
 }
 
 static CagStatus mark_slants(Marks *m, const LeafSide *side, CagError *err) {
@@ -153,10 +154,9 @@ static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagEr
 }
 
 static CagStatus push_atom(Tessellator *t, double from, double to, CagError *err) {
-  CagStatus status =
-      cag_tess_grow(&t->atoms, t->atom_count, &t->atom_capacity, sizeof *t->atoms, err);
-  if (status == CAG_OK) t->atoms[t->atom_count++] = (Atom){from, to, 0, 1, true};
-  return status;
+  if (!CAG_RESERVE(t->atoms, t->atom_capacity, t->atom_count + 1)) return cag_fail_memory(err);
+  t->atoms[t->atom_count++] = (Atom){from, to, 0, 1, true};
+  return CAG_OK;
 }
 
 // Index of the atom of the line that starts at `from`.
@@ -238,7 +238,8 @@ CagStatus cag_tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
     for (next = k + 1; next < count && sides[next].fixed == sides[k].fixed &&
                        sides[next].coordinate == sides[k].coordinate;)
       next++;
-    status = cag_tess_grow(&t->lines, t->line_count, &t->line_capacity, sizeof *t->lines, err);
+    status =
+        CAG_RESERVE(t->lines, t->line_capacity, t->line_count + 1) ? CAG_OK : cag_fail_memory(err);
     if (status != CAG_OK) break;
     Line *line = &t->lines[t->line_count++];
     *line = new_line(f, face, &sides[k]);

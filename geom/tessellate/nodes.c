@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/surface/frames.h"
 #include "geom/tessellate/tessellation.h"
@@ -20,15 +21,9 @@ static CagStatus reserve_vertices(Tessellator *t, CagError *err) {
   if (t->vertex_count < t->vertex_capacity) return CAG_OK;
   if (t->vertex_count >= UINT32_MAX / 2) return cag_tess_limit(t, (double)t->vertex_count, err);
   size_t n = t->vertex_capacity ? 2 * t->vertex_capacity : 1024;
-  CagVec3 *positions = cag_realloc(t->positions, n * sizeof *positions);
-  if (positions) t->positions = positions;
-  CagVec3 *normals = cag_realloc(t->normals, n * sizeof *normals);
-  if (normals) t->normals = normals;
-  double *uv = cag_realloc(t->uv, 2 * n * sizeof *uv);
-  if (uv) t->uv = uv;
-  uint32_t *weld = cag_realloc(t->weld, n * sizeof *weld);
-  if (weld) t->weld = weld;
-  if (!positions || !normals || !uv || !weld) return cag_fail_memory(err);
+  if (!CAG_RESIZE(t->positions, n) || !CAG_RESIZE(t->normals, n) || !CAG_RESIZE(t->uv, 2 * n) ||
+      !CAG_RESIZE(t->weld, n))
+    return cag_fail_memory(err);
   t->vertex_capacity = n;
   return CAG_OK;
 }
@@ -184,11 +179,10 @@ static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, ui
     *out = t->corner_hash[slot];
     return CAG_OK;
   }
-  CagStatus status =
-      cag_tess_grow(&t->corners, t->corner_count, &t->corner_capacity, sizeof *t->corners, err);
-  if (status != CAG_OK) return status;
+  if (!CAG_RESERVE(t->corners, t->corner_capacity, t->corner_count + 1))
+    return cag_fail_memory(err);
   Corner c = {u + 0.0, v + 0.0, face, {vertex, vertex, vertex, vertex}};
-  if (vertex == NO_INDEX) status = fill_corner(t, &c, err);
+  const CagStatus status = vertex == NO_INDEX ? fill_corner(t, &c, err) : CAG_OK;
   if (status != CAG_OK) return status;
   *out = t->corner_hash[slot] = (uint32_t)t->corner_count;
   t->corners[t->corner_count++] = c;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
 #include "geom/tessellate/trial.h"
@@ -538,9 +539,7 @@ static uint32_t least_steps(const CagSurface *s, int direction, double from, dou
 
 static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const double n[2],
                           CagError *err) {
-  CagStatus status =
-      cag_tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
-  if (status != CAG_OK) return status;
+  if (!CAG_RESERVE(t->leaves, t->leaf_capacity, t->leaf_count + 1)) return cag_fail_memory(err);
   Leaf *leaf = &t->leaves[t->leaf_count++];
   memset(leaf, 0, sizeof *leaf);
   leaf->face = face;

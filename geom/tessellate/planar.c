@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/tessellate/tessellation.h"
 
@@ -26,11 +27,7 @@ typedef struct Piece {
 static CagStatus add_point(Outline *o, CagVec3 point, uint32_t vertex, CagError *err) {
   if (o->count == o->capacity) {
     size_t n = o->capacity ? 2 * o->capacity : 256;
-    CagVec3 *points = cag_realloc(o->points, n * sizeof *points);
-    if (points) o->points = points;
-    uint32_t *vertices = cag_realloc(o->vertices, n * sizeof *vertices);
-    if (vertices) o->vertices = vertices;
-    if (!points || !vertices) return cag_fail_memory(err);
+    if (!CAG_RESIZE(o->points, n) || !CAG_RESIZE(o->vertices, n)) return cag_fail_memory(err);
     o->capacity = n;
   }
   o->points[o->count] = point;
@@ -377,7 +374,8 @@ static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransfo
     status = cag_tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
     if (status == CAG_OK) cag_tess_unite(t, o->vertices[k], vertices[k]);
     if (status == CAG_OK && o->vertices[k] == NO_INDEX)
-      status = cag_tess_grow(&t->own, t->own_count, &t->own_capacity, sizeof *t->own, err);
+      status =
+          CAG_RESERVE(t->own, t->own_capacity, t->own_count + 1) ? CAG_OK : cag_fail_memory(err);
     if (status == CAG_OK && o->vertices[k] == NO_INDEX) t->own[t->own_count++] = vertices[k];
   }
   return status;

@@ -5,6 +5,7 @@
 
 #include "geom/tessellate/sides.h"
 
+#include "base/array.h"
 #include "base/memory.h"
 
 #include "base/stop.h"
@@ -99,17 +100,9 @@ static CagStatus grow(Sides *s, CagError *err) {
   if (m->vertex_count < s->capacity) return CAG_OK;
   const size_t n = s->capacity + s->capacity / 2 + 64;
   if (n > UINT32_MAX) return cag_fail_memory(err);
-  CagVec3 *positions = cag_realloc(m->positions, n * sizeof *positions);
-  if (positions) m->positions = positions;
-  CagVec3 *normals = cag_realloc(m->normals, n * sizeof *normals);
-  if (normals) m->normals = normals;
-  double *uv = cag_realloc(m->uv, 2 * n * sizeof *uv);
-  if (uv) m->uv = uv;
-  uint32_t *weld = cag_realloc(m->weld, n * sizeof *weld);
-  if (weld) m->weld = weld;
-  uint32_t *copy = cag_realloc(s->copy, n * sizeof *copy);
-  if (copy) s->copy = copy;
-  if (!positions || !normals || !uv || !weld || !copy) return cag_fail_memory(err);
+  if (!CAG_RESIZE(m->positions, n) || !CAG_RESIZE(m->normals, n) || !CAG_RESIZE(m->uv, 2 * n) ||
+      !CAG_RESIZE(m->weld, n) || !CAG_RESIZE(s->copy, n))
+    return cag_fail_memory(err);
   s->capacity = n;
   return CAG_OK;
 }

@@ -20,6 +20,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/tessellate/trial.h"
 
@@ -219,9 +220,7 @@ static CagStatus cut_cell(Run *r, const Cell *c, double most, bool *possible, Ca
       else high = middle - 1;
     }
     if (!*possible) break;
-    const CagStatus status =
-        cag_tess_grow(&r->strips, r->strip_count, &r->strip_capacity, sizeof *r->strips, err);
-    if (status != CAG_OK) return status;
+    if (!CAG_RESERVE(r->strips, r->strip_capacity, r->strip_count + 1)) return cag_fail_memory(err);
     r->strips[r->strip_count++] = strip;
   }
   return CAG_OK;
@@ -416,9 +415,7 @@ static CagStatus replace_leaves(Tessellator *t, uint32_t face, const Run *r, Cag
   t->leaf_count = kept;
   for (size_t k = 0; k < r->strip_count; k++) {
     const Strip *strip = &r->strips[k];
-    const CagStatus status =
-        cag_tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
-    if (status != CAG_OK) return status;
+    if (!CAG_RESERVE(t->leaves, t->leaf_capacity, t->leaf_count + 1)) return cag_fail_memory(err);
     Leaf *leaf = &t->leaves[t->leaf_count++];
     *leaf = (Leaf){.face = face, .n = {1, 1}};
     leaf->from[across] = strip->from;
@@ -455,7 +452,8 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   if (status == CAG_OK && possible) status = settle_run(r, gain * quads, &settled, err);
   cag_free(bends);
   if (status == CAG_OK && settled)
-    status = cag_tess_grow(&plan->runs, plan->count, &plan->capacity, sizeof *plan->runs, err);
+    status =
+        CAG_RESERVE(plan->runs, plan->capacity, plan->count + 1) ? CAG_OK : cag_fail_memory(err);
   if (status == CAG_OK && settled) {
     plan->saved += quads - (double)r->strip_count * r->steps;
     plan->runs[plan->count++] = *r;

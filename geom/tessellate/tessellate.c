@@ -12,17 +12,6 @@
 #include "geom/tessellate/tessellation.h"
 #include "geom/tessellate/trimmed.h"
 
-CagStatus cag_tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
-  if (count < *capacity) return CAG_OK;
-  void **at = array;
-  size_t n = *capacity ? 2 * *capacity : 64;
-  void *larger = cag_realloc(*at, n * size);
-  if (!larger) return cag_fail_memory(err);
-  *at = larger;
-  *capacity = n;
-  return CAG_OK;
-}
-
 CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err) {
   if (!t->how.interrupt || !*t->how.interrupt) return CAG_OK;
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,

@@ -123,8 +123,6 @@ typedef struct Tessellator {
   bool needs_normals; // some vertex has a zero normal yet
 } Tessellator;
 
-// Grows an array so that one more element fits.
-CagStatus cag_tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err);
 CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err);
 CagStatus cag_tess_limit(const Tessellator *t, double triangles, CagError *err);
 

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/surface/reshape.h"
@@ -63,21 +64,11 @@ static void release(Plane *p) {
 
 // --- Room ---
 
-static CagStatus grow(void *array, size_t wanted, size_t size, CagError *err) {
-  void **at = array;
-  void *larger = cag_realloc(*at, wanted * size);
-  if (!larger) return cag_fail_memory(err);
-  *at = larger;
-  return CAG_OK;
-}
-
 static CagStatus add_vertex(Plane *p, double u, double v, uint32_t *out, CagError *err) {
   if (p->vertex_count == p->vertex_capacity) {
     size_t n = p->vertex_capacity ? 2 * p->vertex_capacity : 1024;
-    CagStatus status = grow(&p->xy, 2 * n, sizeof *p->xy, err);
-    if (!status) status = grow(&p->positions, n, sizeof *p->positions, err);
-    if (!status) status = grow(&p->normals, n, sizeof *p->normals, err);
-    if (status) return status;
+    if (!CAG_RESIZE(p->xy, 2 * n) || !CAG_RESIZE(p->positions, n) || !CAG_RESIZE(p->normals, n))
+      return cag_fail_memory(err);
     p->vertex_capacity = n;
   }
   const CagSurface *s = p->inner;
@@ -100,20 +91,14 @@ static CagStatus room_for_triangles(Plane *p, size_t wanted, CagError *err) {
   if (wanted <= p->triangle_capacity) return CAG_OK;
   size_t n = p->triangle_capacity ? p->triangle_capacity : 1024;
   while (n < wanted) n *= 2;
-  CagStatus status = grow(&p->corner, 3 * n, sizeof *p->corner, err);
-  if (!status) status = grow(&p->across, 3 * n, sizeof *p->across, err);
-  if (!status) status = grow(&p->checked, n, sizeof *p->checked, err);
-  if (!status) p->triangle_capacity = n;
-  return status;
+  if (!CAG_RESIZE(p->corner, 3 * n) || !CAG_RESIZE(p->across, 3 * n) || !CAG_RESIZE(p->checked, n))
+    return cag_fail_memory(err);
+  p->triangle_capacity = n;
+  return CAG_OK;
 }
 
 static CagStatus push(Plane *p, uint32_t triangle, CagError *err) {
-  if (p->depth == p->stack_capacity) {
-    size_t n = p->stack_capacity ? 2 * p->stack_capacity : 256;
-    CagStatus status = grow(&p->stack, n, sizeof *p->stack, err);
-    if (status) return status;
-    p->stack_capacity = n;
-  }
+  if (!CAG_RESERVE(p->stack, p->stack_capacity, p->depth + 1)) return cag_fail_memory(err);
   p->stack[p->depth++] = triangle;
   return CAG_OK;
 }

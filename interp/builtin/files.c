@@ -10,6 +10,7 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
@@ -124,13 +125,7 @@ static CagValue cell_value(Csv *c) {
 }
 
 static void row_add(Csv *c, CagValue v) {
-  if (c->count == c->capacity) {
-    size_t capacity = c->capacity ? 2 * c->capacity : 16;
-    CagValue *row = cag_realloc(c->row, capacity * sizeof *row);
-    if (!row) cag_vm_out_of_memory(c->r.call->vm);
-    c->row = row;
-    c->capacity = capacity;
-  }
+  if (!CAG_RESERVE(c->row, c->capacity, c->count + 1)) cag_vm_out_of_memory(c->r.call->vm);
   c->row[c->count++] = v;
 }
 
@@ -354,13 +349,7 @@ typedef struct Fields { // held
 } Fields;
 
 static void add_field(Reader *r, Fields *f, CagText *name, CagValue value) {
-  if (f->count == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 8;
-    Field *fields = cag_realloc(f->fields, capacity * sizeof *fields);
-    if (!fields) cag_vm_out_of_memory(r->call->vm);
-    f->fields = fields;
-    f->capacity = capacity;
-  }
+  if (!CAG_RESERVE(f->fields, f->capacity, f->count + 1)) cag_vm_out_of_memory(r->call->vm);
   f->fields[f->count] = (Field){name, value, f->count};
   f->count++;
 }

@@ -1,5 +1,6 @@
 // Convex hulls, curves on surfaces, and what is inside of and how far from shapes.
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/distance/separation.h"
 #include "geom/mesh/hull.h"
@@ -52,9 +53,7 @@ static void release_cloud(void *cloud) { cag_free(((Cloud *)cloud)->points); }
 static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagError *err) {
   if (cloud->n + n > cloud->capacity) {
     const size_t capacity = 2 * (cloud->n + n);
-    CagVec3 *grown = cag_realloc(cloud->points, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    cloud->points = grown;
+    if (!CAG_RESIZE(cloud->points, capacity)) return cag_fail_memory(err);
     cloud->capacity = capacity;
   }
   for (size_t i = 0; i < n; i++) cloud->points[cloud->n++] = points[i];
@@ -194,9 +193,7 @@ static void body_free(Body *b) {
 }
 
 static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
-  CagCurve **grown = cag_realloc(b->curves, (b->curve_count + 1) * sizeof *grown);
-  if (!grown) return cag_fail_memory(err);
-  b->curves = grown;
+  if (!CAG_RESIZE(b->curves, b->curve_count + 1)) return cag_fail_memory(err);
   b->curves[b->curve_count++] = cag_curve_retain(c);
   return cag_parts_add_curve(&b->parts, c, tolerance, err);
 }

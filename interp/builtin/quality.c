@@ -4,6 +4,7 @@
 // transform and exporter knows. The meshes are white, so that viewers which multiply the colors
 // of vertices and material show them as they are.
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/meet/isophote.h"
 #include "geom/meet/value_map.h"
@@ -36,15 +37,9 @@ static Meshes *hold_meshes(CagCall *call) {
 
 // Takes the mesh over.
 static CagStatus add_mesh(Meshes *m, CagMesh *mesh, CagError *err) {
-  if (m->count == m->capacity) {
-    size_t room = m->capacity ? 2 * m->capacity : 8;
-    CagMesh **grown = cag_realloc(m->items, room * sizeof *grown);
-    if (!grown) {
-      cag_mesh_release(mesh);
-      return cag_fail_memory(err);
-    }
-    m->items = grown;
-    m->capacity = room;
+  if (!CAG_RESERVE(m->items, m->capacity, m->count + 1)) {
+    cag_mesh_release(mesh);
+    return cag_fail_memory(err);
   }
   m->items[m->count++] = mesh;
   return CAG_OK;

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 #define DEGREE_MAX 3
@@ -14,9 +15,7 @@
 bool cag_pieces_add(CagPieces *p, const CagVec3 cubic[4]) {
   if (p->count == p->capacity) {
     size_t capacity = p->capacity ? 2 * p->capacity : 8;
-    CagVec3 *points = cag_realloc(p->points, capacity * 4 * sizeof *points);
-    if (!points) return false;
-    p->points = points;
+    if (!CAG_RESIZE(p->points, 4 * capacity)) return false;
     p->capacity = capacity;
   }
   memcpy(p->points + 4 * p->count++, cubic, 4 * sizeof *cubic);

@@ -11,6 +11,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/scene/scene.h"
@@ -110,12 +111,9 @@ static double floor_gap(double radius) {
 }
 
 static CagStatus add_floor(CagScene *s, double z, CagError *err) {
-  CagItem *items = cag_realloc(s->items, (s->item_count + 1) * sizeof *items);
-  if (items) s->items = items;
-  CagMaterial *materials = cag_realloc(s->materials, (s->material_count + 1) * sizeof *materials);
-  if (materials) s->materials = materials;
   char *texts[] = {cag_strdup("studio_floor"), cag_strdup("studio_floor"), cag_strdup("")};
-  if (!items || !materials || !texts[0] || !texts[1] || !texts[2]) {
+  if (!CAG_RESIZE(s->items, s->item_count + 1) ||
+      !CAG_RESIZE(s->materials, s->material_count + 1) || !texts[0] || !texts[1] || !texts[2]) {
     for (int i = 0; i < 3; i++) cag_free(texts[i]);
     return cag_fail_memory(err);
   }
@@ -125,13 +123,13 @@ static CagStatus add_floor(CagScene *s, double z, CagError *err) {
   m.color = FLOOR;
   m.roughness = 1;
   m.ior = 1.2;
-  materials[s->material_count] = m;
-  items[s->item_count++] = (CagItem){.kind = CAG_ITEM_GROUND,
-                                     .name = texts[0],
-                                     .placement = cag_transform_identity(),
-                                     .material = s->material_count++,
-                                     .ground_z = z,
-                                     .ground_size = INFINITY};
+  s->materials[s->material_count] = m;
+  s->items[s->item_count++] = (CagItem){.kind = CAG_ITEM_GROUND,
+                                        .name = texts[0],
+                                        .placement = cag_transform_identity(),
+                                        .material = s->material_count++,
+                                        .ground_z = z,
+                                        .ground_size = INFINITY};
   return CAG_OK;
 }
 

@@ -14,6 +14,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/scene/item_mesh.h"
@@ -50,18 +51,13 @@ static CagStatus reserve(Buffer *b, size_t vertices, size_t triangles, CagError 
                     "the lines need more than the %zu triangles allowed", b->max_triangles);
   while (b->vertices + vertices > b->vertex_room) {
     size_t room = b->vertex_room ? 2 * b->vertex_room : 1024;
-    CagVec3 *p = cag_realloc(b->positions, room * sizeof *p);
-    if (p) b->positions = p;
-    CagVec3 *n = cag_realloc(b->normals, room * sizeof *n);
-    if (n) b->normals = n;
-    if (!p || !n) return cag_fail_memory(err);
+    if (!CAG_RESIZE(b->positions, room) || !CAG_RESIZE(b->normals, room))
+      return cag_fail_memory(err);
     b->vertex_room = room;
   }
   while (b->count + triangles > b->room) {
     size_t room = b->room ? 2 * b->room : 2048;
-    uint32_t *t = cag_realloc(b->triangles, 3 * room * sizeof *t);
-    if (!t) return cag_fail_memory(err);
-    b->triangles = t;
+    if (!CAG_RESIZE(b->triangles, 3 * room)) return cag_fail_memory(err);
     b->room = room;
   }
   return CAG_OK;

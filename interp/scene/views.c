@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/guard.h"
 #include "base/memory.h"
 #include "base/stop.h"
@@ -247,10 +248,8 @@ CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   if (i == VIEW_COUNT)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", -1,
                     "no standard view `%s`", name);
-  CagCamera *cameras = cag_realloc(s->cameras, (s->camera_count + 1) * sizeof *cameras);
   char *copy = cag_strdup(name);
-  if (cameras) s->cameras = cameras;
-  if (!cameras || !copy) {
+  if (!copy || !CAG_RESIZE(s->cameras, s->camera_count + 1)) {
     cag_free(copy);
     return cag_fail_memory(err);
   }

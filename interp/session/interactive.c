@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/session/session.h"
 #include "interp/vm/apply.h"
@@ -34,11 +35,8 @@ static void add_name(CagVm *vm, const char *name, size_t global) {
   }
   if (vm->outer_count == vm->outer_capacity) {
     size_t capacity = vm->outer_capacity ? vm->outer_capacity * 2 : 32;
-    const char **names = cag_realloc(vm->outer_names, capacity * sizeof *names);
-    if (names) vm->outer_names = names;
-    size_t *globals = cag_realloc(vm->outer_globals, capacity * sizeof *globals);
-    if (globals) vm->outer_globals = globals;
-    if (!names || !globals) cag_vm_out_of_memory(vm);
+    if (!CAG_RESIZE(vm->outer_names, capacity) || !CAG_RESIZE(vm->outer_globals, capacity))
+      cag_vm_out_of_memory(vm);
     vm->outer_capacity = capacity;
   }
   vm->outer_names[vm->outer_count] = name;
@@ -107,9 +105,7 @@ static bool evaluate_input(CagVm *vm, void *context) {
   CagModuleUnit *m = vm->modules[k];
   adopt(vm, m);
   m->adopted = true;
-  size_t *inputs = cag_realloc(s->inputs, (s->input_count + 1) * sizeof *inputs);
-  if (!inputs) cag_vm_out_of_memory(vm);
-  s->inputs = inputs;
+  if (!CAG_RESIZE(s->inputs, s->input_count + 1)) cag_vm_out_of_memory(vm);
   if (!set_params(vm, m, s) || !cag_program_run(vm, m, give_value, in)) return false;
   s->inputs[s->input_count++] = k;
   return true;

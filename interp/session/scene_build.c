@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "geom/solid/csg.h"
@@ -39,15 +40,8 @@ typedef struct Said {
 } Said;
 
 static void *grown(Build *b, void *items, size_t count, size_t *capacity, size_t size) {
-  if (count < *capacity) return items;
-  size_t more = *capacity ? 2 * *capacity : 16;
-  void *bigger = cag_realloc(items, more * size);
-  if (!bigger) {
-    b->failed = true;
-    return items;
-  }
-  *capacity = more;
-  return bigger;
+  if (!cag_array_reserve(&items, capacity, count + 1, size)) b->failed = true;
+  return items;
 }
 
 static char *copy_text(Build *b, const char *text) {

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
@@ -86,12 +87,9 @@ void cag_session_free(CagSession *s) {
 // --- Params ---
 
 void cag_session_define(CagSession *s, const char *name, const char *value) {
-  char **names = cag_realloc(s->names, (s->define_count + 1) * sizeof *names);
-  if (names) s->names = names;
-  char **values = cag_realloc(s->values, (s->define_count + 1) * sizeof *values);
-  if (values) s->values = values;
+  const size_t count = s->define_count + 1;
   char *n = cag_strdup(name), *v = cag_strdup(value);
-  if (!names || !values || !n || !v) {
+  if (!n || !v || !CAG_RESIZE(s->names, count) || !CAG_RESIZE(s->values, count)) {
     cag_free(n);
     cag_free(v);
     s->define_lost = true;
@@ -125,12 +123,10 @@ void cag_session_set_loop(CagSession *s, bool loop) { s->loop = loop; }
 static bool add_folder(CagVm *vm, const char *path) {
   char *real = cag_realpath(path);
   if (!real) return errno != ENOMEM; // a missing folder contains no modules
-  char **include = cag_realloc(vm->include, (vm->include_count + 1) * sizeof *include);
-  if (!include) {
+  if (!CAG_RESIZE(vm->include, vm->include_count + 1)) {
     cag_free(real);
     return false;
   }
-  vm->include = include;
   vm->include[vm->include_count++] = real;
   return true;
 }

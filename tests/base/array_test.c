@@ -65,6 +65,28 @@ static void an_array_that_cannot_grow_is_as_it_was(void **state) {
   cag_account_lend(NULL);
 }
 
+static void arrays_that_share_a_capacity_are_resized(void **state) {
+  (void)state;
+  CagAccount a = {.limit = 1000};
+  cag_account_lend(&a);
+  int *numbers = NULL;
+  double(*pairs)[2] = NULL;
+  assert_true(CAG_RESIZE(numbers, 20) && CAG_RESIZE(pairs, 20));
+  numbers[19] = 7;
+  pairs[19][1] = 8;
+  void *same = pairs;
+  assert_true(CAG_RESIZE(numbers, 30));
+  assert_int_equal(numbers[19], 7);
+  assert_false(CAG_RESIZE(pairs, 100));
+  assert_false(CAG_RESIZE(pairs, SIZE_MAX / 8));
+  assert_ptr_equal(pairs, same);
+  assert_true(pairs[19][1] == 8);
+  cag_free(numbers);
+  cag_free(pairs);
+  assert_int_equal(a.used, 0);
+  cag_account_lend(NULL);
+}
+
 static void a_string_takes_bytes_and_formats(void **state) {
   (void)state;
   CagString s = {0};
@@ -106,6 +128,7 @@ int main(void) {
       cmocka_unit_test(an_array_keeps_its_items_as_it_grows),
       cmocka_unit_test(room_for_many_items_is_made_at_once),
       cmocka_unit_test(an_array_that_cannot_grow_is_as_it_was),
+      cmocka_unit_test(arrays_that_share_a_capacity_are_resized),
       cmocka_unit_test(a_string_takes_bytes_and_formats),
       cmocka_unit_test(a_string_that_failed_stays_empty),
   };
