@@ -151,8 +151,8 @@ const CagBuiltin cag_builtins_bsplines[] = {
      "print degree(elevate(bezier([[0, 0], [1, 2], [2, 0]]))) // expect: 3", CURVES, forms},
     {"reduce_degree(C: curve, tolerance: length)", cag_bsplines_reduce_degree, "curve",
      "Returns a curve of one degree less that keeps the ends and is within the tolerance (mm) at "
-     "each parameter. If there is none, the error (tolerance-exceeded) states by how much points "
-     "would move. `deviation` measures the change.",
+     "each parameter. If this is not possible, the error (tolerance-exceeded) states by how much "
+     "points would move. `deviation` measures the change.",
      "c = bezier([[0, 0], [1, 2], [2, 0]])\n"
      "print near(points(reduce_degree(elevate(c), 1e-9)), points(c)) // expect: true",
      CURVES, forms},

@@ -113,8 +113,8 @@ const CagBuiltin cag_builtins_conics[] = {
     {"conic_point(C: conic or curve, x: length, "
      "branch: \"lower\" or \"upper\" = \"lower\"|\"upper\")",
      cag_conics_point_of_conic, "list",
-     "Returns the point of a conic at this x with the smaller or the larger y. It is an error if "
-     "there is none (domain).",
+     "Returns the point of a conic at this x with the smaller or the larger y. If the conic does "
+     "not reach this x, it is an error (domain).",
      "print conic_point(conic([1, 0, 1, 0, 0, -25]), 3, branch: \"upper\") // expect: [3, 4]",
      EQUATIONS, general},
     {"conic_segment(C: conic or curve, x: range of lengths, "

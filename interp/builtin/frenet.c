@@ -311,8 +311,8 @@ const CagBuiltin cag_builtins_frenet[] = {
      CURVES, asked},
     {"osculating_circle(C: curve, t: number or angle)", call_osculating_circle, "record",
      "Returns the osculating circle: its radius, its center, and the circle as a curve that "
-     "starts at C(t) and runs in the direction of C. If the curvature is 0, there is none, which "
-     "is an error (no-normal).",
+     "starts at C(t) and runs in the direction of C. A curvature of 0 is an error "
+     "(no-normal).",
      "print near(osculating_circle(ellipse(2, 1), 0deg).center, [1.5, 0]) // expect: true", CURVES,
      asked},
     {"tangent_line(C: curve, t: number or angle, length: length = 1)", call_tangent_line, "curve",

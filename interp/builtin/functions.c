@@ -373,8 +373,8 @@ const CagBuiltin cag_builtins_functions[] = {
      "[x, y] or [x, y, z]. Derivatives, and with them tangents, lengths, and meshes, are exact: "
      "they are computed by automatic differentiation of the formula. For an angle, they are per "
      "radian. floor, round, sign, searches, and abs at 0 cannot be differentiated "
-     "(not-differentiable). All queries of curves work, except for to_nurbs, since there is no "
-     "exact form.",
+     "(not-differentiable). All queries of curves work, except for to_nurbs, since such a curve "
+     "has no exact NURBS form.",
      "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
      "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
      "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",

@@ -651,8 +651,8 @@ const CagBuiltin cag_builtins_lists[] = {
      "Tests whether all elements x, or f(x), are true. Stops at the first one that is not.",
      "print all([1, 5], x => x > 3), all([]) // expect: false true", 0, FAMILY},
     {"index_of(xs: list or text, x: any value)", call_index_of, "number or none",
-     "Returns the index of the first element that equals x, or the position at which the text x "
-     "begins in a text; none if there is none.",
+     "Returns the index of the first element that equals x, or the position of the text x in a "
+     "text. If x is not found, returns none.",
      "print index_of([5, 6, 7], 6), index_of(\"spring\", \"ring\"), index_of([1], 2) // expect: 1 "
      "2 none",
      0, FAMILY},

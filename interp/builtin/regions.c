@@ -312,7 +312,7 @@ const CagBuiltin cag_builtins_regions[] = {
      REGIONS, sets},
     {"intersection(R: region, ...)", intersect, "region",
      "Returns the points that are in all regions, like `A & B`. Operands are as for `union`. If "
-     "there are none, the region is empty (see `is_empty`).",
+     "no point is in all of them, the region is empty (see `is_empty`).",
      "lens = region(circle(1)) & region(circle(1, center: [1, 0]))\n"
      "print near(area(lens), 2 * pi / 3 - sqrt(3) / 2) // expect: true",
      REGIONS, sets},

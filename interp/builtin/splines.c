@@ -187,8 +187,8 @@ const CagBuiltin cag_builtins_splines[] = {
      "Describes the plane segment from P to Q with tangents V and W over 0..1: the chord; the "
      "lengths of the tangents k0 and k1, as multiples of the chord ratio0 and ratio1, and their "
      "projections on the chord projection0 and projection1; within_limit (neither is longer than "
-     "3 chords); and the parameters of inflections, of a cusp, and of the double point of a loop "
-     "(none if there is none).",
+     "3 chords); and the parameters of inflections, of a cusp, and of the double point of a loop, "
+     "each of which is none if the segment does not have it.",
      "s = hermite_shape([0, 0], [1, 0], [3, 3], [3, -3])\n"
      "print s.cusp, s.loop, s.within_limit // expect: 0.5 none false",
      LISTS, segments},

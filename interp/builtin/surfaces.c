@@ -217,7 +217,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"join_surfaces(A: surface, B: surface, tolerance: number = 1e-9)", cag_surfaces_join_surfaces,
      "surface",
      "Joins two surfaces with a common edge. u runs over the first, then over the second. The "
-     "tolerance is a fraction of their size. If there is no common edge, it is an error "
+     "tolerance is a fraction of their size. If they have no common edge, it is an error "
      "(edges-do-not-match).",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "parts = split(s, u: 0.5)\n"
@@ -378,7 +378,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "second at u = 0), but each ruling lies in one plane with the tangents at both ends, so the "
      "surface can be unrolled. The rulings start as near to the starts of the curves as "
      "possible, and extend as far as both curves have them. v in 0..1 is the fraction of the "
-     "first curve's parameter range. If there are none, it is an error (no-rulings).",
+     "first curve's parameter range. If such rulings do not exist, it is an error (no-rulings).",
      "s = developable(circle(1), translate(ellipse(2, 1), [0, 0, 3]))\n"
      "print is_developable(s), is_developable(ruled(circle(1), translate(ellipse(2, 1), [0, 0, "
      "3]))) "
@@ -528,7 +528,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "Returns a record about fit_surface: the surface; the parameters u and v of each point; the "
      "residuals (surface minus data); the rms and largest of their lengths (mm); the rounds in "
      "which parameters moved; and the planes of control points by u or v, in the form in which "
-     "they can be given again (none if there are none).",
+     "fit_surface accepts them, or none if the fit did not use planes.",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print fit_surface_report(grid, 2, [3, 4], \"uniform\").largest < 1e-12 // expect: true",
      LISTS, nets},
@@ -612,7 +612,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"classify(Q: quadric or list of 10 numbers or list of 4 rows)", cag_surfaces_classify,
      "record",
      "Classifies a quadric, sphere, ten numbers, or four rows: `class` (17 kinds, including "
-     "imaginary ones), the canonical `frame`, the `center` (none if there is none), the "
+     "imaginary ones), the canonical `frame`, the `center` (or none), the "
      "`semi_axes`, and the ranks `rank3` and `rank4` of its matrices.",
      "print classify([1, 1, 1, 0, 0, 0, 0, 0, 0, 4]).class // expect: imaginary-ellipsoid",
      SURFACES | CAG_TAKES(SOLID) | CAG_TAKES(GROUP) | CAG_TAKES(LIST), quadrics},

@@ -210,8 +210,8 @@ const CagBuiltin cag_builtins_transforms[] = {
      "print quaternion_of(identity) // expect: [1, 0, 0, 0]", OF_TRANSFORM, family},
     {"classify(T: transform)", cag_transforms_classify, "record",
      "Classifies a transform. `class` is \"rigid\", \"mirror\", \"similarity\", \"affine\", or "
-     "\"projective\". `scale` is its factor. `axis` and `angle` describe its rotation (none if "
-     "there is none). `fixed` is \"all\", \"plane\", \"line\", \"point\", or \"none\", with a "
+     "\"projective\". `scale` is its factor. `axis` and `angle` describe its rotation, or are "
+     "none if it does not rotate. `fixed` is \"all\", \"plane\", \"line\", \"point\", or \"none\", with a "
      "`fixed_point`, and with `fixed_direction`, the direction of a line or the normal of a "
      "plane.",
      "c = classify(rotate(Z, 30deg, about: [1, 0, 0]))\n"
