@@ -117,7 +117,7 @@ static double sum_of_sizes(const double *x, size_t n) {
 CagStatus cag_lu_condition(const double *lu, size_t n, const size_t *pivots, double norm,
                            double *out, CagError *err) {
   enum { STEPS_MOST = 5 };
-  double *x = cag_malloc(2 * n * sizeof *x), *z = x + n, largest = 0;
+  double *x = cag_malloc(2 * n * sizeof *x), *z = x ? x + n : NULL, largest = 0;
   if (!x) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < n; i++) x[i] = 1 / (double)n;

@@ -35,7 +35,8 @@ static CagStatus evaluate_sheared(const TessTrial *t, const double *us, size_t n
   const bool along_v = t->along == 1;
   const size_t n = along_v ? nv : nu, lines = along_v ? nu : nv;
   double *shifted = cag_malloc((n + 1) * sizeof *shifted);
-  CagVec3 *line = cag_malloc((2 * n + 1) * sizeof *line), *line_normals = normals ? line + n : NULL;
+  CagVec3 *line = cag_malloc((2 * n + 1) * sizeof *line),
+          *line_normals = line && normals ? line + n : NULL;
   CagStatus status = shifted && line ? CAG_OK : cag_fail_memory(err);
   for (size_t k = 0; status == CAG_OK && k < lines; k++) {
     const double *across = along_v ? us + k : vs + k, *along = along_v ? vs : us;
