@@ -48,6 +48,11 @@ GEOM_SRC   := $(shell find geom -name '*.c' | sort)
 INTERP_SRC := $(shell find interp -name '*.c' | sort)
 MAIN_SRC   := cli/main.c
 CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
+# The documentation lists the families of built-in functions in this order.
+ROWS       := $(patsubst %,interp/builtin/%.rows,constants numbers angles vectors lists texts records control \
+              random calculus matrices files formula transforms curves regions bsplines functions frenet hulls \
+              conics splines surfaces tensors sections meetings triangles solids checks mesh_files figures \
+              quality robots robot_files inverse scene)
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 DOCUMENTS  := $(filter-out docs/architecture.md docs/contributing.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))
 
@@ -55,7 +60,7 @@ obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC))
-INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
+INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
 CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
 
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers install deb editors
@@ -85,6 +90,15 @@ $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
+# The built-in functions. Their prototypes change only when a function is added or removed.
+$(BUILD)/gen/builtins.c: $(ROWS) tools/rows.awk
+	@mkdir -p $(@D)
+	LC_ALL=C awk -f tools/rows.awk $(ROWS) > $@.tmp && mv $@.tmp $@
+$(BUILD)/gen/builtin_functions.h: $(ROWS) tools/rows.awk
+	@mkdir -p $(@D)
+	LC_ALL=C awk -v header=1 -f tools/rows.awk $(ROWS) > $@.tmp
+	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
+$(call obj,$(wildcard interp/builtin/*.c)) $(BUILD)/obj/gen/builtins.o: | $(BUILD)/gen/builtin_functions.h
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
 	@echo "cc $<"

@@ -7,7 +7,7 @@
 #include "geom/basis/basis_table.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "interp/builtin/bsplines.h"
+#include "interp/builtin/curves.h"
 #include "interp/builtin/support.h"
 
 static bool read_nurbs(CagCall *call, const CagNurbs **out) {

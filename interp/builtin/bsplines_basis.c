@@ -5,7 +5,7 @@
 
 #include "geom/basis/basis_table.h"
 #include "geom/basis/bernstein.h"
-#include "interp/builtin/bsplines.h"
+#include "interp/builtin/curves.h"
 
 static bool is_set(CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;

@@ -1,9 +1,9 @@
 // The table of all built-ins.
 //
-// Families declare arrays of rows; here they are gathered by name, so that the rows of one name
-// stand together in the order of the families, and their signatures are parsed. Both happen once,
-// when the table is first asked for, and nothing of it changes afterwards, so that any number of
-// machines may share it. The order of names is that of their first rows.
+// cag_builtins has the rows of all families, which tools/rows.awk makes from interp/builtin/*.rows.
+// Here the rows of one name are brought together, and their signatures are parsed. Both happen once,
+// when the table is first used, and nothing of it changes afterwards, so that any number of machines
+// may share it. The order of names is that of their first rows.
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -16,44 +16,7 @@
 #include "interp/vm/jet_builtins.h"
 #include "interp/vm/signature.h"
 
-// All families, in the order in which the documentation lists them.
-// clang-format off
-#define FAMILIES(X) \
-  X(constants) X(numbers) X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) \
-  X(calculus) X(matrices) X(files) X(formula) X(transforms) X(curves) X(regions) X(bsplines) X(functions) X(frenet) X(hulls) X(conics) X(splines) X(surfaces) X(tensors) X(sections) X(meetings) X(triangles) X(solids) X(checks) X(mesh_files) X(figures) X(quality) X(robots) X(robot_files) X(inverse) X(scene)
-// clang-format on
-
-#define X(family) extern const CagBuiltin cag_builtins_##family[];
-FAMILIES(X)
-#undef X
-
 // --- Constants ---
-
-const CagBuiltin cag_builtins_constants[] = {
-    {"X", NULL, "list", "The unit vector along x, [1, 0, 0].",
-     "print cross(X, Y) == Z // expect: true", 0, "Constants"},
-    {"Y", NULL, "list", "The unit vector along y, [0, 1, 0].", "print 2 * Y // expect: [0, 2, 0]",
-     0, "Constants"},
-    {"Z", NULL, "list", "The unit vector along z, [0, 0, 1], which points up.",
-     "print Z.z // expect: 1", 0, "Constants"},
-    {"origin", NULL, "list", "The point [0, 0, 0].", "print norm(origin) // expect: 0", 0,
-     "Constants"},
-    {"identity", NULL, "transform", "The identity transform.",
-     "print identity * [1, 2, 3] // expect: [1, 2, 3]", 0, "Constants"},
-    {"pi", NULL, "number",
-     "The ratio of a circle's circumference to its diameter. An angle of pi radians is pi * rad.",
-     "print pi * rad // expect: 180deg", 0, "Constants"},
-    {"tau", NULL, "number", "Two pi, the circumference of the unit circle.",
-     "print tau == 2 * pi // expect: true", 0, "Constants"},
-    {"inf", NULL, "number", "Infinity, for unbounded ranges such as 0..inf.",
-     "print 1e300 < inf // expect: true", 0, "Constants"},
-    {"deg", NULL, "angle", "An angle of one degree. Write n * deg for n degrees.",
-     "print 3 * 15 * deg // expect: 45deg", 0, "Constants"},
-    {"rad", NULL, "angle", "An angle of one radian. Write x * rad for x radians.",
-     "print pi / 2 * rad // expect: 90deg", 0, "Constants"},
-    {"turn", NULL, "angle", "An angle of one full turn, 360deg.", "print turn / 8 // expect: 45deg",
-     0, "Constants"},
-    {0}};
 
 static CagValue make_identity(CagVm *vm) {
   CagTransform t = cag_transform_identity();
@@ -116,13 +79,6 @@ static size_t find_name(const char *name) {
   return (size_t)-1;
 }
 
-static const CagBuiltin *const families[] = {
-#define X(family) cag_builtins_##family,
-    FAMILIES(X)
-#undef X
-};
-#define FAMILY_COUNT (sizeof families / sizeof *families)
-
 // Numbers the names in the order of their first rows and counts the rows of each.
 static size_t *number_names(CagSignature *signatures) {
   size_t *name_of = table_alloc(table.row_count, sizeof *name_of);
@@ -142,17 +98,10 @@ static size_t *number_names(CagSignature *signatures) {
 
 static void build_table(void *context) {
   (void)context;
-  // Collect the rows in the order of the families.
-  for (size_t f = 0; f < FAMILY_COUNT; f++)
-    for (const CagBuiltin *b = families[f]; b->signature; b++) table.row_count++;
-  const CagBuiltin **all = table_alloc(table.row_count, sizeof *all);
+  while (cag_builtins[table.row_count].signature) table.row_count++;
   CagSignature *parsed = table_alloc(table.row_count, sizeof *parsed);
-  size_t n = 0;
-  for (size_t f = 0; f < FAMILY_COUNT; f++)
-    for (const CagBuiltin *b = families[f]; b->signature; b++) {
-      cag_signature_parse(&parsed[n], b->signature, &table_arena);
-      all[n++] = b;
-    }
+  for (size_t r = 0; r < table.row_count; r++)
+    cag_signature_parse(&parsed[r], cag_builtins[r].signature, &table_arena);
   table.names = table_alloc(table.row_count, sizeof *table.names);
   size_t *name_of = number_names(parsed);
   // Group by name.
@@ -169,7 +118,7 @@ static void build_table(void *context) {
   size_t *filled = table_alloc(table.name_count, sizeof *filled);
   for (size_t r = 0; r < table.row_count; r++) {
     size_t to = table.names[name_of[r]].first + filled[name_of[r]]++;
-    table.rows[to] = *all[r];
+    table.rows[to] = cag_builtins[r];
     table.rows[to].signature = parsed[r].text;
     table.signatures[to] = parsed[r];
   }

@@ -10,7 +10,6 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/jet.h"
 
-static const char FAMILY[] = "Calculus";
 static const double DEGREES_PER_RADIAN = 57.29577951308232;
 
 // --- The function under study ---
@@ -375,7 +374,7 @@ static bool integrate(Integrand *g, double sign, CagValue *result) {
   return good;
 }
 
-static bool call_integrate(CagCall *call, CagValue *result) {
+bool cag_calculus_integrate(CagCall *call, CagValue *result) {
   Integrand g = {0};
   if (!read_subject(call, &g.subject)) return false;
   double sign = 1;
@@ -482,8 +481,8 @@ static bool least(CagCall *call, double sign, CagValue *result) {
   *result = cag_list_values(call->vm, pair, 2);
   return true;
 }
-static bool call_minimize(CagCall *call, CagValue *result) { return least(call, 1, result); }
-static bool call_maximize(CagCall *call, CagValue *result) { return least(call, -1, result); }
+bool cag_calculus_minimize(CagCall *call, CagValue *result) { return least(call, 1, result); }
+bool cag_calculus_maximize(CagCall *call, CagValue *result) { return least(call, -1, result); }
 
 // --- find_root ---
 
@@ -542,7 +541,7 @@ static bool brent_root(const Subject *f, double a, double fa, double b, double f
                        STEPS_MOST);
 }
 
-static bool call_find_root(CagCall *call, CagValue *result) {
+bool cag_calculus_find_root(CagCall *call, CagValue *result) {
   Subject f;
   double fa, fb, root;
   if (!read_finite_subject(call, &f)) return false;
@@ -554,31 +553,3 @@ static bool call_find_root(CagCall *call, CagValue *result) {
   *result = parameter(&f, root + 0.0);
   return true;
 }
-
-const CagBuiltin cag_builtins_calculus[] = {
-    {"integrate(f: function x => number, range: range of numbers or angles)", call_integrate,
-     "number or list",
-     "Returns the integral of a function whose values are numbers or vectors, to about 11 "
-     "digits. The ends of the range may be infinite. Over a range of angles, f takes angles, and "
-     "the integral is with respect to radians. f is not evaluated at the ends. It is an error if "
-     "the integral does not converge.",
-     "print near(integrate(x => x^2, 0..3), 9), near(integrate(x => exp(-x^2), -inf..inf), "
-     "sqrt(pi)) // expect: true true",
-     0, FAMILY},
-    {"minimize(f: function x => number, range: range of numbers or angles)", call_minimize, "list",
-     "Returns [x, f(x)] at the minimum of f over a finite range. The four lowest of 129 samples "
-     "are refined by Brent's method, so a minimum narrower than 1/128 of the range may be "
-     "missed. x is accurate to about 8 digits, the limit for a minimum.",
-     "m = minimize(x => (x - 2)^2 + 1, 0..5)\nprint near(m, [2, 1], 1e-6) // expect: true", 0,
-     FAMILY},
-    {"maximize(f: function x => number, range: range of numbers or angles)", call_maximize, "list",
-     "Returns [x, f(x)] at the maximum of f over a finite range. Works like minimize.",
-     "m = maximize(a => sin(a), 0deg..180deg)\nprint near(m[0], 90deg, 1e-5), near(m[1], 1) // "
-     "expect: true true",
-     0, FAMILY},
-    {"find_root(f: function x => number, range: range of numbers or angles)", call_find_root,
-     "number or angle",
-     "Returns the x in a range at which f(x) is 0, to machine precision, by Brent's method. f "
-     "must have different signs at the ends of the range.",
-     "print near(find_root(x => x^2 - 2, 0..2), sqrt(2)) // expect: true", 0, FAMILY},
-    {0}};

@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
-#include "interp/builtin/bsplines.h"
+#include "interp/builtin/curves.h"
 
 bool cag_curves_reverse(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;

@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "geom/curve/intersect.h"
 #include "geom/meet/meet_curve.h"
-#include "interp/builtin/bsplines.h"
+#include "interp/builtin/curves.h"
 
 static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagBuilder *list) {
   static const char *const names[] = {"point", "t", "t2", "multiplicity"};

@@ -4,7 +4,7 @@
 // the end of its direction. So every transform moves it as it moves shapes. What it says stands
 // in its style.
 
-#include "interp/builtin/figures.h"
+#include "interp/builtin/shapes.h"
 
 #include "interp/scene/scene.h"
 
@@ -97,32 +97,3 @@ bool cag_figures_surface_normals(CagCall *call, CagValue *result) {
   }
   return give_group(call, list, result);
 }
-
-// --- The table ---
-
-static const char figures[] = "Figures";
-
-const CagBuiltin cag_builtins_figures[] = {
-    {"label(P: point, text: text, place: text = \"right\", "
-     "mark: \"none\" or \"dot\" or \"circle\" or \"cross\" or \"arrow\" = \"none\", "
-     "size: length = none, along: vector = none)",
-     cag_figures_label, "mesh",
-     "Returns a text label at P. It appears in .svg and .json; other formats and pictures omit "
-     "it. It moves with transforms, but keeps its size, `size` mm (none: by the size of the "
-     "picture), and has the color of its shape. `place` is the position of the text: right, "
-     "left, above, below, center, above_right, above_left, below_right, or below_left. `mark` is "
-     "drawn at P: none, dot, circle (filled white), cross, or arrow (an arrowhead along V, with "
-     "its tip at P). With `along`, the text runs in this direction. Names are set in italics, "
-     "with subscripts after a _: a letter that is not followed by another letter, as in P_0 and "
-     "C(t).",
-     "show circle(10), label([10, 0], \"P_0\", mark: \"dot\")\n"
-     "print bounds(translate([1, 2, 0]) * label([3, 4], \"Q\")).min // expect: [4, 6, 0]",
-     CAG_TAKES(LIST), figures},
-    {"hedgehog(S: surface, n: integer = 12, scale: number = none)", cag_figures_surface_normals,
-     "group",
-     "Returns the normals of a surface as lines at n by n points. Their length is `scale` mm "
-     "(none: by the size of S; a negative scale points to the other side).",
-     "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
-     "print len(hedgehog(s, 3).items), bounds(hedgehog(s, scale: -3)).size.z // expect: 9 3",
-     CAG_TAKES(SURFACE), figures},
-    {0}};

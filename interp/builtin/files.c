@@ -15,8 +15,6 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-static const char FAMILY[] = "Files";
-
 // --- Reading files ---
 
 typedef struct Reader {
@@ -71,7 +69,7 @@ static bool reader_open(CagCall *call, Reader *r) {
   return check_utf8(r);
 }
 
-static bool call_read_text(CagCall *call, CagValue *result) {
+bool cag_files_read_text(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
   *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
@@ -240,7 +238,7 @@ static bool read_separator(CagCall *call, char *out) {
   return good || cag_fail_value(call, 1, "one character, such as \",\" \";\" \"\\t\"");
 }
 
-static bool call_read_csv(CagCall *call, CagValue *result) {
+bool cag_files_read_csv(CagCall *call, CagValue *result) {
   bool found, header = false, asked = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
   Csv *c = csv_new(call);
@@ -473,7 +471,7 @@ static bool read_json_value(Reader *r, int depth, CagValue *out) {
   return read_json_number(r, out);
 }
 
-static bool call_read_json(CagCall *call, CagValue *result) {
+bool cag_files_read_json(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
   if (!read_json_value(&r, 0, result)) return false;
@@ -564,33 +562,9 @@ static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
   }
 }
 
-static bool call_json(CagCall *call, CagValue *result) {
+bool cag_files_json(CagCall *call, CagValue *result) {
   CagString *s = cag_held_string(call);
   if (!write_json(call, s, call->values[0], 0)) return false;
   *result = cag_text_from_string(call->vm, s);
   return true;
 }
-
-const CagBuiltin cag_builtins_files[] = {
-    {"read_csv(path: text, separator: text = \",\", header: bool = none)", call_read_csv, "list",
-     "Reads a table from a text file: a list of records if the table has a header, otherwise a "
-     "list of lists. With header: none, the first row is a header if it contains no number. "
-     "Cells that look like numbers become numbers, and empty cells become none. Quoted cells may "
-     "contain separators and line breaks. The file must be in the script's folder, below it, or "
-     "on the module path.",
-     "rows = attempt(() => read_csv(\"none.csv\"), err => err.reason)\nprint rows // expect: file",
-     0, FAMILY},
-    {"read_json(path: text)", call_read_json, "any",
-     "Reads a JSON file. Objects become records, arrays become lists, and null becomes none. The "
-     "file must be in the script's folder, below it, or on the module path.",
-     "print attempt(() => read_json(\"none.json\"), err => err.code) // expect: E0317", 0, FAMILY},
-    {"read_text(path: text)", call_read_text, "text",
-     "Reads a UTF-8 text file. The file must be in the script's folder, below it, or on the "
-     "module path.",
-     "print attempt(() => read_text(\"none.txt\"), err => err.code) // expect: E0317", 0, FAMILY},
-    {"json(x: any value)", call_json, "text",
-     "Returns x as JSON text. Records become objects, none becomes null, numbers are written in "
-     "their shortest form, angles as degrees, and transforms as rows.",
-     "print json({a: 1, b: [true, none, \"x\"]}) // expect: {\"a\": 1, \"b\": [true, null, \"x\"]}",
-     0, FAMILY},
-    {0}};

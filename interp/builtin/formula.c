@@ -20,8 +20,6 @@
 
 #include "interp/builtin/support.h"
 
-static const char FAMILY[] = "Formulas";
-
 // Functions of formulas: X(name, fewest arguments, most, takes radians, gives radians). They are
 // built-ins of the same name.
 #define MANY 100
@@ -338,7 +336,7 @@ static bool check_parameter(CagCall *call, const CagList *names, size_t i) {
       why);
 }
 
-static bool call_formula(CagCall *call, CagValue *result) {
+bool cag_formula_formula(CagCall *call, CagValue *result) {
   const char *text;
   CagList *names;
   if (!cag_arg_text(call, 0, &text) || !cag_arg_list(call, 1, &names)) return false;
@@ -356,14 +354,3 @@ static bool call_formula(CagCall *call, CagValue *result) {
   cag_string_check(call->vm, p.out);
   return cag_vm_compile_lambda(call->vm, p.out->bytes, result);
 }
-
-const CagBuiltin cag_builtins_formula[] = {
-    {"formula(text: text, parameters: list of texts)", call_formula, "function",
-     "Compiles a formula given as text to a function of these parameters. A formula may contain "
-     "numbers, + - * / % ^, parentheses, pi, tau, and the functions sin cos tan asin acos atan "
-     "atan2 sinh cosh tanh asinh acosh atanh exp ln log10 log2 sqrt cbrt abs sign floor ceil "
-     "round hypot min max. Trigonometric functions work in radians.",
-     "f = formula(\"a*cos(t)\", [\"a\", \"t\"])\nprint f(2, pi) // expect: -2\nprint f(t: 0, a: 3) "
-     "// expect: 3",
-     0, FAMILY},
-    {0}};

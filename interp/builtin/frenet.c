@@ -8,8 +8,6 @@
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
 
-#define CURVES CAG_TAKES(CURVE)
-
 static bool read_at(CagCall *call, CagCurve **c, double *t) {
   return cag_arg_curve(call, 0, c) &&
          cag_arg_parameter(call, 1, (*c)->angular, (*c)->start, (*c)->end, false, t);
@@ -23,7 +21,7 @@ static CagValue rows_value(CagVm *vm, double m[3][3]) {
 
 // --- Frames ---
 
-static bool call_frenet_of(CagCall *call, CagValue *result) {
+bool cag_frenet_frenet_of(CagCall *call, CagValue *result) {
   static const char *const names[] = {"speed",     "tangent", "normal", "binormal",
                                       "curvature", "torsion", "radius"};
   CagVec3 *given, d[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -57,7 +55,7 @@ static bool fail_no_normal(CagCall *call) {
   return cag_fail_geometry(call, &err);
 }
 
-static bool call_frame_derivative(CagCall *call, CagValue *result) {
+bool cag_frenet_frame_derivative(CagCall *call, CagValue *result) {
   static const char *const names[] = {"by_length", "by_parameter", "tangent", "normal", "binormal"};
   CagCurve *c;
   CagFrenet f;
@@ -94,7 +92,7 @@ static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
   return true;
 }
 
-static bool call_triad_derivative(CagCall *call, CagValue *result) {
+bool cag_frenet_triad_derivative(CagCall *call, CagValue *result) {
   CagVec3 m[3], dm[3];
   double rates[3][3];
   CagError err;
@@ -107,7 +105,7 @@ static bool call_triad_derivative(CagCall *call, CagValue *result) {
 
 // --- At one parameter ---
 
-static bool call_osculating_circle(CagCall *call, CagValue *result) {
+bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
   CagCurve *c, *circle;
   CagFrenet f;
   CagError err;
@@ -137,7 +135,7 @@ static bool call_osculating_circle(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_tangent_line(CagCall *call, CagValue *result) {
+bool cag_frenet_tangent_line(CagCall *call, CagValue *result) {
   CagCurve *c, *line;
   CagVec3 p, v;
   CagError err;
@@ -152,7 +150,7 @@ static bool call_tangent_line(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_plane_contact(CagCall *call, CagValue *result) {
+bool cag_frenet_plane_contact(CagCall *call, CagValue *result) {
   static const char *const names[] = {"coefficients", "order", "before", "after", "crosses"};
   CagCurve *c;
   CagVec3 normal;
@@ -190,7 +188,7 @@ static void free_special_points(void *s) {
   cag_free(s);
 }
 
-static bool call_special_points(CagCall *call, CagValue *result) {
+bool cag_frenet_special_points(CagCall *call, CagValue *result) {
   static const char *const names[] = {"singular", "straightening", "flattening",
                                       "still",    "straight",      "planar"};
   CagCurve *c;
@@ -210,7 +208,7 @@ static bool call_special_points(CagCall *call, CagValue *result) {
 
 // --- Change of the parameter ---
 
-static bool call_chain_derivatives(CagCall *call, CagValue *result) {
+bool cag_frenet_chain_derivatives(CagCall *call, CagValue *result) {
   CagVec3 *d, out[CAG_MAX_DERIVATIVE];
   const double *f;
   size_t n, m;
@@ -228,7 +226,7 @@ static bool call_chain_derivatives(CagCall *call, CagValue *result) {
 
 // --- Helices ---
 
-static bool call_circular_vectors(CagCall *call, CagValue *result) {
+bool cag_frenet_circular_vectors(CagCall *call, CagValue *result) {
   static const char *const names[] = {"e", "g"};
   double degrees, s, c;
   if (!cag_arg_degrees(call, 0, &degrees)) return false;
@@ -239,7 +237,7 @@ static bool call_circular_vectors(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_helix_motion(CagCall *call, CagValue *result) {
+bool cag_frenet_helix_motion(CagCall *call, CagValue *result) {
   static const char *const names[] = {"point", "velocity", "angle",     "rise",
                                       "pitch", "length",   "curvature", "torsion"};
   double a, turning, v, time;
@@ -267,7 +265,7 @@ static bool call_helix_motion(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_constant_curve(CagCall *call, CagValue *result) {
+bool cag_frenet_constant_curve(CagCall *call, CagValue *result) {
   static const char *const names[] = {"kind", "radius", "rise", "pitch"};
   double k, w;
   if (!cag_arg_finite(call, 0, &k) || !cag_arg_finite(call, 1, &w)) return false;
@@ -288,78 +286,3 @@ static bool call_constant_curve(CagCall *call, CagValue *result) {
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
-
-static const char asked[] = "Curves: queries";
-static const char theory[] = "Curves: differential geometry";
-
-const CagBuiltin cag_builtins_frenet[] = {
-    {"special_points(C: curve)", call_special_points, "record",
-     "Returns the parameters at which the curve is singular (its first derivative is 0), "
-     "straightening (its curvature is 0), or flattening (its torsion is 0). Each parameter is in "
-     "the first list that applies. Pieces between knots and corners on which this holds "
-     "everywhere are returned as ranges: still, straight, and planar.",
-     "s = special_points(curve(t => [t, t^3], -1..1))\n"
-     "print near(s.straightening, [0], 1e-9), s.singular, s.planar // expect: true [] [-1..1]",
-     CURVES, asked},
-    {"plane_contact(C: curve, t: number or angle, normal: vector)", call_plane_contact, "record",
-     "Describes how the curve meets the plane through C(t) with this normal: the coefficients "
-     "[c1, c2, c3] of its signed distance c1 h + c2 h^2 + c3 h^3 + ... at t + h, the order of "
-     "contact (0: it crosses at an angle; 1: tangent; 2: osculating; inf: it lies in the plane), "
-     "the side before and after (-1, 0, or 1), and whether it crosses.",
-     "c = curve(t => [t, t^2, t^3], -1..1)\n"
-     "print plane_contact(c, 0, Y).order, plane_contact(c, 0, Z).crosses // expect: 1 true",
-     CURVES, asked},
-    {"osculating_circle(C: curve, t: number or angle)", call_osculating_circle, "record",
-     "Returns the osculating circle: its radius, its center, and the circle as a curve that "
-     "starts at C(t) and runs in the direction of C. A curvature of 0 is an error "
-     "(no-normal).",
-     "print near(osculating_circle(ellipse(2, 1), 0deg).center, [1.5, 0]) // expect: true", CURVES,
-     asked},
-    {"tangent_line(C: curve, t: number or angle, length: length = 1)", call_tangent_line, "curve",
-     "Returns the line from C(t) along the tangent, of this length. A negative length extends "
-     "backward.",
-     "print end_point(tangent_line(bezier([[0, 0], [1, 0], [2, 2]]), 0, 3)) // expect: [3, 0]",
-     CURVES, asked},
-    {"frame_derivative(C: curve, t: number or angle)", call_frame_derivative, "record",
-     "Returns how the Frenet frame rotates: the derivatives of tangent, normal, and binormal "
-     "with respect to arc length, and the skew-symmetric matrices by_length and by_parameter of "
-     "their coefficients in the frame.",
-     "f = frame_derivative(circle(2), 0deg)\n"
-     "print near(f.by_length, [[0, 0.5, 0], [-0.5, 0, 0], [0, 0, 0]]) // expect: true",
-     CURVES, asked},
-    {"frenet_of(derivatives: list of vectors)", call_frenet_of, "record",
-     "Returns the Frenet frame of a curve with these derivatives of order 1, 2, and optionally "
-     "3: the speed, tangent, normal, binormal, curvature, torsion, and radius of curvature. "
-     "Fields that are undefined are none. A first derivative of 0 is an error (singular-point).",
-     "print frenet_of([[2, 0, 0], [0, 2, 0], [0, 0, 3]]).curvature // expect: 0.5", CAG_TAKES_LISTS,
-     theory},
-    {"triad_derivative(triad: list of 3 vectors, derivatives: list of vectors)",
-     call_triad_derivative, "list",
-     "For three rotating orthonormal vectors, returns the skew-symmetric matrix whose rows are "
-     "the coefficients of their derivatives in the vectors themselves.",
-     "print triad_derivative([X, Y, Z], [2 * Y, -2 * X, [0, 0, 0]]) // expect: [[0, 2, 0], [-2, 0, "
-     "0], [0, 0, 0]]",
-     CAG_TAKES_LISTS, theory},
-    {"chain_derivatives(derivatives: list of vectors, by: list of numbers)", call_chain_derivatives,
-     "list",
-     "Returns the derivatives of order 1, 2, ... of C(t(u)) with respect to u, from those of C "
-     "with respect to t and those of t with respect to u. Both lists have the same length.",
-     "print chain_derivatives([[1, 2], [0, 4]], [2, 3]) // expect: [[2, 4], [3, 22]]",
-     CAG_TAKES_LISTS, theory},
-    {"circular_vectors(t: angle)", call_circular_vectors, "record",
-     "Returns the rotating unit vectors e = [cos t, sin t, 0] and its derivative g = [-sin t, "
-     "cos t, 0].",
-     "print circular_vectors(90deg) // expect: {e: [0, 1, 0], g: [-1, 0, 0]}", 0, theory},
-    {"helix_motion(radius: length, turning: angle, speed: number, time: number)", call_helix_motion,
-     "record",
-     "Describes a point that starts at [radius, 0, 0], rotates about z by the angle `turning` "
-     "per second, and rises at this speed: its point, velocity, angle of rotation, rise per "
-     "radian, pitch per turn, distance traveled, curvature, and torsion.",
-     "m = helix_motion(2, 90deg, 3, 1)\nprint m.point, m.angle // expect: [0, 2, 3] 90deg", 0,
-     theory},
-    {"constant_curve(curvature: curvature, torsion: curvature)", call_constant_curve, "record",
-     "Returns the curve of constant curvature and torsion: its kind (\"line\", \"circle\", or "
-     "\"helix\"), radius, rise per radian, and pitch per turn, as `helix` takes it.",
-     "print constant_curve(0.25, 0.25).radius, constant_curve(0.4, 0).kind // expect: 2 circle", 0,
-     theory},
-    {0}};

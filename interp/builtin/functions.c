@@ -177,7 +177,7 @@ static bool check_finite_range(CagCall *call, int argument, double a, double b) 
   return (isfinite(a) && isfinite(b)) || cag_fail_value(call, argument, "a range with finite ends");
 }
 
-static bool call_curve(CagCall *call, CagValue *result) {
+bool cag_functions_curve(CagCall *call, CagValue *result) {
   CagValue function;
   double a, b;
   bool angle;
@@ -261,7 +261,7 @@ static CagStatus equations_eval(void *context, double s, int order, double *curv
   return cag_vm_call_back(vm, answer_equation, &q) ? CAG_OK : fail_callback(vm, err);
 }
 
-static bool call_natural_curve(CagCall *call, CagValue *result) {
+bool cag_functions_natural_curve(CagCall *call, CagValue *result) {
   CagValue curvature, torsion = cag_none();
   double length;
   CagTransform frame = cag_transform_identity();
@@ -339,7 +339,7 @@ static CagStatus surface_row(void *context, double u, const double *vs, size_t n
   return cag_vm_call_back(f->vm, answer_surface, &q) ? CAG_OK : fail_callback(f->vm, err);
 }
 
-static bool call_surface(CagCall *call, CagValue *result) {
+bool cag_functions_surface(CagCall *call, CagValue *result) {
   CagValue function;
   double range[2][2] = {{0, 1}, {0, 1}};
   CagError err;
@@ -364,39 +364,3 @@ static bool call_surface(CagCall *call, CagValue *result) {
   *result = cag_surface_value(call->vm, s);
   return true;
 }
-
-#define FUNCTIONS (CAG_TAKES(CLOSURE) | CAG_TAKES(BUILTIN) | CAG_TAKES(CURVE) | CAG_TAKES(SURFACE))
-
-const CagBuiltin cag_builtins_functions[] = {
-    {"curve(f: function t => point, range: range of numbers or angles)", call_curve, "curve",
-     "Returns the curve of the points f(t), with t in a range of numbers or angles. f returns "
-     "[x, y] or [x, y, z]. Derivatives, and with them tangents, lengths, and meshes, are exact: "
-     "they are computed by automatic differentiation of the formula. For an angle, they are per "
-     "radian. floor, round, sign, searches, and abs at 0 cannot be differentiated "
-     "(not-differentiable). All queries of curves work, except for to_nurbs, since such a curve "
-     "has no exact NURBS form.",
-     "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
-     "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
-     "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
-     FUNCTIONS, "Curves: construction"},
-    {"natural_curve(curvature: function s => number or curvature, length: length, "
-     "torsion: function s => number or curvature = none, frame: transform = identity)",
-     call_natural_curve, "curve",
-     "Returns the curve whose curvature (1/mm) and torsion are these functions of the arc length "
-     "s in 0..length, which is its parameter. It starts at the frame's origin along its x axis "
-     "and bends toward its y axis. Without torsion, it is a plane curve, and a negative "
-     "curvature bends to the other side. Points are accurate to 1e-12 of the length where the "
-     "functions are smooth; they may be piecewise, by `if`.",
-     "c = natural_curve(s => 0.5, pi) // a quarter of a circle of radius 2\n"
-     "print near(end_point(c), [2, 2]), near(curvature(c, 1), 0.5) // expect: true true",
-     FUNCTIONS, "Curves: construction"},
-    {"surface(f: function (u, v) => point, u: range of numbers or angles = 0..1, "
-     "v: range of numbers or angles = 0..1)",
-     call_surface, "surface",
-     "Returns the surface of the points f(u, v) = [x, y, z], with u and v in ranges of numbers "
-     "or angles. Partial derivatives are exact, as for `curve`. Coincident edges, and edges that "
-     "are a single point, are recognized, so a closed formula gives a closed surface.",
-     "s = surface((u, v) => [u, v, u * v], u: 0..2, v: 0..2)\n"
-     "print s(1, 2), near(normal(s, 0, 0), Z) // expect: [1, 2, 2] true",
-     FUNCTIONS, "Surfaces: construction"},
-    {0}};

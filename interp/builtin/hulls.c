@@ -152,7 +152,7 @@ static bool is_list_of_shapes(CagVm *vm, CagValue v) {
   return cag_is_shape(v);
 }
 
-static bool call_convex_hull(CagCall *call, CagValue *result) {
+bool cag_hulls_convex_hull(CagCall *call, CagValue *result) {
   const CagValue v = call->values[0];
   if (cag_is_shape(v) || is_list_of_shapes(call->vm, v)) return hull_of_shapes(call, result);
   CagVec3 *points;
@@ -165,7 +165,7 @@ static bool call_convex_hull(CagCall *call, CagValue *result) {
 
 // --- Curves on surfaces ---
 
-static bool call_curve_on(CagCall *call, CagValue *result) {
+bool cag_hulls_curve_on(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagCurve *c, *on = NULL;
   CagError err;
@@ -349,7 +349,7 @@ static bool is_body(CagValue v) {
   return m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL);
 }
 
-static bool call_contains(CagCall *call, CagValue *result) {
+bool cag_hulls_contains(CagCall *call, CagValue *result) {
   CagVec3 p;
   CagError err;
   bool inside = false;
@@ -434,7 +434,7 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
   return status;
 }
 
-static bool call_distance(CagCall *call, CagValue *result) {
+bool cag_hulls_distance(CagCall *call, CagValue *result) {
   Side *side = cag_hold_array(call, 2, sizeof *side);
   cag_hold_for(call, release_sides, side);
   CagError err;
@@ -445,51 +445,3 @@ static bool call_distance(CagCall *call, CagValue *result) {
   *result = cag_number(distance);
   return true;
 }
-
-const CagBuiltin cag_builtins_hulls[] = {
-    {"convex_hull(points: list of points)", call_convex_hull, "region or solid",
-     "Returns the convex hull. For points of the plane, it is a region, counter-clockwise from "
-     "the leftmost point. For points in space, a shape, or a list of shapes, it is a solid "
-     "bounded by triangles. Orientation tests are exact. Points within rounding of a side, edge, "
-     "or face are not vertices. Curved shapes are approximated by points, to their own "
-     "tolerance, or to 1e-4 of their size. Degenerate points in space are errors "
-     "(coincident-points, collinear-points, coplanar-points).",
-     "print area(convex_hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1], [2, 0]])) // expect: 8\n"
-     "h = convex_hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])\n"
-     "print len(vertices(tessellate(h))), near(volume(h), 1 / 6) // expect: 4 true",
-     0, "Convex hulls"},
-    {"hull(points: list of points)", call_convex_hull, "region or solid",
-     "Another name of `convex_hull`.",
-     "print area(hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1]])) // expect: 8\n"
-     "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
-     0, "Convex hulls"},
-    {"curve_on(S: surface, C: curve)", call_curve_on, "curve",
-     "Returns the curve on a surface, or on the side of a swept solid, whose u and v are the x "
-     "and y of a plane curve (radians for angles). It has the parameter and domain of the plane "
-     "curve, and exact derivatives up to order 8. In a direction in which the surface is closed, "
-     "it may wrap around several times; otherwise, it must stay in the domain (curve-outside). "
-     "It has no exact NURBS form.",
-     "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
-     "print is_closed(c), length(c) > 3 * tau // expect: true true",
-     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: construction"},
-    {"contains(G: shape or group, P: point or shape)", call_contains, "bool",
-     "Tests whether a solid or closed mesh contains P. The boundary, to 1e-9 of the size, is "
-     "included. For solids, the test is exact, except for walls and gaps thinner than 1e-3 of "
-     "their size.",
-     "print contains(sphere(2), [0, 0, 1.999]), contains(box(1), [1, 1, 1.001]) // expect: true "
-     "false",
-     CAG_TAKES(SOLID) | CAG_TAKES(MESH), "Solids: measures"},
-    {"distance(G: shape or group, P: point or shape)", call_distance, "number",
-     "Returns the smallest distance (mm) between a shape or group and a point or another shape. "
-     "It is 0 where they meet, and inside a solid or closed mesh. It is the distance of the "
-     "exact shapes, not of their meshes: each pair of places whose meshes are near enough is "
-     "refined by Newton's method. The result is certain for spheres, cylinders, circles, planes, "
-     "and lines at a constant distance from each other. For other shapes that run along each "
-     "other, the search stops when thousands of pairs have the same distance. If 100,000 pairs "
-     "have different distances and others may be closer, it is an error (convergence). "
-     "`distance(P, G)` is the same.",
-     "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
-     "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"
-     "print distance(box(2), [1, 1, 1]) // expect: 0",
-     CAG_TAKES_SHAPES, "Solids: measures"},
-    {0}};

@@ -11,10 +11,6 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-static const char FAMILY[] = "Lists";
-#define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
-#define LISTS_AND_TEXTS (LISTS | CAG_TYPE_BIT(TEXT))
-
 // Loops that make no call of the script ask from time to time whether they may go on.
 enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
 static bool may_go_on(CagCall *call, size_t step) {
@@ -24,7 +20,7 @@ static bool may_go_on(CagCall *call, size_t step) {
 
 // --- Size, sums ---
 
-static bool call_len(CagCall *call, CagValue *result) {
+bool cag_lists_len(CagCall *call, CagValue *result) {
   CagSequence s;
   if (call->values[0].type == CAG_RECORD) {
     *result = cag_number((double)CAG_AS_RECORD(call->values[0])->layout->count);
@@ -86,7 +82,7 @@ static bool sum_long_vectors(CagCall *call, CagSequence *s, CagValue *result) {
   return true;
 }
 
-static bool call_sum(CagCall *call, CagValue *result) {
+bool cag_lists_sum(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, false, &s)) return false;
   Sum sum = {0};
@@ -109,7 +105,7 @@ static bool call_sum(CagCall *call, CagValue *result) {
                            : cag_give_number(call, sum_value(&sum), result);
 }
 
-static bool call_product(CagCall *call, CagValue *result) {
+bool cag_lists_product(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, false, &s)) return false;
   double product = 1;
@@ -153,7 +149,7 @@ static bool loop_close(Loop *loop, bool good, CagValue *result) {
   return good;
 }
 
-static bool call_map(CagCall *call, CagValue *result) {
+bool cag_lists_map(CagCall *call, CagValue *result) {
   Loop loop;
   if (!loop_open(&loop, call, 1, true)) return false;
   bool good = true;
@@ -177,7 +173,7 @@ static bool test_element(Loop *loop, CagValue x, bool *answer) {
                        cag_value_words(loop->call->vm, y, found, sizeof found));
 }
 
-static bool call_filter(CagCall *call, CagValue *result) {
+bool cag_lists_filter(CagCall *call, CagValue *result) {
   Loop loop;
   if (!loop_open(&loop, call, 1, true)) return false;
   bool good = true, kept;
@@ -207,8 +203,8 @@ static bool fold(CagCall *call, bool build, CagValue *result) {
   *result = state[0];
   return loop_close(&loop, good, result);
 }
-static bool call_reduce(CagCall *call, CagValue *result) { return fold(call, false, result); }
-static bool call_scan(CagCall *call, CagValue *result) { return fold(call, true, result); }
+bool cag_lists_reduce(CagCall *call, CagValue *result) { return fold(call, false, result); }
+bool cag_lists_scan(CagCall *call, CagValue *result) { return fold(call, true, result); }
 
 // any (wanted = true) and all (wanted = false): whether an element answers `wanted`; the first one
 // that does ends the search.
@@ -229,8 +225,8 @@ static bool search(CagCall *call, bool wanted, CagValue *result) {
   *result = cag_bool(found == wanted);
   return loop_close(&loop, good, result);
 }
-static bool call_any(CagCall *call, CagValue *result) { return search(call, true, result); }
-static bool call_all(CagCall *call, CagValue *result) { return search(call, false, result); }
+bool cag_lists_any(CagCall *call, CagValue *result) { return search(call, true, result); }
+bool cag_lists_all(CagCall *call, CagValue *result) { return search(call, false, result); }
 
 // --- Order ---
 
@@ -310,7 +306,7 @@ static bool sort_values(CagCall *call, const CagList *values, const CagList *key
   return true;
 }
 
-static bool call_sort(CagCall *call, CagValue *result) {
+bool cag_lists_sort(CagCall *call, CagValue *result) {
   Loop loop;
   bool by = cag_given(call, 1) && call->values[1].type != CAG_NONE;
   if (!loop_open(&loop, call, by ? 1 : -1, true)) return false;
@@ -327,7 +323,7 @@ static bool call_sort(CagCall *call, CagValue *result) {
                              CAG_AS_LIST(cag_builder_finish(call->vm, keys)), result);
 }
 
-static bool call_reverse(CagCall *call, CagValue *result) {
+bool cag_lists_reverse(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, true, &s)) return false;
   if (s.source.type == CAG_TEXT) {
@@ -351,7 +347,7 @@ static bool call_reverse(CagCall *call, CagValue *result) {
 
 // --- Joining and taking apart ---
 
-static bool call_zip(CagCall *call, CagValue *result) {
+bool cag_lists_zip(CagCall *call, CagValue *result) {
   size_t n = call->count;
   CagSequence *s = cag_hold_array(call, n, sizeof *s);
   CagValue *parts = cag_hold_array(call, n, sizeof *parts);
@@ -371,7 +367,7 @@ static bool call_zip(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_enumerate(CagCall *call, CagValue *result) {
+bool cag_lists_enumerate(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, true, &s)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
@@ -392,7 +388,7 @@ static bool add_all(CagCall *call, CagBuilder *built, CagValue v) {
   return true;
 }
 
-static bool call_flatten(CagCall *call, CagValue *result) {
+bool cag_lists_flatten(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, false, &s)) return false;
   const CagList *list = s.source.type == CAG_LIST ? CAG_AS_LIST(s.source) : NULL;
@@ -412,7 +408,7 @@ static bool call_flatten(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_concat(CagCall *call, CagValue *result) {
+bool cag_lists_concat(CagCall *call, CagValue *result) {
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t k = 0; k < call->count; k++) {
     CagValue v = call->values[k];
@@ -435,7 +431,7 @@ static bool index_in_text(CagCall *call, const CagText *t, CagValue *result) {
   return true;
 }
 
-static bool call_index_of(CagCall *call, CagValue *result) {
+bool cag_lists_index_of(CagCall *call, CagValue *result) {
   CagSequence s;
   if (!cag_sequence_open(call, 0, true, &s)) return false;
   if (s.source.type == CAG_TEXT) return index_in_text(call, CAG_AS_TEXT(s.source), result);
@@ -487,7 +483,7 @@ static bool check_ends(CagCall *call) {
   return isfinite(b.as.number) || cag_fail_value(call, 1, "a finite end");
 }
 
-static bool call_linspace(CagCall *call, CagValue *result) {
+bool cag_lists_linspace(CagCall *call, CagValue *result) {
   long n;
   if (!check_ends(call) || !cag_arg_integer(call, 2, 2, LONG_MAX, &n)) return false;
   CagValue a = call->values[0], b = call->values[1];
@@ -502,7 +498,7 @@ static bool call_linspace(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_repeat(CagCall *call, CagValue *result) {
+bool cag_lists_repeat(CagCall *call, CagValue *result) {
   long n;
   if (!cag_arg_integer(call, 1, 0, LONG_MAX, &n)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
@@ -513,7 +509,7 @@ static bool call_repeat(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_pairs(CagCall *call, CagValue *result) {
+bool cag_lists_pairs(CagCall *call, CagValue *result) {
   CagSequence s;
   bool closed;
   if (!cag_arg_bool_or(call, 1, false, &closed) || !cag_sequence_open(call, 0, true, &s))
@@ -565,19 +561,19 @@ static bool read_part(CagCall *call, CagSequence *s, size_t *n) {
   return true;
 }
 
-static bool call_first(CagCall *call, CagValue *result) {
+bool cag_lists_first(CagCall *call, CagValue *result) {
   CagSequence s;
   size_t n;
   return read_part(call, &s, &n) && part(call, &s, 0, n, result);
 }
 
-static bool call_rest(CagCall *call, CagValue *result) {
+bool cag_lists_rest(CagCall *call, CagValue *result) {
   CagSequence s;
   size_t n;
   return read_part(call, &s, &n) && part(call, &s, n, s.length - n, result);
 }
 
-static bool call_along(CagCall *call, CagValue *result) {
+bool cag_lists_along(CagCall *call, CagValue *result) {
   CagSequence s;
   double t;
   if (!cag_sequence_open(call, 0, false, &s) || !cag_arg_number(call, 1, &t)) return false;
@@ -590,93 +586,3 @@ static bool call_along(CagCall *call, CagValue *result) {
   return cag_mix_values(call, *result, cag_sequence_element(call->vm, &s, i + 1), place - (double)i,
                         result);
 }
-
-const CagBuiltin cag_builtins_lists[] = {
-    {"len(xs: list or range or text or record)", call_len, "number",
-     "Returns the number of elements of a list or range, of characters of a text, or of fields "
-     "of a record.",
-     "print len([3, 4]), len(0..10), len(\"θ = 1\"), len({a: 1}) // expect: 2 11 5 1", 0, FAMILY},
-    {"sum(xs: list of numbers or list of angles or list of vectors)", call_sum,
-     "number, angle or list",
-     "Returns the sum of numbers, angles, or vectors. The sum of an empty list is 0. Rounding "
-     "errors do not accumulate.",
-     "print sum(1..100), sum([30deg, 60deg]), sum([X, Y]) // expect: 5050 90deg [1, 1, 0]", 0,
-     FAMILY},
-    {"product(xs: list of numbers)", call_product, "number",
-     "Returns the product of numbers. The product of an empty list is 1.",
-     "print product(1..5) // expect: 120", 0, FAMILY},
-    {"map(xs: list or range or text, f: function x => value)", call_map, "list",
-     "Returns the list of f(x) for each element x.",
-     "print map(1..3, x => x^2) // expect: [1, 4, 9]", 0, FAMILY},
-    {"filter(xs: list or range or text, f: function x => bool)", call_filter, "list",
-     "Returns the list of the elements x for which f(x) is true.",
-     "print filter(1..6, x => x % 2 == 0) // expect: [2, 4, 6]", 0, FAMILY},
-    {"reduce(xs: list or range or text, start: any value, f: function (acc, x) => value)",
-     call_reduce, "any",
-     "Combines the elements, from first to last, into one value: f(start, first), then f of that "
-     "result and the second element, and so on. The result for an empty list is start.",
-     "print reduce(1..4, 1, (acc, x) => acc * x) // expect: 24", 0, FAMILY},
-    {"scan(xs: list or range or text, start: any value, f: function (acc, x) => value)", call_scan,
-     "list",
-     "Returns all intermediate results of reduce, beginning with start, so the list has one "
-     "element more than xs.",
-     "print scan(1..4, 0, (acc, x) => acc + x) // expect: [0, 1, 3, 6, 10]", 0, FAMILY},
-    {"sort(xs: list or range or text, by: function x => key = none)", call_sort, "list",
-     "Returns the elements in ascending order. The elements, or their keys by(x), must be "
-     "numbers, angles, or texts. The sort is stable.",
-     "print sort([3, 1, 2]) // expect: [1, 2, 3]\nprint sort([\"bb\", \"a\", \"cc\"], by: t => "
-     "-len(t)) // expect: [\"bb\", \"cc\", \"a\"]",
-     0, FAMILY},
-    {"reverse(xs: list or range or text)", call_reverse, "list or text",
-     "Returns the elements of a list, or the characters of a text, in reverse order.",
-     "print reverse([1, 2, 3]), reverse(\"abc\") // expect: [3, 2, 1] cba", LISTS_AND_TEXTS,
-     FAMILY},
-    {"zip(xs: list or range or text, ...)", call_zip, "list",
-     "Combines lists of the same length: returns the list of the first elements, the list of the "
-     "second elements, and so on.",
-     "print zip([1, 2], [\"a\", \"b\"]) // expect: [[1, \"a\"], [2, \"b\"]]", 0, FAMILY},
-    {"enumerate(xs: list or range or text)", call_enumerate, "list",
-     "Returns the list of pairs [i, x] of each element x and its index i.",
-     "print enumerate([\"a\", \"b\"]) // expect: [[0, \"a\"], [1, \"b\"]]", 0, FAMILY},
-    {"flatten(xs: list or range or text)", call_flatten, "list",
-     "Replaces each element that is a list with its elements. Flattens one level.",
-     "print flatten([[1, 2], 3, [[4]]]) // expect: [1, 2, 3, [4]]", 0, FAMILY},
-    {"concat(xs: list or range or text, ...)", call_concat, "list",
-     "Returns one list of the elements of several lists.",
-     "print concat([1, 2], 3..4, []) // expect: [1, 2, 3, 4]", 0, FAMILY},
-    {"any(xs: list or range or text, f: function x => bool = none)", call_any, "bool",
-     "Tests whether any element x, or f(x), is true. Stops at the first one.",
-     "print any([1, 5], x => x > 3), any([]) // expect: true false", 0, FAMILY},
-    {"all(xs: list or range or text, f: function x => bool = none)", call_all, "bool",
-     "Tests whether all elements x, or f(x), are true. Stops at the first one that is not.",
-     "print all([1, 5], x => x > 3), all([]) // expect: false true", 0, FAMILY},
-    {"index_of(xs: list or text, x: any value)", call_index_of, "number or none",
-     "Returns the index of the first element that equals x, or the position of the text x in a "
-     "text. If x is not found, returns none.",
-     "print index_of([5, 6, 7], 6), index_of(\"spring\", \"ring\"), index_of([1], 2) // expect: 1 "
-     "2 none",
-     0, FAMILY},
-    {"linspace(a: number or angle or vector, b: number or angle or vector, n: integer)",
-     call_linspace, "list",
-     "Returns n evenly spaced numbers, angles, or vectors from a to b, including both. n must be "
-     "at least 2.",
-     "print linspace(0, 1, 5) // expect: [0, 0.25, 0.5, 0.75, 1]", 0, FAMILY},
-    {"repeat(x: any value, n: integer)", call_repeat, "list", "Returns a list of n copies of x.",
-     "print repeat(0, 3) // expect: [0, 0, 0]", 0, FAMILY},
-    {"pairs(xs: list or range or text, closed: bool = false)", call_pairs, "list",
-     "Returns the list of pairs of each element and its successor. With closed: true, the last "
-     "pair connects the last element to the first.",
-     "print pairs([1, 2, 3]), pairs([1, 2, 3], closed: true) // expect: [[1, 2], [2, 3]] [[1, 2], "
-     "[2, 3], [3, 1]]",
-     0, FAMILY},
-    {"first(xs: list or range or text, n: integer)", call_first, "list or text",
-     "Returns the first n elements, or all elements if there are fewer.",
-     "print first([5, 6, 7], 2) // expect: [5, 6]", 0, FAMILY},
-    {"rest(xs: list or range or text, n: integer)", call_rest, "list or text",
-     "Returns all but the first n elements.", "print rest([5, 6, 7], 2) // expect: [7]", 0, FAMILY},
-    {"along(xs: list or range or text, t: number in 0..1)", call_along, "as the elements",
-     "Interpolates linearly along the elements: t = 0 is the first, and t = 1 the last. The "
-     "elements can be numbers, angles, vectors, lists of these, or transforms, whose rotations "
-     "are interpolated by slerp.",
-     "print along([0, 10, 30], 0.75), along([X, Y], 0.5) // expect: 20 [0.5, 0.5, 0]", 0, FAMILY},
-    {0}};

@@ -16,9 +16,6 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-static const char FAMILY[] = "Matrices";
-#define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
-
 // --- Reading and giving ---
 
 typedef struct Matrix {
@@ -177,7 +174,7 @@ static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
   return true;
 }
 
-static bool call_solve(CagCall *call, CagValue *result) {
+bool cag_matrices_solve(CagCall *call, CagValue *result) {
   Matrix a, b;
   bool vector;
   return read_square(call, 0, "least_squares takes any number of rows", &a) &&
@@ -226,7 +223,7 @@ static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
                                     "does not settle: the singular values could not be found");
 }
 
-static bool call_least_squares(CagCall *call, CagValue *result) {
+bool cag_matrices_least_squares(CagCall *call, CagValue *result) {
   Matrix a, b;
   bool vector;
   if (!read_matrix(call, 0, &a) || !read_right_side(call, 1, a.rows, "rows", &b, &vector))
@@ -238,7 +235,7 @@ static bool call_least_squares(CagCall *call, CagValue *result) {
   return solve_least_squares(call, &a, &x) && give_matrix(call, &x, a.columns, vector, result);
 }
 
-static bool call_multiply(CagCall *call, CagValue *result) {
+bool cag_matrices_multiply(CagCall *call, CagValue *result) {
   Matrix a, b;
   bool vector;
   if (!read_matrix(call, 0, &a) || !read_right_side(call, 1, a.columns, "columns", &b, &vector))
@@ -278,7 +275,7 @@ static bool large_determinant(CagCall *call, Matrix *m, double *out) {
   return true;
 }
 
-static bool call_determinant(CagCall *call, CagValue *result) {
+bool cag_matrices_determinant(CagCall *call, CagValue *result) {
   Matrix m;
   if (!read_square(call, 0, NULL, &m)) return false;
   double determinant = 0;
@@ -287,7 +284,7 @@ static bool call_determinant(CagCall *call, CagValue *result) {
   return cag_give_number(call, determinant + 0.0, result);
 }
 
-static bool call_inverse(CagCall *call, CagValue *result) {
+bool cag_matrices_inverse(CagCall *call, CagValue *result) {
   Matrix a;
   if (!read_square(call, 0, NULL, &a)) return false;
   Matrix b = matrix_new(call, a.rows, a.rows);
@@ -295,7 +292,7 @@ static bool call_inverse(CagCall *call, CagValue *result) {
   return solve_system(call, &a, &b) && give_matrix(call, &b, b.rows, false, result);
 }
 
-static bool call_transpose(CagCall *call, CagValue *result) {
+bool cag_matrices_transpose(CagCall *call, CagValue *result) {
   Matrix a;
   if (!read_rows(call, 0, &a)) return false;
   Matrix b = matrix_new(call, a.columns, a.rows);
@@ -337,7 +334,7 @@ static void orient(double *v, size_t n) {
   for (size_t i = 0; i < n; i++) v[i] = -v[i];
 }
 
-static bool call_eigen(CagCall *call, CagValue *result) {
+bool cag_matrices_eigen(CagCall *call, CagValue *result) {
   Matrix m;
   if (!read_square(call, 0, NULL, &m) || !check_symmetric(call, &m)) return false;
   size_t n = m.rows;
@@ -562,7 +559,7 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
   return true;
 }
 
-static bool call_roots(CagCall *call, CagValue *result) {
+bool cag_matrices_roots(CagCall *call, CagValue *result) {
   Complex *z;
   size_t n, reals = 0;
   double *numbers;
@@ -575,7 +572,7 @@ static bool call_roots(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_complex_roots(CagCall *call, CagValue *result) {
+bool cag_matrices_complex_roots(CagCall *call, CagValue *result) {
   Complex *z;
   size_t n;
   double *numbers;
@@ -588,44 +585,3 @@ static bool call_complex_roots(CagCall *call, CagValue *result) {
   }
   return true;
 }
-
-const CagBuiltin cag_builtins_matrices[] = {
-    {"solve(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)", call_solve,
-     "list",
-     "Returns the solution x of matrix * x = rhs. The matrix is a list of rows and must be "
-     "square. rhs is a vector, or a matrix of several columns. A singular matrix is an error.",
-     "print solve([[2, 1], [1, 3]], [3, 5]) // expect: [0.8, 1.4]", 0, FAMILY},
-    {"least_squares(matrix: list of rows of numbers, rhs: vector or list of rows of numbers)",
-     call_least_squares, "list",
-     "Returns the x that minimizes the sum of the squares of matrix * x - rhs. If there are "
-     "several, returns the one of minimum norm.",
-     "print round(least_squares([[1, 0], [1, 1], [1, 2]], [1, 3, 5]), 9) // expect: [1, 2]", 0,
-     FAMILY},
-    {"multiply(A: list of rows of numbers, B: list of rows of numbers or vector)", call_multiply,
-     "list", "Returns the product of two matrices, or of a matrix and a vector.",
-     "print multiply([[1, 2], [3, 4]], [1, 1]), multiply([[1, 2], [3, 4]], [[0, 1], [1, 0]]) // "
-     "expect: [3, 7] [[2, 1], [4, 3]]",
-     LISTS, FAMILY},
-    {"determinant(A: list of rows of numbers)", call_determinant, "number",
-     "Returns the determinant of a square matrix.",
-     "print determinant([[1, 2], [3, 4]]) // expect: -2", LISTS, FAMILY},
-    {"inverse(A: list of rows of numbers)", call_inverse, "list",
-     "Returns the inverse of a square matrix. A singular matrix is an error.",
-     "print inverse([[2, 0], [0, 4]]) // expect: [[0.5, 0], [0, 0.25]]", LISTS, FAMILY},
-    {"transpose(A: list of rows of numbers)", call_transpose, "list",
-     "Returns the transpose of a matrix.",
-     "print transpose([[1, 2, 3], [4, 5, 6]]) // expect: [[1, 4], [2, 5], [3, 6]]", LISTS, FAMILY},
-    {"eigen(symmetric: list of rows of numbers)", call_eigen, "record",
-     "Returns the eigenvalues of a symmetric matrix in ascending order, and their unit "
-     "eigenvectors as `vectors`. The largest component of each eigenvector is positive.",
-     "e = eigen([[2, 0], [0, 1]])\nprint e.values, e.vectors // expect: [1, 2] [[0, 1], [1, 0]]", 0,
-     FAMILY},
-    {"roots(coefficients: list of numbers)", call_roots, "list",
-     "Returns the real roots of c0 + c1 x + c2 x^2 + ... in ascending order, repeated according "
-     "to their multiplicity. It is an error if all coefficients are 0.",
-     "print roots([-6, 11, -6, 1]), roots([1, 0, 1]) // expect: [1, 2, 3] []", 0, FAMILY},
-    {"complex_roots(coefficients: list of numbers)", call_complex_roots, "list",
-     "Returns all roots of c0 + c1 x + c2 x^2 + ... as [re, im], sorted by real part, then by "
-     "imaginary part.",
-     "print complex_roots([1, 0, 1]) // expect: [[0, -1], [0, 1]]", 0, FAMILY},
-    {0}};

@@ -3,8 +3,6 @@
 #include "geom/mesh/check.h"
 #include "interp/builtin/solids.h"
 
-static const char meshes[] = "Meshes";
-
 static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
   static const char *const names[] = {"vertices",
                                       "edges",
@@ -36,7 +34,7 @@ static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
   return cag_record_new(vm, names, values, sizeof values / sizeof *values);
 }
 
-static bool check_mesh(CagCall *call, CagValue *result) {
+bool cag_checks_check_mesh(CagCall *call, CagValue *result) {
   CagMeshCheck check = {0};
   CagError err;
   const CagMesh *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
@@ -45,7 +43,7 @@ static bool check_mesh(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool check_faces(CagCall *call, CagValue *result) {
+bool cag_checks_check_faces(CagCall *call, CagValue *result) {
   CagMeshCheck check = {0};
   CagError err;
   CagVec3 *vertices;
@@ -59,24 +57,3 @@ static bool check_faces(CagCall *call, CagValue *result) {
   *result = check_value(call->vm, &check);
   return true;
 }
-
-#define REPORT                                                                                     \
-  "vertices (those that faces name), edges, faces, euler (vertices - edges + faces), shells "      \
-  "(parts connected over edges), boundary_edges (of one face), nonmanifold_edges (of three or "    \
-  "more), nonmanifold_vertices (where the faces around are several fans), closed (each edge is "   \
-  "of two faces), oriented (no two faces run an edge in the same sense), solid (closed, "          \
-  "oriented, no such vertices and a volume above 0), and if closed and oriented genus (handles, "  \
-  "touching vertices taken apart) and volume (mm3, negative inside out), else none."
-
-const CagBuiltin cag_builtins_checks[] = {
-    {"mesh_check(M: mesh)", check_mesh, "record",
-     "Whether a mesh is the boundary of a solid: " REPORT,
-     "print mesh_check(tessellate(torus(3, 1))).genus // expect: 1", CAG_TAKES(MESH), meshes},
-    {"mesh_check(vertices: list of points, faces: list of lists of integers)", check_faces,
-     "record",
-     "The same of faces with any number of corners, as mesh takes them, before they are cut into "
-     "triangles: " REPORT,
-     "square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n"
-     "print mesh_check(square, [[0, 1, 2, 3]]).boundary_edges // expect: 4",
-     CAG_TAKES_LISTS, meshes},
-    {0}};

@@ -7,8 +7,6 @@
 #include "interp/formats/mesh_read.h"
 #include "interp/vm/vm.h"
 
-static const char meshes[] = "Meshes";
-
 typedef struct Opener {
   CagCall *call;
   const char *path; // of the mesh, whose folder other files lie in
@@ -43,7 +41,7 @@ static CagStatus open_beside(void *context, const char *name, char **bytes, size
               : cag_fail(err, CAG_E_CALLBACK, CAG_ERR_file, "path", -1, "cannot read %s", name);
 }
 
-static bool call_read_mesh(CagCall *call, CagValue *result) {
+bool cag_mesh_files_read_mesh(CagCall *call, CagValue *result) {
   const char *path;
   char *bytes;
   size_t size;
@@ -69,13 +67,3 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
   *result = cag_mesh_value(call->vm, m);
   return true;
 }
-
-const CagBuiltin cag_builtins_mesh_files[] = {
-    {"read_mesh(path: text)", call_read_mesh, "mesh",
-     "Reads all parts of a file as one mesh: STL (binary and text), OBJ, PLY (binary and text), "
-     "glTF, and GLB. Lengths are millimeters, and Z is up. For glTF, meters with Y up are "
-     "converted. Coincident points become one vertex; normals and texture parameters are kept. "
-     "Errors state the line or byte of the file. The file must be in the script's folder, below "
-     "it, or on the module path.",
-     "print attempt(() => read_mesh(\"none.stl\"), err => err.reason) // expect: file", 0, meshes},
-    {0}};

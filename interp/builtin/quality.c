@@ -169,7 +169,7 @@ static bool is_symmetric(double from, double to) {
   return from * to < 0 && fabs(from + to) <= same * (fabs(from) + fabs(to));
 }
 
-static bool call_colored_by(CagCall *call, CagValue *result) {
+bool cag_quality_colored_by(CagCall *call, CagValue *result) {
   static const char *const scales[] = {"auto", "sequence", "diverging", NULL};
   int kind, colors;
   double from = 0, to = 0;
@@ -198,7 +198,7 @@ static bool read_colored(CagCall *call, const CagMesh **out) {
   return cag_fail_geometry(call, &err);
 }
 
-static bool call_values_of(CagCall *call, CagValue *result) {
+bool cag_quality_values_of(CagCall *call, CagValue *result) {
   const CagMesh *m;
   double *x;
   if (!read_colored(call, &m)) return false;
@@ -207,14 +207,14 @@ static bool call_values_of(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_color_range(CagCall *call, CagValue *result) {
+bool cag_quality_color_range(CagCall *call, CagValue *result) {
   const CagMesh *m;
   if (!read_colored(call, &m)) return false;
   *result = cag_domain_value(call->vm, false, m->scale.from, m->scale.to);
   return true;
 }
 
-static bool call_scale_color(CagCall *call, CagValue *result) {
+bool cag_quality_scale_color(CagCall *call, CagValue *result) {
   const CagMesh *m;
   double x;
   if (!read_colored(call, &m) || !cag_arg_finite(call, 1, &x)) return false;
@@ -278,7 +278,7 @@ static bool read_across(CagCall *call, int argument, CagVec3 eye, CagVec3 *out) 
   return true;
 }
 
-static bool call_zebra(CagCall *call, CagValue *result) {
+bool cag_quality_zebra(CagCall *call, CagValue *result) {
   const CagVec3 usual = {0.4, -0.8, 0.5}; // from the front, a little above
   Zebra z;
   long stripes;
@@ -356,7 +356,7 @@ static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *resul
   return true;
 }
 
-static bool call_isophotes(CagCall *call, CagValue *result) {
+bool cag_quality_isophotes(CagCall *call, CagValue *result) {
   CagVec3 direction = {0, 0, 1};
   double *cosines = NULL, tolerance = 0;
   size_t n;
@@ -384,67 +384,3 @@ static bool call_isophotes(CagCall *call, CagValue *result) {
   cag_root_pop(call->vm, 1);
   return ok;
 }
-
-// --- The table ---
-
-static const char figures[] = "Figures";
-
-const CagBuiltin cag_builtins_quality[] = {
-    {"colored_by(S: surface or solid or group, value: text, range: range of numbers = none, "
-     "colors: \"auto\" or \"sequence\" or \"diverging\" = \"auto\", tolerance: length = none)",
-     call_colored_by, "mesh",
-     "Returns a surface, or the faces of a solid, as a mesh that is colored by its \"gaussian\", "
-     "\"mean\", \"principal_max\", or \"principal_min\" curvature (1/mm, or 1/mm2 for Gaussian, signed "
-     "with respect to the normal), or by \"slope\", the angle between the tangent plane and the "
-     "horizontal (degrees). The ends of the range have the first and the last color; by default, "
-     "it is the range of the values without rare extremes, symmetric about 0 if there are both "
-     "signs. `colors` is \"sequence\" (dark to bright), \"diverging\" (blue, white, red), or \"auto\", "
-     "which is diverging for a symmetric range. Vertices are duplicated where the curvature "
-     "jumps. The colors are written to .pov, .glb, .gltf, .ply, and .3mf, and the values to .obj "
-     "as texture parameters.",
-     "m = colored_by(torus_surface(3, 1), \"gaussian\")\n"
-     "print near(max(values_of(m)), 1 / 4), near(min(values_of(m)), -1 / 2, 1e-3) // expect: true "
-     "true\n"
-     "print near(color_range(m).end, 0.5, 1e-3) // expect: true",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"zebra(G: shape or group, stripes: integer = 8, view: vector = none, "
-     "across: vector = none, tolerance: length = none)",
-     call_zebra, "mesh",
-     "Returns a mesh that shows reflection lines: the stripes that a mirror of this shape shows "
-     "of long lamps. `view` is the direction to the eye (none: from the front, slightly above), "
-     "regardless of the camera. `across` is the direction, perpendicular to the view, in which "
-     "the stripes follow each other (none: up). With the reflected view r = 2 (n . view) n - "
-     "view, the value is r . across in -1..1 (see `values_of`), and the stripes are equal parts "
-     "of this range. A break in a stripe shows a jump of the tangent plane, and a kink shows a "
-     "jump of the curvature.",
-     "m = zebra(sphere_surface(5), view: X)\n"
-     "print near(max(values_of(m)), 1, 1e-3), color_range(m) // expect: true -1..1",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"isophotes(G: shape or group, direction: vector = Z, "
-     "levels: integer or list of angles = 11, tolerance: length = none)",
-     call_isophotes, "group",
-     "Returns the curves along which the angle between the normal and a direction is constant, "
-     "as exact as for `section`: for a number of angles evenly spaced between 0deg and 180deg, "
-     "or for a list of angles. At 90deg, it is the outline seen along the direction.",
-     "c = isophotes(sphere_surface(5), Z, [60deg]).items\n"
-     "print len(c), near(length(c[0]), 2 * pi * 5 * sin(60deg)) // expect: 1 true",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
-    {"values_of(M: mesh)", call_values_of, "list",
-     "Returns the values by which a mesh of `colored_by` or `zebra` is colored, in the order of "
-     "its `vertices`. A mesh without values is an error (no-values).",
-     "m = colored_by(sphere_surface(2), \"gaussian\")\n"
-     "print near(values_of(m)[0], 1 / 4), len(values_of(m)) == len(vertices(m)) // expect: true "
-     "true",
-     CAG_TAKES(MESH), figures},
-    {"color_range(M: mesh)", call_color_range, "range",
-     "Returns the values that have the first and the last color of a mesh of `colored_by` or "
-     "`zebra`.",
-     "print color_range(colored_by(sphere_surface(2), \"mean\", 0..1)) // expect: 0..1",
-     CAG_TAKES(MESH), figures},
-    {"color_of(M: mesh, value: number)", call_scale_color, "list",
-     "Returns the color of a value in a mesh of `colored_by` or `zebra`: red, green, and blue in "
-     "linear light, 0..1.",
-     "m = colored_by(sphere_surface(2), \"mean\", 0..1)\n"
-     "print color_of(m, 5) == color_of(m, 1) // expect: true",
-     CAG_TAKES(MESH), figures},
-    {0}};

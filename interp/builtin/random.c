@@ -9,8 +9,6 @@
 
 #include "interp/builtin/support.h"
 
-static const char FAMILY[] = "Random numbers";
-
 typedef struct Generator {
   uint64_t s[4];
 } Generator;
@@ -78,7 +76,7 @@ static CagValue draw(Generator *g, const Source *from) {
   return from->angle ? cag_angle(x) : cag_number(x);
 }
 
-static bool call_random(CagCall *call, CagValue *result) {
+bool cag_random_random(CagCall *call, CagValue *result) {
   enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
   double seed;
   long n;
@@ -101,13 +99,3 @@ static bool call_random(CagCall *call, CagValue *result) {
   *result = cag_builder_finish(call->vm, built);
   return true;
 }
-
-const CagBuiltin cag_builtins_random[] = {
-    {"random(seed: integer, n: integer, over: range = 0..1)", call_random, "list",
-     "Returns n uniformly distributed random numbers or angles in a range. With a step, such as "
-     "1..6 by 1, returns elements of the range. The function is pure: a seed gives the same list "
-     "on every machine (xoshiro256**, seeded by splitmix64).",
-     "print random(1, 3) == random(1, 3), random(1, 3) == random(2, 3) // expect: true false\n"
-     "print all(random(7, 100, over: 5..6), x => x in 5..6) // expect: true",
-     0, FAMILY},
-    {0}};

@@ -6,9 +6,7 @@
 
 #include "interp/builtin/support.h"
 
-static const char FAMILY[] = "Records";
-
-static bool call_keys(CagCall *call, CagValue *result) {
+bool cag_records_keys(CagCall *call, CagValue *result) {
   CagRecord *r;
   if (!cag_arg_record(call, 0, &r)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
@@ -18,14 +16,14 @@ static bool call_keys(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_values(CagCall *call, CagValue *result) {
+bool cag_records_values(CagCall *call, CagValue *result) {
   CagRecord *r;
   if (!cag_arg_record(call, 0, &r)) return false;
   *result = cag_list_values(call->vm, r->fields, r->layout->count);
   return true;
 }
 
-static bool call_get(CagCall *call, CagValue *result) {
+bool cag_records_get(CagCall *call, CagValue *result) {
   CagRecord *r;
   const char *key;
   if (!cag_arg_record(call, 0, &r) || !cag_arg_text(call, 1, &key)) return false;
@@ -69,7 +67,7 @@ static const CagText *name_given_twice(CagCall *call, CagText *const *names, siz
   return NULL;
 }
 
-static bool call_record(CagCall *call, CagValue *result) {
+bool cag_records_record(CagCall *call, CagValue *result) {
   CagSequence pairs;
   if (!cag_sequence_open(call, 0, false, &pairs)) return false;
   size_t n = pairs.length;
@@ -89,25 +87,7 @@ static bool call_record(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_type_of(CagCall *call, CagValue *result) {
+bool cag_records_type_of(CagCall *call, CagValue *result) {
   *result = cag_text_c(call->vm, cag_type_name(call->values[0]));
   return true;
 }
-
-const CagBuiltin cag_builtins_records[] = {
-    {"keys(r: record)", call_keys, "list",
-     "Returns the names of a record's fields, in their order.",
-     "print keys({x: 1, y: 2}) // expect: [\"x\", \"y\"]", 0, FAMILY},
-    {"values(r: record)", call_values, "list",
-     "Returns the values of a record's fields, in their order.",
-     "print values({x: 1, y: 2}) // expect: [1, 2]", 0, FAMILY},
-    {"record(pairs: list of pairs [name, value])", call_record, "record",
-     "Returns the record of a list of pairs [name, value]. Names must be distinct.",
-     "print record([[\"x\", 1], [\"y\", 2]]) // expect: {x: 1, y: 2}", 0, FAMILY},
-    {"get(r: record, key: text, default: any value = none)", call_get, "any",
-     "Returns the field with this name, or the default if the record does not have it.",
-     "print get({x: 1}, \"x\", 0), get({x: 1}, \"y\", 0) // expect: 1 0", 0, FAMILY},
-    {"type_of(x: any value)", call_type_of, "text",
-     "Returns the name of the type of a value, such as \"number\", \"angle\", \"list\", or \"curve\".",
-     "print type_of(3), type_of(30deg), type_of([]) // expect: number angle list", 0, FAMILY},
-    {0}};

@@ -231,19 +231,19 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   return true;
 }
 
-static bool unite(CagCall *call, CagValue *result) {
+bool cag_regions_unite(CagCall *call, CagValue *result) {
   return combine(call, CAG_REGION_UNION, result);
 }
 
-static bool subtract(CagCall *call, CagValue *result) {
+bool cag_regions_subtract(CagCall *call, CagValue *result) {
   return combine(call, CAG_REGION_DIFFERENCE, result);
 }
 
-static bool intersect(CagCall *call, CagValue *result) {
+bool cag_regions_intersect(CagCall *call, CagValue *result) {
   return combine(call, CAG_REGION_INTERSECTION, result);
 }
 
-static bool offset(CagCall *call, CagValue *result) {
+bool cag_regions_offset(CagCall *call, CagValue *result) {
   const double part = 1e-6; // of the size, where no tolerance is given
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   double d, tolerance;
@@ -264,7 +264,7 @@ static bool offset(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool inertia(CagCall *call, CagValue *result) {
+bool cag_regions_inertia(CagCall *call, CagValue *result) {
   static const char *const names[] = {"mass", "center", "matrix"};
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   double density = 1, area, xx, xy, yy, *m;
@@ -289,46 +289,3 @@ static bool inertia(CagCall *call, CagValue *result) {
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
-
-#define REGIONS CAG_TAKES(REGION)
-static const char sets[] = "Regions: set operations and offsets";
-
-const CagBuiltin cag_builtins_regions[] = {
-    {"union(R: region, ...)", unite, "region",
-     "Returns the union of regions, given one by one or as one list, like `A | B`. A closed "
-     "plane curve counts as its interior, and a list or group among the operands as the union of "
-     "its shapes. The boundary consists of pieces of the operands' boundaries, each of its own "
-     "kind. A region may have several outlines, each with holes.",
-     "r = rectangle(4, 2) | region(circle(1))\n"
-     "print area(r), area(union(rectangle(2, 2), rectangle(4, 1))) // expect: 8 6",
-     REGIONS, sets},
-    {"difference(R: region, ...)", subtract, "region",
-     "Returns the points of the first region that are in none of the others, like `A - B`. "
-     "Operands are as for `union`. If nothing is left, the region is empty (see `is_empty`).",
-     "ring = difference(rectangle(4, 4), rectangle(2, 2))\n"
-     "print area(ring), len(boundary(ring)) // expect: 12 2\n"
-     "pins = [for x in [-1, 1]: translate(rectangle(0.5, 0.5), [x, 0])]\n"
-     "print area(difference(rectangle(4, 4), pins)) // expect: 15.5",
-     REGIONS, sets},
-    {"intersection(R: region, ...)", intersect, "region",
-     "Returns the points that are in all regions, like `A & B`. Operands are as for `union`. If "
-     "no point is in all of them, the region is empty (see `is_empty`).",
-     "lens = region(circle(1)) & region(circle(1, center: [1, 0]))\n"
-     "print near(area(lens), 2 * pi / 3 - sqrt(3) / 2) // expect: true",
-     REGIONS, sets},
-    {"offset(R: region, d: length, tolerance: length = none)", offset, "region",
-     "Returns the region of all points within the distance d (mm) of the region; its convex "
-     "corners become arcs. If d is negative, returns the points of the region at least this far "
-     "from its boundary. Pieces and holes may join, split, or vanish; if nothing is left, the "
-     "region is empty. Offsets of lines and circles are exact, others are within the tolerance "
-     "(none: 1e-6 of the size).",
-     "r = offset(rectangle(4, 3), 1)\n"
-     "print near(area(r), 12 + 14 + pi), area(offset(rectangle(4, 3), -1)) // expect: true 2",
-     REGIONS, sets},
-    {"inertia(R: region, density: number = 1)", inertia, "record",
-     "Returns a record with the mass (area times density), the center, and the matrix of second "
-     "moments of area about the axes through the center: [[of y y, less of x y], [less of x y, "
-     "of x x]].",
-     "print near(inertia(rectangle(2, 6)).matrix, [[36, 0], [0, 4]]) // expect: true", REGIONS,
-     sets},
-    {0}};

@@ -1,5 +1,4 @@
-// Functions of the robots' table (robots.c), by the file that holds them, and what they share:
-// reading of robots, joint values and poses.
+// What several files of built-ins on robots share: reading of robots, joint values and poses.
 //
 // A list q has one value for each joint: angles where it turns, numbers (millimeters) where it
 // slides. In the machine's memory q is radians and millimeters, at most CAG_ROBOT_JOINTS_MAX long.
@@ -9,26 +8,6 @@
 
 #include "geom/robot/robot.h"
 #include "interp/builtin/shapes.h"
-
-// clang-format off
-#define CAG_ROBOT_FUNCTIONS(X) \
-  /* robots_make.c */ \
-  X(revolute) X(prismatic) X(fixed_link) X(robot) \
-  /* robots_ask.c */ \
-  X(fk) X(link_frames) X(jacobian) X(manipulability) X(is_singular) X(jacobian_rank) X(velocity) \
-  X(torques) X(null_motion) X(skeleton) X(joint_axes) X(dh_table) X(violations) \
-  X(motor_values) X(joint_values) \
-  /* robots_reach.c */ \
-  X(ik) X(reachable) X(closest_pose) X(joint_path) X(line_path) X(follow) \
-  /* robots_space.c */ \
-  X(workspace) X(dh_assign) \
-  /* robots_show.c */ \
-  X(posed)
-// clang-format on
-
-#define X(name) bool cag_robots_##name(CagCall *call, CagValue *result);
-CAG_ROBOT_FUNCTIONS(X)
-#undef X
 
 // --- Plain robots, of rods, drums and a foot: sizes as parts of the length of their skeleton ---
 #define CAG_PLAIN_ROD_RADIUS 0.018

@@ -48,7 +48,7 @@ static bool fail_no_closed_form(CagCall *call, const CagRobot *r, bool point) {
 }
 
 // robot, T, near
-static bool ik_all(CagCall *call, CagValue *result) {
+bool cag_inverse_ik_all(CagCall *call, CagValue *result) {
   static const char *const names[] = {"status", "solutions", "free"};
   static const char *const statuses[] = {"ok", "unreachable", "infeasible-orientation", "singular"};
   CagRobot *r = NULL;
@@ -75,7 +75,7 @@ static bool ik_all(CagCall *call, CagValue *result) {
 }
 
 // robot, q
-static bool configuration(CagCall *call, CagValue *result) {
+bool cag_inverse_configuration(CagCall *call, CagValue *result) {
   CagRobot *r = NULL;
   CagConfiguration c;
   double q[CAG_ROBOT_JOINTS_MAX];
@@ -84,33 +84,3 @@ static bool configuration(CagCall *call, CagValue *result) {
   *result = config_value(call->vm, &c);
   return true;
 }
-
-#define ARM                                                                                        \
-  "puma = robot([revolute(alpha: -90deg), revolute(d: 149.5, a: 432), revolute(alpha: 90deg), "    \
-  "revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), revolute(d: 56.5)])\n"
-
-const CagBuiltin cag_builtins_inverse[] = {
-    {"ik_all(robot: robot, T: transform or point, near: list of joint values = home)", ik_all,
-     "record",
-     "Returns all joint values that bring the tool to the pose T, by closed form and regardless "
-     "of limits: the `status` (\"ok\", \"unreachable\", \"infeasible-orientation\" for arms with fewer "
-     "than six joints, or \"singular\"); the `solutions`, records of `q`, `config` with the branch "
-     "(1 or -1 for shoulder, elbow, and wrist), and `free`; and `free`, the joints (from 1) that "
-     "are free in a singular family and have the values of `near`. Supported are arms with a "
-     "spherical wrist or with axes 2, 3, and 4 parallel, SCARA and planar arms, and arms of "
-     "prismatic joints. If T is a point, the orientation of the tool is free, for arms that "
-     "reach it in finitely many ways: planar and SCARA arms with two revolute joints, and any "
-     "three revolute joints.",
-     ARM "all = ik_all(puma, fk(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]))\n"
-         "print all.status, len(all.solutions), all.solutions[0].config // expect: ok 8 {shoulder: "
-         "1, elbow: 1, wrist: 1}",
-     CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
-    {"configuration(robot: robot, q: list of joint values)", configuration, "record",
-     "Returns the branch of joint values, each 1 or -1: shoulder (in front of or behind the "
-     "first axis), elbow (the side to which it is bent), and wrist (the sign of the sine of "
-     "joint 5), if the arm has them. For a planar or SCARA arm, the elbow is the sign of the "
-     "sine of its second revolute joint.",
-     ARM "print configuration(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]) // expect: "
-         "{shoulder: 1, elbow: -1, wrist: -1}",
-     CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
-    {0}};

@@ -14,8 +14,6 @@
 #include "interp/formats/urdf_read.h"
 #include "interp/vm/vm.h"
 
-static const char family[] = "Robots: links";
-
 // Held, with what it owns, until the call ends.
 typedef struct Import {
   CagCall *call;
@@ -294,7 +292,7 @@ static void release_import(void *import) {
 }
 
 // path, tip, base, shapes
-static bool call_read_urdf(CagCall *call, CagValue *result) {
+bool cag_robot_files_read_urdf(CagCall *call, CagValue *result) {
   Import *m = cag_hold_array(call, 1, sizeof *m);
   cag_hold_for(call, release_import, m);
   m->call = call;
@@ -302,16 +300,3 @@ static bool call_read_urdf(CagCall *call, CagValue *result) {
          name_or_none(call, 2, &m->base) && cag_arg_bool_or(call, 3, true, &m->shapes) &&
          read_chain(m) && make_robot(m, result);
 }
-
-const CagBuiltin cag_builtins_robot_files[] = {
-    {"read_urdf(path: text, tip: text = none, base: text = none, shapes: bool = true)",
-     call_read_urdf, "robot",
-     "Reads the robot of a URDF file: the chain of links from `base` (none: the first) to `tip` "
-     "(none: the end of the unbranched chain), in mm. Its rows are standard Denavit-Hartenberg "
-     "parameters, with fixed links where a row does not suffice. `continuous` joints have the "
-     "limits -360deg..360deg. Velocity and effort are kept. Links without bodies are merged into "
-     "the preceding rows. The visual bodies are the shapes of the links, unless `shapes: false`. "
-     "Meshes (.stl .obj .ply .gltf .glb) and package:// names are resolved next to the file. The "
-     "file must be in the script's folder, below it, or on the module path.",
-     "print attempt(() => read_urdf(\"none.urdf\"), err => err.reason) // expect: file", 0, family},
-    {0}};

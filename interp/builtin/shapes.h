@@ -7,16 +7,6 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/builtin.h"
 
-// Masks for CagBuiltin.first.
-#define CAG_TAKES(tag) ((uint64_t)1 << CAG_##tag)
-#define CAG_TAKES_LISTS (CAG_TAKES(LIST) | CAG_TAKES(RANGE))
-#define CAG_TAKES_SHAPES                                                                           \
-  (CAG_TAKES(CURVE) | CAG_TAKES(REGION) | CAG_TAKES(SURFACE) | CAG_TAKES(SOLID) |                  \
-   CAG_TAKES(MESH) | CAG_TAKES(GROUP))
-#define CAG_TAKES_MOVABLE                                                                          \
-  (CAG_TAKES_SHAPES | CAG_TAKES(CAMERA) | CAG_TAKES(LIGHT) | CAG_TAKES(PLANE) |                    \
-   CAG_TAKES(TRANSFORM))
-
 // Loops over shapes ask so often whether the run must stop.
 #define CAG_LOOK_UP 64
 

@@ -1,31 +1,10 @@
-// Functions of the table of solids and meshes (solids.c), by the file that holds them.
+// What several files of built-ins on solids and meshes share.
 
 #ifndef CAG_INTERP_BUILTIN_SOLIDS_H
 #define CAG_INTERP_BUILTIN_SOLIDS_H
 
 #include "geom/surface/quadric.h"
 #include "interp/builtin/shapes.h"
-
-// clang-format off
-#define CAG_SOLID_FUNCTIONS(X) \
-  /* solids_make.c */ \
-  X(box) X(sphere) X(cylinder) X(cone) X(prism) X(rod) X(torus) X(solid) \
-  /* solids_csg.c */ \
-  X(union) X(difference) X(intersection) X(half_space) X(clip) X(is_empty) \
-  /* solids_copies.c */ \
-  X(around) X(rows) X(mirrored) \
-  /* solids_measure.c */ \
-  X(area) X(volume) X(centroid) X(inertia) \
-  /* meshes.c */ \
-  X(mesh) X(vertices) X(faces) X(normals_of) X(is_watertight) X(euler_characteristic) \
-  X(weld) X(tessellate) X(flip) \
-  /* solids_figures.c */ \
-  X(control_net) X(isolines) X(arrow) X(triad)
-// clang-format on
-
-#define X(name) bool cag_solids_##name(CagCall *call, CagValue *result);
-CAG_SOLID_FUNCTIONS(X)
-#undef X
 
 // Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays are
 // held, since a caller could not hold one without risking the other.

@@ -1,4 +1,4 @@
-// Functions of the table of splines through points (splines.c), by the file that holds them.
+// What several files of built-ins on splines share.
 
 #ifndef CAG_INTERP_BUILTIN_SPLINES_H
 #define CAG_INTERP_BUILTIN_SPLINES_H
@@ -8,20 +8,6 @@
 
 // splines_make.c: through points by cubic segments; splines_fit.c: from data; splines_ask.c: bases,
 // segments, joints.
-// clang-format off
-#define CAG_SPLINE_FUNCTIONS(X) \
-  X(hermite) X(cubic_spline) X(clamped) X(relaxed) X(cyclic) X(anticyclic) X(ends) \
-  X(parabolic_blend) X(catmull_rom) X(polynomial_curve) \
-  X(data_parameters) X(interpolate) X(fit) X(fit_report) \
-  X(polynomials) X(basis_matrix) X(bezier_matrices) X(bernstein_maxima) X(hermite_basis) \
-  X(hermite_shape) X(hermite_by_curvature) X(convert_cubic) X(bezier_join) X(continuity) \
-  X(line_crossings) X(hulls_disjoint)
-// clang-format on
-
-#define X(name) bool cag_splines_##name(CagCall *call, CagValue *result);
-CAG_SPLINE_FUNCTIONS(X)
-#undef X
-
 // Whether an argument was given and is not none.
 bool cag_splines_set(const CagCall *call, int argument);
 // `made` is read after the call that fills it: pass its address.

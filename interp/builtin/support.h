@@ -6,6 +6,9 @@
 
 #include "interp/vm/builtin.h"
 
+// The functions of the rows, made by tools/rows.awk.
+#include "builtin_functions.h"
+
 #define CAG_TYPE_BIT(tag) (UINT64_C(1) << CAG_##tag)
 
 // --- Errors ---

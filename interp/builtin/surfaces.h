@@ -1,4 +1,4 @@
-// Functions of the surfaces' table (surfaces.c), by the file that holds them.
+// What several files of built-ins on surfaces share.
 
 #ifndef CAG_INTERP_BUILTIN_SURFACES_H
 #define CAG_INTERP_BUILTIN_SURFACES_H
@@ -7,43 +7,6 @@
 #include "geom/surface/quadric.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
-
-// clang-format off
-#define CAG_SURFACE_FUNCTIONS(X) \
-  /* surfaces_ask.c: at one place, and data */ \
-  X(at) X(partial) X(normal) X(tangent_plane) X(domain) X(degree) X(knots) X(points) \
-  X(weights) X(is_closed) X(closed_in) \
-  /* surfaces_curvature.c */ \
-  X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature) \
-  X(principal_curvatures) X(curvature_class) \
-  /* surfaces_change.c: of the whole, and what is made of it */ \
-  X(area) X(volume) X(centroid) X(sample) X(to_nurbs) X(flip) X(isocurve) X(boundary) \
-  /* surfaces_make.c: of curves */ \
-  X(revolve) X(extrude) X(ruled) X(bilinear) X(translational) X(sphere_surface) \
-  X(torus_surface) \
-  /* surfaces_sweep.c */ \
-  X(sweep) X(sweep_by) X(tube) X(loft) \
-  /* surfaces_reshape.c */ \
-  X(trim) X(split) X(insert_knot) X(refine) X(elevate) X(to_bezier) X(transpose_uv) \
-  X(join_surfaces) X(continuity) X(offset) X(thicken) \
-  /* surfaces_fit.c */ \
-  X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(grid_parameters) X(is_developable) X(unroll) \
-  /* surfaces_map.c */ \
-  X(map_onto) X(remap) \
-  /* surfaces_patch.c */ \
-  X(developable) X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
-  X(bezier_triangle) \
-  /* surfaces_net.c: of nets of points */ \
-  X(bezier_surface) X(bspline_surface) X(nurbs_surface) \
-  /* surfaces_quadric.c */ \
-  X(quadric) X(ellipsoid) X(hyperboloid) X(paraboloid) X(hyperbolic_paraboloid) \
-  X(elliptic_cone) X(elliptic_cylinder) X(parabolic_cylinder) X(hyperbolic_cylinder) \
-  X(classify)
-// clang-format on
-
-#define X(name) bool cag_surfaces_##name(CagCall *call, CagValue *result);
-CAG_SURFACE_FUNCTIONS(X)
-#undef X
 
 // A surface, or the side of a solid that a section sweeps; borrowed.
 bool cag_arg_side(CagCall *call, int argument, CagSurface **out);

@@ -7,9 +7,7 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-static const char MEETINGS[] = "Surfaces: near and across";
-
-static bool call_closest(CagCall *call, CagValue *result) {
+bool cag_meetings_closest(CagCall *call, CagValue *result) {
   struct {
     CagSurface *s;
     CagPoint p;
@@ -47,7 +45,7 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
   return true;
 }
 
-static bool call_intersect(CagCall *call, CagValue *result) {
+bool cag_meetings_intersect(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagError err;
   CagStatus status;
@@ -69,35 +67,3 @@ static bool call_intersect(CagCall *call, CagValue *result) {
   *result = cag_curve_list_value(call->vm, list);
   return true;
 }
-
-const CagBuiltin cag_builtins_meetings[] = {
-    {"closest(S: surface, P: point)", call_closest, "record",
-     "Returns the point of the surface nearest to P, with u, v, point, and distance (mm). If "
-     "several points are equally near, returns one of them. The result is guaranteed by bounds "
-     "for surfaces with an exact NURBS form, and for tubes, sweeps, and twisted extrusions of "
-     "lines, arcs, helices, splines, and curves joined from them; for points outside of offsets "
-     "and away from their ends as well. Other surfaces, such as formulas, are sampled as finely "
-     "as they bend. For a guaranteed result, use `interpolate_surface(sample(S, nu, nv))`, a "
-     "NURBS surface near S.",
-     "c = closest(sphere_surface(2), [0, 5, 0])\n"
-     "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
-     "90deg",
-     CAG_TAKES(SURFACE), MEETINGS},
-    {"intersect(S: surface, A: curve or surface or plane, tolerance: length = none)",
-     call_intersect, "list",
-     "Returns the points in which the surface meets a curve: records of point, u, v, t of the "
-     "curve, and multiplicity (2 where they touch), sorted by t. For another surface or a plane, "
-     "returns the curves in which they cross or touch: lines and conics are exact, and others "
-     "are cubics within the tolerance (none: a millionth of the size). Edges and creases of the "
-     "surface that lie in a plane are included. Isolated points of contact are not. Very small "
-     "loops that are close together may be missed. It is an error if the surfaces share a piece "
-     "(overlap).",
-     "c = intersect(sphere_surface(5), translate([0, 0, 3]) * bilinear([-9, -9], [-9, 9], [9, -9], "
-     "[9, 9]))\n"
-     "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true\n"
-     "m = intersect(sphere_surface(3), line([-9, 0, 0], [9, 0, 0]))\n"
-     "print len(m), near(m[0].point, [-3, 0, 0]), near(m[0].t, 1/3) // expect: 2 true true\n"
-     "touch = intersect(sphere_surface(2), elliptic_cylinder(2, 2, within: -5..5))\n"
-     "print len(touch), near(length(touch[0]), 4 * pi) // expect: 1 true",
-     CAG_TAKES(SURFACE), MEETINGS},
-    {0}};

@@ -15,9 +15,6 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static const char family[] = "Surfaces: control points";
-#define SURFACES CAG_TAKES(SURFACE)
-
 static const char *const directions[] = {"u", "v"};
 
 static CagValue vector_value(CagVm *vm, CagVec3 p) {
@@ -76,7 +73,7 @@ static CagValue spans_value(CagVm *vm, const Axis *a) {
   return cag_builder_finish(vm, list);
 }
 
-static bool spans(CagCall *call, CagValue *result) {
+bool cag_tensors_spans(CagCall *call, CagValue *result) {
   Net n;
   if (!read_net(call, &n)) return false;
   CagValue values[] = {spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1])};
@@ -102,7 +99,7 @@ static CagValue support_value(CagVm *vm, const Axis *a, size_t i) {
   return cag_builder_finish(vm, list);
 }
 
-static bool support(CagCall *call, CagValue *result) {
+bool cag_tensors_support(CagCall *call, CagValue *result) {
   Net n;
   long i, j;
   if (!read_net(call, &n) || !cag_arg_integer(call, 1, 0, (long)n.axis[0].distinct - 1, &i) ||
@@ -142,7 +139,7 @@ bool cag_arg_surface_sides(CagCall *call, int argument, CagSide out[2]) {
   return true;
 }
 
-static bool acting_points(CagCall *call, CagValue *result) {
+bool cag_tensors_acting_points(CagCall *call, CagValue *result) {
   static const char *const names[] = {"u", "v", "rows", "columns", "points"};
   Net n;
   double t[2];
@@ -185,7 +182,7 @@ static double *basis_line(CagCall *call, const Axis *a, double t) {
   return out;
 }
 
-static bool basis(CagCall *call, CagValue *result) {
+bool cag_tensors_basis(CagCall *call, CagValue *result) {
   Net n;
   double t[2], sum = 0;
   if (!read_net(call, &n) || !read_place(call, &n, 1, t)) return false;
@@ -248,14 +245,14 @@ static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
   return true;
 }
 
-static bool numerator(CagCall *call, CagValue *result) {
+bool cag_tensors_numerator(CagCall *call, CagValue *result) {
   CagVec3 d;
   if (!part_at(call, false, &d)) return false;
   *result = vector_value(call->vm, d);
   return true;
 }
 
-static bool denominator(CagCall *call, CagValue *result) {
+bool cag_tensors_denominator(CagCall *call, CagValue *result) {
   CagVec3 d;
   if (!part_at(call, true, &d)) return false;
   *result = cag_number(d.z);
@@ -310,7 +307,7 @@ static size_t span_lengths(const Axis *a, double *out) {
   return n;
 }
 
-static bool polynomials(CagCall *call, CagValue *result) {
+bool cag_tensors_polynomials(CagCall *call, CagValue *result) {
   Net n;
   CagError err;
   size_t nu, nv;
@@ -344,7 +341,7 @@ static bool polynomials(CagCall *call, CagValue *result) {
 
 // --- Corners ---
 
-static bool patch_corners(CagCall *call, CagValue *result) {
+bool cag_tensors_patch_corners(CagCall *call, CagValue *result) {
   static const char *const names[] = {"corners", "tangents_u", "tangents_v", "twists"};
   CagSurface *s;
   CagHermiteCorners c;
@@ -358,7 +355,7 @@ static bool patch_corners(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool hermite_matrix(CagCall *call, CagValue *result) {
+bool cag_tensors_hermite_matrix(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagHermiteCorners c;
   CagError err;
@@ -388,7 +385,7 @@ static bool read_edit(CagCall *call, int argument, CagCornerEdit *e, int k) {
 }
 
 // S, u, v, tangent_u, tangent_v, twist
-static bool edit_corner(CagCall *call, CagValue *result) {
+bool cag_tensors_edit_corner(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagCornerEdit e = {0};
   CagError err;
@@ -403,7 +400,7 @@ static bool edit_corner(CagCall *call, CagValue *result) {
   return cag_surface_result(call, cag_surface_edit_corner(s, &e, &out, &err), &err, &out, result);
 }
 
-static bool set_point(CagCall *call, CagValue *result) {
+bool cag_tensors_set_point(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagVec3 p;
   CagError err;
@@ -448,7 +445,7 @@ static bool read_match(CagCall *call, int ratio, int shear, CagEdgeMatch *how) {
 }
 
 // S, edge, ratio, shear, degree
-static bool bezier_join(CagCall *call, CagValue *result) {
+bool cag_tensors_bezier_join(CagCall *call, CagValue *result) {
   static const char *const order[] = {"u1", "u0", "v0", "v1", NULL}; // the default comes first
   static const int SIDE[] = {1, 0, 2, 3};
   static const char *const names[] = {"points", "weights"};
@@ -510,7 +507,7 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
 }
 
 // A, B, ratio, shear, edges
-static bool match_edge(CagCall *call, CagValue *result) {
+bool cag_tensors_match_edge(CagCall *call, CagValue *result) {
   CagSurface *a, *b, *out = NULL;
   CagEdgeMatch how;
   CagError err;
@@ -527,7 +524,7 @@ static bool match_edge(CagCall *call, CagValue *result) {
 
 // --- Flat and creased places ---
 
-static bool creases(CagCall *call, CagValue *result) {
+bool cag_tensors_creases(CagCall *call, CagValue *result) {
   static const char *const names[] = {"at", "angle"};
   CagSurface *s;
   CagError err;
@@ -583,7 +580,7 @@ static bool acting_flat(const Net *n, size_t su, size_t sv) {
   return true;
 }
 
-static bool flat_spans(CagCall *call, CagValue *result) {
+bool cag_tensors_flat_spans(CagCall *call, CagValue *result) {
   Net n;
   if (!read_net(call, &n)) return false;
   const Axis *u = &n.axis[0], *v = &n.axis[1];
@@ -603,7 +600,7 @@ static bool flat_spans(CagCall *call, CagValue *result) {
 
 // --- The net as a mesh ---
 
-static bool net_mesh(CagCall *call, CagValue *result) {
+bool cag_tensors_net_mesh(CagCall *call, CagValue *result) {
   Net n;
   CagError err;
   CagMesh *m = NULL;
@@ -639,118 +636,3 @@ static bool net_mesh(CagCall *call, CagValue *result) {
   *result = cag_mesh_value(call->vm, m);
   return true;
 }
-
-#define PATCH "s = bezier_surface([for i in 0..3: [for j in 0..3: [i, j, i * j]]])\n"
-
-const CagBuiltin cag_builtins_tensors[] = {
-    {"spans(S: surface)", spans, "record",
-     "Returns the knot intervals of a Bezier or B-spline surface, as lists u and v. Over each "
-     "rectangle of intervals, the surface is polynomial or rational.",
-     PATCH "print spans(refine(s)).u // expect: [0..0.5, 0.5..1]", SURFACES, family},
-    {"support(S: surface, i: integer, j: integer)", support, "record",
-     "Returns the ranges u and v that control point [i, j] influences. In a closed direction, it "
-     "is a list of ranges.",
-     "s = bspline_surface([for i in 0..6: [for j in 0..6: [i, j, 0]]])\n"
-     "print support(s, 3, 0) // expect: {u: 0..4, v: 0..1}",
-     SURFACES, family},
-    {"acting_points(S: surface, u: number or angle, v: number or angle, "
-     "side: \"right\" or \"left\" = \"right\")",
-     acting_points, "record",
-     "Returns the control points that influence the surface at u, v: the knot intervals u and v, "
-     "the `rows` and `columns` of the net (a closed direction wraps around), and their `points`. "
-     "The surface over these intervals lies in the convex hull of the points.",
-     "s = bspline_surface([for i in 0..5: [for j in 0..4: [i, j, 0]]], degree: [3, 2])\n"
-     "a = acting_points(s, 2.5, 1.5)\n"
-     "print a.rows, a.columns // expect: [2, 3, 4, 5] [1, 2, 3]",
-     SURFACES, family},
-    {"basis(S: surface, u: number or angle, v: number or angle)", basis, "list",
-     "Returns the factor of each control point at u, v, in rows like the net. Their sum is 1.",
-     PATCH "print basis(s, 0, 0)[0] // expect: [1, 0, 0, 0]", SURFACES, family},
-    {"numerator(S: surface, u: number or angle, v: number or angle, du: integer = 0, "
-     "dv: integer = 0)",
-     numerator, "list",
-     "Returns the sum of the control points times their weights and basis functions, or its "
-     "partial derivative of order du in u and dv in v. The surface is this sum divided by the "
-     "denominator.",
-     PATCH "print numerator(s, 0.5, 0.5) // expect: [1.5, 1.5, 2.25]", SURFACES, family},
-    {"denominator(S: surface, u: number or angle, v: number or angle, du: integer = 0, "
-     "dv: integer = 0)",
-     denominator, "number",
-     "Returns the sum of the weights times the basis functions, or its partial derivative. It is "
-     "1 if the surface is not rational.",
-     "s = bezier_surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]], weights: [[1, 1], [1, 3]])\n"
-     "print denominator(s, 0.5, 0.5), denominator(s, 0, 0, 1, 1) // expect: 1.5 2",
-     SURFACES, family},
-    {"polynomials(S: surface)", polynomials, "list",
-     "Returns the coefficients of each polynomial piece of the surface, in rows of u: [i][j] is "
-     "the vector for u^i v^j, with u and v from the start of the piece. Exact to rounding, which "
-     "is negligible for degrees below 8.",
-     "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
-     "print polynomials(s)[0][0] // expect: [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 0, 4]]]",
-     SURFACES, family},
-    {"patch_corners(S: surface)", patch_corners, "record",
-     "Returns the points, derivatives in u and v, and twists at the corners of a surface, as "
-     "coons_bicubic takes them: `corners`, `tangents_u`, `tangents_v`, and `twists`.",
-     PATCH "print patch_corners(s).twists[1] // expect: [[0, 0, 9], [0, 0, 9]]", SURFACES, family},
-    {"hermite_matrix(S: surface)", hermite_matrix, "list",
-     "Returns the 4 by 4 table of a patch that is at most bicubic, as hermite_patch takes it. "
-     "Surfaces of several patches (not-one-patch), of higher degrees (degree-too-high), or with "
-     "weights (rational-patch) are errors.",
-     PATCH "q = hermite_matrix(s)\n"
-           "print near(hermite_patch(q)(0.3, 0.7), s(0.3, 0.7)) // expect: true",
-     SURFACES, family},
-    {"edit_corner(S: surface, u: 0 or 1, v: 0 or 1, tangent_u: number or vector = 1, "
-     "tangent_v: number or vector = 1, twist: number or vector = 1)",
-     edit_corner, "surface",
-     "Changes the corner at the ends u and v (0 or 1 each): tangents and twist are multiplied by "
-     "a number, or replaced by a vector. The three control points next to the corner move. "
-     "Everything else, and what is not given, stays the same.",
-     PATCH "t = edit_corner(s, 0, 0, tangent_u: 2, twist: [0, 0, 5])\n"
-           "c = patch_corners(t)\n"
-           "print c.tangents_u[0][0], c.twists[0][0] // expect: [6, 0, 0] [0, 0, 5]",
-     SURFACES, family},
-    {"set_point(S: surface, i: integer, j: integer, P: point, weight: number = none)", set_point,
-     "surface", "Moves control point [i, j] to P, and changes its weight if one is given.",
-     PATCH "print points(set_point(s, 1, 2, [0, 0, 7]))[1][2] // expect: [0, 0, 7]", SURFACES,
-     family},
-    {"bezier_join(S: surface, edge: \"u0\" or \"u1\" or \"v0\" or \"v1\" = \"u1\", ratio: number = "
-     "1, "
-     "shear: number or list of 2 numbers = 0, degree: integer >= 1 = none)",
-     bezier_join, "record",
-     "Returns the first two rows of control points, as `points` and `weights`, of a Bezier "
-     "surface that continues S across an edge (u0, u1, v0, or v1). Its cross derivative is that "
-     "of S times the ratio, plus the derivative along the edge times the shear (a number, or two "
-     "for the ends of the edge). Ratio 1 without shear is C1; otherwise, the surfaces are G1. "
-     "The degree across the edge is that of S, or the given one.",
-     PATCH "print bezier_join(s, ratio: 2).points[1] // expect: [[5, 0, 0], [5, 1, 5], [5, 2, "
-           "10], [5, 3, 15]]",
-     SURFACES, family},
-    {"match_edge(A: surface, B: surface, ratio: number = 1, "
-     "shear: number or list of 2 numbers = 0, edges: list of 2 texts = none)",
-     match_edge, "surface",
-     "Moves the two rows of control points of B next to an edge, so that B continues A there: "
-     "across the nearest edges, or across `edges` (such as [\"u1\", \"u0\"]). Ratio and shear are as "
-     "for bezier_join; 1 and 0 give C1. B gets the degree and knots of A along the edge.",
-     PATCH "t = bezier_surface([for i in 0..3: [for j in 0..3: [i + 3.5, j, 1]]])\n"
-           "print continuity(s, match_edge(s, t)).class // expect: C1",
-     SURFACES, family},
-    {"creases(S: surface)", creases, "record",
-     "Returns the lines of constant u and of constant v, at parameter `at`, along which the "
-     "tangents from both sides differ, with the largest `angle`. They occur where control points "
-     "or knots coincide.",
-     "s = bspline_surface([for x in [0, 1, 2, 3, 4]: [for y in [0, 1]: [x, y, -abs(x - 2)]]], "
-     "degree: [2, 1], knots: [[0, 0, 0, 1, 1, 2, 2, 2], \"open\"])\n"
-     "print creases(s).u[0].at, near(creases(s).u[0].angle, 90deg) // expect: 1 true",
-     SURFACES, family},
-    {"flat_spans(S: surface)", flat_spans, "list",
-     "Returns the rectangles between knots, as records u and v, over which the surface is plane "
-     "because its control points lie in a plane.",
-     "s = bspline_surface([for i in 0..4: [for j in 0..2: [i, j, if i == 4 then 1 else 0]]], "
-     "degree: 2)\n"
-     "print flat_spans(s) // expect: [{u: 0..1, v: 0..1}, {u: 1..2, v: 0..1}]",
-     SURFACES, family},
-    {"net_mesh(S: surface)", net_mesh, "mesh",
-     "Returns the control net as a mesh. Each quadrilateral is divided along its shorter "
-     "diagonal.",
-     PATCH "print len(faces(net_mesh(s))) // expect: 18", SURFACES, family},
-    {0}};

@@ -11,15 +11,9 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-static const char QUADRICS[] = "Quadrics";
-static const char SECTIONS[] = "Surfaces: sections";
-
-// What cag_arg_quadric reads.
-#define EQUATIONS (CAG_TAKES(SURFACE) | CAG_TAKES(SOLID) | CAG_TAKES(GROUP) | CAG_TAKES(LIST))
-
 // --- Quadrics ---
 
-static bool call_coefficients(CagCall *call, CagValue *result) {
+bool cag_sections_coefficients(CagCall *call, CagValue *result) {
   CagQuadric q;
   if (!cag_arg_quadric(call, &q)) return false;
   for (int i = 0; i < 10; i++) q.c[i] += 0.0; // no -0
@@ -27,7 +21,7 @@ static bool call_coefficients(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_rows(CagCall *call, CagValue *result) {
+bool cag_sections_rows(CagCall *call, CagValue *result) {
   CagQuadric q;
   double rows[4][4], *m;
   if (!cag_arg_quadric(call, &q)) return false;
@@ -37,7 +31,7 @@ static bool call_rows(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_at(CagCall *call, CagValue *result) {
+bool cag_sections_at(CagCall *call, CagValue *result) {
   static const char *const names[] = {"value", "gradient"};
   CagQuadric q;
   CagVec3 p;
@@ -48,7 +42,7 @@ static bool call_at(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_center(CagCall *call, CagValue *result) {
+bool cag_sections_center(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagVec3 p;
   CagError err;
@@ -58,7 +52,7 @@ static bool call_center(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_tangent(CagCall *call, CagValue *result) {
+bool cag_sections_tangent(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagVec3 p;
   CagPlane plane;
@@ -70,7 +64,7 @@ static bool call_tangent(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_rulings(CagCall *call, CagValue *result) {
+bool cag_sections_rulings(CagCall *call, CagValue *result) {
   static const char *const names[] = {"count", "directions"};
   CagQuadric q;
   CagVec3 p;
@@ -85,7 +79,7 @@ static bool call_rulings(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_moved(CagCall *call, CagValue *result) {
+bool cag_sections_moved(CagCall *call, CagValue *result) {
   CagQuadric q, moved;
   CagTransform t;
   CagError err;
@@ -106,7 +100,7 @@ static bool read_frame(CagCall *call, int argument, CagTransform *frame) {
   return true;
 }
 
-static bool call_section_conic(CagCall *call, CagValue *result) {
+bool cag_sections_section_conic(CagCall *call, CagValue *result) {
   static const char *const names[] = {"conic", "coefficients", "frame", "class"};
   CagQuadric q;
   CagTransform frame;
@@ -172,7 +166,7 @@ static bool section_of(CagCall *call, CagValue v, const CagPlane *plane, double 
   return cag_geometry_ok(call, status, &err);
 }
 
-static bool call_section(CagCall *call, CagValue *result) {
+bool cag_sections_section(CagCall *call, CagValue *result) {
   CagPlane plane;
   double tolerance;
   CagList *shapes;
@@ -206,7 +200,7 @@ static bool contour_of(CagCall *call, CagValue v, CagVec3 direction, CagVec3 eye
   return cag_geometry_ok(call, status, &err);
 }
 
-static bool call_contour(CagCall *call, CagValue *result) {
+bool cag_sections_contour(CagCall *call, CagValue *result) {
   CagVec3 direction = {0, 0, 0}, eye = {0, 0, 0};
   double tolerance;
   CagList *shapes;
@@ -231,7 +225,7 @@ static bool call_contour(CagCall *call, CagValue *result) {
   return ok;
 }
 
-static bool call_curvature_line(CagCall *call, CagValue *result) {
+bool cag_sections_curvature_line(CagCall *call, CagValue *result) {
   static const char *const which[] = {"max", "min", NULL};
   CagSurface *s;
   CagCurve *line = NULL;
@@ -326,7 +320,7 @@ static bool contour_record(CagCall *call, const CagList *shapes, const ContourQu
   return true;
 }
 
-static bool call_curvature_contours(CagCall *call, CagValue *result) {
+bool cag_sections_curvature_contours(CagCall *call, CagValue *result) {
   ContourQuestion q = {CAG_CURVATURE_GAUSSIAN, 0, 0};
   double *levels = NULL;
   size_t n = 0;
@@ -356,7 +350,7 @@ static bool call_curvature_contours(CagCall *call, CagValue *result) {
 
 // --- Frames along a path ---
 
-static bool call_path_frame(CagCall *call, CagValue *result) {
+bool cag_sections_path_frame(CagCall *call, CagValue *result) {
   CagCurve *path, *space = NULL;
   CagError err;
   double t;
@@ -386,104 +380,3 @@ static bool call_path_frame(CagCall *call, CagValue *result) {
   *result = cag_transform_value(call->vm, &frame);
   return true;
 }
-
-const CagBuiltin cag_builtins_sections[] = {
-    {"coefficients(Q: quadric or list of 10 numbers or list of 4 rows)", call_coefficients, "list",
-     "Returns the ten numbers of a quadric, as `quadric` takes them.",
-     "print coefficients(ellipsoid(1, 0.5, 0.5))[0..2] // expect: [1, 4, 4]",
-     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID) | CAG_TAKES(GROUP), QUADRICS},
-    {"quadric_rows(Q: quadric or list of 10 numbers or list of 4 rows)", call_rows, "list",
-     "Returns the symmetric matrix A of a quadric: p A p = 0 for its points p = [x, y, z, 1].",
-     "print quadric_rows([1, 1, 1, 4, 0, 0, 0, 0, 6, -9])[0] // expect: [1, 2, 0, 0]", EQUATIONS,
-     QUADRICS},
-    {"quadric_at(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_at, "record",
-     "Returns the `value` of a quadric's form at a point, which is negative inside of a closed "
-     "quadric, and its `gradient`.",
-     "print quadric_at([1, 1, 1, 0, 0, 0, 0, 0, 0, -9], [1, 2, 2]) // expect: {value: 0, gradient: "
-     "[2, 4, 4]}",
-     EQUATIONS, QUADRICS},
-    {"quadric_center(Q: quadric or list of 10 numbers or list of 4 rows)", call_center, "list",
-     "Returns the center of a quadric. A quadric without a unique center is an error "
-     "(quadric-not-central).",
-     "print quadric_center([1, 2, 1, 0, 0, 0, -2, 0, 6, 0]) // expect: [1, 0, -3]", EQUATIONS,
-     QUADRICS},
-    {"quadric_tangent(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_tangent,
-     "plane",
-     "Returns the tangent plane of a quadric at one of its points, with the normal along the "
-     "gradient. Errors: point-not-on-surface and singular-point.",
-     "print quadric_tangent([1, 1, 1, 0, 0, 0, 0, 0, 0, -9], [0, 0, 3]).row // expect: [0, 0, 1, "
-     "-3]",
-     EQUATIONS, QUADRICS},
-    {"quadric_rulings(Q: quadric or list of 10 numbers or list of 4 rows, P: point)", call_rulings,
-     "record",
-     "Returns the straight lines on a quadric through one of its points: `count` is 0, 1, 2, or "
-     "\"all\" (for planes), and `directions` are unit vectors. Errors are as for quadric_tangent.",
-     "print quadric_rulings([1, 1, 0, 0, 0, 0, 0, 0, 0, -25], [3, 4, 5]).count // expect: 1",
-     EQUATIONS, QUADRICS},
-    {"quadric_moved(Q: quadric or list of 10 numbers or list of 4 rows, T: transform)", call_moved,
-     "list", "Returns the ten numbers of the image of a quadric.",
-     "print quadric_moved([1, 1, 1, 0, 0, 0, 0, 0, 0, -1], translate([1, 0, 0])) // expect: [1, 1, "
-     "1, 0, 0, 0, -2, 0, 0, 0]",
-     EQUATIONS, QUADRICS},
-    {"section_conic(Q: quadric or list of 10 numbers or list of 4 rows, plane: plane)",
-     call_section_conic, "record",
-     "Returns the section of a quadric with a plane, in the coordinates of a frame of the plane: "
-     "`conic` is a curve value for `classify`, `branches`, and other functions of conics; "
-     "`coefficients` is its equation; `frame` is the frame (for a plane: its point, with x as "
-     "near to X as possible; a transform is itself the frame); and `class` is as for conics. If "
-     "the plane is part of the quadric, the class is \"plane\", and `conic` is none.",
-     "s = section_conic(ellipsoid(2, 1, 1), plane([0, 0, 0.6], Z))\n"
-     "print s.class, near(classify(s.conic).axes, [1.6, 0.8]) // expect: ellipse true",
-     EQUATIONS, QUADRICS},
-    {"section(G: shape or group, plane: plane, tolerance: length = none)", call_section, "list",
-     "Returns the curves in which a plane cuts surfaces, solids, meshes, and regions. Lines and "
-     "conics are exact; other curves are cubics within the tolerance (none: a millionth of the "
-     "size), or polylines for meshes. Curves that meet end to end are joined, so a solid gives "
-     "closed curves. Sections of surfaces include curves along which the plane touches, and "
-     "edges and creases in the plane.",
-     "c = section(sphere(5), plane([0, 0, 3], Z))\n"
-     "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
-    {"contour(G: shape or group, direction: vector = none, from: point = none, "
-     "tolerance: length = none)",
-     call_contour, "list",
-     "Returns the outlines of smooth surfaces and faces, seen along a direction or from an eye "
-     "point: the curves along which the line of sight touches the surface. They are as exact as "
-     "sections. Edges of solids are not included.",
-     "c = contour(sphere(5), from: [0, 0, 10])\n"
-     "print near(start_point(c[0]).z, 2.5) // expect: true",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
-    {"curvature_line(S: surface, u: number or angle, v: number or angle, "
-     "by: \"max\" or \"min\" = \"max\")",
-     call_curvature_line, "curve",
-     "Returns the line of curvature through a point: it follows the direction of the larger "
-     "(\"max\") or smaller (\"min\") principal curvature until it closes, leaves the surface, or "
-     "reaches an umbilic. It continues straight over smooth poles. Lines and arcs of conics are "
-     "exact; others are cubics to 1e-8 of the size. It is an error to start at an umbilic "
-     "(umbilic).",
-     "c = curvature_line(torus_surface(5, 2), 0deg, 0deg, \"min\")\n"
-     "print near(length(c), 4 * pi) or near(length(c), 14 * pi) // expect: true",
-     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), SECTIONS},
-    {"curvature_contours(G: shape or group, levels: number or list of numbers, "
-     "of: \"gaussian\" or \"mean\" or \"max\" or \"min\" = \"gaussian\", tolerance: length = none)",
-     call_curvature_contours, "list",
-     "Returns the lines of constant curvature on surfaces, or on the faces of solids: for each "
-     "level, a record of `level`, `curves` (as exact as for `section`), and `everywhere`. If the "
-     "curvature is equal to the level everywhere on the surface, `everywhere` is true and "
-     "`curves` is empty. `levels` is a number or a list, signed with respect to the normal: in "
-     "1/mm for the \"mean\", \"max\", or \"min\" curvature, and in 1/mm2 for the \"gaussian\" "
-     "curvature. At a knot where the curvature "
-     "jumps, each side has its own lines. Lines along which a level is only touched may be "
-     "missing.",
-     "c = curvature_contours(torus_surface(5, 2), [0, 1 / 20])\n"
-     "print [for l in c[0].curves: near(length(l), 10 * pi)] // expect: [true, true]\n"
-     "print [for l in c[1].curves: near(length(l), 2 * pi * 25 / 4)] // expect: [true, true]",
-     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
-    {"path_frame(C: curve, t: number or angle, orient: text or vector = \"rmf\")", call_path_frame,
-     "transform",
-     "Returns the frame that `sweep` uses at the parameter t of a path: x along the normal, y "
-     "along the binormal, and z along the tangent. `orient` is as for sweep; \"fixed\" keeps the "
-     "frame of the start.",
-     "print near(path_frame(line([0, 0, 0], [0, 0, 4]), 0.5).z, Z) // expect: true",
-     CAG_TAKES(CURVE), SECTIONS},
-    {0}};

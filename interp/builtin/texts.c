@@ -8,8 +8,6 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-static const char FAMILY[] = "Text";
-
 static bool read_text(CagCall *call, int argument, const CagText **out) {
   if (call->values[argument].type != CAG_TEXT) {
     cag_fail_type(call, argument, "a text");
@@ -48,7 +46,7 @@ static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, in
   return true;
 }
 
-static bool call_text(CagCall *call, CagValue *result) {
+bool cag_texts_text(CagCall *call, CagValue *result) {
   enum { PLACES_MOST = 400 }; // no double has digits beyond these
   CagString *s = cag_held_string(call);
   long digits;
@@ -60,7 +58,7 @@ static bool call_text(CagCall *call, CagValue *result) {
   return !call->vm->failed;
 }
 
-static bool call_number_of(CagCall *call, CagValue *result) {
+bool cag_texts_number_of(CagCall *call, CagValue *result) {
   const CagText *t;
   double x;
   if (!read_text(call, 0, &t)) return false;
@@ -80,7 +78,7 @@ static const char *find_part(const char *s, const char *end, const CagText *part
   return memmem(s, (size_t)(end - s), part->bytes, part->length);
 }
 
-static bool call_split(CagCall *call, CagValue *result) {
+bool cag_texts_split(CagCall *call, CagValue *result) {
   const CagText *t, *separator;
   if (!read_text(call, 0, &t) || !read_text(call, 1, &separator)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
@@ -105,7 +103,7 @@ static bool call_split(CagCall *call, CagValue *result) {
 // Elements joined between two looks at the clock.
 enum { KEEP_GOING_EVERY = 4096 };
 
-static bool call_join(CagCall *call, CagValue *result) {
+bool cag_texts_join(CagCall *call, CagValue *result) {
   const CagText *separator = NULL;
   CagSequence xs;
   if (cag_given(call, 1) && !read_text(call, 1, &separator)) return false;
@@ -121,14 +119,14 @@ static bool call_join(CagCall *call, CagValue *result) {
   return !call->vm->failed;
 }
 
-static bool call_starts_with(CagCall *call, CagValue *result) {
+bool cag_texts_starts_with(CagCall *call, CagValue *result) {
   const CagText *t, *part;
   if (!read_text(call, 0, &t) || !read_text(call, 1, &part)) return false;
   *result = cag_bool(t->length >= part->length && memcmp(t->bytes, part->bytes, part->length) == 0);
   return true;
 }
 
-static bool call_replace(CagCall *call, CagValue *result) {
+bool cag_texts_replace(CagCall *call, CagValue *result) {
   const CagText *t, *old, *new;
   if (!read_text(call, 0, &t) || !read_text(call, 1, &old) || !read_text(call, 2, &new))
     return false;
@@ -169,39 +167,9 @@ static bool map_characters(CagCall *call, utf8proc_int32_t (*f)(utf8proc_int32_t
   *result = cag_text_from_string(call->vm, &s);
   return true;
 }
-static bool call_upper(CagCall *call, CagValue *result) {
+bool cag_texts_upper(CagCall *call, CagValue *result) {
   return map_characters(call, utf8proc_toupper, result);
 }
-static bool call_lower(CagCall *call, CagValue *result) {
+bool cag_texts_lower(CagCall *call, CagValue *result) {
   return map_characters(call, utf8proc_tolower, result);
 }
-
-const CagBuiltin cag_builtins_texts[] = {
-    {"text(x: any value, digits: integer = none)", call_text, "text",
-     "Returns x as text, as print shows it. With `digits`, numbers and angles, alone or in "
-     "lists, have exactly this number of decimal places; halves are rounded away from 0.",
-     "print text([1, \"a\"]), text(2/3, digits: 3), text(2, digits: 2) // expect: [1, \"a\"] 0.667 "
-     "2.00",
-     0, FAMILY},
-    {"split(t: text or number or angle, separator: text)", call_split, "list",
-     "Splits a text at each separator. With the separator \"\", returns its characters.",
-     "print split(\"a,b,,c\", \",\") // expect: [\"a\", \"b\", \"\", \"c\"]", CAG_TYPE_BIT(TEXT),
-     FAMILY},
-    {"join(xs: list or range or text, separator: text = \"\")", call_join, "text",
-     "Joins the elements, as print shows them, to one text with the separator between them.",
-     "print join([\"a\", \"b\", 3], \"-\") // expect: a-b-3", 0, FAMILY},
-    {"upper(t: text)", call_upper, "text", "Returns the text in uppercase.",
-     "print upper(\"bézier θ\") // expect: BÉZIER Θ", 0, FAMILY},
-    {"lower(t: text)", call_lower, "text", "Returns the text in lowercase.",
-     "print lower(\"ABC Θ\") // expect: abc θ", 0, FAMILY},
-    {"starts_with(t: text, part: text)", call_starts_with, "bool",
-     "Tests whether a text begins with another text.",
-     "print starts_with(\"spring\", \"spr\") // expect: true", 0, FAMILY},
-    {"replace(t: text, old: text, new: text)", call_replace, "text",
-     "Replaces each occurrence of `old` with `new`, from left to right.",
-     "print replace(\"a-b-c\", \"-\", \"+\") // expect: a+b+c", 0, FAMILY},
-    {"number_of(t: text)", call_number_of, "number",
-     "Converts a text to a number. Spaces around it are ignored. It is an error if the text is "
-     "not a number or has a unit.",
-     "print number_of(\"3.5\"), number_of(\" -2e3 \") // expect: 3.5 -2000", 0, FAMILY},
-    {0}};

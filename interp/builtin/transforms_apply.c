@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/builtin/transforms.h"
+#include "interp/builtin/shapes.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/vm.h"
 

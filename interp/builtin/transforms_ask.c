@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/builtin/transforms.h"
+#include "interp/builtin/shapes.h"
 
 bool cag_transforms_inverse(CagCall *call, CagValue *result) {
   CagTransform t, out;

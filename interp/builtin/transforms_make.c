@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/builtin/transforms.h"
+#include "interp/builtin/shapes.h"
 
 static bool transform_result(CagCall *call, CagStatus status, const CagError *err, CagTransform *t,
                              bool planar, CagValue *result) {

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
-#include "interp/builtin/transforms.h"
 #include "lang/foreign.h"
 
 // Reads the arguments from parameter `at` on.
@@ -18,31 +18,33 @@ typedef bool (*MakeTransform)(CagCall *call, int at, CagTransform *out);
 // Most parameters that a row here has, and one more for what is moved.
 #define PARAMETERS_MAX 8
 
-static bool holds_movables(CagVm *vm, CagValue v) {
-  while (v.type == CAG_LIST) {
-    const CagList *list = CAG_AS_LIST(v);
-    if (list->dim != 0 || list->length == 0) return false;
-    v = cag_list_get(vm, list, 0);
-  }
-  return v.type < 64 && (CAG_TAKES_MOVABLE >> v.type & 1);
-}
-
 // The row of the same function that has what is moved as its first parameter.
 static const CagBuiltin *moving_row(const CagBuiltin *row) {
   size_t n;
   const CagBuiltin *rows =
       cag_builtin_rows(cag_builtin_find(cag_builtin_signature_of(row)->name), &n);
   for (size_t i = 0; i < n; i++)
-    if (rows[i].function == row->function && (rows[i].first & CAG_TAKES(CURVE))) return &rows[i];
+    if (rows[i].function == row->function && (rows[i].first & CAG_TYPE_BIT(CURVE))) return &rows[i];
   return row;
+}
+
+// Whether v is a list, perhaps of lists, whose first element has one of the types in `mask`.
+static bool holds_types(CagVm *vm, CagValue v, uint64_t mask) {
+  while (v.type == CAG_LIST) {
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->dim != 0 || list->length == 0) return false;
+    v = cag_list_get(vm, list, 0);
+  }
+  return v.type < 64 && (mask >> v.type & 1);
 }
 
 static bool make_or_move(CagCall *call, CagValue *result, MakeTransform make) {
   CagTransform t;
   CagCall moving = *call;
   CagValue values[PARAMETERS_MAX];
-  bool moves = (call->builtin->first & CAG_TAKES(CURVE)) != 0;
-  if (!moves && call->values[0].type == CAG_LIST && holds_movables(call->vm, call->values[0])) {
+  bool moves = (call->builtin->first & CAG_TYPE_BIT(CURVE)) != 0;
+  if (!moves && call->values[0].type == CAG_LIST &&
+      holds_types(call->vm, call->values[0], moving_row(call->builtin)->first)) {
     size_t n = call->count < PARAMETERS_MAX ? call->count : PARAMETERS_MAX - 1;
     memcpy(values, call->values, n * sizeof *values);
     for (size_t i = n; i < PARAMETERS_MAX; i++) values[i] = cag_unset();
@@ -135,7 +137,7 @@ static bool rotate_rpy(CagCall *call, int place, CagValue *result) {
   for (int i = 1; i < place - 1; i++)
     if (cag_given(call, i))
       return cag_fail_call(call, place, CAG_ERR_value, "takes `rpy` in place of an axis and angle");
-  if (!holds_movables(call->vm, call->values[0]))
+  if (!holds_types(call->vm, call->values[0], moving_row(call->builtin)->first))
     return cag_fail_call(call, 0, CAG_ERR_value, "takes `rpy` in place of an axis and angle");
   if (!read_rpy(call, place, rpy) ||
       !cag_arg_vec_or(call, place - 1, cag_vec3(0, 0, 0), &about, &dimension))

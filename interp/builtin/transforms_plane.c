@@ -1,7 +1,7 @@
 // Planes, and points and lines in the plane.
 
 #include "interp/builtin/holds.h"
-#include "interp/builtin/transforms.h"
+#include "interp/builtin/shapes.h"
 
 // Lines whose directions differ by less than this sine are parallel; lines of space that pass each
 // other by more than this share of their data's size do not meet. Both are some hundred roundings.

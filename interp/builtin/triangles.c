@@ -4,8 +4,6 @@
 #include "geom/surface/triangle.h"
 #include "interp/builtin/surfaces.h"
 
-static const char triangles[] = "Surfaces: control nets";
-
 static CagValue vector_value(CagVm *vm, CagVec3 p) {
   return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
 }
@@ -30,7 +28,7 @@ static bool read_coordinates(CagCall *call, int argument, double out[3]) {
   return true;
 }
 
-static bool triangle_point(CagCall *call, CagValue *result) {
+bool cag_triangles_triangle_point(CagCall *call, CagValue *result) {
   static const char *const names[] = {"point", "ds", "dt", "normal"};
   CagVec3 *net = NULL;
   int degree = 0;
@@ -48,7 +46,7 @@ static bool triangle_point(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool triangle_elevate(CagCall *call, CagValue *result) {
+bool cag_triangles_triangle_elevate(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
   long times;
@@ -70,7 +68,7 @@ static bool triangle_elevate(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool triangle_split(CagCall *call, CagValue *result) {
+bool cag_triangles_triangle_split(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
   double w[3];
@@ -87,27 +85,3 @@ static bool triangle_split(CagCall *call, CagValue *result) {
   *result = cag_list_values(call->vm, nets, 3);
   return true;
 }
-
-const CagBuiltin cag_builtins_triangles[] = {
-    {"triangle_point(net: list of rows of points, W: list of 3 numbers)", triangle_point, "record",
-     "Evaluates the triangular Bezier surface of a net, as bezier_triangle takes it, at the "
-     "barycentric coordinates [u, v, w]: point, the derivatives ds and dt along [1, 0, -1] and "
-     "[0, 1, -1], and the unit normal (none if it is undefined). The first row of the net is the "
-     "corner u = 1; the last runs from v = 1 to w = 1. Coordinates that are negative, or whose "
-     "sum is not 1 (to 1e-9), are an error (parameter-range).",
-     "net = [[[2, 0, 0]], [[1, 1, 1], [1, 0, 1]], [[0, 2, 0], [0, 1, 2], [0, 0, 0]]]\n"
-     "print triangle_point(net, [0.5, 0.25, 0.25]).point // expect: [1, 0.5, 0.75]",
-     CAG_TAKES_LISTS, triangles},
-    {"triangle_elevate(net: list of rows of points, times: integer = 1)", triangle_elevate, "list",
-     "Returns the net of the same triangular Bezier surface with a higher degree.",
-     "print triangle_elevate([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]])[1] // expect: [[1, 1, 0], [1, "
-     "0, 2]]",
-     CAG_TAKES_LISTS, triangles},
-    {"triangle_split(net: list of rows of points, W: list of 3 numbers)", triangle_split, "list",
-     "Returns the nets of the three triangular Bezier surfaces between a point, given by its "
-     "barycentric coordinates, and each pair of corners of a net. In the first net, the point "
-     "replaces the first corner, and so on. If the point is on an edge, one of them has no area.",
-     "parts = triangle_split([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]], [0.5, 0.25, 0.25])\n"
-     "print parts[0][0] // expect: [[1, 0.5, 1]]",
-     CAG_TAKES_LISTS, triangles},
-    {0}};

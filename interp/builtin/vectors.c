@@ -5,9 +5,6 @@
 
 #include "interp/builtin/support.h"
 
-static const char FAMILY[] = "Vectors";
-#define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
-
 // --- Reading ---
 
 typedef struct Vector {
@@ -54,7 +51,7 @@ static double norm_of(const double *x, size_t n) {
 
 // --- Functions ---
 
-static bool call_dot(CagCall *call, CagValue *result) {
+bool cag_vectors_dot(CagCall *call, CagValue *result) {
   Vector a, b;
   size_t n;
   if (!read_two(call, &a, &b, &n)) return false;
@@ -63,7 +60,7 @@ static bool call_dot(CagCall *call, CagValue *result) {
   return cag_give_number(call, sum, result);
 }
 
-static bool call_cross(CagCall *call, CagValue *result) {
+bool cag_vectors_cross(CagCall *call, CagValue *result) {
   struct {
     CagPoint a, b;
   } given;
@@ -72,12 +69,12 @@ static bool call_cross(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool call_norm(CagCall *call, CagValue *result) {
+bool cag_vectors_norm(CagCall *call, CagValue *result) {
   Vector v;
   return read_vector(call, 0, &v) && cag_give_number(call, norm_of(v.x, v.n), result);
 }
 
-static bool call_unit(CagCall *call, CagValue *result) {
+bool cag_vectors_unit(CagCall *call, CagValue *result) {
   Vector v;
   if (!read_vector(call, 0, &v)) return false;
   double norm = norm_of(v.x, v.n);
@@ -106,7 +103,7 @@ static bool distance_to_shape(CagCall *call, CagValue *result) {
   return cag_fail_type(call, 1, "a point");
 }
 
-static bool call_distance(CagCall *call, CagValue *result) {
+bool cag_vectors_distance(CagCall *call, CagValue *result) {
   Vector a, b;
   size_t n;
   if (cag_is_shape(call->values[1])) return distance_to_shape(call, result);
@@ -126,7 +123,7 @@ static bool fail_zero(CagCall *call, int argument) {
                        "is undefined for a zero vector: it has no direction");
 }
 
-static bool call_angle_between(CagCall *call, CagValue *result) {
+bool cag_vectors_angle_between(CagCall *call, CagValue *result) {
   Vector a, b;
   size_t n;
   if (!read_two(call, &a, &b, &n)) return false;
@@ -226,7 +223,7 @@ static bool read_tolerance(CagCall *call, int argument, double fallback, double 
   return *out >= 0 || cag_fail_value(call, argument, "a tolerance of 0 or more");
 }
 
-static bool call_near(CagCall *call, CagValue *result) {
+bool cag_vectors_near(CagCall *call, CagValue *result) {
   static const double TOLERANCE = 1e-9; // the default that the signature promises
   Nearness by = {.call = call};
   bool near;
@@ -237,33 +234,3 @@ static bool call_near(CagCall *call, CagValue *result) {
   *result = cag_bool(near);
   return true;
 }
-
-const CagBuiltin cag_builtins_vectors[] = {
-    {"dot(A: vector, B: vector)", call_dot, "number", "Returns the dot product of two vectors.",
-     "print dot([1, 2, 3], [4, 5, 6]) // expect: 32", 0, FAMILY},
-    {"cross(A: vector, B: vector)", call_cross, "list",
-     "Returns the cross product of two vectors. A vector of the plane has z = 0.",
-     "print cross(X, Y), cross([2, 0], [0, 3]) // expect: [0, 0, 1] [0, 0, 6]", 0, FAMILY},
-    {"norm(V: vector)", call_norm, "number",
-     "Returns the length of a vector, the square root of the sum of its squares.",
-     "print norm([3, 4]), norm([2, 3, 6]) // expect: 5 7", 0, FAMILY},
-    {"unit(V: vector)", call_unit, "list",
-     "Returns the unit vector in the direction of V. A zero vector is an error.",
-     "print unit([0, 5]) // expect: [0, 1]", 0, FAMILY},
-    {"distance(P: point or shape, Q: point)", call_distance, "number",
-     "Returns the distance between two points.", "print distance([1, 1], [4, 5]) // expect: 5",
-     LISTS, FAMILY},
-    {"angle_between(A: vector, B: vector)", call_angle_between, "angle",
-     "Returns the angle between two vectors, in 0deg..180deg. Accurate for small angles, too. A "
-     "zero vector is an error.",
-     "print angle_between(X, [1, 1, 0]) // expect: 45deg", 0, FAMILY},
-    {"near(a: number or angle or vector, b: number or angle or vector, "
-     "tolerance: number or angle = 1e-9, relative: number = 0)",
-     call_near, "bool",
-     "Tests whether two numbers, angles, vectors, transforms, or lists of these are equal to "
-     "within a tolerance: each element may differ by the larger of `tolerance` and `relative` "
-     "times the magnitude of b's element. Angles are compared in degrees.",
-     "print near(0.1 + 0.2, 0.3), near([1, 2], [1, 2.1]), near(99, 100, relative: 0.02) // expect: "
-     "true false true",
-     0, FAMILY},
-    {0}};

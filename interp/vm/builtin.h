@@ -10,8 +10,8 @@
 // P, V, T, G, S, A, B, Q, R) goes by position only; others by position or name. `...` as last
 // parameter: any number of further positional arguments. One name may serve several types of first
 // argument: it then has several rows, and the first whose `accepts` takes the arguments is called.
-// All built-ins of a family stand in one file and are declared as an array `const CagBuiltin
-// cag_builtins_NAME[]` ending with an empty row; builtins.c lists the arrays.
+// The rows are in interp/builtin/*.rows, a file for each family; tools/rows.awk makes cag_builtins of
+// them.
 
 #ifndef CAG_INTERP_VM_BUILTIN_H
 #define CAG_INTERP_VM_BUILTIN_H
@@ -44,6 +44,8 @@ typedef struct CagBuiltin {
   uint64_t first;
   const char *family; // heading of the documentation: "Numbers", "Curves"
 } CagBuiltin;
+
+extern const CagBuiltin cag_builtins[]; // of all families; the last row is empty
 
 // --- Errors: set the machine's error (the place is the call, or the argument where `argument` >= 0
 // and the call's source gives it) and give false --- `message` begins after the function's name:
