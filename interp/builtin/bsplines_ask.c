@@ -12,15 +12,14 @@
 
 static bool read_nurbs(CagCall *call, const CagNurbs **out) {
   CagCurve *c;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
   *out = cag_nurbs_data(c);
   if (*out) return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a curve of kind %s has no control points; `to_nurbs` gives its rational form where "
            "there is one",
            c->kind->name);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 static CagValue range_of(CagCall *call, const CagNurbs *c, double a, double b) {
@@ -166,7 +165,6 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   const size_t n = 2 * q + 1;
   const bool whole = sweep == FULL_TURN;
   CagCurve *c = NULL;
-  CagError err;
   CagVec3 *points = cag_hold_array(call, n, sizeof *points);
   double *weights = cag_hold_array(call, 2 * n + 3, sizeof *weights), *knots = weights + n;
   const double half = cos(sweep / 2 / (double)q);
@@ -181,8 +179,9 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   }
   for (size_t i = 0; i < n + 3; i++) knots[i] = i == 0 ? 0 : (double)((i - 1) / 2);
   knots[n + 2] = (double)q;
-  CagStatus status = cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status =
+      cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_curve_value(call->vm, c);
   return true;
 }
@@ -204,7 +203,6 @@ bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
   long segments;
   bool angle;
   CagTransform frame;
-  CagError err;
   char text[32];
   if (!cag_arg_positive(call, 0, &radius) || !cag_arg_interval(call, 1, &from, &to, &angle) ||
       !cag_arg_integer_or(call, 2, 1, 1, SEGMENTS_MAX, &segments) ||
@@ -215,14 +213,14 @@ bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
   const double sweep = to - from;
   CagStatus status = CAG_OK;
   if (sweep == 0)
-    status =
-        cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1, "the range has no length");
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
+                      "the range has no length");
   else if (!(fabs(sweep) / (double)segments < HALF_TURN))
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
                       "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
                       "take more `segments`",
                       cag_number_text(fabs(sweep), text), segments);
-  return cag_geometry_ok(call, status, &err) &&
+  return cag_geometry_ok(call, status) &&
          give_arcs(call, radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
                    (size_t)segments, &frame, result);
 }
@@ -232,7 +230,6 @@ bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
 bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   const CagVec3 *corners;
-  CagError err;
   size_t n;
   bool closed;
   if (!cag_arg_curve(call, 0, &c)) return false;
@@ -247,8 +244,8 @@ bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < nurbs->distinct; i++)
     if (nurbs->homogeneous[4 * i + 3] > 0) points[n++] = cag_project(nurbs->homogeneous + 4 * i);
   CagStatus status =
-      cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+      cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_curve_value(call->vm, out);
   return true;
 }
@@ -285,17 +282,16 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
   CagVec3 *tips = cag_hold_array(call, comb->n, sizeof *tips);
   CagBuilder *list = cag_builder_new(call->vm);
   CagCurve *line = NULL;
-  CagError err;
   CagStatus status;
   for (size_t i = 0; i < comb->n; i++) {
     tips[i] = cag_madd(comb->feet[i], scale, comb->teeth[i]);
     if (cag_norm(cag_sub(tips[i], comb->feet[i])) == 0) continue;
-    status = cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    status = cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
   }
-  status = cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  status = cag_curve_polyline(tips, comb->n, false, c->dimension, &line, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return true;
@@ -305,7 +301,6 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
 bool cag_bsplines_curvature_comb(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagBounds box;
-  CagError err;
   long n;
   double scale = 0, most = 0;
   if (!cag_arg_curve(call, 0, &c)) return false;
@@ -316,12 +311,12 @@ bool cag_bsplines_curvature_comb(CagCall *call, CagValue *result) {
            ? !cag_arg_integer(call, 1, 2, SEGMENTS_MAX, &n)
            : (n = usual, false)) ||
       (given && !cag_arg_finite(call, 2, &scale)) ||
-      !cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err))
+      !cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err)))
     return false;
   Comb comb = {.n = (size_t)n};
   comb.feet = cag_hold_array(call, 2 * comb.n, sizeof(CagVec3));
   comb.teeth = comb.feet + comb.n;
-  if (!cag_geometry_ok(call, make_comb(c, &comb, &most, &err), &err)) return false;
+  if (!cag_geometry_ok(call, make_comb(c, &comb, &most, call->err))) return false;
   if (!given && most > 0) scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
   return give_comb(call, c, &comb, scale, result);
 }

@@ -29,32 +29,32 @@ bool cag_bsplines_uniform_knots(CagCall *call, CagValue *result) {
 // The knots of argument 0 and a degree; at least degree + 2 of them, ascending and finite.
 static bool read_knots(CagCall *call, int degree_at, int order_at, const double **knots,
                        size_t *count, int *degree) {
-  CagError err;
   if (!cag_arg_numbers(call, 0, knots, count) ||
       !cag_arg_degree(call, degree_at, order_at, 3, degree))
     return false;
   CagStatus status = CAG_OK;
   char a[32], b[32];
   if (*degree < 1 || *degree > CAG_MAX_DEGREE)
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                       "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, *degree);
   else if (*count < (size_t)*degree + 2)
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                       "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
                       *count);
   for (size_t i = 0; status == CAG_OK && i < *count; i++) {
     if (!isfinite((*knots)[i]))
-      status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
+      status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
                         "knots[%zu] is not a finite number", i);
     else if (i > 0 && (*knots)[i] < (*knots)[i - 1])
       status =
-          cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
+          cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
                    "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s", i,
                    cag_number_text((*knots)[i], a), i - 1, cag_number_text((*knots)[i - 1], b));
   }
   if (status == CAG_OK && !((*knots)[0] < (*knots)[*count - 1]))
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", 0, "all knots are equal");
-  return cag_geometry_ok(call, status, &err);
+    status =
+        cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", 0, "all knots are equal");
+  return cag_geometry_ok(call, status);
 }
 
 static CagValue interval(CagCall *call, double a, double b) {
@@ -68,12 +68,11 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
   size_t count;
   int p;
   if (!read_knots(call, 1, 2, &x, &count, &p)) return false;
-  CagError err;
   const size_t n = count - (size_t)p - 1, k = (size_t)p;
   if (n < k + 1) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2, count);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   // The range may be empty, which only a curve minds; multiplicities may be too high.
   char text[32];
@@ -83,10 +82,10 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
     for (run = 1; i + run < count && x[i + run] == x[i]; run++) {}
     const bool inner = x[i] > x[0] && x[i] < x[count - 1];
     if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n])) {
-      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
+      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
                "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
                cag_number_text(x[i], text), run, p, p, p + 1);
-      return cag_fail_geometry(call, &err);
+      return cag_fail_geometry(call, call->err);
     }
     const double pair[2] = {x[i], (double)run};
     if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
@@ -150,25 +149,23 @@ static CagStatus basis_at(const Basis *b, double t, double *out, CagError *err) 
 
 static bool read_basis_weights(CagCall *call, int argument, Basis *b) {
   size_t count;
-  CagError err;
   char text[32];
   if (!is_set(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, &b->weights, &count)) return false;
   CagStatus status = CAG_OK;
   if (count != b->n)
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
                       "expects one of `weights` for each of %zu functions, found %zu", b->n, count);
   for (size_t i = 0; status == CAG_OK && i < count; i++)
     if (!(b->weights[i] >= 0))
-      status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
+      status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                         "weights must not be negative: weights[%zu] = %s", i,
                         cag_number_text(b->weights[i], text));
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(call, status);
 }
 
 // One row, or as many as there are parameters.
 static bool give_basis(CagCall *call, const Basis *b, CagValue *result) {
-  CagError err;
   const double *list = NULL;
   double t, *out;
   size_t rows = 1;
@@ -177,12 +174,12 @@ static bool give_basis(CagCall *call, const Basis *b, CagValue *result) {
     return false;
   if (!several) {
     *result = cag_list_numbers(call->vm, b->n, &out);
-    return cag_geometry_ok(call, basis_at(b, t, out, &err), &err);
+    return cag_geometry_ok(call, basis_at(b, t, out, call->err));
   }
   CagBuilder *all = cag_builder_new(call->vm);
   for (size_t i = 0; i < rows; i++) {
     CagValue row = cag_list_numbers(call->vm, b->n, &out);
-    if (!cag_geometry_ok(call, basis_at(b, list[i], out, &err), &err) ||
+    if (!cag_geometry_ok(call, basis_at(b, list[i], out, call->err)) ||
         !cag_builder_add(call->vm, all, row) || !cag_keep_going(call->vm))
       return false;
   }
@@ -215,9 +212,8 @@ bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
   size_t count, at;
   int p;
   double t;
-  CagError err;
   if (!read_knots(call, 1, 3, &x, &count, &p) || !cag_arg_finite(call, 2, &t) ||
-      !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, &err), &err))
+      !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, call->err)))
     return false;
   double *rows = cag_hold_array(call, (size_t)(p + 1) * (count - 1), sizeof *rows);
   cag_basis_triangle(x, count, p, at, t, rows);
@@ -320,18 +316,17 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
   const double *x, *y;
   size_t count, n;
   int p;
-  CagError err;
   if (!read_knots(call, 2, 3, &x, &count, &p) || !cag_arg_numbers(call, 1, &y, &n)) return false;
   if (n < count) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
              "`refined` has %zu knots, less than the %zu of `knots`", n, count);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
   if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   double *table = cag_hold_array(call, block * (size_t)(p + 1), sizeof *table);
-  if (!cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, call->err))) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t q = 0; q <= (size_t)p; q++) {
     CagBuilder *rows = cag_builder_new(call->vm);
@@ -402,20 +397,19 @@ bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
   size_t n;
   int dimension, p;
   EndCondition start, end;
-  CagError err;
   if (!cag_arg_degree(call, 1, 4, 3, &p) || !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
   cag_hold(call, points);
-  if (!cag_geometry_ok(call, cag_degree_check(n, p, &err), &err) ||
+  if (!cag_geometry_ok(call, cag_degree_check(n, p, call->err)) ||
       !read_end(call, 2, points[0], dimension, &start) ||
       !read_end(call, 3, points[n - 1], dimension, &end))
     return false;
   CagVec3 *all = cag_hold_array(call, n + 2, sizeof *all);
   double *work = cag_hold_array(call, 4 * (size_t)p + 8, sizeof *work);
   memcpy(all + 1, points, sizeof *all * n);
-  CagStatus status = phantom(&start, points, n, p, false, work, &all[0], &err);
-  if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = phantom(&start, points, n, p, false, work, &all[0], call->err);
+  if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_points_value(call->vm, all, n + 2, dimension);
   return true;
 }

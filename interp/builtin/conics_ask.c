@@ -50,13 +50,12 @@ static CagValue plane_point(CagCall *call, CagVec3 p, const CagTransform *frame)
 
 // The conic of a curve of the plane, or of space with the frame of its plane.
 static bool read_placed_conic(CagCall *call, CagConic *out, CagTransform *frame, bool *placed) {
-  CagError err;
   CagCurve *c;
   *placed =
       call->values[0].type == CAG_CURVE && CAG_AS_SHAPE(call->values[0])->as.curve->dimension == 3;
   if (!*placed) return cag_arg_conic(call, 0, out);
   return cag_arg_curve(call, 0, &c) &&
-         cag_geometry_ok(call, cag_conic_of_space_curve(c, frame, out, &err), &err);
+         cag_geometry_ok(call, cag_conic_of_space_curve(c, frame, out, call->err));
 }
 
 static CagValue standard_value(CagCall *call, const CagConicClass *k) {
@@ -73,11 +72,10 @@ bool cag_conics_classify(CagCall *call, CagValue *result) {
       "p",     "axes",         "eccentricity", "foci",   "lines",  "standard", "matrix", "frame"};
   CagConic conic;
   CagConicClass k;
-  CagError err;
   CagTransform place;
   bool placed;
   if (!read_placed_conic(call, &conic, &place, &placed) ||
-      !cag_geometry_ok(call, cag_conic_classify(&conic, &k, &err), &err))
+      !cag_geometry_ok(call, cag_conic_classify(&conic, &k, call->err)))
     return false;
   const CagTransform *frame = placed ? &place : NULL;
   CagVm *vm = call->vm;
@@ -172,12 +170,11 @@ bool cag_conics_line_image(CagCall *call, CagValue *result) {
   static const int place[3] = {0, 1, 3};
   double row[3] = {0}, image[3] = {0};
   CagTransform t, back;
-  CagError err;
   if (!read_row(call, 0, row) || !cag_arg_transform(call, 1, &t)) return false;
   if (!t.planar)
     return cag_fail_call(call, 1, CAG_ERR_value,
                          "expects a transform of the plane: rotate(30deg), translate([1, 2]), ...");
-  if (!cag_geometry_ok(call, cag_transform_inverse(&t, &back, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_transform_inverse(&t, &back, call->err))) return false;
   for (int j = 0; j < 3; j++)
     for (int i = 0; i < 3; i++) image[j] += row[i] * back.m[place[i]][place[j]];
   for (int j = 0; j < 3; j++) image[j] += 0.0;
@@ -194,7 +191,6 @@ bool cag_conics_intersect_line(CagCall *call, CagValue *result) {
   CagConic k;
   CagVec3 p, q, points[2];
   CagLineConic kind;
-  CagError err;
   double row[3] = {0}, t[2];
   if (!cag_arg_conic(call, 0, &k)) return false;
   if (cag_conics_said(call, 2)) {
@@ -207,7 +203,7 @@ bool cag_conics_intersect_line(CagCall *call, CagValue *result) {
     p = cag_vec3(-row[2] * row[0] / nn, -row[2] * row[1] / nn, 0);
     q = cag_vec3(-row[1], row[0], 0);
   }
-  if (!cag_geometry_ok(call, cag_conic_line(&k, p, q, &kind, t, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_conic_line(&k, p, q, &kind, t, call->err))) return false;
   for (size_t i = 0; i < counts[kind]; i++) points[i] = cag_madd(p, t[i], q);
   CagValue values[] = {cag_text_c(call->vm, words[kind]),
                        cag_points_value(call->vm, points, counts[kind], 2)};
@@ -235,10 +231,9 @@ bool cag_conics_implicit_at(CagCall *call, CagValue *result) {
   cag_conic_polar(&k, p, line);
   const double fx = 2 * line[0], fy = 2 * line[1], n = hypot(fx, fy);
   if (n == 0) {
-    CagError err;
-    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "", -1,
+    cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "", -1,
              "the gradient is zero here: a singular point without slope and curvature");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   const double bend = 2 * k.c[0] * fy * fy - 2 * k.c[1] * fx * fy + 2 * k.c[2] * fx * fx;
   const double curvature = fabs(bend) / (n * n * n), gradient[2] = {fx + 0.0, fy + 0.0};
@@ -253,12 +248,11 @@ bool cag_conics_point_of_conic(CagCall *call, CagValue *result) {
   static const char *const sides[] = {"lower", "upper", NULL};
   CagConic k;
   CagVec3 p;
-  CagError err;
   double x;
   int upper;
   if (!cag_arg_conic(call, 0, &k) || !cag_arg_finite(call, 1, &x) ||
       !cag_arg_choice(call, 2, sides, &upper) ||
-      !cag_geometry_ok(call, cag_conic_point_at(&k, x, upper, &p, &err), &err))
+      !cag_geometry_ok(call, cag_conic_point_at(&k, x, upper, &p, call->err)))
     return false;
   *result = cag_point(call->vm, p, 2);
   return true;
@@ -275,7 +269,6 @@ static bool read_plane_curve(CagCall *call, CagCurve **c) {
 bool cag_conics_points_at(CagCall *call, CagValue *result) {
   static const char *const names[] = {"t", "point"};
   CagCurve *c;
-  CagError err;
   CagMeeting *meetings;
   CagPlane plane;
   size_t n;
@@ -287,7 +280,7 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
   if (!cag_arg_finite(call, x ? 1 : 2, &value)) return false;
   plane.point = x ? cag_vec3(value, 0, 0) : cag_vec3(0, value, 0);
   plane.normal = x ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
-  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, meetings);
   CagBuilder *list = cag_builder_new(call->vm);
@@ -302,11 +295,10 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
 
 static bool read_derivatives(CagCall *call, CagVec3 out[3]) {
   CagCurve *c;
-  CagError err;
   double t;
   return read_plane_curve(call, &c) &&
          cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t) &&
-         cag_geometry_ok(call, cag_curve_eval(c, t, 2, CAG_SIDE_RIGHT, out, &err), &err);
+         cag_geometry_ok(call, cag_curve_eval(c, t, 2, CAG_SIDE_RIGHT, out, call->err));
 }
 
 bool cag_conics_slope(CagCall *call, CagValue *result) {
@@ -320,13 +312,12 @@ bool cag_conics_slope(CagCall *call, CagValue *result) {
 
 bool cag_conics_signed_curvature(CagCall *call, CagValue *result) {
   CagVec3 d[3];
-  CagError err;
   if (!read_derivatives(call, d)) return false;
   const double n = cag_norm(d[1]);
   if (n == 0) {
-    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t", -1,
+    cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t", -1,
              "the derivative vanishes here: there is no curvature");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   *result = cag_number((d[1].x * d[2].y - d[1].y * d[2].x) / (n * n * n) + 0.0);
   return true;
@@ -340,7 +331,6 @@ bool cag_conics_fit_formula(CagCall *call, CagValue *result) {
   static const char *const models[] = {"polynomial", "power", "exponential", NULL};
   static const char *const names[] = {"coefficients", "a", "b", "residual_sum_of_squares"};
   CagVec3 *points;
-  CagError err;
   size_t n;
   long degree;
   int model, dimension;
@@ -355,8 +345,9 @@ bool cag_conics_fit_formula(CagCall *call, CagValue *result) {
     x[i] = points[i].x;
     y[i] = points[i].y;
   }
-  CagStatus status = cag_fit_formula(x, y, n, (CagModel)model, (int)degree, out, &residual, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status =
+      cag_fit_formula(x, y, n, (CagModel)model, (int)degree, out, &residual, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   const bool two = model != CAG_MODEL_POLYNOMIAL;
   CagValue values[] = {row_value(call, out, two ? 2 : (size_t)degree + 1),
                        two ? cag_number(out[0]) : cag_none(), two ? cag_number(out[1]) : cag_none(),

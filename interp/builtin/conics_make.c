@@ -21,7 +21,6 @@ bool cag_conics_said(const CagCall *call, int argument) {
 static bool read_frame(CagCall *call, int at, CagTransform *out) {
   CagVec3 center, normal;
   int dimension = 2;
-  CagError err;
   if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
   if (!cag_given(call, at)) dimension = 2;
   *out = cag_translate(center);
@@ -30,7 +29,7 @@ static bool read_frame(CagCall *call, int at, CagTransform *out) {
   if (!cag_arg_direction(call, at + 1, center, &normal, NULL)) return false;
   CagVec3 x = cag_cross(cag_vec3(0, 0, 1), normal);
   if (x.x == 0 && x.y == 0) x = cag_vec3(1, 0, 0);
-  if (!cag_geometry_ok(call, cag_axes(center, x, cag_cross(normal, x), out, &err), &err))
+  if (!cag_geometry_ok(call, cag_axes(center, x, cag_cross(normal, x), out, call->err)))
     return false;
   out->planar = false;
   return true;
@@ -71,14 +70,13 @@ static bool hyperbola_at(CagCall *call, double a, double b, double value, bool i
 
 // The curve over a range; from the larger to the smaller parameter it is that over the ascending
 // range, reversed.
-static bool give_ranged(CagCall *call, CagStatus status, const CagError *err, bool backwards,
-                        CagCurve **made, CagValue *result) {
-  if (status || !backwards) return cag_curve_result(call, status, err, made, result);
+static bool give_ranged(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
+                        CagValue *result) {
+  if (status || !backwards) return cag_curve_result(call, status, made, result);
   CagCurve *reversed = NULL;
-  CagError why;
-  status = cag_curve_reverse(*made, &reversed, &why);
+  status = cag_curve_reverse(*made, &reversed, call->err);
   cag_curve_release(*made);
-  return cag_curve_result(call, status, &why, &reversed, result);
+  return cag_curve_result(call, status, &reversed, result);
 }
 
 // Exactly one of range, x and y, of which the last two stand at `x_at` and after.
@@ -109,14 +107,13 @@ bool cag_conics_parabola(CagCall *call, CagValue *result) {
   bool angle;
   CagTransform frame;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_positive(call, 0, &a) ||
       !read_range(call, 1, 4, a, 0, parabola_at, &from, &to, &angle) ||
       !read_frame(call, 2, &frame))
     return false;
   CagStatus status = cag_curve_parabola(a, angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC,
-                                        fmin(from, to), fmax(from, to), &frame, &c, &err);
-  return give_ranged(call, status, &err, from > to, &c, result);
+                                        fmin(from, to), fmax(from, to), &frame, &c, call->err);
+  return give_ranged(call, status, from > to, &c, result);
 }
 
 bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
@@ -124,14 +121,13 @@ bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
   bool angle;
   CagTransform frame;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_positive(call, 0, &a) || !cag_arg_positive(call, 1, &b) ||
       !read_range(call, 2, 5, a, b, hyperbola_at, &from, &to, &angle) ||
       !read_frame(call, 3, &frame))
     return false;
   CagStatus status = cag_curve_hyperbola(a, b, angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC,
-                                         fmin(from, to), fmax(from, to), &frame, &c, &err);
-  return give_ranged(call, status, &err, from > to, &c, result);
+                                         fmin(from, to), fmax(from, to), &frame, &c, call->err);
+  return give_ranged(call, status, from > to, &c, result);
 }
 
 // --- By equation ---
@@ -139,7 +135,6 @@ bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
 // 6 numbers, or 3 rows of a symmetric matrix.
 static bool read_equation(CagCall *call, int argument, CagConic *out) {
   CagList *list;
-  CagError err;
   if (!cag_arg_list(call, argument, &list)) return false;
   if (list->dim == 1 && list->length == 6) {
     for (int i = 0; i < 6; i++) out->c[i] = list->as.numbers[i];
@@ -158,21 +153,19 @@ static bool read_equation(CagCall *call, int argument, CagConic *out) {
                          "expects the 6 coefficients [A, B, C, D, E, F] of A x^2 + B xy + C y^2 + "
                          "D x + E y + F = 0, or the 3 rows of its symmetric matrix");
   }
-  return cag_geometry_ok(call, cag_conic_check(out, &err), &err);
+  return cag_geometry_ok(call, cag_conic_check(out, call->err));
 }
 
 bool cag_arg_conic(CagCall *call, int argument, CagConic *out) {
   CagCurve *c;
-  CagError err;
   if (call->values[argument].type == CAG_LIST) return read_equation(call, argument, out);
   return cag_arg_curve(call, argument, &c) &&
-         cag_geometry_ok(call, cag_conic_of_curve(c, out, &err), &err);
+         cag_geometry_ok(call, cag_conic_of_curve(c, out, call->err));
 }
 
 bool cag_conics_conic(CagCall *call, CagValue *result) {
   CagConic k;
   CagCurve *c = NULL;
-  CagError err;
   bool halved;
   if (!read_equation(call, 0, &k) || !cag_arg_bool_or(call, 1, false, &halved)) return false;
   if (halved) {
@@ -180,15 +173,14 @@ bool cag_conics_conic(CagCall *call, CagValue *result) {
     k.c[3] *= 2;
     k.c[4] *= 2;
   }
-  return cag_curve_result(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_curve_conic(&k, &c, call->err), &c, result);
 }
 
 bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
   CagConic k;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_conic(call, 0, &k)) return false;
-  return cag_curve_result(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_curve_conic(&k, &c, call->err), &c, result);
 }
 
 typedef struct Branches { // held
@@ -205,14 +197,13 @@ static void free_branches(void *what) {
 bool cag_conics_branches(CagCall *call, CagValue *result) {
   CagConic k;
   CagValue items[2];
-  CagError err;
   double from = -2, to = 2;
   if (!cag_arg_conic(call, 0, &k) ||
       (cag_given(call, 1) && !cag_arg_interval(call, 1, &from, &to, NULL)))
     return false;
   Branches *b = cag_hold_array(call, 1, sizeof *b);
   cag_hold_for(call, free_branches, cag_give_held(call, b));
-  if (!cag_geometry_ok(call, cag_conic_branches(&k, from, to, b->c, &b->n, &err), &err))
+  if (!cag_geometry_ok(call, cag_conic_branches(&k, from, to, b->c, &b->n, call->err)))
     return false;
   for (size_t i = 0; i < b->n; i++) items[i] = cag_curve_value(call->vm, cag_curve_retain(b->c[i]));
   *result = cag_list_values(call->vm, items, b->n);
@@ -225,10 +216,9 @@ static bool make_by(CagCall *call, const CagVec3 *points, size_t n, const CagCon
                     size_t m, CagConicShape shape, CagValue *result) {
   CagConic k;
   CagCurve *c = NULL;
-  CagError err;
-  CagStatus status = cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err);
-  if (!status) status = cag_curve_conic(&k, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  CagStatus status = cag_conic_from_conditions(points, n, tangents, m, shape, &k, call->err);
+  if (!status) status = cag_curve_conic(&k, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 static bool check_plane(CagCall *call, int argument, int dimension) {
@@ -304,7 +294,6 @@ bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
   int dimension = 2, d;
   double weight, rho;
   CagCurve *c = NULL;
-  CagError err;
   for (int i = 0; i < 3; i++) {
     if (!cag_arg_vec(call, i, &p[i], &d)) return false;
     if (d == 3) dimension = 3;
@@ -323,13 +312,13 @@ bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
     weight = rho / (1 - rho);
   } else if (cag_conics_said(call, 4)) {
     if (!cag_arg_vec(call, 4, &shoulder, NULL) ||
-        !cag_geometry_ok(call, cag_conic_shoulder_weight(p[0], p[1], p[2], shoulder, &weight, &err),
-                         &err))
+        !cag_geometry_ok(call,
+                         cag_conic_shoulder_weight(p[0], p[1], p[2], shoulder, &weight, call->err)))
       return false;
   } else if (!cag_arg_finite(call, 5, &weight)) {
     return false;
   }
-  return cag_curve_result(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, &err), &err,
+  return cag_curve_result(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, call->err),
                           &c, result);
 }
 
@@ -337,13 +326,12 @@ bool cag_conics_conic_segment(CagCall *call, CagValue *result) {
   static const char *const sides[] = {"lower", "upper", NULL};
   CagConic k;
   CagCurve *c = NULL;
-  CagError err;
   double from, to;
   int upper;
   if (!cag_arg_conic(call, 0, &k) || !cag_arg_interval(call, 1, &from, &to, NULL) ||
       !cag_arg_choice(call, 2, sides, &upper))
     return false;
-  return cag_curve_result(call, cag_conic_segment(&k, from, to, upper, &c, &err), &err, &c, result);
+  return cag_curve_result(call, cag_conic_segment(&k, from, to, upper, &c, call->err), &c, result);
 }
 
 // --- Points ---
@@ -357,7 +345,6 @@ typedef struct Axes {
 static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   CagVec3 x, y, p;
   double rate;
-  CagError err;
   if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
     return cag_fail_call(call, 0, CAG_ERR_value, "takes this `by` of circles and ellipses only");
   // Any two conjugate half diameters will do for an arc; from them to the axes the angle shifts.
@@ -372,7 +359,7 @@ static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   out->b = cag_norm(y);
   out->x = cag_unit(x);
   out->y = cag_unit(y);
-  if (!cag_geometry_ok(call, cag_curve_point(c, c->start, &p, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_point(c, c->start, &p, call->err))) return false;
   const CagVec3 d = cag_sub(p, out->center);
   out->from = atan2(cag_dot(d, out->y) / out->b, cag_dot(d, out->x) / out->a);
   if (c->angular && fabs(remainder(out->from - c->start, 2 * M_PI)) < same) out->from = c->start;
@@ -421,15 +408,14 @@ static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out
 
 static bool by_length(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
   double whole, t;
-  CagError err;
-  CagStatus status = cag_curve_length(c, c->start, c->end, &whole, &err);
+  CagStatus status = cag_curve_length(c, c->start, c->end, &whole, call->err);
   for (size_t i = 0; !status && i < n; i++) {
     t = i + 1 == n ? c->end : c->start;
     if (i > 0 && i + 1 < n)
-      status = cag_curve_parameter_at_length(c, whole * (double)i / (double)(n - 1), &t, &err);
-    if (!status) status = cag_curve_point(c, t, &out[i], &err);
+      status = cag_curve_parameter_at_length(c, whole * (double)i / (double)(n - 1), &t, call->err);
+    if (!status) status = cag_curve_point(c, t, &out[i], call->err);
   }
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(call, status);
 }
 
 // Halvings that exhaust a double's digits.
@@ -450,9 +436,8 @@ static CagStatus find_x(const CagCurve *c, double x, double low, double high, Ca
 }
 
 static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
-  CagError err;
-  CagStatus status = cag_curve_point(c, c->start, &out[0], &err);
-  if (!status) status = cag_curve_point(c, c->end, &out[n - 1], &err);
+  CagStatus status = cag_curve_point(c, c->start, &out[0], call->err);
+  if (!status) status = cag_curve_point(c, c->end, &out[n - 1], call->err);
   const double from = out[0].x, to = out[n - 1].x;
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double slack = 1e-9 * (box.max.x - box.min.x);
@@ -460,16 +445,15 @@ static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
     return fail_domain(call, "", "x must go one way from the start to the end");
   for (size_t i = 1; !status && i + 1 < n; i++) {
     const double x = from + (to - from) * ((double)i / (double)(n - 1));
-    status =
-        find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i], &err);
+    status = find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i],
+                    call->err);
     out[i].x = x;
   }
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(call, status);
 }
 
 static bool by_parameter(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
-  CagError err;
-  return cag_geometry_ok(call, cag_conic_points(c, n, out, &err), &err);
+  return cag_geometry_ok(call, cag_conic_points(c, n, out, call->err));
 }
 
 bool cag_conics_conic_points(CagCall *call, CagValue *result) {

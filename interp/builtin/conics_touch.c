@@ -64,7 +64,6 @@ bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
   CagTouchChoice choice;
   CagVec3 center, touch[2];
   CagCurve *c = NULL;
-  CagError err;
   double radius;
   int side, near;
   if (!read_touched(call, 0, &a) || !read_touched(call, 1, &b) ||
@@ -73,13 +72,12 @@ bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
     return false;
   choice.right = side == 1;
   choice.near = near == 1;
-  if (!cag_geometry_ok(call, cag_tangent_circle(&a, &b, radius, choice, &center, touch, &err),
-                       &err))
+  if (!cag_geometry_ok(call, cag_tangent_circle(&a, &b, radius, choice, &center, touch, call->err)))
     return false;
   CagTransform frame = cag_translate(center);
   frame.planar = true;
-  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_curve_value(call->vm, c);
   return true;
 }
@@ -90,10 +88,9 @@ bool cag_conics_fillet(CagCall *call, CagValue *result) {
     double radius;
   } given;
   CagCurve *arc = NULL;
-  CagError err;
   double t, t2;
   if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_fillet(given.a, given.b, given.radius, &arc, &t, &t2, &err), &err))
+      !cag_geometry_ok(call, cag_fillet(given.a, given.b, given.radius, &arc, &t, &t2, call->err)))
     return false;
   *result = cag_curve_value(call->vm, arc);
   return true;
@@ -101,11 +98,10 @@ bool cag_conics_fillet(CagCall *call, CagValue *result) {
 
 static bool give_lines(CagCall *call, const CagTangentLine *lines, size_t n, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
-  CagError err;
   for (size_t i = 0; i < n; i++) {
     CagCurve *c = NULL;
-    CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, c))) return false;
   }
   *result = cag_builder_finish(call->vm, list);
@@ -116,7 +112,6 @@ bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
   CagCurve *a, *b;
   CagVec3 p;
   CagTangentLine *lines = NULL;
-  CagError err;
   size_t n = 0;
   int dimension;
   CagStatus status;
@@ -125,23 +120,22 @@ bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
   if (call->values[1].type == CAG_CURVE) {
     if (!cag_arg_curve(call, 1, &b)) return false;
     if (cag_curve_conic_branch(b)) b = (CagCurve *)cag_curve_conic_branch(b);
-    status = cag_tangents_of_two(a, b, &lines, &n, &err);
+    status = cag_tangents_of_two(a, b, &lines, &n, call->err);
   } else {
     if (!cag_arg_vec(call, 1, &p, &dimension)) return false;
     if (dimension != 2) return cag_fail_value(call, 1, "a point [x, y] of the plane, or a curve");
-    status = cag_tangents_from_point(a, p, &lines, &n, &err);
+    status = cag_tangents_from_point(a, p, &lines, &n, call->err);
   }
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, cag_free, lines);
   return give_lines(call, lines, n, result);
 }
 
 bool cag_conics_rounded(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double radius;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &radius) ||
-      !cag_geometry_ok(call, cag_curve_rounded(c, radius, &out, &err), &err))
+      !cag_geometry_ok(call, cag_curve_rounded(c, radius, &out, call->err)))
     return false;
   *result = cag_curve_value(call->vm, out);
   cag_shape_say_alike(*result, call->values[0]);
@@ -152,17 +146,16 @@ bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   const CagRegion *region = shape->as.region;
   CagRegion *out = NULL;
-  CagError err;
   double radius;
   if (!cag_arg_positive(call, 1, &radius)) return false;
   CagCurve **loops = cag_hold_array(call, region->count, sizeof *loops);
   for (size_t i = 0; i < region->count; i++) {
-    CagStatus status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    CagStatus status = cag_curve_rounded(region->loops[i], radius, &loops[i], call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     cag_hold_curve(call, loops[i]);
   }
   if (cag_region_is_empty(region)) out = cag_region_retain(region);
-  else if (!cag_geometry_ok(call, cag_region_from_loops(loops, region->count, &out, &err), &err))
+  else if (!cag_geometry_ok(call, cag_region_from_loops(loops, region->count, &out, call->err)))
     return false;
   *result = cag_region_value(call->vm, out, &shape->placement);
   cag_shape_say_alike(*result, call->values[0]);

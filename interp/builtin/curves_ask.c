@@ -20,12 +20,11 @@ static bool read_side(CagCall *call, int argument, CagSide *out) {
 bool cag_curves_at(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagVec3 p;
-  CagError err;
   double t;
   bool unit;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_bool_or(call, 2, false, &unit) ||
       !cag_arg_parameter(call, 1, c->angular, c->start, c->end, unit, &t) ||
-      !cag_geometry_ok(call, cag_curve_point(c, t, &p, &err), &err))
+      !cag_geometry_ok(call, cag_curve_point(c, t, &p, call->err)))
     return false;
   *result = cag_point(call->vm, p, c->dimension);
   return true;
@@ -34,13 +33,12 @@ bool cag_curves_at(CagCall *call, CagValue *result) {
 bool cag_curves_derivative(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagVec3 out[CAG_MAX_DERIVATIVE + 1];
-  CagError err;
   double t;
   long order;
   CagSide side;
   if (!read_at(call, &c, &t) || !cag_arg_integer_or(call, 2, 1, 0, CAG_MAX_DERIVATIVE, &order) ||
       !read_side(call, 3, &side) ||
-      !cag_geometry_ok(call, cag_curve_eval(c, t, (int)order, side, out, &err), &err))
+      !cag_geometry_ok(call, cag_curve_eval(c, t, (int)order, side, out, call->err)))
     return false;
   *result = cag_point(call->vm, out[order], c->dimension);
   return true;
@@ -49,27 +47,24 @@ bool cag_curves_derivative(CagCall *call, CagValue *result) {
 bool cag_curves_tangent(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagVec3 v;
-  CagError err;
   double t;
   CagSide side;
   if (!read_at(call, &c, &t) || !read_side(call, 2, &side) ||
-      !cag_geometry_ok(call, cag_curve_tangent(c, t, side, &v, &err), &err))
+      !cag_geometry_ok(call, cag_curve_tangent(c, t, side, &v, call->err)))
     return false;
   *result = cag_point(call->vm, v, c->dimension);
   return true;
 }
 
 static bool read_frenet(CagCall *call, CagCurve **c, CagFrenet *frame) {
-  CagError err;
   double t;
-  return read_at(call, c, &t) && cag_geometry_ok(call, cag_curve_frenet(*c, t, frame, &err), &err);
+  return read_at(call, c, &t) && cag_geometry_ok(call, cag_curve_frenet(*c, t, frame, call->err));
 }
 
 static bool fail_straight(CagCall *call) {
-  CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
+  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
            "the curvature is 0 here, so there is neither normal nor binormal");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_curves_normal(CagCall *call, CagValue *result) {
@@ -157,8 +152,7 @@ bool cag_curves_end(CagCall *call, CagValue *result) {
 
 static bool give_point(CagCall *call, const CagCurve *c, double t, CagValue *result) {
   CagVec3 p;
-  CagError err;
-  if (!cag_geometry_ok(call, cag_curve_point(c, t, &p, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_point(c, t, &p, call->err))) return false;
   *result = cag_point(call->vm, p, c->dimension);
   return true;
 }
@@ -174,11 +168,10 @@ bool cag_curves_end_point(CagCall *call, CagValue *result) {
 }
 
 static bool fail_no_data(CagCall *call, const CagCurve *c, const char *what) {
-  CagError err;
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a curve of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
            c->kind->name, what);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_curves_degree(CagCall *call, CagValue *result) {
@@ -252,20 +245,18 @@ bool cag_curves_is_closed(CagCall *call, CagValue *result) {
 
 bool cag_curves_is_planar(CagCall *call, CagValue *result) {
   CagCurve *c;
-  CagError err;
   bool is;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  if (!cag_geometry_ok(call, cag_curve_is_planar(c, &is, NULL, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_is_planar(c, &is, NULL, call->err))) return false;
   *result = cag_bool(is);
   return true;
 }
 
 bool cag_curves_is_straight(CagCall *call, CagValue *result) {
   CagCurve *c;
-  CagError err;
   bool is;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  if (!cag_geometry_ok(call, cag_curve_is_straight(c, &is, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_is_straight(c, &is, call->err))) return false;
   *result = cag_bool(is);
   return true;
 }

@@ -7,24 +7,21 @@
 
 bool cag_curves_reverse(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_reverse(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_reverse(c, &out, call->err), &out, result);
 }
 
 bool cag_curves_trim(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double from, to;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
     return false;
-  CagStatus status = cag_curve_trim(c, from, to, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_trim(c, from, to, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double from, to;
   bool angle;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_interval(call, 1, &from, &to, &angle)) return false;
@@ -32,8 +29,8 @@ bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
     from *= CAG_RADIANS_PER_DEGREE;
     to *= CAG_RADIANS_PER_DEGREE;
   }
-  CagStatus status = cag_curve_reparametrize_as(c, from, to, angle, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_reparametrize_as(c, from, to, angle, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 // Parts of a curve, held.
@@ -68,16 +65,15 @@ static CagValue pieces_value(CagCall *call, const Pieces *p) {
 
 bool cag_curves_split(CagCall *call, CagValue *result) {
   CagCurve *c;
-  CagError err;
   double t;
   if (!cag_arg_curve(call, 0, &c) ||
       !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t))
     return false;
   Pieces *halves = pieces_new(call);
   halves->curves = cag_malloc(2 * sizeof *halves->curves);
-  CagStatus status =
-      halves->curves ? cag_curve_halves(c, t, halves->curves, &err) : cag_fail_memory(&err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = halves->curves ? cag_curve_halves(c, t, halves->curves, call->err)
+                                    : cag_fail_memory(call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   halves->n = 2;
   *result = pieces_value(call, halves);
   return true;
@@ -87,7 +83,6 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
   CagValue *items;
   size_t n;
   CagCurve *out = NULL;
-  CagError err;
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_too_few_curves, "expects at least one curve");
   CagCurve **curves = cag_hold_array(call, n, sizeof *curves);
@@ -97,7 +92,7 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
                            "expects curves, found %s as number %zu", cag_type_article(items[i]), i);
     curves[i] = CAG_AS_SHAPE(items[i])->as.curve;
   }
-  if (!cag_geometry_ok(call, cag_curve_join(curves, n, &out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_join(curves, n, &out, call->err))) return false;
   *result = cag_curve_value(call->vm, out);
   cag_shape_say_alike(*result, items[0]);
   return true;
@@ -105,9 +100,8 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
 
 bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_to_nurbs(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_to_nurbs(c, &out, call->err), &out, result);
 }
 
 // No limit of the turn: only the distance counts.
@@ -119,29 +113,27 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
     double tolerance;
   } a;
   CagCurve *out = NULL;
-  CagError err;
   double *t = NULL;
   size_t n;
   if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_discretize(a.c, a.tolerance, ANY_TURN, &t, &n, &err), &err))
+      !cag_geometry_ok(call, cag_curve_discretize(a.c, a.tolerance, ANY_TURN, &t, &n, call->err)))
     return false;
   cag_hold(call, t);
   CagVec3 *points = cag_hold(call, cag_malloc(n * sizeof *points));
-  CagStatus status = cag_curve_eval_many(a.c, t, n, 0, points, &err);
+  CagStatus status = cag_curve_eval_many(a.c, t, n, 0, points, call->err);
   if (status == CAG_OK)
     status = cag_curve_polyline(points, a.c->closed ? n - 1 : n, a.c->closed, a.c->dimension, &out,
-                                &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+                                call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 // --- Another form of the same points ---
 
 bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
   CagCurve *c;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
   Pieces *p = pieces_new(call);
-  if (!cag_geometry_ok(call, cag_curve_to_bezier(c, &p->curves, &p->n, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_to_bezier(c, &p->curves, &p->n, call->err))) return false;
   *result = pieces_value(call, p);
   return true;
 }
@@ -155,10 +147,9 @@ bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
     long times;
   } a;
   CagCurve *out = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_elevate(a.c, (int)a.times, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_elevate(a.c, (int)a.times, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 // A tolerance in mm, positive or inf.
@@ -170,16 +161,14 @@ static bool read_tolerance(CagCall *call, int argument, double *out) {
 
 bool cag_bsplines_reduce_degree(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double tolerance;
   if (!cag_arg_curve(call, 0, &c) || !read_tolerance(call, 1, &tolerance)) return false;
-  CagStatus status = cag_curve_reduce_degree(c, tolerance, &out, NULL, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_reduce_degree(c, tolerance, &out, NULL, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double t;
   long times;
   if (!cag_arg_curve(call, 0, &c) ||
@@ -188,8 +177,8 @@ bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
     return false;
   double knots[TIMES_MAX];
   for (long i = 0; i < times; i++) knots[i] = t;
-  CagStatus status = cag_curve_insert_knots(c, knots, (size_t)times, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_insert_knots(c, knots, (size_t)times, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 // Part of the size of the curve within which a knot counts as one without effect.
@@ -198,10 +187,9 @@ bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
 static bool tolerance_of_size(CagCall *call, const CagCurve *c, int argument, double part,
                               double *out) {
   CagBounds box;
-  CagError err;
   if (cag_given(call, argument) && call->values[argument].type != CAG_NONE)
     return read_tolerance(call, argument, out);
-  if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err))) return false;
   *out = part * cag_norm(cag_sub(box.max, box.min));
   return true;
 }
@@ -209,7 +197,6 @@ static bool tolerance_of_size(CagCall *call, const CagCurve *c, int argument, do
 // C, t, tolerance, times
 bool cag_bsplines_remove_knot(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double t, tolerance;
   long times;
   if (!cag_arg_curve(call, 0, &c) ||
@@ -217,14 +204,13 @@ bool cag_bsplines_remove_knot(CagCall *call, CagValue *result) {
       !tolerance_of_size(call, c, 2, WITHOUT_EFFECT, &tolerance) ||
       !cag_arg_integer_or(call, 3, 1, 1, TIMES_MAX, &times))
     return false;
-  CagStatus status = cag_curve_remove_knot(c, t, (int)times, tolerance, &out, NULL, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_remove_knot(c, t, (int)times, tolerance, &out, NULL, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 bool cag_bsplines_refine(CagCall *call, CagValue *result) {
   static const char *const ways[] = {"midpoints", NULL};
   CagCurve *c, *out = NULL;
-  CagError err;
   CagStatus status;
   const double *knots;
   size_t n;
@@ -232,19 +218,18 @@ bool cag_bsplines_refine(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c)) return false;
   if (cag_given(call, 1) && call->values[1].type != CAG_TEXT) {
     if (!cag_arg_numbers(call, 1, &knots, &n)) return false;
-    status = cag_curve_insert_knots(c, knots, n, &out, &err);
+    status = cag_curve_insert_knots(c, knots, n, &out, call->err);
   } else {
     if (!cag_arg_choice(call, 1, ways, &way)) return false;
-    status = cag_curve_insert_midpoints(c, &out, &err);
+    status = cag_curve_insert_midpoints(c, &out, call->err);
   }
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_clamp(c, &out, &err), &err, &out, result);
+  return cag_changed_curve_result(call, cag_curve_clamp(c, &out, call->err), &out, result);
 }
 
 // --- Curves near it ---
@@ -253,10 +238,9 @@ bool cag_bsplines_deviation(CagCall *call, CagValue *result) {
   struct {
     CagCurve *a, *b;
   } given;
-  CagError err;
   double most;
   if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_curve_deviation(given.a, given.b, &most, &err), &err))
+      !cag_geometry_ok(call, cag_curve_deviation(given.a, given.b, &most, call->err)))
     return false;
   *result = cag_number(most);
   return true;
@@ -268,10 +252,9 @@ bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
     double tolerance;
   } a;
   CagCurve *out = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_approximate(a.c, a.tolerance, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_approximate(a.c, a.tolerance, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
 // How exact an offset is where nothing is said, as part of its curve's size.
@@ -279,13 +262,12 @@ bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
 
 bool cag_bsplines_offset(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
-  CagError err;
   double d, tolerance;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_finite(call, 1, &d) ||
       !tolerance_of_size(call, c, 2, OFFSET_TOLERANCE, &tolerance))
     return false;
   if (!(tolerance > 0))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a positive `tolerance`");
-  CagStatus status = cag_curve_offset(c, d, tolerance, &out, &err);
-  return cag_changed_curve_result(call, status, &err, &out, result);
+  CagStatus status = cag_curve_offset(c, d, tolerance, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }

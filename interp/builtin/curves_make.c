@@ -9,11 +9,10 @@ bool cag_curves_line(CagCall *call, CagValue *result) {
     CagPoint p, q;
   } a;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
   CagStatus status = cag_curve_line(
-      a.p.at, a.q.at, a.p.dimension > a.q.dimension ? a.p.dimension : a.q.dimension, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+      a.p.at, a.q.at, a.p.dimension > a.q.dimension ? a.p.dimension : a.q.dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_curves_polyline(CagCall *call, CagValue *result) {
@@ -22,13 +21,12 @@ bool cag_curves_polyline(CagCall *call, CagValue *result) {
   int dimension;
   bool closed;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_bool_or(call, 1, false, &closed) ||
       !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
   cag_hold(call, points);
-  CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 // --- Circles and ellipses ---
@@ -43,7 +41,6 @@ static CagStatus level_frame(CagVec3 center, CagVec3 normal, CagTransform *out, 
 bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out) {
   CagVec3 center, normal;
   int dimension = 2;
-  CagError err;
   bool has_normal = cag_given(call, at + 1) && call->values[at + 1].type != CAG_NONE;
   if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
   if (!cag_given(call, at)) dimension = 2;
@@ -51,7 +48,7 @@ bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out) {
   out->planar = dimension == 2 && !has_normal;
   if (!has_normal) return true;
   if (!cag_arg_direction(call, at + 1, center, &normal, NULL) ||
-      !cag_geometry_ok(call, level_frame(center, normal, out, &err), &err))
+      !cag_geometry_ok(call, level_frame(center, normal, out, call->err)))
     return false;
   out->planar = false;
   return true;
@@ -69,14 +66,13 @@ static bool give_arc(CagCall *call, double a, double b, double from, double to, 
                      CagValue *result) {
   CagTransform frame;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_circle_frame(call, frame_at, &frame)) return false;
-  CagStatus status = cag_curve_arc(a, b, fmin(from, to), fmax(from, to), &frame, &c, &err);
-  if (status != CAG_OK || from < to) return cag_curve_result(call, status, &err, &c, result);
+  CagStatus status = cag_curve_arc(a, b, fmin(from, to), fmax(from, to), &frame, &c, call->err);
+  if (status != CAG_OK || from < to) return cag_curve_result(call, status, &c, result);
   CagCurve *clockwise = NULL;
-  status = cag_curve_reverse(c, &clockwise, &err);
+  status = cag_curve_reverse(c, &clockwise, call->err);
   cag_curve_release(c);
-  return cag_curve_result(call, status, &err, &clockwise, result);
+  return cag_curve_result(call, status, &clockwise, result);
 }
 
 bool cag_curves_circle(CagCall *call, CagValue *result) {
@@ -132,17 +128,16 @@ bool cag_curves_circle_through(CagCall *call, CagValue *result) {
   int dimension;
   CagTransform frame;
   CagCurve *c = NULL;
-  CagError err;
   if (!read_three(call, p, &dimension) ||
-      !cag_geometry_ok(call, circumcircle(p, &center, &normal, &err), &err))
+      !cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err)))
     return false;
   double radius = cag_norm(cag_sub(p[0], center));
   CagStatus status = CAG_OK;
   frame = cag_translate(center);
-  if (dimension == 3) status = level_frame(center, normal, &frame, &err);
+  if (dimension == 3) status = level_frame(center, normal, &frame, call->err);
   frame.planar = dimension == 2;
-  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_curves_arc_through(CagCall *call, CagValue *result) {
@@ -150,19 +145,18 @@ bool cag_curves_arc_through(CagCall *call, CagValue *result) {
   int dimension;
   CagTransform frame;
   CagCurve *c = NULL;
-  CagError err;
   if (!read_three(call, p, &dimension) ||
-      !cag_geometry_ok(call, circumcircle(p, &center, &normal, &err), &err))
+      !cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err)))
     return false;
   // The first point is at angle 0, and the normal is such that the second comes before the third.
   CagVec3 x = cag_sub(p[0], center), y = cag_cross(normal, x), last = cag_sub(p[2], center);
   double radius = cag_norm(x);
   double sweep = atan2(cag_dot(last, cag_unit(y)), cag_dot(last, cag_unit(x)));
   if (sweep <= 0) sweep += FULL_TURN;
-  CagStatus status = cag_axes(center, x, y, &frame, &err);
+  CagStatus status = cag_axes(center, x, y, &frame, call->err);
   frame.planar = dimension == 2;
-  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_curves_helix(CagCall *call, CagValue *result) {
@@ -170,8 +164,7 @@ bool cag_curves_helix(CagCall *call, CagValue *result) {
     double radius, pitch, turns, taper;
   } a;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_helix(a.radius, a.pitch, a.turns, a.taper, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  CagStatus status = cag_curve_helix(a.radius, a.pitch, a.turns, a.taper, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }

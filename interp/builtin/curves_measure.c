@@ -9,13 +9,12 @@
 #define PARTS_MAX 100000000
 
 bool cag_curves_length(CagCall *call, CagValue *result) {
-  CagError err;
   double length, from, to;
   if (call->values[0].type == CAG_REGION) {
     const CagRegion *region = CAG_AS_SHAPE(call->values[0])->as.region;
     if (cag_given(call, 1))
       return cag_fail_call(call, 1, CAG_ERR_value, "takes no range of a region");
-    if (!cag_geometry_ok(call, cag_region_perimeter(region, &length, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_region_perimeter(region, &length, call->err))) return false;
     *result = cag_number(length);
     return true;
   }
@@ -24,7 +23,7 @@ bool cag_curves_length(CagCall *call, CagValue *result) {
   from = c->start;
   to = c->end;
   if (cag_given(call, 1) && !cag_arg_parameter_range(call, 1, c->angular, &from, &to)) return false;
-  if (!cag_geometry_ok(call, cag_curve_length(c, from, to, &length, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_length(c, from, to, &length, call->err))) return false;
   *result = cag_number(length);
   return true;
 }
@@ -34,10 +33,9 @@ bool cag_curves_parameter_at_length(CagCall *call, CagValue *result) {
     CagCurve *c;
     double s;
   } a;
-  CagError err;
   double t;
   if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_parameter_at_length(a.c, a.s, &t, &err), &err))
+      !cag_geometry_ok(call, cag_curve_parameter_at_length(a.c, a.s, &t, call->err)))
     return false;
   *result = cag_parameter_value(a.c->angular, t);
   return true;
@@ -55,7 +53,6 @@ bool cag_curves_sample(CagCall *call, CagValue *result) {
     CagCurve *c;
     long n;
   } given;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
   const size_t count = (size_t)given.n, dimension = (size_t)given.c->dimension;
   double t[SAMPLE_BATCH], *to;
@@ -68,7 +65,7 @@ bool cag_curves_sample(CagCall *call, CagValue *result) {
     // Vectors of a list in space lie as those of the core do.
     CagVec3 *out = dimension == 3 ? (CagVec3 *)to : points;
     for (size_t i = 0; i < m; i++) t[i] = step(given.c, from + i, count - 1);
-    ok = cag_geometry_ok(call, cag_curve_eval_many(given.c, t, m, 0, out, &err), &err);
+    ok = cag_geometry_ok(call, cag_curve_eval_many(given.c, t, m, 0, out, call->err));
     for (size_t i = 0; ok && dimension == 2 && i < m; i++) {
       to[2 * i] = points[i].x;
       to[2 * i + 1] = points[i].y;
@@ -261,7 +258,6 @@ static CagStatus divide_by_chord(CagCall *call, const CagCurve *c, size_t n, dou
 bool cag_curves_divide(CagCall *call, CagValue *result) {
   static const char *const ways[] = {"length", "chord", "parameter", NULL};
   CagCurve *c;
-  CagError err;
   long parts;
   int by;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer(call, 1, 1, PARTS_MAX, &parts) ||
@@ -271,9 +267,9 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
   double *t = cag_hold(call, cag_malloc((n + 1) * sizeof *t));
   for (size_t i = 0; i <= n; i++) t[i] = step(c, i, n);
   CagStatus status = CAG_OK;
-  if (by == 0) status = divide_by_length(c, n, t, &err);
-  if (by == 1) status = divide_by_chord(call, c, n, t, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (by == 0) status = divide_by_length(c, n, t, call->err);
+  if (by == 1) status = divide_by_chord(call, c, n, t, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   if (!c->angular) {
     *result = cag_numbers_value(call->vm, t, n + 1);
     return true;
@@ -291,10 +287,9 @@ bool cag_curves_closest(CagCall *call, CagValue *result) {
   } a;
   static const char *const names[] = {"t", "point", "distance"};
   CagVec3 point;
-  CagError err;
   double t, distance;
   if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_closest(a.c, a.p.at, &t, &point, &distance, &err), &err))
+      !cag_geometry_ok(call, cag_curve_closest(a.c, a.p.at, &t, &point, &distance, call->err)))
     return false;
   CagValue values[] = {cag_parameter_value(a.c->angular, t),
                        cag_point(call->vm, point, a.c->dimension), cag_number(distance)};
@@ -307,15 +302,14 @@ bool cag_curves_closest(CagCall *call, CagValue *result) {
 // Signed area and centroid of a closed plane curve or a region, where it lies.
 // centroid: NULL where it is not wanted.
 static bool read_area(CagCall *call, double *area, CagVec3 *centroid, int *dimension) {
-  CagError err;
   CagValue v = call->values[0];
   *dimension = 2;
   if (v.type == CAG_CURVE)
-    return cag_geometry_ok(call, cag_curve_area(CAG_AS_SHAPE(v)->as.curve, area, centroid, &err),
-                           &err);
+    return cag_geometry_ok(call,
+                           cag_curve_area(CAG_AS_SHAPE(v)->as.curve, area, centroid, call->err));
   const CagShape *shape = CAG_AS_SHAPE(v);
   const CagTransform *place = &shape->placement;
-  if (!cag_geometry_ok(call, cag_region_area(shape->as.region, area, centroid, &err), &err))
+  if (!cag_geometry_ok(call, cag_region_area(shape->as.region, area, centroid, call->err)))
     return false;
   CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));
   CagVec3 y = cag_transform_vector(place, cag_vec3(0, 1, 0));

@@ -8,9 +8,8 @@
 static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagBuilder *list) {
   static const char *const names[] = {"point", "t", "t2", "multiplicity"};
   CagMeeting *found;
-  CagError err;
   size_t n;
-  if (!cag_geometry_ok(call, cag_curve_intersect(a, b, &found, &n, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_intersect(a, b, &found, &n, call->err))) return false;
   const int dimension = a->dimension == 2 && b->dimension == 2 ? 2 : 3;
   cag_hold_for(call, cag_free, found);
   for (size_t i = 0; i < n; i++) {
@@ -25,9 +24,8 @@ static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagB
 static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, CagBuilder *list) {
   static const char *const names[] = {"point", "t", "multiplicity"};
   CagMeeting *found;
-  CagError err;
   size_t n;
-  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, plane, &found, &n, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, plane, &found, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, found);
   for (size_t i = 0; i < n; i++) {
@@ -42,9 +40,8 @@ static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, 
 static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, CagBuilder *list) {
   static const char *const names[] = {"point", "t", "u", "v", "multiplicity"};
   CagSurfaceMeeting *found;
-  CagError err;
   size_t n;
-  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
+  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, found);
   for (size_t i = 0; i < n; i++) {

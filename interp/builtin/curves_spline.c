@@ -27,14 +27,13 @@ bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *ou
 
 bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out) {
   size_t count;
-  CagError err;
   *out = NULL;
   if (!is_set(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, out, &count)) return false;
   if (count == n) return true;
-  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
            "expects one of `weights` for each of %zu points, found %zu", n, count);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_curves_bezier(CagCall *call, CagValue *result) {
@@ -43,33 +42,31 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   size_t n;
   int dimension;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   cag_hold(call, points);
   if (!cag_arg_weights(call, 1, n, &weights)) return false;
-  return cag_curve_result(call, cag_curve_bezier(points, weights, n, dimension, &c, &err), &err, &c,
+  return cag_curve_result(call, cag_curve_bezier(points, weights, n, dimension, &c, call->err), &c,
                           result);
 }
 
 // Knots from a name or a list.
 static bool read_knots(CagCall *call, int argument, size_t n, int degree, const CagVec3 *points,
                        const double **knots) {
-  CagError err;
   const char *type = "open";
   if (cag_given(call, argument) && call->values[argument].type != CAG_TEXT) {
     size_t count;
     if (!cag_arg_numbers(call, argument, knots, &count)) return false;
     if (count == n + (size_t)degree + 1) return true;
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n, degree,
              n + (size_t)degree + 1, count);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
-  if (!cag_geometry_ok(call, cag_degree_check(n, degree, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_degree_check(n, degree, call->err))) return false;
   double *made = cag_hold_array(call, n + (size_t)degree + 1, sizeof *made);
   *knots = made;
-  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, made, &err), &err);
+  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, made, call->err));
 }
 
 // points, degree, knots, closed, weights, order
@@ -79,7 +76,6 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
   bool closed;
   const double *weights, *knots = NULL;
   CagCurve *c = NULL;
-  CagError err;
   CagStatus status;
   if (!cag_arg_degree(call, 1, 5, 3, &degree) || !cag_arg_bool_or(call, 3, false, &closed) ||
       !cag_arg_weights(call, 4, n, &weights))
@@ -91,12 +87,12 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
     // A polygon that comes back to its first point has that once.
     const CagVec3 a = points[0], b = points[n - 1];
     const bool again = n > 2 && a.x == b.x && a.y == b.y && a.z == b.z;
-    status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, &err);
-    return cag_curve_result(call, status, &err, &c, result);
+    status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, call->err);
+    return cag_curve_result(call, status, &c, result);
   }
   if (!read_knots(call, 2, n, degree, points, &knots)) return false;
-  status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err);
-  return cag_curve_result(call, status, &err, &c, result);
+  status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_curves_bspline(CagCall *call, CagValue *result) {
@@ -133,7 +129,6 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   const char *type = "chord";
   double from = 0, to = 1, *knots;
   bool angle;
-  CagError err;
   if (!cag_arg_integer(call, 0, 1, INT_MAX, &count) || !cag_arg_degree(call, 1, 3, 3, &degree))
     return false;
   if (is_set(call, 4)) {
@@ -141,7 +136,7 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
     if (angle || !isfinite(from) || !isfinite(to) || !(from < to))
       return cag_fail_type(call, 4, "a range of numbers that ascends");
   }
-  if (!cag_geometry_ok(call, cag_degree_check((size_t)count, degree, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_degree_check((size_t)count, degree, call->err))) return false;
   if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {
     if (!cag_arg_points(call, 2, &points, &n, NULL)) return false;
     cag_hold(call, points);
@@ -150,8 +145,8 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   } else if (!cag_given(call, 2)) type = "open";
   else if (!cag_arg_text(call, 2, &type)) return false;
   *result = cag_list_numbers(call->vm, (size_t)count + (size_t)degree + 1, &knots);
-  CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   if (is_set(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
   return true;
 }

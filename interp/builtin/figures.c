@@ -28,9 +28,8 @@ bool cag_figures_label(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 3, CAG_ERR_value,
                          "expects the direction of an arrow: `along` is missing");
   CagMesh *anchor;
-  CagError err;
-  if (!cag_geometry_ok(call, cag_mesh_new(directed ? 2 : 1, 0, false, false, false, &anchor, &err),
-                       &err))
+  if (!cag_geometry_ok(call,
+                       cag_mesh_new(directed ? 2 : 1, 0, false, false, false, &anchor, call->err)))
     return false;
   anchor->positions[0] = at;
   if (directed) anchor->positions[1] = cag_add(at, along);
@@ -42,9 +41,8 @@ bool cag_figures_label(CagCall *call, CagValue *result) {
 
 // --- Normals ---
 
-static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurve *c,
-                      const CagError *err) {
-  return cag_geometry_ok(call, status, err) &&
+static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurve *c) {
+  return cag_geometry_ok(call, status) &&
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
@@ -73,10 +71,9 @@ bool cag_figures_surface_normals(CagCall *call, CagValue *result) {
   double length;
   long n;
   CagBounds box;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer_or(call, 1, 12, 2, 1000, &n) ||
       !read_length(call, 2, &length) ||
-      !cag_geometry_ok(call, cag_surface_bounds(s, &box, &err), &err))
+      !cag_geometry_ok(call, cag_surface_bounds(s, &box, call->err)))
     return false;
   if (length == 0) length = NORMAL_PART * size_of(&box);
   CagBuilder *list = cag_builder_new(call->vm);
@@ -88,12 +85,12 @@ bool cag_figures_surface_normals(CagCall *call, CagValue *result) {
     CagCurve *c = NULL;
     u = u == 1 ? s->u1 : s->u0 + u * (s->u1 - s->u0);
     v = v == 1 ? s->v1 : s->v0 + v * (s->v1 - s->v0);
-    CagStatus status = cag_surface_eval(s, u, v, 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, &p, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    CagStatus status = cag_surface_eval(s, u, v, 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, &p, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     // Where there is no normal (the tip of a cone) no line stands.
-    if (cag_surface_normal(s, u, v, &normal, &err) != CAG_OK) continue;
-    status = cag_curve_line(p, cag_madd(p, length, normal), 3, &c, &err);
-    if (!add_curve(call, list, status, c, &err)) return false;
+    if (cag_surface_normal(s, u, v, &normal, call->err) != CAG_OK) continue;
+    status = cag_curve_line(p, cag_madd(p, length, normal), 3, &c, call->err);
+    if (!add_curve(call, list, status, c)) return false;
   }
   return give_group(call, list, result);
 }

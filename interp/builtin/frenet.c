@@ -29,13 +29,12 @@ bool cag_frenet_frenet_of(CagCall *call, CagValue *result) {
   int dimension;
   double speed;
   CagFrenet f;
-  CagError err;
   if (!cag_arg_points(call, 0, &given, &n, &dimension)) return false;
   cag_hold(call, given);
   for (size_t i = 0; i < 3 && i < n; i++) d[i] = given[i];
   if (n > 3 || n < 2)
     return cag_fail_value(call, 0, "a list of the derivatives of order 1 and 2, or 1 to 3");
-  if (!cag_geometry_ok(call, cag_frenet_of(d, &speed, &f, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_frenet_of(d, &speed, &f, call->err))) return false;
   const bool bent = f.has_normal, twisted = bent && (n == 3 || dimension == 2);
   CagValue values[] = {cag_number(speed),
                        cag_point(call->vm, f.tangent, dimension),
@@ -49,10 +48,9 @@ bool cag_frenet_frenet_of(CagCall *call, CagValue *result) {
 }
 
 static bool fail_no_normal(CagCall *call) {
-  CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
+  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
            "the curvature is 0 here, so there is neither normal nor circle of curvature");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_frenet_frame_derivative(CagCall *call, CagValue *result) {
@@ -60,10 +58,9 @@ bool cag_frenet_frame_derivative(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagFrenet f;
   CagVec3 d[2];
-  CagError err;
   double t;
-  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, &err), &err) ||
-      !cag_geometry_ok(call, cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, &err), &err))
+  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, call->err)) ||
+      !cag_geometry_ok(call, cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, call->err)))
     return false;
   if (!f.has_normal) return fail_no_normal(call);
   const double k = f.curvature, w = f.torsion, speed = cag_norm(d[1]);
@@ -95,9 +92,8 @@ static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
 bool cag_frenet_triad_derivative(CagCall *call, CagValue *result) {
   CagVec3 m[3], dm[3];
   double rates[3][3];
-  CagError err;
   if (!read_triad(call, 0, m) || !read_triad(call, 1, dm) ||
-      !cag_geometry_ok(call, cag_triad_derivative(m, dm, rates, &err), &err))
+      !cag_geometry_ok(call, cag_triad_derivative(m, dm, rates, call->err)))
     return false;
   *result = rows_value(call->vm, rates);
   return true;
@@ -108,9 +104,8 @@ bool cag_frenet_triad_derivative(CagCall *call, CagValue *result) {
 bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
   CagCurve *c, *circle;
   CagFrenet f;
-  CagError err;
   double t;
-  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, &err), &err))
+  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, call->err)))
     return false;
   if (!f.has_normal) return fail_no_normal(call);
   const double radius = 1 / f.curvature;
@@ -126,8 +121,8 @@ bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
     frame.m[1][j] = columns[j].y;
     frame.m[2][j] = columns[j].z;
   }
-  CagStatus status = cag_curve_arc(radius, radius, 0, 2 * acos(-1), &frame, &circle, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_curve_arc(radius, radius, 0, 2 * acos(-1), &frame, &circle, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   static const char *const names[] = {"radius", "center", "circle"};
   CagValue values[] = {cag_number(radius), cag_point(call->vm, center, c->dimension),
                        cag_curve_value(call->vm, circle)};
@@ -138,13 +133,12 @@ bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
 bool cag_frenet_tangent_line(CagCall *call, CagValue *result) {
   CagCurve *c, *line;
   CagVec3 p, v;
-  CagError err;
   double t, length;
   if (!read_at(call, &c, &t) || !cag_arg_number_or(call, 2, 1, &length) ||
-      !cag_geometry_ok(call, cag_curve_point(c, t, &p, &err), &err) ||
-      !cag_geometry_ok(call, cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &v, &err), &err) ||
-      !cag_geometry_ok(call, cag_curve_line(p, cag_madd(p, length, v), c->dimension, &line, &err),
-                       &err))
+      !cag_geometry_ok(call, cag_curve_point(c, t, &p, call->err)) ||
+      !cag_geometry_ok(call, cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &v, call->err)) ||
+      !cag_geometry_ok(call,
+                       cag_curve_line(p, cag_madd(p, length, v), c->dimension, &line, call->err)))
     return false;
   *result = cag_curve_value(call->vm, line);
   return true;
@@ -155,12 +149,11 @@ bool cag_frenet_plane_contact(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagVec3 normal;
   CagContact found;
-  CagError err;
   double t;
   int dimension;
   if (!read_at(call, &c, &t) ||
       !cag_arg_direction(call, 2, cag_vec3(0, 0, 1), &normal, &dimension) ||
-      !cag_geometry_ok(call, cag_curve_contact(c, t, normal, &found, &err), &err))
+      !cag_geometry_ok(call, cag_curve_contact(c, t, normal, &found, call->err)))
     return false;
   CagValue values[] = {cag_numbers_value(call->vm, found.c + 1, 3),
                        found.order < 0 ? cag_number(HUGE_VAL) : cag_number(found.order),
@@ -192,11 +185,10 @@ bool cag_frenet_special_points(CagCall *call, CagValue *result) {
   static const char *const names[] = {"singular", "straightening", "flattening",
                                       "still",    "straight",      "planar"};
   CagCurve *c;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
   CagSpecialPoints *found = cag_hold_array(call, 1, sizeof *found);
   cag_hold_for(call, free_special_points, cag_give_held(call, found));
-  if (!cag_geometry_ok(call, cag_curve_special_points(c, found, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_curve_special_points(c, found, call->err))) return false;
   CagValue values[6];
   for (int k = 0; k < CAG_VANISHINGS; k++) {
     values[k] = parameters_value(call, c, &found->points[k], false);
@@ -213,13 +205,12 @@ bool cag_frenet_chain_derivatives(CagCall *call, CagValue *result) {
   const double *f;
   size_t n, m;
   int dimension;
-  CagError err;
   if (!cag_arg_numbers(call, 1, &f, &m)) return false;
   if (!cag_arg_points(call, 0, &d, &n, &dimension)) return false;
   cag_hold(call, d);
   if (n > CAG_MAX_DERIVATIVE || m != n)
     return cag_fail_value(call, 1, "as many derivatives as the curve has, at most 16");
-  if (!cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, call->err))) return false;
   *result = cag_points_value(call->vm, out, n, dimension);
   return true;
 }
@@ -241,14 +232,13 @@ bool cag_frenet_helix_motion(CagCall *call, CagValue *result) {
   static const char *const names[] = {"point", "velocity", "angle",     "rise",
                                       "pitch", "length",   "curvature", "torsion"};
   double a, turning, v, time;
-  CagError err;
   if (!cag_arg_positive(call, 0, &a) || !cag_arg_degrees(call, 1, &turning) ||
       !cag_arg_finite(call, 2, &v) || !cag_arg_finite(call, 3, &time))
     return false;
   if (turning == 0) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
              "`turning` must not be 0: the point moves along a line, not a helix");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   double s, c;
   cag_sincos_degrees(turning * time, &s, &c);

@@ -181,7 +181,6 @@ bool cag_functions_curve(CagCall *call, CagValue *result) {
   CagValue function;
   double a, b;
   bool angle;
-  CagError err;
   if (!cag_arg_function(call, 0, &function) || !cag_arg_interval(call, 1, &a, &b, &angle) ||
       !check_finite_range(call, 1, a, b))
     return false;
@@ -195,10 +194,10 @@ bool cag_functions_curve(CagCall *call, CagValue *result) {
   CagVec3 p;
   CagCurve *c;
   const CagCurveFunction geometry = {curve_eval, formula_free, f};
-  CagStatus status = a < b ? curve_eval(f, a, 0, &p, &err) : CAG_OK;
+  CagStatus status = a < b ? curve_eval(f, a, 0, &p, call->err) : CAG_OK;
   if (!status)
-    status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, a, b, angle, &c, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+    status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, a, b, angle, &c, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, f);
   *result = cag_curve_value(call->vm, c);
   return true;
@@ -266,7 +265,6 @@ bool cag_functions_natural_curve(CagCall *call, CagValue *result) {
   double length;
   CagTransform frame = cag_transform_identity();
   CagCurve *c;
-  CagError err;
   const bool twisted = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (!cag_arg_function(call, 0, &curvature) || !cag_arg_positive(call, 1, &length) ||
       (twisted && !cag_arg_function(call, 2, &torsion)) ||
@@ -276,9 +274,9 @@ bool cag_functions_natural_curve(CagCall *call, CagValue *result) {
   e->curvature = formula_new(call, curvature, 1);
   if (twisted) e->torsion = formula_new(call, torsion, 1);
   const CagNaturalEquations equations = {equations_eval, equations_free, e};
-  CagStatus status =
-      cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2, &c, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2,
+                                       &c, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, e->torsion);
   cag_give_held(call, e->curvature);
   cag_give_held(call, e);
@@ -342,7 +340,6 @@ static CagStatus surface_row(void *context, double u, const double *vs, size_t n
 bool cag_functions_surface(CagCall *call, CagValue *result) {
   CagValue function;
   double range[2][2] = {{0, 1}, {0, 1}};
-  CagError err;
   if (!cag_arg_function(call, 0, &function)) return false;
   Formula like = {0};
   for (int i = 0; i < 2; i++) {
@@ -358,8 +355,8 @@ bool cag_functions_surface(CagCall *call, CagValue *result) {
   const CagSurfaceFunction geometry = {surface_eval, surface_row, formula_free, f};
   CagSurface *s;
   CagStatus status = cag_surface_function(&geometry, range[0][0], range[0][1], f->angular[0],
-                                          range[1][0], range[1][1], f->angular[1], &s, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+                                          range[1][0], range[1][1], f->angular[1], &s, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, f);
   *result = cag_surface_value(call->vm, s);
   return true;

@@ -17,15 +17,14 @@ static bool plane_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
   size_t *ring, count;
   CagCurve *loop = NULL;
   CagRegion *region = NULL;
-  CagError err;
-  if (!cag_geometry_ok(call, cag_hull_plane(points, n, &ring, &count, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_hull_plane(points, n, &ring, &count, call->err))) return false;
   cag_hold(call, ring);
   CagVec3 *corners = cag_hold_array(call, count, sizeof *corners);
   for (size_t i = 0; i < count; i++) corners[i] = points[ring[i]];
-  CagStatus status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
-  if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
+  CagStatus status = cag_curve_polyline(corners, count, true, 2, &loop, call->err);
+  if (!status) status = cag_region_new(loop, NULL, 0, &region, call->err);
   cag_curve_release(loop);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_region_value(call->vm, region, NULL);
   return true;
 }
@@ -33,11 +32,10 @@ static bool plane_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
 static bool space_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue *result) {
   CagMesh *m = NULL;
   CagSolid *s = NULL;
-  CagError err;
-  CagStatus status = cag_hull_space(points, n, &m, &err);
-  if (!status) status = cag_solid_from_mesh(m, &s, &err);
+  CagStatus status = cag_hull_space(points, n, &m, call->err);
+  if (!status) status = cag_solid_from_mesh(m, &s, call->err);
   cag_mesh_release(m);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_solid_value(call->vm, s);
   return true;
 }
@@ -129,7 +127,6 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
 }
 
 static bool hull_of_shapes(CagCall *call, CagValue *result) {
-  CagError err;
   Cloud *cloud = cag_hold_array(call, 1, sizeof *cloud);
   cag_hold_for(call, release_cloud, cloud);
   cloud->plane = true;
@@ -139,7 +136,7 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < shapes->length; i++) {
     const CagValue v = cag_list_get(call->vm, shapes, i);
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
-        !cag_geometry_ok(call, add_shape(call->vm, cloud, v, &err), &err))
+        !cag_geometry_ok(call, add_shape(call->vm, cloud, v, call->err)))
       return false;
   }
   return cloud->plane ? plane_hull(call, cloud->points, cloud->n, result)
@@ -168,9 +165,8 @@ bool cag_hulls_convex_hull(CagCall *call, CagValue *result) {
 bool cag_hulls_curve_on(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagCurve *c, *on = NULL;
-  CagError err;
   if (!cag_arg_side(call, 0, &s) || !cag_arg_curve(call, 1, &c) ||
-      !cag_geometry_ok(call, cag_curve_on_surface(s, c, &on, &err), &err))
+      !cag_geometry_ok(call, cag_curve_on_surface(s, c, &on, call->err)))
     return false;
   *result = cag_curve_value(call->vm, on);
   return true;
@@ -351,14 +347,13 @@ static bool is_body(CagValue v) {
 
 bool cag_hulls_contains(CagCall *call, CagValue *result) {
   CagVec3 p;
-  CagError err;
   bool inside = false;
   const CagValue v = call->values[0];
   if (!cag_arg_vec(call, 1, &p, NULL)) return false;
   if (!is_body(v))
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects a closed mesh; this one has an open edge and no inside");
-  if (!cag_geometry_ok(call, holds(call->vm, v, p, &inside, &err), &err)) return false;
+  if (!cag_geometry_ok(call, holds(call->vm, v, p, &inside, call->err))) return false;
   *result = cag_bool(inside);
   return true;
 }
@@ -437,10 +432,9 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
 bool cag_hulls_distance(CagCall *call, CagValue *result) {
   Side *side = cag_hold_array(call, 2, sizeof *side);
   cag_hold_for(call, release_sides, side);
-  CagError err;
   double distance = 0;
   if (!read_side(call, 0, &side[0]) || !read_side(call, 1, &side[1]) ||
-      !cag_geometry_ok(call, measure(call->vm, side, &distance, &err), &err))
+      !cag_geometry_ok(call, measure(call->vm, side, &distance, call->err)))
     return false;
   *result = cag_number(distance);
   return true;

@@ -64,7 +64,7 @@ static bool plain_result(CagCall *call, CagValue *value) {
   CagValue plain[ARGUMENTS_MOST], *values = plain;
   if (call->count > ARGUMENTS_MOST) values = cag_hold_array(call, call->count, sizeof *values);
   for (size_t i = 0; i < call->count; i++) values[i] = cag_without_jets(call->vm, call->values[i]);
-  CagCall with = {call->vm, call->builtin, values, call->count};
+  CagCall with = {call->vm, call->builtin, values, call->count, call->err};
   return call->builtin->function(&with, value);
 }
 
@@ -567,12 +567,11 @@ static bool curve_jets(CagCall *call, int most, Point *out) {
   CagCurve *c = CAG_AS_SHAPE(call->values[0])->as.curve;
   CagVec3 d[CAG_MAX_DERIVATIVE + 1];
   CagSeries like, t;
-  CagError err;
   shape_of_call(call, &like);
   if (!parameter_series(call, 1, c->angular, &like, &t)) return false;
   if (like.order + most > CAG_MAX_DERIVATIVE) return cag_fail_differentiate(call, 0);
   CagSide side = t.c[0] >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-  if (!cag_geometry_ok(call, cag_curve_eval(c, t.c[0], like.order + most, side, d, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_eval(c, t.c[0], like.order + most, side, d, call->err)))
     return false;
   for (int k = 0; k <= most; k++) {
     out[k].n = (size_t)c->dimension;
@@ -587,16 +586,13 @@ static bool surface_jet(CagCall *call, Point *out) {
   CagSurface *s = CAG_AS_SHAPE(call->values[0])->as.surface;
   CagVec3 d[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
   CagSeries like, u, v;
-  CagError err;
   shape_of_call(call, &like);
   if (!parameter_series(call, 1, s->angular_u, &like, &u) ||
       !parameter_series(call, 2, s->angular_v, &like, &v))
     return false;
   if (like.order > CAG_MAX_PARTIAL) return cag_fail_differentiate(call, 0);
-  if (!cag_geometry_ok(
-          call,
-          cag_surface_eval(s, u.c[0], v.c[0], like.order, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err),
-          &err))
+  if (!cag_geometry_ok(call, cag_surface_eval(s, u.c[0], v.c[0], like.order, CAG_SIDE_RIGHT,
+                                              CAG_SIDE_RIGHT, d, call->err)))
     return false;
   out->n = 3;
   cag_series_compose_2(&u, &v, &d[0].x, 3, &out->x[0]);
@@ -715,7 +711,7 @@ bool cag_jet_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, si
   const CagBuiltin *row =
       cag_builtin_rows(index, &rows) + cag_builtin_select(index, shape.type, n + 1);
   CagValue values[3] = {shape, arguments[0], n > 1 ? arguments[1] : cag_unset()};
-  CagCall call = {vm, row, values, n + 1};
+  CagCall call = {vm, row, values, n + 1, &vm->core_error};
   const size_t held = vm->held_count;
   const bool ok = jet_at(&call, result);
   cag_vm_release_held(vm, held);

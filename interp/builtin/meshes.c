@@ -17,9 +17,8 @@ static bool read_mesh(CagCall *call, const CagMesh **m) {
       call->values[0].type == CAG_SOLID ? CAG_AS_SHAPE(call->values[0])->as.solid : NULL;
   if (s && s->kind == CAG_SOLID_MESH) {
     CagMesh *moved = NULL;
-    CagError err;
-    CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     *m = CAG_AS_SHAPE(cag_mesh_value(call->vm, moved))->as.mesh; // the heap lets it go
     return true;
   }
@@ -72,12 +71,11 @@ bool cag_solids_mesh(CagCall *call, CagValue *result) {
   size_t n, faces;
   uint32_t *counts, *indices;
   CagMesh *m = NULL;
-  CagError err;
   if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
   cag_hold(call, vertices);
   if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
-  CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_mesh_value(call->vm, m);
   return true;
 }
@@ -143,10 +141,9 @@ bool cag_solids_euler_characteristic(CagCall *call, CagValue *result) {
 bool cag_solids_weld(CagCall *call, CagValue *result) {
   const CagMesh *m;
   CagMesh *out = NULL;
-  CagError err;
   double tolerance;
   if (!read_mesh(call, &m) || !cag_arg_finite(call, 1, &tolerance)) return false;
-  if (!cag_mesh_result(call, cag_mesh_weld(m, tolerance, &out, &err), &err, &out, result))
+  if (!cag_mesh_result(call, cag_mesh_weld(m, tolerance, &out, call->err), &out, result))
     return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
@@ -155,9 +152,8 @@ bool cag_solids_weld(CagCall *call, CagValue *result) {
 bool cag_solids_flip(CagCall *call, CagValue *result) {
   const CagMesh *m;
   CagMesh *out = NULL;
-  CagError err;
   if (!read_mesh(call, &m)) return false;
-  if (!cag_mesh_result(call, cag_mesh_flip(m, &out, &err), &err, &out, result)) return false;
+  if (!cag_mesh_result(call, cag_mesh_flip(m, &out, call->err), &out, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -215,7 +211,6 @@ static bool read_how(CagCall *call, CagTessellation *how) {
 
 bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   CagTessellation how;
-  CagError err;
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!read_how(call, &how) || !cag_shapes_collect(call, call->values[0], builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
@@ -224,13 +219,13 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   CagMesh **meshes = cag_hold_mesh_array(call, n), *whole = NULL;
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++)
-    status = tessellate_shape(cag_list_get(call->vm, shapes, i), &how, &meshes[i], &err);
+    status = tessellate_shape(cag_list_get(call->vm, shapes, i), &how, &meshes[i], call->err);
   if (!status && n == 1) whole = cag_mesh_retain(meshes[0]);
-  else if (!status) status = cag_mesh_append(meshes, n, &whole, &err);
+  else if (!status) status = cag_mesh_append(meshes, n, &whole, call->err);
   cag_release_held(call, meshes);
-  if (!status) status = keep_edges(&whole, &how, &err);
+  if (!status) status = keep_edges(&whole, &how, call->err);
   if (status) cag_mesh_release(whole);
-  if (!cag_mesh_result(call, status, &err, &whole, result)) return false;
+  if (!cag_mesh_result(call, status, &whole, result)) return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;
 }

@@ -36,24 +36,22 @@ static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
 
 bool cag_checks_check_mesh(CagCall *call, CagValue *result) {
   CagMeshCheck check = {0};
-  CagError err;
   const CagMesh *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
-  if (!cag_geometry_ok(call, cag_mesh_check(m, &check, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_mesh_check(m, &check, call->err))) return false;
   *result = check_value(call->vm, &check);
   return true;
 }
 
 bool cag_checks_check_faces(CagCall *call, CagValue *result) {
   CagMeshCheck check = {0};
-  CagError err;
   CagVec3 *vertices;
   size_t n, faces;
   uint32_t *counts, *indices;
   if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
   cag_hold(call, vertices);
   if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
-  CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = check_value(call->vm, &check);
   return true;
 }

@@ -60,10 +60,9 @@ bool cag_mesh_files_read_mesh(CagCall *call, CagValue *result) {
                       .open = open_beside,
                       .context = &opener};
   CagMesh *m = NULL;
-  CagError err = {0};
-  CagStatus status = cag_mesh_read(&file, &m, &err);
+  CagStatus status = cag_mesh_read(&file, &m, call->err);
   cag_release_held(call, bytes); // before the mesh has its value
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_mesh_value(call->vm, m);
   return true;
 }

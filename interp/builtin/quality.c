@@ -60,7 +60,6 @@ static bool make_meshes(CagCall *call, int tolerance, MakeMesh make, const void 
                         Meshes *out) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagList *shapes;
-  CagError err;
   if (call->vm->max_triangles > 0) how.max_triangles = call->vm->max_triangles;
   how.interrupt = cag_vm_stop(call->vm);
   bool said = cag_given(call, tolerance) && call->values[tolerance].type != CAG_NONE;
@@ -73,7 +72,7 @@ static bool make_meshes(CagCall *call, int tolerance, MakeMesh make, const void 
     CagValue v = cag_list_get(call->vm, shapes, i);
     CagTessellation own = how;
     if (!said) own.tolerance = CAG_AS_SHAPE(v)->tolerance;
-    ok = cag_geometry_ok(call, make(what, CAG_AS_SHAPE(v), v, &own, out, &err), &err);
+    ok = cag_geometry_ok(call, make(what, CAG_AS_SHAPE(v), v, &own, out, call->err));
   }
   cag_root_pop(call->vm, 1);
   return ok;
@@ -84,9 +83,8 @@ static bool give_mesh(CagCall *call, const Meshes *parts, CagColorScale scale, C
   static const double white[] = {1, 1, 1};
   const double matte_roughness = 0.6, matte_ior = 1.3;
   CagMesh *whole = NULL;
-  CagError err;
   for (size_t i = 0; i < parts->count; i++) parts->items[i]->scale = scale;
-  if (!cag_geometry_ok(call, cag_mesh_append(parts->items, parts->count, &whole, &err), &err))
+  if (!cag_geometry_ok(call, cag_mesh_append(parts->items, parts->count, &whole, call->err)))
     return false;
   *result = cag_mesh_value(call->vm, whole);
   CagValue fields[] = {cag_vector(call->vm, white, 3), cag_number(matte_roughness),
@@ -192,10 +190,9 @@ bool cag_quality_colored_by(CagCall *call, CagValue *result) {
 static bool read_colored(CagCall *call, const CagMesh **out) {
   *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
   if ((*out)->scale.kind && (*out)->uv) return true;
-  CagError err;
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
            "the mesh has no values: `colored_by` and `zebra` make meshes that have");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_quality_values_of(CagCall *call, CagValue *result) {
@@ -362,7 +359,6 @@ bool cag_quality_isophotes(CagCall *call, CagValue *result) {
   size_t n;
   CagList *shapes;
   CagCurveList *list = cag_hold_curve_list(call);
-  CagError err;
   if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
       !cag_arg_direction(call, 1, direction, &direction, NULL))
     return false;
@@ -375,10 +371,8 @@ bool cag_quality_isophotes(CagCall *call, CagValue *result) {
   direction = cag_unit(direction);
   for (size_t i = 0; ok && i < shapes->length; i++)
     for (size_t k = 0; ok && k < n; k++)
-      ok = cag_geometry_ok(call,
-                           isophotes_of(cag_list_get(call->vm, shapes, i), direction, cosines[k],
-                                        tolerance, list, &err),
-                           &err) &&
+      ok = cag_geometry_ok(call, isophotes_of(cag_list_get(call->vm, shapes, i), direction,
+                                              cosines[k], tolerance, list, call->err)) &&
            cag_keep_going(call->vm);
   ok = ok && give_curves(call, list, result);
   cag_root_pop(call->vm, 1);

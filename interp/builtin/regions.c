@@ -8,7 +8,6 @@
 // A closed plane curve from a curve or a list of points; *out has one reference. `argument` is
 // where it was given.
 static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
-  CagError err;
   if (v.type == CAG_CURVE) {
     *out = cag_curve_retain(CAG_AS_SHAPE(v)->as.curve);
     return true;
@@ -27,7 +26,7 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   call->values[argument] = kept;
   if (!ok) return false;
   cag_hold(call, points);
-  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, call->err)))
     return false;
   cag_release_held(call, points);
   return true;
@@ -48,11 +47,10 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
   CagTransform frame;
   bool in_space;
   CagRegion *region = NULL;
-  CagError err;
   if (!cag_region_loops_plane(call, loops, outer + holes, &frame, &in_space)) return false;
-  CagStatus status = outer == 1 ? cag_region_new(loops[0], loops + 1, holes, &region, &err)
-                                : cag_region_from_loops(loops, outer + holes, &region, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = outer == 1 ? cag_region_new(loops[0], loops + 1, holes, &region, call->err)
+                                : cag_region_from_loops(loops, outer + holes, &region, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_region_value(call->vm, region, in_space ? &frame : NULL);
   return true;
 }
@@ -61,13 +59,12 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
 static bool bounded_by_none(CagCall *call, CagValue *result) {
   CagList *holes = NULL;
   CagRegion *region = NULL;
-  CagError err;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagStatus status =
-      holes && holes->length ? cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
+      holes && holes->length ? cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
                                         "the outline is empty, so holes[0] does not lie within it")
-                             : cag_region_empty(&region, &err);
-  return cag_region_result(call, status, &err, &region, result);
+                             : cag_region_empty(&region, call->err);
+  return cag_region_result(call, status, &region, result);
 }
 
 static bool is_empty_list(CagValue v) { return v.type == CAG_LIST && CAG_AS_LIST(v)->length == 0; }
@@ -102,10 +99,9 @@ bool cag_curves_rectangle(CagCall *call, CagValue *result) {
     double w, h, radius;
   } a;
   CagRegion *region = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_region_rectangle(a.w, a.h, a.radius, &region, &err);
-  return cag_region_result(call, status, &err, &region, result);
+  CagStatus status = cag_region_rectangle(a.w, a.h, a.radius, &region, call->err);
+  return cag_region_result(call, status, &region, result);
 }
 
 // More corners than any polygon of a drawing; a circle says it better.
@@ -116,21 +112,19 @@ bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
     double radius;
   } a;
   CagRegion *region = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_region_regular_polygon((size_t)a.n, a.radius, &region, &err);
-  return cag_region_result(call, status, &err, &region, result);
+  CagStatus status = cag_region_regular_polygon((size_t)a.n, a.radius, &region, call->err);
+  return cag_region_result(call, status, &region, result);
 }
 
 bool cag_curves_boundary(CagCall *call, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   CagBuilder *loops = cag_builder_new(call->vm);
-  CagError err;
   for (size_t i = 0; i < shape->as.region->count; i++) {
     CagCurve *placed = NULL;
     CagStatus status =
-        cag_curve_transform(shape->as.region->loops[i], &shape->placement, &placed, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+        cag_curve_transform(shape->as.region->loops[i], &shape->placement, &placed, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     if (!cag_builder_add(call->vm, loops, cag_curve_value(call->vm, placed))) return false;
   }
   *result = cag_builder_finish(call->vm, loops);
@@ -170,14 +164,13 @@ typedef struct Operands {
 
 // A region or closed plane curve in the plane of all; *out has one reference.
 static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out) {
-  CagError err;
   if (v.type != CAG_REGION && v.type != CAG_CURVE)
     return cag_fail_call(o->call, -1, CAG_ERR_type, "expects regions, found %s as operand %zu",
                          cag_type_article(v), operand);
   const CagShape *shape = CAG_AS_SHAPE(v);
   if (o->first.type == CAG_UNSET) o->first = v;
   if (v.type == CAG_CURVE)
-    return cag_geometry_ok(o->call, cag_region_new(shape->as.curve, NULL, 0, out, &err), &err);
+    return cag_geometry_ok(o->call, cag_region_new(shape->as.curve, NULL, 0, out, o->call->err));
   if (!o->based) o->base = shape->placement;
   o->based = true;
   if (!memcmp(o->base.m, shape->placement.m, sizeof o->base.m)) {
@@ -185,23 +178,22 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
     return true;
   }
   CagTransform t;
-  CagStatus status = between_planes(&o->base, &shape->placement, operand, &t, &err);
-  if (!status) status = cag_region_transform(shape->as.region, &t, out, &err);
-  return cag_geometry_ok(o->call, status, &err);
+  CagStatus status = between_planes(&o->base, &shape->placement, operand, &t, o->call->err);
+  if (!status) status = cag_region_transform(shape->as.region, &t, out, o->call->err);
+  return cag_geometry_ok(o->call, status);
 }
 
 // The union of the shapes of an operand; of none the empty region.
 static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
-  CagError err;
   CagRegion **parts = cag_hold_region_array(o->call, shapes->length);
   for (size_t i = 0; i < shapes->length; i++)
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(o->call->vm)) ||
         !read_shape(o, cag_list_get(o->call->vm, shapes, i), operand, &parts[i]))
       return false;
   CagStatus status = cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts,
-                                        shapes->length, out, &err);
+                                        shapes->length, out, o->call->err);
   cag_release_held(o->call, parts);
-  return cag_geometry_ok(o->call, status, &err);
+  return cag_geometry_ok(o->call, status);
 }
 
 // A region, a closed plane curve, or the union of those of a group or list.
@@ -217,15 +209,14 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   CagValue *items;
   size_t n;
   CagRegion *out = NULL;
-  CagError err;
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
   Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
   CagRegion **regions = cag_hold_region_array(call, n);
   for (size_t i = 0; i < n; i++)
     if (!read_operand(&o, items[i], i + 1, &regions[i])) return false;
-  CagStatus status = cag_region_combine(op, (const CagRegion *const *)regions, n, &out, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_region_combine(op, (const CagRegion *const *)regions, n, &out, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_region_value(call->vm, out, &o.base);
   if (o.first.type != CAG_UNSET) cag_shape_say_alike(*result, o.first);
   return true;
@@ -249,16 +240,15 @@ bool cag_regions_offset(CagCall *call, CagValue *result) {
   double d, tolerance;
   CagRegion *out = NULL;
   CagBounds box = {{0, 0, 0}, {1, 1, 0}};
-  CagError err;
   if (!cag_arg_number(call, 1, &d) ||
       (!cag_region_is_empty(shape->as.region) &&
-       !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, &err), &err)) ||
+       !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, call->err))) ||
       !cag_arg_number_or(call, 2, part * cag_norm(cag_sub(box.max, box.min)), &tolerance))
     return false;
   if (!(tolerance > 0))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a tolerance greater than 0");
-  CagStatus status = cag_region_offset(shape->as.region, d, tolerance, &out, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_region_offset(shape->as.region, d, tolerance, &out, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_region_value(call->vm, out, &shape->placement);
   cag_shape_say_alike(*result, call->values[0]);
   return true;
@@ -269,7 +259,6 @@ bool cag_regions_inertia(CagCall *call, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   double density = 1, area, xx, xy, yy, *m;
   CagVec3 center;
-  CagError err;
   if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
   if (!shape->placement.planar)
     return cag_fail_call(call, 0, CAG_ERR_value,
@@ -278,8 +267,8 @@ bool cag_regions_inertia(CagCall *call, CagValue *result) {
   area = xx = xy = yy = 0;
   CagStatus status = CAG_OK;
   if (!empty)
-    status = cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+    status = cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   CagValue matrix = cag_list_vectors(call->vm, 2, 2, &m);
   m[0] = density * yy;
   m[1] = m[2] = 0 - density * xy;

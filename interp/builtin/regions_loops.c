@@ -37,31 +37,30 @@ static double reach_of(const CagCurve *c) {
 bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransform *frame,
                             bool *in_space) {
   CagPlane plane;
-  CagError err;
   *in_space = false;
   for (size_t i = 0; i < n; i++) *in_space = *in_space || loops[i]->dimension == 3;
   if (!*in_space) return true;
   bool common = true;
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && common && i < n; i++) {
-    status = cag_curve_is_planar(loops[i], &common, i == 0 ? &plane : NULL, &err);
+    status = cag_curve_is_planar(loops[i], &common, i == 0 ? &plane : NULL, call->err);
     if (status || !common) break;
     if (i == 0) plane = upright(&plane);
     common = lies_in(loops[i], &plane, reach_of(loops[i]));
   }
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   if (!common) {
-    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
+    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
                       "expected boundaries that lie in one plane, found %s of space",
                       n > 1 ? "curves" : "a curve");
-    return cag_geometry_ok(call, status, &err);
+    return cag_geometry_ok(call, status);
   }
   *frame = cag_plane_frame(&plane);
   *in_space = cag_norm(plane.point) > 0 || plane.normal.z != 1;
   for (size_t i = 0; i < n; i++) {
     CagCurve *flat = NULL;
-    status = cag_curve_flatten(loops[i], frame, &flat, &err);
-    if (!cag_geometry_ok(call, status, &err)) return false;
+    status = cag_curve_flatten(loops[i], frame, &flat, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
     cag_curve_release(loops[i]);
     loops[i] = flat;
   }

@@ -79,10 +79,9 @@ bool cag_arg_joints_or_home(CagCall *call, int argument, const CagRobot *r, bool
 }
 
 bool cag_pose_of_value(CagCall *call, int argument, CagValue v, CagTransform *out) {
-  CagError err;
   *out = CAG_AS_TRANSFORM(v)->t;
-  return cag_geometry_ok(call, cag_robot_pose_check(out, cag_parameter_name(call, argument), &err),
-                         &err);
+  return cag_geometry_ok(call,
+                         cag_robot_pose_check(out, cag_parameter_name(call, argument), call->err));
 }
 
 bool cag_arg_pose(CagCall *call, int argument, CagTransform *out) {
@@ -190,9 +189,8 @@ bool cag_robots_manipulability(CagCall *call, CagValue *result) {
 static bool read_rank(CagCall *call, size_t *count, size_t *rank) {
   CagRobot *r = NULL;
   double q[CAG_ROBOT_JOINTS_MAX], values[6];
-  CagError err;
   return read_place(call, 2, &r, q) &&
-         cag_geometry_ok(call, cag_robot_singular_values(r, q, values, count, rank, &err), &err);
+         cag_geometry_ok(call, cag_robot_singular_values(r, q, values, count, rank, call->err));
 }
 
 bool cag_robots_is_singular(CagCall *call, CagValue *result) {

@@ -46,7 +46,6 @@ static bool read_limits(CagCall *call, int argument, CagRobotLink *l) {
 
 // Checks a finished link; its home is 0, or the limit next to it, where none was given.
 static bool give_link(CagCall *call, CagRobotLink *l, int home, int shape, CagValue *result) {
-  CagError err;
   CagValue drawn;
   bool turns = l->kind == CAG_JOINT_REVOLUTE;
   if (!read_shape(call, shape, &drawn)) return false;
@@ -56,7 +55,7 @@ static bool give_link(CagCall *call, CagRobotLink *l, int home, int shape, CagVa
   } else if (home >= 0) {
     l->home = turns ? fmin(fmax(0, l->low), l->high) : l->low;
   }
-  if (!cag_geometry_ok(call, cag_robot_link_check(l, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_robot_link_check(l, call->err))) return false;
   *result = cag_link_value(call->vm, l, drawn);
   return true;
 }
@@ -207,7 +206,6 @@ bool cag_robots_robot(CagCall *call, CagValue *result) {
   static const char *const conventions[] = {"dh", "mdh", NULL};
   CagRobotSpec spec = {0};
   CagList *list;
-  CagError err;
   const char *name = "";
   int convention;
   if (!cag_arg_list(call, 0, &list)) return false;
@@ -230,7 +228,7 @@ bool cag_robots_robot(CagCall *call, CagValue *result) {
   spec.coupling = coupling.matrix;
   spec.coupling_offset = coupling.offset;
   CagText *text = CAG_AS_TEXT(cag_text_c(call->vm, name));
-  if (!cag_geometry_ok(call, cag_robot_new(&spec, &robot, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_robot_new(&spec, &robot, call->err))) return false;
   *result = cag_robot_value(call->vm, robot, text, links);
   return true;
 }

@@ -49,14 +49,13 @@ bool cag_robots_ik(CagCall *call, CagValue *result) {
   CagTransform target;
   CagRobotGoal goal = {0};
   CagRobotFound found;
-  CagError err;
   double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
   if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
       !cag_arg_joints_or_home(call, 2, r, false, near) || !read_config(call, 3, &goal) ||
       (cag_given(call, 4) && !cag_arg_positive(call, 4, &goal.tolerance)))
     return false;
   goal.near = near;
-  if (!cag_geometry_ok(call, cag_robot_solve(r, &target, &goal, q, &found, &err), &err))
+  if (!cag_geometry_ok(call, cag_robot_solve(r, &target, &goal, q, &found, call->err)))
     return false;
   *result = cag_joints_value(call->vm, r, q);
   return true;
@@ -68,12 +67,11 @@ bool cag_robots_reachable(CagCall *call, CagValue *result) {
   CagTransform target;
   CagRobotGoal goal = {0};
   CagRobotFound found;
-  CagError err;
   double q[CAG_ROBOT_JOINTS_MAX];
   if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
       (cag_given(call, 2) && !cag_arg_positive(call, 2, &goal.tolerance)))
     return false;
-  *result = cag_bool(cag_robot_solve(r, &target, &goal, q, &found, &err) == CAG_OK);
+  *result = cag_bool(cag_robot_solve(r, &target, &goal, q, &found, call->err) == CAG_OK);
   return true;
 }
 
@@ -84,14 +82,14 @@ bool cag_robots_closest_pose(CagCall *call, CagValue *result) {
   CagTransform target, pose;
   CagRobotGoal goal = {0};
   CagRobotFound found;
-  CagError err;
   double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
   if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
       !cag_arg_joints_or_home(call, 2, r, false, near))
     return false;
   goal.near = near;
-  if (cag_robot_solve(r, &target, &goal, q, &found, &err) && err.id != CAG_ERR_unreachable)
-    return cag_fail_geometry(call, &err);
+  if (cag_robot_solve(r, &target, &goal, q, &found, call->err) &&
+      call->err->id != CAG_ERR_unreachable)
+    return cag_fail_geometry(call, call->err);
   cag_robot_forward(r, q, &pose);
   CagValue values[] = {cag_joints_value(call->vm, r, q), cag_transform_value(call->vm, &pose),
                        cag_number(found.position),
@@ -147,7 +145,6 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
   double near[CAG_ROBOT_JOINTS_MAX];
   long n;
   bool point = false;
-  CagError err;
   CagRobotWay way = {.near = near, .going = going, .data = call->vm};
   if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &from, &way.position_only) ||
       !read_target(call, 2, &to, &point))
@@ -160,8 +157,8 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
       !cag_arg_bool_or(call, 5, false, &way.cross))
     return false;
   double *q = take_places(call, r, (size_t)n);
-  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, &err);
-  return cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
+  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, call->err);
+  return cag_geometry_ok(call, status) && give_places(call, r, q, (size_t)n, result);
 }
 
 // Poses, or points where the tool may be turned as it likes; *out is held.
@@ -189,13 +186,12 @@ bool cag_robots_follow(CagCall *call, CagValue *result) {
   CagTransform *poses = NULL;
   double near[CAG_ROBOT_JOINTS_MAX];
   size_t n = 0;
-  CagError err;
   CagRobotWay way = {.near = near, .going = going, .data = call->vm};
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints_or_home(call, 2, r, false, near) ||
       !cag_arg_bool_or(call, 3, false, &way.jumps) ||
       !read_poses(call, 1, &poses, &n, &way.position_only))
     return false;
   double *q = take_places(call, r, n);
-  return cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, &err), &err) &&
+  return cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, call->err)) &&
          give_places(call, r, q, n, result);
 }

@@ -15,10 +15,9 @@ typedef struct Drawing {
 } Drawing;
 
 // Adds a body in one of the plain colors; takes over its reference.
-static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const CagError *err,
-                     const double color[3]) {
+static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const double color[3]) {
   static const char *const names[] = {"color"};
-  if (!cag_geometry_ok(d->call, status, err)) return false;
+  if (!cag_geometry_ok(d->call, status)) return false;
   CagVm *vm = d->call->vm;
   CagValue shape = cag_solid_value(vm, *body), value = cag_vector(vm, color, 3);
   CAG_AS_SHAPE(shape)->material = CAG_AS_RECORD(cag_record_new(vm, names, &value, 1));
@@ -27,22 +26,20 @@ static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const CagErr
 
 static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const double color[3]) {
   CagSolid *body = NULL;
-  CagError err;
   if (cag_norm(cag_sub(q, p)) <= CAG_PLAIN_SHORT * d->size) return true;
-  CagStatus status = cag_solid_rod(p, q, radius, radius, &body, &err);
-  return add_body(d, status, &body, &err, color);
+  CagStatus status = cag_solid_rod(p, q, radius, radius, &body, d->call->err);
+  return add_body(d, status, &body, color);
 }
 
 // A square bar about the axis of a sliding joint.
 static bool add_slide(Drawing *d, const CagTransform *frame) {
   CagSolid *bar = NULL, *placed = NULL;
-  CagError err;
   double side = CAG_PLAIN_SLIDE_SIDE * d->size;
-  CagStatus status =
-      cag_solid_box(cag_vec3(side, side, CAG_PLAIN_DRUM_LENGTH * d->size), true, &bar, &err);
-  if (!status) status = cag_solid_transform(bar, frame, &placed, &err);
+  CagStatus status = cag_solid_box(cag_vec3(side, side, CAG_PLAIN_DRUM_LENGTH * d->size), true,
+                                   &bar, d->call->err);
+  if (!status) status = cag_solid_transform(bar, frame, &placed, d->call->err);
   cag_solid_release(bar);
-  return add_body(d, status, &placed, &err, drum_color);
+  return add_body(d, status, &placed, drum_color);
 }
 
 static bool add_joint(Drawing *d, const CagRobotLink *l, const CagTransform *frame) {
@@ -75,13 +72,11 @@ static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const Cag
       return false;
   for (size_t i = 0; i < r->joint_count; i++) {
     CagTransform frame;
-    CagError err;
     CagVec3 z = directions[i];
     CagVec3 side = fabs(z.x) < 0.9 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
-    CagStatus status =
-        cag_axes(axes[i], cag_cross(z, side), cag_cross(z, cag_cross(z, side)), &frame, &err);
-    if (!cag_geometry_ok(d->call, status, &err) ||
-        !add_joint(d, &r->links[r->joint_link[i]], &frame))
+    CagStatus status = cag_axes(axes[i], cag_cross(z, side), cag_cross(z, cag_cross(z, side)),
+                                &frame, d->call->err);
+    if (!cag_geometry_ok(d->call, status) || !add_joint(d, &r->links[r->joint_link[i]], &frame))
       return false;
   }
   return true;
@@ -142,7 +137,8 @@ bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
   size_t rows;
   double q[CAG_ROBOT_JOINTS_MAX];
   CagValue values[] = {robot, cag_unset(), cag_unset(), cag_unset()};
-  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), values, 4};
+  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), values, 4,
+                  &vm->core_error};
   cag_robot_home(CAG_AS_ROBOT(robot)->robot, q);
   const size_t held = vm->held_count;
   const bool ok = give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);

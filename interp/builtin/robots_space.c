@@ -24,7 +24,6 @@ static bool cloud_value(CagCall *call, const CagVec3 *points, size_t n, double r
   static const uint32_t faces[8][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
                                        {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
   CagMesh *m = NULL;
-  CagError err;
   CagVec3 *vertices = cag_hold(call, cag_malloc(6 * n * sizeof *vertices));
   uint32_t *counts = cag_hold(call, cag_malloc(8 * n * sizeof *counts));
   uint32_t *indices = cag_hold(call, cag_malloc(24 * n * sizeof *indices));
@@ -37,11 +36,12 @@ static bool cloud_value(CagCall *call, const CagVec3 *points, size_t n, double r
       for (size_t j = 0; j < 3; j++) indices[24 * i + 3 * k + j] = (uint32_t)(6 * i) + faces[k][j];
     }
   }
-  const CagStatus status = cag_mesh_from_faces(vertices, 6 * n, indices, counts, 8 * n, &m, &err);
+  const CagStatus status =
+      cag_mesh_from_faces(vertices, 6 * n, indices, counts, 8 * n, &m, call->err);
   cag_release_held(call, indices);
   cag_release_held(call, counts);
   cag_release_held(call, vertices);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *out = cag_mesh_value(call->vm, m);
   return true;
 }
@@ -55,27 +55,26 @@ static CagBounds bounds_of(const CagVec3 *points, size_t n) {
 // The hull as a mesh, of points at one height as a region there; none where it has no inside.
 static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const CagBounds *b,
                        CagValue *out) {
-  CagError err;
   CagMesh *m = NULL;
   size_t *ring = NULL, count = 0;
   *out = cag_none();
   double size = cag_norm(cag_sub(b->max, b->min));
   if (b->max.z - b->min.z > FLAT * size) {
-    CagStatus status = cag_hull_space(points, n, &m, &err);
+    CagStatus status = cag_hull_space(points, n, &m, call->err);
     if (status == CAG_OK) *out = cag_mesh_value(call->vm, m);
-    return status != CAG_E_MEMORY || cag_fail_geometry(call, &err);
+    return status != CAG_E_MEMORY || cag_fail_geometry(call, call->err);
   }
-  CagStatus status = cag_hull_plane(points, n, &ring, &count, &err);
-  if (status) return status != CAG_E_MEMORY || cag_fail_geometry(call, &err);
+  CagStatus status = cag_hull_plane(points, n, &ring, &count, call->err);
+  if (status) return status != CAG_E_MEMORY || cag_fail_geometry(call, call->err);
   cag_hold_for(call, cag_free, ring);
   CagVec3 *corners = cag_hold_array(call, count, sizeof *corners);
   CagCurve *loop = NULL;
   CagRegion *region = NULL;
   for (size_t i = 0; i < count; i++) corners[i] = cag_vec3(points[ring[i]].x, points[ring[i]].y, 0);
-  status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
-  if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
+  status = cag_curve_polyline(corners, count, true, 2, &loop, call->err);
+  if (!status) status = cag_region_new(loop, NULL, 0, &region, call->err);
   cag_curve_release(loop);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   CagTransform place = cag_translate(cag_vec3(0, 0, b->min.z));
   *out = cag_region_value(call->vm, region, &place);
   return true;
@@ -169,13 +168,11 @@ static bool read_axis(CagCall *call, int argument, CagValue v, size_t index, Cag
 
 // A frame on the first axis: its origin at the axis' point, x as near to the world's as may be.
 static bool default_base(CagCall *call, const CagJointAxis *axis, CagTransform *out) {
-  CagError err;
   CagVec3 z = cag_unit(axis->direction);
   const double nearly_x = 0.999999;
   CagVec3 x = fabs(z.x) < nearly_x ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   CagVec3 square = cag_madd(x, -cag_dot(x, z), z);
-  return cag_geometry_ok(call, cag_axes(axis->point, square, cag_cross(z, square), out, &err),
-                         &err);
+  return cag_geometry_ok(call, cag_axes(axis->point, square, cag_cross(z, square), out, call->err));
 }
 
 static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagTransform *frames,
@@ -203,7 +200,6 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   CagList *list = NULL;
   CagJointAxis end;
   CagTransform base;
-  CagError err;
   if (!cag_arg_list(call, 0, &list)) return false;
   if (list->length == 0)
     return cag_fail_call(call, 0, CAG_ERR_empty_chain, "expects the axis of at least one joint");
@@ -216,6 +212,6 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   if (!read_axis(call, 1, call->values[1], 0, &end)) return false;
   const bool based = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (!(based ? cag_arg_pose(call, 2, &base) : default_base(call, &axes[0], &base))) return false;
-  const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, &err);
-  return cag_geometry_ok(call, status, &err) && give_assignment(call, links, frames, n, result);
+  const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, call->err);
+  return cag_geometry_ok(call, status) && give_assignment(call, links, frames, n, result);
 }

@@ -56,7 +56,8 @@ static bool read_at(const Import *m, const char *path, CagValue *out, bool *foun
   CagVm *vm = m->call->vm;
   size_t rows;
   CagValue text = cag_text_c(vm, path);
-  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("read_mesh"), &rows), &text, 1};
+  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("read_mesh"), &rows), &text, 1,
+                  &vm->core_error};
   const size_t held = vm->held_count;
   const bool ok = call.builtin->function(&call, out);
   cag_vm_release_held(vm, held);
@@ -122,13 +123,6 @@ static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
 
 // --- Bodies ---
 
-static bool give_solid(const Import *m, CagStatus status, CagSolid *s, const CagError *err,
-                       CagValue *out) {
-  if (!cag_geometry_ok(m->call, status, err)) return false;
-  *out = cag_solid_value(m->call->vm, s);
-  return true;
-}
-
 static CagTransform scaled(const double factors[3]) {
   CagTransform t = cag_transform_identity();
   for (int i = 0; i < 3; i++) t.m[i][i] = factors[i];
@@ -138,22 +132,21 @@ static CagTransform scaled(const double factors[3]) {
 
 static bool make_body(Import *m, const CagUrdfBody *b, CagTransform *place, CagValue *out) {
   CagSolid *s = NULL;
-  CagError err = {0};
   const double *size = b->size;
   switch (b->kind) {
   case CAG_URDF_BODY_BOX: {
-    CagStatus status = cag_solid_box(cag_vec3(size[0], size[1], size[2]), true, &s, &err);
-    return give_solid(m, status, s, &err, out);
+    CagStatus status = cag_solid_box(cag_vec3(size[0], size[1], size[2]), true, &s, m->call->err);
+    return cag_solid_result(m->call, status, &s, out);
   }
   case CAG_URDF_BODY_CYLINDER: {
     CagTransform down = cag_translate(cag_vec3(0, 0, -size[1] / 2));
     *place = cag_transform_multiply(place, &down);
-    CagStatus status = cag_solid_cylinder(size[1], size[0], size[0], &s, &err);
-    return give_solid(m, status, s, &err, out);
+    CagStatus status = cag_solid_cylinder(size[1], size[0], size[0], &s, m->call->err);
+    return cag_solid_result(m->call, status, &s, out);
   }
   case CAG_URDF_BODY_SPHERE: {
-    CagStatus status = cag_solid_sphere(size[0], &s, &err);
-    return give_solid(m, status, s, &err, out);
+    CagStatus status = cag_solid_sphere(size[0], &s, m->call->err);
+    return cag_solid_result(m->call, status, &s, out);
   }
   case CAG_URDF_BODY_MESH: break;
   }
@@ -242,7 +235,6 @@ static bool make_links(Import *m, CagValue *list) {
 
 static bool make_robot(Import *m, CagValue *result) {
   CagCall *call = m->call;
-  CagError err = {0};
   CagRobot *robot = NULL;
   CagValue list;
   m->plain = cag_hold_array(call, m->rows.row_count, sizeof *m->plain);
@@ -253,8 +245,8 @@ static bool make_robot(Import *m, CagValue *result) {
                        .convention = CAG_ROBOT_CLASSIC,
                        .base = m->rows.base,
                        .tool = m->rows.tool};
-  const CagStatus status = cag_robot_new(&spec, &robot, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  const CagStatus status = cag_robot_new(&spec, &robot, m->call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_robot_value(call->vm, robot, name, list);
   return true;
 }
@@ -269,20 +261,21 @@ static bool name_or_none(CagCall *call, int argument, const char **out) {
 
 static bool read_chain(Import *m) {
   CagCall *call = m->call;
-  CagError err = {0};
   char *bytes;
   size_t size, *chain = NULL, n = 0;
   const char *slash = strrchr(m->path, '/');
   if (!cag_vm_open_file(call, 0, m->path, &bytes, &size)) return false;
   cag_hold(call, bytes);
-  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, &err);
+  CagStatus status =
+      cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, m->call->err);
   cag_release_held(call, bytes);
-  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, &err);
+  if (status == CAG_OK)
+    status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, m->call->err);
   cag_hold_for(call, cag_free, chain);
   if (status == CAG_OK)
-    status =
-        cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows, &err);
-  return cag_geometry_ok(call, status, &err);
+    status = cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows,
+                           m->call->err);
+  return cag_geometry_ok(call, status);
 }
 
 static void release_import(void *import) {

@@ -184,15 +184,14 @@ bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
 static CagValue region_in_plane(CagVm *vm, CagRegion *r) { return cag_region_value(vm, r, NULL); }
 #define cag_region_value(vm, r) region_in_plane(vm, r)
 #define X(Type, name)                                                                              \
-  bool cag_##name##_result(CagCall *call, CagStatus status, const CagError *err, Type **made,      \
-                           CagValue *result) {                                                     \
-    if (!cag_geometry_ok(call, status, err)) return false;                                         \
+  bool cag_##name##_result(CagCall *call, CagStatus status, Type **made, CagValue *result) {       \
+    if (!cag_geometry_ok(call, status)) return false;                                              \
     *result = cag_##name##_value(call->vm, *made);                                                 \
     return true;                                                                                   \
   }                                                                                                \
-  bool cag_changed_##name##_result(CagCall *call, CagStatus status, const CagError *err,           \
-                                   Type **made, CagValue *result) {                                \
-    if (!cag_##name##_result(call, status, err, made, result)) return false;                       \
+  bool cag_changed_##name##_result(CagCall *call, CagStatus status, Type **made,                   \
+                                   CagValue *result) {                                             \
+    if (!cag_##name##_result(call, status, made, result)) return false;                            \
     cag_shape_say_alike(*result, call->values[0]);                                                 \
     return true;                                                                                   \
   }
@@ -219,7 +218,6 @@ bool cag_arg_plane(CagCall *call, int argument, CagPlane *out) {
 
 bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *placement) {
   CagValue v = call->values[argument];
-  CagError err;
   *placement = cag_transform_identity();
   if (v.type == CAG_REGION) {
     *placement = CAG_AS_SHAPE(v)->placement;
@@ -227,8 +225,8 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
     return true;
   }
   if (v.type == CAG_CURVE)
-    return cag_geometry_ok(call, cag_region_new(CAG_AS_SHAPE(v)->as.curve, NULL, 0, out, &err),
-                           &err);
+    return cag_geometry_ok(call,
+                           cag_region_new(CAG_AS_SHAPE(v)->as.curve, NULL, 0, out, call->err));
   if (v.type != CAG_LIST)
     return cag_fail_type(call, argument, "a region, a closed plane curve or a list of points");
   CagVec3 *points;
@@ -237,11 +235,11 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
   if (!cag_arg_points(call, argument, &points, &n, &dimension)) return false;
   cag_hold(call, points);
   CagCurve *outline = NULL;
-  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, call->err)))
     return false;
   cag_release_held(call, points);
   cag_hold_curve(call, outline);
-  return cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, &err), &err);
+  return cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, call->err));
 }
 
 static void bounds_join(CagBounds *into, const CagBounds *b) {
@@ -303,13 +301,12 @@ static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *
 
 bool cag_value_is_empty(CagCall *call, CagValue v, bool *out) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagError err;
   CagStatus status = CAG_OK;
   *out = false;
   if (v.type == CAG_REGION) *out = cag_region_is_empty(shape->as.region);
   if (v.type == CAG_MESH) *out = shape->as.mesh->triangle_count == 0 && !is_label(shape);
-  if (v.type == CAG_SOLID) status = cag_solid_is_empty(shape->as.solid, out, &err);
-  return cag_geometry_ok(call, status, &err);
+  if (v.type == CAG_SOLID) status = cag_solid_is_empty(shape->as.solid, out, call->err);
+  return cag_geometry_ok(call, status);
 }
 
 bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
@@ -319,8 +316,7 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
   *out = CAG_BOUNDS_EMPTY;
   *dimension = 2;
   size_t n = CAG_AS_LIST(list)->length;
-  CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "there is no shape in it");
+  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "there is no shape in it");
   bool all_empty = true;
   for (size_t i = 0; i < n; i++) {
     CagBounds one;
@@ -328,12 +324,12 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
     int d;
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     const CagValue shape = cag_list_get(call->vm, CAG_AS_LIST(list), i);
-    CagStatus status = shape_bounds(shape, &one, &d, &empty, &err);
-    if (status) return cag_geometry_ok(call, status, &err);
+    CagStatus status = shape_bounds(shape, &one, &d, &empty, call->err);
+    if (status) return cag_geometry_ok(call, status);
     if (empty) continue;
     all_empty = false;
     bounds_join(out, &one);
     if (d == 3) *dimension = 3;
   }
-  return !all_empty || cag_fail_geometry(call, &err);
+  return !all_empty || cag_fail_geometry(call, call->err);
 }

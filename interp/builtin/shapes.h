@@ -12,12 +12,12 @@
 
 #define CAG_RADIANS_PER_DEGREE 0.017453292519943295
 
-// True when the core is content; else the machine's error is set.
-static inline bool cag_geometry_ok(CagCall *call, CagStatus status, const CagError *err) {
-  return status == CAG_OK || cag_fail_geometry(call, err);
+// True when the core succeeded; else what it wrote to call->err becomes the machine's error.
+static inline bool cag_geometry_ok(CagCall *call, CagStatus status) {
+  return status == CAG_OK || cag_fail_geometry(call, call->err);
 }
 
-// The result of a call of the core that makes a shape: its value, or the machine's error. These take
+// The result of a call of the core that makes a shape: its value, or the machine's error. They take
 // the address of what was made because the call that fills it in is an argument before it. The
 // `changed` ones keep what was said about the first argument: material, name, and so on.
 // clang-format off
@@ -25,10 +25,9 @@ static inline bool cag_geometry_ok(CagCall *call, CagStatus status, const CagErr
   X(CagCurve, curve) X(CagRegion, region) X(CagSurface, surface) X(CagSolid, solid) X(CagMesh, mesh)
 // clang-format on
 #define X(Type, name)                                                                              \
-  bool cag_##name##_result(CagCall *call, CagStatus status, const CagError *err, Type **made,      \
-                           CagValue *result);                                                      \
-  bool cag_changed_##name##_result(CagCall *call, CagStatus status, const CagError *err,           \
-                                   Type **made, CagValue *result);
+  bool cag_##name##_result(CagCall *call, CagStatus status, Type **made, CagValue *result);        \
+                                                                                                   \
+  bool cag_changed_##name##_result(CagCall *call, CagStatus status, Type **made, CagValue *result);
 CAG_SHAPE_RESULTS(X)
 #undef X
 

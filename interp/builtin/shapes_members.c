@@ -27,7 +27,7 @@ static bool call_unary(CagVm *vm, const char *function, CagValue v, CagValue *ou
   const CagBuiltin *rows = cag_builtin_rows(index, &count);
   size_t row = cag_builtin_select(index, v.type, 1);
   if (row == (size_t)-1) return false;
-  CagCall call = {vm, &rows[row], &v, 1};
+  CagCall call = {vm, &rows[row], &v, 1, &vm->core_error};
   return call_row(&call, out);
 }
 
@@ -121,7 +121,7 @@ bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t
   size_t row = cag_builtin_select(index, shape.type, wanted + 1);
   CagValue values[4] = {shape, cag_unset(), cag_unset(), cag_unset()};
   for (size_t i = 0; i < n && i < wanted; i++) values[i + 1] = arguments[i];
-  CagCall call = {vm, &rows[row], values, 3};
+  CagCall call = {vm, &rows[row], values, 3, &vm->core_error};
   if (n != wanted)
     return cag_fail_call(&call, -1, CAG_ERR_arity,
                          shape.type == CAG_CURVE ? "of a curve expects one parameter, found %zu"

@@ -19,7 +19,6 @@ static bool give_group(CagCall *call, CagBuilder *copies, CagValue *result) {
 bool cag_solids_around(CagCall *call, CagValue *result) {
   long n;
   CagVec3 axis, through;
-  CagError err;
   if (!cag_arg_integer(call, 1, 1, COPIES_MAX, &n) ||
       !cag_arg_direction(call, 2, cag_vec3(0, 0, 1), &axis, NULL) ||
       !cag_arg_vec_or(call, 3, cag_vec3(0, 0, 0), &through, NULL))
@@ -31,7 +30,7 @@ bool cag_solids_around(CagCall *call, CagValue *result) {
     double angle = 360.0 * (double)i / (double)n * CAG_RADIANS_PER_DEGREE;
     CagTransform t;
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
-    if (!cag_geometry_ok(call, cag_rotate(axis, angle, through, &t, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_rotate(axis, angle, through, &t, call->err))) return false;
     t.planar = plane;
     if (!add_moved(call, copies, &t)) return false;
   }
@@ -57,9 +56,8 @@ bool cag_solids_rows(CagCall *call, CagValue *result) {
 bool cag_solids_mirrored(CagCall *call, CagValue *result) {
   CagPlane plane;
   CagTransform t;
-  CagError err;
   if (!cag_arg_plane(call, 1, &plane) ||
-      !cag_geometry_ok(call, cag_reflect(plane.normal, plane.point, &t, &err), &err))
+      !cag_geometry_ok(call, cag_reflect(plane.normal, plane.point, &t, call->err)))
     return false;
   t.planar = false;
   CagBuilder *copies = cag_builder_new(call->vm);

@@ -133,16 +133,15 @@ static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t in
 
 // Reads one body: a solid, a closed mesh or surface.
 static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
-  CagError err;
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagSurface *face;
   switch (v.type) {
   case CAG_SOLID: *out = cag_solid_retain(shape->as.solid); return true;
   case CAG_MESH:
-    return operand_ok(call, cag_solid_from_mesh(shape->as.mesh, out, &err), &err, index);
+    return operand_ok(call, cag_solid_from_mesh(shape->as.mesh, out, call->err), call->err, index);
   case CAG_SURFACE:
     face = shape->as.surface;
-    return operand_ok(call, cag_solid_shell(&face, 1, out, &err), &err, index);
+    return operand_ok(call, cag_solid_shell(&face, 1, out, call->err), call->err, index);
   default:
     return cag_fail_call(call, -1, CAG_ERR_csg_operand,
                          "expects solids, closed meshes and closed surfaces, found %s as operand "
@@ -153,8 +152,7 @@ static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
 
 static bool relabel_operand(CagCall *call, Paint *paint, CagSolid **operand) {
   CagSolid *labeled;
-  CagError err;
-  if (!cag_geometry_ok(call, cag_solid_relabel(*operand, relabel, paint, &labeled, &err), &err))
+  if (!cag_geometry_ok(call, cag_solid_relabel(*operand, relabel, paint, &labeled, call->err)))
     return false;
   cag_solid_release(*operand);
   *operand = labeled;
@@ -176,11 +174,10 @@ static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands,
 // them, if there is one.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagValue *said) {
-  CagError err;
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, v, builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, &err), &err);
+  if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, call->err));
   CagSolid **parts = cag_hold_solid_array(call, shapes->length);
   *said = cag_list_get(call->vm, shapes, 0);
   for (size_t i = 0; i < shapes->length; i++) {
@@ -190,9 +187,9 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
     paint->said = CAG_AS_SHAPE(shape)->material;
     if (!relabel_operand(call, paint, &parts[i])) return false;
   }
-  const CagStatus status = combine(call, CAG_UNION, parts, shapes->length, out, &err);
+  const CagStatus status = combine(call, CAG_UNION, parts, shapes->length, out, call->err);
   cag_release_held(call, parts);
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(call, status);
 }
 
 // --- union, difference, intersection ---
@@ -236,7 +233,6 @@ static bool call_of_regions(CagCall *call, const char *name, CagValue *result) {
 static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValue *result) {
   CagValue *items, said = cag_unset(), unused;
   size_t n;
-  CagError err;
   CagSolid *made = NULL;
   if (is_of_regions(call)) return call_of_regions(call, name, result);
   if (!cag_arg_several(call, &items, &n)) return false;
@@ -249,7 +245,7 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
         !read_operand(call, items[i], i, &paint, &operands[i], i == 0 ? &said : &unused))
       return false;
-  if (!cag_solid_result(call, combine(call, op, operands, n, &made, &err), &err, &made, result))
+  if (!cag_solid_result(call, combine(call, op, operands, n, &made, call->err), &made, result))
     return false;
   if (said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
   if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
@@ -271,11 +267,10 @@ bool cag_solids_intersection(CagCall *call, CagValue *result) {
 bool cag_solids_half_space(CagCall *call, CagValue *result) {
   CagPlane plane;
   CagSolid *s = NULL;
-  CagError err;
   if (!cag_arg_plane(call, 0, &plane)) return false;
-  const CagStatus status = cag_solid_half_space(&plane, &s, &err);
+  const CagStatus status = cag_solid_half_space(&plane, &s, call->err);
   if (!status) say_place(call, s);
-  return cag_solid_result(call, status, &err, &s, result);
+  return cag_solid_result(call, status, &s, result);
 }
 
 // The part of a form's side within a box, or between two heights.
@@ -300,7 +295,6 @@ static CagStatus heights(double low, double high, CagSolid *out[2], CagError *er
 
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagSolid **ends = cag_hold_solid_array(call, 2), *made = NULL;
-  CagError err;
   size_t n = 0;
   if (cag_given(call, within) && call->values[within].type != CAG_NONE) {
     CagValue v = call->values[within];
@@ -313,13 +307,13 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
         return cag_fail_type(call, within, "a solid or a range of z");
       if (!(low < high))
         return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
-      if (!cag_geometry_ok(call, heights(low, high, ends, &err), &err)) return false;
+      if (!cag_geometry_ok(call, heights(low, high, ends, call->err))) return false;
       n = 2;
     }
   }
-  CagStatus status = bounded_form(call, q, ends, n, &made, &err);
+  CagStatus status = bounded_form(call, q, ends, n, &made, call->err);
   if (!status) say_place(call, made);
-  return cag_solid_result(call, status, &err, &made, result);
+  return cag_solid_result(call, status, &made, result);
 }
 
 // --- clip ---
@@ -331,18 +325,18 @@ typedef struct Clip {
 
 static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagSolid *parts[2] = {NULL, c->by}, *made = NULL;
-  CagError err;
   CagBounds reach;
   if (!read_one(c->call, v, 0, &parts[0])) return false;
   CagStatus status =
-      cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, &err);
+      cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, c->call->err);
   cag_solid_release(parts[0]);
-  if (!cag_geometry_ok(c->call, status, &err)) return false;
+  if (!cag_geometry_ok(c->call, status)) return false;
   say_place(c->call, made);
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
   // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
-  bool outside = cag_solid_reach(made, &reach, &err) == CAG_OK && !(reach.min.x <= reach.max.x);
+  bool outside =
+      cag_solid_reach(made, &reach, c->call->err) == CAG_OK && !(reach.min.x <= reach.max.x);
   return outside || cag_builder_add(c->call->vm, into, value);
 }
 
@@ -366,22 +360,20 @@ static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
   const CagTessellation how = fineness(c, shape);
   CagSurface *s = NULL;
   CagMesh *m = NULL;
-  CagError err;
   CagStatus status = CAG_OK;
   if (v.type == CAG_SURFACE) s = cag_surface_retain(shape->as.surface);
-  else status = cag_surface_planar(shape->as.region, &shape->placement, &s, &err);
-  if (!status) status = cag_surface_clip(s, c->by, &how, &m, &err);
+  else status = cag_surface_planar(shape->as.region, &shape->placement, &s, c->call->err);
+  if (!status) status = cag_surface_clip(s, c->by, &how, &m, c->call->err);
   cag_surface_release(s);
-  if (!cag_geometry_ok(c->call, status, &err)) return false;
+  if (!cag_geometry_ok(c->call, status)) return false;
   return add_clipped(c, m, v, into);
 }
 
 static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
   CagCurveList *pieces = cag_hold_curve_list(c->call);
-  CagError err;
   CagStatus status = cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, cag_vm_stop(c->call->vm),
-                                    &pieces->items, &pieces->count, &err);
-  if (!cag_geometry_ok(c->call, status, &err)) return false;
+                                    &pieces->items, &pieces->count, c->call->err);
+  if (!cag_geometry_ok(c->call, status)) return false;
   for (size_t i = 0; i < pieces->count; i++) {
     CagValue piece = cag_curve_value(c->call->vm, cag_curve_retain(pieces->items[i]));
     cag_shape_say_alike(piece, v);
@@ -404,8 +396,7 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   if (cag_mesh_is_watertight(mesh, NULL)) return clip_solid(c, v, into);
   const CagTessellation how = fineness(c, CAG_AS_SHAPE(v));
   CagMesh *m = NULL;
-  CagError err;
-  return cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, &err), &err) &&
+  return cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, c->call->err)) &&
          add_clipped(c, m, v, into);
 }
 
@@ -413,12 +404,11 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
 static bool clipped_away(CagCall *call, CagValue v, CagValue *result) {
   CagSolid *s = NULL;
   CagMesh *m = NULL;
-  CagError err;
   const bool body = v.type == CAG_SOLID ||
                     (v.type == CAG_MESH && cag_mesh_is_watertight(CAG_AS_SHAPE(v)->as.mesh, NULL));
-  const CagStatus status =
-      body ? cag_solid_empty(&s, &err) : cag_mesh_new(0, 0, false, false, false, &m, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  const CagStatus status = body ? cag_solid_empty(&s, call->err)
+                                : cag_mesh_new(0, 0, false, false, false, &m, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = body ? cag_solid_value(call->vm, s) : cag_mesh_value(call->vm, m);
   cag_shape_say_alike(*result, v);
   return true;
@@ -447,9 +437,8 @@ bool cag_solids_clip(CagCall *call, CagValue *result) {
   Clip c = {call, NULL};
   CagValue said;
   if (call->values[1].type == CAG_PLANE) {
-    CagError err;
     const CagPlane *plane = &CAG_AS_PLANE(call->values[1])->plane;
-    if (!cag_geometry_ok(call, cag_solid_half_space(plane, &c.by, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_solid_half_space(plane, &c.by, call->err))) return false;
   } else if (!read_operand(call, call->values[1], 1, NULL, &c.by, &said)) {
     return false;
   }

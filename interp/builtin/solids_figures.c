@@ -6,8 +6,7 @@
 static bool add_line(CagCall *call, CagBuilder *list, const CagVec3 *points, size_t n, bool closed,
                      int dimension) {
   CagCurve *c = NULL;
-  CagError err;
-  return cag_geometry_ok(call, cag_curve_polyline(points, n, closed, dimension, &c, &err), &err) &&
+  return cag_geometry_ok(call, cag_curve_polyline(points, n, closed, dimension, &c, call->err)) &&
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
@@ -21,11 +20,10 @@ static CagVec3 point_of(const double *h) { return cag_vec3(h[0] / h[3], h[1] / h
 static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
   CagSurfaceNurbsView net;
   if (!cag_surface_nurbs_view(s, &net)) {
-    CagError err;
-    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
              "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
              s->kind->name);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   CagBuilder *list = cag_builder_new(call->vm);
   size_t nu = net.distinct_u, nv = net.distinct_v;
@@ -53,15 +51,14 @@ static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, i
   double from = direction ? s->v0 : s->u0, to = direction ? s->v1 : s->u1;
   bool closed = direction ? s->closed_v : s->closed_u;
   bool poles[2] = {direction ? s->pole_v0 : s->pole_u0, direction ? s->pole_v1 : s->pole_u1};
-  CagError err;
   // The last line of a closed direction is the first again.
   long last = closed ? n : n - 1;
   for (long i = 0; i < n; i++) {
     if ((i == 0 && poles[0]) || (i == last && poles[1])) continue;
     double at = last == 0 ? from : from + (to - from) * ((double)i / (double)last);
     CagCurve *c = NULL;
-    CagStatus status = cag_surface_isocurve(s, direction, at, &c, &err);
-    if (!cag_geometry_ok(call, status, &err) ||
+    CagStatus status = cag_surface_isocurve(s, direction, at, &c, call->err);
+    if (!cag_geometry_ok(call, status) ||
         !cag_builder_add(call->vm, list, cag_curve_value(call->vm, c)))
       return false;
   }
@@ -87,16 +84,15 @@ bool cag_solids_isolines(CagCall *call, CagValue *result) {
 #define HEAD_PART 0.5
 
 static bool make_arrow(CagCall *call, CagVec3 p, CagVec3 v, double radius, CagValue *result) {
-  CagError err;
   CagSolid *shaft = NULL, *head = NULL;
   double length = cag_norm(v);
   double head_length = fmin(HEAD_LENGTH * radius, HEAD_PART * length);
   CagVec3 neck = cag_madd(p, 1 - head_length / length, v);
-  if (!cag_geometry_ok(call, cag_solid_rod(p, neck, radius, radius, &shaft, &err), &err))
+  if (!cag_geometry_ok(call, cag_solid_rod(p, neck, radius, radius, &shaft, call->err)))
     return false;
   CagValue parts[2] = {cag_solid_value(call->vm, shaft)};
   if (!cag_geometry_ok(
-          call, cag_solid_rod(neck, cag_add(p, v), HEAD_RADIUS * radius, 0, &head, &err), &err))
+          call, cag_solid_rod(neck, cag_add(p, v), HEAD_RADIUS * radius, 0, &head, call->err)))
     return false;
   parts[1] = cag_solid_value(call->vm, head);
   *result = cag_group_value(call->vm, cag_list_values(call->vm, parts, 2));

@@ -13,7 +13,6 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
   int dimension = 3;
   bool centered;
   CagSolid *s = NULL;
-  CagError err;
   if (call->values[0].type == CAG_NUMBER) {
     double side;
     if (!cag_arg_positive(call, 0, &side)) return false;
@@ -25,7 +24,7 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
     if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
   }
   if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
-  return cag_solid_result(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
+  return cag_solid_result(call, cag_solid_box(size, centered, &s, call->err), &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, CagValue *result) {
@@ -33,22 +32,20 @@ bool cag_solids_sphere(CagCall *call, CagValue *result) {
     double radius;
   } a;
   CagSolid *s = NULL;
-  CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_sphere(a.radius, &s, &err), &err, &s, result);
+         cag_solid_result(call, cag_solid_sphere(a.radius, &s, call->err), &s, result);
 }
 
 // A cylinder or frustum about Z, on z = 0 or with its middle there.
 static bool upright_result(CagCall *call, double height, double radius, double top, bool centered,
                            CagValue *result) {
   CagSolid *s = NULL, *moved = NULL;
-  CagError err;
-  CagStatus status = cag_solid_cylinder(height, radius, top, &s, &err);
-  if (status != CAG_OK || !centered) return cag_solid_result(call, status, &err, &s, result);
+  CagStatus status = cag_solid_cylinder(height, radius, top, &s, call->err);
+  if (status != CAG_OK || !centered) return cag_solid_result(call, status, &s, result);
   const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
-  status = cag_solid_transform(s, &down, &moved, &err);
+  status = cag_solid_transform(s, &down, &moved, call->err);
   cag_solid_release(s);
-  return cag_solid_result(call, status, &err, &moved, result);
+  return cag_solid_result(call, status, &moved, result);
 }
 
 bool cag_solids_cylinder(CagCall *call, CagValue *result) {
@@ -108,9 +105,8 @@ bool cag_solids_rod(CagCall *call, CagValue *result) {
     double radius, top;
   } a;
   CagSolid *s = NULL;
-  CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, &err), &err, &s,
+         cag_solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, call->err), &s,
                           result);
 }
 
@@ -119,22 +115,21 @@ bool cag_solids_torus(CagCall *call, CagValue *result) {
     double major, minor;
   } a;
   CagSolid *s = NULL;
-  CagError err;
   return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_torus(a.major, a.minor, &s, &err), &err, &s, result);
+         cag_solid_result(call, cag_solid_torus(a.major, a.minor, &s, call->err), &s, result);
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
 static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **faces) {
-  CagError err;
   for (size_t i = 0; i < shapes->length; i++) {
     CagValue v = cag_list_get(call->vm, shapes, i);
     const CagShape *shape = CAG_AS_SHAPE(v);
     if (v.type == CAG_SURFACE) {
       faces[i] = cag_surface_retain(shape->as.surface);
     } else if (v.type == CAG_REGION) {
-      CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &faces[i], &err);
-      if (!cag_geometry_ok(call, status, &err)) return false;
+      CagStatus status =
+          cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err);
+      if (!cag_geometry_ok(call, status)) return false;
     } else {
       return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",
                            cag_type_article(v));
@@ -153,9 +148,8 @@ static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSol
 }
 
 static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
-  CagError err;
   CagSolid *s = NULL;
-  if (!cag_solid_result(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s,
+  if (!cag_solid_result(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, call->err), &s,
                         result))
     return false;
   cag_shape_say_alike(*result, v);
@@ -163,11 +157,10 @@ static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
 }
 
 static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *result) {
-  CagError err;
   CagSolid *s = NULL;
   CagSurface **faces = cag_hold_surface_array(call, shapes->length);
   if (!collect_faces(call, shapes, faces) ||
-      !cag_solid_result(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
+      !cag_solid_result(call, close_faces(call, faces, shapes->length, &s, call->err), &s, result))
     return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;

@@ -115,14 +115,13 @@ static void join_bodies(Body *whole, const Body *part) {
 
 static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagError err;
   *out = (Body){0};
   switch (v.type) {
   case CAG_SOLID:
-    return cag_geometry_ok(call, solid_body(shape->as.solid, shape->tolerance, out, &err), &err);
-  case CAG_MESH: return cag_geometry_ok(call, mesh_body(shape->as.mesh, volume, out, &err), &err);
+    return cag_geometry_ok(call, solid_body(shape->as.solid, shape->tolerance, out, call->err));
+  case CAG_MESH: return cag_geometry_ok(call, mesh_body(shape->as.mesh, volume, out, call->err));
   case CAG_SURFACE:
-    return cag_geometry_ok(call, surface_body(shape->as.surface, volume, out, &err), &err);
+    return cag_geometry_ok(call, surface_body(shape->as.surface, volume, out, call->err));
   default:
     return cag_fail_call(call, 0, CAG_ERR_type, "expects solids, surfaces and meshes, found %s",
                          cag_type_article(v));

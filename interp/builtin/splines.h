@@ -10,9 +10,6 @@
 // segments, joints.
 // Whether an argument was given and is not none.
 bool cag_splines_set(const CagCall *call, int argument);
-// `made` is read after the call that fills it: pass its address.
-bool cag_splines_give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                      CagValue *result);
 // A geometry error of the built-ins themselves.
 bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) __attribute__((format(printf, 5, 6)));

@@ -167,9 +167,8 @@ bool cag_splines_polynomials(CagCall *call, CagValue *result) {
   CagVec3 *a;
   size_t pieces;
   int degree;
-  CagError err;
   if (!cag_arg_curve(call, 0, &c) ||
-      !cag_geometry_ok(call, cag_curve_coefficients(c, &a, &pieces, &degree, &err), &err))
+      !cag_geometry_ok(call, cag_curve_coefficients(c, &a, &pieces, &degree, call->err)))
     return false;
   cag_hold(call, a);
   CagBuilder *rows = cag_builder_new(call->vm);
@@ -201,9 +200,8 @@ bool cag_splines_hermite_shape(CagCall *call, CagValue *result) {
   CagVec3 v[4];
   int dimension;
   CagHermiteShape s;
-  CagError err;
   if (!read_segment(call, true, v, &dimension) ||
-      !cag_geometry_ok(call, cag_hermite_shape(v[0], v[1], v[2], v[3], &s, &err), &err))
+      !cag_geometry_ok(call, cag_hermite_shape(v[0], v[1], v[2], v[3], &s, call->err)))
     return false;
   CagValue values[] = {cag_number(s.chord),
                        cag_number(s.speed[0]),
@@ -225,7 +223,6 @@ bool cag_splines_hermite_by_curvature(CagCall *call, CagValue *result) {
   CagVec3 v[4];
   int dimension;
   double k[2], lengths[4][2];
-  CagError err;
   if (!read_segment(call, true, v, &dimension) || !cag_arg_finite(call, 4, &k[0]) ||
       !cag_arg_finite(call, 5, &k[1]))
     return false;
@@ -242,8 +239,8 @@ bool cag_splines_hermite_by_curvature(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < n; i++) {
     const CagVec3 tangents[2] = {cag_scaled(v[2], lengths[i][0]), cag_scaled(v[3], lengths[i][1])};
     CagCurve *c = NULL;
-    CagStatus status = cag_curve_hermite(v, tangents, 2, unit, 2, &c, &err);
-    if (!cag_splines_give(call, status, &err, &c, &curves[i])) return false;
+    CagStatus status = cag_curve_hermite(v, tangents, 2, unit, 2, &c, call->err);
+    if (!cag_curve_result(call, status, &c, &curves[i])) return false;
   }
   *result = cag_list_values(call->vm, curves, n);
   return true;
@@ -310,11 +307,10 @@ bool cag_splines_bezier_join(CagCall *call, CagValue *result) {
   long m, order;
   double ratio;
   CagVec3 out[3];
-  CagError err;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer_or(call, 1, 3, 0, CAG_MAX_DEGREE, &m) ||
       !cag_arg_integer_or(call, 2, 1, -1000, 1000, &order) ||
       !cag_arg_number_or(call, 3, 1, &ratio) ||
-      !cag_geometry_ok(call, cag_bezier_join(c, (int)m, (int)order, ratio, out, &err), &err))
+      !cag_geometry_ok(call, cag_bezier_join(c, (int)m, (int)order, ratio, out, call->err)))
     return false;
   *result = cag_points_value(call->vm, out, (size_t)order + 1, c->dimension);
   return true;
@@ -332,12 +328,11 @@ bool cag_splines_continuity(CagCall *call, CagValue *result) {
                                       "G1",    "G2",         "gap",         "angle",
                                       "ratio", "first_jump", "second_jump", "curvature_jump"};
   CagJoint j;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
   if (!(given.tolerance >= 0))
     return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
                             "the given.tolerance is 0 or more");
-  if (!cag_geometry_ok(call, cag_curve_joint(given.a, given.b, given.tolerance, &j, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_joint(given.a, given.b, given.tolerance, &j, call->err)))
     return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
                        cag_bool(j.c0),
@@ -387,7 +382,6 @@ bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
   static const char *const names[] = {"t", "points", "curve_crossings", "polygon_crossings"};
   CagMeeting *meetings;
   size_t n;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
   const double square = cag_dot(given.normal.at, given.normal.at);
   if (!(square > 0))
@@ -395,7 +389,7 @@ bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
                             "the given.normal.at of a line or plane is not the zero vector");
   const CagPlane plane = {cag_scaled(given.normal.at, given.offset / square),
                           cag_unit(given.normal.at)};
-  if (!cag_geometry_ok(call, cag_curve_intersect_plane(given.c, &plane, &meetings, &n, &err), &err))
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(given.c, &plane, &meetings, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, meetings);
   CagBuilder *t = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);

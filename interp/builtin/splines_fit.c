@@ -72,7 +72,6 @@ bool cag_splines_interpolate(CagCall *call, CagValue *result) {
   size_t count = 0;
   int dimension;
   CagCurve *c = NULL;
-  CagError err;
   if (!read_data(call, 1, 5, 2, &d) ||
       (cag_splines_set(call, 3) && !cag_splines_points(call, 3, &tangents, &count, &dimension)))
     return false;
@@ -81,8 +80,8 @@ bool cag_splines_interpolate(CagCall *call, CagValue *result) {
     return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
                             "the points have %d numbers, the tangents %d", d.dimension, dimension);
   if (!read_knots(call, 4, &d, d.n + count)) return false;
-  CagStatus status = cag_curve_interpolate(&d, tangents, count, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_interpolate(&d, tangents, count, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 // fit(points, degree = 3, count = degree + 1, parameters = "chord", fixed = "ends", knots = "auto",
@@ -93,7 +92,6 @@ static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, 
   int fixed;
   long count;
   double slack;
-  CagError err;
   if (!cag_arg_choice(call, 4, names, &fixed) || !cag_arg_number_or(call, 6, 1e-9, &slack) ||
       !read_data(call, 1, 7, 3, &d) ||
       !cag_arg_integer_or(call, 2, d.degree + 1L, 1, 100000000, &count))
@@ -106,8 +104,8 @@ static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, 
   *n = d.n;
   *dimension = d.dimension;
   CagStatus status = cag_curve_fit(&d, (size_t)count, fixed == 0, fixed >= 2 ? fixed - 2 : -1,
-                                   slack, out, report, &err);
-  return cag_geometry_ok(call, status, &err);
+                                   slack, out, report, call->err);
+  return cag_geometry_ok(call, status);
 }
 
 bool cag_splines_fit(CagCall *call, CagValue *result) {
@@ -136,7 +134,7 @@ static bool report_surface(CagCall *call, CagValue *result) {
   CagValue *given = call->values, unset = cag_unset();
   CagValue values[] = {given[0], given[1], given[2], given[3], given[5],
                        unset,    unset,    given[4], unset,    given[6]};
-  CagCall other = {call->vm, row, values, sizeof values / sizeof *values};
+  CagCall other = {call->vm, row, values, sizeof values / sizeof *values, call->err};
   if (given[2].type == CAG_UNSET)
     return cag_fail_call(call, 2, CAG_ERR_arity,
                          "of rows of points expects a `count`, two for u and v");
@@ -155,8 +153,8 @@ bool cag_splines_fit_report(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagFitReport *report = cag_hold_array(call, 1, sizeof *report);
   cag_hold_for(call, free_report, report);
-  size_t n;
-  int dimension;
+  size_t n = 0;
+  int dimension = 0;
   if (!fit(call, report, &n, &dimension, &c)) return false;
   const CagValue curve = cag_curve_value(call->vm, c);
   CagValue values[] = {curve,

@@ -14,23 +14,15 @@ bool cag_splines_set(const CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
 }
 
-bool cag_splines_give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
-                      CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, *made);
-  return true;
-}
-
 bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) {
-  CagError err;
-  char message[sizeof err.message];
+  char message[sizeof call->err->message];
   va_list list;
   va_start(list, format);
   vsnprintf(message, sizeof message, format, list);
   va_end(list);
-  cag_fail(&err, CAG_E_ARGUMENT, id, argument, index, "%s", message);
-  return cag_fail_geometry(call, &err);
+  cag_fail(call->err, CAG_E_ARGUMENT, id, argument, index, "%s", message);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *dimension) {
@@ -111,7 +103,6 @@ typedef struct Data {
 // Both arrays are held.
 static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data *out) {
   CagSpacing spacing;
-  CagError err;
   Data d = {0};
   if (!cag_splines_points(call, 0, &d.points, &d.n, &d.dimension)) return false;
   cag_hold(call, d.points);
@@ -121,7 +112,7 @@ static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data 
   else d.u = cag_hold_array(call, d.n, sizeof *d.u);
   *out = d;
   return given ||
-         cag_geometry_ok(call, cag_spacing_parameters(d.points, d.n, spacing, d.u, &err), &err);
+         cag_geometry_ok(call, cag_spacing_parameters(d.points, d.n, spacing, d.u, call->err));
 }
 
 // hermite(points, tangents, parameters = "uniform", limit = none)
@@ -132,7 +123,6 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
   int dimension;
   double limit = INFINITY;
   CagCurve *c = NULL;
-  CagError err;
   if (cag_splines_set(call, 3) && !cag_arg_positive(call, 3, &limit)) return false;
   if (!read_data(call, 2, CAG_SPACING_UNIFORM, &d) ||
       !cag_splines_points(call, 1, &tangents, &count, &dimension))
@@ -145,10 +135,10 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
   if (dimension != d.dimension)
     return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
                             "the points have %d numbers, the tangents %d", d.dimension, dimension);
-  if (!cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_parameters_check(d.u, d.n, call->err))) return false;
   if (isfinite(limit)) cag_hermite_limit(d.points, tangents, d.n, d.u, limit);
-  CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 // --- End conditions: records { type, start, finish, direction } ---
@@ -285,14 +275,13 @@ bool cag_splines_cubic_spline(CagCall *call, CagValue *result) {
   CagCubicEnds ends;
   double *tension = NULL;
   CagCurve *c = NULL;
-  CagError err;
   if (!read_data(call, 2, CAG_SPACING_CHORD, &d) ||
-      !cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err) ||
+      !cag_geometry_ok(call, cag_parameters_check(d.u, d.n, call->err)) ||
       !read_ends(call, 1, &d, &ends) || !read_tension(call, 3, d.n, &tension))
     return false;
   CagStatus status =
-      cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+      cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 // --- Blends: (points, alpha, ends = "open", closed = false) ---
@@ -342,13 +331,13 @@ bool cag_splines_parabolic_blend(CagCall *call, CagValue *result) {
   double *ratios = NULL;
   CagBlendEnds ends;
   CagCurve *c = NULL;
-  CagError err;
   if (!read_blend_ends(call, &ends) || !cag_splines_points(call, 0, &points, &n, &dimension))
     return false;
   cag_hold(call, points);
   if (!read_ratios(call, n, ends, &ratios)) return false;
-  CagStatus status = cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+  CagStatus status =
+      cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
@@ -358,7 +347,6 @@ bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
   double alpha;
   CagBlendEnds ends;
   CagCurve *c = NULL;
-  CagError err;
   char text[32];
   if (!read_blend_ends(call, &ends) || !cag_arg_number_or(call, 1, 0.5, &alpha)) return false;
   if (!(alpha >= 0 && alpha <= 1))
@@ -367,8 +355,9 @@ bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
                             cag_number_text(alpha, text));
   if (!cag_splines_points(call, 0, &points, &n, &dimension)) return false;
   cag_hold(call, points);
-  CagStatus status = cag_curve_parabolic_blend(points, n, NULL, alpha, ends, dimension, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+  CagStatus status =
+      cag_curve_parabolic_blend(points, n, NULL, alpha, ends, dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 // polynomial_curve(coefficients, length = 1)
@@ -378,11 +367,10 @@ bool cag_splines_polynomial_curve(CagCall *call, CagValue *result) {
   int dimension;
   double length;
   CagCurve *c = NULL;
-  CagError err;
   if (!cag_arg_number_or(call, 1, 1, &length) ||
       !cag_splines_points(call, 0, &coefficients, &n, &dimension))
     return false;
   cag_hold(call, coefficients);
-  CagStatus status = cag_curve_polynomial(coefficients, n, length, dimension, &c, &err);
-  return cag_splines_give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_polynomial(coefficients, n, length, dimension, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }

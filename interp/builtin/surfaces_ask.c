@@ -24,13 +24,12 @@ static bool read_at(CagCall *call, CagSurface **s, double *u, double *v) {
 bool cag_surfaces_at(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 p;
-  CagError err;
   double u, v;
   bool unit;
   if (!cag_arg_side(call, 0, &s) || !cag_arg_bool_or(call, 3, false, &unit) ||
       !cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, unit, &u) ||
       !cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, unit, &v) ||
-      !cag_geometry_ok(call, cag_surface_point(s, u, v, &p, &err), &err))
+      !cag_geometry_ok(call, cag_surface_point(s, u, v, &p, call->err)))
     return false;
   *result = cag_point(call->vm, p, 3);
   return true;
@@ -39,7 +38,6 @@ bool cag_surfaces_at(CagCall *call, CagValue *result) {
 bool cag_surfaces_partial(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 out[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
-  CagError err;
   double u, v;
   long du, dv;
   if (!read_at(call, &s, &u, &v) || !cag_arg_integer_or(call, 3, 1, 0, CAG_MAX_PARTIAL, &du) ||
@@ -48,8 +46,8 @@ bool cag_surfaces_partial(CagCall *call, CagValue *result) {
   int n = (int)(du + dv);
   CagSide side[2];
   if (!cag_arg_surface_sides(call, 5, side)) return false;
-  CagStatus status = cag_surface_eval(s, u, v, n, side[0], side[1], out, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_eval(s, u, v, n, side[0], side[1], out, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_point(call->vm, out[cag_partial(n, (int)du, (int)dv)], 3);
   return true;
 }
@@ -57,10 +55,9 @@ bool cag_surfaces_partial(CagCall *call, CagValue *result) {
 bool cag_surfaces_normal(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 n;
-  CagError err;
   double u, v;
   if (!read_at(call, &s, &u, &v) ||
-      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &n, &err), &err))
+      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &n, call->err)))
     return false;
   *result = cag_point(call->vm, n, 3);
   return true;
@@ -69,11 +66,10 @@ bool cag_surfaces_normal(CagCall *call, CagValue *result) {
 bool cag_surfaces_tangent_plane(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagPlane plane;
-  CagError err;
   double u, v;
   if (!read_at(call, &s, &u, &v) ||
-      !cag_geometry_ok(call, cag_surface_point(s, u, v, &plane.point, &err), &err) ||
-      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &plane.normal, &err), &err))
+      !cag_geometry_ok(call, cag_surface_point(s, u, v, &plane.point, call->err)) ||
+      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &plane.normal, call->err)))
     return false;
   *result = cag_plane_value(call->vm, &plane);
   return true;
@@ -92,13 +88,12 @@ bool cag_surfaces_domain(CagCall *call, CagValue *result) {
 
 static bool read_net(CagCall *call, const char *what, CagSurfaceNurbsView *net) {
   CagSurface *s;
-  CagError err;
   if (!cag_arg_side(call, 0, &s)) return false;
   if (cag_surface_nurbs_view(s, net)) return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a surface of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
            s->kind->name, what);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_surfaces_degree(CagCall *call, CagValue *result) {

@@ -7,10 +7,9 @@
 bool cag_surfaces_area(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 centroid;
-  CagError err;
   double area;
   if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_area(s, &area, &centroid, &err), &err))
+      !cag_geometry_ok(call, cag_surface_area(s, &area, &centroid, call->err)))
     return false;
   *result = cag_number(area);
   return true;
@@ -18,16 +17,15 @@ bool cag_surfaces_area(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_volume(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   double terms[10] = {0};
   if (!cag_arg_surface(call, 0, &s)) return false;
   if (!cag_surface_is_closed(s)) {
     cag_fail(
-        &err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
+        call->err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
         "the surface has a boundary, so it holds no volume; `solid` of all sides tells the gap");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
-  if (!cag_geometry_ok(call, cag_surface_volume_terms(s, terms, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_surface_volume_terms(s, terms, call->err))) return false;
   *result = cag_number(fabs(terms[0]));
   return true;
 }
@@ -35,17 +33,16 @@ bool cag_surfaces_volume(CagCall *call, CagValue *result) {
 // Of the body within, or of an open surface itself.
 bool cag_surfaces_centroid(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   CagVec3 center;
   double terms[10] = {0}, area;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  CagStatus status = cag_surface_is_closed(s) ? cag_surface_volume_terms(s, terms, &err)
-                                              : cag_surface_area(s, &area, &center, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_is_closed(s) ? cag_surface_volume_terms(s, terms, call->err)
+                                              : cag_surface_area(s, &area, &center, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   if (terms[0] != 0)
     center = cag_vec3(terms[1] / terms[0], terms[2] / terms[0], terms[3] / terms[0]);
   else if (cag_surface_is_closed(s) &&
-           !cag_geometry_ok(call, cag_surface_area(s, &area, &center, &err), &err))
+           !cag_geometry_ok(call, cag_surface_area(s, &area, &center, call->err)))
     return false;
   *result = cag_point(call->vm, center, 3);
   return true;
@@ -60,7 +57,6 @@ static double step(double from, double to, size_t i, size_t n) {
 
 bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   long n, m;
   if (!cag_arg_side(call, 0, &s) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
       !cag_arg_integer(call, 2, 2, POINTS_MAX / n, &m))
@@ -70,8 +66,8 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   CagVec3 *points = cag_hold(call, cag_malloc(nu * nv * sizeof *points));
   for (size_t i = 0; i < nu; i++) us[i] = step(s->u0, s->u1, i, nu - 1);
   for (size_t j = 0; j < nv; j++) vs[j] = step(s->v0, s->v1, j, nv - 1);
-  CagStatus status = cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++)
     if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3)))
@@ -82,22 +78,19 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   if (!cag_arg_side(call, 0, &s)) return false;
-  return cag_changed_surface_result(call, cag_surface_to_nurbs(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_to_nurbs(s, &out, call->err), &out, result);
 }
 
 bool cag_surfaces_flip(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  return cag_changed_surface_result(call, cag_surface_flip(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_flip(s, &out, call->err), &out, result);
 }
 
 bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagCurve *c = NULL;
-  CagError err;
   double at;
   if (!cag_arg_side(call, 0, &s)) return false;
   bool u = cag_given(call, 1) && call->values[1].type != CAG_NONE;
@@ -107,15 +100,14 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
                          "expects either `u:` or `v:`, which is fixed");
   bool read = u ? cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, false, &at)
                 : cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, false, &at);
-  if (!read || !cag_geometry_ok(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, &err), &err))
+  if (!read || !cag_geometry_ok(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, call->err)))
     return false;
   *result = cag_curve_value(call->vm, c);
   return true;
 }
 
-static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, const CagError *err,
-                      CagCurve *c) {
-  return cag_geometry_ok(call, status, err) &&
+static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurve *c) {
+  return cag_geometry_ok(call, status) &&
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
@@ -154,7 +146,6 @@ static CagStatus outline(const CagSurface *s, CagCurve **out, CagError *err) {
 
 bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   const CagRegion *region;
   CagTransform frame;
   CagCurve *c = NULL;
@@ -162,23 +153,23 @@ bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   if (cag_surface_planar_view(s, &region, &frame)) {
     for (size_t i = 0; i < region->count; i++) {
-      CagStatus status = cag_curve_transform(region->loops[i], &frame, &c, &err);
-      if (!add_curve(call, list, status, &err, c)) return false;
+      CagStatus status = cag_curve_transform(region->loops[i], &frame, &c, call->err);
+      if (!add_curve(call, list, status, c)) return false;
     }
     *result = cag_builder_finish(call->vm, list);
     return true;
   }
   if (cag_surface_trimmed_view(s, NULL, &region)) {
     for (size_t i = 0; i < region->count; i++) {
-      CagStatus status = cag_trimmed_loop(s, i, &c, &err);
-      if (!add_curve(call, list, status, &err, c)) return false;
+      CagStatus status = cag_trimmed_loop(s, i, &c, call->err);
+      if (!add_curve(call, list, status, c)) return false;
     }
     *result = cag_builder_finish(call->vm, list);
     return true;
   }
   if (is_unrolled(s)) {
-    const CagStatus status = outline(s, &c, &err);
-    if (!add_curve(call, list, status, &err, c)) return false;
+    const CagStatus status = outline(s, &c, call->err);
+    if (!add_curve(call, list, status, c)) return false;
     *result = cag_builder_finish(call->vm, list);
     return true;
   }
@@ -192,8 +183,8 @@ bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
                {!s->closed_v && !s->pole_v1, 1, s->v1}};
   for (int i = 0; i < 4; i++) {
     if (!sides[i].edge) continue;
-    CagStatus status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &c, &err);
-    if (!add_curve(call, list, status, &err, c)) return false;
+    CagStatus status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &c, call->err);
+    if (!add_curve(call, list, status, c)) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -17,11 +17,10 @@ typedef struct Forms {
 static bool read_forms(CagCall *call, Forms *f) {
   CagSurface *s;
   CagVec3 d[9];
-  CagError err;
   double u, v;
   if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
-      !cag_geometry_ok(call, cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err),
-                       &err))
+      !cag_geometry_ok(call,
+                       cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err)))
     return false;
   f->su = d[cag_partial(2, 1, 0)];
   f->sv = d[cag_partial(2, 0, 1)];
@@ -39,13 +38,12 @@ static bool read_forms(CagCall *call, Forms *f) {
 
 // The same where curvature is asked for, which a pole does not have by its partials.
 static bool read_regular(CagCall *call, Forms *f) {
-  CagError err;
   if (!read_forms(call, f)) return false;
   if (f->area > FLAT_SINE * FLAT_SINE * f->E * f->G) return true;
-  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
+  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
            "the surface has no two independent tangents here (a pole or a fold), so its curvature "
            "cannot be told");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_surfaces_first_form(CagCall *call, CagValue *result) {

@@ -85,7 +85,6 @@ static bool read_closed(CagCall *call, int argument, bool closed[2]) {
 
 // Knots of `count` points, or none for what the function makes itself.
 static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGridData *g) {
-  CagError err;
   for (int k = 0; k < 2; k++) {
     CagValue v = one_of_two(call, argument, k);
     const double *x;
@@ -94,10 +93,10 @@ static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGr
     if (!cag_as_vector(v, &x, &n))
       return cag_fail_type(call, argument, "none, or two lists of knots for u and v");
     if (n != wanted) {
-      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", k,
+      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", k,
                "%zu control points of degree %d need %zu `knots` in %c, found %zu", count[k],
                k ? g->degree_v : g->degree_u, wanted, "uv"[k], n);
-      return cag_fail_geometry(call, &err);
+      return cag_fail_geometry(call, call->err);
     }
     g->knots[k] = x;
   }
@@ -212,12 +211,11 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
                       const CagGridReport *report, CagValue *out) {
   CagBuilder *rows = cag_builder_new(call->vm);
   CagVec3 *line = cag_hold_array(call, g->s, sizeof *line);
-  CagError err;
   for (size_t i = 0; i < g->r; i++) {
     for (size_t j = 0; j < g->s; j++) {
       size_t k = i * g->s + j;
-      CagStatus status = cag_surface_point(s, report->u[k], report->v[k], &line[j], &err);
-      if (!cag_geometry_ok(call, status, &err)) return false;
+      CagStatus status = cag_surface_point(s, report->u[k], report->v[k], &line[j], call->err);
+      if (!cag_geometry_ok(call, status)) return false;
       line[j] = cag_sub(line[j], g->points[k]);
     }
     if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3))) return false;
@@ -256,9 +254,8 @@ static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g
 bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
   Data d = {0};
   CagSurface *s = NULL;
-  CagError err;
   return read_data(call, 2, 4, &d) && read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
-         cag_surface_result(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
+         cag_surface_result(call, cag_surface_interpolate(&d.g, &s, call->err), &s, result);
 }
 
 static void release_report(void *report) { cag_grid_report_free(report); }
@@ -268,7 +265,6 @@ static bool fit(CagCall *call, bool report, CagValue *result) {
   Data d = {0};
   CagSurface *s = NULL;
   static const char *const coordinates[] = {"none", "x", "y", "z", NULL};
-  CagError err;
   long count[2], rounds;
   int fixed;
   if (!read_data(call, 3, 5, &d) || !read_pair(call, 2, 0, 0, 10000, count) ||
@@ -283,8 +279,8 @@ static bool fit(CagCall *call, bool report, CagValue *result) {
   if (!read_planes(call, 8, &d.g) || !read_knots(call, 4, net, &d.g)) return false;
   CagGridReport *found = cag_hold_array(call, 1, sizeof *found);
   cag_hold_for(call, release_report, found);
-  CagStatus status = cag_surface_fit(&d.g, net[0], net[1], &s, found, &err);
-  return cag_surface_result(call, status, &err, &s, result) &&
+  CagStatus status = cag_surface_fit(&d.g, net[0], net[1], &s, found, call->err);
+  return cag_surface_result(call, status, &s, result) &&
          (!report || give_report(call, s, &d.g, net, found, result));
 }
 
@@ -331,11 +327,10 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
     double tolerance;
   } given;
   CagBounds box;
-  CagError err;
   double worst = 0;
   if (!cag_bind(call, &given, sizeof given)) return false;
   if (!(given.tolerance >= 0)) return cag_fail_value(call, 1, "a given.tolerance of 0 or more");
-  if (!cag_geometry_ok(call, cag_surface_bounds(given.s, &box, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_surface_bounds(given.s, &box, call->err))) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
     for (int j = 0; j < PROBES; j++) {
@@ -344,8 +339,8 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
       double v = given.s->v0 + (given.s->v1 - given.s->v0) * (j + 0.567) / PROBES;
       CagVec3 d[9];
       CagStatus status =
-          cag_surface_eval(given.s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err);
-      if (!cag_geometry_ok(call, status, &err)) return false;
+          cag_surface_eval(given.s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err);
+      if (!cag_geometry_ok(call, status)) return false;
       CagVec3 n = cag_cross(d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]);
       double length = cag_norm(n);
       if (length == 0) continue;
@@ -360,9 +355,8 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_unroll(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s) ||
-      !cag_surface_result(call, cag_surface_unroll(s, &out, &err), &err, &out, result))
+      !cag_surface_result(call, cag_surface_unroll(s, &out, call->err), &out, result))
     return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;

@@ -7,13 +7,6 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
-static bool give_solid(CagCall *call, CagStatus status, const CagError *err, CagSolid *s,
-                       CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_solid_value(call->vm, s);
-  return true;
-}
-
 static void release_region(void *region) { cag_region_release(region); }
 
 // --- Revolution ---
@@ -47,38 +40,38 @@ static CagTransform half_plane(const CagTransform *place, CagVec3 radial, CagVec
 // along the axis, that is turned about Z, and placed with Z on the axis.
 bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,
                          CagVec3 axis, CagVec3 through, double from, double to, CagValue *result) {
-  CagError err;
   CagVec3 centroid;
   double area;
   if (cag_region_is_empty(region)) {
     CagSolid *nothing = NULL;
-    const CagStatus made = cag_solid_empty(&nothing, &err);
-    return give_solid(call, made, &err, nothing, result);
+    const CagStatus made = cag_solid_empty(&nothing, call->err);
+    return cag_solid_result(call, made, &nothing, result);
   }
   CagVec3 a = cag_unit(axis);
   CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));
   CagVec3 n = cag_unit(cag_cross(x, cag_transform_vector(place, cag_vec3(0, 1, 0))));
-  if (!cag_geometry_ok(call, cag_region_area(region, &area, &centroid, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_region_area(region, &area, &centroid, call->err))) return false;
   CagVec3 center = cag_sub(cag_transform_point(place, centroid), through);
   if (fabs(cag_dot(a, n)) > AXIS_IN_PLANE ||
       fabs(cag_dot(center, n)) > AXIS_IN_PLANE * (1 + cag_norm(center))) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
              "`axis` does not lie in the plane of the region");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   CagVec3 radial = cag_cross(n, a);
   if (cag_dot(center, radial) < 0) radial = cag_scaled(radial, -1);
   CagTransform flat = half_plane(place, radial, a, through), frame;
   CagRegion *half = NULL;
   CagSolid *turned = NULL, *placed = NULL;
-  CagStatus status = cag_region_transform(region, &flat, &half, &err);
+  CagStatus status = cag_region_transform(region, &flat, &half, call->err);
   if (status == CAG_OK)
-    status = cag_solid_revolve(half, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), from, to, &turned, &err);
-  if (status == CAG_OK) status = cag_axes(through, radial, cag_cross(a, radial), &frame, &err);
-  if (status == CAG_OK) status = cag_solid_transform(turned, &frame, &placed, &err);
+    status =
+        cag_solid_revolve(half, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), from, to, &turned, call->err);
+  if (status == CAG_OK) status = cag_axes(through, radial, cag_cross(a, radial), &frame, call->err);
+  if (status == CAG_OK) status = cag_solid_transform(turned, &frame, &placed, call->err);
   cag_region_release(half);
   cag_solid_release(turned);
-  return give_solid(call, status, &err, placed, result);
+  return cag_solid_result(call, status, &placed, result);
 }
 
 // An angle a is 0..a (a..0 of a negative one).
@@ -107,17 +100,15 @@ static CagStatus revolve_curve(const CagCurve *c, bool stand, CagVec3 axis, CagV
 }
 
 static bool read_axis(CagCall *call, int argument, CagVec3 *axis) {
-  CagError err;
   if (!cag_arg_vec_or(call, argument, cag_vec3(0, 0, 1), axis, NULL)) return false;
   if (cag_norm(*axis) > 0) return true;
-  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
+  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
            "`axis` must have a direction; it is the zero vector");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
   CagVec3 axis, through;
-  CagError err;
   double from, to;
   CagValue v = call->values[0];
   if (!read_axis(call, 1, &axis) || !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &through, NULL) ||
@@ -128,8 +119,8 @@ bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
     const CagCurve *c = CAG_AS_SHAPE(v)->as.curve;
     CagSurface *s = NULL;
     CagStatus status =
-        revolve_curve(c, along_z && c->dimension == 2, axis, through, from, to, &s, &err);
-    if (!cag_surface_result(call, status, &err, &s, result)) return false;
+        revolve_curve(c, along_z && c->dimension == 2, axis, through, from, to, &s, call->err);
+    if (!cag_surface_result(call, status, &s, result)) return false;
     cag_shape_say_alike(*result, v);
     return true;
   }
@@ -170,15 +161,15 @@ static bool read_extrusion(CagCall *call, Extrusion *e) {
 // The sides of a region, one for each of its curves, without caps.
 static bool extrude_sides(CagCall *call, const CagRegion *region, const Extrusion *e,
                           const CagTransform *place, CagValue *result) {
-  CagError err;
   CagBuilder *sides = cag_builder_new(call->vm);
   CagValue side = cag_none();
   for (size_t i = 0; i < region->count; i++) {
     CagSurface *s = NULL, *placed = NULL;
-    CagStatus status = cag_surface_extrude(region->loops[i], e->v, e->twist, e->scale, &s, &err);
-    if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, &err);
+    CagStatus status =
+        cag_surface_extrude(region->loops[i], e->v, e->twist, e->scale, &s, call->err);
+    if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, call->err);
     cag_surface_release(s);
-    if (!cag_surface_result(call, status, &err, &placed, &side) ||
+    if (!cag_surface_result(call, status, &placed, &side) ||
         !cag_builder_add(call->vm, sides, side))
       return false;
   }
@@ -189,24 +180,22 @@ static bool extrude_sides(CagCall *call, const CagRegion *region, const Extrusio
 
 static bool extrude_region(CagCall *call, const CagRegion *region, Extrusion e,
                            const CagTransform *place, CagValue *result) {
-  CagError err;
   CagTransform back;
   CagSolid *s = NULL, *placed = NULL;
   // In the region's own coordinates, and placed then. A height is along the normal there.
   if (!e.height) {
-    if (!cag_geometry_ok(call, cag_transform_inverse(place, &back, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_transform_inverse(place, &back, call->err))) return false;
     e.v = cag_transform_vector(&back, e.v);
   }
   if (!e.caps) return extrude_sides(call, region, &e, place, result);
-  CagStatus status = cag_solid_extrude(region, e.v, e.twist, e.scale, &s, &err);
-  if (status == CAG_OK) status = cag_solid_transform(s, place, &placed, &err);
+  CagStatus status = cag_solid_extrude(region, e.v, e.twist, e.scale, &s, call->err);
+  if (status == CAG_OK) status = cag_solid_transform(s, place, &placed, call->err);
   cag_solid_release(s);
-  return give_solid(call, status, &err, placed, result);
+  return cag_solid_result(call, status, &placed, result);
 }
 
 bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
   Extrusion e;
-  CagError err;
   CagRegion *region;
   CagTransform place;
   CagValue v = call->values[0];
@@ -215,8 +204,8 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
   CagVec3 way = e.v;
   if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
     CagSurface *s = NULL;
-    CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, &err);
-    if (!cag_surface_result(call, status, &err, &s, result)) return false;
+    CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, call->err);
+    if (!cag_surface_result(call, status, &s, result)) return false;
   } else {
     if (!cag_arg_region(call, 0, &region, &place)) return false;
     cag_hold_for(call, release_region, region);
@@ -238,19 +227,17 @@ bool cag_surfaces_ruled(CagCall *call, CagValue *result) {
     CagCurve *a, *b;
   } given;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
-  return cag_surface_result(call, cag_surface_ruled(given.a, given.b, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_ruled(given.a, given.b, &s, call->err), &s, result);
 }
 
 bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
   CagVec3 p[4];
   CagSurface *s = NULL;
-  CagError err;
   for (int i = 0; i < 4; i++)
     if (!cag_arg_vec(call, i, &p[i], NULL)) return false;
-  CagStatus status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &s, &err);
-  return cag_surface_result(call, status, &err, &s, result);
+  CagStatus status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &s, call->err);
+  return cag_surface_result(call, status, &s, result);
 }
 
 bool cag_surfaces_translational(CagCall *call, CagValue *result) {
@@ -258,9 +245,8 @@ bool cag_surfaces_translational(CagCall *call, CagValue *result) {
     CagCurve *a, *b;
   } given;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
-  return cag_surface_result(call, cag_surface_translational(given.a, given.b, &s, &err), &err, &s,
+  return cag_surface_result(call, cag_surface_translational(given.a, given.b, &s, call->err), &s,
                             result);
 }
 
@@ -270,15 +256,15 @@ bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
   double radius;
   CagCurve *meridian = NULL;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_arg_positive(call, 0, &radius)) return false;
   CagTransform from_pole = {{{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
-  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN / 2, &from_pole, &meridian, &err);
+  CagStatus status =
+      cag_curve_arc(radius, radius, 0, FULL_TURN / 2, &from_pole, &meridian, call->err);
   if (status == CAG_OK)
-    status =
-        revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s, &err);
+    status = revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s,
+                           call->err);
   cag_curve_release(meridian);
-  return cag_surface_result(call, status, &err, &s, result);
+  return cag_surface_result(call, status, &s, result);
 }
 
 bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
@@ -286,7 +272,6 @@ bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
     double major, minor;
   } a;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_surface_result(call, cag_surface_torus(a.major, a.minor, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_torus(a.major, a.minor, &s, call->err), &s, result);
 }

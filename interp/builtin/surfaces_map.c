@@ -59,7 +59,6 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
                       CagValue *result) {
   CagVm *vm = call->vm;
   const CagCurve *c = CAG_AS_SHAPE(g)->as.curve;
-  CagError err;
   const size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
   double *cuts = cag_hold_array(call, inner + 2, sizeof *cuts);
   CagCurve **pieces = cag_hold_array(call, inner + 1, sizeof(CagCurve *)), *joined = NULL;
@@ -82,7 +81,7 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
   cag_root_pop(vm, 1);
   if (!ok) return false;
   if (inner == 0) joined = cag_curve_retain(pieces[0]);
-  else if (!cag_geometry_ok(call, cag_curve_join(pieces, inner + 1, &joined, &err), &err))
+  else if (!cag_geometry_ok(call, cag_curve_join(pieces, inner + 1, &joined, call->err)))
     return false;
   *result = cag_curve_value(vm, joined);
   return true;
@@ -101,8 +100,7 @@ static bool map_surface(CagCall *call, CagValue value, const CagSurface *s, CagV
 
 static bool map_smooth(CagCall *call, CagValue g, const CagSurface *s, CagValue *result) {
   CagSurface *over = NULL;
-  CagError err;
-  if (!cag_geometry_ok(call, cag_surface_offset(s, 1, &over, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_surface_offset(s, 1, &over, call->err))) return false;
   CagValue offset = cag_surface_value(call->vm, over);
   cag_root_push(call->vm, offset);
   bool ok = g.type == CAG_CURVE ? map_curve(call, g, s, offset, result)
@@ -136,44 +134,42 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
   const CagShape *shape = CAG_AS_SHAPE(g);
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *flat = NULL, *image = NULL;
-  CagError err;
   CagStatus status;
   if (g.type == CAG_MESH) {
     flat = cag_mesh_retain(shape->as.mesh);
     status = CAG_OK;
-  } else if (g.type == CAG_REGION) status = region_mesh(shape, &how, &flat, &err);
-  else status = cag_solid_tessellate(shape->as.solid, &how, &flat, &err);
+  } else if (g.type == CAG_REGION) status = region_mesh(shape, &how, &flat, call->err);
+  else status = cag_solid_tessellate(shape->as.solid, &how, &flat, call->err);
   if (status == CAG_OK && g.type != CAG_MESH && tolerance > 0) {
     // The surface stretches what is drawn in its parameters: by how much, the domain tells.
     CagBounds box;
-    status = cag_surface_bounds(s, &box, &err);
+    status = cag_surface_bounds(s, &box, call->err);
     double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
     double domain = hypot(s->u1 - s->u0, s->v1 - s->v0);
     if (status == CAG_OK && size > 0) {
       how.tolerance = FINER * tolerance * domain / size;
       cag_mesh_release(flat);
       flat = NULL;
-      status = g.type == CAG_REGION ? region_mesh(shape, &how, &flat, &err)
-                                    : cag_solid_tessellate(shape->as.solid, &how, &flat, &err);
+      status = g.type == CAG_REGION ? region_mesh(shape, &how, &flat, call->err)
+                                    : cag_solid_tessellate(shape->as.solid, &how, &flat, call->err);
     }
   }
   if (status == CAG_OK)
-    status =
-        cag_mesh_onto_surface(flat, s, tolerance, lies_flat(flat), how.max_triangles, &image, &err);
+    status = cag_mesh_onto_surface(flat, s, tolerance, lies_flat(flat), how.max_triangles, &image,
+                                   call->err);
   cag_mesh_release(flat);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_mesh_value(call->vm, image);
   return true;
 }
 
 // Maps of parameters know nothing of the curves that a surface is trimmed by.
 static bool refuse_trimmed(CagCall *call, CagValue g) {
-  CagError err;
   if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
     return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
            "a trimmed surface cannot be mapped: map the whole one and trim that, or map its mesh");
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double tolerance,

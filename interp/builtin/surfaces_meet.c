@@ -13,10 +13,9 @@ bool cag_meetings_closest(CagCall *call, CagValue *result) {
     CagPoint p;
   } a;
   static const char *const names[] = {"u", "v", "point", "distance"};
-  CagError err;
   CagSurfaceNearest found;
   if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_surface_closest(a.s, a.p.at, &found, &err), &err))
+      !cag_geometry_ok(call, cag_surface_closest(a.s, a.p.at, &found, call->err)))
     return false;
   CagValue values[] = {cag_parameter_value(a.s->angular_u, found.u),
                        cag_parameter_value(a.s->angular_v, found.v),
@@ -28,9 +27,8 @@ bool cag_meetings_closest(CagCall *call, CagValue *result) {
 static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, CagValue *result) {
   static const char *const names[] = {"point", "u", "v", "t", "multiplicity"};
   CagSurfaceMeeting *found;
-  CagError err;
   size_t n;
-  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
+  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, found);
   CagBuilder *list = cag_builder_new(call->vm);
@@ -47,7 +45,6 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
 
 bool cag_meetings_intersect(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   CagStatus status;
   double tolerance = 0;
   const CagValue other = call->values[1];
@@ -58,12 +55,12 @@ bool cag_meetings_intersect(CagCall *call, CagValue *result) {
   if (other.type == CAG_CURVE) return with_curve(call, s, CAG_AS_SHAPE(other)->as.curve, result);
   CagCurveList *list = cag_hold_curve_list(call);
   if (other.type == CAG_PLANE)
-    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, list, &err);
+    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, list, call->err);
   else if (other.type == CAG_SURFACE)
     status = cag_surface_intersect(s, CAG_AS_SHAPE(other)->as.surface, tolerance,
-                                   cag_vm_stop(call->vm), list, &err);
+                                   cag_vm_stop(call->vm), list, call->err);
   else return cag_fail_type(call, 1, "a curve, a surface or a plane");
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_curve_list_value(call->vm, list);
   return true;
 }

@@ -14,11 +14,10 @@ typedef struct Net {
 } Net;
 
 bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found) {
-  CagError err;
-  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_net_not_rectangular, cag_parameter_name(call, 0),
+  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_net_not_rectangular, cag_parameter_name(call, 0),
            (long)row, "`%s` must have rows of one length: row 0 has %zu points, row %zu has %zu",
            cag_parameter_name(call, 0), wanted, row, found);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 static bool read_row(CagCall *call, const CagList *row, size_t i, Net *net) {
@@ -73,19 +72,17 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
     if (fits) memcpy(net->weights + i * net->nv, x, n * sizeof *x);
   }
   if (fits) return true;
-  CagError err;
-  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
            "`weights` must be %zu rows of %zu numbers, as the points", net->nu, net->nv);
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_surfaces_bezier_surface(CagCall *call, CagValue *result) {
   Net net;
   CagSurface *s = NULL;
-  CagError err;
   if (!read_net(call, &net) || !read_weights(call, 1, &net)) return false;
-  CagStatus status = cag_surface_bezier(net.points, net.weights, net.nu, net.nv, &s, &err);
-  return cag_surface_result(call, status, &err, &s, result);
+  CagStatus status = cag_surface_bezier(net.points, net.weights, net.nu, net.nv, &s, call->err);
+  return cag_surface_result(call, status, &s, result);
 }
 
 // --- B-splines: degree, knots and closed are one value for both directions, or a list of two ---
@@ -123,7 +120,6 @@ static bool read_closed(CagCall *call, int argument, int direction, bool *out) {
 // Knots of n points; *out is held.
 static bool read_knots(CagCall *call, int argument, int direction, size_t n, int degree,
                        double **out) {
-  CagError err;
   const double *x;
   size_t count, wanted = n + (size_t)degree + 1;
   const char *type = "open";
@@ -136,25 +132,25 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
     return cag_fail_call(call, argument, CAG_ERR_value,
                          "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
   if (n < 2) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", direction,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", direction,
              "a surface needs at least 2 rows of at least 2 points, by %s there is %zu",
              direction ? "v" : "u", n);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   if (degree < 1 || n <= (size_t)degree) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", direction,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", direction,
              "`degree` in %s must lie in 1..%zu for %zu points, it is %d; add points or lower it",
              direction ? "v" : "u", n - 1, n, degree);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   if (list && (!cag_as_vector(v, &x, &count) || count != wanted)) {
-    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "%zu points of degree %d need %zu `knots` in %s (points + degree + 1)", n, degree,
              wanted, direction ? "v" : "u");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   *out = cag_hold_array(call, wanted, sizeof **out);
-  if (!list) return cag_geometry_ok(call, cag_knots_make(type, n, degree, NULL, *out, &err), &err);
+  if (!list) return cag_geometry_ok(call, cag_knots_make(type, n, degree, NULL, *out, call->err));
   memcpy(*out, x, wanted * sizeof *x);
   return true;
 }
@@ -166,7 +162,6 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
   bool closed[2];
   double *knots[2] = {NULL, NULL};
   CagSurface *s = NULL;
-  CagError err;
   if (!read_net(call, &net) || !read_weights(call, 4, &net)) return false;
   for (int k = 0; k < 2; k++)
     if (!read_degree(call, 1, 5, k, &degree[k]) || !read_closed(call, 3, k, &closed[k]) ||
@@ -175,10 +170,10 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
   CagStatus status =
       closed[0] || closed[1]
           ? cag_surface_nurbs_closed(net.points, net.weights, net.nu, net.nv, degree[0], degree[1],
-                                     knots[0], knots[1], closed[0], closed[1], &s, &err)
+                                     knots[0], knots[1], closed[0], closed[1], &s, call->err)
           : cag_surface_nurbs(net.points, net.weights, net.nu, net.nv, degree[0], degree[1],
-                              knots[0], knots[1], &s, &err);
-  return cag_surface_result(call, status, &err, &s, result);
+                              knots[0], knots[1], &s, call->err);
+  return cag_surface_result(call, status, &s, result);
 }
 
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {

@@ -10,11 +10,10 @@
 bool cag_surfaces_coons(CagCall *call, CagValue *result) {
   CagCurve *side[4];
   CagSurface *s = NULL;
-  CagError err;
   for (int k = 0; k < 4; k++)
     if (!cag_arg_curve(call, k, &side[k])) return false;
-  return cag_surface_result(call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, &err),
-                            &err, &s, result);
+  return cag_surface_result(
+      call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, call->err), &s, result);
 }
 
 bool cag_surfaces_developable(CagCall *call, CagValue *result) {
@@ -22,9 +21,8 @@ bool cag_surfaces_developable(CagCall *call, CagValue *result) {
     CagCurve *first, *second;
   } a;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_surface_result(call, cag_surface_developable(a.first, a.second, &s, &err), &err, &s,
+  return cag_surface_result(call, cag_surface_developable(a.first, a.second, &s, call->err), &s,
                             result);
 }
 
@@ -78,7 +76,6 @@ bool cag_surfaces_coons_bicubic(CagCall *call, CagValue *result) {
   static const char *const modes[] = {"zero", "adini", NULL};
   CagHermiteCorners c;
   CagSurface *s = NULL;
-  CagError err;
   memset(&c, 0, sizeof c);
   if (!read_table(call, 0, 2, 2, c.p[0]) || !read_table(call, 1, 2, 2, c.pu[0]) ||
       !read_table(call, 2, 2, 2, c.pv[0]))
@@ -90,14 +87,13 @@ bool cag_surfaces_coons_bicubic(CagCall *call, CagValue *result) {
     if (!cag_arg_choice(call, 3, modes, &mode)) return false;
     if (mode == 1) cag_hermite_adini(&c);
   }
-  return cag_surface_result(call, cag_surface_hermite(&c, 0, 1, 0, 1, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_hermite(&c, 0, 1, 0, 1, &s, call->err), &s, result);
 }
 
 bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
   CagVec3 q[16];
   CagHermiteCorners c;
   CagSurface *s = NULL;
-  CagError err;
   double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
   if (!read_table(call, 0, 4, 4, q)) return false;
   if ((cag_given(call, 1) && !cag_arg_interval(call, 1, &u0, &u1, NULL)) ||
@@ -110,7 +106,7 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
       c.pu[i][j] = q[4 * (2 + i) + j];
       c.puv[i][j] = q[4 * (2 + i) + 2 + j];
     }
-  return cag_surface_result(call, cag_surface_hermite(&c, u0, u1, v0, v1, &s, &err), &err, &s,
+  return cag_surface_result(call, cag_surface_hermite(&c, u0, u1, v0, v1, &s, call->err), &s,
                             result);
 }
 
@@ -165,7 +161,6 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   GridData d = {0};
   CagHermiteGrid g = {0};
   CagList *rows;
-  CagError err;
   CagSurface *s = NULL;
   if (!cag_arg_list(call, 0, &rows)) return false;
   g.nu = rows->length;
@@ -180,7 +175,7 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   g.points = d.points;
   g.steps_u = d.steps[0];
   g.steps_v = d.steps[1];
-  return cag_surface_result(call, cag_surface_hermite_grid(&g, &s, &err), &err, &s, result);
+  return cag_surface_result(call, cag_surface_hermite_grid(&g, &s, call->err), &s, result);
 }
 
 // --- Triangles ---
@@ -215,9 +210,8 @@ bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
   CagSurface *s = NULL;
-  CagError err;
   if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
   cag_hold(call, net);
-  return cag_surface_result(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s,
+  return cag_surface_result(call, cag_surface_bezier_triangle(net, degree, &s, call->err), &s,
                             result);
 }

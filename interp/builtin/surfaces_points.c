@@ -38,14 +38,13 @@ typedef struct Net {
 } Net;
 
 static bool read_net(CagCall *call, Net *n) {
-  CagError err;
   if (!cag_arg_surface(call, 0, &n->s)) return false;
   if (!cag_surface_nurbs_view(n->s, &n->view)) {
-    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
              "a surface of kind %s has no control points; `to_nurbs` gives its rational form where "
              "there is one",
              n->s->kind->name);
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   const CagSurfaceNurbsView *v = &n->view;
   n->axis[0] = (Axis){v->degree_u, v->nu, v->distinct_u, v->periodic_u, v->knots_u};
@@ -56,9 +55,8 @@ static bool read_net(CagCall *call, Net *n) {
 // u and v within the domain.
 static bool read_place(CagCall *call, const Net *n, int at, double t[2]) {
   CagVec3 p;
-  CagError err;
   return cag_arg_uv(call, n->s, at, &t[0], &t[1]) &&
-         cag_geometry_ok(call, cag_surface_point(n->s, t[0], t[1], &p, &err), &err);
+         cag_geometry_ok(call, cag_surface_point(n->s, t[0], t[1], &p, call->err));
 }
 
 static CagValue range_of(CagVm *vm, double from, double to) {
@@ -192,10 +190,9 @@ bool cag_tensors_basis(CagCall *call, CagValue *result) {
     for (size_t j = 0; j < nv; j++)
       sum += bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3];
   if (!(sum > 0)) {
-    CagError err;
-    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
+    cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
              "all weights that act at this point are 0: give one of them a positive value");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++) {
@@ -214,15 +211,14 @@ bool cag_tensors_basis(CagCall *call, CagValue *result) {
 // The polynomial surface of the points times their weights, or of the weights as z.
 static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurface **out) {
   const CagSurfaceNurbsView *v = &n->view;
-  CagError err;
   CagVec3 *net = cag_hold(call, cag_malloc(v->nu * v->nv * sizeof *net));
   for (size_t i = 0; i < v->nu * v->nv; i++) {
     const double *h = v->homogeneous + 4 * i;
     net[i] = weights ? cag_vec3(0, 0, h[3]) : cag_vec3(h[0], h[1], h[2]);
   }
   CagStatus status = cag_surface_nurbs(net, NULL, v->nu, v->nv, v->degree_u, v->degree_v,
-                                       v->knots_u, v->knots_v, out, &err);
-  return cag_geometry_ok(call, status, &err);
+                                       v->knots_u, v->knots_v, out, call->err);
+  return cag_geometry_ok(call, status);
 }
 
 static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
@@ -230,7 +226,6 @@ static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
   double u, v;
   long du, dv;
   CagSurface *part = NULL;
-  CagError err;
   CagVec3 d[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
   if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &u, &v) ||
       !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_PARTIAL, &du) ||
@@ -238,9 +233,10 @@ static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
       !homogeneous_part(call, &n, weights, &part))
     return false;
   int order = (int)(du + dv);
-  CagStatus status = cag_surface_eval(part, u, v, order, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err);
+  CagStatus status =
+      cag_surface_eval(part, u, v, order, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err);
   cag_surface_release(part);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *out = d[cag_partial(order, (int)du, (int)dv)];
   return true;
 }
@@ -309,22 +305,21 @@ static size_t span_lengths(const Axis *a, double *out) {
 
 bool cag_tensors_polynomials(CagCall *call, CagValue *result) {
   Net n;
-  CagError err;
   size_t nu, nv;
   if (!read_net(call, &n)) return false;
   if (n.view.rational) {
-    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
+    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
              "the surface has weights, so it is not a polynomial: ask for `numerator` and "
              "`denominator`");
-    return cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, call->err);
   }
   double *lu = cag_hold_array(call, n.axis[0].count, sizeof *lu);
   double *lv = cag_hold_array(call, n.axis[1].count, sizeof *lv);
   span_lengths(&n.axis[0], lu);
   span_lengths(&n.axis[1], lv);
   CagSurfaceArray *pieces = cag_hold_surfaces(call);
-  CagStatus status = cag_surface_to_bezier(n.s, &pieces->items, &nu, &nv, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_to_bezier(n.s, &pieces->items, &nu, &nv, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   pieces->count = nu * nv;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++) {
@@ -345,9 +340,8 @@ bool cag_tensors_patch_corners(CagCall *call, CagValue *result) {
   static const char *const names[] = {"corners", "tangents_u", "tangents_v", "twists"};
   CagSurface *s;
   CagHermiteCorners c;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_corners(s, &c, &err), &err))
+      !cag_geometry_ok(call, cag_surface_corners(s, &c, call->err)))
     return false;
   CagValue values[] = {table_of(call->vm, c.p[0], 2, 2), table_of(call->vm, c.pu[0], 2, 2),
                        table_of(call->vm, c.pv[0], 2, 2), table_of(call->vm, c.puv[0], 2, 2)};
@@ -358,9 +352,8 @@ bool cag_tensors_patch_corners(CagCall *call, CagValue *result) {
 bool cag_tensors_hermite_matrix(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagHermiteCorners c;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_hermite_corners(s, &c, &err), &err))
+      !cag_geometry_ok(call, cag_surface_hermite_corners(s, &c, call->err)))
     return false;
   CagVec3 q[16];
   for (int i = 0; i < 2; i++)
@@ -388,7 +381,6 @@ static bool read_edit(CagCall *call, int argument, CagCornerEdit *e, int k) {
 bool cag_tensors_edit_corner(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagCornerEdit e = {0};
-  CagError err;
   long u, v;
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, 1, &u) ||
       !cag_arg_integer(call, 2, 0, 1, &v))
@@ -397,13 +389,12 @@ bool cag_tensors_edit_corner(CagCall *call, CagValue *result) {
   e.v = (int)v;
   for (int k = 0; k < 3; k++)
     if (!read_edit(call, 3 + k, &e, k)) return false;
-  return cag_surface_result(call, cag_surface_edit_corner(s, &e, &out, &err), &err, &out, result);
+  return cag_surface_result(call, cag_surface_edit_corner(s, &e, &out, call->err), &out, result);
 }
 
 bool cag_tensors_set_point(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagVec3 p;
-  CagError err;
   long i, j;
   double weight = -1;
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, LONG_MAX, &i) ||
@@ -413,13 +404,13 @@ bool cag_tensors_set_point(CagCall *call, CagValue *result) {
     if (!cag_arg_finite(call, 4, &weight)) return false;
     if (weight < 0) {
       char text[32];
-      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
+      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
                "`weight` must not be negative, it is %s", cag_number_text(weight, text));
-      return cag_fail_geometry(call, &err);
+      return cag_fail_geometry(call, call->err);
     }
   }
-  CagStatus status = cag_surface_set_point(s, (size_t)i, (size_t)j, p, weight, &out, &err);
-  return cag_surface_result(call, status, &err, &out, result);
+  CagStatus status = cag_surface_set_point(s, (size_t)i, (size_t)j, p, weight, &out, call->err);
+  return cag_surface_result(call, status, &out, result);
 }
 
 // --- Edges ---
@@ -451,7 +442,6 @@ bool cag_tensors_bezier_join(CagCall *call, CagValue *result) {
   static const char *const names[] = {"points", "weights"};
   CagSurface *s;
   CagEdgeMatch how;
-  CagError err;
   int edge;
   long degree;
   double *lines = NULL;
@@ -464,8 +454,8 @@ bool cag_tensors_bezier_join(CagCall *call, CagValue *result) {
   bool known = cag_surface_nurbs_view(s, &v);
   long usual = !known ? 3 : side < 2 ? v.degree_u : v.degree_v;
   if (!cag_arg_integer_or(call, 4, usual, 1, 1000, &degree)) return false;
-  CagStatus status = cag_surface_join_lines(s, side, (int)degree, &how, &lines, &n, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_join_lines(s, side, (int)degree, &how, &lines, &n, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, cag_free, lines);
   CagBuilder *rows = cag_builder_new(call->vm), *weights = cag_builder_new(call->vm);
   for (size_t i = 0; i < 2; i++) {
@@ -510,14 +500,13 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
 bool cag_tensors_match_edge(CagCall *call, CagValue *result) {
   CagSurface *a, *b, *out = NULL;
   CagEdgeMatch how;
-  CagError err;
   int edges[2];
   bool given;
   if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
       !read_match(call, 2, 3, &how) || !cag_arg_edges(call, 4, edges, &given))
     return false;
-  CagStatus status = cag_surface_match(a, b, &how, given ? edges : NULL, &out, &err);
-  if (!cag_surface_result(call, status, &err, &out, result)) return false;
+  CagStatus status = cag_surface_match(a, b, &how, given ? edges : NULL, &out, call->err);
+  if (!cag_surface_result(call, status, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[1]);
   return true;
 }
@@ -527,13 +516,12 @@ bool cag_tensors_match_edge(CagCall *call, CagValue *result) {
 bool cag_tensors_creases(CagCall *call, CagValue *result) {
   static const char *const names[] = {"at", "angle"};
   CagSurface *s;
-  CagError err;
   CagValue both[2];
   if (!cag_arg_surface(call, 0, &s)) return false;
   for (int k = 0; k < 2; k++) {
     CagCrease *found = NULL;
     size_t n = 0;
-    if (!cag_geometry_ok(call, cag_surface_creases(s, k, &found, &n, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_surface_creases(s, k, &found, &n, call->err))) return false;
     cag_hold_for(call, cag_free, found);
     CagBuilder *list = cag_builder_new(call->vm);
     for (size_t i = 0; i < n; i++) {
@@ -602,7 +590,6 @@ bool cag_tensors_flat_spans(CagCall *call, CagValue *result) {
 
 bool cag_tensors_net_mesh(CagCall *call, CagValue *result) {
   Net n;
-  CagError err;
   CagMesh *m = NULL;
   if (!read_net(call, &n)) return false;
   const CagSurfaceNurbsView *v = &n.view;
@@ -611,13 +598,13 @@ bool cag_tensors_net_mesh(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < nu * nv; i++)
     if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0)) {
       cag_fail(
-          &err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
+          call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
           "control point [%zu, %zu] has the weight 0 and so no place: the net has a hole there",
           i / nv, i % nv);
-      return cag_fail_geometry(call, &err);
+      return cag_fail_geometry(call, call->err);
     }
-  if (!cag_geometry_ok(call, cag_mesh_new(nu * nv, 2 * cu * cv, false, false, false, &m, &err),
-                       &err))
+  if (!cag_geometry_ok(call,
+                       cag_mesh_new(nu * nv, 2 * cu * cv, false, false, false, &m, call->err)))
     return false;
   for (size_t i = 0; i < nu * nv; i++)
     m->positions[i] = cag_project(v->homogeneous + 4 * (i / nv * v->nv + i % nv));

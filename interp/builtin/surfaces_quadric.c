@@ -10,14 +10,13 @@
 // --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
 
 static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
-  CagError err;
   CagValue v = call->values[argument];
   *given = v.type != CAG_UNSET && v.type != CAG_NONE;
   *z_only = false;
   *box = (CagBounds){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
   if (!*given) return true;
   if (v.type == CAG_SOLID)
-    return cag_geometry_ok(call, cag_solid_bounds(CAG_AS_SHAPE(v)->as.solid, box, &err), &err);
+    return cag_geometry_ok(call, cag_solid_bounds(CAG_AS_SHAPE(v)->as.solid, box, call->err));
   if (v.type != CAG_RANGE) {
     cag_fail_type(call, argument, "a box or a range of z");
     return cag_fail_help(call->vm,
@@ -34,12 +33,11 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
 static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagBounds box;
   bool z_only, given;
-  CagError err;
   if (!read_within(call, within, &box, &z_only, &given)) return false;
   CagSurfaceArray *patches = cag_hold_surfaces(call);
-  CagStatus status =
-      cag_quadric_patches(q, given ? &box : NULL, z_only, &patches->items, &patches->count, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_quadric_patches(q, given ? &box : NULL, z_only, &patches->items,
+                                         &patches->count, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < patches->count; i++) {
     *result = cag_surface_value(call->vm, cag_surface_retain(patches->items[i]));
@@ -65,7 +63,6 @@ static bool fail_equation(CagCall *call, const CagList *list) {
 
 static bool read_equation(CagCall *call, CagQuadric *q) {
   CagList *list;
-  CagError err;
   double rows[4][4];
   const double *x;
   size_t n;
@@ -81,7 +78,7 @@ static bool read_equation(CagCall *call, CagQuadric *q) {
       return cag_fail_element(call, 0, i, row, "4 rows of 4 numbers, or 10 numbers,");
     memcpy(rows[i], x, sizeof rows[i]);
   }
-  return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, &err), &err);
+  return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, call->err));
 }
 
 bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) { return read_equation(call, q); }
@@ -159,9 +156,8 @@ bool cag_surfaces_parabolic_cylinder(CagCall *call, CagValue *result) {
 
 // The ball as an equation, negative inside.
 static bool sphere_equation(CagCall *call, const CagSolid *s, CagQuadric *q) {
-  CagError err;
   CagQuadric own = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -s->a * s->a}};
-  return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, &err), &err);
+  return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, call->err));
 }
 
 // Places on a meridian at which it must be as far from the center as at its ends.
@@ -196,7 +192,6 @@ static bool turned_sphere(const CagSurface *s, CagQuadric *q) {
 }
 
 bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
-  CagError err;
   CagValue v = call->values[0];
   if (v.type == CAG_LIST) return read_equation(call, q);
   if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->as.items->length > 0)
@@ -208,21 +203,20 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   }
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
-  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_not_a_quadric, "", -1,
+  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_not_a_quadric, "", -1,
            "expects a quadric, a sphere, or the 10 numbers or 4 rows of one, found %s %s",
            cag_article(v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name
                                              : cag_type_name(v)),
            v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name : cag_type_name(v));
-  return cag_fail_geometry(call, &err);
+  return cag_fail_geometry(call, call->err);
 }
 
 bool cag_surfaces_classify(CagCall *call, CagValue *result) {
   static const char *const names[] = {"class", "frame", "center", "semi_axes", "rank3", "rank4"};
   CagQuadric q;
   CagQuadricForm form;
-  CagError err;
   if (!cag_arg_quadric(call, &q) ||
-      !cag_geometry_ok(call, cag_quadric_classify(&q, &form, &err), &err))
+      !cag_geometry_ok(call, cag_quadric_classify(&q, &form, call->err)))
     return false;
   CagTransform frame = form.frame;
   frame.planar = false;

@@ -24,15 +24,14 @@ static bool read_place(CagCall *call, const CagSurface *s, int at, int *directio
 static bool read_loops(CagCall *call, int argument, CagRegion **out) {
   CagValue v = call->values[argument];
   CagTransform place;
-  CagError err;
   bool curves = v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0 &&
                 cag_list_get(call->vm, CAG_AS_LIST(v), 0).type == CAG_CURVE;
   if (!curves) {
     CagRegion *region;
     if (!cag_arg_region(call, argument, &region, &place)) return false;
-    CagStatus status = cag_region_transform(region, &place, out, &err);
+    CagStatus status = cag_region_transform(region, &place, out, call->err);
     cag_region_release(region);
-    return cag_geometry_ok(call, status, &err);
+    return cag_geometry_ok(call, status);
   }
   const CagList *list = CAG_AS_LIST(v);
   CagCurve **loops = cag_hold_array(call, list->length, sizeof(CagCurve *));
@@ -41,34 +40,32 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
     if (c.type != CAG_CURVE) return cag_fail_element(call, argument, i, c, "closed plane curves");
     loops[i] = CAG_AS_SHAPE(c)->as.curve;
   }
-  return cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, &err), &err);
+  return cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, call->err));
 }
 
 // S, curves, u, v
 bool cag_surfaces_trim(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
   if (named(call, 1)) {
     CagRegion *region;
     if (named(call, 2) || named(call, 3))
       return cag_fail_call(call, 1, CAG_ERR_value, "takes `curves` or ranges u and v, not both");
     if (!read_loops(call, 1, &region)) return false;
-    CagStatus status = cag_surface_trimmed(s, region, &out, &err);
+    CagStatus status = cag_surface_trimmed(s, region, &out, call->err);
     cag_region_release(region);
-    return cag_changed_surface_result(call, status, &err, &out, result);
+    return cag_changed_surface_result(call, status, &out, result);
   }
   double u0 = s->u0, u1 = s->u1, v0 = s->v0, v1 = s->v1;
   if ((named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_u, &u0, &u1)) ||
       (named(call, 3) && !cag_arg_parameter_range(call, 3, s->angular_v, &v0, &v1)))
     return false;
-  return cag_changed_surface_result(call, cag_surface_part(s, u0, u1, v0, v1, &out, &err), &err,
+  return cag_changed_surface_result(call, cag_surface_part(s, u0, u1, v0, v1, &out, call->err),
                                     &out, result);
 }
 
 bool cag_surfaces_split(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   int direction;
   double t;
   if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t)) return false;
@@ -87,10 +84,10 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
     CagSurface *part = NULL;
     double lo = k == 0 ? (direction == 0 ? s->u0 : s->v0) : t;
     double hi = k == 0 ? t : (direction == 0 ? s->u1 : s->v1);
-    CagStatus status = direction == 0 ? cag_surface_part(s, lo, hi, s->v0, s->v1, &part, &err)
-                                      : cag_surface_part(s, s->u0, s->u1, lo, hi, &part, &err);
+    CagStatus status = direction == 0 ? cag_surface_part(s, lo, hi, s->v0, s->v1, &part, call->err)
+                                      : cag_surface_part(s, s->u0, s->u1, lo, hi, &part, call->err);
     CagValue v;
-    if (!cag_changed_surface_result(call, status, &err, &part, &v) ||
+    if (!cag_changed_surface_result(call, status, &part, &v) ||
         !cag_builder_add(call->vm, parts, v))
       return false;
   }
@@ -100,15 +97,14 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_insert_knot(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   int direction;
   long times;
   double t;
   if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t) ||
       !cag_arg_integer_or(call, 3, 1, 1, 25, &times))
     return false;
-  CagStatus status = cag_surface_insert_knot(s, direction, t, (int)times, &out, &err);
-  return cag_changed_surface_result(call, status, &err, &out, result);
+  CagStatus status = cag_surface_insert_knot(s, direction, t, (int)times, &out, call->err);
+  return cag_changed_surface_result(call, status, &out, result);
 }
 
 // What is done in one direction: whether at all, and to which knots (NULL: midpoints).
@@ -131,12 +127,11 @@ static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {
 
 bool cag_surfaces_refine(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   CagRefinement r[2];
   if (!cag_arg_surface(call, 0, &s) || !read_refinement(call, 1, &r[0]) ||
       !read_refinement(call, 2, &r[1]))
     return false;
-  return cag_changed_surface_result(call, cag_surface_refine_by(s, r, &out, &err), &err, &out,
+  return cag_changed_surface_result(call, cag_surface_refine_by(s, r, &out, call->err), &out,
                                     result);
 }
 
@@ -146,20 +141,18 @@ bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
     long u, v;
   } a;
   CagSurface *out = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_changed_surface_result(call, cag_surface_elevate(a.s, (int)a.u, (int)a.v, &out, &err),
-                                    &err, &out, result);
+  return cag_changed_surface_result(
+      call, cag_surface_elevate(a.s, (int)a.u, (int)a.v, &out, call->err), &out, result);
 }
 
 bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
   CagSurface *s;
-  CagError err;
   size_t nu, nv;
   if (!cag_arg_surface(call, 0, &s)) return false;
   CagSurfaceArray *pieces = cag_hold_surfaces(call);
-  CagStatus status = cag_surface_to_bezier(s, &pieces->items, &nu, &nv, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_surface_to_bezier(s, &pieces->items, &nu, &nv, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   pieces->count = nu * nv;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++) {
@@ -177,9 +170,8 @@ bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
-  CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  return cag_changed_surface_result(call, cag_surface_transpose(s, &out, &err), &err, &out, result);
+  return cag_changed_surface_result(call, cag_surface_transpose(s, &out, call->err), &out, result);
 }
 
 // --- Two surfaces ---
@@ -188,12 +180,11 @@ bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_join_surfaces(CagCall *call, CagValue *result) {
   CagSurface *a, *b, *out = NULL;
-  CagError err;
   double tolerance;
   if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
       !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance))
     return false;
-  return cag_changed_surface_result(call, cag_surface_join(a, b, tolerance, &out, &err), &err, &out,
+  return cag_changed_surface_result(call, cag_surface_join(a, b, tolerance, &out, call->err), &out,
                                     result);
 }
 
@@ -204,7 +195,6 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
   static const char *const sides[] = {"u0", "u1", "v0", "v1"};
   CagSurface *a, *b;
   CagSeam seam;
-  CagError err;
   double tolerance;
   int edges_given[2];
   bool given;
@@ -212,8 +202,9 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
       !cag_arg_edges(call, cag_given(call, 4) ? 4 : 2, edges_given, &given) ||
       !cag_arg_number_or(call, 3, SEAM_TOLERANCE, &tolerance))
     return false;
-  CagStatus status = cag_surface_seam_on(a, b, given ? edges_given : NULL, tolerance, &seam, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status =
+      cag_surface_seam_on(a, b, given ? edges_given : NULL, tolerance, &seam, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
   CagBuilder *edges = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++)
@@ -241,9 +232,8 @@ bool cag_surfaces_offset(CagCall *call, CagValue *result) {
     double d;
   } a;
   CagSurface *out = NULL;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_changed_surface_result(call, cag_surface_offset(a.s, a.d, &out, &err), &err, &out,
+  return cag_changed_surface_result(call, cag_surface_offset(a.s, a.d, &out, call->err), &out,
                                     result);
 }
 
@@ -253,10 +243,9 @@ bool cag_surfaces_thicken(CagCall *call, CagValue *result) {
     double d;
   } given;
   CagSolid *out = NULL;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
   if (given.d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
-  if (!cag_geometry_ok(call, cag_solid_thicken(given.s, given.d, &out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_solid_thicken(given.s, given.d, &out, call->err))) return false;
   *result = cag_solid_value(call->vm, out);
   cag_shape_say_alike(*result, call->values[0]);
   return true;

@@ -45,8 +45,7 @@ bool cag_sections_at(CagCall *call, CagValue *result) {
 bool cag_sections_center(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagVec3 p;
-  CagError err;
-  if (!cag_arg_quadric(call, &q) || !cag_geometry_ok(call, cag_quadric_center(&q, &p, &err), &err))
+  if (!cag_arg_quadric(call, &q) || !cag_geometry_ok(call, cag_quadric_center(&q, &p, call->err)))
     return false;
   *result = cag_point(call->vm, p, 3);
   return true;
@@ -56,9 +55,8 @@ bool cag_sections_tangent(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagVec3 p;
   CagPlane plane;
-  CagError err;
   if (!cag_arg_quadric(call, &q) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_quadric_tangent_plane(&q, p, &plane, &err), &err))
+      !cag_geometry_ok(call, cag_quadric_tangent_plane(&q, p, &plane, call->err)))
     return false;
   *result = cag_plane_value(call->vm, &plane);
   return true;
@@ -69,9 +67,8 @@ bool cag_sections_rulings(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagVec3 p;
   CagRulings found;
-  CagError err;
   if (!cag_arg_quadric(call, &q) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_quadric_rulings(&q, p, &found, &err), &err))
+      !cag_geometry_ok(call, cag_quadric_rulings(&q, p, &found, call->err)))
     return false;
   CagValue values[] = {found.all ? cag_text_c(call->vm, "all") : cag_number((double)found.count),
                        cag_points_value(call->vm, found.direction, found.count, 3)};
@@ -82,9 +79,8 @@ bool cag_sections_rulings(CagCall *call, CagValue *result) {
 bool cag_sections_moved(CagCall *call, CagValue *result) {
   CagQuadric q, moved;
   CagTransform t;
-  CagError err;
   if (!cag_arg_quadric(call, &q) || !cag_arg_transform(call, 1, &t) ||
-      !cag_geometry_ok(call, cag_quadric_transform(&q, &t, &moved, &err), &err))
+      !cag_geometry_ok(call, cag_quadric_transform(&q, &t, &moved, call->err)))
     return false;
   for (int i = 0; i < 10; i++) moved.c[i] += 0.0;
   *result = cag_vector(call->vm, moved.c, 10);
@@ -107,17 +103,16 @@ bool cag_sections_section_conic(CagCall *call, CagValue *result) {
   CagConic conic;
   CagConicClass found;
   CagCurve *curve = NULL;
-  CagError err;
   if (!cag_arg_quadric(call, &q) || !read_frame(call, 1, &frame)) return false;
   cag_quadric_section(&q, &frame, &conic);
-  if (!cag_geometry_ok(call, cag_conic_classify(&conic, &found, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_conic_classify(&conic, &found, call->err))) return false;
   bool zero = true;
   for (int i = 0; i < 6; i++) {
     zero = zero && conic.c[i] == 0;
     conic.c[i] += 0.0;
   }
   // A plane that is part of the quadric gives no equation.
-  if (!zero && !cag_geometry_ok(call, cag_curve_conic(&conic, &curve, &err), &err)) return false;
+  if (!zero && !cag_geometry_ok(call, cag_curve_conic(&conic, &curve, call->err))) return false;
   frame.planar = false;
   CagValue values[] = {curve ? cag_curve_value(call->vm, curve) : cag_none(),
                        cag_vector(call->vm, conic.c, 6), cag_transform_value(call->vm, &frame),
@@ -148,22 +143,21 @@ static CagStatus region_surface(const CagShape *shape, CagSurface **out, CagErro
 
 static bool section_of(CagCall *call, CagValue v, const CagPlane *plane, double tolerance,
                        CagCurveList *list) {
-  CagError err;
   CagShape *shape = CAG_AS_SHAPE(v);
   CagSurface *flat = NULL;
   CagStatus status;
   if (v.type == CAG_SURFACE)
-    status = cag_surface_section(shape->as.surface, plane, tolerance, list, &err);
+    status = cag_surface_section(shape->as.surface, plane, tolerance, list, call->err);
   else if (v.type == CAG_SOLID)
-    status = cag_solid_section(shape->as.solid, plane, tolerance, list, &err);
-  else if (v.type == CAG_MESH) status = cag_mesh_section(shape->as.mesh, plane, list, &err);
+    status = cag_solid_section(shape->as.solid, plane, tolerance, list, call->err);
+  else if (v.type == CAG_MESH) status = cag_mesh_section(shape->as.mesh, plane, list, call->err);
   else if (v.type == CAG_REGION) {
-    status = region_surface(shape, &flat, &err);
-    if (!status) status = cag_surface_section(flat, plane, tolerance, list, &err);
+    status = region_surface(shape, &flat, call->err);
+    if (!status) status = cag_surface_section(flat, plane, tolerance, list, call->err);
     cag_surface_release(flat);
   } else return cag_fail_type(call, 0, "surfaces, solids, meshes or regions");
-  if (status && cag_is_empty_shape(&err)) return true;
-  return cag_geometry_ok(call, status, &err);
+  if (status && cag_is_empty_shape(call->err)) return true;
+  return cag_geometry_ok(call, status);
 }
 
 bool cag_sections_section(CagCall *call, CagValue *result) {
@@ -187,17 +181,17 @@ bool cag_sections_section(CagCall *call, CagValue *result) {
 
 static bool contour_of(CagCall *call, CagValue v, CagVec3 direction, CagVec3 eye, bool central,
                        double tolerance, CagCurveList *list) {
-  CagError err;
   CagStatus status = CAG_OK;
   if (v.type == CAG_SURFACE)
     status = cag_surface_contour(CAG_AS_SHAPE(v)->as.surface, direction, eye, central, tolerance,
-                                 list, &err);
+                                 list, call->err);
   else if (v.type == CAG_SOLID) {
     const CagSolid *s = CAG_AS_SHAPE(v)->as.solid;
     for (size_t i = 0; !status && i < s->face_count; i++)
-      status = cag_surface_contour(s->faces[i], direction, eye, central, tolerance, list, &err);
+      status =
+          cag_surface_contour(s->faces[i], direction, eye, central, tolerance, list, call->err);
   } else return cag_fail_type(call, 0, "surfaces or solids");
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(call, status);
 }
 
 bool cag_sections_contour(CagCall *call, CagValue *result) {
@@ -229,12 +223,11 @@ bool cag_sections_curvature_line(CagCall *call, CagValue *result) {
   static const char *const which[] = {"max", "min", NULL};
   CagSurface *s;
   CagCurve *line = NULL;
-  CagError err;
   double u, v;
   int k;
   if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
       !cag_arg_choice(call, 3, which, &k) ||
-      !cag_geometry_ok(call, cag_surface_curvature_line(s, u, v, k == 0, &line, &err), &err))
+      !cag_geometry_ok(call, cag_surface_curvature_line(s, u, v, k == 0, &line, call->err)))
     return false;
   *result = cag_curve_value(call->vm, line);
   return true;
@@ -306,12 +299,11 @@ static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, Cag
 static bool contour_record(CagCall *call, const CagList *shapes, const ContourQuestion *q,
                            CagCurveList *list, CagValue *result) {
   static const char *const names[] = {"level", "curves", "everywhere"};
-  CagError err;
   bool everywhere = true;
   for (size_t i = 0; i < shapes->length; i++) {
     const CagValue shape = cag_list_get(call->vm, shapes, i);
-    const CagStatus status = curvature_contours_of(shape, q, list, &everywhere, &err);
-    if (!cag_geometry_ok(call, status, &err) || !cag_keep_going(call->vm)) return false;
+    const CagStatus status = curvature_contours_of(shape, q, list, &everywhere, call->err);
+    if (!cag_geometry_ok(call, status) || !cag_keep_going(call->vm)) return false;
   }
   CagValue values[] = {cag_number(q->level), cag_curve_list_value(call->vm, list),
                        cag_bool(everywhere)};
@@ -352,7 +344,6 @@ bool cag_sections_curvature_contours(CagCall *call, CagValue *result) {
 
 bool cag_sections_path_frame(CagCall *call, CagValue *result) {
   CagCurve *path, *space = NULL;
-  CagError err;
   double t;
   if (!cag_arg_curve(call, 0, &path) ||
       !cag_arg_parameter(call, 1, path->angular, path->start, path->end, false, &t))
@@ -370,12 +361,12 @@ bool cag_sections_path_frame(CagCall *call, CagValue *result) {
   }
   CagMotion *motion = NULL;
   CagTransform frame;
-  CagStatus status = cag_curve_to_space(path, &space, &err);
-  if (status == CAG_OK) status = cag_motion_along(space, &how, &motion, &err);
-  if (status == CAG_OK) status = cag_motion_frame(motion, t, &frame, &err);
+  CagStatus status = cag_curve_to_space(path, &space, call->err);
+  if (status == CAG_OK) status = cag_motion_along(space, &how, &motion, call->err);
+  if (status == CAG_OK) status = cag_motion_frame(motion, t, &frame, call->err);
   cag_curve_release(space);
   cag_motion_release(motion);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   frame.planar = false;
   *result = cag_transform_value(call->vm, &frame);
   return true;

@@ -83,7 +83,6 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
                        CagAlong *out) {
   CagValue v = call->values[argument];
   CagChebyshev *fit = NULL;
-  CagError err;
   *out = (CagAlong){from, from, NULL};
   if (v.type == CAG_UNSET) return true;
   if (!cag_is_function(v)) {
@@ -96,8 +95,8 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
   Sampled s = {call, argument, path->angular, angles};
   const char *name = cag_builtin_signature_of(call->builtin)->parameters[argument];
   CagStatus status = cag_chebyshev_fit(sample_number, &s, path->start, path->end, 1, FIT_TOLERANCE,
-                                       name, &fit, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+                                       name, &fit, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_series, fit);
   out->function = fit;
   return true;
@@ -134,16 +133,14 @@ static bool read_section(CagCall *call, bool caps, Section *out) {
 
 static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *motion,
                         CagValue *result) {
-  CagError err;
   size_t n = section->curve ? 1 : section->region->count;
   CagBuilder *sides = cag_builder_new(call->vm);
   CagValue side = cag_none();
   for (size_t i = 0; i < n; i++) {
     CagSurface *s = NULL;
     const CagCurve *c = section->curve ? section->curve : section->region->loops[i];
-    CagStatus status = cag_surface_sweep(c, motion, &s, &err);
-    if (!cag_surface_result(call, status, &err, &s, &side) ||
-        !cag_builder_add(call->vm, sides, side))
+    CagStatus status = cag_surface_sweep(c, motion, &s, call->err);
+    if (!cag_surface_result(call, status, &s, &side) || !cag_builder_add(call->vm, sides, side))
       return false;
   }
   *result = n == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
@@ -153,9 +150,8 @@ static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *
 static bool sweep_section(CagCall *call, const Section *section, const CagMotion *motion, bool caps,
                           CagValue *result) {
   if (section->curve || !caps) return sweep_sides(call, section, motion, result);
-  CagError err;
   CagSolid *s = NULL;
-  return cag_solid_result(call, cag_solid_sweep(section->region, motion, &s, &err), &err, &s,
+  return cag_solid_result(call, cag_solid_sweep(section->region, motion, &s, call->err), &s,
                           result);
 }
 
@@ -184,13 +180,12 @@ bool cag_surfaces_sweep(CagCall *call, CagValue *result) {
   CagPathMotion how = {0};
   CagMotion *motion = NULL;
   Section section = {0};
-  CagError err;
   bool caps;
   if (!cag_arg_curve(call, 1, &path) || !read_orient(call, 2, &how) ||
       !cag_arg_bool_or(call, 5, true, &caps) || !read_section(call, caps, &section) ||
       !read_along(call, 3, path, true, 0, &how.twist) ||
       !read_along(call, 4, path, false, 1, &how.scale) ||
-      !cag_geometry_ok(call, cag_motion_along(path, &how, &motion, &err), &err))
+      !cag_geometry_ok(call, cag_motion_along(path, &how, &motion, call->err)))
     return false;
   cag_hold_for(call, release_motion, motion);
   if (!sweep_section(call, &section, motion, caps, result)) return false;
@@ -203,7 +198,6 @@ bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
   CagChebyshev *rows = NULL;
   CagMotion *motion = NULL;
   Section section = {0};
-  CagError err;
   bool caps, angle;
   double from, to;
   if (!cag_arg_function(call, 1, &map) || !cag_arg_interval(call, 2, &from, &to, &angle) ||
@@ -215,11 +209,11 @@ bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
   Sampled s = {call, 1, angle, false};
   if (!read_section(call, caps, &section)) return false;
   CagStatus status = cag_chebyshev_fit(sample_rows, &s, from * unit, to * unit, 12, FIT_TOLERANCE,
-                                       "map", &rows, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+                                       "map", &rows, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_series, rows);
-  status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_motion, motion);
   if (!sweep_section(call, &section, motion, caps, result)) return false;
   if (cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
@@ -231,7 +225,6 @@ bool cag_surfaces_tube(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagSolid *solid = NULL;
   CagAlong radius = {0};
-  CagError err;
   bool caps;
   bool changing = cag_is_function(call->values[1]);
   if (!cag_arg_curve(call, 0, &path) || !cag_arg_bool_or(call, 2, true, &caps) ||
@@ -239,13 +232,13 @@ bool cag_surfaces_tube(CagCall *call, CagValue *result) {
     return false;
   if (changing && !read_along(call, 1, path, false, 0, &radius)) return false;
   if (caps) {
-    CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, &err)
-                                : cag_solid_tube(path, radius.end, &solid, &err);
-    if (!cag_solid_result(call, status, &err, &solid, result)) return false;
+    CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, call->err)
+                                : cag_solid_tube(path, radius.end, &solid, call->err);
+    if (!cag_solid_result(call, status, &solid, result)) return false;
   } else {
-    CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, &err)
-                                : cag_surface_tube(path, radius.end, &s, &err);
-    if (!cag_surface_result(call, status, &err, &s, result)) return false;
+    CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, call->err)
+                                : cag_surface_tube(path, radius.end, &s, call->err);
+    if (!cag_surface_result(call, status, &s, result)) return false;
   }
   cag_shape_say_alike(*result, call->values[0]);
   return true;
@@ -257,7 +250,6 @@ static void release_curve(void *curve) { cag_curve_release(curve); }
 
 // A curve as it is, or the outline of a region without holes, placed and held.
 static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve **out) {
-  CagError err;
   if (v.type == CAG_CURVE) {
     *out = CAG_AS_SHAPE(v)->as.curve;
     return true;
@@ -271,8 +263,8 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
                          shape->as.region->count, i);
   CagCurve *placed = NULL;
   CagStatus status =
-      cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+      cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_curve, placed);
   *out = placed;
   return true;
@@ -280,7 +272,6 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
 
 bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   CagList *list;
-  CagError err;
   long degree;
   bool closed, caps;
   if (!cag_arg_list(call, 0, &list) || !cag_arg_integer_or(call, 1, 3, 1, 25, &degree) ||
@@ -295,12 +286,12 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   }
   CagSurface *side = NULL;
   CagSolid *solid = NULL;
-  CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, &err);
+  CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, call->err);
   if (caps && all_closed && status == CAG_OK) {
-    status = cag_solid_loft(side, &solid, &err);
+    status = cag_solid_loft(side, &solid, call->err);
     cag_surface_release(side);
-    if (!cag_solid_result(call, status, &err, &solid, result)) return false;
-  } else if (!cag_surface_result(call, status, &err, &side, result)) {
+    if (!cag_solid_result(call, status, &solid, result)) return false;
+  } else if (!cag_surface_result(call, status, &side, result)) {
     return false;
   }
   cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));

@@ -104,11 +104,10 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
 
 static bool apply_region(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagError err;
   if (t->planar && shape->placement.planar) {
     CagTransform whole = cag_transform_multiply(t, &shape->placement);
     CagRegion *moved;
-    if (!cag_geometry_ok(call, cag_region_transform(shape->as.region, &whole, &moved, &err), &err))
+    if (!cag_geometry_ok(call, cag_region_transform(shape->as.region, &whole, &moved, call->err)))
       return false;
     *result = cag_region_value(call->vm, moved, NULL);
     return true;
@@ -121,30 +120,29 @@ static bool apply_region(CagCall *call, const CagTransform *t, CagValue v, CagVa
 
 static bool apply_shape(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagError err;
   CagCurve *curve;
   CagSurface *surface;
   CagSolid *solid;
   CagMesh *mesh;
   switch (v.type) {
   case CAG_CURVE:
-    if (!cag_geometry_ok(call, cag_curve_transform(shape->as.curve, t, &curve, &err), &err))
+    if (!cag_geometry_ok(call, cag_curve_transform(shape->as.curve, t, &curve, call->err)))
       return false;
     *result = cag_curve_value(call->vm, curve);
     return true;
   case CAG_REGION: return apply_region(call, t, v, result);
   case CAG_SURFACE:
-    if (!cag_geometry_ok(call, cag_surface_transform(shape->as.surface, t, &surface, &err), &err))
+    if (!cag_geometry_ok(call, cag_surface_transform(shape->as.surface, t, &surface, call->err)))
       return false;
     *result = cag_surface_value(call->vm, surface);
     return true;
   case CAG_SOLID:
-    if (!cag_geometry_ok(call, cag_solid_transform(shape->as.solid, t, &solid, &err), &err))
+    if (!cag_geometry_ok(call, cag_solid_transform(shape->as.solid, t, &solid, call->err)))
       return false;
     *result = cag_solid_value(call->vm, solid);
     return true;
   case CAG_MESH:
-    if (!cag_geometry_ok(call, cag_mesh_transform(shape->as.mesh, t, &mesh, &err), &err))
+    if (!cag_geometry_ok(call, cag_mesh_transform(shape->as.mesh, t, &mesh, call->err)))
       return false;
     *result = cag_mesh_value(call->vm, mesh);
     return true;
@@ -158,7 +156,6 @@ static bool apply_shape(CagCall *call, const CagTransform *t, CagValue v, CagVal
 }
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
-  CagError err;
   if (v.type == CAG_LIST) return apply_list(call, t, v, result);
   if (v.type == CAG_TRANSFORM) {
     CagTransform product = cag_transform_multiply(t, &CAG_AS_TRANSFORM(v)->t);
@@ -168,7 +165,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   if (v.type == CAG_PLANE) {
     CagPlane moved;
     const CagPlane *plane = &CAG_AS_PLANE(v)->plane;
-    if (!cag_geometry_ok(call, cag_plane_transform(plane, t, &moved, &err), &err)) return false;
+    if (!cag_geometry_ok(call, cag_plane_transform(plane, t, &moved, call->err))) return false;
     *result = cag_plane_value(call->vm, &moved);
     return true;
   }
@@ -192,6 +189,7 @@ bool cag_transform_apply(CagVm *vm, const CagTransform *t, CagValue v, CagValue 
   // The operator is `moved` by another name.
   size_t rows;
   CagValue values[] = {v, cag_unset()};
-  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("moved"), &rows), values, 2};
+  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("moved"), &rows), values, 2,
+                  &vm->core_error};
   return apply(&call, t, v, result);
 }

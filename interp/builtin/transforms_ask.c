@@ -6,9 +6,8 @@
 
 bool cag_transforms_inverse(CagCall *call, CagValue *result) {
   CagTransform t, out;
-  CagError err;
   if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_transform_inverse(&t, &out, &err), &err))
+      !cag_geometry_ok(call, cag_transform_inverse(&t, &out, call->err)))
     return false;
   out.planar = t.planar;
   *result = cag_transform_value(call->vm, &out);
@@ -63,11 +62,10 @@ bool cag_transforms_euler_of(CagCall *call, CagValue *result) {
     const char *order;
   } given;
   static const char *const names[] = {"a", "b", "c", "singular"};
-  CagError err;
   double angles[3];
   bool singular;
   if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_euler_of(&given.t, given.order, angles, &singular, &err), &err))
+      !cag_geometry_ok(call, cag_euler_of(&given.t, given.order, angles, &singular, call->err)))
     return false;
   return give_angles(call, names, angles, singular, result);
 }
@@ -75,11 +73,10 @@ bool cag_transforms_euler_of(CagCall *call, CagValue *result) {
 bool cag_transforms_rpy_of(CagCall *call, CagValue *result) {
   static const char *const names[] = {"roll", "pitch", "yaw", "singular"};
   CagTransform t;
-  CagError err;
   double angles[3];
   bool singular;
   if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_rpy_of(&t, angles, &singular, &err), &err))
+      !cag_geometry_ok(call, cag_rpy_of(&t, angles, &singular, call->err)))
     return false;
   return give_angles(call, names, angles, singular, result);
 }
@@ -87,12 +84,11 @@ bool cag_transforms_rpy_of(CagCall *call, CagValue *result) {
 bool cag_transforms_axis_angle_of(CagCall *call, CagValue *result) {
   static const char *const names[] = {"axis", "angle", "singular"};
   CagTransform t;
-  CagError err;
   CagVec3 axis;
   double angle;
   bool singular;
   if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_axis_angle_of(&t, &axis, &angle, &singular, &err), &err))
+      !cag_geometry_ok(call, cag_axis_angle_of(&t, &axis, &angle, &singular, call->err)))
     return false;
   CagValue values[] = {cag_point(call->vm, axis, 3), shown_angle(angle), cag_bool(singular)};
   *result = cag_record_new(call->vm, names, values, 3);
@@ -101,10 +97,9 @@ bool cag_transforms_axis_angle_of(CagCall *call, CagValue *result) {
 
 bool cag_transforms_quaternion_of(CagCall *call, CagValue *result) {
   CagTransform t;
-  CagError err;
   double wxyz[4];
   if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_quaternion_of(&t, wxyz, &err), &err))
+      !cag_geometry_ok(call, cag_quaternion_of(&t, wxyz, call->err)))
     return false;
   *result = cag_vector(call->vm, wxyz, 4);
   return true;
@@ -114,10 +109,9 @@ bool cag_transforms_classify(CagCall *call, CagValue *result) {
   static const char *const names[] = {"class", "scale",       "axis",           "angle",
                                       "fixed", "fixed_point", "fixed_direction"};
   CagTransform t;
-  CagError err;
   CagTransformClass c;
   if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_transform_classify(&t, &c, &err), &err))
+      !cag_geometry_ok(call, cag_transform_classify(&t, &c, call->err)))
     return false;
   bool has_point = strcmp(c.fixed, "none") != 0 && strcmp(c.fixed, "all") != 0;
   bool has_direction = !strcmp(c.fixed, "line") || !strcmp(c.fixed, "plane");
@@ -176,9 +170,8 @@ bool cag_transforms_mix(CagCall *call, CagValue *result) {
     double t;
   } given;
   CagTransform out;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_transform_mix(&given.a, &given.b, given.t, &out, &err), &err))
+      !cag_geometry_ok(call, cag_transform_mix(&given.a, &given.b, given.t, &out, call->err)))
     return false;
   out.planar = given.a.planar && given.b.planar;
   *result = cag_transform_value(call->vm, &out);

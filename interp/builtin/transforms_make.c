@@ -4,9 +4,9 @@
 
 #include "interp/builtin/shapes.h"
 
-static bool transform_result(CagCall *call, CagStatus status, const CagError *err, CagTransform *t,
-                             bool planar, CagValue *result) {
-  if (!cag_geometry_ok(call, status, err)) return false;
+static bool transform_result(CagCall *call, CagStatus status, CagTransform *t, bool planar,
+                             CagValue *result) {
+  if (!cag_geometry_ok(call, status)) return false;
   t->planar = planar;
   *result = cag_transform_value(call->vm, t);
   return true;
@@ -17,9 +17,8 @@ bool cag_transforms_reflect_line(CagCall *call, CagValue *result) {
     CagPoint p, q;
   } a;
   CagTransform t;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_reflect_line(a.p.at, a.q.at, &t, &err), &err, &t,
+  return transform_result(call, cag_reflect_line(a.p.at, a.q.at, &t, call->err), &t,
                           a.p.dimension == 2 && a.q.dimension == 2, result);
 }
 
@@ -28,7 +27,7 @@ bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
   int dimension;
   if (!cag_arg_vec(call, 0, &p, &dimension)) return false;
   CagTransform t = cag_reflect_point(p);
-  return transform_result(call, CAG_OK, NULL, &t, dimension == 2, result);
+  return transform_result(call, CAG_OK, &t, dimension == 2, result);
 }
 
 // Rows of numbers, 2 to 4 of 2 to 4; *columns and *count tell the shape.
@@ -76,7 +75,7 @@ bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects 2x2, 3x3, 3x4 or 4x4 rows, found %zu rows of %zu", rows, columns);
   }
-  return transform_result(call, CAG_OK, NULL, &t, planar, result);
+  return transform_result(call, CAG_OK, &t, planar, result);
 }
 
 bool cag_transforms_axes(CagCall *call, CagValue *result) {
@@ -84,9 +83,8 @@ bool cag_transforms_axes(CagCall *call, CagValue *result) {
     CagPoint origin, x, y;
   } a;
   CagTransform t;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, &err), &err, &t, false,
+  return transform_result(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, call->err), &t, false,
                           result);
 }
 
@@ -95,9 +93,8 @@ bool cag_transforms_look_at(CagCall *call, CagValue *result) {
     CagPoint from, to, up;
   } a;
   CagTransform t;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, &err), &err, &t, false,
+  return transform_result(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, call->err), &t, false,
                           result);
 }
 
@@ -107,9 +104,8 @@ bool cag_transforms_euler(CagCall *call, CagValue *result) {
     const char *order;
   } given;
   CagTransform t;
-  CagError err;
   if (!cag_bind(call, &given, sizeof given)) return false;
-  return transform_result(call, cag_euler(given.a, given.b, given.c, given.order, &t, &err), &err,
+  return transform_result(call, cag_euler(given.a, given.b, given.c, given.order, &t, call->err),
                           &t, false, result);
 }
 
@@ -119,16 +115,15 @@ bool cag_transforms_rpy(CagCall *call, CagValue *result) {
   } a;
   if (!cag_bind(call, &a, sizeof a)) return false;
   CagTransform t = cag_rpy(a.roll, a.pitch, a.yaw);
-  return transform_result(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, &t, false, result);
 }
 
 bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
   double wxyz[4];
   CagTransform t;
-  CagError err;
   for (int i = 0; i < 4; i++)
     if (!cag_arg_finite(call, i, &wxyz[i])) return false;
-  return transform_result(call, cag_quaternion(wxyz, &t, &err), &err, &t, false, result);
+  return transform_result(call, cag_quaternion(wxyz, &t, call->err), &t, false, result);
 }
 
 bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
@@ -137,9 +132,8 @@ bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
     double angle;
   } a;
   CagTransform t;
-  CagError err;
   if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, &err), &err,
+  return transform_result(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, call->err),
                           &t, false, result);
 }
 
@@ -150,7 +144,7 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
   CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
   CagTransform t = cag_transform_multiply(&tilted, &place);
   if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
-  return transform_result(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, &t, false, result);
 }
 
 bool cag_transforms_cylindrical(CagCall *call, CagValue *result) {
@@ -181,14 +175,14 @@ bool cag_transforms_dh(CagCall *call, CagValue *result) {
   double link[4];
   if (!read_link(call, link)) return false;
   CagTransform t = cag_dh(link[0], link[1], link[2], link[3]);
-  return transform_result(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, &t, false, result);
 }
 
 bool cag_transforms_mdh(CagCall *call, CagValue *result) {
   double link[4];
   if (!read_link(call, link)) return false;
   CagTransform t = cag_mdh(link[0], link[1], link[2], link[3]);
-  return transform_result(call, CAG_OK, NULL, &t, false, result);
+  return transform_result(call, CAG_OK, &t, false, result);
 }
 
 bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
@@ -196,7 +190,6 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
   size_t n, m;
   int d, e;
   CagTransform t;
-  CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &d)) return false;
   cag_hold(call, points);
   if (!cag_arg_points(call, 1, &images, &m, &e)) return false;
@@ -205,7 +198,7 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 1, CAG_ERR_length,
                          "expects one image for each of %zu points, found %zu", n, m);
   const bool planar = d == 2 && e == 2;
-  return transform_result(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t,
+  return transform_result(call, cag_transform_from(points, images, n, planar, &t, call->err), &t,
                           planar, result);
 }
 
@@ -255,7 +248,6 @@ static CagTransform product(CagCall *call, int side, size_t from, size_t to,
 bool cag_transforms_solve_frame(CagCall *call, CagValue *result) {
   CagRecord *frames;
   Unknown unknown = {0};
-  CagError err;
   if (!cag_arg_record(call, 2, &frames) || !read_side(call, 0, frames, &unknown) ||
       !read_side(call, 1, frames, &unknown))
     return false;
@@ -269,8 +261,8 @@ bool cag_transforms_solve_frame(CagCall *call, CagValue *result) {
   CagTransform after = product(call, unknown.side, unknown.at + 1, length, frames);
   CagTransform other = product(call, other_side, 0, other_length, frames);
   CagTransform undo_before, undo_after;
-  if (!cag_geometry_ok(call, cag_transform_inverse(&before, &undo_before, &err), &err) ||
-      !cag_geometry_ok(call, cag_transform_inverse(&after, &undo_after, &err), &err))
+  if (!cag_geometry_ok(call, cag_transform_inverse(&before, &undo_before, call->err)) ||
+      !cag_geometry_ok(call, cag_transform_inverse(&after, &undo_after, call->err)))
     return false;
   CagTransform t = cag_transform_multiply(&undo_before, &other);
   t = cag_transform_multiply(&t, &undo_after);

@@ -83,7 +83,6 @@ static bool fail_angle(CagCall *call, int dimension, CagVec3 axis) {
 
 static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   static const CagVec3 zero = {0, 0, 0};
-  CagError err;
   CagVec3 axis = {0, 0, 1}, about;
   int axis_dimension = 2, about_dimension = 2;
   double angle;
@@ -101,7 +100,7 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   } else {
     about = zero;
   }
-  if (!cag_geometry_ok(call, cag_rotate(axis, angle, about, out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_rotate(axis, angle, about, out, call->err))) return false;
   out->planar = plain && about_dimension == 2;
   // What is moved about a line along Z stays in the plane of the drawing.
   if (at > 0 && axis.x == 0 && axis.y == 0 && about.z == 0) out->planar = true;
@@ -161,7 +160,6 @@ bool cag_transforms_rotate(CagCall *call, CagValue *result) {
 }
 
 static bool make_scale(CagCall *call, int at, CagTransform *out) {
-  CagError err;
   CagVec3 factors, about;
   int dimension = 2, about_dimension = 2;
   if (call->values[at].type == CAG_NUMBER) {
@@ -176,7 +174,7 @@ static bool make_scale(CagCall *call, int at, CagTransform *out) {
   }
   if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &about, &about_dimension)) return false;
   if (!cag_given(call, at + 1)) about_dimension = 2;
-  if (!cag_geometry_ok(call, cag_scale(factors, about, out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_scale(factors, about, out, call->err))) return false;
   out->planar = dimension == 2 && about_dimension == 2;
   return true;
 }
@@ -185,13 +183,12 @@ bool cag_transforms_scale(CagCall *call, CagValue *result) {
 }
 
 static bool make_reflect(CagCall *call, int at, CagTransform *out) {
-  CagError err;
   if (call->values[at].type == CAG_PLANE) {
     const CagPlane *plane = &CAG_AS_PLANE(call->values[at])->plane;
     if (cag_given(call, at + 1))
       return cag_fail_call(call, at + 1, CAG_ERR_value,
                            "takes no `through` beside a plane, which has its own point");
-    if (!cag_geometry_ok(call, cag_reflect(plane->normal, plane->point, out, &err), &err))
+    if (!cag_geometry_ok(call, cag_reflect(plane->normal, plane->point, out, call->err)))
       return false;
     out->planar = false;
     return true;
@@ -202,7 +199,7 @@ static bool make_reflect(CagCall *call, int at, CagTransform *out) {
   if (!cag_arg_vec(call, at, &normal, &dimension)) return false;
   if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &through, &through_dimension)) return false;
   if (!cag_given(call, at + 1)) through_dimension = dimension;
-  if (!cag_geometry_ok(call, cag_reflect(normal, through, out, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_reflect(normal, through, out, call->err))) return false;
   out->planar = dimension == 2 && through_dimension == 2;
   return true;
 }
@@ -223,7 +220,6 @@ bool cag_transforms_shear(CagCall *call, CagValue *result) {
 }
 
 static bool make_project(CagCall *call, int at, CagTransform *out) {
-  CagError err;
   CagPlane onto;
   CagVec3 along = {0, 0, 0}, from;
   int dimension;
@@ -236,12 +232,12 @@ static bool make_project(CagCall *call, int at, CagTransform *out) {
   CagStatus status;
   if (central) {
     if (!cag_arg_vec(call, at + 2, &from, &dimension)) return false;
-    status = cag_project_central(&onto, from, out, &err);
+    status = cag_project_central(&onto, from, out, call->err);
   } else {
     if (parallel && !cag_arg_direction(call, at + 1, along, &along, &dimension)) return false;
-    status = cag_project_parallel(&onto, along, out, &err);
+    status = cag_project_parallel(&onto, along, out, call->err);
   }
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   out->planar = false;
   return true;
 }

@@ -9,7 +9,6 @@
 
 bool cag_transforms_plane(CagCall *call, CagValue *result) {
   CagPlane plane;
-  CagError err;
   CagVec3 p, q, r;
   CagStatus status;
   const double *row;
@@ -23,17 +22,17 @@ bool cag_transforms_plane(CagCall *call, CagValue *result) {
                     n);
       return false;
     }
-    status = cag_plane_from_row(row, &plane, &err);
+    status = cag_plane_from_row(row, &plane, call->err);
   } else {
     if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL)) return false;
     if (cag_given(call, 2)) {
       if (!cag_arg_vec(call, 2, &r, NULL)) return false;
-      status = cag_plane_through(p, q, r, &plane, &err);
+      status = cag_plane_through(p, q, r, &plane, call->err);
     } else {
-      status = cag_plane(p, q, &plane, &err);
+      status = cag_plane(p, q, &plane, call->err);
     }
   }
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_plane_value(call->vm, &plane);
   return true;
 }
@@ -138,16 +137,15 @@ bool cag_transforms_contains(CagCall *call, CagValue *result) {
   CagRegion *region;
   CagTransform place, back;
   CagVec3 p;
-  CagError err;
   bool inside = false;
   if (!cag_arg_vec(call, 1, &p, NULL) || !cag_arg_region(call, 0, &region, &place)) return false;
   cag_hold_region(call, region);
-  if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, call->err))) return false;
   p = cag_transform_point(&back, p);
   // A point beside the region's plane is not in it; the rounding of placing it there is.
   bool beside = fabs(p.z) > 1000 * LINE_TOLERANCE * (1 + cag_norm(p));
   p.z = 0;
-  if (!beside && !cag_geometry_ok(call, cag_region_contains(region, p, &inside, &err), &err))
+  if (!beside && !cag_geometry_ok(call, cag_region_contains(region, p, &inside, call->err)))
     return false;
   *result = cag_bool(inside);
   return true;

@@ -34,10 +34,9 @@ bool cag_triangles_triangle_point(CagCall *call, CagValue *result) {
   int degree = 0;
   double w[3];
   CagTriangleJet jet = {0};
-  CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
   cag_hold(call, net);
-  if (!cag_geometry_ok(call, cag_triangle_at(net, degree, w, &jet, &err), &err)) return false;
+  if (!cag_geometry_ok(call, cag_triangle_at(net, degree, w, &jet, call->err))) return false;
   CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
   CagValue values[] = {vector_value(call->vm, jet.point), vector_value(call->vm, jet.ds),
                        vector_value(call->vm, jet.dt),
@@ -72,14 +71,13 @@ bool cag_triangles_triangle_split(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
   double w[3];
-  CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
   cag_hold(call, net);
   size_t n = cag_triangle_count(degree);
   CagVec3 *parts = cag_hold_array(call, 3 * n, sizeof *parts);
-  CagStatus status =
-      cag_triangle_split(net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n}, &err);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagStatus status = cag_triangle_split(
+      net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n}, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   CagValue nets[3];
   for (size_t c = 0; c < 3; c++) nets[c] = net_value(call->vm, parts + c * n, degree);
   *result = cag_list_values(call->vm, nets, 3);

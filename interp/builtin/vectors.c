@@ -97,7 +97,7 @@ static bool distance_to_shape(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < rows; i++) {
     if ((row[i].first >> call->values[1].type & 1) == 0) continue;
     CagValue swapped[] = {call->values[1], call->values[0]};
-    CagCall other = {call->vm, &row[i], swapped, 2};
+    CagCall other = {call->vm, &row[i], swapped, 2, call->err};
     return row[i].function(&other, result);
   }
   return cag_fail_type(call, 1, "a point");

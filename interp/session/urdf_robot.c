@@ -172,21 +172,21 @@ static char *file_name(CagUrdf *u, const char *link) {
 }
 
 static bool mesh_of(Walk *w, CagScene *scene, const CagItem *item, CagMesh **out) {
-  CagError err = {0};
+  CagError *err = w->call.err;
   scene->tolerance = w->how->tolerance;
   scene->max_triangles = w->how->max_triangles;
   scene->interrupt = w->how->interrupt;
   scene->bounds = w->how->bounds;
-  CagStatus status = cag_item_mesh(scene, item, out, &err);
-  if (status != CAG_OK) return cag_geometry_ok(&w->call, status, &err);
+  CagStatus status = cag_item_mesh(scene, item, out, err);
+  if (status != CAG_OK) return cag_geometry_ok(&w->call, status);
   w->triangles += (*out)->triangle_count;
   if (w->triangles <= w->how->max_triangles) return !w->call.vm->failed;
   cag_mesh_release(*out);
   *out = NULL;
-  cag_fail(&err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
+  cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
            "the meshes have more than the %zu triangles allowed (--max-triangles)",
            w->how->max_triangles);
-  return cag_geometry_ok(&w->call, CAG_E_LIMIT, &err);
+  return cag_geometry_ok(&w->call, CAG_E_LIMIT);
 }
 
 static double density_of(CagValue leaf) {
@@ -211,7 +211,6 @@ static bool add_item(Walk *w, CagScene *scene, CagValue leaf) {
   const CagItem *item = &scene->items[0];
   const CagMaterial *material = &scene->materials[item->material];
   CagMesh *mesh = NULL;
-  CagError err = {0};
   CagUrdfMass mass;
   if (!mesh_of(w, scene, item, &mesh)) return false;
   if (mesh->triangle_count == 0) {
@@ -226,8 +225,8 @@ static bool add_item(Walk *w, CagScene *scene, CagValue leaf) {
   s->material =
       keep_material(u, material_name(leaf), material->color, 1 - fmin(1, material->transmission));
   u->meshes = true;
-  CagStatus status = cag_urdf_item_mass(item, density_of(leaf), &mass, &err);
-  if (!cag_geometry_ok(&w->call, status, &err)) return false;
+  CagStatus status = cag_urdf_item_mass(item, density_of(leaf), &mass, w->call.err);
+  if (!cag_geometry_ok(&w->call, status)) return false;
   mass.center = cag_transform_point(&w->at, mass.center);
   CagUrdfMass turned = mass;
   for (int i = 0; i < 3; i++)
@@ -435,10 +434,11 @@ bool cag_urdf_of_robot(CagVm *vm, const CagRobotValue *robot, const CagUrdfHow *
   const CagRobot *r = robot->robot;
   size_t rows, joint = 0, most = 2 * r->link_count + 3; // a screw is two
   *out = (CagUrdf){.coupled = r->coupling != NULL};
-  Walk w = {.call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), NULL, 0},
-            .how = how,
-            .u = out,
-            .value = robot};
+  Walk w = {
+      .call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), NULL, 0, &vm->core_error},
+      .how = how,
+      .u = out,
+      .value = robot};
   out->name = robot->name->length > 0 ? text_of(out, robot->name->bytes) : "robot";
   out->links = cag_arena_alloc(&out->arena, most * sizeof *out->links);
   out->joints = cag_arena_alloc(&out->arena, most * sizeof *out->joints);

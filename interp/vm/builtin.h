@@ -28,7 +28,8 @@ typedef struct CagCall {
   CagVm *vm;
   const struct CagBuiltin *builtin;
   CagValue *values;
-  size_t count; // at least the number of named parameters
+  size_t count;  // at least the number of named parameters
+  CagError *err; // for functions of the core to write their errors to; the same for all calls
 } CagCall;
 
 typedef bool (*CagBuiltinFunction)(CagCall *call, CagValue *result); // false: an error was set

@@ -216,7 +216,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   if (vm->top > vm->paid_end) cag_pay_for_values(vm, vm->top);
   vm->native = &native;
   const size_t held = vm->held_count;
-  CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
+  CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total, .err = &vm->core_error};
   *result = cag_none();
   CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
   bool ok = function(&call, result);

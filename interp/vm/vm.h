@@ -196,6 +196,7 @@ struct CagVm {
   CagTailPlace *tails; // frame_limit x CAG_TAIL_KEPT, reserved lazily
   CagValue *roots;
   size_t root_count, root_capacity;
+  CagError core_error; // CagCall.err of all calls
   // Values that geometry refers to, in slots that keep their numbers; free ones are CAG_UNSET and
   // hold the next free one + 1.
   CagValue *kept;
