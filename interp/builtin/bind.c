@@ -135,11 +135,7 @@ bool cag_bind(CagCall *call, void *out, size_t size) {
   memset(out, 0, size);
   for (size_t i = 0; i < s->count; i++) {
     const CagParameterType *type = &types->items[i];
-    CagValue *v = &call->values[i];
-    if (v->type == CAG_NONE && type->kind != CAG_BIND_VALUE && s->defaults[i] &&
-        strcmp(s->defaults[i], "none") == 0)
-      *v = cag_unset();
-    if (v->type == CAG_UNSET) set_default(types, type, out);
+    if (!cag_given(call, (int)i)) set_default(types, type, out);
     else if (!bind_argument(call, (int)i, type, (char *)out + type->offset)) return false;
   }
   return true;

@@ -306,10 +306,8 @@ bool cag_bsplines_curvature_comb(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c)) return false;
   const size_t pieces = (c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0) + 1;
   const long usual = pieces < SEGMENTS_MAX / TEETH ? (long)pieces * TEETH + 1 : SEGMENTS_MAX;
-  const bool given = cag_given(call, 2) && call->values[2].type != CAG_NONE;
-  if ((cag_given(call, 1) && call->values[1].type != CAG_NONE
-           ? !cag_arg_integer(call, 1, 2, SEGMENTS_MAX, &n)
-           : (n = usual, false)) ||
+  const bool given = cag_given(call, 2);
+  if ((cag_given(call, 1) ? !cag_arg_integer(call, 1, 2, SEGMENTS_MAX, &n) : (n = usual, false)) ||
       (given && !cag_arg_finite(call, 2, &scale)) ||
       !cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err)))
     return false;

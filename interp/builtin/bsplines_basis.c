@@ -7,10 +7,6 @@
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/curves.h"
 
-static bool is_set(CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 // Most knots that one call makes.
 #define KNOTS_MAX 100000000
 
@@ -150,7 +146,7 @@ static CagStatus basis_at(const Basis *b, double t, double *out, CagError *err) 
 static bool read_basis_weights(CagCall *call, int argument, Basis *b) {
   size_t count;
   char text[32];
-  if (!is_set(call, argument)) return true;
+  if (!cag_given(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, &b->weights, &count)) return false;
   CagStatus status = CAG_OK;
   if (count != b->n)
@@ -289,7 +285,7 @@ bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
   long i, count = LONG_MAX / 2;
   int p;
   if (!cag_arg_integer(call, 0, 0, KNOTS_MAX, &i) || !cag_arg_degree(call, 1, 2, 3, &p) ||
-      (is_set(call, 3) && !cag_arg_integer(call, 3, 1, KNOTS_MAX, &count)))
+      (cag_given(call, 3) && !cag_arg_integer(call, 3, 1, KNOTS_MAX, &count)))
     return false;
   if (p > CAG_MAX_DEGREE)
     return cag_fail_call(call, 1, CAG_ERR_value, "takes a degree up to %d", CAG_MAX_DEGREE);

@@ -8,7 +8,5 @@
 
 // The equation of a conic from six coefficients, 3 rows of its symmetric matrix, or a curve.
 bool cag_arg_conic(CagCall *call, int argument, CagConic *out);
-// Given, and not none.
-bool cag_conics_said(const CagCall *call, int argument);
 
 #endif

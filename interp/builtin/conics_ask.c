@@ -193,7 +193,7 @@ bool cag_conics_intersect_line(CagCall *call, CagValue *result) {
   CagLineConic kind;
   double row[3] = {0}, t[2];
   if (!cag_arg_conic(call, 0, &k)) return false;
-  if (cag_conics_said(call, 2)) {
+  if (cag_given(call, 2)) {
     if (!read_plane_point(call, 1, &p) || !read_plane_point(call, 2, &q)) return false;
     q = cag_sub(q, p);
   } else {
@@ -273,9 +273,9 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
   CagPlane plane;
   size_t n;
   double value;
-  const bool x = cag_conics_said(call, 1);
+  const bool x = cag_given(call, 1);
   if (!read_plane_curve(call, &c)) return false;
-  if (x == cag_conics_said(call, 2))
+  if (x == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value, "needs one of `x` and `y`");
   if (!cag_arg_finite(call, x ? 1 : 2, &value)) return false;
   plane.point = x ? cag_vec3(value, 0, 0) : cag_vec3(0, value, 0);

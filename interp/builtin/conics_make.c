@@ -11,10 +11,6 @@
 // Most points that one call makes.
 #define POINTS_MAX 100000000
 
-bool cag_conics_said(const CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 // --- Parabola and hyperbola ---
 
 // As of circles: z along the normal, x level; of a normal along Z x is X.
@@ -24,8 +20,8 @@ static bool read_frame(CagCall *call, int at, CagTransform *out) {
   if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
   if (!cag_given(call, at)) dimension = 2;
   *out = cag_translate(center);
-  out->planar = dimension == 2 && !cag_conics_said(call, at + 1);
-  if (!cag_conics_said(call, at + 1)) return true;
+  out->planar = dimension == 2 && !cag_given(call, at + 1);
+  if (!cag_given(call, at + 1)) return true;
   if (!cag_arg_direction(call, at + 1, center, &normal, NULL)) return false;
   CagVec3 x = cag_cross(cag_vec3(0, 0, 1), normal);
   if (x.x == 0 && x.y == 0) x = cag_vec3(1, 0, 0);
@@ -82,8 +78,8 @@ static bool give_ranged(CagCall *call, CagStatus status, bool backwards, CagCurv
 // Exactly one of range, x and y, of which the last two stand at `x_at` and after.
 static bool read_range(CagCall *call, int range_at, int x_at, double a, double b, Inverse inverse,
                        double *from, double *to, bool *angle) {
-  const bool range = cag_conics_said(call, range_at), x = cag_conics_said(call, x_at),
-             y = cag_conics_said(call, x_at + 1);
+  const bool range = cag_given(call, range_at), x = cag_given(call, x_at),
+             y = cag_given(call, x_at + 1);
   *angle = false;
   if (range + x + y != 1)
     return cag_fail_call(
@@ -299,18 +295,18 @@ bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
     if (d == 3) dimension = 3;
   }
   int said = 0;
-  for (int i = 3; i < 6; i++) said += cag_conics_said(call, i);
+  for (int i = 3; i < 6; i++) said += cag_given(call, i);
   if (said != 1)
     return cag_fail_call(
         call, -1, CAG_ERR_value,
         "needs one of `rho`, `shoulder` and `weight` to say how far the arc bulges");
-  if (cag_conics_said(call, 3)) {
+  if (cag_given(call, 3)) {
     if (!cag_arg_finite(call, 3, &rho)) return false;
     if (!(rho >= 0 && rho < 1))
       return cag_fail_value(call, 3,
                             "a number from 0 (the chord) to less than 1 (0.5: a parabola)");
     weight = rho / (1 - rho);
-  } else if (cag_conics_said(call, 4)) {
+  } else if (cag_given(call, 4)) {
     if (!cag_arg_vec(call, 4, &shoulder, NULL) ||
         !cag_geometry_ok(call,
                          cag_conic_shoulder_weight(p[0], p[1], p[2], shoulder, &weight, call->err)))

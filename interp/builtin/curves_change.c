@@ -187,8 +187,7 @@ bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
 static bool tolerance_of_size(CagCall *call, const CagCurve *c, int argument, double part,
                               double *out) {
   CagBounds box;
-  if (cag_given(call, argument) && call->values[argument].type != CAG_NONE)
-    return read_tolerance(call, argument, out);
+  if (cag_given(call, argument)) return read_tolerance(call, argument, out);
   if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err))) return false;
   *out = part * cag_norm(cag_sub(box.max, box.min));
   return true;

@@ -41,7 +41,7 @@ static CagStatus level_frame(CagVec3 center, CagVec3 normal, CagTransform *out, 
 bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out) {
   CagVec3 center, normal;
   int dimension = 2;
-  bool has_normal = cag_given(call, at + 1) && call->values[at + 1].type != CAG_NONE;
+  bool has_normal = cag_given(call, at + 1);
   if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
   if (!cag_given(call, at)) dimension = 2;
   *out = cag_translate(center);

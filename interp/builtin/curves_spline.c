@@ -6,13 +6,9 @@
 #include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
-static bool is_set(CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out) {
   long given;
-  if (is_set(call, order)) {
+  if (cag_given(call, order)) {
     if (cag_given(call, degree))
       return cag_fail_call(call, order, CAG_ERR_value,
                            "takes `degree` or `order` (one more than the degree), not both");
@@ -28,7 +24,7 @@ bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *ou
 bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out) {
   size_t count;
   *out = NULL;
-  if (!is_set(call, argument)) return true;
+  if (!cag_given(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, out, &count)) return false;
   if (count == n) return true;
   cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
@@ -105,7 +101,7 @@ bool cag_curves_bspline(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_nurbs(CagCall *call, CagValue *result) {
-  if (is_set(call, 4)) return cag_curves_bspline(call, result);
+  if (cag_given(call, 4)) return cag_curves_bspline(call, result);
   cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, one for each point");
   cag_fail_help(call->vm, "without weights it is a `bspline`");
   return false;
@@ -131,7 +127,7 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   bool angle;
   if (!cag_arg_integer(call, 0, 1, INT_MAX, &count) || !cag_arg_degree(call, 1, 3, 3, &degree))
     return false;
-  if (is_set(call, 4)) {
+  if (cag_given(call, 4)) {
     if (!cag_arg_interval(call, 4, &from, &to, &angle)) return false;
     if (angle || !isfinite(from) || !isfinite(to) || !(from < to))
       return cag_fail_type(call, 4, "a range of numbers that ascends");
@@ -147,7 +143,7 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   *result = cag_list_numbers(call->vm, (size_t)count + (size_t)degree + 1, &knots);
   CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  if (is_set(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
+  if (cag_given(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
   return true;
 }
 

@@ -20,8 +20,8 @@ bool cag_figures_label(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 2, cag_label_places, &place) ||
       !cag_arg_choice(call, 3, cag_label_marks, &mark))
     return false;
-  bool sized = cag_given(call, 4) && call->values[4].type != CAG_NONE;
-  bool directed = cag_given(call, 5) && call->values[5].type != CAG_NONE;
+  bool sized = cag_given(call, 4);
+  bool directed = cag_given(call, 5);
   if (sized && !cag_arg_positive(call, 4, &size)) return false;
   if (directed && !cag_arg_direction(call, 5, at, &along, NULL)) return false;
   if (mark == CAG_LABEL_ARROW && !directed)
@@ -49,7 +49,7 @@ static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurv
 // Reads the length: 0 where none is said.
 static bool read_length(CagCall *call, int argument, double *out) {
   *out = 0;
-  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_given(call, argument)) return true;
   if (!cag_arg_finite(call, argument, out)) return false;
   if (*out == 0)
     return cag_fail_call(call, argument, CAG_ERR_value, "expects a length that is not 0");

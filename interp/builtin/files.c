@@ -239,7 +239,7 @@ static bool read_separator(CagCall *call, char *out) {
 }
 
 bool cag_files_read_csv(CagCall *call, CagValue *result) {
-  bool found, header = false, asked = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  bool found, header = false, asked = cag_given(call, 2);
   if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
   Csv *c = csv_new(call);
   if (!read_separator(call, &c->separator) || !reader_open(call, &c->r) || !read_row(c, &found))

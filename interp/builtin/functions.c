@@ -265,7 +265,7 @@ bool cag_functions_natural_curve(CagCall *call, CagValue *result) {
   double length;
   CagTransform frame = cag_transform_identity();
   CagCurve *c;
-  const bool twisted = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  const bool twisted = cag_given(call, 2);
   if (!cag_arg_function(call, 0, &curvature) || !cag_arg_positive(call, 1, &length) ||
       (twisted && !cag_arg_function(call, 2, &torsion)) ||
       (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))

@@ -210,7 +210,7 @@ bool cag_lists_scan(CagCall *call, CagValue *result) { return fold(call, true, r
 // that does ends the search.
 static bool search(CagCall *call, bool wanted, CagValue *result) {
   Loop loop;
-  bool with_function = cag_given(call, 1) && call->values[1].type != CAG_NONE;
+  bool with_function = cag_given(call, 1);
   if (!loop_open(&loop, call, with_function ? 1 : -1, false)) return false;
   bool good = true, found = false;
   for (size_t i = 0; i < loop.source.length && good && !found; i++) {
@@ -308,7 +308,7 @@ static bool sort_values(CagCall *call, const CagList *values, const CagList *key
 
 bool cag_lists_sort(CagCall *call, CagValue *result) {
   Loop loop;
-  bool by = cag_given(call, 1) && call->values[1].type != CAG_NONE;
+  bool by = cag_given(call, 1);
   if (!loop_open(&loop, call, by ? 1 : -1, true)) return false;
   CagBuilder *keys = cag_builder_new(call->vm);
   cag_root_push(call->vm, cag_builder_value(keys));

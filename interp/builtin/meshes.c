@@ -199,14 +199,11 @@ static bool read_how(CagCall *call, CagTessellation *how) {
   *how = CAG_TESSELLATION_DEFAULT;
   if (call->vm->max_triangles > 0) how->max_triangles = call->vm->max_triangles;
   how->interrupt = cag_vm_stop(call->vm);
-  if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
-      !cag_arg_positive(call, 1, &how->tolerance))
-    return false;
+  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &how->tolerance)) return false;
   if (!cag_arg_angle_or(call, 2, how->angle, &how->angle)) return false;
   if (!(how->angle > 0))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects an angle greater than 0");
-  return !cag_given(call, 3) || call->values[3].type == CAG_NONE ||
-         cag_arg_positive(call, 3, &how->max_edge);
+  return !cag_given(call, 3) || cag_arg_positive(call, 3, &how->max_edge);
 }
 
 bool cag_solids_tessellate(CagCall *call, CagValue *result) {

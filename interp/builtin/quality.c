@@ -62,7 +62,7 @@ static bool make_meshes(CagCall *call, int tolerance, MakeMesh make, const void 
   CagList *shapes;
   if (call->vm->max_triangles > 0) how.max_triangles = call->vm->max_triangles;
   how.interrupt = cag_vm_stop(call->vm);
-  bool said = cag_given(call, tolerance) && call->values[tolerance].type != CAG_NONE;
+  bool said = cag_given(call, tolerance);
   if ((said && !cag_arg_positive(call, tolerance, &how.tolerance)) || !read_shapes(call, &shapes))
     return false;
   // Formulas are called back: the shapes stay.
@@ -175,7 +175,7 @@ bool cag_quality_colored_by(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 3, scales, &colors))
     return false;
   CagSurfaceValue value = (CagSurfaceValue)kind;
-  bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  bool said = cag_given(call, 2);
   if (said && !read_span(call, 2, value == CAG_VALUE_SLOPE, &from, &to)) return false;
   Meshes *parts = hold_meshes(call);
   if (!make_meshes(call, 4, value_mesh, &value, parts)) return false;
@@ -263,7 +263,7 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
 static bool read_across(CagCall *call, int argument, CagVec3 eye, CagVec3 *out) {
   const double parallel = 1e-9; // sine
   CagVec3 v = cag_vec3(0, 0, 1);
-  bool said = cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+  bool said = cag_given(call, argument);
   if (said && !cag_arg_direction(call, argument, v, &v, NULL)) return false;
   if (!said && cag_norm(cag_cross(v, eye)) < parallel) v = cag_vec3(0, 1, 0);
   v = cag_unit(v);
@@ -279,7 +279,7 @@ bool cag_quality_zebra(CagCall *call, CagValue *result) {
   const CagVec3 usual = {0.4, -0.8, 0.5}; // from the front, a little above
   Zebra z;
   long stripes;
-  bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  bool said = cag_given(call, 2);
   z.eye = usual;
   if (!cag_arg_integer_or(call, 1, 8, 1, CAG_SCALE_STRIPES_MAX, &stripes) ||
       (said && !cag_arg_direction(call, 2, usual, &z.eye, NULL)))
@@ -359,12 +359,8 @@ bool cag_quality_isophotes(CagCall *call, CagValue *result) {
   size_t n;
   CagList *shapes;
   CagCurveList *list = cag_hold_curve_list(call);
-  if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
-      !cag_arg_direction(call, 1, direction, &direction, NULL))
-    return false;
-  if (cag_given(call, 3) && call->values[3].type != CAG_NONE &&
-      !cag_arg_positive(call, 3, &tolerance))
-    return false;
+  if (cag_given(call, 1) && !cag_arg_direction(call, 1, direction, &direction, NULL)) return false;
+  if (cag_given(call, 3) && !cag_arg_positive(call, 3, &tolerance)) return false;
   if (!read_shapes(call, &shapes) || !read_levels(call, 2, &cosines, &n)) return false;
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   bool ok = true;

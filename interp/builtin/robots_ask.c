@@ -72,8 +72,7 @@ bool cag_arg_joints(CagCall *call, int argument, const CagRobot *r, bool limits,
 
 bool cag_arg_joints_or_home(CagCall *call, int argument, const CagRobot *r, bool limits,
                             double *q) {
-  if (cag_given(call, argument) && call->values[argument].type != CAG_NONE)
-    return cag_arg_joints(call, argument, r, limits, q);
+  if (cag_given(call, argument)) return cag_arg_joints(call, argument, r, limits, q);
   cag_robot_home(r, q);
   return true;
 }
@@ -105,7 +104,7 @@ CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q) {
 // A link's number: 0 (the base) .. the number of links.
 static bool read_frame(CagCall *call, int argument, const CagRobot *r, long fallback, long *out) {
   *out = fallback;
-  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_given(call, argument)) return true;
   return cag_arg_integer(call, argument, 0, (long)r->link_count, out);
 }
 

@@ -7,14 +7,10 @@
 
 // --- Links ---
 
-static bool said(const CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 // The shape of a link: shapes, or lists of them.
 static bool read_shape(CagCall *call, int argument, CagValue *out) {
   *out = cag_none();
-  if (!said(call, argument)) return true;
+  if (!cag_given(call, argument)) return true;
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, call->values[argument], builder)) return false;
   *out = call->values[argument];
@@ -24,7 +20,7 @@ static bool read_shape(CagCall *call, int argument, CagValue *out) {
 // An optional number or angle greater than 0.
 static bool read_rate(CagCall *call, int argument, bool angle, double *out) {
   *out = 0;
-  if (!said(call, argument)) return true;
+  if (!cag_given(call, argument)) return true;
   if (!(angle ? cag_arg_angle(call, argument, out) : cag_arg_finite(call, argument, out)))
     return false;
   return *out > 0 || cag_fail_value(call, argument, "a value greater than 0");
@@ -49,7 +45,7 @@ static bool give_link(CagCall *call, CagRobotLink *l, int home, int shape, CagVa
   CagValue drawn;
   bool turns = l->kind == CAG_JOINT_REVOLUTE;
   if (!read_shape(call, shape, &drawn)) return false;
-  if (home >= 0 && said(call, home)) {
+  if (home >= 0 && cag_given(call, home)) {
     if (!(turns ? cag_arg_angle(call, home, &l->home) : cag_arg_finite(call, home, &l->home)))
       return false;
   } else if (home >= 0) {
@@ -81,7 +77,7 @@ bool cag_robots_revolute(CagCall *call, CagValue *result) {
 // theta, a, alpha, offset, limits, home, shape, speed, effort
 bool cag_robots_prismatic(CagCall *call, CagValue *result) {
   CagRobotLink l = cag_robot_link(CAG_JOINT_PRISMATIC);
-  if (!said(call, 4))
+  if (!cag_given(call, 4))
     return cag_fail_call(call, -1, CAG_ERR_joint_limits,
                          "expects the travel of the joint as `limits`, such as limits: 0..300");
   if (!cag_arg_angle_or(call, 0, 0, &l.theta) || !finite_or_zero(call, 1, &l.a) ||
@@ -172,7 +168,7 @@ static bool read_coupling_offset(CagCall *call, int argument, CagValue list, siz
 static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links, size_t count,
                           Coupling *out) {
   *out = (Coupling){0};
-  if (!said(call, argument)) return true;
+  if (!cag_given(call, argument)) return true;
   CagValue v = call->values[argument], rows = v, offset = cag_unset();
   if (v.type == CAG_RECORD) {
     rows = cag_record_get(CAG_AS_RECORD(v), "matrix");
@@ -198,7 +194,7 @@ static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links
 
 static bool transform_or_identity(CagCall *call, int argument, CagTransform *out) {
   *out = cag_transform_identity();
-  return !said(call, argument) || cag_arg_transform(call, argument, out);
+  return !cag_given(call, argument) || cag_arg_transform(call, argument, out);
 }
 
 // links, name, convention, base, tool, coupling

@@ -36,7 +36,7 @@ static bool read_branch(CagCall *call, int argument, const CagRecord *config, co
 
 static bool read_config(CagCall *call, int argument, CagRobotGoal *goal) {
   CagRecord *config = NULL;
-  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_given(call, argument)) return true;
   return cag_arg_record(call, argument, &config) &&
          read_branch(call, argument, config, "shoulder", &goal->shoulder) &&
          read_branch(call, argument, config, "elbow", &goal->elbow) &&

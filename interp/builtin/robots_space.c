@@ -210,7 +210,7 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < n; i++)
     if (!read_axis(call, 0, cag_list_get(call->vm, list, i), i, &axes[i])) return false;
   if (!read_axis(call, 1, call->values[1], 0, &end)) return false;
-  const bool based = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  const bool based = cag_given(call, 2);
   if (!(based ? cag_arg_pose(call, 2, &base) : default_base(call, &axes[0], &base))) return false;
   const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, call->err);
   return cag_geometry_ok(call, status) && give_assignment(call, links, frames, n, result);

@@ -255,8 +255,7 @@ static bool make_robot(Import *m, CagValue *result) {
 
 static bool name_or_none(CagCall *call, int argument, const char **out) {
   *out = NULL;
-  return !cag_given(call, argument) || call->values[argument].type == CAG_NONE ||
-         cag_arg_text(call, argument, out);
+  return !cag_given(call, argument) || cag_arg_text(call, argument, out);
 }
 
 static bool read_chain(Import *m) {

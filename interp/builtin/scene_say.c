@@ -239,7 +239,7 @@ bool cag_scenes_line_style(CagCall *call, CagValue *result) {
   CagValue values[3];
   for (int i = 0; i < 2; i++) {
     double x = 0;
-    bool given = cag_given(call, i + 1) && call->values[i + 1].type != CAG_NONE;
+    bool given = cag_given(call, i + 1);
     if (given && !cag_arg_positive(call, i + 1, &x)) return false;
     values[i] = given ? cag_number(x) : cag_none();
   }

@@ -64,10 +64,6 @@ static bool scene_result(CagCall *call, CagType type, const char *kind, const ch
   return true;
 }
 
-static bool is_set(CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 // --- Camera ---
 
 // Pixels along one side: more would be 10 GB of picture.
@@ -113,8 +109,8 @@ bool cag_scenes_camera(CagCall *call, CagValue *result) {
   if (!(fov > 0 && fov <= widest * CAG_RADIANS_PER_DEGREE))
     return cag_fail_call(call, 3, CAG_ERR_view, "expects a `fov` above 0deg, of 179deg at most");
   if (!cag_arg_choice(call, 4, kinds, &kind) ||
-      (is_set(call, 5) && !cag_arg_positive(call, 5, &width)) || !read_size(call, 6, &size) ||
-      (is_set(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
+      (cag_given(call, 5) && !cag_arg_positive(call, 5, &width)) || !read_size(call, 6, &size) ||
+      (cag_given(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
       !cag_arg_number_or(call, 8, 0, &aperture))
     return false;
   if (!(aperture >= 0 && isfinite(aperture)))

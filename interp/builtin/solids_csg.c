@@ -296,7 +296,7 @@ static CagStatus heights(double low, double high, CagSolid *out[2], CagError *er
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagSolid **ends = cag_hold_solid_array(call, 2), *made = NULL;
   size_t n = 0;
-  if (cag_given(call, within) && call->values[within].type != CAG_NONE) {
+  if (cag_given(call, within)) {
     CagValue v = call->values[within];
     double low, high;
     bool angle;

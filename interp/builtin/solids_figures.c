@@ -103,8 +103,7 @@ bool cag_solids_arrow(CagCall *call, CagValue *result) {
   CagVec3 p, v;
   if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_direction(call, 1, p, &v, NULL)) return false;
   double radius = SHAFT * cag_norm(v);
-  if (cag_given(call, 2) && call->values[2].type != CAG_NONE && !cag_arg_positive(call, 2, &radius))
-    return false;
+  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &radius)) return false;
   return make_arrow(call, p, v, radius, result);
 }
 

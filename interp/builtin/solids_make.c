@@ -177,7 +177,7 @@ bool cag_solids_solid(CagCall *call, CagValue *result) {
   CagQuadric q;
   if (is_form(v))
     return cag_surfaces_read_form(call, &q) && cag_solids_of_form(call, &q, 1, result);
-  if (cag_given(call, 1) && call->values[1].type != CAG_NONE)
+  if (cag_given(call, 1))
     return cag_fail_call(call, 1, CAG_ERR_value,
                          "is for a quadric given by its 10 numbers or 4 rows; a surface has its "
                          "own range");

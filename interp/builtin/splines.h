@@ -6,10 +6,6 @@
 #include "geom/curve/cubic.h"
 #include "interp/builtin/curves.h"
 
-// splines_make.c: through points by cubic segments; splines_fit.c: from data; splines_ask.c: bases,
-// segments, joints.
-// Whether an argument was given and is not none.
-bool cag_splines_set(const CagCall *call, int argument);
 // A geometry error of the built-ins themselves.
 bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) __attribute__((format(printf, 5, 6)));

@@ -73,7 +73,7 @@ bool cag_splines_interpolate(CagCall *call, CagValue *result) {
   int dimension;
   CagCurve *c = NULL;
   if (!read_data(call, 1, 5, 2, &d) ||
-      (cag_splines_set(call, 3) && !cag_splines_points(call, 3, &tangents, &count, &dimension)))
+      (cag_given(call, 3) && !cag_splines_points(call, 3, &tangents, &count, &dimension)))
     return false;
   cag_hold_for(call, cag_free, tangents);
   if (tangents && dimension != d.dimension)

@@ -10,10 +10,6 @@
 
 // --- Shared ---
 
-bool cag_splines_set(const CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) {
   char message[sizeof call->err->message];
@@ -123,7 +119,7 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
   int dimension;
   double limit = INFINITY;
   CagCurve *c = NULL;
-  if (cag_splines_set(call, 3) && !cag_arg_positive(call, 3, &limit)) return false;
+  if (cag_given(call, 3) && !cag_arg_positive(call, 3, &limit)) return false;
   if (!read_data(call, 2, CAG_SPACING_UNIFORM, &d) ||
       !cag_splines_points(call, 1, &tangents, &count, &dimension))
     return false;
@@ -154,11 +150,11 @@ static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue 
 static bool check_tangent(CagCall *call, int argument) {
   CagVec3 v;
   int dimension;
-  return !cag_splines_set(call, argument) || cag_arg_vec(call, argument, &v, &dimension);
+  return !cag_given(call, argument) || cag_arg_vec(call, argument, &v, &dimension);
 }
 
 static CagValue tangent_or_none(CagCall *call, int argument) {
-  return cag_splines_set(call, argument) ? call->values[argument] : cag_none();
+  return cag_given(call, argument) ? call->values[argument] : cag_none();
 }
 
 bool cag_splines_clamped(CagCall *call, CagValue *result) {
@@ -196,7 +192,7 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
   const CagValue direction = cag_record_get(r, "direction");
   const double *x;
   size_t n;
-  if (v.type == CAG_NONE || v.type == CAG_UNSET) return true;
+  if (v.type == CAG_UNSET || v.type == CAG_NONE) return true;
   const char *where = end ? "finish" : "start";
   if (!cag_as_vector(v, &x, &n))
     return cag_fail_call(call, 1, CAG_ERR_value, "expects a vector as `%s` of the end conditions",
@@ -248,7 +244,7 @@ static bool read_ends(CagCall *call, int argument, const Data *d, CagCubicEnds *
 // One tension for all inner points, or one for each, held; NULL where there is none.
 static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
   *out = NULL;
-  if (!cag_splines_set(call, argument) || n < 3) return true;
+  if (!cag_given(call, argument) || n < 3) return true;
   const size_t inner = n - 2;
   const double *x = NULL;
   double same = 0;

@@ -93,8 +93,8 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   double at;
   if (!cag_arg_side(call, 0, &s)) return false;
-  bool u = cag_given(call, 1) && call->values[1].type != CAG_NONE;
-  bool v = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  bool u = cag_given(call, 1);
+  bool v = cag_given(call, 2);
   if (u == v)
     return cag_fail_call(call, u ? 2 : -1, CAG_ERR_value,
                          "expects either `u:` or `v:`, which is fixed");

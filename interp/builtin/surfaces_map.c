@@ -208,9 +208,7 @@ bool cag_surfaces_map_onto(CagCall *call, CagValue *result) {
   double tolerance = 0;
   CagValue g = call->values[0];
   if (!cag_arg_surface(call, 1, &s)) return false;
-  if (cag_given(call, 2) && call->values[2].type != CAG_NONE &&
-      !cag_arg_positive(call, 2, &tolerance))
-    return false;
+  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &tolerance)) return false;
   if (g.type == CAG_GROUP || g.type == CAG_LIST) return map_several(call, s, tolerance, result);
   return map_one(call, g, s, tolerance, result);
 }
@@ -226,10 +224,8 @@ bool cag_surfaces_remap(CagCall *call, CagValue *result) {
                              &lambda))
     return false;
   CagValue a = call->values[2], b = call->values[3];
-  if (a.type == CAG_UNSET || a.type == CAG_NONE)
-    a = cag_domain_value(call->vm, s->angular_u, s->u0, s->u1);
-  if (b.type == CAG_UNSET || b.type == CAG_NONE)
-    b = cag_domain_value(call->vm, s->angular_v, s->v0, s->v1);
+  if (a.type == CAG_UNSET) a = cag_domain_value(call->vm, s->angular_u, s->u0, s->u1);
+  if (b.type == CAG_UNSET) b = cag_domain_value(call->vm, s->angular_v, s->v0, s->v1);
   CagValue arguments[4] = {call->values[0], f, a, b};
   if (!cag_call(call->vm, lambda, arguments, 4, result))
     return tell_of_mapping(call, 1, "expects a function that gives [u, v] of the surface as `f`");

@@ -49,9 +49,7 @@ bool cag_meetings_intersect(CagCall *call, CagValue *result) {
   double tolerance = 0;
   const CagValue other = call->values[1];
   if (!cag_arg_surface(call, 0, &s)) return false;
-  if (cag_given(call, 2) && call->values[2].type != CAG_NONE &&
-      !cag_arg_positive(call, 2, &tolerance))
-    return false;
+  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &tolerance)) return false;
   if (other.type == CAG_CURVE) return with_curve(call, s, CAG_AS_SHAPE(other)->as.curve, result);
   CagCurveList *list = cag_hold_curve_list(call);
   if (other.type == CAG_PLANE)

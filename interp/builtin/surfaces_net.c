@@ -61,7 +61,7 @@ static bool read_net(CagCall *call, Net *net) {
 
 static bool read_weights(CagCall *call, int argument, Net *net) {
   CagList *rows;
-  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_given(call, argument)) return true;
   if (!cag_arg_list(call, argument, &rows)) return false;
   net->weights = cag_hold(call, cag_malloc(net->nu * net->nv * sizeof *net->weights));
   bool fits = rows->length == net->nu;
@@ -95,7 +95,7 @@ static CagValue one_of_two(CagCall *call, int argument, int direction) {
 
 // `degree`, or one less than `order`.
 static bool read_degree(CagCall *call, int degree, int order, int direction, int *out) {
-  bool by_order = cag_given(call, order) && call->values[order].type != CAG_NONE;
+  bool by_order = cag_given(call, order);
   *out = 3;
   if (by_order && cag_given(call, degree))
     return cag_fail_call(call, order, CAG_ERR_value, "takes `degree` or `order`, not both");
@@ -177,8 +177,7 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {
-  if (cag_given(call, 4) && call->values[4].type != CAG_NONE)
-    return cag_surfaces_bspline_surface(call, result);
+  if (cag_given(call, 4)) return cag_surfaces_bspline_surface(call, result);
   cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, in rows as the points");
   cag_fail_help(call->vm, "without weights it is a `bspline_surface`");
   return false;

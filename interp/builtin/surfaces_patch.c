@@ -119,7 +119,7 @@ typedef struct GridData {
 } GridData;
 
 static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
-  if (!cag_given(call, 3) || call->values[3].type == CAG_NONE) return true;
+  if (!cag_given(call, 3)) return true;
   CagList *list;
   if (!cag_arg_list(call, 3, &list)) return false;
   if (list->length != 2) return cag_fail_value(call, 3, "two lists, for u and v");

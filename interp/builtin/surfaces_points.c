@@ -400,7 +400,7 @@ bool cag_tensors_set_point(CagCall *call, CagValue *result) {
   if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, LONG_MAX, &i) ||
       !cag_arg_integer(call, 2, 0, LONG_MAX, &j) || !cag_arg_vec(call, 3, &p, NULL))
     return false;
-  if (cag_given(call, 4) && call->values[4].type != CAG_NONE) {
+  if (cag_given(call, 4)) {
     if (!cag_arg_finite(call, 4, &weight)) return false;
     if (weight < 0) {
       char text[32];
@@ -478,7 +478,7 @@ bool cag_tensors_bezier_join(CagCall *call, CagValue *result) {
 // A list of two sides, or none.
 bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
   CagValue v = call->values[argument];
-  *given = v.type != CAG_UNSET && v.type != CAG_NONE;
+  *given = cag_given(call, argument);
   if (!*given) return true;
   const bool both = v.type == CAG_TEXT;
   bool good = both || (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2);

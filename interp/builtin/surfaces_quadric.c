@@ -11,7 +11,7 @@
 
 static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
   CagValue v = call->values[argument];
-  *given = v.type != CAG_UNSET && v.type != CAG_NONE;
+  *given = cag_given(call, argument);
   *z_only = false;
   *box = (CagBounds){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
   if (!*given) return true;

@@ -5,16 +5,12 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static bool named(const CagCall *call, int argument) {
-  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
 // One of `u:` and `v:`, the parameters from `at` on; *direction is which, *t its value.
 static bool read_place(CagCall *call, const CagSurface *s, int at, int *direction, double *t) {
-  bool u = named(call, at), v = named(call, at + 1);
+  bool u = cag_given(call, at), v = cag_given(call, at + 1);
+  *direction = u ? 0 : 1;
   if (u == v)
     return cag_fail_call(call, u ? at + 1 : -1, CAG_ERR_value, "expects either `u:` or `v:`");
-  *direction = u ? 0 : 1;
   return u ? cag_arg_parameter(call, at, s->angular_u, s->u0, s->u1, false, t)
            : cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, t);
 }
@@ -47,9 +43,9 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
 bool cag_surfaces_trim(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   if (!cag_arg_surface(call, 0, &s)) return false;
-  if (named(call, 1)) {
+  if (cag_given(call, 1)) {
     CagRegion *region;
-    if (named(call, 2) || named(call, 3))
+    if (cag_given(call, 2) || cag_given(call, 3))
       return cag_fail_call(call, 1, CAG_ERR_value, "takes `curves` or ranges u and v, not both");
     if (!read_loops(call, 1, &region)) return false;
     CagStatus status = cag_surface_trimmed(s, region, &out, call->err);
@@ -57,8 +53,8 @@ bool cag_surfaces_trim(CagCall *call, CagValue *result) {
     return cag_changed_surface_result(call, status, &out, result);
   }
   double u0 = s->u0, u1 = s->u1, v0 = s->v0, v1 = s->v1;
-  if ((named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_u, &u0, &u1)) ||
-      (named(call, 3) && !cag_arg_parameter_range(call, 3, s->angular_v, &v0, &v1)))
+  if ((cag_given(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_u, &u0, &u1)) ||
+      (cag_given(call, 3) && !cag_arg_parameter_range(call, 3, s->angular_v, &v0, &v1)))
     return false;
   return cag_changed_surface_result(call, cag_surface_part(s, u0, u1, v0, v1, &out, call->err),
                                     &out, result);

@@ -125,7 +125,7 @@ bool cag_sections_section_conic(CagCall *call, CagValue *result) {
 
 static bool read_tolerance(CagCall *call, int argument, double *tolerance) {
   *tolerance = 0;
-  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_given(call, argument)) return true;
   return cag_arg_positive(call, argument, tolerance);
 }
 
@@ -198,8 +198,8 @@ bool cag_sections_contour(CagCall *call, CagValue *result) {
   CagVec3 direction = {0, 0, 0}, eye = {0, 0, 0};
   double tolerance;
   CagList *shapes;
-  bool central = cag_given(call, 2) && call->values[2].type != CAG_NONE;
-  bool parallel = cag_given(call, 1) && call->values[1].type != CAG_NONE;
+  bool central = cag_given(call, 2);
+  bool parallel = cag_given(call, 1);
   if (central == parallel)
     return cag_fail_call(call, -1, CAG_ERR_value,
                          "needs either the direction of the view or, as `from`, the eye's place");

@@ -223,8 +223,8 @@ static bool make_project(CagCall *call, int at, CagTransform *out) {
   CagPlane onto;
   CagVec3 along = {0, 0, 0}, from;
   int dimension;
-  bool parallel = cag_given(call, at + 1) && call->values[at + 1].type != CAG_NONE;
-  bool central = cag_given(call, at + 2) && call->values[at + 2].type != CAG_NONE;
+  bool parallel = cag_given(call, at + 1);
+  bool central = cag_given(call, at + 2);
   if (!cag_arg_plane(call, at, &onto)) return false;
   if (parallel && central)
     return cag_fail_call(call, at + 2, CAG_ERR_value,

@@ -210,6 +210,8 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
     for (size_t i = count; i < s->count; i++) values[i] = cag_unset();
     if (total < s->count) total = s->count;
   }
+  for (size_t i = s->required; i < s->count; i++)
+    if (values[i].type == CAG_NONE && s->none_is_unset[i]) values[i] = cag_unset();
   CagValue *top = vm->top;
   if (values + total > vm->top) vm->top = values + total;
   if (vm->top > vm->high_water) vm->high_water = vm->top;

@@ -302,6 +302,8 @@ static void add_parameter(CagSignature *out, const Pieces *pieces) {
   out->positional_only[i] = name[1] == 0 && name[0] >= 'A' && name[0] <= 'Z';
   if (pieces->fallback.start) out->defaults[i] = ended(pieces->fallback);
   else out->required = i + 1;
+  out->none_is_unset[i] = out->defaults[i] && strcmp(out->defaults[i], "none") == 0 &&
+                          strcmp(out->words[i], "any value") != 0;
 }
 
 // Bytes for the types of a signature and what they point to.
@@ -365,6 +367,7 @@ void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena) {
   out->parameters = cag_arena_alloc(arena, most * sizeof *out->parameters);
   out->words = cag_arena_alloc(arena, most * sizeof *out->words);
   out->defaults = cag_arena_alloc(arena, most * sizeof *out->defaults);
+  out->none_is_unset = cag_arena_alloc(arena, most * sizeof *out->none_is_unset);
   out->positional_only = cag_arena_alloc(arena, most * sizeof *out->positional_only);
   const char *end = strrchr(open + 1, ')');
   for (const char *s = open + 1; s < end; s++) {

@@ -97,6 +97,7 @@ typedef struct CagSignature {
   const char **parameters;   // names
   const char **words;        // types as written: "length > 0"
   const char **defaults;     // the default's text, NULL where there is none
+  bool *none_is_unset;       // the default is none: giving none is like giving nothing
   bool *positional_only;     // a single capital: by position only
   bool variadic;             // `...`: any number of further arguments by position
   CagParameterTypes *parsed; // see cag_signature_types
