@@ -112,6 +112,11 @@ $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BU
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 
+# Makes man pages of Markdown, for tools/man.sh.
+$(BUILD)/tools/markdown_man: tools/markdown_man.c
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $< -o $@ $(LDLIBS_ALL)
+
 # Allocation functions that tests wrap to make them fail (tests/fuzz/failing.h).
 WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
 WRAP := $(foreach f,$(WRAPPED),-Wl,--wrap=$(f))
@@ -165,13 +170,13 @@ $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(WRAP) $(LDLIBS_ALL)
 
-test-programs: all $(BUILD)/tools/tables $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
+test-programs: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
 # Builds and runs all suites under AddressSanitizer and UndefinedBehaviorSanitizer. The Clang programs have a directory of their own and
 # serve the shorter run of tools/test.sh.
-SANITIZED := OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
+SANITIZED := OPT="-O1 -DCAG_CHECKED" SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
 test-sanitize:
 	$(MAKE) BUILD=$(BUILD)-sanitize $(SANITIZED) test
 test-programs-clang:
@@ -227,7 +232,7 @@ check-layers:
 	python3 tools/check_layers.py
 
 # The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.
-install: all $(BUILD)/tools/tables
+install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin $(LIBDIR)/pkgconfig include share)
 	install -m 755 $(BUILD)/cag $(DESTDIR)$(PREFIX)/bin/cag
 	install -m 644 $(BUILD)/libcag.a $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.a
@@ -238,10 +243,10 @@ install: all $(BUILD)/tools/tables
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
 	  > $(DESTDIR)$(PREFIX)/$(LIBDIR)/pkgconfig/libcag.pc
 	$(BUILD)/tools/tables > $(BUILD)/tables.txt
-	sh tools/install.sh $(BUILD)/tables.txt $(DESTDIR)$(PREFIX)/share
+	sh tools/install.sh $(BUILD)/tables.txt $(BUILD)/tools/markdown_man $(DESTDIR)$(PREFIX)/share
 
 # Debian packages in $(BUILD)/deb: the program, the library, and what programs that use it are built with.
-deb: all $(BUILD)/tools/tables
+deb: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	BUILD=$(BUILD) VERSION=$(VERSION) sh packaging/deb.sh
 # The names of the built-in functions in the files for editors.
 editors: $(BUILD)/tools/tables

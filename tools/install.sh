@@ -1,8 +1,9 @@
 #!/bin/sh
 # What `make install` puts beside the program and the libraries: man pages, completions, documents, examples, files for editors.
-#   sh tools/install.sh TABLES SHARE        TABLES is what build/tools/tables wrote, SHARE the folder share/ of the installation
+#   sh tools/install.sh TABLES CONVERTER SHARE
+# TABLES is what build/tools/tables wrote, CONVERTER is build/tools/markdown_man, and SHARE is the folder share/ of the installation.
 set -eu
-tables=$1 share=$2
+tables=$1 converter=$(realpath "$2") share=$3
 cd "$(dirname "$0")/.."
 
 # put FOLDER FILE ...: copies files into a folder of SHARE.
@@ -13,7 +14,7 @@ put() {
   install -m 644 "$@" "$folder"
 }
 
-sh tools/man.sh "$share/man" < "$tables"
+sh tools/man.sh "$converter" "$share/man" < "$tables"
 mkdir -p "$share/bash-completion/completions" "$share/zsh/site-functions"
 sh tools/completion.sh bash < "$tables" > "$share/bash-completion/completions/cag"
 sh tools/completion.sh zsh < "$tables" > "$share/zsh/site-functions/_cag"

@@ -218,7 +218,7 @@ cd ..
 it 'there is a man page for each command, with its sections'
 for command in $("$CAG" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]\{1,\}\).*/\1/p'); do
   exists "$prefix/share/man/man1/cag-$command.1"
-  grep -q "^\\.BR cag.-$command (1)" "$prefix/share/man/man1/cag.1" || wrong "cag.1 does not name cag-$command"
+  grep -q "^.fBcag.-$command.fP(1)" "$prefix/share/man/man1/cag.1" || wrong "cag.1 does not name cag-$command"
 done
 for section in NAME SYNOPSIS DESCRIPTION EXAMPLES OPTIONS 'EXIT STATUS' 'SEE ALSO'; do
   grep -q "^.SH $section" "$prefix/share/man/man1/cag-render.1" || wrong "cag-render.1 lacks $section"

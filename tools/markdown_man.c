@@ -1,0 +1,15 @@
+// Reads Markdown (CommonMark) from standard input and writes it as the text of a man page, by the
+// writer of libcmark-gfm. tools/man.sh adds the title and adapts the result to mandoc.
+
+#include <cmark-gfm.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int main(void) {
+  cmark_node *document = cmark_parse_file(stdin, CMARK_OPT_DEFAULT);
+  char *page = document ? cmark_render_man(document, CMARK_OPT_DEFAULT, 0) : NULL;
+  if (!page || ferror(stdin) || fputs(page, stdout) == EOF || fclose(stdout) == EOF) return 1;
+  free(page);
+  cmark_node_free(document);
+  return 0;
+}
