@@ -10,9 +10,10 @@
 #include "base/sort.h"
 #include "base/stop.h"
 #include "geom/linalg/dense.h"
+#include "geom/linalg/tolerance.h"
 
 // x closer together than this share of their range are one.
-#define SAME_X 1e-12
+#define SAME_X CAG_ROUNDING
 
 static int ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;

@@ -16,13 +16,14 @@
 
 #include "base/memory.h"
 #include "geom/boolean/net.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/mesh/edges.h"
 
 // How far points of one plane or line may be off, of the largest coordinate: some thousand units of
 // rounding, since operands were turned and moved before, and a plane is told by one triangle.
-#define FLATNESS 1e-12
+#define FLATNESS CAG_ROUNDING
 #define SAME_DIRECTION (1 - 1e-6) // cosine of 0.08 degrees, as in cag_mesh_weld
-#define SAME_AREA 1e-9
+#define SAME_AREA CAG_COINCIDENT
 // Faces that rounding spoiled are left out, and the rest is tried again this often.
 #define ROUNDS 4
 #define STOP_INTERVAL 64

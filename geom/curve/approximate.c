@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/linalg/tolerance.h"
 
 // Halvings of a smooth piece, and pieces, at which a curve counts as one that cannot be fitted.
 #define DEPTH 40
@@ -19,7 +20,7 @@
 // The measured error may be this part of the tolerance: the largest lies between the samples.
 #define SAFETY 0.9
 // Derivatives of both sides that differ by less than this part are one.
-#define SMOOTH 1e-9
+#define SMOOTH CAG_COINCIDENT
 
 typedef struct Node {
   double t;

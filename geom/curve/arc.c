@@ -9,10 +9,11 @@
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Axes count as equal and perpendicular to this part of their length: circles keep their name
 // through rounding.
-#define ROUND 1e-12
+#define ROUND CAG_ROUNDING
 
 typedef struct Arc {
   CagCurve base;
@@ -177,7 +178,7 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
   const double from = c->phase + c->rate * curve->start,
                sweep = c->rate * (curve->end - curve->start);
   // A sweep that is a quarter turn but for rounding is one piece.
-  const double slack = 1e-9;
+  const double slack = CAG_PARALLEL;
   const size_t m = (size_t)fmax(1, ceil(fabs(sweep) / (M_PI / 2) - slack)), n = 2 * m + 1;
   CagVec3 *points = cag_malloc(sizeof *points * n);
   double *weights = cag_malloc(sizeof *weights * n), *knots = cag_malloc(sizeof *knots * (n + 3));

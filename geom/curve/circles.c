@@ -12,10 +12,11 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Directions whose sine is less are parallel; lengths are one to this share.
-#define PARALLEL 1e-12
-#define SAME_LENGTH 1e-12
+#define PARALLEL CAG_ROUNDING
+#define SAME_LENGTH CAG_ROUNDING
 
 static CagVec3 left_of(CagVec3 d) { return cag_vec3(-d.y, d.x, 0); }
 static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }

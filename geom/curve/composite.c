@@ -12,9 +12,10 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
+#include "geom/linalg/tolerance.h"
 
 // Ends meet when their gap is this part of the size of the curves or less.
-#define MEET 1e-9
+#define MEET CAG_COINCIDENT
 
 typedef struct Composite {
   CagCurve base;

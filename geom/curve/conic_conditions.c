@@ -9,15 +9,16 @@
 #include "base/memory.h"
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Singular values are 0 below this share of the largest: conditions that follow from the others.
-#define DEPENDENT 1e-12
+#define DEPENDENT CAG_ROUNDING
 // More conditions than needed may disagree by this share.
-#define DISAGREE 1e-9
+#define DISAGREE CAG_COINCIDENT
 // Coefficients below this share of the largest, data of unit size, are rounding.
 #define NOISE 1e-13
 // A coefficient is a unit to normalize by above this share of the largest.
-#define UNIT 1e-9
+#define UNIT CAG_COINCIDENT
 #define MOST 6
 
 typedef struct Frame {
@@ -243,7 +244,7 @@ CagStatus cag_conic_shoulder_weight(CagVec3 p, CagVec3 apex, CagVec3 q, CagVec3 
   const double v = cag_dot(cag_cross(s, b), normal) / area;
   const double w = cag_dot(cag_cross(a, s), normal) / area, u = 1 - v - w;
   const double off = fabs(cag_dot(s, normal)) / sqrt(area);
-  const double off_plane = 1e-9; // of the triangle's size
+  const double off_plane = CAG_COINCIDENT; // of the triangle's size
   if (!(u > 0 && v > 0 && w > 0) || off > off_plane * (cag_norm(a) + cag_norm(b)))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_shoulder_outside, "shoulder", -1,
                     "`shoulder` must lie inside the triangle of the two ends and the apex");

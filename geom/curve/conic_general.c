@@ -9,15 +9,16 @@
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/linalg/tolerance.h"
 
 // The smaller eigenvalue of the quadratic part is 0 below this share of the larger: coefficients
 // that were turned and rounded still make a parabola, and ellipses may be 3e5 times as long as
 // wide.
 #define FLAT 1e-11
 // A sum is 0 below this share of its terms.
-#define NOTHING 1e-12
+#define NOTHING CAG_ROUNDING
 // Eigenvalues are equal, the conic a circle, to this share of their sum.
-#define ROUND 1e-9
+#define ROUND CAG_COINCIDENT
 
 static void matrix_of(const CagConic *k, double s[3][3]) {
   const double *c = k->c;
@@ -410,7 +411,7 @@ static CagStatus plane_frame(CagPlane plane, CagTransform *out, CagError *err) {
   CagVec3 n = plane.normal;
   if (n.z < 0 || (n.z == 0 && (n.y < 0 || (n.y == 0 && n.x < 0)))) n = cag_scaled(n, -1);
   CagVec3 x = {-n.y, n.x, 0};
-  const double level = 1e-12; // the sine of an angle that rounding makes
+  const double level = CAG_ROUNDING; // the sine of an angle that rounding makes
   if (cag_norm(x) <= level) x = cag_vec3(1, 0, 0);
   return cag_axes(cag_scaled(n, cag_dot(plane.point, n)), x, cag_cross(n, x), out, err);
 }

@@ -7,17 +7,18 @@
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Parts of a domain: of a seam; contacts nearer than the second, and nearer in space than that part
 // of the size, are one; contacts farther apart than the last never are.
-#define SEAM 1e-9
+#define SEAM CAG_COINCIDENT
 #define SAME_PLACE 1e-4
 #define SAME_POINT 1e-7
 #define LINKED_MOST 0.25
 // Contacts of one group that are farther apart than the first part of the size are an overlap if
 // the curve is within the second of the other everywhere between.
 #define OVERLAP 1e-3
-#define COINCIDENT 1e-12
+#define COINCIDENT CAG_ROUNDING
 // Sine of the angle below which a contact may be a touch, and below which it is one.
 #define SHALLOW 1e-2
 #define TANGENTIAL 1e-6

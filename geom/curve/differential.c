@@ -8,10 +8,11 @@
 #include <string.h>
 
 #include "geom/curve/curve.h"
+#include "geom/linalg/tolerance.h"
 
 // A derivative counts as 0 when its Taylor term over the whole domain is this part of the size of
 // the curve.
-#define VANISHES 1e-12
+#define VANISHES CAG_ROUNDING
 // Speeds this small beside the acceleration are looked at closely.
 #define SUSPECT 1e-6
 // Sine of the angle between derivatives that rounding makes of parallel ones.

@@ -4,10 +4,11 @@
 #define CAG_GEOM_CURVE_FAMILY_H
 
 #include "geom/curve/curve.h"
+#include "geom/linalg/tolerance.h"
 
 // Two points are one when they are nearer than this part of the size of the data: the rounding of a
 // few evaluations.
-#define CAG_CURVE_SAME 1e-12
+#define CAG_CURVE_SAME CAG_ROUNDING
 
 // Zeroed block of `size` bytes (a struct that starts with CagCurve) with one reference.
 CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, double start,

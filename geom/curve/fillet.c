@@ -9,12 +9,13 @@
 #include "geom/curve/circles.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
+#include "geom/linalg/tolerance.h"
 
 // Parts of the size of the data: ends that meet; a center found.
-#define MEETS 1e-9
-#define FOUND 1e-12
+#define MEETS CAG_COINCIDENT
+#define FOUND CAG_ROUNDING
 // Turns of less than this are no corner (radians).
-#define SMOOTH 1e-9
+#define SMOOTH CAG_PARALLEL
 #define NEWTON_STEPS 60
 #define SAMPLES 256
 

@@ -6,13 +6,14 @@
 #include "geom/basis/bernstein.h"
 #include "geom/curve/family.h"
 #include "geom/curve/frenet.h"
+#include "geom/linalg/tolerance.h"
 
 // Sine of the angle between derivatives that rounding makes of parallel ones.
 #define PARALLEL 1e-10
 // Unit vectors at right angles are so to this.
-#define ORTHONORMAL 1e-9
+#define ORTHONORMAL CAG_PARALLEL
 // A Taylor term over the whole domain counts as 0 when it is this part of the curve's size.
-#define VANISHES 1e-12
+#define VANISHES CAG_ROUNDING
 
 CagStatus cag_frenet_of(const CagVec3 d[3], double *speed, CagFrenet *out, CagError *err) {
   memset(out, 0, sizeof *out);

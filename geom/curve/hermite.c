@@ -6,6 +6,7 @@
 #include "geom/curve/cubic.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/linalg/tolerance.h"
 
 // --- Polynomials ---
 
@@ -99,7 +100,7 @@ static double flat_cross(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 // Cross products below this part of the factors' sizes are rounding of parallel vectors.
 #define PARALLEL 1e-13
 // A discriminant below this part of its terms is rounding of a double root.
-#define DOUBLE_ROOT 1e-12
+#define DOUBLE_ROOT CAG_ROUNDING
 
 static double cross_or_zero(CagVec3 a, CagVec3 b) {
   const double c = flat_cross(a, b);

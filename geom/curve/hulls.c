@@ -4,11 +4,12 @@
 // towards the origin until no difference lies nearer along its direction.
 
 #include "geom/curve/hulls.h"
+#include "geom/linalg/tolerance.h"
 
 #include <string.h>
 
 // Gaps below this part of the size of the points are contact.
-#define CONTACT 1e-12
+#define CONTACT CAG_ROUNDING
 // The simplex has found the nearest point when no difference is nearer by more than this part.
 #define NEARER 1e-14
 // Each round takes a new difference; far more than any hull needs before rounding stops it.

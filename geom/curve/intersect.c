@@ -15,11 +15,12 @@
 #include "geom/curve/family.h"
 #include "geom/curve/intersect_circles.h"
 #include "geom/curve/intersect_clip.h"
+#include "geom/linalg/tolerance.h"
 
 // Parts of the size of the data: where a curve counts as a chord, where two points are one.
 #define CHORD 1e-11
-#define MEET 1e-9
-#define ZERO 1e-12
+#define MEET CAG_COINCIDENT
+#define ZERO CAG_ROUNDING
 // A part longer than this part of the domain that lies in the other wholly is an overlap.
 #define OVERLAP 1e-3
 // So many places found are looked through for an overlap, and again when there are twice as many.

@@ -3,9 +3,10 @@
 #include <float.h>
 
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Axes of an arc count as those of a circle to this part of their length.
-#define ROUND 1e-12
+#define ROUND CAG_ROUNDING
 // Circles that are so near to each other, as a part of their size, nearly coincide.
 #define NEARLY 1e-3
 // The largest error of a direction, in radians, at which a touch is told in closed form.

@@ -12,6 +12,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/linalg/tolerance.h"
 
 typedef struct Segment {
   int degree;
@@ -98,7 +99,7 @@ static bool clip_across(const Segment *a, const Segment *b, CagVec3 n, double sl
 bool cag_curve_clip_parameters(const CagCurve *a, double a0, double a1, const CagCurve *b,
                                double slack, double *from, double *to) {
   // What the parameters are widened by, as a part of the interval: the rounding of the crossings.
-  const double rounding = 1e-12;
+  const double rounding = CAG_ROUNDING;
   Segment s, t;
   if (!segment_of(a, a0, a1, &s) || !segment_of(b, *from, *to, &t)) return true;
   const CagVec3 chord = cag_sub(cag_project(s.points + 4 * s.degree), cag_project(s.points));

@@ -10,11 +10,12 @@
 #include "geom/curve/family.h"
 #include "geom/curve/line_integral.h"
 #include "geom/curve/nurbs.h"
+#include "geom/linalg/tolerance.h"
 
 // Relative error asked of integrals; the promise is 1e-10.
 #define INTEGRAL 1e-13
 // Part of its size that a curve may leave its plane or line by.
-#define FLAT 1e-9
+#define FLAT CAG_COINCIDENT
 
 static void store(double *out, CagVec3 v) {
   out[0] = v.x;
@@ -150,7 +151,7 @@ static CagStatus solve_length(const CagCurve *c, double a, double b, double tota
 }
 
 CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out, CagError *err) {
-  const double slack = 1e-12; // of the length: s was computed as well
+  const double slack = CAG_ROUNDING; // of the length: s was computed as well
   CagStatus status = cag_curve_check_number(s, "s", err);
   if (status) return status;
   double *cuts, walked = 0, part = 0;

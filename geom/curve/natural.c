@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/function.h"
+#include "geom/linalg/tolerance.h"
 
 // Terms of the series of the frame; the points have one more.
 #define TERMS 15
@@ -212,7 +213,7 @@ static void release(void *context) {
 }
 
 static CagStatus read_frame(const CagTransform *t, Frame *out, CagError *err) {
-  const double slack = 1e-9;
+  const double slack = CAG_COINCIDENT;
   CagVec3 axis[4];
   for (int j = 0; j < 4; j++) axis[j] = cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
   bool good = cag_transform_is_affine(t);

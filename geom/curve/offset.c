@@ -11,11 +11,12 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
+#include "geom/linalg/tolerance.h"
 
 // Turns by less than this (sine) are no corner.
-#define TURN 1e-9
+#define TURN CAG_PARALLEL
 // Sides of a polyline that run straight back have no corner to go to.
-#define STRAIGHT_BACK 1e-9
+#define STRAIGHT_BACK CAG_PARALLEL
 
 static CagVec3 left_of(CagVec3 v) { return cag_vec3(-v.y, v.x, 0); }
 
@@ -49,7 +50,7 @@ static CagStatus shift_line(CagVec3 p, CagVec3 q, double d, CagCurve **out, CagE
 
 // A circle's arc, or false.
 static bool circle_axes(const CagCurve *c, CagVec3 *center, CagVec3 *x, CagVec3 *y, double *rate) {
-  const double round = 1e-12; // part of the radius by which axes may differ
+  const double round = CAG_ROUNDING; // part of the radius by which axes may differ
   if (!cag_curve_arc_axes(c, center, x, y, rate)) return false;
   const double a = cag_norm(*x), b = cag_norm(*y);
   return fabs(a - b) <= round * a && fabs(cag_dot(*x, *y)) <= round * a * b;

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_check.h"
+#include "geom/linalg/tolerance.h"
 
 // Points this near to a loop, as a part of its size, lie on it.
 #define ON_BOUNDARY 1e-10
@@ -174,7 +175,7 @@ static CagStatus check_loop(const CagCurve *c, const char *argument, long index,
 // The loop run counter-clockwise (or clockwise); fails where it bounds nothing.
 static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, CagError *err) {
   // Part of the square of the size under which an area is rounding.
-  const double nothing = 1e-12;
+  const double nothing = CAG_ROUNDING;
   double area;
   CagStatus status = cag_curve_area(c, &area, NULL, err);
   if (status) return status;

@@ -24,9 +24,10 @@
 #include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_chain.h"
+#include "geom/linalg/tolerance.h"
 
 // Points nearer than this part of the size of all are one: what touches count as in intersections.
-#define SAME 1e-9
+#define SAME CAG_COINCIDENT
 // Edges whose ends were moved are cut again where they then meet, so many times at most.
 #define ROUNDS 16
 // Where rounding left loops open the tolerance grows by a factor, so many times.

@@ -14,12 +14,13 @@
 #include "base/sort.h"
 #include "base/stop.h"
 #include "geom/curve/region.h"
+#include "geom/linalg/tolerance.h"
 
 // Chord tolerance of the polygons, as a part of the size.
 #define CROSSING_TOLERANCE 1e-5
 #define CROSSING_ANGLE (M_PI / 18)
 // Edges nearer than this part of the size of all touch.
-#define TOUCH 1e-9
+#define TOUCH CAG_COINCIDENT
 
 static double loop_size(const CagCurve *c) {
   CagBounds b = c->kind->hull(c, c->start, c->end);

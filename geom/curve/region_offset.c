@@ -22,9 +22,10 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_arrange.h"
+#include "geom/linalg/tolerance.h"
 
 // Turns by less than this (sine) are no corner.
-#define TURN 1e-9
+#define TURN CAG_PARALLEL
 // A strip whose far side runs at less than this part of the near side's speed counts as folding.
 #define FOLD 0.05
 // Samples of a smooth part between which the radius of curvature passes |d| once at most.
@@ -32,7 +33,7 @@
 // Halvings that take an interval to neighboring doubles.
 #define BISECTIONS 80
 // Axes of a circle differ by this part at most; a circle shrunk to this part of it is a point.
-#define ROUND 1e-12
+#define ROUND CAG_ROUNDING
 
 typedef struct Raw {
   CagCurve **curves; // owned
@@ -240,7 +241,7 @@ static CagStatus take_part(const CagCurve *c, double a, double b, bool straight,
 // Whether [a, b] is so short that it is rounding, in the parameter and in the plane.
 static CagStatus is_nothing(const CagCurve *c, double a, double b, double size, bool *out,
                             CagError *err) {
-  const double nothing = 1e-12; // part of the whole
+  const double nothing = CAG_ROUNDING; // part of the whole
   CagVec3 p, q;
   *out = !(a < b);
   if (*out) return CAG_OK;
@@ -411,7 +412,7 @@ static CagStatus largest_disc(const CagRegion *r, double *out, CagError *err) {
 
 // Parts of the region's size: a distance below the first is rounding, one above the second leaves
 // the region itself below rounding.
-#define NO_DISTANCE 1e-12
+#define NO_DISTANCE CAG_ROUNDING
 #define FAR 1e9
 
 // --- Convex polygons that shrink ---

@@ -11,11 +11,12 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_arrange.h"
+#include "geom/linalg/tolerance.h"
 
 // Velocities under this part of the largest count as none: a straight line keeps its direction.
 #define STILL 1e-11
 // Axes of a circle differ by this part at most.
-#define ROUND 1e-12
+#define ROUND CAG_ROUNDING
 // Samples of a smooth part in which turns of its direction are looked for, and more by degree.
 #define SAMPLES 24
 #define SAMPLES_PER_DEGREE 4

@@ -4,12 +4,13 @@
 #include <lapacke.h>
 #include <string.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/linalg/transform.h"
 
 // Orthogonality and rank are tested to this fraction of the entries.
-#define CLASS_TOLERANCE 1e-9
+#define CLASS_TOLERANCE CAG_COINCIDENT
 // Points count as on one line or plane when the determinant is this small beside its rows
-#define FLAT 1e-12
+#define FLAT CAG_ROUNDING
 
 // --- Class ---
 

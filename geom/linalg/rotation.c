@@ -5,13 +5,14 @@
 
 #include <string.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/linalg/transform.h"
 
 // Cosine (or sine) of the middle angle under which the outer two turn about the same line
 // (Shuster 1993, A survey of attitude representations).
 #define GIMBAL 1e-10
 // Deviation from a rigid motion that the rounding of a chain of products leaves.
-#define RIGID 1e-9
+#define RIGID CAG_COINCIDENT
 
 static CagStatus fail_not_finite(const char *name, CagError *err) {
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, -1, "`%s` is not a finite number",

@@ -4,6 +4,7 @@
 // turned four times is the mesh itself.
 
 #include "geom/linalg/transform.h"
+#include "geom/linalg/tolerance.h"
 
 #include <float.h>
 #include <string.h>
@@ -12,7 +13,7 @@
 // the rounding of its entries.
 #define SINGULAR 1e-14
 // Deviation from a similarity that the rounding of a few products leaves.
-#define SIMILAR 1e-12
+#define SIMILAR CAG_ROUNDING
 
 // --- Angles ---
 
@@ -364,7 +365,7 @@ CagStatus cag_plane(CagVec3 point, CagVec3 normal, CagPlane *out, CagError *err)
 
 CagStatus cag_plane_through(CagVec3 p, CagVec3 q, CagVec3 r, CagPlane *out, CagError *err) {
   // Sine of the angle at P under which the three points count as on one line.
-  const double flat = 1e-12;
+  const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(p, "P", err);
   if (!status) status = finite_vec(q, "Q", err);
   if (!status) status = finite_vec(r, "R", err);
@@ -471,7 +472,7 @@ static CagTransform frame_of(CagVec3 x, CagVec3 y, CagVec3 z, CagVec3 origin) {
 
 CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagError *err) {
   // Sine of the angle between the axes under which y gives no direction beside x.
-  const double flat = 1e-12;
+  const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(origin, "origin", err);
   if (!status) status = nonzero_vec(x, "x", err);
   if (!status) status = nonzero_vec(y, "y", err);
@@ -488,7 +489,7 @@ CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagE
 
 // z looks from `from` to `to`, y is as far down as it can be: x is to the right.
 CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, CagError *err) {
-  const double flat = 1e-12;
+  const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(from, "from", err);
   if (!status) status = finite_vec(to, "to", err);
   if (!status) status = nonzero_vec(up, "up", err);

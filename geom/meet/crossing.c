@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/swept.h"
 
 #define PROFILE_SAMPLES 400
@@ -149,7 +150,7 @@ static int steps_for(const Disk *disks) {
 // the path at both ends, and their disks lie in one plane. Of neighbors on a path the nearer pair
 // is between them.
 static bool is_least_distance(const Disk *disks, int i, int k, double d) {
-  const double alike = 1e-9; // of the distance: along a helix all are the same
+  const double alike = CAG_COINCIDENT; // of the distance: along a helix all are the same
   for (int a = -1; a <= 1; a++)
     for (int b = -1; b <= 1; b++)
       if (cag_norm(cag_sub(disks[i + a].p, disks[k + b].p)) < d * (1 - alike)) return false;
@@ -201,7 +202,7 @@ static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, 
 
 static bool loft_is_flat(const CagSurface *side, char *what, size_t size) {
   enum { SAMPLES = 12 };
-  const double flat = 1e-9; // of the size
+  const double flat = CAG_COINCIDENT; // of the size
   CagVec3 p[(SAMPLES + 1) * (SAMPLES + 1)];
   CagBounds box = CAG_BOUNDS_EMPTY;
   CagError err;

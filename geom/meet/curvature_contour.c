@@ -6,6 +6,7 @@
 // that the gradient of f comes along (third partials of the surface).
 
 #include "geom/meet/curvature_contour.h"
+#include "geom/linalg/tolerance.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ const char *const cag_curvatures[] = {CAG_CURVATURES(X) NULL};
 #undef X
 
 // A normal shorter than this part of |S_u| |S_v| is none: rounding of a pole is near 1e-16.
-#define NO_NORMAL 1e-12
+#define NO_NORMAL CAG_ROUNDING
 // Part of the inverse size (squared: Gaussian) below which curvature is none.
 #define STRAIGHT 1e-8
 

@@ -16,6 +16,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/section.h"
 
 // Principal curvatures are one when they differ by this part of the larger, or by this part of the
@@ -46,7 +47,7 @@
 
 CagStatus cag_surface_principal(const CagSurface *s, double u, double v, bool *found,
                                 CagPrincipal *out, CagError *err) {
-  const double flat = 1e-12;
+  const double flat = CAG_ROUNDING;
   CagVec3 d[9];
   *found = false;
   CagStatus status = cag_surface_eval(s, u, v, 2, u >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,

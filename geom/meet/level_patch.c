@@ -10,6 +10,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/function.h"
 
 // The step, as a part of the patch, and the number of places: what the polynomial leaves out of a
@@ -18,9 +19,9 @@
 #define STEP 2e-3
 #define PLACES 6
 // An edge is collapsed where S_u x S_v is everywhere below this part of its largest.
-#define COLLAPSED 1e-9
+#define COLLAPSED CAG_COINCIDENT
 // Parts of the patch below which a place lies on its edge.
-#define ON_EDGE 1e-9
+#define ON_EDGE CAG_COINCIDENT
 
 static CagSide side_at(double x, double hi) { return x >= hi ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT; }
 

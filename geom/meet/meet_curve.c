@@ -17,10 +17,11 @@
 #include "base/stop.h"
 #include "geom/curve/contact.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 
 // Parts of the size of the data: where two points are one, where things count as flat, where
 // meetings at a pole are the same.
-#define MEET 1e-9
+#define MEET CAG_COINCIDENT
 #define FLAT 1e-10
 #define SAME_POINT 1e-7
 // Parts of a domain within which parameters are one place.

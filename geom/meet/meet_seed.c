@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 
 bool cag_march_fail(CagMarch *m, CagStatus status) {
   m->status = status;
@@ -70,7 +71,7 @@ static int pierce(const Facet *f, const Facet *g, int which, CagMarchNode *sum) 
     double t = h0 / (h0 - h1);
     CagVec3 x = cag_lerp(f->p[k], f->p[l], t), r = cag_sub(x, g->p[0]);
     double b = cag_dot(cag_cross(r, e2), n) / nn, c = cag_dot(cag_cross(e1, r), n) / nn;
-    const double slack = 1e-9;
+    const double slack = CAG_COINCIDENT;
     if (b < -slack || c < -slack || b + c > 1 + slack) continue;
     for (int d = 0; d < 2; d++) {
       sum->at[which][d] += f->at[k][d] + t * (f->at[l][d] - f->at[k][d]);

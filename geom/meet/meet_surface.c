@@ -22,6 +22,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/meet_place.h"
 #include "geom/surface/nearest.h"
 #include "geom/surface/trimmed.h"
@@ -41,7 +42,7 @@
 // at distances of up to COMMON_REACH times the longest step. The surfaces share a piece if they are
 // within COMMON times the size of each other at all of these points.
 #define COMMON_REACH 0.25
-#define COMMON 1e-9
+#define COMMON CAG_COINCIDENT
 // Branches farther apart than this multiple of the longest step have seeds of their own.
 #define TWIN_REACH 0.5
 // The meshes are near a touch within this multiple of their tolerance. A run of touches that is

@@ -12,6 +12,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/meet_place.h"
 
 #define NEWTON_STEPS 40
@@ -26,7 +27,7 @@
 #define OUT_OF_REACH 8
 // Surfaces touch if they are within this fraction of the size, and would cross at angles too small
 // to tell otherwise.
-#define NEAR 1e-9
+#define NEAR CAG_COINCIDENT
 // A summit is found within this fraction of the longest step.
 #define SUMMIT 1e-6
 #define SUMMIT_STEPS 12

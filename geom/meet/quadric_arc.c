@@ -10,12 +10,13 @@
 #include <math.h>
 
 #include "geom/curve/conic_side.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/section.h"
 #include "geom/surface/trimmed.h"
 
 // A stretch lies on a side if its points do to this part of the size of the box: splines keep to
 // 1e-11 of it.
-#define ON_SIDE 1e-9
+#define ON_SIDE CAG_COINCIDENT
 // The tangent of one arc turns by no more than this.
 #define MOST_TURN (M_PI / 3)
 // Equal steps of a stretch at which it is looked at.

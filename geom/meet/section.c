@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/intersect.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/section_edges.h"
 #include "geom/solid/tessellate.h"
 #include "geom/surface/family.h"
@@ -18,7 +19,7 @@
 // Curves meet whose ends are nearer than this part of the size: traced ends are far better.
 #define MEET 1e-7
 // A face within this part of the size of the plane lies in it and is not cut.
-#define WITHIN 1e-9
+#define WITHIN CAG_COINCIDENT
 #define DEFAULT_TOLERANCE 1e-6
 // A traced curve runs along an exact one within this many tolerances.
 #define NEAR_RUN 8

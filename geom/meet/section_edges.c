@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/meet_surface.h"
 #include "geom/meet/section_edges.h"
 #include "geom/surface/crease.h"
@@ -13,7 +14,7 @@
 #include "geom/surface/trimmed.h"
 
 // An edge lies in the plane if its distance is below this fraction of the surface's size.
-#define WITHIN 1e-9
+#define WITHIN CAG_COINCIDENT
 // The square that represents the plane extends beyond the surface's bounding sphere by this factor.
 #define MARGIN 1.1
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 
 // Cells between two breaks at least, and along a direction at most.
 #define CELLS_BETWEEN_BREAKS 4
@@ -16,7 +17,7 @@
 #define FOLLOWED_MOST 32
 // A place has no tangent where its two parts cancel to this part, or the function changes by less
 // than so many roundings over the whole surface.
-#define FLAT 1e-9
+#define FLAT CAG_COINCIDENT
 #define FLAT_ROUNDINGS 1e4
 #define ROOT_ROUNDS 80
 

@@ -9,13 +9,14 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/section.h"
 
 // Vertices within this part of the size of the plane lie in it.
 #define ON_PLANE 1e-13
 // Points of a polyline nearer than this part of the size are one, and those this near to the line
 // of their neighbors are left out.
-#define SAME 1e-12
+#define SAME CAG_ROUNDING
 
 // One end of a segment: the edge that it crosses, lower vertex first.
 typedef struct End {

@@ -12,6 +12,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/curvature_line.h"
 
 #define X(name, text) text,
@@ -25,7 +26,7 @@ static const double DEGREES = 57.29577951308232;
 // Values at one vertex that differ by this part of the larger are two.
 #define JUMP 1e-2
 // A parameter this near to a break, in lengths of the domain, is on it.
-#define ON_BREAK 1e-9
+#define ON_BREAK CAG_COINCIDENT
 
 static CagStatus value_at(const CagSurface *s, CagSurfaceValue kind, double u, double v,
                           bool *found, double *out, CagError *err) {

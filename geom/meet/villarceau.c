@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/intersect.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/meet/section_edges.h"
 #include "geom/surface/family.h"
 #include "geom/surface/nearest.h"
@@ -22,7 +23,7 @@
 #define ON_SURFACE 1e-10
 // The plane may miss the center by this fraction of the larger radius, and the sine of its slope
 // may differ by as much.
-#define ROUNDING 1e-12
+#define ROUNDING CAG_ROUNDING
 
 static const double FULL_TURN = 6.283185307179586;
 
@@ -41,7 +42,7 @@ typedef struct Circle {
 static bool circle_through(CagVec3 p, CagVec3 q, CagVec3 r, Circle *out) {
   const CagVec3 a = cag_sub(q, p), b = cag_sub(r, p), n = cag_cross(a, b);
   const double aa = cag_dot(a, a), bb = cag_dot(b, b), nn = cag_dot(n, n);
-  const double flat = 1e-12;
+  const double flat = CAG_ROUNDING;
   if (!(nn > flat * aa * bb)) return false;
   const CagVec3 to = cag_scaled(
       cag_add(cag_scaled(cag_cross(b, n), aa), cag_scaled(cag_cross(n, a), bb)), 1 / (2 * nn));

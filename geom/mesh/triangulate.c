@@ -13,6 +13,7 @@
 #include "base/aside.h"
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/mesh.h"
 
@@ -159,7 +160,7 @@ static double turn(const double *a, const double *b, const double *c) {
 // Is d clearly within the circle through a b c (counter-clockwise)? Clearly: by more than the
 // rounding of the determinant, so that four points of a circle do not flip for ever.
 static bool in_circle(const double *a, const double *b, const double *c, const double *d) {
-  const double rounding = 1e-12;
+  const double rounding = CAG_ROUNDING;
   double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
          cy = c[1] - d[1];
   double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
@@ -195,7 +196,7 @@ static void link_places(Flips *f, size_t p, size_t q) {
 
 // The edge from a to b lies in triangles a b c and b a d; it becomes c d where that is better.
 static bool flip_edge(Flips *f, size_t p) {
-  const double no_area = 1e-12; // of the quadrilateral's area: a triangle of rounding errors
+  const double no_area = CAG_ROUNDING; // of the quadrilateral's area: a triangle of rounding errors
   size_t q = f->across[p];
   if (q == NO_PLACE) return false;
   size_t pb = next_place(p), pc = next_place(pb), qa = next_place(q), qd = next_place(qa);

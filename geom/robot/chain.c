@@ -3,17 +3,18 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/robot/kernel.h"
 #include "geom/robot/robot.h"
 
 // Deviation of a rotation's columns from orthonormal ones that is still rounding of given data.
-#define RIGID 1e-9
+#define RIGID CAG_PARALLEL
 // A coupling whose determinant is this small beside the product of its rows' lengths is singular.
-#define COUPLING_SINGULAR 1e-12
+#define COUPLING_SINGULAR CAG_ROUNDING
 // Lengths whose squares and products are still numbers.
 #define REACH_MAX 1e100
 // Joint values beyond a limit by less than this (radians, or parts of the reach) are on it.
-#define ON_LIMIT 1e-12
+#define ON_LIMIT CAG_ROUNDING
 
 // --- Checks ---
 

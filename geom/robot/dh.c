@@ -2,12 +2,13 @@
 
 #include "geom/robot/dh.h"
 
+#include "geom/linalg/tolerance.h"
 #include "geom/robot/kernel.h"
 
 // Sine of the angle between axes below which they are parallel.
-#define PARALLEL 1e-9
+#define PARALLEL CAG_PARALLEL
 // Distances below this part of the size of the chain are none.
-#define MEETING 1e-9
+#define MEETING CAG_COINCIDENT
 
 typedef struct Frame {
   CagVec3 o, x, z;

@@ -4,14 +4,15 @@
 #ifndef CAG_GEOM_ROBOT_INVERSE_PARTS_H
 #define CAG_GEOM_ROBOT_INVERSE_PARTS_H
 
+#include "geom/linalg/tolerance.h"
 #include "geom/robot/inverse.h"
 #include "geom/robot/kernel.h"
 
 // Sines this small are of parallel axes; lengths this small, as parts of the reach, are none.
-#define INVERSE_PARALLEL 1e-9
-#define INVERSE_NOTHING 1e-9
+#define INVERSE_PARALLEL CAG_PARALLEL
+#define INVERSE_NOTHING CAG_COINCIDENT
 // Beyond a square root of a negative number, or a cosine above 1, by so much: unreachable.
-#define INVERSE_CLAMP 1e-9
+#define INVERSE_CLAMP CAG_COINCIDENT
 
 // A link: Rot(z, theta) Trans(0, 0, d) Trans(a, 0, 0) Rot(x, alpha), theta = q + angle, d = shift
 // of a joint that turns, theta = angle and d = q + shift of one that slides.

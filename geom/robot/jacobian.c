@@ -1,9 +1,10 @@
 // The geometric Jacobian: how the tool moves when the joints do, and where it cannot move.
 
+#include "geom/linalg/tolerance.h"
 #include "geom/robot/kernel.h"
 
 // Singular values below this part of the largest are 0.
-#define RANK_TOLERANCE 1e-9
+#define RANK_TOLERANCE CAG_COINCIDENT
 // Sweeps of the one-sided Jacobi iteration; it converges in well under ten.
 #define SWEEPS_MAX 60
 // Rows count as orthogonal when their cosine is this small.

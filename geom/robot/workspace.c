@@ -5,11 +5,12 @@
 
 #include <math.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/robot/numeric.h"
 
 // Axes whose sine of the angle between, or whose distance as a part of the reach, is below this are
 // parallel, or meet.
-#define ALIGNED 1e-9
+#define ALIGNED CAG_PARALLEL
 // A range this near to a full turn is one.
 #define FULL (2 * M_PI * (1 - 1e-12))
 
@@ -163,7 +164,7 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
     CagVec3 level = cag_cross(a->z[1], a->z[0]);
     double f = atan2(cag_dot(a->z[2], a->z[0]), cag_dot(a->z[2], level));
     double f1 = remainder(f - (link_of(a, 1)->high - a->q[1]), 2 * M_PI), f2 = f1 + span(a, 1);
-    const double rounding = 1e-12;
+    const double rounding = CAG_ROUNDING;
     // All beyond the pole: the same points, seen from the other side.
     if (f1 <= -M_PI / 2 - rounding) {
       f1 += 2 * M_PI;

@@ -12,11 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
 
 // Placements are products of a few transforms: what is equal to this part is equal, and digits
 // behind it are rounding.
-#define ALIKE 1e-12
+#define ALIKE CAG_ROUNDING
 #define DIGITS 12
 
 typedef struct Text {

@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 
 // Faces closer than this part of the size of all operands coincide. Renderers compute distances
 // along rays to about 1e-6 of the size, and operands that are taken away are enlarged by 4e-5.
@@ -24,7 +25,7 @@
 // Cosine of the largest angle between triangles, of surfaces that coincide, on each other.
 #define OVER 0.5
 // Common areas below this part of the squared size are edges.
-#define AREA_LEAST 1e-9
+#define AREA_LEAST CAG_COINCIDENT
 
 typedef struct Piece {
   CagSurface *surface; // NULL: the triangles are the face

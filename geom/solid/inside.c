@@ -11,10 +11,11 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "geom/distance/separation.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
 
 // A point is on a boundary when it is nearer than this part of the size: rounding of transforms.
-#define ON_BOUNDARY 1e-12
+#define ON_BOUNDARY CAG_ROUNDING
 
 typedef struct LeafMesh {
   const CagSolid *leaf;

@@ -7,11 +7,12 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 
 // A point nearer to the axis than this part of the region's size lies on it.
-#define ON_AXIS 1e-9
+#define ON_AXIS CAG_COINCIDENT
 
 // --- Extrusion ---
 

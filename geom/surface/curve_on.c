@@ -15,12 +15,13 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 
 #define MOST_ORDER CAG_MAX_PARTIAL
 #define PARTIALS ((MOST_ORDER + 1) * (MOST_ORDER + 1))
 // A plane curve may leave the domain by so much of its width, which rounding of its own is.
-#define OUTSIDE 1e-9
+#define OUTSIDE CAG_COINCIDENT
 // Seams and breaks are crossed once a turn; a curve that goes round more often has no parameters
 // left to tell places apart.
 #define MOST_TURNS 1000000.0

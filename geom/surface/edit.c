@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 #include "geom/surface/reshape.h"
@@ -221,7 +222,7 @@ static CagStatus edge_of(const CagSurface *s, int side, CagNet *out, CagError *e
 }
 
 // Lines shorter than this part of the longest have no direction to go on in.
-#define SHORT_LINE 1e-12
+#define SHORT_LINE CAG_ROUNDING
 
 static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagError *err) {
   char text[32];
@@ -381,7 +382,7 @@ CagStatus cag_surface_match(const CagSurface *a, const CagSurface *b, const CagE
 #define CREASE_LEAST 1e-7
 // Derivatives by which a tangent is looked for where the first ones vanish.
 #define TANGENT_ORDERS 5
-#define VANISHED 1e-9
+#define VANISHED CAG_COINCIDENT
 
 // Unit tangent across the line from one side, in the sense of growing parameters; zero: none found.
 static CagStatus side_tangent(const CagSurface *s, int direction, double at, double other,

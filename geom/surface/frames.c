@@ -6,13 +6,14 @@
 #include <float.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 
 // Rows are evaluated together up to this many points: their partials stay in the cache.
 #define TOGETHER 4096
 
 bool cag_normal_of_partials(const CagSurface *s, CagVec3 point, CagVec3 du, CagVec3 dv,
                             CagVec3 *out) {
-  const double parallel = 1e-9; // of the product of their lengths: the rest is rounding
+  const double parallel = CAG_PARALLEL; // of the product of their lengths: the rest is rounding
   CagVec3 n = cag_cross(du, dv);
   double length2 = cag_dot(n, n), uu = cag_dot(du, du), vv = cag_dot(dv, dv);
   double u = cag_partial_noise(point, s->u1 - s->u0), v = cag_partial_noise(point, s->v1 - s->v0);

@@ -8,10 +8,11 @@
 #ifndef CAG_GEOM_GRID_FIT_H
 #define CAG_GEOM_GRID_FIT_H
 
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/loft.h"
 
 // A diagonal element of R below this part of the largest means dependent columns.
-#define CAG_GRID_RANK 1e-12
+#define CAG_GRID_RANK CAG_ROUNDING
 // Basis values stand on the stack.
 #define CAG_GRID_DEGREE_MOST 31
 

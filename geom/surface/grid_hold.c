@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/grid_fit.h"
 
 // Most steps to a parameter: of Newton's method, and of bisection with it.
@@ -23,7 +24,7 @@
 // Sums of a basis times coordinates agree to so many units in the last place.
 #define ROUNDING (16 * DBL_EPSILON)
 // Parameters that fall by less than this part of the range are in order but for rounding.
-#define IN_ORDER 1e-9
+#define IN_ORDER CAG_COINCIDENT
 
 static const char *name_of(const CagGridFit *f) {
   return &"x\0y\0z"[2 * (f->g->hold - CAG_GRID_HOLD_X)];

@@ -17,6 +17,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 #include "geom/surface/motion_parts.h"
 
@@ -39,7 +40,7 @@ static const double WEIGHT[NODES] = {
 // The tangent may lean this far towards the fixed vector; the sine of the angle between them.
 #define LEAST_SINE 0.5
 // A path turns a corner where its unit tangents differ by more than this.
-#define CORNER 1e-9
+#define CORNER CAG_PARALLEL
 
 // The velocity of a path may vanish with so many of its derivatives.
 #define MOST_STOP 3
@@ -212,14 +213,14 @@ static void square_to(const CagVec3 *toward, int n, Frame *f) {
 }
 
 // The direction leans so far towards the tangent (sine of the angle) that it gives no frame.
-#define ALONG_TANGENT 1e-9
+#define ALONG_TANGENT CAG_PARALLEL
 
 // Where the curvature vanishes but for rounding, at an inflection or at the end of a natural
 // spline, the binormal is the limit from the side asked: that of its derivative. Fills `binormal`
 // with a multiple of the series of the limit; false: there is none.
 static bool limit_binormal(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                            CagSide side, CagVec3 *binormal) {
-  const double vanishing = 1e-12; // of what it grows to over the domain
+  const double vanishing = CAG_ROUNDING; // of what it grows to over the domain
   CagVec3 bend[ORDER], next[ORDER];
   Frame f;
   CagError ignored;
@@ -538,7 +539,7 @@ static void miter(const Frame *f, CagVec3 m, double *out) {
 }
 
 // Mitered sections of both sides are the same when their spokes differ by less.
-#define CORNER_FRAME 1e-9
+#define CORNER_FRAME CAG_PARALLEL
 
 static CagStatus set_miters(CagMotion *t, CagError *err) {
   size_t joints = t->piece_count - (t->path->closed ? 0 : 1);

@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
 #include "geom/surface/nearest_core.h"
@@ -100,7 +101,7 @@ static void model_step(const CagVec3 *d, CagVec3 r, const bool fixed[2], double 
   double h[3] = {flat[0] + cag_dot(r, d[cag_partial(2, 2, 0)]),
                  flat[1] + cag_dot(r, d[cag_partial(2, 1, 1)]),
                  flat[2] + cag_dot(r, d[cag_partial(2, 0, 2)])};
-  const double little = 1e-12;
+  const double little = CAG_ROUNDING;
   out[0] = out[1] = 0;
   for (int k = 0; k < 2; k++)
     if (fixed[1 - k]) {

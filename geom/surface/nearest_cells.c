@@ -8,6 +8,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/nearest_swept.h"
 
 // Cells of a sampled patch in each direction: of a surface of few patches, and of one of many.
@@ -364,7 +365,7 @@ static bool same_parameters(const CagSurface *s, const CagSurface *exact) {
         cag_surface_point(exact, exact->u0 + x * (exact->u1 - exact->u0),
                           exact->v0 + y * (exact->v1 - exact->v0), &b, &ignored))
       return false;
-    const double same = 1e-12; // rounding of both, as a part of their size
+    const double same = CAG_ROUNDING; // rounding of both, as a part of their size
     if (cag_norm(cag_sub(a, b)) > same * (cag_norm(a) + cag_norm(b))) return false;
   }
   return true;

@@ -10,10 +10,11 @@
 #include "base/stop.h"
 #include "geom/basis/bspline.h"
 #include "geom/linalg/dense.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 
 // Knots nearer than this part of the range are one knot.
-#define SAME_KNOT 1e-9
+#define SAME_KNOT CAG_COINCIDENT
 
 CagStatus cag_net_new(int degree, size_t count, size_t width, CagNet *out, CagError *err) {
   *out = (CagNet){.degree = degree, .count = count, .width = width};

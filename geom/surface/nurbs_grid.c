@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/tensor.h"
 
 // What is known of one row u and one run of columns in the same span of v.
@@ -27,7 +28,7 @@ typedef struct Run {
 
 // Vectors whose cross product is shorter than this part of the product of their lengths are
 // parallel: what is left is rounding.
-#define PARALLEL 1e-9
+#define PARALLEL CAG_PARALLEL
 
 // What the cross product is scaled by; 0: there is no normal.
 INLINE double normal_scale(double length2, double uu, double vv, const double noise2[2]) {

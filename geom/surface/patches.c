@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "geom/basis/bernstein.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
@@ -24,7 +25,7 @@ static const CagSurfaceKind coons_kind;
 #define MAX_TRIANGLE 25
 
 // Corners differ when they are farther apart than this share of the patch's size.
-#define CORNER_GAP 1e-9
+#define CORNER_GAP CAG_COINCIDENT
 
 static CagStatus eval_fraction(const CagCurve *c, double v, int n, CagSide side, CagVec3 *out,
                                CagError *err) {

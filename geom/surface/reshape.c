@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "geom/basis/bernstein.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
@@ -139,7 +140,8 @@ static CagStatus both(const CagSurface *s, NetChange change, const void *u, cons
 
 // Whether knot i of the net is at the same place as t.
 static bool at_knot(const CagNet *net, size_t i, double t) {
-  const double same = 1e-12; // of the usable range: what the same number is after some arithmetic
+  const double same =
+      CAG_ROUNDING; // of the usable range: what the same number is after some arithmetic
   return fabs(net->knots[i] - t) <= same * (cag_net_end(net) - cag_net_start(net));
 }
 

@@ -6,9 +6,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 
 // How far barycentric coordinates may be from a sum of 1, and below 0.
-#define BARYCENTRIC_SLACK 1e-9
+#define BARYCENTRIC_SLACK CAG_COINCIDENT
 
 // Where b_ijk stands: row j + k, place k.
 static size_t triangle_index(int j, int k) {

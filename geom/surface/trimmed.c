@@ -13,13 +13,14 @@
 
 #include "base/memory.h"
 #include "geom/basis/quadrature.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/family.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 
 // Loops may leave the domain by this part of it, which rounding of their own is.
-#define OUTSIDE 1e-9
+#define OUTSIDE CAG_COINCIDENT
 
 typedef struct Trimmed {
   CagSurface base;

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "geom/basis/chebyshev.h"
 #include "geom/basis/quadrature.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/swept.h"
 
@@ -20,7 +21,7 @@
 // The tangent plane turns by less along a ruling of a developable surface; sine of the angle.
 #define SAME_PLANE 1e-7
 // Second derivatives along a straight direction, as a part of the first.
-#define STRAIGHT 1e-9
+#define STRAIGHT CAG_COINCIDENT
 
 typedef struct Unrolling {
   const CagSurface *s;

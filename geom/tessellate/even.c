@@ -7,6 +7,7 @@
 // the leaf takes the finest steps on its sides for its own, so that all is a grid, and the lines
 // are made anew: the leaf's other side may have become finer by that than the next leaf's grid.
 
+#include "geom/linalg/tolerance.h"
 #include "geom/tessellate/tessellation.h"
 
 // Height of the bulge by that of the triangle: the tangent of the angle by which it leans.
@@ -35,7 +36,7 @@ static double finest_steps(const Tessellator *t, const Leaf *leaf, int side) {
     if (!(t->atoms[a].from < leaf->to[along])) break;
     // Slants of an adjacent strip cut a line between the corners of leaves.
     for (next = a + 1; next < end && !t->atoms[next].corner; next++) steps += t->atoms[next].n;
-    const double rounding = 1e-9;
+    const double rounding = CAG_COINCIDENT;
     const double part =
         (t->atoms[next - 1].to - t->atoms[a].from) / (leaf->to[along] - leaf->from[along]);
     most = fmax(most, ceil(steps / part * (1 - rounding)));

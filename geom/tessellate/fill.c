@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/frames.h"
 #include "geom/tessellate/sides.h"
 #include "geom/tessellate/tessellation.h"
@@ -97,7 +98,7 @@ static void add_quad(Fill *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
 // next of `high`? x, y: the parameters at both ends of these segments.
 static bool is_low_better(const Fill *f, const double x[2], const double y[2], uint32_t a,
                           uint32_t b, uint32_t c, uint32_t d) {
-  const double rounding = 1e-9; // of a step
+  const double rounding = CAG_COINCIDENT; // of a step
   double step = fmax(x[1] - x[0], y[1] - y[0]) * (1 + rounding);
   // Only one of them can lean forward by more than a step, and where one leans back the other does.
   if (y[1] - x[0] > step) return true;

@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/tessellate/tessellation.h"
 
 // One side of a leaf, on its line.
@@ -366,7 +367,8 @@ static int by_master(const void *a, const void *b) {
 
 // Cuts of both lines in the master's order; those at the same place become one.
 static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError *err) {
-  const double thin = 1e-9; // of the domain: the rounding of the map and of the nearest point
+  const double thin =
+      CAG_COINCIDENT; // of the domain: the rounding of the map and of the nearest point
   size_t n = 0;
   for (int of = 0; of < 2; of++)
     for (size_t a = 0; a < m->lines[of]->atom_count; a++) {

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
 #include "geom/tessellate/trial.h"
@@ -61,7 +62,7 @@ typedef struct Sampled {
 static void find_lengths_and_normals(Sampled *s) {
   // Where the partials are nearly parallel the cross product is rounding, where one of them is as
   // short as that, it is rounding itself.
-  const double parallel = 1e-9;
+  const double parallel = CAG_PARALLEL;
   for (int k = 0; k < SAMPLES; k++) {
     CagVec3 n = cag_cross(s->du[k], s->dv[k]);
     double length = cag_norm(n);

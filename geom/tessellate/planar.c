@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/tessellate/tessellation.h"
 
 // Points of the loops in order: positions in space; for those from other faces their vertex.
@@ -253,7 +254,7 @@ static CagStatus find_corners(Loop *loop, CagError *err) {
 // Steps from one point to another that keep edges short enough. Both faces beside a straight edge
 // find the same number.
 static size_t steps_between(const Tessellator *t, CagVec3 p, CagVec3 q) {
-  const double rounding = 1e-9;
+  const double rounding = CAG_COINCIDENT;
   if (!(t->how.max_edge > 0)) return 1;
   const double n = ceil(cag_norm(cag_sub(q, p)) / t->how.max_edge * (1 - rounding));
   return n > 1 ? (size_t)n : 1;

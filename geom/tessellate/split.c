@@ -12,9 +12,10 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 
 // Edges of just the limit are not halved for rounding.
-#define ROUNDING 1e-12
+#define ROUNDING CAG_ROUNDING
 
 // An edge of a triangle that is halved: its ends, lower first, and its corner.
 typedef struct Half {

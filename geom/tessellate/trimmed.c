@@ -18,6 +18,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/mesh/edges.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
@@ -31,7 +32,7 @@
 // Points nearer to an outline's edge than this part of its length are left out: slivers.
 #define KEEP_OFF 0.3
 // An in-circle determinant below this part of its terms is rounding, and flips nothing.
-#define ROUNDING 1e-12
+#define ROUNDING CAG_ROUNDING
 // Passes over all triangles; each divides what misses the tolerance about by two.
 #define MOST_PASSES 40
 // Edges shorter than this part of the tolerance are not divided for an angle: it may be a cusp.
