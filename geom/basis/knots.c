@@ -3,9 +3,10 @@
 #include "geom/basis/knots.h"
 
 #include "geom/basis/bernstein.h"
+#include "geom/linalg/tolerance.h"
 
 // Equal spacing is judged to this part of the range: steps of 0.1 are not equal bit for bit.
-#define EQUAL_SPACING 1e-9
+#define EQUAL_SPACING CAG_COINCIDENT
 
 void cag_knots_open(size_t n, int p, double *knots) {
   size_t m = n - (size_t)p;
@@ -101,6 +102,13 @@ CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err) {
                       end ? "end" : "inner", p, most);
   }
   return CAG_OK;
+}
+
+bool cag_check_knots(const double *knots, size_t n, int p) {
+  if (p < 1 || n <= (size_t)p || !isfinite(knots[0])) return false;
+  for (size_t i = 1; i < n + (size_t)p + 1; i++)
+    if (!isfinite(knots[i]) || knots[i] < knots[i - 1]) return false;
+  return knots[p] < knots[n];
 }
 
 size_t cag_knots_span(const double *knots, size_t n, int p, double t, bool left, size_t hint) {

@@ -40,6 +40,12 @@ void cag_curve_release(CagCurve *c) {
   cag_free(c);
 }
 
+bool cag_check_curve(const CagCurve *c) {
+  return c && c->kind && c->kind->eval && c->references > 0 &&
+         (c->dimension == 2 || c->dimension == 3) && isfinite(c->start) && isfinite(c->end) &&
+         c->start <= c->end;
+}
+
 // --- Checks ---
 
 // Points between two looks at the stop flag.

@@ -64,6 +64,10 @@ struct CagCurve {
 CagCurve *cag_curve_retain(const CagCurve *c);
 void cag_curve_release(CagCurve *c); // NULL is fine
 
+// Whether the header of a curve is sound: a kind, references, the dimension, and the domain. For
+// CAG_ASSERT and tests; the same for surfaces, meshes, and solids.
+bool cag_check_curve(const CagCurve *c);
+
 // --- Constructors (each fails with a reason and the argument; *out has one reference) ---
 CagStatus cag_curve_line(CagVec3 p, CagVec3 q, int dimension, CagCurve **out, CagError *err);
 CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int dimension,

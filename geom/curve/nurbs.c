@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/curve/family.h"
@@ -123,6 +124,7 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
 CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const double *knots,
                         bool rational, size_t distinct, CagNurbsKind kind, int dimension,
                         CagCurve **out, CagError *err) {
+  CAG_ASSERT(cag_check_knots(knots, n, degree));
   char text[32];
   for (size_t i = 0; rational && i < n; i++)
     if (!(homogeneous[4 * i + 3] >= 0))

@@ -58,6 +58,27 @@ void cag_mesh_release(CagMesh *m) {
   cag_free(m);
 }
 
+static bool check_triangle(const CagMesh *m, const uint32_t t[3]) {
+  for (int k = 0; k < 3; k++)
+    if (t[k] >= m->vertex_count || t[k] == t[(k + 1) % 3]) return false;
+  return true;
+}
+
+bool cag_check_mesh(const CagMesh *m) {
+  if (!m || m->references < 1 || !m->positions || !m->triangles) return false;
+  for (size_t i = 0; i < m->vertex_count; i++) {
+    const CagVec3 p = m->positions[i];
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) return false;
+    if (!m->weld) continue;
+    const size_t first = m->weld[i];
+    if (first > i || m->weld[first] != first) return false;
+    if (memcmp(&m->positions[first], &p, sizeof p) != 0) return false;
+  }
+  for (size_t i = 0; i < m->triangle_count; i++)
+    if (!check_triangle(m, m->triangles + 3 * i)) return false;
+  return true;
+}
+
 // --- Lists to a mesh ---
 
 static CagStatus check_vertices(const CagVec3 *vertices, size_t n, CagError *err) {

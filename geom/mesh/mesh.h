@@ -43,6 +43,8 @@ CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv,
                        CagMesh **out, CagError *err); // contents unset
 CagMesh *cag_mesh_retain(const CagMesh *m);
 void cag_mesh_release(CagMesh *m);
+// Whether the invariant above holds, and all positions are finite. Linear time.
+bool cag_check_mesh(const CagMesh *m);
 // Checked copy of lists; faces are polygons of 3 or more vertices, given by their counts and
 // indices (concave ones are triangulated).
 CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t *indices,

@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 
@@ -62,6 +63,19 @@ void cag_solid_release(CagSolid *s) {
   cag_free(s->edges);
   cag_solid_core_release(s->core);
   cag_free(s);
+}
+
+bool cag_check_solid(const CagSolid *s) {
+  if (!s || s->references < 1 || (int)s->kind < 0 || s->kind > CAG_SOLID_INTERSECTION) return false;
+  if (s->face_count == 0 && !s->core) return false;
+  for (size_t i = 0; i < s->face_count; i++)
+    if (!cag_check_surface(s->faces[i])) return false;
+  for (size_t i = 0; i < s->edge_count; i++)
+    for (int k = 0; k < 2; k++)
+      if (s->edges[i].face[k] >= s->face_count || s->edges[i].side[k] < 0) return false;
+  for (int i = 0; i < 12; i++)
+    if (!isfinite(s->placement.m[i / 4][i % 4])) return false;
+  return true;
 }
 
 // Lengths whose fifth powers (moments) are numbers, with room for sums and transforms.
@@ -146,7 +160,7 @@ CagStatus cag_solid_side_point(const CagSurface *f, int side, double fraction, C
 static const double EDGE_FRACTION[EDGE_POINTS] = {0, 0.17, 0.36, 0.64, 0.83, 1};
 
 // Edges are the same when their points are, to this part of the size of the solid.
-#define EDGE_SAME 1e-9
+#define EDGE_SAME CAG_COINCIDENT
 
 typedef struct Side {
   size_t face;

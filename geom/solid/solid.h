@@ -53,8 +53,12 @@ typedef struct CagSolid {
   // Edges shared by faces, for the mesh.
   size_t edge_count;
   CagFaceEdge *edges;
-  CagSolidCore *core; // kinds without faces: shared by the copies that were moved; else NULL
+  CagSolidCore *core; // of set operations and unbounded kinds, which may have faces as well: shared
+                      // by the copies that were moved; else NULL
 } CagSolid;
+
+// Whether a solid has faces that are sound, or a core; its edges name faces; its placement is finite.
+bool cag_check_solid(const CagSolid *s);
 
 CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *err);
 CagStatus cag_solid_sphere(double radius, CagSolid **out, CagError *err);

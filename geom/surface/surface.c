@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
@@ -41,6 +42,11 @@ void cag_surface_release(CagSurface *s) {
   if (!s || --s->references > 0) return;
   if (s->kind->destroy) s->kind->destroy(s);
   cag_free(s);
+}
+
+bool cag_check_surface(const CagSurface *s) {
+  return s && s->kind && s->kind->eval && s->references > 0 && isfinite(s->u0) && isfinite(s->u1) &&
+         isfinite(s->v0) && isfinite(s->v1) && s->u0 < s->u1 && s->v0 < s->v1;
 }
 
 CagStatus cag_surface_space_curve(const CagCurve *c, CagCurve **out, CagError *err) {
@@ -213,7 +219,7 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
 // |S_u x S_v| below this part of |S_u| |S_v| (both times the length of the domain, the larger of
 // them for both) is zero: the rounding of a pole is near 1e-16, the flattest honest patch far
 // above.
-#define NORMAL_ZERO 1e-12
+#define NORMAL_ZERO CAG_ROUNDING
 // Order of the expansion that looks for the limit: a pole of a smooth surface needs 1, a cusp 2.
 #define NORMAL_ORDER 4
 

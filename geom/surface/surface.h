@@ -53,6 +53,7 @@ struct CagSurface {
 
 CagSurface *cag_surface_retain(const CagSurface *s);
 void cag_surface_release(CagSurface *s);
+bool cag_check_surface(const CagSurface *s); // see cag_check_curve
 
 // --- Constructors ---
 // Tensor NURBS: net[i * nv + j] = point (i by u, j by v); weights NULL: polynomial. Kind "bspline"

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/assert.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/solid/csg.h"
@@ -148,9 +149,11 @@ static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
 
 // Marks what an object refers to.
 static void scan(CagHeap *h, CagObject *o) {
+  CAG_ASSERT(o->type >= CAG_FIRST_OBJECT && o->type <= CAG_INTERNAL && o->type != CAG_UNSET);
   switch (o->type) {
   case CAG_LIST: {
     CagList *l = (CagList *)o;
+    CAG_ASSERT(cag_check_list(l));
     if (l->owner) mark_object(h, &l->owner->head);
     else if (l->dim == 0) mark_values(h, l->as.items, l->length);
     break;

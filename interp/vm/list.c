@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "base/assert.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
@@ -239,4 +240,22 @@ bool cag_as_list(CagVm *vm, CagValue v, CagValue *list) {
   *list = cag_list_numbers(vm, n, &x);
   for (size_t i = 0; i < n; i++) x[i] = cag_range_element(r, i, n);
   return true;
+}
+
+static bool is_packed_by_rule(const CagList *l) {
+  if (l->length == 0) return l->dim == 0;
+  if (l->dim != 0) return l->dim <= CAG_MAX_PACKED;
+  size_t numbers = 0;
+  while (numbers < l->length && l->as.items[numbers].type == CAG_NUMBER) numbers++;
+  return numbers < l->length;
+}
+
+bool cag_check_list(const CagList *l) {
+  const CagList *owner = l->owner;
+  if (!is_packed_by_rule(l)) return false;
+  if (!owner) return true;
+  const size_t size = l->dim ? l->dim * sizeof(double) : sizeof(CagValue);
+  const char *data = l->as.data, *all = owner->as.data;
+  return !l->allocated && !owner->owner && owner->dim == l->dim && data >= all &&
+         data + l->length * size <= all + owner->length * size;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
@@ -269,6 +270,7 @@ static void release_mesh(void *m) { cag_mesh_release(m); }
 static void release_robot(void *r) { cag_robot_release(r); }
 
 CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
+  CAG_ASSERT(cag_check_curve(c));
   CagShape *s = shape_of(vm, CAG_CURVE, release_curve, c);
   s->as.curve = c;
   return cag_object(CAG_CURVE, s);
@@ -282,18 +284,21 @@ CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement
 }
 
 CagValue cag_surface_value(CagVm *vm, CagSurface *surface) {
+  CAG_ASSERT(cag_check_surface(surface));
   CagShape *s = shape_of(vm, CAG_SURFACE, release_surface, surface);
   s->as.surface = surface;
   return cag_object(CAG_SURFACE, s);
 }
 
 CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
+  CAG_ASSERT(cag_check_solid(solid));
   CagShape *s = shape_of(vm, CAG_SOLID, release_solid, solid);
   s->as.solid = solid;
   return cag_object(CAG_SOLID, s);
 }
 
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
+  CAG_ASSERT(cag_check_mesh(m));
   CagShape *s = shape_of(vm, CAG_MESH, release_mesh, m);
   s->as.mesh = m;
   return cag_object(CAG_MESH, s);

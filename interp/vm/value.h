@@ -116,6 +116,10 @@ typedef struct CagList {
   } as;
 } CagList;
 
+// Whether the representation is sound: a list that shows a part of another's data has no data of its
+// own, and that one has some, in the same form. For CAG_ASSERT and tests.
+bool cag_check_list(const CagList *l);
+
 // --- Range ---
 typedef struct CagRange {
   CagObject head;

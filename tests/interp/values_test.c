@@ -861,8 +861,33 @@ static void collections_are_due_by_what_is_live(void **state) {
   cag_vm_free(vm);
 }
 
+static void lists_keep_their_representation(void **state) {
+  CagVm *vm = *state;
+  const CagValue mixed[3] = {cag_number(1), cag_number(2), cag_none()};
+  CagList *l = CAG_AS_LIST(cag_list_values(vm, mixed, 3));
+  assert_true(cag_check_list(l));
+  l->as.items[2] = cag_number(3); // numbers that are not packed
+  assert_false(cag_check_list(l));
+  l->length = 0;
+  assert_true(cag_check_list(l));
+  l->dim = 1; // an empty list has dim 0
+  assert_false(cag_check_list(l));
+  CagList *numbers = CAG_AS_LIST(cag_list_values(vm, mixed, 2));
+  assert_int_equal(numbers->dim, 1);
+  assert_true(cag_check_list(numbers));
+  numbers->dim = CAG_MAX_PACKED + 1;
+  assert_false(cag_check_list(numbers));
+  numbers->dim = 1;
+  CagList part = {.owner = numbers, .length = 1, .dim = 1};
+  part.as.numbers = numbers->as.numbers + 1;
+  assert_true(cag_check_list(&part));
+  part.length = 2; // beyond its end
+  assert_false(cag_check_list(&part));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lists_keep_their_representation),
       cmocka_unit_test(lists_keep_their_elements_in_the_promised_form),
       cmocka_unit_test(ranges_select_the_elements_of_lists_and_texts),
       cmocka_unit_test(single_indices_count_from_both_ends),
