@@ -7,6 +7,8 @@
 // that window is ever looked at.
 
 #include "base/diagnostic.h"
+#include "base/json_text.h"
+#include "base/utf8.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -55,11 +57,7 @@ static Cell cell_at(const char *p, size_t left, size_t column) {
   return (Cell){(size_t)n, utf8proc_charwidth(point), NULL};
 }
 
-static size_t step_back(const char *line, size_t i) {
-  do i--;
-  while (i > 0 && ((unsigned char)line[i] & 0xc0) == 0x80);
-  return i;
-}
+static size_t step_back(const char *line, size_t i) { return cag_utf8_start(line, i - 1); }
 
 // The part of the line [from, to) that is shown, as byte offsets.
 typedef struct Window {
@@ -193,7 +191,6 @@ static void json_text(FILE *out, const char *text) {
   fputc('"', out);
   size_t length = strlen(text);
   for (size_t i = 0; i < length;) {
-    unsigned char c = (unsigned char)text[i];
     utf8proc_int32_t point;
     utf8proc_ssize_t n = utf8proc_iterate((const utf8proc_uint8_t *)text + i,
                                           (utf8proc_ssize_t)(length - i), &point);
@@ -202,10 +199,9 @@ static void json_text(FILE *out, const char *text) {
       i++;
       continue;
     }
-    if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
-    else if (c == '\n') fputs("\\n", out);
-    else if (c == '\t') fputs("\\t", out);
-    else if (c < 32 || c == 127) fprintf(out, "\\u%04x", c);
+    char escape[8];
+    const char *escaped = cag_json_escape(text[i], escape);
+    if (escaped) fputs(escaped, out);
     else fwrite(text + i, 1, (size_t)n, out);
     i += (size_t)n;
   }

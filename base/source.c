@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 
 static bool make_lines(CagSource *s) {
   size_t lines = 1;
@@ -90,10 +91,9 @@ CagPosition cag_source_position(const CagSource *s, uint32_t offset) {
     if (s->lines[middle] <= offset) low = middle;
     else high = middle;
   }
-  size_t column = 1;
-  for (uint32_t i = s->lines[low]; i < offset; i++)
-    column += ((unsigned char)s->text[i] & 0xc0) != 0x80;
-  return (CagPosition){low + 1, column};
+  const uint32_t start = s->lines[low];
+  const size_t before = offset > start ? cag_utf8_count(s->text + start, offset - start) : 0;
+  return (CagPosition){low + 1, before + 1};
 }
 
 const char *cag_source_line(const CagSource *s, size_t line, size_t *length) {

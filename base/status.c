@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/stop.h"
+#include "base/utf8.h"
 
 CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
                    const char *format, ...) {
@@ -29,7 +30,7 @@ CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *a
 // Takes an incomplete UTF-8 character off the end of a text that was cut to fit.
 static void trim_cut_character(char *text) {
   size_t n = strlen(text), tail = 0;
-  while (tail < n && tail < 4 && ((unsigned char)text[n - 1 - tail] & 0xC0) == 0x80) tail++;
+  while (tail < n && tail < 4 && cag_utf8_is_within(text[n - 1 - tail])) tail++;
   if (tail == n) return;
   unsigned char lead = (unsigned char)text[n - 1 - tail];
   size_t want = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;

@@ -20,6 +20,7 @@
 #include <unistd.h>
 #include <wchar.h>
 
+#include "base/utf8.h"
 #include "cli/repl.h"
 
 // Lines of history that are remembered, and those that the file may have before it is cut.
@@ -167,9 +168,8 @@ static void redraw(EditLine *editor) {
   const char *first = prompt(editor);
   window_changed = 0;
   ioctl(STDOUT_FILENO, TIOCGWINSZ, &size);
-  size_t column = strlen(first);
-  for (const char *at = line->buffer; at < line->cursor; at++)
-    column += ((unsigned char)*at & 0xc0) != 0x80;
+  const size_t column =
+      strlen(first) + cag_utf8_count(line->buffer, (size_t)(line->cursor - line->buffer));
   const size_t rows = size.ws_col ? column / size.ws_col : 0;
   fputs("\r", stdout);
   if (rows) printf("\033[%zuA", rows);
@@ -249,8 +249,7 @@ static size_t common_length(const CagReplProposals *p) {
     while (k < n && p->items[i][k] == p->items[0][k]) k++;
     n = k;
   }
-  while (n > 0 && ((unsigned char)p->items[0][n] & 0xc0) == 0x80) n--; // whole characters
-  return n;
+  return cag_utf8_start(p->items[0], n); // whole characters
 }
 
 static unsigned char complete(EditLine *editor, int key) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/jet.h"
 
@@ -28,8 +29,7 @@ const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size) {
     buffer[n] = 0;
   } else {
     // Cut before a character, not within one.
-    n = size - 4;
-    while (n > 0 && ((unsigned char)s.bytes[n] & 0xC0) == 0x80) n--;
+    n = cag_utf8_start(s.bytes, size - 4);
     memcpy(buffer, s.bytes, n);
     strcpy(buffer + n, "...");
   }

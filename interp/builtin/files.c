@@ -11,6 +11,7 @@
 #include <utf8proc.h>
 
 #include "base/array.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
@@ -486,12 +487,10 @@ static bool write_json(CagCall *call, CagString *s, CagValue v, int depth);
 static void write_json_text(CagString *s, const char *bytes, size_t n) {
   cag_string_add(s, "\"", 1);
   for (size_t i = 0; i < n; i++) {
-    char c = bytes[i];
-    if (c == '"' || c == '\\') cag_string_printf(s, "\\%c", c);
-    else if (c == '\n') cag_string_add(s, "\\n", 2);
-    else if (c == '\t') cag_string_add(s, "\\t", 2);
-    else if ((unsigned char)c < ' ') cag_string_printf(s, "\\u%04x", (unsigned)c);
-    else cag_string_add(s, &c, 1);
+    char escape[8];
+    const char *escaped = cag_json_escape(bytes[i], escape);
+    if (escaped) cag_string_add(s, escaped, strlen(escaped));
+    else cag_string_add(s, bytes + i, 1);
   }
   cag_string_add(s, "\"", 1);
 }

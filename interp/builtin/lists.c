@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
@@ -330,8 +331,7 @@ bool cag_lists_reverse(CagCall *call, CagValue *result) {
     const CagText *t = CAG_AS_TEXT(s.source);
     CagString reversed = {0};
     for (const char *end = t->bytes + t->length; end > t->bytes;) {
-      const char *from = end - 1;
-      while (((unsigned char)*from & 0xC0) == 0x80) from--;
+      const char *from = t->bytes + cag_utf8_start(t->bytes, (size_t)(end - t->bytes) - 1);
       cag_string_add(&reversed, from, (size_t)(end - from));
       end = from;
     }

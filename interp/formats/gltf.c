@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/scene/color_scale.h"
@@ -55,10 +56,10 @@ __attribute__((format(printf, 2, 3))) static void add(Text *t, const char *forma
 static void add_string(Text *t, const char *s) {
   add(t, "\"");
   for (; *s; s++) {
-    unsigned char c = (unsigned char)*s;
-    if (c == '"' || c == '\\') add(t, "\\%c", c);
-    else if (c < ' ') add(t, "\\u%04x", c);
-    else add(t, "%c", c);
+    char escape[8];
+    const char *escaped = cag_json_escape(*s, escape);
+    if (escaped) add(t, "%s", escaped);
+    else add(t, "%c", *s);
   }
   add(t, "\"");
 }

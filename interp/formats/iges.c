@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 
 // Columns of parameters in a line; the number of the directory line follows.
 #define PARAMETER_COLUMNS 64
@@ -79,8 +80,7 @@ static void put_character(Writer *w, char c) {
 
 // The count of the characters stands before them; others than those of ASCII are not known.
 static void put_string(Writer *w, const char *text) {
-  size_t n = 0;
-  for (const char *p = text; *p; p++) n += ((unsigned char)*p & 0xc0) != 0x80;
+  const size_t n = cag_utf8_count(text, strlen(text));
   if (n == 0) {
     put_token(w, "", ',');
     return;
@@ -90,9 +90,8 @@ static void put_string(Writer *w, const char *text) {
   if (w->column + strlen(head) + 1 > w->width) end_line(w);
   for (const char *p = head; *p; p++) put_character(w, *p);
   for (const char *p = text; *p; p++) {
-    unsigned char c = (unsigned char)*p;
-    if ((c & 0xc0) == 0x80) continue;
-    put_character(w, c >= 0x20 && c < 0x7f ? *p : '_');
+    if (cag_utf8_is_within(*p)) continue;
+    put_character(w, *p >= 0x20 && *p < 0x7f ? *p : '_');
   }
   put_character(w, ',');
 }

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/solid/csg.h"
@@ -64,8 +65,9 @@ static void put_text(Writer *w, const char *text) {
   before_value(w);
   cag_atomic_file_text(w->file, "\"");
   for (const char *c = text; *c; c++) {
-    if (*c == '"' || *c == '\\') cag_atomic_file_printf(w->file, "\\%c", *c);
-    else if ((unsigned char)*c < ' ') cag_atomic_file_printf(w->file, "\\u%04x", (unsigned)*c);
+    char escape[8];
+    const char *escaped = cag_json_escape(*c, escape);
+    if (escaped) cag_atomic_file_text(w->file, escaped);
     else cag_atomic_file_write(w->file, c, 1);
   }
   cag_atomic_file_text(w->file, "\"");

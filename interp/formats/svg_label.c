@@ -1,6 +1,7 @@
 // Labels of an SVG picture: a mark, and a text that stands beside it.
 
 #include "interp/formats/svg_label.h"
+#include "base/utf8.h"
 
 #include <ctype.h>
 #include <string.h>
@@ -123,9 +124,7 @@ static void put_mark(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, con
 static bool is_name(const char *text) {
   const unsigned char *c = (const unsigned char *)text;
   if (!isalpha(*c) && *c < 0x80) return false;
-  size_t n = 1;
-  while ((c[n] & 0xC0) == 0x80) n++;
-  return !isalpha(c[n]);
+  return !isalpha(c[cag_utf8_next(text, strlen(text), 0)]);
 }
 
 static bool is_index(unsigned char c) { return isalnum(c) || c >= 0x80; }

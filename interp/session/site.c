@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "interp/render/povray.h"
 #include "interp/session/session.h"
@@ -110,9 +111,10 @@ void cag_site_end(CagSitePage *p) {
 static void write_string(FILE *out, const char *text, size_t length) {
   fputc('"', out);
   for (size_t i = 0; i < length; i++) {
-    const unsigned char c = (unsigned char)text[i];
-    if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
-    else if (c < 32 || c == '<') fprintf(out, "\\u%04x", c == '\n' ? ' ' : c);
+    char escape[8];
+    const char c = text[i] == '\n' ? ' ' : text[i];
+    const char *escaped = c == '<' ? "\\u003c" : cag_json_escape(c, escape);
+    if (escaped) fputs(escaped, out);
     else fputc(c, out);
   }
   fputc('"', out);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
@@ -563,9 +564,7 @@ static bool resolve_part(CagVm *vm, const CagRange *r, size_t n, const char *wha
 static size_t byte_of_character(const CagText *t, size_t k) {
   if (t->characters == t->length) return k;
   size_t i = 0;
-  for (; k; k--) do
-      i++;
-    while (i < t->length && ((unsigned char)t->bytes[i] & 0xc0) == 0x80);
+  for (; k; k--) i = cag_utf8_next(t->bytes, t->length, i);
   return i;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "interp/vm/calls.h"
 #include "interp/vm/vm.h"
 
@@ -136,8 +137,7 @@ static bool next_element(CagVm *vm, CagValue *it) {
   }
   case CAG_TEXT: { // the index is a byte's
     const CagText *t = CAG_AS_TEXT(it[0]);
-    size_t end = i + 1;
-    while (end < n && ((unsigned char)t->bytes[end] & 0xc0) == 0x80) end++;
+    const size_t end = cag_utf8_next(t->bytes, n, i);
     it[1].as.number = (double)end;
     it[3] = cag_text_new(vm, t->bytes + i, end - i);
     return true;
@@ -256,8 +256,7 @@ static bool fail_assert(CagVm *vm, CagValue message, const CagValue *parts, size
     s.most = before + 200;
     cag_print_value(vm, &s, parts[2 * i + 1], true);
     if (s.length - before > 200) { // a long list tells nothing more
-      s.length = before + 200;
-      while (s.length > before && ((unsigned char)s.bytes[s.length] & 0xc0) == 0x80) s.length--;
+      s.length = cag_utf8_start(s.bytes, before + 200);
       cag_string_add(&s, " ...", 4);
     }
   }

@@ -7,6 +7,7 @@
 
 #include "base/assert.h"
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "interp/vm/vm.h"
 
 static const char *const type_names[] = {
@@ -29,12 +30,6 @@ const char *cag_type_article(CagValue v) {
 
 // --- Text ---
 
-static size_t count_characters(const char *bytes, size_t length) {
-  size_t n = 0;
-  for (size_t i = 0; i < length; i++) n += ((unsigned char)bytes[i] & 0xc0) != 0x80;
-  return n;
-}
-
 // Bytes of a text that are copied between two looks at the stop flag.
 #define BLOCK ((size_t)1 << 20)
 
@@ -45,7 +40,7 @@ static void append_bytes(CagVm *vm, CagText *t, const char *bytes, size_t length
   t->length += length;
   for (size_t from = 0; from < length && !vm->stop; from += BLOCK) {
     const size_t size = length - from < BLOCK ? length - from : BLOCK;
-    t->characters += count_characters(bytes + from, size);
+    t->characters += cag_utf8_count(bytes + from, size);
     memcpy(to + from, bytes + from, size);
   }
 }
