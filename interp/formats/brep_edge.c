@@ -51,9 +51,8 @@ static CagStatus make_vertices(CagBrepWork *w, size_t first_vertex, CagError *er
   CagBrep *b = w->brep;
   size_t n = 2 * w->side_count, room = 16;
   while (room < b->vertex_count) room *= 2;
-  void *roomy = cag_realloc(b->vertices, room * sizeof *b->vertices);
+  const bool roomy = CAG_RESIZE(b->vertices, room);
   End *ends = cag_malloc((n ? n : 1) * sizeof *ends);
-  if (roomy) b->vertices = roomy;
   CagStatus status = roomy && ends ? gather_ends(w, ends, err) : cag_fail_memory(err);
   b->vertex_count = first_vertex;
   if (!status) status = cag_sort(ends, n, sizeof *ends, by_x, err);
@@ -228,12 +227,10 @@ static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagErro
 
 // Makes vertices and finds partners; *pairs has an element for each side afterwards.
 static CagStatus match_sides(CagBrepWork *w, size_t first_vertex, Pair **pairs, CagError *err) {
-  Pair *fresh = cag_realloc(*pairs, (w->side_count + 1) * sizeof *fresh);
-  if (!fresh) return cag_fail_memory(err);
-  *pairs = fresh;
-  for (size_t i = 0; i < w->side_count; i++) fresh[i] = (Pair){SIZE_MAX, false};
+  if (!CAG_RESIZE(*pairs, w->side_count + 1)) return cag_fail_memory(err);
+  for (size_t i = 0; i < w->side_count; i++) (*pairs)[i] = (Pair){SIZE_MAX, false};
   CagStatus status = make_vertices(w, first_vertex, err);
-  return status ? status : pair_sides(w, fresh, err);
+  return status ? status : pair_sides(w, *pairs, err);
 }
 
 static CagStatus find_pairs(CagBrepWork *w, Pair **pairs, CagError *err) {

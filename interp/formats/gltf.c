@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/array.h"
 #include "base/json_text.h"
 #include "base/memory.h"
 #include "base/stop.h"
@@ -30,15 +31,8 @@ typedef CagGltfPlan Plan;
 // --- JSON ---
 
 static bool make_room(Text *t, size_t n) {
-  if (t->failed) return false;
-  if (t->length + n < t->capacity) return true;
-  size_t capacity = 2 * (t->length + n) + 4096;
-  char *larger = cag_realloc(t->at, capacity);
-  t->failed = !larger;
-  if (!larger) return false;
-  t->at = larger;
-  t->capacity = capacity;
-  return true;
+  t->failed = t->failed || !CAG_RESERVE(t->at, t->capacity, t->length + n + 1);
+  return !t->failed;
 }
 
 __attribute__((format(printf, 2, 3))) static void add(Text *t, const char *format, ...) {

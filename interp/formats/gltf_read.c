@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/formats/gltf_document.h"
 
@@ -93,9 +94,8 @@ static CagStatus push(Walk *w, const cJSON *node, size_t mesh, const CagTransfor
   if (w->depth == w->room) {
     size_t room = w->room ? 2 * w->room : 64;
     CagStatus status = cag_draft_take(w->g->draft, room - w->room, sizeof *w->stack, err);
-    Visit *larger = status == CAG_OK ? cag_realloc(w->stack, room * sizeof *larger) : NULL;
-    if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
-    w->stack = larger;
+    if (status == CAG_OK && !CAG_RESIZE(w->stack, room)) status = cag_fail_memory(err);
+    if (status != CAG_OK) return status;
     w->room = room;
   }
   w->stack[w->depth++] = (Visit){node, mesh, *place};

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/mesh/polygon.h"
 #include "interp/formats/tangle.h"
@@ -112,9 +113,7 @@ CagStatus cag_draft_triangles(CagMeshDraft *d, size_t n, CagError *err) {
   if (room < wanted) room = wanted;
   CagStatus status = cag_draft_take(d, room - d->triangle_room, 3 * sizeof *d->triangles, err);
   if (status != CAG_OK) return status;
-  uint32_t *larger = cag_realloc(d->triangles, (room + 1) * 3 * sizeof *larger);
-  if (!larger) return cag_fail_memory(err);
-  d->triangles = larger;
+  if (!CAG_RESIZE(d->triangles, (room + 1) * 3)) return cag_fail_memory(err);
   d->triangle_room = room;
   return CAG_OK;
 }

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/formats/mesh_draft.h"
 #include "interp/formats/text_scan.h"
@@ -169,10 +170,9 @@ static CagStatus grow(Obj *o, CagError *err) {
   if (status == CAG_OK)
     status = cag_draft_vertices(d, room, o->all.normals > 0, o->all.parameters > 0, err);
   if (status != CAG_OK) return status;
-  Corner *corners = cag_realloc(o->corners, room * sizeof *corners);
-  if (corners) o->corners = corners;
+  const bool roomy = CAG_RESIZE(o->corners, room);
   uint32_t *larger = cag_calloc(slots, sizeof *larger);
-  if (!corners || !larger) {
+  if (!roomy || !larger) {
     cag_free(larger);
     return cag_fail_memory(err);
   }
@@ -210,9 +210,8 @@ static CagStatus read_face(Obj *o, CagError *err) {
     if (status == CAG_OK && n == o->face_room) {
       size_t room = n ? 2 * n : 64;
       status = cag_draft_take(o->draft, room - n, sizeof *o->face, err);
-      uint32_t *larger = status == CAG_OK ? cag_realloc(o->face, room * sizeof *larger) : NULL;
-      if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
-      o->face = larger;
+      if (status == CAG_OK && !CAG_RESIZE(o->face, room)) status = cag_fail_memory(err);
+      if (status != CAG_OK) return status;
       o->face_room = room;
     }
     if (status == CAG_OK) status = vertex_of(o, c, &o->face[n], err);

@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "interp/formats/mesh_draft.h"
 #include "interp/formats/text_scan.h"
@@ -300,9 +301,8 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
   if (status != CAG_OK) return status;
   if (count > p->corner_room) {
     status = cag_draft_take(d, count - p->corner_room, sizeof *p->corners, err);
-    uint32_t *larger = status == CAG_OK ? cag_realloc(p->corners, count * sizeof *larger) : NULL;
-    if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
-    p->corners = larger;
+    if (status == CAG_OK && !CAG_RESIZE(p->corners, count)) status = cag_fail_memory(err);
+    if (status != CAG_OK) return status;
     p->corner_room = count;
   }
   for (size_t k = 0; k < count; k++) {

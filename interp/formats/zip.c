@@ -9,6 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Words of the format (APPNOTE 4.3).
@@ -71,13 +72,9 @@ CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err) {
 static CagStatus pack(struct CagZipPacker *p, int flush, CagError *err) {
   z_stream *s = &p->stream;
   do {
-    if (s->total_out == p->room) {
-      size_t room = p->room ? p->room + p->room / 2 : (size_t)1 << 16;
-      char *larger = cag_realloc(p->packed, room);
-      if (!larger) return cag_fail_memory(err);
-      p->packed = larger;
-      p->room = room;
-    }
+    const size_t block = (size_t)1 << 16;
+    if (s->total_out == p->room && !CAG_RESERVE(p->packed, p->room, p->room + block))
+      return cag_fail_memory(err);
     s->next_out = (Bytef *)p->packed + s->total_out;
     size_t left = p->room - s->total_out;
     s->avail_out = left > UINT32_MAX ? UINT32_MAX : (uInt)left;

@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/atomic_file.h"
 #include "base/memory.h"
 #include "interp/render/exr.h"
@@ -30,15 +31,9 @@ static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data
   (void)error_cb;
   // No sum overflows: a picture has at most CAG_IMAGE_SAMPLES_MAX samples.
   const size_t end = (size_t)(offset + n);
-  if (end > sink->capacity) {
-    size_t capacity = end + end / 2 + 65536;
-    unsigned char *bytes = cag_realloc(sink->bytes, capacity);
-    if (!bytes) {
-      cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
-      return -1;
-    }
-    sink->bytes = bytes;
-    sink->capacity = capacity;
+  if (!CAG_RESERVE(sink->bytes, sink->capacity, end)) {
+    cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
+    return -1;
   }
   // A gap, as the library leaves for the table of offsets, reads as zeros until it is filled.
   if (offset > sink->size) memset(sink->bytes + sink->size, 0, (size_t)offset - sink->size);

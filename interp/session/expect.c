@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "interp/doc/doc.h"
@@ -832,11 +833,7 @@ static char *read_whole(const char *path, size_t *length) {
   char *text = NULL;
   size_t capacity = 0, n = 0;
   for (;;) {
-    if (n == capacity) {
-      char *larger = cag_realloc(text, capacity = capacity ? 2 * capacity : 4096);
-      if (!larger) break;
-      text = larger;
-    }
+    if (!CAG_RESERVE(text, capacity, n + 4096)) break;
     size_t k = fread(text + n, 1, capacity - n, f);
     if (k == 0) break;
     n += k;
