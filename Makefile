@@ -93,10 +93,12 @@ $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 # The built-in functions. Their prototypes change only when a function is added or removed.
 $(BUILD)/gen/builtins.c: $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)
-	LC_ALL=C awk -f tools/rows.awk $(ROWS) > $@.tmp && mv $@.tmp $@
+	@echo "awk $@"
+	$QLC_ALL=C awk -f tools/rows.awk $(ROWS) > $@.tmp && mv $@.tmp $@
 $(BUILD)/gen/builtin_functions.h: $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)
-	LC_ALL=C awk -v header=1 -f tools/rows.awk $(ROWS) > $@.tmp
+	@echo "awk $@"
+	$QLC_ALL=C awk -v header=1 -f tools/rows.awk $(ROWS) > $@.tmp
 	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
 $(call obj,$(wildcard interp/builtin/*.c)) $(BUILD)/obj/gen/builtins.o: | $(BUILD)/gen/builtin_functions.h
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
