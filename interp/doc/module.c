@@ -14,15 +14,16 @@ static char *copy(const char *text, size_t n) {
   return out;
 }
 
-// A part of the source on one line: line breaks and the spaces around them become one space.
+// A part of the source on one line: line breaks and the spaces around them become one space, or
+// nothing within a bracket's ends.
 static char *copy_line(const char *text, size_t n) {
   char *out = copy(text, n), *to = out;
   for (char *at = out; *at;) {
     const size_t spaces = strspn(at, " \t\r\n");
     const bool broken = spaces && strcspn(at, "\n") < spaces;
     if (broken) {
-      *to++ = ' ';
       at += spaces;
+      if (to > out && !strchr("([{", to[-1]) && *at && !strchr(")]}", *at)) *to++ = ' ';
     } else {
       *to++ = *at++;
     }

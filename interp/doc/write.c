@@ -65,12 +65,31 @@ void cag_doc_write_indented(FILE *out, const char *text, int indent) {
   }
 }
 
-// Lines as they stand, but for prose that does not fit; scripts in it are indented by four.
+static bool is_script(const char *line) { return strncmp(line, "    ", 4) == 0; }
+
+// The length of the paragraph that begins with this line, without its last newline; *longest is
+// that of its longest line. Items of lists and rows of tables are paragraphs of their own.
+static size_t paragraph(const char *text, size_t *longest) {
+  size_t end = *longest = strcspn(text, "\n");
+  while (text[end] == '\n') {
+    const char *line = text + end + 1;
+    const size_t n = strcspn(line, "\n");
+    if (n == 0 || is_script(line) || *line == '|' || strncmp(line, "- ", 2) == 0) break;
+    if (n > *longest) *longest = n;
+    end += 1 + n;
+  }
+  return end;
+}
+
+// Lines as they stand, except paragraphs that do not fit, which are wrapped. Scripts are indented by
+// four.
 static void write_prose(FILE *out, const char *text, size_t indent) {
   const size_t width = width_of(out);
   while (*text) {
-    const size_t n = strcspn(text, "\n");
-    if (strncmp(text, "    ", 4) != 0 && indent + n > width) {
+    size_t n = strcspn(text, "\n"), longest = 0;
+    const size_t whole = is_script(text) || n == 0 ? n : paragraph(text, &longest);
+    if (indent + longest > width) {
+      n = whole;
       write_wrapped(out, text, n, indent, 0);
     } else {
       if (n) fprintf(out, "%*s%.*s", (int)indent, "", (int)n, text);
