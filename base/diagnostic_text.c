@@ -200,7 +200,8 @@ static void json_text(FILE *out, const char *text) {
       continue;
     }
     char escape[8];
-    const char *escaped = cag_json_escape(text[i], escape);
+    // Terminals act on DEL, which JSON allows.
+    const char *escaped = text[i] == 127 ? "\\u007f" : cag_json_escape(text[i], escape);
     if (escaped) fputs(escaped, out);
     else fwrite(text + i, 1, (size_t)n, out);
     i += (size_t)n;

@@ -11,7 +11,7 @@ const char *cag_json_escape(char byte, char buffer[8]) {
   case '\t': return "\\t";
   default: break;
   }
-  if (c >= ' ' && c != 127) return NULL;
+  if (c >= ' ') return NULL;
   snprintf(buffer, 8, "\\u%04x", (unsigned)c);
   return buffer;
 }
