@@ -11,8 +11,8 @@
 #include "base/stop.h"
 #include "base/utf8.h"
 
-CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
-                   const char *format, ...) {
+CagStatus(cag_fail)(CagError *err, CagStatus status, CagErrorId id, const char *argument,
+                    long index, const char *format, ...) {
   err->status = status;
   err->id = id;
   snprintf(err->argument, sizeof err->argument, "%s", argument ? argument : "");
@@ -86,7 +86,7 @@ bool cag_memory_was_out(void) {
 }
 
 // Functions that only tell that they could not finish do so as well if the work is to end.
-CagStatus cag_fail_memory(CagError *err) {
+CagStatus(cag_fail_memory)(CagError *err) {
   if (cag_stopped()) return cag_stop_fail(err);
   cag_note_memory();
   return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "out of memory");

@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/assert.h"
 #include "base/error.h"
 
 typedef enum CagStatus {
@@ -47,6 +48,15 @@ typedef struct CagError {
 CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
                    const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
+// Both return an error, never CAG_OK. The macros let compilers and analyzers know, so that they see
+// that results are set where a status is CAG_OK.
+static inline CagStatus cag_never_ok(CagStatus status) {
+  CAG_ASSERT(status != CAG_OK);
+  if (status == CAG_OK) __builtin_unreachable();
+  return status;
+}
+#define cag_fail(...) cag_never_ok((cag_fail)(__VA_ARGS__))
+#define cag_fail_memory(err) cag_never_ok((cag_fail_memory)(err))
 // The same for files and renderers: fills err, which may be NULL, and returns false. Texts that are
 // too long for their fields are cut at a whole UTF-8 character. `help` may be NULL. The error's id
 // is the general one of its status.

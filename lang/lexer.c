@@ -363,7 +363,8 @@ static void lex_number(CagLexer *lx, CagToken *t) {
     end = p + 2;
     help(report(lx, CAG_ERR_unknown_unit, p, end, "the degree sign is not a unit"), "write %.*sdeg",
          (int)(p - start > 40 ? 40 : p - start), lx->source->text + start);
-    unit = find_unit("deg", 3);
+    const Unit *degree = find_unit("deg", 3);
+    if (degree) unit = degree;
   }
 
   double value;

@@ -127,6 +127,10 @@ suite counted "tests/editors" "sh tests/editors/run.sh"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
+for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance" \
+  "geom/tessellate geom/boolean geom/solid"; do
+  suite check "analyzer $part" "make -s analyze ANALYZED='$part'"
+done
 if command -v clang-format > /dev/null; then
   suite check "format" "make -s check-format"
 else
