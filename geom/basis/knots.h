@@ -22,8 +22,8 @@ void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots);
 
 // Fails with "order-range", "not-finite", "knots-not-monotone", "knot-multiplicity", "empty-range".
 CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err);
-// Whether knots are such as cag_knots_check accepts, multiplicities aside: finite, not decreasing, and
-// with a domain that is not empty. For CAG_ASSERT and tests.
+// Whether knots are such as cag_knots_check accepts, multiplicities aside: finite, not decreasing,
+// and with a domain that is not empty. For CAG_ASSERT and tests.
 bool cag_check_knots(const double *knots, size_t n, int p);
 // Degree against the number of control points: 1 <= p < n.
 CagStatus cag_degree_check(size_t n, int p, CagError *err);

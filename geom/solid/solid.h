@@ -57,7 +57,8 @@ typedef struct CagSolid {
                       // by the copies that were moved; else NULL
 } CagSolid;
 
-// Whether a solid has faces that are sound, or a core; its edges name faces; its placement is finite.
+// Whether a solid has faces that are sound, or a core, its edges name faces, and its placement is
+// finite.
 bool cag_check_solid(const CagSolid *s);
 
 CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *err);

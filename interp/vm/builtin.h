@@ -23,7 +23,8 @@
 #include "interp/vm/value.h"
 
 // Arguments of one call. Given ones stand in `values` by parameter order; parameters left out are
-// CAG_UNSET, and so are those for which none was given where none is the default. With `...`, further ones follow: values[parameter_count .. count).
+// CAG_UNSET, and so are those for which none was given where none is the default. With `...`,
+// further ones follow: values[parameter_count .. count).
 typedef struct CagCall {
   CagVm *vm;
   const struct CagBuiltin *builtin;
@@ -115,8 +116,8 @@ bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 //     if (!cag_bind(call, &a, sizeof a)) return false;
 //
 // Optional arguments that are not given have their default. If the function itself supplies the
-// default (such as `none`), the field is zero, and cag_given(call, i) is false. Returns false, with the error set, if an argument has the
-// wrong type or is out of range.
+// default (such as `none`), the field is zero, and cag_given(call, i) is false. Returns false, with
+// the error set, if an argument has the wrong type or is out of range.
 bool cag_bind(CagCall *call, void *out, size_t size);
 
 // --- What a built-in holds besides values ---
