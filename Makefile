@@ -100,7 +100,7 @@ $(BUILD)/gen/builtin_functions.h: $(ROWS) tools/rows.awk
 	@echo "awk $@"
 	$QLC_ALL=C awk -v header=1 -f tools/rows.awk $(ROWS) > $@.tmp
 	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
-$(call obj,$(wildcard interp/builtin/*.c)) $(BUILD)/obj/gen/builtins.o: | $(BUILD)/gen/builtin_functions.h
+$(INTERP_OBJ): | $(BUILD)/gen/builtin_functions.h
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
 	@echo "cc $<"
