@@ -49,6 +49,7 @@ INTERP_SRC := $(shell find interp -name '*.c' | sort)
 MAIN_SRC   := cli/main.c
 CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
 # The documentation lists the families of built-in functions in this order.
+PARAMETERS := interp/vm/parameter_kinds.def interp/vm/parameter_types.def
 ROWS       := $(patsubst %,interp/builtin/%.rows,constants numbers angles vectors lists texts records control \
               random calculus matrices files formula transforms curves regions bsplines functions frenet hulls \
               conics splines surfaces tensors sections meetings triangles solids checks mesh_files figures \
@@ -90,15 +91,15 @@ $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
-# The built-in functions. Their prototypes change only when a function is added or removed.
-$(BUILD)/gen/builtins.c: $(ROWS) tools/rows.awk
+# The built-in functions. The prototypes do not change with a summary or an example.
+$(BUILD)/gen/builtins.c: $(PARAMETERS) $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)
 	@echo "awk $@"
-	$QLC_ALL=C awk -f tools/rows.awk $(ROWS) > $@.tmp && mv $@.tmp $@
-$(BUILD)/gen/builtin_functions.h: $(ROWS) tools/rows.awk
+	$QLC_ALL=C awk -f tools/rows.awk $(PARAMETERS) $(ROWS) > $@.tmp && mv $@.tmp $@
+$(BUILD)/gen/builtin_functions.h: $(PARAMETERS) $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)
 	@echo "awk $@"
-	$QLC_ALL=C awk -v header=1 -f tools/rows.awk $(ROWS) > $@.tmp
+	$QLC_ALL=C awk -v header=1 -f tools/rows.awk $(PARAMETERS) $(ROWS) > $@.tmp
 	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
 $(INTERP_OBJ): | $(BUILD)/gen/builtin_functions.h
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c

@@ -1,7 +1,9 @@
 # Makes the C tables of the built-in functions from interp/builtin/*.rows.
 #
-#     awk -f rows.awk FILE.rows ...                 cag_builtins[], in the order of the files
-#     awk -v header=1 -f rows.awk FILE.rows ...     the prototypes of the functions
+#     awk -f rows.awk PARAMETER.def ... FILE.rows ...                cag_builtins[], in the order of the files
+#     awk -v header=1 -f rows.awk PARAMETER.def ... FILE.rows ...    the prototypes of the functions
+#
+# PARAMETER.def are interp/vm/parameter_kinds.def and parameter_types.def.
 #
 # A file has the rows of one family:
 #
@@ -25,8 +27,19 @@
 #   range, `shape` for all types of shapes, and `movable` for everything that transforms apply to, but
 #   lists. Any type by default.
 # - `function`: the function in C, if it is not the beginning and the name.
+# - `unbound`: the function reads its arguments from the call.
 # - The summary, which begins with a capital.
 # - The example, indented by 8.
+#
+# The function of a row gets its arguments in a structure, which has its name. It has a field for each
+# parameter, with the name of the parameter and the type in C that parameter_kinds.def states:
+#
+#     struct cag_solids_cone {
+#       double height;
+#       double radius;
+#       double top;
+#     };
+#     bool cag_solids_cone(CagCall *call, const struct cag_solids_cone *a, CagValue *result);
 
 function fail(text) {
   printf "%s:%d: %s\n", FILENAME, FNR, text > "/dev/stderr"
@@ -64,6 +77,85 @@ function toupper_tags(text,    out, tag) {
   return out text
 }
 
+# The kind of the words of a type, the longest known ones that it begins with.
+function kind_of(type,    words, best) {
+  for (words in kind_of_words)
+    if ((type == words || index(type, words " ") == 1) && length(words) > length(best)) best = words
+  return best == "" ? "VALUE" : kind_of_words[best]
+}
+
+# The kind of the type of a parameter, such as `length > 0` or `"left" or "right"`.
+function parameter_kind(type,    i, c, depth, in_text, alternatives, texts, start) {
+  type = type " or "
+  start = 1
+  for (i = 1; i <= length(type); i++) {
+    c = substr(type, i, 1)
+    if (c == "\"") in_text = !in_text
+    if (in_text) continue
+    if (c ~ /[[({]/) depth++
+    else if (c ~ /[])}]/) depth--
+    if (depth > 0 || substr(type, i, 4) != " or ") continue
+    alternatives++
+    if (substr(type, start, 1) == "\"") texts++
+    start = i + 4
+  }
+  if (texts == alternatives) return "CHOICE"
+  return alternatives > 1 ? "VALUE" : kind_of(type)
+}
+
+# The field of a structure for one parameter.
+function field(parameter,    name, type, kind) {
+  name = type = parameter
+  sub(/:.*/, "", name)
+  sub(/^[^:]*: */, "", type)
+  sub(/ = .*/, "", type)
+  sub(/^ */, "", name)
+  kind = parameter_kind(type)
+  if (name ~ /^(break|case|char|const|default|do|double|else|enum|float|for|goto|if|int|long|short|switch|void|while)$/)
+    name = name "_"
+  type = type_of_kind[kind]
+  return "  " type (type ~ /\*$/ ? "" : " ") name ";\n"
+}
+
+# The fields for all parameters but `...`.
+function fields(signature,    out, i, c, depth, in_text, start) {
+  start = index(signature, "(") + 1
+  for (i = start; i < length(signature); i++) {
+    c = substr(signature, i, 1)
+    if (c == "\"") in_text = !in_text
+    if (in_text) continue
+    if (c ~ /[[({]/) depth++
+    else if (c ~ /[])}]/) depth--
+    if (depth > 0 || c != ",") continue
+    out = out field(substr(signature, start, i - start))
+    start = i + 1
+  }
+  if (start < i && substr(signature, start) !~ /^ *\.\.\.\)$/)
+    out = out field(substr(signature, start, i - start))
+  return out
+}
+
+# Declares a function, or defines the one that binds its arguments. Returns what the table calls.
+function declare(own, structure) {
+  if (own in declared) {
+    if (declared[own] != structure) fail("the rows of " own " have different parameters")
+    return structure == "" ? own : "bind_" own
+  }
+  declared[own] = structure
+  if (structure == "") {
+    if (header) print "bool " own "(CagCall *call, CagValue *result);"
+    return own
+  }
+  if (header) {
+    print "struct " own " {\n" structure "};"
+    print "bool " own "(CagCall *call, const struct " own " *a, CagValue *result);"
+  } else {
+    print "static bool bind_" own "(CagCall *call, CagValue *result) {\n  struct " own " a;"
+    print "  return cag_bind(call, &a, sizeof a) && " own "(call, &a, result);\n}"
+  }
+  return "bind_" own
+}
+
 function finish_row(    name) {
   if (signature == "") return
   if (result == "") fail("the signature before this line has no `-> RESULT`")
@@ -74,19 +166,33 @@ function finish_row(    name) {
   name = signature
   sub(/\(.*/, "", name)
   if (signature !~ /\(/) own = "NULL"
-  else if (own == "") own = prefix name
-  if (own != "NULL" && !(own in declared)) {
-    declared[own] = 1
-    if (header) print "bool " own "(CagCall *call, CagValue *result);"
-  }
-  if (!header)
-    print "    {" quoted(signature) ", " own ", " quoted(result) ", " quoted(summary) ", " \
-      quoted(example) ", " (first == "" ? "0" : first) ", " quoted(heading) "},"
+  else own = declare(own == "" ? prefix name : own, unbound ? "" : fields(signature))
+  rows = rows "    {" quoted(signature) ", " own ", " quoted(result) ", " quoted(summary) ", " \
+    quoted(example) ", " (first == "" ? "0" : first) ", " quoted(heading) "},\n"
+  unbound = 0
   signature = result = summary = example = own = first = ""
 }
 
 BEGIN {
-  if (!header) print "#include \"interp/builtin/support.h\"\n\nconst CagBuiltin cag_builtins[] = {"
+  if (header) print "#ifndef CAG_BUILTIN_FUNCTIONS_H\n#define CAG_BUILTIN_FUNCTIONS_H"
+  else print "#include \"interp/builtin/support.h\"\n"
+}
+
+/^CAG_PARAMETER_TYPE/ {
+  split($0, parts, "\"")
+  sub(/^, */, "", parts[3])
+  sub(/,.*/, "", parts[3])
+  kind_of_words[parts[2]] = parts[3]
+  next
+}
+/^CAG_PARAMETER_KIND/ {
+  sub(/^[^(]*\(/, "")
+  kind = type = $0
+  sub(/,.*/, "", kind)
+  sub(/^[^,]*, */, "", type)
+  sub(/\).*/, "", type)
+  type_of_kind[kind] = type
+  next
 }
 
 FNR == 1 {
@@ -98,6 +204,7 @@ FNR == 1 {
 /^functions / { prefix = $2; next }
 /^# / { finish_row(); heading = substr($0, 3); next }
 /^    first: / { first = types(substr($0, 12)); next }
+/^    unbound$/ { unbound = 1; next }
 /^    function: / { own = $2; next }
 /^        / { example = example (example == "" ? "" : "\n") substr($0, 9); next }
 /^    / {
@@ -117,5 +224,6 @@ FNR == 1 {
 END {
   if (failed) exit 1
   finish_row()
-  if (!header) print "    {0}};"
+  if (header) print "#endif"
+  else print "\nconst CagBuiltin cag_builtins[] = {\n" rows "    {0}};"
 }

@@ -83,12 +83,9 @@ bool cag_angles_atan(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_angles_atan2(CagCall *call, CagValue *result) {
-  struct {
-    double y, x;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  *result = cag_angle(cag_atan2_degrees(a.y, a.x));
+bool cag_angles_atan2(CagCall *call, const struct cag_angles_atan2 *a, CagValue *result) {
+  (void)call;
+  *result = cag_angle(cag_atan2_degrees(a->y, a->x));
   return true;
 }
 

@@ -82,15 +82,10 @@ bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_conics_fillet(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *a, *b;
-    double radius;
-  } given;
+bool cag_conics_fillet(CagCall *call, const struct cag_conics_fillet *a, CagValue *result) {
   CagCurve *arc = NULL;
   double t, t2;
-  if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_fillet(given.a, given.b, given.radius, &arc, &t, &t2, call->err)))
+  if (!cag_geometry_ok(call, cag_fillet(a->A, a->B, a->radius, &arc, &t, &t2, call->err)))
     return false;
   *result = cag_curve_value(call->vm, arc);
   return true;

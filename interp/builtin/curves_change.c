@@ -107,23 +107,18 @@ bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
 // No limit of the turn: only the distance counts.
 #define ANY_TURN 3.14159265358979323846
 
-bool cag_curves_polygonize(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    double tolerance;
-  } a;
+bool cag_curves_polygonize(CagCall *call, const struct cag_curves_polygonize *a, CagValue *result) {
   CagCurve *out = NULL;
   double *t = NULL;
   size_t n;
-  if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_discretize(a.c, a.tolerance, ANY_TURN, &t, &n, call->err)))
+  if (!cag_geometry_ok(call, cag_curve_discretize(a->C, a->tolerance, ANY_TURN, &t, &n, call->err)))
     return false;
   cag_hold(call, t);
   CagVec3 *points = cag_hold(call, cag_malloc(n * sizeof *points));
-  CagStatus status = cag_curve_eval_many(a.c, t, n, 0, points, call->err);
+  CagStatus status = cag_curve_eval_many(a->C, t, n, 0, points, call->err);
   if (status == CAG_OK)
-    status = cag_curve_polyline(points, a.c->closed ? n - 1 : n, a.c->closed, a.c->dimension, &out,
-                                call->err);
+    status = cag_curve_polyline(points, a->C->closed ? n - 1 : n, a->C->closed, a->C->dimension,
+                                &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
@@ -141,14 +136,9 @@ bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
 // Most times that a degree is raised or a knot inserted or taken away at once.
 #define TIMES_MAX 1000
 
-bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    long times;
-  } a;
+bool cag_bsplines_elevate(CagCall *call, const struct cag_bsplines_elevate *a, CagValue *result) {
   CagCurve *out = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_elevate(a.c, (int)a.times, &out, call->err);
+  CagStatus status = cag_curve_elevate(a->C, (int)a->times, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
@@ -233,26 +223,18 @@ bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
 
 // --- Curves near it ---
 
-bool cag_bsplines_deviation(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *a, *b;
-  } given;
+bool cag_bsplines_deviation(CagCall *call, const struct cag_bsplines_deviation *a,
+                            CagValue *result) {
   double most;
-  if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_curve_deviation(given.a, given.b, &most, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, cag_curve_deviation(a->C, a->D, &most, call->err))) return false;
   *result = cag_number(most);
   return true;
 }
 
-bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    double tolerance;
-  } a;
+bool cag_bsplines_approximate(CagCall *call, const struct cag_bsplines_approximate *a,
+                              CagValue *result) {
   CagCurve *out = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_approximate(a.c, a.tolerance, &out, call->err);
+  CagStatus status = cag_curve_approximate(a->C, a->tolerance, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 

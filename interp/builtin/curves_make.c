@@ -4,14 +4,11 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
-bool cag_curves_line(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint p, q;
-  } a;
+bool cag_curves_line(CagCall *call, const struct cag_curves_line *a, CagValue *result) {
   CagCurve *c = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
   CagStatus status = cag_curve_line(
-      a.p.at, a.q.at, a.p.dimension > a.q.dimension ? a.p.dimension : a.q.dimension, &c, call->err);
+      a->P.at, a->Q.at, a->P.dimension > a->Q.dimension ? a->P.dimension : a->Q.dimension, &c,
+      call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
@@ -159,12 +156,8 @@ bool cag_curves_arc_through(CagCall *call, CagValue *result) {
   return cag_curve_result(call, status, &c, result);
 }
 
-bool cag_curves_helix(CagCall *call, CagValue *result) {
-  struct {
-    double radius, pitch, turns, taper;
-  } a;
+bool cag_curves_helix(CagCall *call, const struct cag_curves_helix *a, CagValue *result) {
   CagCurve *c = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_curve_helix(a.radius, a.pitch, a.turns, a.taper, &c, call->err);
+  CagStatus status = cag_curve_helix(a->radius, a->pitch, a->turns, a->taper, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }

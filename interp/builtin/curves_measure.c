@@ -28,16 +28,12 @@ bool cag_curves_length(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_curves_parameter_at_length(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    double s;
-  } a;
+bool cag_curves_parameter_at_length(CagCall *call, const struct cag_curves_parameter_at_length *a,
+                                    CagValue *result) {
   double t;
-  if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_parameter_at_length(a.c, a.s, &t, call->err)))
+  if (!cag_geometry_ok(call, cag_curve_parameter_at_length(a->C, a->s, &t, call->err)))
     return false;
-  *result = cag_parameter_value(a.c->angular, t);
+  *result = cag_parameter_value(a->C->angular, t);
   return true;
 }
 
@@ -48,13 +44,8 @@ static double step(const CagCurve *c, size_t i, size_t n) {
 // Points that are evaluated together: few enough to stay near the processor.
 #define SAMPLE_BATCH 512
 
-bool cag_curves_sample(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    long n;
-  } given;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  const size_t count = (size_t)given.n, dimension = (size_t)given.c->dimension;
+bool cag_curves_sample(CagCall *call, const struct cag_curves_sample *a, CagValue *result) {
+  const size_t count = (size_t)a->n, dimension = (size_t)a->C->dimension;
   double t[SAMPLE_BATCH], *to;
   CagVec3 points[SAMPLE_BATCH];
   CagValue list = cag_list_vectors(call->vm, count, dimension, &to);
@@ -64,8 +55,8 @@ bool cag_curves_sample(CagCall *call, CagValue *result) {
     const size_t m = count - from < SAMPLE_BATCH ? count - from : SAMPLE_BATCH;
     // Vectors of a list in space lie as those of the core do.
     CagVec3 *out = dimension == 3 ? (CagVec3 *)to : points;
-    for (size_t i = 0; i < m; i++) t[i] = step(given.c, from + i, count - 1);
-    ok = cag_geometry_ok(call, cag_curve_eval_many(given.c, t, m, 0, out, call->err));
+    for (size_t i = 0; i < m; i++) t[i] = step(a->C, from + i, count - 1);
+    ok = cag_geometry_ok(call, cag_curve_eval_many(a->C, t, m, 0, out, call->err));
     for (size_t i = 0; ok && dimension == 2 && i < m; i++) {
       to[2 * i] = points[i].x;
       to[2 * i + 1] = points[i].y;
@@ -280,19 +271,14 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_curves_closest(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    CagPoint p;
-  } a;
+bool cag_curves_closest(CagCall *call, const struct cag_curves_closest *a, CagValue *result) {
   static const char *const names[] = {"t", "point", "distance"};
   CagVec3 point;
   double t, distance;
-  if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_curve_closest(a.c, a.p.at, &t, &point, &distance, call->err)))
+  if (!cag_geometry_ok(call, cag_curve_closest(a->C, a->P.at, &t, &point, &distance, call->err)))
     return false;
-  CagValue values[] = {cag_parameter_value(a.c->angular, t),
-                       cag_point(call->vm, point, a.c->dimension), cag_number(distance)};
+  CagValue values[] = {cag_parameter_value(a->C->angular, t),
+                       cag_point(call->vm, point, a->C->dimension), cag_number(distance)};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }

@@ -94,26 +94,18 @@ bool cag_curves_polygon(CagCall *call, CagValue *result) {
   return bounded_by_some(call, result);
 }
 
-bool cag_curves_rectangle(CagCall *call, CagValue *result) {
-  struct {
-    double w, h, radius;
-  } a;
+bool cag_curves_rectangle(CagCall *call, const struct cag_curves_rectangle *a, CagValue *result) {
   CagRegion *region = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_region_rectangle(a.w, a.h, a.radius, &region, call->err);
+  CagStatus status = cag_region_rectangle(a->w, a->h, a->radius, &region, call->err);
   return cag_region_result(call, status, &region, result);
 }
 
 // More corners than any polygon of a drawing; a circle says it better.
 
-bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
-  struct {
-    long n;
-    double radius;
-  } a;
+bool cag_curves_regular_polygon(CagCall *call, const struct cag_curves_regular_polygon *a,
+                                CagValue *result) {
   CagRegion *region = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagStatus status = cag_region_regular_polygon((size_t)a.n, a.radius, &region, call->err);
+  CagStatus status = cag_region_regular_polygon((size_t)a->n, a->radius, &region, call->err);
   return cag_region_result(call, status, &region, result);
 }
 

@@ -114,22 +114,17 @@ static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *poin
 }
 
 // robot, n
-bool cag_robots_workspace(CagCall *call, CagValue *result) {
-  struct {
-    CagRobot *r;
-    long n;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagVec3 *points = cag_hold(call, cag_malloc((size_t)a.n * sizeof *points));
-  for (size_t k = 0; k < (size_t)a.n; k++) {
+bool cag_robots_workspace(CagCall *call, const struct cag_robots_workspace *a, CagValue *result) {
+  CagVec3 *points = cag_hold(call, cag_malloc((size_t)a->n * sizeof *points));
+  for (size_t k = 0; k < (size_t)a->n; k++) {
     double q[CAG_ROBOT_JOINTS_MAX];
     CagTransform t;
-    cag_robot_workspace_sample(a.r, k, (size_t)a.n, q);
-    cag_robot_forward(a.r, q, &t);
+    cag_robot_workspace_sample(a->robot, k, (size_t)a->n, q);
+    cag_robot_forward(a->robot, q, &t);
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
     if (!cag_keep_going(call->vm)) return false;
   }
-  return give_workspace(call, a.r, points, (size_t)a.n, result);
+  return give_workspace(call, a->robot, points, (size_t)a->n, result);
 }
 
 // --- Frames for joint axes ---

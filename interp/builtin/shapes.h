@@ -7,6 +7,9 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/builtin.h"
 
+// The functions of the rows, made by tools/rows.awk.
+#include "builtin_functions.h"
+
 // Loops over shapes ask so often whether the run must stop.
 #define CAG_LOOK_UP 64
 

@@ -107,22 +107,17 @@ bool cag_solids_arrow(CagCall *call, CagValue *result) {
   return make_arrow(call, p, v, radius, result);
 }
 
-bool cag_solids_triad(CagCall *call, CagValue *result) {
-  struct {
-    CagTransform t;
-    double size;
-  } given;
+bool cag_solids_triad(CagCall *call, const struct cag_solids_triad *a, CagValue *result) {
   // x, y, z in red, green, blue; linear light.
   static const double colors[3][3] = {{0.7, 0.02, 0.02}, {0.03, 0.4, 0.03}, {0.02, 0.08, 0.7}};
   static const char *const names[] = {"color"};
   CagValue arrows[3];
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  CagVec3 origin = cag_transform_point(&given.t, cag_vec3(0, 0, 0));
+  CagVec3 origin = cag_transform_point(&a->T, cag_vec3(0, 0, 0));
   for (int i = 0; i < 3; i++) {
-    CagVec3 axis = cag_unit(cag_vec3(given.t.m[0][i], given.t.m[1][i], given.t.m[2][i]));
+    CagVec3 axis = cag_unit(cag_vec3(a->T.m[0][i], a->T.m[1][i], a->T.m[2][i]));
     if (cag_norm(axis) == 0)
       return cag_fail_call(call, 0, CAG_ERR_value, "expects a frame whose axes are not zero");
-    if (!make_arrow(call, origin, cag_scaled(axis, given.size), SHAFT * given.size, &arrows[i]))
+    if (!make_arrow(call, origin, cag_scaled(axis, a->size), SHAFT * a->size, &arrows[i]))
       return false;
     CagValue color = cag_vector(call->vm, colors[i], 3);
     CAG_AS_SHAPE(arrows[i])->material = CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1));

@@ -27,13 +27,9 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
   return cag_solid_result(call, cag_solid_box(size, centered, &s, call->err), &s, result);
 }
 
-bool cag_solids_sphere(CagCall *call, CagValue *result) {
-  struct {
-    double radius;
-  } a;
+bool cag_solids_sphere(CagCall *call, const struct cag_solids_sphere *a, CagValue *result) {
   CagSolid *s = NULL;
-  return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_sphere(a.radius, &s, call->err), &s, result);
+  return cag_solid_result(call, cag_solid_sphere(a->radius, &s, call->err), &s, result);
 }
 
 // A cylinder or frustum about Z, on z = 0 or with its middle there.
@@ -48,22 +44,12 @@ static bool upright_result(CagCall *call, double height, double radius, double t
   return cag_solid_result(call, status, &moved, result);
 }
 
-bool cag_solids_cylinder(CagCall *call, CagValue *result) {
-  struct {
-    double height, radius, top;
-    bool centered;
-  } a;
-  return cag_bind(call, &a, sizeof a) &&
-         upright_result(call, a.height, a.radius, a.top, a.centered, result);
+bool cag_solids_cylinder(CagCall *call, const struct cag_solids_cylinder *a, CagValue *result) {
+  return upright_result(call, a->height, a->radius, a->top, a->centered, result);
 }
 
-bool cag_solids_cone(CagCall *call, CagValue *result) {
-  struct {
-    double height, radius;
-    bool centered;
-  } a;
-  return cag_bind(call, &a, sizeof a) &&
-         upright_result(call, a.height, a.radius, 0, a.centered, result);
+bool cag_solids_cone(CagCall *call, const struct cag_solids_cone *a, CagValue *result) {
+  return upright_result(call, a->height, a->radius, 0, a->centered, result);
 }
 
 bool cag_solids_prism(CagCall *call, CagValue *result) {
@@ -99,24 +85,15 @@ CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSoli
   return status;
 }
 
-bool cag_solids_rod(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint p, q;
-    double radius, top;
-  } a;
+bool cag_solids_rod(CagCall *call, const struct cag_solids_rod *a, CagValue *result) {
   CagSolid *s = NULL;
-  return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_rod(a.p.at, a.q.at, a.radius, a.top, &s, call->err), &s,
-                          result);
+  return cag_solid_result(call, cag_solid_rod(a->P.at, a->Q.at, a->radius, a->top, &s, call->err),
+                          &s, result);
 }
 
-bool cag_solids_torus(CagCall *call, CagValue *result) {
-  struct {
-    double major, minor;
-  } a;
+bool cag_solids_torus(CagCall *call, const struct cag_solids_torus *a, CagValue *result) {
   CagSolid *s = NULL;
-  return cag_bind(call, &a, sizeof a) &&
-         cag_solid_result(call, cag_solid_torus(a.major, a.minor, &s, call->err), &s, result);
+  return cag_solid_result(call, cag_solid_torus(a->major, a->minor, &s, call->err), &s, result);
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.

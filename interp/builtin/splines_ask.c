@@ -319,20 +319,16 @@ bool cag_splines_bezier_join(CagCall *call, CagValue *result) {
 static CagValue number_or_none(double x) { return isnan(x) ? cag_none() : cag_number(x); }
 
 // continuity(C, D, tolerance = 1e-9)
-bool cag_splines_continuity(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *a, *b;
-    double tolerance;
-  } given;
+bool cag_splines_continuity(CagCall *call, const struct cag_splines_continuity *a,
+                            CagValue *result) {
   static const char *const names[] = {"class", "C0",         "C1",          "C2",
                                       "G1",    "G2",         "gap",         "angle",
                                       "ratio", "first_jump", "second_jump", "curvature_jump"};
   CagJoint j;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  if (!(given.tolerance >= 0))
+  if (!(a->tolerance >= 0))
     return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
-                            "the given.tolerance is 0 or more");
-  if (!cag_geometry_ok(call, cag_curve_joint(given.a, given.b, given.tolerance, &j, call->err)))
+                            "the a->tolerance is 0 or more");
+  if (!cag_geometry_ok(call, cag_curve_joint(a->C, a->D, a->tolerance, &j, call->err)))
     return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
                        cag_bool(j.c0),
@@ -373,34 +369,27 @@ static size_t polygon_crossings(const CagCurve *curve, CagVec3 normal, double of
 }
 
 // line_crossings(C, normal, offset)
-bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *c;
-    CagPoint normal;
-    double offset;
-  } given;
+bool cag_splines_line_crossings(CagCall *call, const struct cag_splines_line_crossings *a,
+                                CagValue *result) {
   static const char *const names[] = {"t", "points", "curve_crossings", "polygon_crossings"};
   CagMeeting *meetings;
   size_t n;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  const double square = cag_dot(given.normal.at, given.normal.at);
+  const double square = cag_dot(a->normal.at, a->normal.at);
   if (!(square > 0))
     return cag_splines_fail(call, CAG_ERR_zero_vector, "normal", -1,
-                            "the given.normal.at of a line or plane is not the zero vector");
-  const CagPlane plane = {cag_scaled(given.normal.at, given.offset / square),
-                          cag_unit(given.normal.at)};
-  if (!cag_geometry_ok(call, cag_curve_intersect_plane(given.c, &plane, &meetings, &n, call->err)))
+                            "the a->normal.at of a line or plane is not the zero vector");
+  const CagPlane plane = {cag_scaled(a->normal.at, a->offset / square), cag_unit(a->normal.at)};
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(a->C, &plane, &meetings, &n, call->err)))
     return false;
   cag_hold_for(call, cag_free, meetings);
   CagBuilder *t = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
   for (size_t i = 0; i < n; i++)
-    if (!cag_builder_add(call->vm, t, cag_parameter_value(given.c->angular, meetings[i].t)) ||
-        !cag_builder_add(call->vm, points,
-                         cag_point(call->vm, meetings[i].point, given.c->dimension)))
+    if (!cag_builder_add(call->vm, t, cag_parameter_value(a->C->angular, meetings[i].t)) ||
+        !cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, a->C->dimension)))
       return false;
-  CagValue values[] = {
-      cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points), cag_number((double)n),
-      cag_number((double)polygon_crossings(given.c, given.normal.at, given.offset))};
+  CagValue values[] = {cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points),
+                       cag_number((double)n),
+                       cag_number((double)polygon_crossings(a->C, a->normal.at, a->offset))};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }

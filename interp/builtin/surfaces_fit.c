@@ -321,25 +321,21 @@ bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
 // Places in each direction at which the Gaussian curvature is looked at, besides the breaks.
 #define PROBES 24
 
-bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
-  struct {
-    CagSurface *s;
-    double tolerance;
-  } given;
+bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_developable *a,
+                                 CagValue *result) {
   CagBounds box;
   double worst = 0;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  if (!(given.tolerance >= 0)) return cag_fail_value(call, 1, "a given.tolerance of 0 or more");
-  if (!cag_geometry_ok(call, cag_surface_bounds(given.s, &box, call->err))) return false;
+  if (!(a->tolerance >= 0)) return cag_fail_value(call, 1, "a a->tolerance of 0 or more");
+  if (!cag_geometry_ok(call, cag_surface_bounds(a->S, &box, call->err))) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
     for (int j = 0; j < PROBES; j++) {
       // Off the ends, where poles lie, and off the middles, where knots like to be.
-      double u = given.s->u0 + (given.s->u1 - given.s->u0) * (i + 0.431) / PROBES;
-      double v = given.s->v0 + (given.s->v1 - given.s->v0) * (j + 0.567) / PROBES;
+      double u = a->S->u0 + (a->S->u1 - a->S->u0) * (i + 0.431) / PROBES;
+      double v = a->S->v0 + (a->S->v1 - a->S->v0) * (j + 0.567) / PROBES;
       CagVec3 d[9];
       CagStatus status =
-          cag_surface_eval(given.s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err);
+          cag_surface_eval(a->S, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err);
       if (!cag_geometry_ok(call, status)) return false;
       CagVec3 n = cag_cross(d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]);
       double length = cag_norm(n);
@@ -349,7 +345,7 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
       double k = (a * c - b * b) / (length * length * length * length);
       worst = fmax(worst, fabs(k) * size * size);
     }
-  *result = cag_bool(worst <= given.tolerance);
+  *result = cag_bool(worst <= a->tolerance);
   return true;
 }
 

@@ -222,13 +222,9 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
 
 // --- Others ---
 
-bool cag_surfaces_ruled(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *a, *b;
-  } given;
+bool cag_surfaces_ruled(CagCall *call, const struct cag_surfaces_ruled *a, CagValue *result) {
   CagSurface *s = NULL;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  return cag_surface_result(call, cag_surface_ruled(given.a, given.b, &s, call->err), &s, result);
+  return cag_surface_result(call, cag_surface_ruled(a->A, a->B, &s, call->err), &s, result);
 }
 
 bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
@@ -240,14 +236,10 @@ bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
   return cag_surface_result(call, status, &s, result);
 }
 
-bool cag_surfaces_translational(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *a, *b;
-  } given;
+bool cag_surfaces_translational(CagCall *call, const struct cag_surfaces_translational *a,
+                                CagValue *result) {
   CagSurface *s = NULL;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  return cag_surface_result(call, cag_surface_translational(given.a, given.b, &s, call->err), &s,
-                            result);
+  return cag_surface_result(call, cag_surface_translational(a->A, a->B, &s, call->err), &s, result);
 }
 
 // The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
@@ -267,11 +259,8 @@ bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
   return cag_surface_result(call, status, &s, result);
 }
 
-bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
-  struct {
-    double major, minor;
-  } a;
+bool cag_surfaces_torus_surface(CagCall *call, const struct cag_surfaces_torus_surface *a,
+                                CagValue *result) {
   CagSurface *s = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_surface_result(call, cag_surface_torus(a.major, a.minor, &s, call->err), &s, result);
+  return cag_surface_result(call, cag_surface_torus(a->major, a->minor, &s, call->err), &s, result);
 }

@@ -7,18 +7,12 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-bool cag_meetings_closest(CagCall *call, CagValue *result) {
-  struct {
-    CagSurface *s;
-    CagPoint p;
-  } a;
+bool cag_meetings_closest(CagCall *call, const struct cag_meetings_closest *a, CagValue *result) {
   static const char *const names[] = {"u", "v", "point", "distance"};
   CagSurfaceNearest found;
-  if (!cag_bind(call, &a, sizeof a) ||
-      !cag_geometry_ok(call, cag_surface_closest(a.s, a.p.at, &found, call->err)))
-    return false;
-  CagValue values[] = {cag_parameter_value(a.s->angular_u, found.u),
-                       cag_parameter_value(a.s->angular_v, found.v),
+  if (!cag_geometry_ok(call, cag_surface_closest(a->S, a->P.at, &found, call->err))) return false;
+  CagValue values[] = {cag_parameter_value(a->S->angular_u, found.u),
+                       cag_parameter_value(a->S->angular_v, found.v),
                        cag_point(call->vm, found.point, 3), cag_number(found.distance)};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;

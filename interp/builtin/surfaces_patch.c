@@ -16,14 +16,10 @@ bool cag_surfaces_coons(CagCall *call, CagValue *result) {
       call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, call->err), &s, result);
 }
 
-bool cag_surfaces_developable(CagCall *call, CagValue *result) {
-  struct {
-    CagCurve *first, *second;
-  } a;
+bool cag_surfaces_developable(CagCall *call, const struct cag_surfaces_developable *a,
+                              CagValue *result) {
   CagSurface *s = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_surface_result(call, cag_surface_developable(a.first, a.second, &s, call->err), &s,
-                            result);
+  return cag_surface_result(call, cag_surface_developable(a->A, a->B, &s, call->err), &s, result);
 }
 
 // --- Tables of vectors ---

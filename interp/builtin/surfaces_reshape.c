@@ -131,15 +131,10 @@ bool cag_surfaces_refine(CagCall *call, CagValue *result) {
                                     result);
 }
 
-bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
-  struct {
-    CagSurface *s;
-    long u, v;
-  } a;
+bool cag_surfaces_elevate(CagCall *call, const struct cag_surfaces_elevate *a, CagValue *result) {
   CagSurface *out = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
   return cag_changed_surface_result(
-      call, cag_surface_elevate(a.s, (int)a.u, (int)a.v, &out, call->err), &out, result);
+      call, cag_surface_elevate(a->S, (int)a->u, (int)a->v, &out, call->err), &out, result);
 }
 
 bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
@@ -222,26 +217,16 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
 
 // --- Offsets ---
 
-bool cag_surfaces_offset(CagCall *call, CagValue *result) {
-  struct {
-    CagSurface *s;
-    double d;
-  } a;
+bool cag_surfaces_offset(CagCall *call, const struct cag_surfaces_offset *a, CagValue *result) {
   CagSurface *out = NULL;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return cag_changed_surface_result(call, cag_surface_offset(a.s, a.d, &out, call->err), &out,
+  return cag_changed_surface_result(call, cag_surface_offset(a->S, a->d, &out, call->err), &out,
                                     result);
 }
 
-bool cag_surfaces_thicken(CagCall *call, CagValue *result) {
-  struct {
-    CagSurface *s;
-    double d;
-  } given;
+bool cag_surfaces_thicken(CagCall *call, const struct cag_surfaces_thicken *a, CagValue *result) {
   CagSolid *out = NULL;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  if (given.d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
-  if (!cag_geometry_ok(call, cag_solid_thicken(given.s, given.d, &out, call->err))) return false;
+  if (a->d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
+  if (!cag_geometry_ok(call, cag_solid_thicken(a->S, a->d, &out, call->err))) return false;
   *result = cag_solid_value(call->vm, out);
   cag_shape_say_alike(*result, call->values[0]);
   return true;

@@ -56,16 +56,12 @@ static bool give_angles(CagCall *call, const char *const *names, const double an
   return true;
 }
 
-bool cag_transforms_euler_of(CagCall *call, CagValue *result) {
-  struct {
-    CagTransform t;
-    const char *order;
-  } given;
+bool cag_transforms_euler_of(CagCall *call, const struct cag_transforms_euler_of *a,
+                             CagValue *result) {
   static const char *const names[] = {"a", "b", "c", "singular"};
   double angles[3];
   bool singular;
-  if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_euler_of(&given.t, given.order, angles, &singular, call->err)))
+  if (!cag_geometry_ok(call, cag_euler_of(&a->T, a->order, angles, &singular, call->err)))
     return false;
   return give_angles(call, names, angles, singular, result);
 }
@@ -128,15 +124,11 @@ bool cag_transforms_classify(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_transforms_homogeneous(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint p;
-    double w;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
+bool cag_transforms_homogeneous(CagCall *call, const struct cag_transforms_homogeneous *a,
+                                CagValue *result) {
   // A point at infinity keeps its direction; any other is scaled, so that dividing gives it back.
-  double scale = a.w == 0 ? 1 : a.w;
-  double h[] = {scale * a.p.at.x, scale * a.p.at.y, scale * a.p.at.z, a.w};
+  double scale = a->w == 0 ? 1 : a->w;
+  double h[] = {scale * a->P.at.x, scale * a->P.at.y, scale * a->P.at.z, a->w};
   for (int i = 0; i < 4; i++)
     if (!isfinite(h[i])) return cag_fail_call(call, 1, CAG_ERR_not_finite, "overflows");
   *result = cag_vector(call->vm, h, 4);
@@ -164,16 +156,10 @@ bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_transforms_mix(CagCall *call, CagValue *result) {
-  struct {
-    CagTransform a, b;
-    double t;
-  } given;
+bool cag_transforms_mix(CagCall *call, const struct cag_transforms_mix *a, CagValue *result) {
   CagTransform out;
-  if (!cag_bind(call, &given, sizeof given) ||
-      !cag_geometry_ok(call, cag_transform_mix(&given.a, &given.b, given.t, &out, call->err)))
-    return false;
-  out.planar = given.a.planar && given.b.planar;
+  if (!cag_geometry_ok(call, cag_transform_mix(&a->A, &a->B, a->t, &out, call->err))) return false;
+  out.planar = a->A.planar && a->B.planar;
   *result = cag_transform_value(call->vm, &out);
   return true;
 }

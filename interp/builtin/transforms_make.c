@@ -12,14 +12,11 @@ static bool transform_result(CagCall *call, CagStatus status, CagTransform *t, b
   return true;
 }
 
-bool cag_transforms_reflect_line(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint p, q;
-  } a;
+bool cag_transforms_reflect_line(CagCall *call, const struct cag_transforms_reflect_line *a,
+                                 CagValue *result) {
   CagTransform t;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_reflect_line(a.p.at, a.q.at, &t, call->err), &t,
-                          a.p.dimension == 2 && a.q.dimension == 2, result);
+  return transform_result(call, cag_reflect_line(a->P.at, a->Q.at, &t, call->err), &t,
+                          a->P.dimension == 2 && a->Q.dimension == 2, result);
 }
 
 bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
@@ -78,43 +75,27 @@ bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
   return transform_result(call, CAG_OK, &t, planar, result);
 }
 
-bool cag_transforms_axes(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint origin, x, y;
-  } a;
+bool cag_transforms_axes(CagCall *call, const struct cag_transforms_axes *a, CagValue *result) {
   CagTransform t;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_axes(a.origin.at, a.x.at, a.y.at, &t, call->err), &t, false,
+  return transform_result(call, cag_axes(a->origin.at, a->x.at, a->y.at, &t, call->err), &t, false,
                           result);
 }
 
-bool cag_transforms_look_at(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint from, to, up;
-  } a;
+bool cag_transforms_look_at(CagCall *call, const struct cag_transforms_look_at *a,
+                            CagValue *result) {
   CagTransform t;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_look_at(a.from.at, a.to.at, a.up.at, &t, call->err), &t, false,
+  return transform_result(call, cag_look_at(a->from.at, a->to.at, a->up.at, &t, call->err), &t,
+                          false, result);
+}
+
+bool cag_transforms_euler(CagCall *call, const struct cag_transforms_euler *a, CagValue *result) {
+  CagTransform t;
+  return transform_result(call, cag_euler(a->a, a->b, a->c, a->order, &t, call->err), &t, false,
                           result);
 }
 
-bool cag_transforms_euler(CagCall *call, CagValue *result) {
-  struct {
-    double a, b, c;
-    const char *order;
-  } given;
-  CagTransform t;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  return transform_result(call, cag_euler(given.a, given.b, given.c, given.order, &t, call->err),
-                          &t, false, result);
-}
-
-bool cag_transforms_rpy(CagCall *call, CagValue *result) {
-  struct {
-    double roll, pitch, yaw;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagTransform t = cag_rpy(a.roll, a.pitch, a.yaw);
+bool cag_transforms_rpy(CagCall *call, const struct cag_transforms_rpy *a, CagValue *result) {
+  CagTransform t = cag_rpy(a->roll, a->pitch, a->yaw);
   return transform_result(call, CAG_OK, &t, false, result);
 }
 
@@ -126,15 +107,11 @@ bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
   return transform_result(call, cag_quaternion(wxyz, &t, call->err), &t, false, result);
 }
 
-bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint axis;
-    double angle;
-  } a;
+bool cag_transforms_axis_angle(CagCall *call, const struct cag_transforms_axis_angle *a,
+                               CagValue *result) {
   CagTransform t;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return transform_result(call, cag_rotate(a.axis.at, a.angle, cag_vec3(0, 0, 0), &t, call->err),
-                          &t, false, result);
+  return transform_result(call, cag_rotate(a->V.at, a->angle, cag_vec3(0, 0, 0), &t, call->err), &t,
+                          false, result);
 }
 
 // Turn about Z by the first angle, then about the turned Y by the second, then a step along the
@@ -147,22 +124,14 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
   return transform_result(call, CAG_OK, &t, false, result);
 }
 
-bool cag_transforms_cylindrical(CagCall *call, CagValue *result) {
-  struct {
-    double r, theta, z;
-    bool orient;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return give_position(call, a.theta, 0, cag_vec3(a.r, 0, a.z), a.orient, result);
+bool cag_transforms_cylindrical(CagCall *call, const struct cag_transforms_cylindrical *a,
+                                CagValue *result) {
+  return give_position(call, a->theta, 0, cag_vec3(a->r, 0, a->z), a->orient, result);
 }
 
-bool cag_transforms_spherical(CagCall *call, CagValue *result) {
-  struct {
-    double r, azimuth, polar;
-    bool orient;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  return give_position(call, a.azimuth, a.polar, cag_vec3(0, 0, a.r), a.orient, result);
+bool cag_transforms_spherical(CagCall *call, const struct cag_transforms_spherical *a,
+                              CagValue *result) {
+  return give_position(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
 }
 
 // theta, d, a, alpha

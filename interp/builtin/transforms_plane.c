@@ -73,15 +73,12 @@ bool cag_transforms_intersect_lines(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_transforms_distance_to_line(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint p, q, r;
-  } a;
-  if (!cag_bind(call, &a, sizeof a)) return false;
-  CagVec3 along = cag_sub(a.r.at, a.q.at);
+bool cag_transforms_distance_to_line(CagCall *call, const struct cag_transforms_distance_to_line *a,
+                                     CagValue *result) {
+  CagVec3 along = cag_sub(a->R.at, a->Q.at);
   if (cag_norm(along) == 0)
     return cag_fail_call(call, 2, CAG_ERR_value, "expects two different points of the line");
-  const double distance = cag_norm(cag_cross(cag_sub(a.p.at, a.q.at), along)) / cag_norm(along);
+  const double distance = cag_norm(cag_cross(cag_sub(a->P.at, a->Q.at), along)) / cag_norm(along);
   *result = cag_number(distance);
   return isfinite(distance) ||
          cag_fail_call(call, -1, CAG_ERR_value, "expects points so near that distances are finite");

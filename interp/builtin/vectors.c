@@ -60,12 +60,8 @@ bool cag_vectors_dot(CagCall *call, CagValue *result) {
   return cag_give_number(call, sum, result);
 }
 
-bool cag_vectors_cross(CagCall *call, CagValue *result) {
-  struct {
-    CagPoint a, b;
-  } given;
-  if (!cag_bind(call, &given, sizeof given)) return false;
-  *result = cag_point(call->vm, cag_cross(given.a.at, given.b.at), 3);
+bool cag_vectors_cross(CagCall *call, const struct cag_vectors_cross *a, CagValue *result) {
+  *result = cag_point(call->vm, cag_cross(a->A.at, a->B.at), 3);
   return true;
 }
 

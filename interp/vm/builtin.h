@@ -5,8 +5,8 @@
 //
 //     "cone(height: length > 0, radius: length > 0, centered: bool = false)"
 //
-// cag_bind reads all arguments of a call into a structure. Parameters with `= default` are
-// optional; an argument that is not given is CAG_UNSET. A parameter named with a single capital (C,
+// The generated code reads all arguments of a call into a structure and passes it to the function.
+// Parameters with `= default` are optional; an argument that is not given is CAG_UNSET. A parameter named with a single capital (C,
 // P, V, T, G, S, A, B, Q, R) goes by position only; others by position or name. `...` as last
 // parameter: any number of further positional arguments. One name may serve several types of first
 // argument: it then has several rows, and the first whose `accepts` takes the arguments is called.
@@ -109,11 +109,8 @@ bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
 bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 
-// Reads all arguments into a structure with a field for each parameter, in the order of the
-// signature and of the type that signature.h gives for its kind:
-//
-//     struct { double height, radius; bool centered; } a;
-//     if (!cag_bind(call, &a, sizeof a)) return false;
+// Reads all arguments into a structure that tools/rows.awk has made of the signature; its fields have
+// the types that parameter_kinds.def states.
 //
 // Optional arguments that are not given have their default. If the function itself supplies the
 // default (such as `none`), the field is zero, and cag_given(call, i) is false. Returns false, with

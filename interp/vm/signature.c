@@ -175,17 +175,9 @@ static void add_field(CagParameterTypes *types, CagParameterType *type) {
   static const struct {
     size_t size, align;
   } fields[] = {
-// clang-format off
-#define FIELD(kind, type) [CAG_BIND_##kind] = {sizeof(type), _Alignof(type)},
-      FIELD(VALUE, CagValue) FIELD(NUMBER, double) FIELD(FINITE, double) FIELD(INTEGER, long)
-      FIELD(ANGLE, double) FIELD(BOOL, bool) FIELD(TEXT, char *) FIELD(CHOICE, int)
-      FIELD(POINT, CagPoint) FIELD(DIRECTION, CagPoint) FIELD(POINTS, CagPoints)
-      FIELD(NUMBERS, CagNumbers) FIELD(RANGE, CagRangeEnds) FIELD(LIST, CagList *)
-      FIELD(RECORD, CagRecord *) FIELD(FUNCTION, CagValue) FIELD(TRANSFORM, CagTransform)
-      FIELD(PLANE, CagPlane) FIELD(CURVE, CagCurve *) FIELD(SURFACE, CagSurface *)
-      FIELD(SOLID, CagSolid *) FIELD(MESH, CagMesh *) FIELD(ROBOT, CagRobot *)
-// clang-format on
-#undef FIELD
+#define CAG_PARAMETER_KIND(kind, type) [CAG_BIND_##kind] = {sizeof(type), _Alignof(type)},
+#include "interp/vm/parameter_kinds.def"
+#undef CAG_PARAMETER_KIND
   };
   const size_t align = fields[type->kind].align;
   type->offset = (types->size + align - 1) / align * align;

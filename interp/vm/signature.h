@@ -22,31 +22,11 @@
 #include "base/arena.h"
 #include "geom/linalg/transform.h"
 
-// How an argument is read, and the type of its field in the structure of cag_bind.
+// How an argument is read: see parameter_kinds.def.
 typedef enum CagParameterKind {
-  CAG_BIND_VALUE,     // CagValue: any, or several alternatives
-  CAG_BIND_NUMBER,    // double
-  CAG_BIND_FINITE,    // double, finite
-  CAG_BIND_INTEGER,   // long
-  CAG_BIND_ANGLE,     // double: radians
-  CAG_BIND_BOOL,      // bool
-  CAG_BIND_TEXT,      // const char *
-  CAG_BIND_CHOICE,    // int: the index of the text
-  CAG_BIND_POINT,     // CagPoint: a point or vector of 2 or 3 finite numbers
-  CAG_BIND_DIRECTION, // CagPoint: a unit vector along a vector that is not 0
-  CAG_BIND_POINTS,    // CagPoints
-  CAG_BIND_NUMBERS,   // CagNumbers
-  CAG_BIND_RANGE,     // CagRangeEnds
-  CAG_BIND_LIST,      // CagList *: a list or range
-  CAG_BIND_RECORD,    // CagRecord *
-  CAG_BIND_FUNCTION,  // CagValue: a function, curve, or surface
-  CAG_BIND_TRANSFORM, // CagTransform
-  CAG_BIND_PLANE,     // CagPlane
-  CAG_BIND_CURVE,     // CagCurve *: borrowed
-  CAG_BIND_SURFACE,   // CagSurface *: borrowed
-  CAG_BIND_SOLID,     // CagSolid *: borrowed
-  CAG_BIND_MESH,      // CagMesh *: borrowed
-  CAG_BIND_ROBOT      // CagRobot *: borrowed
+#define CAG_PARAMETER_KIND(kind, type) CAG_BIND_##kind,
+#include "interp/vm/parameter_kinds.def"
+#undef CAG_PARAMETER_KIND
 } CagParameterKind;
 
 typedef struct CagParameterType {
