@@ -46,9 +46,4 @@ const char *cag_joint_text(const CagRobot *r, size_t joint, double q, char *buff
 // The group that `show robot` shows.
 bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group);
 
-// --- What the machine asks of links and robots ---
-bool cag_robot_member(CagVm *vm, CagValue v, const char *name, CagValue *out);
-const char *const *cag_robot_members(CagValue v, size_t *n);
-void cag_describe_robot(CagVm *vm, CagString *s, CagValue v);
-
 #endif

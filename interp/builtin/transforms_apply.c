@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "interp/builtin/shapes.h"
+#include "interp/builtin/types.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/vm.h"
 
@@ -32,7 +33,7 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
   return true;
 }
 
-static bool apply_list(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
+bool cag_move_list(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   CagList *list = CAG_AS_LIST(v);
   if (!cag_may_go_deeper(call->vm, "moved")) return false;
   size_t dim = list->dim == 1 ? list->length : list->dim;
@@ -60,121 +61,10 @@ static bool apply_list(CagCall *call, const CagTransform *t, CagValue v, CagValu
   return true;
 }
 
-// Cameras and lights are moved by their points and directions; sizes follow a uniform scale.
-static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
-  static const char *const points[] = {"eye", "target", "position"};
-  static const char *const vectors[] = {"up", "direction"};
-  static const char *const sizes[] = {"width", "focus", "aperture"};
-  const CagSceneValue *old = CAG_AS_SCENE(v);
-  size_t n = old->fields->layout->count;
-  double scale = 1;
-  CagVec3 images[3] = {{0, 0, 0}}; // of `points`
-  bool is_flat = !cag_transform_is_affine(t);
-  cag_transform_is_similarity(t, &scale);
-  CagValue fields[32];
-  if (n > 32) return cag_fail_call(call, 0, CAG_ERR_internal, "met too many fields");
-  for (size_t i = 0; i < n; i++) {
-    const char *name = old->fields->layout->names[i]->bytes;
-    CagValue f = fields[i] = old->fields->fields[i];
-    const double *x;
-    size_t count;
-    bool vector = f.type == CAG_LIST && cag_as_vector(f, &x, &count) && count >= 2;
-    CagVec3 p = vector ? cag_vec3(x[0], x[1], count > 2 ? x[2] : 0) : cag_vec3(0, 0, 0);
-    for (size_t k = 0; vector && k < sizeof points / sizeof *points; k++)
-      if (!strcmp(name, points[k]))
-        fields[i] = cag_point(call->vm, images[k] = cag_transform_point(t, p), 3);
-    for (size_t k = 0; vector && k < sizeof vectors / sizeof *vectors; k++)
-      if (!strcmp(name, vectors[k])) {
-        const CagVec3 image = cag_transform_vector(t, p);
-        is_flat |= cag_norm(image) == 0;
-        fields[i] = cag_point(call->vm, image, 3);
-      }
-    for (size_t k = 0; f.type == CAG_NUMBER && k < sizeof sizes / sizeof *sizes; k++)
-      if (!strcmp(name, sizes[k])) fields[i] = cag_number(f.as.number * scale);
-  }
-  // A camera needs a direction to look and one that is up.
-  if (is_flat || (v.type == CAG_CAMERA && cag_norm(cag_sub(images[0], images[1])) == 0))
-    return cag_fail_call(call, 0, CAG_ERR_operand, "takes no camera or light with a projection");
-  CagValue record = cag_record_from_texts(call->vm, old->fields->layout->names, fields, n);
-  *result = cag_scene_value(call->vm, v.type, old->kind, record);
-  CAG_AS_SCENE(*result)->placement = cag_transform_identity();
-  CAG_AS_SCENE(*result)->mirrored = old->mirrored != cag_transform_mirrors(t);
-  return true;
-}
-
-static bool apply_region(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  if (t->planar && shape->placement.planar) {
-    CagTransform whole = cag_transform_multiply(t, &shape->placement);
-    CagRegion *moved;
-    if (!cag_geometry_ok(call, cag_region_transform(shape->as.region, &whole, &moved, call->err)))
-      return false;
-    *result = cag_region_value(call->vm, moved, NULL);
-    return true;
-  }
-  CagTransform place = cag_transform_multiply(t, &shape->placement);
-  place.planar = false;
-  *result = cag_region_value(call->vm, cag_region_retain(shape->as.region), &place);
-  return true;
-}
-
-static bool apply_shape(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagCurve *curve;
-  CagSurface *surface;
-  CagSolid *solid;
-  CagMesh *mesh;
-  switch (v.type) {
-  case CAG_CURVE:
-    if (!cag_geometry_ok(call, cag_curve_transform(shape->as.curve, t, &curve, call->err)))
-      return false;
-    *result = cag_curve_value(call->vm, curve);
-    return true;
-  case CAG_REGION: return apply_region(call, t, v, result);
-  case CAG_SURFACE:
-    if (!cag_geometry_ok(call, cag_surface_transform(shape->as.surface, t, &surface, call->err)))
-      return false;
-    *result = cag_surface_value(call->vm, surface);
-    return true;
-  case CAG_SOLID:
-    if (!cag_geometry_ok(call, cag_solid_transform(shape->as.solid, t, &solid, call->err)))
-      return false;
-    *result = cag_solid_value(call->vm, solid);
-    return true;
-  case CAG_MESH:
-    if (!cag_geometry_ok(call, cag_mesh_transform(shape->as.mesh, t, &mesh, call->err)))
-      return false;
-    *result = cag_mesh_value(call->vm, mesh);
-    return true;
-  default: {
-    CagValue items;
-    if (!apply_list(call, t, cag_object(CAG_LIST, shape->as.items), &items)) return false;
-    *result = cag_group_value(call->vm, items);
-    return true;
-  }
-  }
-}
-
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
-  if (v.type == CAG_LIST) return apply_list(call, t, v, result);
-  if (v.type == CAG_TRANSFORM) {
-    CagTransform product = cag_transform_multiply(t, &CAG_AS_TRANSFORM(v)->t);
-    *result = cag_transform_value(call->vm, &product);
-    return true;
-  }
-  if (v.type == CAG_PLANE) {
-    CagPlane moved;
-    const CagPlane *plane = &CAG_AS_PLANE(v)->plane;
-    if (!cag_geometry_ok(call, cag_plane_transform(plane, t, &moved, call->err))) return false;
-    *result = cag_plane_value(call->vm, &moved);
-    return true;
-  }
-  if (v.type == CAG_CAMERA || v.type == CAG_LIGHT) return apply_scene(call, t, v, result);
-  if (cag_is_shape(v)) {
-    if (!apply_shape(call, t, v, result)) return false;
-    cag_shape_say_alike(*result, v);
-    return true;
-  }
+  const CagValueType *type = cag_value_type(v);
+  if (v.type == CAG_LIST) return cag_move_list(call, t, v, result);
+  if (type->transform) return type->transform(call, t, v, result);
   if (cag_holds_jet(v)) return cag_fail_differentiate(call, 0);
   CagString found = {0};
   cag_describe_value(call->vm, &found, v);

@@ -10,7 +10,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "interp/session/session.h"
-#include "interp/vm/apply.h"
+#include "interp/vm/value_type.h"
 
 typedef struct Input {
   CagSession *session;
@@ -214,20 +214,10 @@ typedef struct MemberQuestion {
 } MemberQuestion;
 
 static void give_members(CagVm *vm, CagValue v, const MemberQuestion *q) {
-  static const char *const ends[] = {"start", "end", "step"};
-  if (v.type == CAG_RECORD) {
-    const CagLayout *l = CAG_AS_RECORD(v)->layout;
-    for (size_t i = 0; i < l->count; i++) q->give(q->context, l->names[i]->bytes);
-  } else if (v.type == CAG_MODULE) {
-    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(v)->module];
-    for (size_t i = 0; i < m->public_count; i++) q->give(q->context, m->publics[i].name);
-  } else if (v.type == CAG_RANGE) {
-    for (size_t i = 0; i < 3; i++) q->give(q->context, ends[i]);
-  } else {
-    const char *names[CAG_MEMBERS_MOST];
-    const size_t n = cag_value_members(v, names);
-    for (size_t i = 0; i < n; i++) q->give(q->context, names[i]);
-  }
+  const CagValueType *type = cag_value_type(v);
+  const char *name;
+  for (size_t i = 0; type->member_name && (name = type->member_name(vm, v, i)); i++)
+    q->give(q->context, name);
 }
 
 static bool ask_members(CagVm *vm, void *context) {

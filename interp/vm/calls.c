@@ -8,6 +8,7 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/value_type.h"
 #include "lang/foreign.h"
 
 static const char *function_name(const char *name) { return name ? name : "this function"; }
@@ -239,7 +240,8 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
   if (callee.type == CAG_BUILTIN)
     return call_builtin(vm, CAG_AS_BUILTIN(callee)->index, arguments, count, names, named, direct,
                         result);
-  if (callee.type == CAG_CURVE || callee.type == CAG_SURFACE || callee.type == CAG_SOLID) {
+  const CagValueType *type = cag_value_type(callee);
+  if (type->call) {
     if (named)
       return cag_vm_fail(vm, CAG_ERR_argument_name, "a call of %s takes its parameters by position",
                          cag_type_article(callee));
@@ -247,7 +249,7 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
     for (size_t i = 0; vm->differentiation && i < count; i++)
       jets = jets || arguments[i].type == CAG_JET;
     return jets ? cag_jet_shape_call(vm, callee, arguments, count, result)
-                : cag_shape_call(vm, callee, arguments, count, result);
+                : type->call(vm, callee, arguments, count, result);
   }
   CagString s = {0};
   cag_describe_value(vm, &s, callee);

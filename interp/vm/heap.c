@@ -18,7 +18,7 @@
 #include "base/assert.h"
 #include "base/memory.h"
 #include "base/stop.h"
-#include "geom/solid/csg.h"
+#include "interp/vm/value_type.h"
 #include "interp/vm/vm.h"
 
 #define CELL_FREE 0xff
@@ -124,25 +124,24 @@ static bool grow_gray(CagHeap *h) {
   return true;
 }
 
-static void mark_object(CagHeap *h, CagObject *o) {
+void cag_mark_object(CagHeap *h, CagObject *o) {
   if (!o || (o->mark & MARK_MASK) == h->mark) return;
   o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
   if (h->gray_count == h->gray_capacity && !grow_gray(h)) h->gray_lost = true;
   else h->gray[h->gray_count++] = o;
 }
 
-static void mark_value(CagHeap *h, CagValue v) {
-  if (v.type >= CAG_FIRST_OBJECT && v.type != CAG_UNSET) mark_object(h, v.as.object);
+void cag_mark_value(CagHeap *h, CagValue v) {
+  if (v.type >= CAG_FIRST_OBJECT && v.type != CAG_UNSET) cag_mark_object(h, v.as.object);
 }
 
 // Values marked, objects scanned, and pages swept, between two looks at the stop flag.
 enum { SCANS_BETWEEN_LOOKS = 1 << 14, PAGES_BETWEEN_LOOKS = 16 };
 
-// Ends early if the run must stop.
-static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
+void cag_mark_values(CagHeap *h, const CagValue *v, size_t n) {
   h->values_marked += n;
   for (size_t i = 0; i < n; i++) {
-    mark_value(h, v[i]);
+    cag_mark_value(h, v[i]);
     if (i % SCANS_BETWEEN_LOOKS == SCANS_BETWEEN_LOOKS - 1 && cag_stopped()) return;
   }
 }
@@ -150,100 +149,36 @@ static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
 // Marks what an object refers to.
 static void scan(CagHeap *h, CagObject *o) {
   CAG_ASSERT(o->type >= CAG_FIRST_OBJECT && o->type <= CAG_INTERNAL && o->type != CAG_UNSET);
-  switch (o->type) {
-  case CAG_LIST: {
-    CagList *l = (CagList *)o;
-    CAG_ASSERT(cag_check_list(l));
-    if (l->owner) mark_object(h, &l->owner->head);
-    else if (l->dim == 0) mark_values(h, l->as.items, l->length);
-    break;
-  }
-  case CAG_RECORD: {
-    CagRecord *r = (CagRecord *)o;
-    mark_object(h, &r->layout->head);
-    mark_values(h, r->fields, r->layout->count);
-    break;
-  }
-  case CAG_CLOSURE: {
-    CagClosure *c = (CagClosure *)o;
-    mark_values(h, c->captures, c->capture_count);
-    break;
-  }
-  case CAG_CURVE:
-  case CAG_REGION:
-  case CAG_SURFACE:
-  case CAG_SOLID:
-  case CAG_MESH:
-  case CAG_GROUP: {
-    CagShape *s = (CagShape *)o;
-    if (o->type == CAG_GROUP && s->as.items) mark_object(h, &s->as.items->head);
-    if (s->material) mark_object(h, &s->material->head);
-    if (s->name) mark_object(h, &s->name->head);
-    if (s->style) mark_object(h, &s->style->head);
-    break;
-  }
-  case CAG_CAMERA:
-  case CAG_LIGHT:
-  case CAG_SETTING: {
-    CagSceneValue *s = (CagSceneValue *)o;
-    if (s->fields) mark_object(h, &s->fields->head);
-    break;
-  }
-  case CAG_LINK: mark_value(h, ((CagLinkValue *)o)->shape); break;
-  case CAG_ROBOT:
-    mark_object(h, &((CagRobotValue *)o)->name->head);
-    mark_object(h, &((CagRobotValue *)o)->links->head);
-    break;
-  case CAG_INTERNAL: // builders and layouts tell themselves apart by flags
-    if (o->flags == CAG_INTERNAL_BUILDER) {
-      CagBuilder *b = (CagBuilder *)o;
-      if (b->mixed || b->dim == 0) mark_values(h, b->data, b->length);
-    }
-    break;
-  default: break;
-  }
+  const CagValueType *type = cag_value_types[o->type];
+  if (type->scan) type->scan(h, o);
 }
 
 // Frees what an object holds outside of the heap.
 static void destroy(CagObject *o) {
-  switch (o->type) {
-  case CAG_LIST:
-    if (((CagList *)o)->allocated) cag_free(((CagList *)o)->as.data);
-    break;
-  case CAG_CURVE: cag_curve_release(((CagShape *)o)->as.curve); break;
-  case CAG_REGION: cag_region_release(((CagShape *)o)->as.region); break;
-  case CAG_SURFACE: cag_surface_release(((CagShape *)o)->as.surface); break;
-  case CAG_SOLID: cag_solid_release(((CagShape *)o)->as.solid); break;
-  case CAG_MESH: cag_mesh_release(((CagShape *)o)->as.mesh); break;
-  case CAG_ROBOT: cag_robot_release(((CagRobotValue *)o)->robot); break;
-  case CAG_INTERNAL:
-    if (o->flags == CAG_INTERNAL_BUILDER) cag_free(((CagBuilder *)o)->data);
-    if (o->flags == CAG_INTERNAL_LAYOUT) cag_free(((CagLayout *)o)->index);
-    break;
-  default: break;
-  }
+  const CagValueType *type = cag_value_types[o->type];
+  if (type->destroy) type->destroy(o);
 }
 
 static void mark_roots(CagVm *vm) {
   CagHeap *h = &vm->heap;
-  mark_values(h, vm->stack, (size_t)(vm->top - vm->stack));
+  cag_mark_values(h, vm->stack, (size_t)(vm->top - vm->stack));
   // What lies above the stack's top is dead: clear it, so that a later frame never shows the
   // collector a stale pointer.
   if (vm->high_water > vm->top)
     memset(vm->top, 0, (size_t)(vm->high_water - vm->top) * sizeof *vm->top);
   vm->high_water = vm->top;
   for (size_t i = 0; i < vm->frame_count; i++)
-    if (vm->frames[i].closure) mark_object(h, &vm->frames[i].closure->head);
-  mark_values(h, vm->roots, vm->root_count);
-  mark_values(h, vm->kept, vm->kept_count);
+    if (vm->frames[i].closure) cag_mark_object(h, &vm->frames[i].closure->head);
+  cag_mark_values(h, vm->roots, vm->root_count);
+  cag_mark_values(h, vm->kept, vm->kept_count);
   for (size_t i = 0; i < vm->interned_size; i++)
-    if (vm->interned[i]) mark_object(h, &vm->interned[i]->head);
-  for (size_t i = 0; i < vm->global_count; i++) mark_value(h, vm->globals[i].value);
-  for (size_t i = 0; i < vm->module_count; i++) mark_value(h, vm->modules[i]->value);
+    if (vm->interned[i]) cag_mark_object(h, &vm->interned[i]->head);
+  for (size_t i = 0; i < vm->global_count; i++) cag_mark_value(h, vm->globals[i].value);
+  for (size_t i = 0; i < vm->module_count; i++) cag_mark_value(h, vm->modules[i]->value);
   for (const CagProto *p = vm->protos; p; p = p->next)
-    mark_values(h, p->constants, p->constant_count);
-  if (vm->builtin_values) mark_values(h, vm->builtin_values, cag_builtin_count());
-  for (size_t i = 0; i < vm->shown_count; i++) mark_value(h, vm->shown[i].value);
+    cag_mark_values(h, p->constants, p->constant_count);
+  if (vm->builtin_values) cag_mark_values(h, vm->builtin_values, cag_builtin_count());
+  for (size_t i = 0; i < vm->shown_count; i++) cag_mark_value(h, vm->shown[i].value);
 }
 
 // --- Sweeping ---

@@ -8,6 +8,7 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/value_type.h"
 #include "interp/vm/vm.h"
 #include "lang/foreign.h"
 
@@ -674,115 +675,43 @@ bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
 
 // --- Members ---
 
+// Names that messages can choose from; more are not looked at.
+enum { NAMES_MOST = 256, NAMES_LISTED = 12 };
+
 static bool fail_field(CagVm *vm, CagValue object, const char *name) {
-  if (object.type == CAG_RECORD) {
-    const CagLayout *l = CAG_AS_RECORD(object)->layout;
-    cag_vm_fail(vm, CAG_ERR_field, "the record has no field `%s`", name);
-    const char *names[256];
-    size_t n = l->count < 256 ? l->count : 256;
-    for (size_t i = 0; i < n; i++) names[i] = l->names[i]->bytes;
-    const char *nearest = cag_nearest_name(name, names, n);
-    if (nearest) return cag_fail_help(vm, "did you mean `%s`?", nearest);
-    if (n && n <= 12) {
-      CagString s = {0};
-      for (size_t i = 0; i < n; i++) cag_string_printf(&s, "%s%s", i ? ", " : "", names[i]);
-      cag_fail_help(vm, "its fields are %s", s.bytes);
-      cag_string_free(&s);
-    }
-    return false;
-  }
-  if (object.type == CAG_MODULE) {
-    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(object)->module];
-    cag_vm_fail(vm, CAG_ERR_field, "the module %s has no `%s`", m->name, name);
-    const char *nearest = cag_nearest_name(name, m->public_names, m->public_count);
-    return nearest ? cag_fail_help(vm, "did you mean `%s`?", nearest) : false;
-  }
-  cag_vm_fail(vm, CAG_ERR_field, "%s has no member `%s`", cag_type_article(object), name);
-  const char *members[CAG_MEMBERS_MOST];
-  const size_t n = cag_value_members(object, members);
-  const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
-  if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
-  else if (cag_builtin_find(name) != (size_t)-1)
+  const CagValueType *type = cag_value_type(object);
+  const bool is_record = object.type == CAG_RECORD, is_module = object.type == CAG_MODULE;
+  const char *names[NAMES_MOST];
+  size_t n = 0;
+  while (type->member_name && n < NAMES_MOST && (names[n] = type->member_name(vm, object, n))) n++;
+  if (is_record) cag_vm_fail(vm, CAG_ERR_field, "the record has no field `%s`", name);
+  else if (is_module)
+    cag_vm_fail(vm, CAG_ERR_field, "the module %s has no `%s`",
+                vm->modules[CAG_AS_MODULE(object)->module]->name, name);
+  else cag_vm_fail(vm, CAG_ERR_field, "%s has no member `%s`", cag_type_article(object), name);
+  const char *nearest = n ? cag_nearest_name(name, names, n) : NULL;
+  const bool other = !is_record && !is_module;
+  if (other && cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
+  else if (other && cag_builtin_find(name) != (size_t)-1)
     cag_fail_help(vm, "a function comes after |>: write x |> %s(...)", name);
   else if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
-  else if (object.type == CAG_RANGE) cag_fail_help(vm, "a range has start, end and step");
-  else if (n && n <= 12) {
+  else if (n && n <= NAMES_LISTED && !is_module) {
     CagString s = {0};
-    for (size_t i = 0; i < n; i++) cag_string_printf(&s, "%s%s", i ? ", " : "", members[i]);
-    cag_fail_help(vm, "it has %s", s.bytes);
+    for (size_t i = 0; i < n; i++) cag_string_printf(&s, "%s%s", i ? ", " : "", names[i]);
+    cag_fail_help(vm, is_record ? "its fields are %s" : "it has %s", s.bytes);
     cag_string_free(&s);
   }
   return false;
 }
 
-static bool member_of_list(CagVm *vm, CagValue object, const char *name, CagValue *result) {
-  static const char axes[] = "xyzw";
-  const CagList *l = CAG_AS_LIST(object);
-  const char *axis = name[0] && !name[1] ? strchr(axes, name[0]) : NULL;
-  if (axis && l->dim == 1 && l->length >= 2 && l->length <= 4) {
-    size_t k = (size_t)(axis - axes);
-    if (k < l->length) {
-      *result = cag_number(l->as.numbers[k]);
-      return true;
-    }
-    return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);
-  }
-  if (axis && l->dim == 0 && l->length >= 2 && l->length <= 4 && vm->differentiation &&
-      cag_holds_jet(object)) {
-    size_t k = (size_t)(axis - axes);
-    if (k < l->length) {
-      *result = l->as.items[k];
-      return true;
-    }
-    return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);
-  }
-  if (axis) {
-    CagString s = {0};
-    cag_describe_value(vm, &s, object);
-    cag_vm_fail(vm, CAG_ERR_field, "`.%s` is of a vector of 2 to 4 numbers, found %s", name,
-                s.bytes);
-    cag_string_free(&s);
-    return false;
-  }
-  return fail_field(vm, object, name);
-}
-
 bool cag_member(CagVm *vm, CagValue object, CagValue name_value, CagValue *result) {
   const CagText *text = CAG_AS_TEXT(name_value);
-  const char *name = text->bytes;
-  switch (object.type) {
-  case CAG_RECORD: {
+  const CagValueType *type = cag_value_type(object);
+  if (object.type == CAG_RECORD) { // the most frequent one
     *result = cag_record_get_text(vm, CAG_AS_RECORD(object), text);
     if (result->type != CAG_UNSET) return true;
-    break;
-  }
-  case CAG_LIST: return member_of_list(vm, object, name, result);
-  case CAG_RANGE: {
-    const CagRange *r = CAG_AS_RANGE(object);
-    double x = strcmp(name, "start") == 0  ? r->start
-               : strcmp(name, "end") == 0  ? r->end
-               : strcmp(name, "step") == 0 ? r->step
-                                           : NAN;
-    if (isnan(x)) break;
-    *result = r->angle ? cag_angle(x) : cag_number(x);
+  } else if (type->member && type->member(vm, object, text->bytes, result)) {
     return true;
   }
-  case CAG_MODULE: {
-    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(object)->module];
-    for (size_t i = 0; i < m->public_count; i++)
-      if (strcmp(m->publics[i].name, name) == 0)
-        return cag_vm_force(vm, m->publics[i].global, result);
-    break;
-  }
-  case CAG_NONE:
-  case CAG_BOOL:
-  case CAG_NUMBER:
-  case CAG_ANGLE:
-  case CAG_TEXT:
-  case CAG_CLOSURE:
-  case CAG_BUILTIN: break;
-  default:
-    if (cag_value_member(vm, object, name, result)) return true;
-  }
-  return fail_field(vm, object, name);
+  return !vm->failed && fail_field(vm, object, text->bytes);
 }

@@ -8,6 +8,7 @@
 #include "base/assert.h"
 #include "base/memory.h"
 #include "base/utf8.h"
+#include "interp/vm/value_type.h"
 #include "interp/vm/vm.h"
 
 static const char *const type_names[] = {
@@ -311,14 +312,8 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
   CagObject head = s->head;
   *s = *from;
   s->head = head;
-  switch (shape.type) {
-  case CAG_CURVE: cag_curve_retain(s->as.curve); break;
-  case CAG_REGION: cag_region_retain(s->as.region); break;
-  case CAG_SURFACE: cag_surface_retain(s->as.surface); break;
-  case CAG_SOLID: cag_solid_retain(s->as.solid); break;
-  case CAG_MESH: cag_mesh_retain(s->as.mesh); break;
-  default: break;
-  }
+  const CagValueType *type = cag_value_type(shape);
+  if (type->retain) type->retain(&s->head);
   return cag_object(shape.type, s);
 }
 
