@@ -59,9 +59,9 @@ function types(text,    words, n, i, bits) {
   n = split(text, words, /, */)
   for (i = 1; i <= n; i++) {
     if (words[i] == "sequence") words[i] = "list, range"
-    else if (words[i] == "shape") words[i] = "curve, region, surface, solid, mesh, group"
+    else if (words[i] == "shape") words[i] = "curve, region, surface, solid, mesh, label, group"
     else if (words[i] == "movable")
-      words[i] = "curve, region, surface, solid, mesh, group, camera, light, plane, transform"
+      words[i] = "curve, region, surface, solid, mesh, label, group, camera, light, plane, transform"
     else if (words[i] !~ /^[a-z]+$/) fail("`" words[i] "` is not the name of a type")
     gsub(/, /, " | UINT64_C(1) << CAG_", words[i])
     bits = bits (i > 1 ? " | " : "") "UINT64_C(1) << CAG_" words[i]

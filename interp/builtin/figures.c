@@ -1,8 +1,4 @@
-// Shapes that say something about other shapes: labels and marks, normals.
-//
-// A label is a mesh without faces: its first vertex is the place, a second one, where there is one,
-// the end of its direction. So every transform moves it as it moves shapes. What it says stands
-// in its style.
+// Shapes that describe other shapes: labels, marks, and normals.
 
 #include "interp/builtin/shapes.h"
 
@@ -11,31 +7,19 @@
 // --- Labels ---
 
 bool cag_figures_label(CagCall *call, CagValue *result) {
-  static const char *const fields[] = {"label", "place", "mark", "size"};
-  CagVec3 at, along;
+  CagLabelText label = {.text = NULL};
   const char *text;
-  double size = 0;
-  int place, mark;
-  if (!cag_arg_vec(call, 0, &at, NULL) || !cag_arg_text(call, 1, &text) ||
-      !cag_arg_choice(call, 2, cag_label_places, &place) ||
-      !cag_arg_choice(call, 3, cag_label_marks, &mark))
+  if (!cag_arg_vec(call, 0, &label.at, NULL) || !cag_arg_text(call, 1, &text) ||
+      !cag_arg_choice(call, 2, cag_label_places, &label.place) ||
+      !cag_arg_choice(call, 3, cag_label_marks, &label.mark))
     return false;
-  bool sized = cag_given(call, 4);
-  bool directed = cag_given(call, 5);
-  if (sized && !cag_arg_positive(call, 4, &size)) return false;
-  if (directed && !cag_arg_direction(call, 5, at, &along, NULL)) return false;
-  if (mark == CAG_LABEL_ARROW && !directed)
+  label.text = CAG_AS_TEXT(call->values[1]);
+  if (cag_given(call, 4) && !cag_arg_positive(call, 4, &label.size)) return false;
+  if (cag_given(call, 5) && !cag_arg_direction(call, 5, label.at, &label.along, NULL)) return false;
+  if (label.mark == CAG_LABEL_ARROW && !cag_given(call, 5))
     return cag_fail_call(call, 3, CAG_ERR_value,
                          "expects the direction of an arrow: `along` is missing");
-  CagMesh *anchor;
-  if (!cag_geometry_ok(call,
-                       cag_mesh_new(directed ? 2 : 1, 0, false, false, false, &anchor, call->err)))
-    return false;
-  anchor->positions[0] = at;
-  if (directed) anchor->positions[1] = cag_add(at, along);
-  *result = cag_mesh_value(call->vm, anchor);
-  CagValue values[] = {call->values[1], cag_number(place), cag_number(mark), cag_number(size)};
-  CAG_AS_SHAPE(*result)->style = CAG_AS_RECORD(cag_record_new(call->vm, fields, values, 4));
+  *result = cag_label_value(call->vm, &label);
   return true;
 }
 

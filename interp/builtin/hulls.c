@@ -119,6 +119,7 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
   if (v.type == CAG_REGION) return add_region(cloud, shape, err);
   CagMesh *m;
   cloud->plane = false;
+  if (v.type == CAG_LABEL) return cloud_add(cloud, &shape->as.label->at, 1, err);
   CagStatus status = mesh_of(vm, v, shape->tolerance, &m, err);
   if (status) return cag_is_empty_shape(err) ? CAG_OK : status;
   status = cloud_add(cloud, m->positions, m->vertex_count, err);
@@ -263,6 +264,7 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
     return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
   case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
   case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, 0, err);
+  case CAG_LABEL: return cag_parts_add_point(&b->parts, shape->as.label->at, err);
   default:
     if (cag_solid_is_compound(shape->as.solid))
       return body_add_compound(vm, b, shape->as.solid, tolerance, err);

@@ -178,6 +178,7 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
     cag_surface_release(flat);
     return status;
   }
+  case CAG_LABEL: return cag_mesh_new(0, 0, false, false, false, out, err);
   default:
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_faces, "", -1,
                     "a curve has no faces; `tube` gives it a thickness");

@@ -111,9 +111,7 @@ static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q,
   if (!draw(&d, v, q, holding)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
   // Whose drawing it is, for formats that describe robots.
-  static const char *const names[] = {"robot"};
-  CagValue robot = cag_object(CAG_ROBOT, (void *)v);
-  CAG_AS_SHAPE(*result)->style = CAG_AS_RECORD(cag_record_new(call->vm, names, &robot, 1));
+  CAG_AS_SHAPE(*result)->drawn = (CagRobotValue *)v;
   if (v->name->length) CAG_AS_SHAPE(*result)->name = v->name;
   return true;
 }

@@ -235,21 +235,11 @@ bool cag_scenes_group(CagCall *call, CagValue *result) {
 }
 
 bool cag_scenes_line_style(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"radius", "dash", "robot"};
-  CagValue values[3];
-  for (int i = 0; i < 2; i++) {
-    double x = 0;
-    bool given = cag_given(call, i + 1);
-    if (given && !cag_arg_positive(call, i + 1, &x)) return false;
-    values[i] = given ? cag_number(x) : cag_none();
-  }
-  if (!copy_shape(call, result)) return false;
+  CagLineStyle line = {.set = true};
+  if ((cag_given(call, 1) && !cag_arg_positive(call, 1, &line.radius)) ||
+      (cag_given(call, 2) && !cag_arg_positive(call, 2, &line.dash)) || !copy_shape(call, result))
+    return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
-  // A drawing of a robot says whose it is, and nothing of lines.
-  values[2] = shape->style ? cag_record_get(shape->style, "robot") : cag_unset();
-  bool drawn =
-      values[2].type == CAG_ROBOT && cag_record_get(shape->style, "radius").type == CAG_UNSET;
-  if (!shape->style || drawn)
-    shape->style = CAG_AS_RECORD(cag_record_new(call->vm, names, values, drawn ? 3 : 2));
+  if (!shape->line.set) shape->line = line;
   return true;
 }

@@ -115,9 +115,10 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   const CagShape *b = CAG_AS_SHAPE(from);
   a->material = b->material;
   a->name = b->name;
-  a->style = b->style;
+  a->line = b->line;
   a->tolerance = b->tolerance;
   a->hidden = b->hidden;
+  a->drawn = b->drawn;
 }
 
 bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {
@@ -137,14 +138,14 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   const CagShape *own = CAG_AS_SHAPE(item);
   CagRecord *material = cag_material_combine(vm, own->material, group->material);
   bool more = material != own->material || (!own->name && group->name) ||
-              (own->tolerance == 0 && group->tolerance > 0) || (!own->style && group->style) ||
-              (!own->hidden && group->hidden);
+              (own->tolerance == 0 && group->tolerance > 0) ||
+              (!own->line.set && group->line.set) || (!own->hidden && group->hidden);
   if (!more) return item;
   CagValue copy = cag_shape_copy(vm, item);
   CagShape *s = CAG_AS_SHAPE(copy);
   s->material = material;
   if (!s->name) s->name = group->name;
-  if (!s->style) s->style = group->style;
+  if (!s->line.set) s->line = group->line;
   if (s->tolerance == 0) s->tolerance = group->tolerance;
   s->hidden = s->hidden || group->hidden;
   return copy;
@@ -267,10 +268,6 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
   return CAG_OK;
 }
 
-static bool is_label(const CagShape *mesh) {
-  return mesh->style && cag_record_get(mesh->style, "label").type == CAG_TEXT;
-}
-
 // *empty: nothing is left of the shape, and `err` says why.
 static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *empty,
                               CagError *err) {
@@ -285,15 +282,15 @@ static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *
   case CAG_REGION: status = region_bounds(shape, out, dimension, err); break;
   case CAG_SURFACE: status = cag_surface_bounds(shape->as.surface, out, err); break;
   case CAG_SOLID: status = cag_solid_bounds(shape->as.solid, out, err); break;
+  case CAG_LABEL:
+    *out = CAG_BOUNDS_EMPTY;
+    cag_bounds_add(out, shape->as.label->at);
+    break;
   default:
     *out = cag_mesh_bounds(shape->as.mesh);
-    if (is_label(shape)) { // its place; a second vertex says its direction (figures.c)
-      *out = CAG_BOUNDS_EMPTY;
-      cag_bounds_add(out, shape->as.mesh->positions[0]);
-    } else if (shape->as.mesh->triangle_count == 0) {
+    if (shape->as.mesh->triangle_count == 0)
       status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                         "the mesh is empty: it has no triangles");
-    }
   }
   *empty = status && cag_is_empty_shape(err);
   return *empty ? CAG_OK : status;
@@ -304,7 +301,7 @@ bool cag_value_is_empty(CagCall *call, CagValue v, bool *out) {
   CagStatus status = CAG_OK;
   *out = false;
   if (v.type == CAG_REGION) *out = cag_region_is_empty(shape->as.region);
-  if (v.type == CAG_MESH) *out = shape->as.mesh->triangle_count == 0 && !is_label(shape);
+  if (v.type == CAG_MESH) *out = shape->as.mesh->triangle_count == 0;
   if (v.type == CAG_SOLID) status = cag_solid_is_empty(shape->as.solid, out, call->err);
   return cag_geometry_ok(call, status);
 }

@@ -52,7 +52,7 @@ CagValue cag_numbers_value(CagVm *vm, const double *x, size_t n);
 // Points as a list of vectors of 2 or 3 numbers.
 CagValue cag_points_value(CagVm *vm, const CagVec3 *points, size_t n, int dimension);
 
-// Sets in `to` what was said about `from`: material, name, style, tolerance, hidden.
+// Sets in `to` what was said about `from`: all attributes.
 void cag_shape_say_alike(CagValue to, CagValue from);
 // What holds of a material said near and one said further out; see scene_say.c. Either may be NULL.
 CagRecord *cag_material_combine(CagVm *vm, CagRecord *inner, CagRecord *outer);

@@ -389,6 +389,7 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   case CAG_CURVE: return clip_curve(c, v, into);
   case CAG_SURFACE:
   case CAG_REGION: return clip_surface(c, v, into);
+  case CAG_LABEL: return true; // left out
   default: break;
   }
   // A mesh is a body where it is closed, else cut as a surface of its triangles.

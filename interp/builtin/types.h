@@ -6,7 +6,7 @@
 #include "interp/vm/value_type.h"
 
 extern const CagValueType cag_type_transform, cag_type_plane, cag_type_curve, cag_type_region,
-    cag_type_surface, cag_type_solid, cag_type_mesh, cag_type_group;
+    cag_type_surface, cag_type_solid, cag_type_mesh, cag_type_label, cag_type_group;
 extern const CagValueType cag_type_camera, cag_type_light, cag_type_setting;
 extern const CagValueType cag_type_link, cag_type_robot;
 

@@ -150,7 +150,6 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
   if (s->material) cag_mark_object(h, &s->material->head);
   if (s->name) cag_mark_object(h, &s->name->head);
-  if (s->style) cag_mark_object(h, &s->style->head);
 }
 
 static void add_count(CagString *s, size_t n, const char *one, const char *many) {
@@ -300,6 +299,33 @@ const CagValueType cag_type_mesh = {.print = print_mesh,
                                     .member_name = mesh_member_name,
                                     .transform = move_mesh};
 
+// --- Labels ---
+
+static void print_label(CagVm *vm, CagString *s, CagValue v) {
+  (void)vm;
+  cag_string_printf(s, "label ");
+  cag_print_quoted(s, CAG_AS_SHAPE(v)->as.label->text);
+}
+
+static void scan_label(CagHeap *h, CagObject *o) {
+  cag_mark_object(h, &((CagShape *)o)->as.label->head);
+  scan_shape(h, o);
+}
+
+static bool move_label(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
+  CagLabelText moved = *CAG_AS_SHAPE(v)->as.label;
+  const CagVec3 end = cag_transform_point(t, cag_add(moved.at, moved.along));
+  const bool directed = cag_norm(moved.along) > 0;
+  moved.at = cag_transform_point(t, moved.at);
+  if (directed) moved.along = cag_sub(end, moved.at);
+  *result = cag_label_value(call->vm, &moved);
+  cag_shape_say_alike(*result, v);
+  return true;
+}
+
+const CagValueType cag_type_label = {
+    .print = print_label, .scan = scan_label, .transform = move_label};
+
 // --- Groups ---
 
 static void print_group(CagVm *vm, CagString *s, CagValue v) {
@@ -311,6 +337,7 @@ static void print_group(CagVm *vm, CagString *s, CagValue v) {
 static void scan_group(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
   if (s->as.items) cag_mark_object(h, &s->as.items->head);
+  if (s->drawn) cag_mark_object(h, &s->drawn->head);
   scan_shape(h, o);
 }
 

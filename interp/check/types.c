@@ -7,7 +7,7 @@
 
 #define SHAPES                                                                                     \
   (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
-   CAG_TYPES(MESH) | CAG_TYPES(GROUP))
+   CAG_TYPES(MESH) | CAG_TYPES(LABEL) | CAG_TYPES(GROUP))
 // Types whose operators are all told by the table below; of others nothing is said.
 #define PLAIN                                                                                      \
   (CAG_TYPES(NONE) | CAG_TYPES(BOOL) | CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(TEXT) |    \
@@ -36,6 +36,7 @@ static const struct {
     {"surface", CAG_TYPES(SURFACE)},
     {"solid", CAG_TYPES(SOLID)},
     {"mesh", CAG_TYPES(MESH)},
+    {"label", CAG_TYPES(LABEL)},
     {"group", CAG_TYPES(GROUP)},
     {"shape", SHAPES},
     {"plane", CAG_TYPES(PLANE)},

@@ -35,7 +35,7 @@ typedef struct Build {
 typedef struct Said {
   CagRecord *material;
   const char *name;
-  CagRecord *style;
+  CagLineStyle line;
   double tolerance;
 } Said;
 
@@ -198,23 +198,19 @@ static CagItem *add_item(Build *b, CagItemKind kind, const char *name) {
   return item;
 }
 
-// A label is a mesh without faces: see builtin/figures.c.
-static void add_label(Build *b, const CagMesh *anchor, const char *text, const Said *said) {
+static void add_label(Build *b, const CagLabelText *label, const Said *said) {
   CagScene *s = b->scene;
   size_t material = material_of(b, said->material, INK_MATERIAL);
   s->labels = grown(b, s->labels, s->label_count, &b->label_capacity, sizeof *s->labels);
   if (b->failed) return;
-  bool directed = anchor->vertex_count > 1;
-  CagVec3 at = anchor->positions[0];
-  s->labels[s->label_count++] =
-      (CagLabel){.text = copy_text(b, text),
-                 .at = at,
-                 .along = directed ? cag_sub(anchor->positions[1], at) : cag_vec3(0, 0, 0),
-                 .directed = directed,
-                 .place = (CagLabelPlace)number_field(said->style, "place", 0),
-                 .mark = (CagLabelMark)number_field(said->style, "mark", 0),
-                 .size = number_field(said->style, "size", 0),
-                 .material = material};
+  s->labels[s->label_count++] = (CagLabel){.text = copy_text(b, label->text->bytes),
+                                           .at = label->at,
+                                           .along = label->along,
+                                           .directed = cag_norm(label->along) > 0,
+                                           .place = (CagLabelPlace)label->place,
+                                           .mark = (CagLabelMark)label->mark,
+                                           .size = label->size,
+                                           .material = material};
 }
 
 // What it was made as, wherever it was moved since.
@@ -282,9 +278,8 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagItem *item = NULL;
   const char *name = said->name;
-  const char *label = v.type == CAG_MESH ? text_field(said->style, "label", NULL) : NULL;
-  if (label) {
-    add_label(b, shape->as.mesh, label, said);
+  if (v.type == CAG_LABEL) {
+    add_label(b, shape->as.label, said);
     return;
   }
   size_t fallback = v.type == CAG_CURVE ? INK_MATERIAL : DEFAULT_MATERIAL;
@@ -315,8 +310,8 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
   item->material = material;
   item->tolerance = said->tolerance;
   note_labels(b, item, said->material);
-  item->line_radius = number_field(said->style, "radius", 0);
-  item->dash = number_field(said->style, "dash", 0);
+  item->line_radius = said->line.radius;
+  item->dash = said->line.dash;
 }
 
 static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
@@ -327,7 +322,7 @@ static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
                shape->name ? shape->name->bytes
                : lead.name ? lead.name
                            : around->name,
-               shape->style ? shape->style : around->style,
+               shape->line.set ? shape->line : around->line,
                shape->tolerance > 0 ? shape->tolerance : around->tolerance};
   if (v.type != CAG_GROUP) {
     add_shape(b, v, &said);

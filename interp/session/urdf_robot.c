@@ -37,8 +37,7 @@ typedef struct Found {
   size_t count, room;
 } Found;
 
-static void keep_robot(Found *f, CagValue v) {
-  const CagRobotValue *r = CAG_AS_ROBOT(v);
+static void keep_robot(Found *f, const CagRobotValue *r) {
   for (size_t i = 0; i < f->count && i < f->room; i++)
     if (f->out[i] == r) return;
   if (f->count < f->room) f->out[f->count] = r;
@@ -46,13 +45,12 @@ static void keep_robot(Found *f, CagValue v) {
 }
 
 static void find_robots(Found *f, CagValue v) {
-  if (v.type == CAG_ROBOT) keep_robot(f, v);
+  if (v.type == CAG_ROBOT) keep_robot(f, CAG_AS_ROBOT(v));
   if (v.type != CAG_LIST && v.type != CAG_GROUP) return;
   const CagShape *shape = v.type == CAG_GROUP ? CAG_AS_SHAPE(v) : NULL;
   if (shape && shape->hidden) return;
-  CagValue robot = shape && shape->style ? cag_record_get(shape->style, "robot") : cag_unset();
-  if (robot.type == CAG_ROBOT) {
-    keep_robot(f, robot);
+  if (shape && shape->drawn) {
+    keep_robot(f, shape->drawn);
     return;
   }
   const CagList *items = shape ? shape->as.items : CAG_AS_LIST(v);

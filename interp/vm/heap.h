@@ -22,7 +22,7 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size);
 void cag_collect(CagVm *vm);
 
 // What objects with the type CAG_INTERNAL are: their head.flags.
-enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2 };
+enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2, CAG_INTERNAL_LABEL = 3 };
 
 void cag_heap_init(CagVm *vm);
 void cag_heap_free(CagVm *vm);

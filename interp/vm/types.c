@@ -411,6 +411,7 @@ static void scan_internal(CagHeap *h, CagObject *o) {
   const CagBuilder *b = (CagBuilder *)o;
   if (o->flags == CAG_INTERNAL_BUILDER && (b->mixed || b->dim == 0))
     cag_mark_values(h, b->data, b->length);
+  if (o->flags == CAG_INTERNAL_LABEL) cag_mark_object(h, &((CagLabelText *)o)->text->head);
 }
 
 static void destroy_internal(CagObject *o) {

@@ -300,6 +300,17 @@ CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
   return cag_object(CAG_MESH, s);
 }
 
+CagValue cag_label_value(CagVm *vm, const CagLabelText *like) {
+  CagLabelText *text = cag_alloc(vm, CAG_INTERNAL, sizeof *text);
+  const CagObject head = text->head;
+  *text = *like;
+  text->head = head;
+  text->head.flags = CAG_INTERNAL_LABEL;
+  CagShape *s = shape_new(vm, CAG_LABEL);
+  s->as.label = text;
+  return cag_object(CAG_LABEL, s);
+}
+
 CagValue cag_group_value(CagVm *vm, CagValue list) {
   CagShape *s = shape_new(vm, CAG_GROUP);
   s->as.items = CAG_AS_LIST(list);

@@ -46,6 +46,7 @@ typedef struct CagObject CagObject;
   X(SURFACE, "surface", "a surface")                                                               \
   X(SOLID, "solid", "a solid")                                                                     \
   X(MESH, "mesh", "a mesh")                                                                        \
+  X(LABEL, "label", "a label")                                                                     \
   X(GROUP, "group", "a group")                                                                     \
   X(PLANE, "plane", "a plane")                                                                     \
   X(LINK, "link", "a link")                                                                        \
@@ -165,8 +166,24 @@ typedef struct CagPlaneValue {
   CagPlane plane;
 } CagPlaneValue;
 
-// --- Shapes: geometry (one reference held) and what was said about it. Copied when an attribute or
+// --- Shapes: geometry (one reference held) and its attributes. Copied when an attribute or the
 // placement changes. ---
+
+// A text at a point.
+typedef struct CagLabelText {
+  CagObject head; // CAG_INTERNAL
+  CagText *text;
+  CagVec3 at, along; // along: the direction of the text, zero if it has none
+  int place, mark;   // CagLabelPlace and CagLabelMark (interp/scene/scene.h)
+  double size;       // mm; 0: by the size of the picture
+} CagLabelText;
+
+// How curves are drawn.
+typedef struct CagLineStyle {
+  bool set;            // line_style was called
+  double radius, dash; // 0: not stated
+} CagLineStyle;
+
 typedef struct CagShape {
   CagObject head;
   union {
@@ -175,14 +192,16 @@ typedef struct CagShape {
     CagSurface *surface;
     CagSolid *solid;
     CagMesh *mesh;
+    CagLabelText *label;
     CagList *items; // GROUP: list of shapes (dim 0)
   } as;
-  CagTransform placement; // REGION only: where the plane of the region lies (identity: z = 0);
-                          // others are moved themselves
-  CagRecord *material;    // NULL: none said
-  CagText *name;          // NULL
-  CagRecord *style;       // of curves: radius, dash; NULL
-  double tolerance;       // 0: none said
+  CagTransform placement;      // REGION only: where the plane of the region lies (identity: z = 0);
+                               // others are moved themselves
+  CagRecord *material;         // NULL: not stated
+  CagText *name;               // NULL: not stated
+  CagLineStyle line;           // of curves
+  double tolerance;            // 0: not stated
+  struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
 } CagShape;
 
@@ -305,7 +324,8 @@ CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement
 CagValue cag_surface_value(CagVm *vm, CagSurface *s);
 CagValue cag_solid_value(CagVm *vm, CagSolid *s);
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
-CagValue cag_group_value(CagVm *vm, CagValue list); // list of shapes
+CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
+CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to
                                                     // be changed before anybody sees it
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);

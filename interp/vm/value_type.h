@@ -7,7 +7,6 @@
 #ifndef CAG_INTERP_VM_VALUE_TYPE_H
 #define CAG_INTERP_VM_VALUE_TYPE_H
 
-#include "interp/vm/heap.h"
 #include "interp/vm/value.h"
 
 typedef struct CagCall CagCall;
