@@ -8,13 +8,6 @@
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
-static bool point_is_finite(CagCall *call, CagVec3 p) {
-  if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) return true;
-  cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
-  cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
-  return false;
-}
-
 // n vectors of 2, 3 or 4 numbers. Those of 2 stay plane under a planar transform.
 static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x, size_t n,
                           size_t dim, size_t out_dim, double *out) {
@@ -24,7 +17,10 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
       continue;
     }
     CagVec3 p = cag_transform_point(t, cag_vec3(x[0], x[1], dim == 3 ? x[2] : 0));
-    if (!point_is_finite(call, p)) return false;
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) {
+      cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
+      return cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
+    }
     out[0] = p.x;
     out[1] = p.y;
     if (out_dim == 3) out[2] = p.z;
@@ -104,15 +100,12 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
 
 static bool apply_region(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  if (t->planar && shape->placement.planar) {
-    CagTransform whole = cag_transform_multiply(t, &shape->placement);
-    CagRegion *moved;
-    if (!cag_geometry_ok(call, cag_region_transform(shape->as.region, &whole, &moved, call->err)))
-      return false;
-    *result = cag_region_value(call->vm, moved, NULL);
-    return true;
-  }
   CagTransform place = cag_transform_multiply(t, &shape->placement);
+  if (t->planar && shape->placement.planar) {
+    CagRegion *moved;
+    return cag_region_result(
+        call, cag_region_transform(shape->as.region, &place, &moved, call->err), &moved, result);
+  }
   place.planar = false;
   *result = cag_region_value(call->vm, cag_region_retain(shape->as.region), &place);
   return true;
@@ -120,38 +113,29 @@ static bool apply_region(CagCall *call, const CagTransform *t, CagValue v, CagVa
 
 static bool apply_shape(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(v);
+  CagError *err = call->err;
   CagCurve *curve;
   CagSurface *surface;
   CagSolid *solid;
   CagMesh *mesh;
+  CagValue items;
   switch (v.type) {
   case CAG_CURVE:
-    if (!cag_geometry_ok(call, cag_curve_transform(shape->as.curve, t, &curve, call->err)))
-      return false;
-    *result = cag_curve_value(call->vm, curve);
-    return true;
+    return cag_curve_result(call, cag_curve_transform(shape->as.curve, t, &curve, err), &curve,
+                            result);
   case CAG_REGION: return apply_region(call, t, v, result);
   case CAG_SURFACE:
-    if (!cag_geometry_ok(call, cag_surface_transform(shape->as.surface, t, &surface, call->err)))
-      return false;
-    *result = cag_surface_value(call->vm, surface);
-    return true;
+    return cag_surface_result(call, cag_surface_transform(shape->as.surface, t, &surface, err),
+                              &surface, result);
   case CAG_SOLID:
-    if (!cag_geometry_ok(call, cag_solid_transform(shape->as.solid, t, &solid, call->err)))
-      return false;
-    *result = cag_solid_value(call->vm, solid);
-    return true;
+    return cag_solid_result(call, cag_solid_transform(shape->as.solid, t, &solid, err), &solid,
+                            result);
   case CAG_MESH:
-    if (!cag_geometry_ok(call, cag_mesh_transform(shape->as.mesh, t, &mesh, call->err)))
-      return false;
-    *result = cag_mesh_value(call->vm, mesh);
-    return true;
-  default: {
-    CagValue items;
+    return cag_mesh_result(call, cag_mesh_transform(shape->as.mesh, t, &mesh, err), &mesh, result);
+  default:
     if (!apply_list(call, t, cag_object(CAG_LIST, shape->as.items), &items)) return false;
     *result = cag_group_value(call->vm, items);
     return true;
-  }
   }
 }
 
