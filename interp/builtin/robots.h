@@ -35,6 +35,8 @@ bool cag_arg_joints_or_home(CagCall *call, int argument, const CagRobot *r, bool
 // A pose of space: a rigid transform; else the error not-rigid.
 bool cag_arg_pose(CagCall *call, int argument, CagTransform *out);
 bool cag_pose_of_value(CagCall *call, int argument, CagValue v, CagTransform *out);
+// A pose, or a point where the tool may be turned as it likes: the translation to it.
+bool cag_arg_target(CagCall *call, int argument, CagTransform *out, bool *point);
 
 // --- Results ---
 CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q);

@@ -38,13 +38,12 @@ static bool check_limits(CagCall *call, int argument, const CagRobot *r, const d
   if (joint == r->joint_count) return true;
   char value[48], over[48], low[48], high[48];
   const CagRobotLink *l = &r->links[r->joint_link[joint]];
-  cag_fail_call(call, argument, CAG_ERR_outside_limits,
-                "expects joint values within the limits; joint %zu is at %s, %s outside of "
-                "%s..%s",
-                joint + 1, cag_joint_text(r, joint, q[joint], value),
-                rounded_text(r, joint, by, over), cag_joint_text(r, joint, l->low, low),
-                cag_joint_text(r, joint, l->high, high));
-  return false;
+  return cag_fail_call(call, argument, CAG_ERR_outside_limits,
+                       "expects joint values within the limits; joint %zu is at %s, %s outside of "
+                       "%s..%s",
+                       joint + 1, cag_joint_text(r, joint, q[joint], value),
+                       rounded_text(r, joint, by, over), cag_joint_text(r, joint, l->low, low),
+                       cag_joint_text(r, joint, l->high, high));
 }
 
 bool cag_arg_joints(CagCall *call, int argument, const CagRobot *r, bool limits, double *q) {
@@ -101,49 +100,43 @@ CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q) {
 
 // --- Frames ---
 
-// A link's number: 0 (the base) .. the number of links.
-static bool read_frame(CagCall *call, int argument, const CagRobot *r, long fallback, long *out) {
-  *out = fallback;
-  if (!cag_given(call, argument)) return true;
-  return cag_arg_integer(call, argument, 0, (long)r->link_count, out);
+// Checks a link's number: 0 (the base) .. the number of links.
+static bool read_frame(CagCall *call, int argument, const CagRobot *r, size_t fallback,
+                       size_t *out) {
+  long number = (long)fallback;
+  if (!cag_arg_integer_or(call, argument, number, 0, (long)r->link_count, &number)) return false;
+  *out = (size_t)number;
+  return true;
 }
 
-// robot, q, link, from, limits
-bool cag_robots_fk(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_fk(CagCall *call, const struct cag_robots_fk *a, CagValue *result) {
+  const CagRobot *r = a->robot;
   double q[CAG_ROBOT_JOINTS_MAX];
-  bool limits;
-  long link, from;
+  size_t link, from;
   CagTransform t;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 4, true, &limits) ||
-      !cag_arg_joints(call, 1, r, limits, q) || !read_frame(call, 2, r, -1, &link) ||
-      !read_frame(call, 3, r, -1, &from))
+  if (!cag_arg_joints(call, 1, r, a->limits, q) || !read_frame(call, 2, r, r->link_count, &link) ||
+      !read_frame(call, 3, r, 0, &from))
     return false;
-  if (link < 0 && from < 0) {
+  if (!cag_given(call, 2) && !cag_given(call, 3)) {
     cag_robot_forward(r, q, &t);
   } else {
-    size_t to = link < 0 ? r->link_count : (size_t)link;
-    cag_robot_subchain(r, q, from < 0 ? 0 : (size_t)from, to, &t);
-    if (link < 0) t = cag_transform_multiply(&t, &r->tool);
-    if (from < 0) t = cag_transform_multiply(&r->base, &t);
+    cag_robot_subchain(r, q, from, link, &t);
+    if (!cag_given(call, 2)) t = cag_transform_multiply(&t, &r->tool);
+    if (!cag_given(call, 3)) t = cag_transform_multiply(&r->base, &t);
     t.planar = false;
   }
   *result = cag_transform_value(call->vm, &t);
   return true;
 }
 
-// robot, q, limits
-bool cag_robots_link_frames(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_link_frames(CagCall *call, const struct cag_robots_link_frames *a,
+                            CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX];
-  bool limits;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
-      !cag_arg_joints(call, 1, r, limits, q))
-    return false;
-  CagTransform *frames = cag_hold_array(call, r->link_count + 1, sizeof *frames);
-  cag_robot_frames(r, q, frames);
+  if (!cag_arg_joints(call, 1, a->robot, a->limits, q)) return false;
+  CagTransform *frames = cag_hold_array(call, a->robot->link_count + 1, sizeof *frames);
+  cag_robot_frames(a->robot, q, frames);
   CagBuilder *list = cag_builder_new(call->vm);
-  for (size_t i = 0; i <= r->link_count; i++)
+  for (size_t i = 0; i <= a->robot->link_count; i++)
     if (!cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]))) return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
@@ -151,145 +144,118 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
 
 // --- Motion ---
 
-// Robot and joint values as the first two arguments; `limits` is argument number `argument`, or
-// always true where that is negative.
-static bool read_place(CagCall *call, int argument, CagRobot **r, double *q) {
-  bool limits = true;
-  return cag_arg_robot(call, 0, r) &&
-         (argument < 0 || cag_arg_bool_or(call, argument, true, &limits)) &&
-         cag_arg_joints(call, 1, *r, limits, q);
+// The columns of the Jacobian in the axes of the world, or of the tool.
+static void find_jacobian(const CagRobot *r, const double *q, bool of_tool, double (*columns)[6]) {
+  if (of_tool) cag_robot_jacobian_tool(r, q, columns);
+  else cag_robot_jacobian(r, q, columns, NULL);
 }
 
-// robot, q, frame, limits
-bool cag_robots_jacobian(CagCall *call, CagValue *result) {
-  static const char *const frames[] = {"base", "tool", NULL};
-  CagRobot *r = NULL;
+bool cag_robots_jacobian(CagCall *call, const struct cag_robots_jacobian *a, CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6], *numbers;
-  int frame;
-  if (!read_place(call, 3, &r, q) || !cag_arg_choice(call, 2, frames, &frame)) return false;
-  if (frame) cag_robot_jacobian_tool(r, q, columns);
-  else cag_robot_jacobian(r, q, columns, NULL);
+  if (!cag_arg_joints(call, 1, a->robot, a->limits, q)) return false;
+  find_jacobian(a->robot, q, a->frame, columns);
   CagValue rows[6];
   for (int k = 0; k < 6; k++) {
-    rows[k] = cag_list_numbers(call->vm, r->joint_count, &numbers);
-    for (size_t i = 0; i < r->joint_count; i++) numbers[i] = columns[i][k];
+    rows[k] = cag_list_numbers(call->vm, a->robot->joint_count, &numbers);
+    for (size_t i = 0; i < a->robot->joint_count; i++) numbers[i] = columns[i][k];
   }
   *result = cag_list_values(call->vm, rows, 6);
   return true;
 }
 
-bool cag_robots_manipulability(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_manipulability(CagCall *call, const struct cag_robots_manipulability *a,
+                               CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX];
-  if (!read_place(call, 2, &r, q)) return false;
-  return cag_give_number(call, cag_robot_manipulability(r, q), result);
+  return cag_arg_joints(call, 1, a->robot, a->limits, q) &&
+         cag_give_number(call, cag_robot_manipulability(a->robot, q), result);
 }
 
-static bool read_rank(CagCall *call, size_t *count, size_t *rank) {
-  CagRobot *r = NULL;
+static bool find_rank(CagCall *call, const CagRobot *r, bool limits, size_t *count, size_t *rank) {
   double q[CAG_ROBOT_JOINTS_MAX], values[6];
-  return read_place(call, 2, &r, q) &&
+  return cag_arg_joints(call, 1, r, limits, q) &&
          cag_geometry_ok(call, cag_robot_singular_values(r, q, values, count, rank, call->err));
 }
 
-bool cag_robots_is_singular(CagCall *call, CagValue *result) {
+bool cag_robots_is_singular(CagCall *call, const struct cag_robots_is_singular *a,
+                            CagValue *result) {
   size_t count = 0, rank = 0;
-  if (!read_rank(call, &count, &rank)) return false;
+  if (!find_rank(call, a->robot, a->limits, &count, &rank)) return false;
   *result = cag_bool(rank < count);
   return true;
 }
 
-bool cag_robots_jacobian_rank(CagCall *call, CagValue *result) {
+bool cag_robots_jacobian_rank(CagCall *call, const struct cag_robots_jacobian_rank *a,
+                              CagValue *result) {
   size_t count = 0, rank = 0;
-  if (!read_rank(call, &count, &rank)) return false;
+  if (!find_rank(call, a->robot, a->limits, &count, &rank)) return false;
   *result = cag_number((double)rank);
   return true;
 }
 
-// robot, q, dq, frame, limits
-bool cag_robots_velocity(CagCall *call, CagValue *result) {
-  static const char *const frames[] = {"base", "tool", NULL};
-  CagRobot *r = NULL;
-  double q[CAG_ROBOT_JOINTS_MAX], dq[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6],
-      v[6] = {0};
-  int frame;
-  if (!read_place(call, 4, &r, q) || !cag_arg_joints(call, 2, r, false, dq) ||
-      !cag_arg_choice(call, 3, frames, &frame))
+bool cag_robots_velocity(CagCall *call, const struct cag_robots_velocity *a, CagValue *result) {
+  double q[CAG_ROBOT_JOINTS_MAX], dq[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6];
+  double v[6] = {0};
+  if (!cag_arg_joints(call, 1, a->robot, a->limits, q) ||
+      !cag_arg_joints(call, 2, a->robot, false, dq))
     return false;
-  if (frame) cag_robot_jacobian_tool(r, q, columns);
-  else cag_robot_jacobian(r, q, columns, NULL);
-  for (size_t i = 0; i < r->joint_count; i++)
+  find_jacobian(a->robot, q, a->frame, columns);
+  for (size_t i = 0; i < a->robot->joint_count; i++)
     for (int k = 0; k < 6; k++) v[k] += columns[i][k] * dq[i];
   *result = cag_vector(call->vm, v, 6);
   return true;
 }
 
-// robot, q, wrench, frame, limits
-bool cag_robots_torques(CagCall *call, CagValue *result) {
-  static const char *const frames[] = {"base", "tool", NULL};
-  CagRobot *r = NULL;
+bool cag_robots_torques(CagCall *call, const struct cag_robots_torques *a, CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6], *torques;
-  const double *wrench = NULL;
-  size_t n = 0;
-  int frame;
-  if (!read_place(call, 4, &r, q) || !cag_arg_numbers(call, 2, &wrench, &n) ||
-      !cag_arg_choice(call, 3, frames, &frame))
-    return false;
-  if (n != 6)
+  if (!cag_arg_joints(call, 1, a->robot, a->limits, q)) return false;
+  if (a->wrench.count != 6)
     return cag_fail_call(call, 2, CAG_ERR_length,
                          "expects 6 numbers, the force [fx, fy, fz] and the moment [mx, my, mz] at "
                          "the tool, found %zu",
-                         n);
-  if (frame) cag_robot_jacobian_tool(r, q, columns);
-  else cag_robot_jacobian(r, q, columns, NULL);
-  *result = cag_list_numbers(call->vm, r->joint_count, &torques);
-  for (size_t i = 0; i < r->joint_count; i++) {
+                         a->wrench.count);
+  find_jacobian(a->robot, q, a->frame, columns);
+  *result = cag_list_numbers(call->vm, a->robot->joint_count, &torques);
+  for (size_t i = 0; i < a->robot->joint_count; i++) {
     torques[i] = 0;
-    for (int k = 0; k < 6; k++) torques[i] += columns[i][k] * wrench[k];
+    for (int k = 0; k < 6; k++) torques[i] += columns[i][k] * a->wrench.items[k];
   }
   return true;
 }
 
-bool cag_robots_null_motion(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_null_motion(CagCall *call, const struct cag_robots_null_motion *a,
+                            CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX], dq[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX];
-  if (!read_place(call, 3, &r, q) || !cag_arg_joints(call, 2, r, false, dq)) return false;
-  cag_robot_null_motion(r, q, dq, out);
-  *result = cag_joints_value(call->vm, r, out);
+  if (!cag_arg_joints(call, 1, a->robot, a->limits, q) ||
+      !cag_arg_joints(call, 2, a->robot, false, dq))
+    return false;
+  cag_robot_null_motion(a->robot, q, dq, out);
+  *result = cag_joints_value(call->vm, a->robot, out);
   return true;
 }
 
 // --- The chain's lines ---
 
-bool cag_robots_skeleton(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_skeleton(CagCall *call, const struct cag_robots_skeleton *a, CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX];
-  bool limits;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
-      !cag_arg_joints_or_home(call, 1, r, limits, q))
-    return false;
-  CagVec3 *points = cag_hold_array(call, 2 * r->link_count + 2, sizeof *points);
-  size_t n = cag_robot_skeleton(r, q, points);
+  if (!cag_arg_joints_or_home(call, 1, a->robot, a->limits, q)) return false;
+  CagVec3 *points = cag_hold_array(call, 2 * a->robot->link_count + 2, sizeof *points);
+  size_t n = cag_robot_skeleton(a->robot, q, points);
   *result = cag_points_value(call->vm, points, n, 3);
   return true;
 }
 
-bool cag_robots_joint_axes(CagCall *call, CagValue *result) {
+bool cag_robots_joint_axes(CagCall *call, const struct cag_robots_joint_axes *a, CagValue *result) {
   static const char *const names[] = {"kind", "point", "direction"};
-  CagRobot *r = NULL;
+  const CagRobot *r = a->robot;
   double q[CAG_ROBOT_JOINTS_MAX];
   CagVec3 points[CAG_ROBOT_JOINTS_MAX], directions[CAG_ROBOT_JOINTS_MAX];
   CagValue records[CAG_ROBOT_JOINTS_MAX];
-  bool limits;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
-      !cag_arg_joints_or_home(call, 1, r, limits, q))
-    return false;
+  if (!cag_arg_joints_or_home(call, 1, r, a->limits, q)) return false;
   cag_robot_axes(r, q, points, directions);
   for (size_t i = 0; i < r->joint_count; i++) {
-    CagVec3 z = directions[i];
+    CagVec3 z = cag_add(directions[i], cag_vec3(0, 0, 0)); // never -0
     CagValue values[] = {cag_text_c(call->vm, joint_turns(r, i) ? "revolute" : "prismatic"),
-                         cag_point(call->vm, points[i], 3),
-                         cag_point(call->vm, cag_vec3(z.x + 0.0, z.y + 0.0, z.z + 0.0), 3)};
+                         cag_point(call->vm, points[i], 3), cag_point(call->vm, z, 3)};
     records[i] = cag_record_new(call->vm, names, values, 3);
   }
   *result = cag_list_values(call->vm, records, r->joint_count);
@@ -314,25 +280,23 @@ static CagValue table_row(CagVm *vm, const CagRobotLink *l) {
   return cag_record_new(vm, names, values, 7);
 }
 
-bool cag_robots_dh_table(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
-  if (!cag_arg_robot(call, 0, &r)) return false;
+bool cag_robots_dh_table(CagCall *call, const struct cag_robots_dh_table *a, CagValue *result) {
   CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = 0; i < r->link_count; i++)
-    if (!cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]))) return false;
+  for (size_t i = 0; i < a->robot->link_count; i++)
+    if (!cag_builder_add(call->vm, rows, table_row(call->vm, &a->robot->links[i]))) return false;
   *result = cag_builder_finish(call->vm, rows);
   return true;
 }
 
 // --- Limits and couplings ---
 
-bool cag_robots_violations(CagCall *call, CagValue *result) {
+bool cag_robots_violations(CagCall *call, const struct cag_robots_violations *a, CagValue *result) {
   static const char *const names[] = {"joint", "value", "limit", "by"};
-  CagRobot *r = NULL;
+  const CagRobot *r = a->robot;
   double q[CAG_ROBOT_JOINTS_MAX];
   CagValue records[CAG_ROBOT_JOINTS_MAX];
   size_t n = 0;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q)) return false;
+  if (!cag_arg_joints(call, 1, r, false, q)) return false;
   for (size_t i = 0; i < r->joint_count; i++) {
     double limit, by = cag_robot_joint_outside(r, i, q[i], &limit);
     if (by == 0) continue;
@@ -345,15 +309,11 @@ bool cag_robots_violations(CagCall *call, CagValue *result) {
 }
 
 // The map between joints and motors, or its linear part where `change` is true.
-static bool give_map(CagCall *call, void (*map)(const CagRobot *, const double *, double *),
-                     CagValue *result) {
-  CagRobot *r = NULL;
-  double q[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX], zeros[CAG_ROBOT_JOINTS_MAX] = {0},
-                                                             at_zero[CAG_ROBOT_JOINTS_MAX];
-  bool change;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q) ||
-      !cag_arg_bool_or(call, 2, false, &change))
-    return false;
+static bool give_map(CagCall *call, const CagRobot *r, bool change,
+                     void (*map)(const CagRobot *, const double *, double *), CagValue *result) {
+  double q[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX], at_zero[CAG_ROBOT_JOINTS_MAX];
+  const double zeros[CAG_ROBOT_JOINTS_MAX] = {0};
+  if (!cag_arg_joints(call, 1, r, false, q)) return false;
   map(r, q, out);
   if (change) {
     map(r, zeros, at_zero);
@@ -363,10 +323,12 @@ static bool give_map(CagCall *call, void (*map)(const CagRobot *, const double *
   return true;
 }
 
-bool cag_robots_motor_values(CagCall *call, CagValue *result) {
-  return give_map(call, cag_robot_motors, result);
+bool cag_robots_motor_values(CagCall *call, const struct cag_robots_motor_values *a,
+                             CagValue *result) {
+  return give_map(call, a->robot, a->change, cag_robot_motors, result);
 }
 
-bool cag_robots_joint_values(CagCall *call, CagValue *result) {
-  return give_map(call, cag_robot_joints, result);
+bool cag_robots_joint_values(CagCall *call, const struct cag_robots_joint_values *a,
+                             CagValue *result) {
+  return give_map(call, a->robot, a->change, cag_robot_joints, result);
 }

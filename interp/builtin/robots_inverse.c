@@ -47,26 +47,23 @@ static bool fail_no_closed_form(CagCall *call, const CagRobot *r, bool point) {
                        "numerically");
 }
 
-// robot, T, near
-bool cag_inverse_ik_all(CagCall *call, CagValue *result) {
+bool cag_inverse_ik_all(CagCall *call, const struct cag_inverse_ik_all *a, CagValue *result) {
   static const char *const names[] = {"status", "solutions", "free"};
   static const char *const statuses[] = {"ok", "unreachable", "infeasible-orientation", "singular"};
-  CagRobot *r = NULL;
-  CagTransform target;
+  CagTransform t;
   CagInverse all;
   double near[CAG_ROBOT_JOINTS_MAX];
-  const bool point = call->values[1].type == CAG_LIST;
-  CagVec3 at = {0, 0, 0};
-  if (!cag_arg_robot(call, 0, &r) ||
-      !(point ? cag_arg_vec(call, 1, &at, NULL) : cag_arg_pose(call, 1, &target)) ||
-      !cag_arg_joints_or_home(call, 2, r, false, near))
+  bool point;
+  if (!cag_arg_target(call, 1, &t, &point) ||
+      !cag_arg_joints_or_home(call, 2, a->robot, false, near))
     return false;
-  if (point) cag_robot_inverse_point(r, at, near, &all);
-  else cag_robot_inverse(r, &target, near, &all);
-  if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call, r, point);
+  if (point)
+    cag_robot_inverse_point(a->robot, cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]), near, &all);
+  else cag_robot_inverse(a->robot, &t, near, &all);
+  if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call, a->robot, point);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < all.count; i++)
-    if (!cag_builder_add(call->vm, list, solution_value(call->vm, r, &all.solutions[i])))
+    if (!cag_builder_add(call->vm, list, solution_value(call->vm, a->robot, &all.solutions[i])))
       return false;
   CagValue values[] = {cag_text_c(call->vm, statuses[all.status]),
                        cag_builder_finish(call->vm, list), free_value(call->vm, all.free)};
@@ -74,13 +71,12 @@ bool cag_inverse_ik_all(CagCall *call, CagValue *result) {
   return true;
 }
 
-// robot, q
-bool cag_inverse_configuration(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_inverse_configuration(CagCall *call, const struct cag_inverse_configuration *a,
+                               CagValue *result) {
   CagConfiguration c;
   double q[CAG_ROBOT_JOINTS_MAX];
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q)) return false;
-  if (!cag_robot_configuration(r, q, &c)) return fail_no_closed_form(call, r, false);
+  if (!cag_arg_joints(call, 1, a->robot, false, q)) return false;
+  if (!cag_robot_configuration(a->robot, q, &c)) return fail_no_closed_form(call, a->robot, false);
   *result = config_value(call->vm, &c);
   return true;
 }

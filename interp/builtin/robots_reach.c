@@ -1,19 +1,12 @@
 // From poses to joint values: inverse kinematics, reach, and paths.
 
-#include <string.h>
-
-#include "base/memory.h"
 #include "geom/robot/path.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
 
-// Most poses that one call follows.
-#define POSES_MAX 1000000
-
 // --- One pose ---
 
-// A pose, or a point where the tool may be turned as it likes.
-static bool read_target(CagCall *call, int argument, CagTransform *out, bool *point) {
+bool cag_arg_target(CagCall *call, int argument, CagTransform *out, bool *point) {
   CagVec3 p;
   *point = call->values[argument].type == CAG_LIST;
   if (!*point) return cag_arg_pose(call, argument, out);
@@ -22,77 +15,57 @@ static bool read_target(CagCall *call, int argument, CagTransform *out, bool *po
   return true;
 }
 
-static bool read_branch(CagCall *call, int argument, const CagRecord *config, const char *name,
-                        int *out) {
+static bool read_branch(CagCall *call, const CagRecord *config, const char *name, int *out) {
   CagValue v = cag_record_get(config, name);
-  *out = 0;
   if (v.type == CAG_UNSET || v.type == CAG_NONE) return true;
-  if (v.type != CAG_NUMBER || (v.as.number != 1 && v.as.number != -1))
-    return cag_fail_call(call, argument, CAG_ERR_value, "expects 1 or -1 as `%s` of `%s`", name,
-                         cag_parameter_name(call, argument));
-  *out = v.as.number > 0 ? 1 : -1;
+  if (v.type != CAG_NUMBER || fabs(v.as.number) != 1)
+    return cag_fail_call(call, 3, CAG_ERR_value, "expects 1 or -1 as `%s` of `config`", name);
+  *out = (int)v.as.number;
   return true;
 }
 
-static bool read_config(CagCall *call, int argument, CagRobotGoal *goal) {
-  CagRecord *config = NULL;
-  if (!cag_given(call, argument)) return true;
-  return cag_arg_record(call, argument, &config) &&
-         read_branch(call, argument, config, "shoulder", &goal->shoulder) &&
-         read_branch(call, argument, config, "elbow", &goal->elbow) &&
-         read_branch(call, argument, config, "wrist", &goal->wrist);
-}
-
-// robot, T, near, config, tolerance
-bool cag_robots_ik(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_ik(CagCall *call, const struct cag_robots_ik *a, CagValue *result) {
   CagTransform target;
-  CagRobotGoal goal = {0};
   CagRobotFound found;
   double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
-  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
-      !cag_arg_joints_or_home(call, 2, r, false, near) || !read_config(call, 3, &goal) ||
-      (cag_given(call, 4) && !cag_arg_positive(call, 4, &goal.tolerance)))
+  CagRobotGoal goal = {.near = near, .tolerance = a->tolerance};
+  if (!cag_arg_target(call, 1, &target, &goal.position_only) ||
+      !cag_arg_joints_or_home(call, 2, a->robot, false, near) ||
+      (a->config && (!read_branch(call, a->config, "shoulder", &goal.shoulder) ||
+                     !read_branch(call, a->config, "elbow", &goal.elbow) ||
+                     !read_branch(call, a->config, "wrist", &goal.wrist))) ||
+      !cag_geometry_ok(call, cag_robot_solve(a->robot, &target, &goal, q, &found, call->err)))
     return false;
-  goal.near = near;
-  if (!cag_geometry_ok(call, cag_robot_solve(r, &target, &goal, q, &found, call->err)))
-    return false;
-  *result = cag_joints_value(call->vm, r, q);
+  *result = cag_joints_value(call->vm, a->robot, q);
   return true;
 }
 
-// robot, T, tolerance
-bool cag_robots_reachable(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_reachable(CagCall *call, const struct cag_robots_reachable *a, CagValue *result) {
   CagTransform target;
-  CagRobotGoal goal = {0};
+  CagRobotGoal goal = {.tolerance = a->tolerance};
   CagRobotFound found;
   double q[CAG_ROBOT_JOINTS_MAX];
-  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
-      (cag_given(call, 2) && !cag_arg_positive(call, 2, &goal.tolerance)))
-    return false;
-  *result = cag_bool(cag_robot_solve(r, &target, &goal, q, &found, call->err) == CAG_OK);
+  if (!cag_arg_target(call, 1, &target, &goal.position_only)) return false;
+  *result = cag_bool(!cag_robot_solve(a->robot, &target, &goal, q, &found, call->err));
   return true;
 }
 
-// robot, T, near: what comes closest
-bool cag_robots_closest_pose(CagCall *call, CagValue *result) {
+bool cag_robots_closest_pose(CagCall *call, const struct cag_robots_closest_pose *a,
+                             CagValue *result) {
   static const char *const names[] = {"q", "pose", "distance", "angle"};
-  CagRobot *r = NULL;
   CagTransform target, pose;
-  CagRobotGoal goal = {0};
   CagRobotFound found;
   double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
-  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
-      !cag_arg_joints_or_home(call, 2, r, false, near))
+  CagRobotGoal goal = {.near = near};
+  if (!cag_arg_target(call, 1, &target, &goal.position_only) ||
+      !cag_arg_joints_or_home(call, 2, a->robot, false, near))
     return false;
-  goal.near = near;
-  if (cag_robot_solve(r, &target, &goal, q, &found, call->err) &&
+  if (cag_robot_solve(a->robot, &target, &goal, q, &found, call->err) &&
       call->err->id != CAG_ERR_unreachable)
     return cag_fail_geometry(call, call->err);
-  cag_robot_forward(r, q, &pose);
-  CagValue values[] = {cag_joints_value(call->vm, r, q), cag_transform_value(call->vm, &pose),
-                       cag_number(found.position),
+  cag_robot_forward(a->robot, q, &pose);
+  CagValue values[] = {cag_joints_value(call->vm, a->robot, q),
+                       cag_transform_value(call->vm, &pose), cag_number(found.position),
                        goal.position_only ? cag_none()
                                           : cag_angle(cag_degrees_shown(found.rotation))};
   *result = cag_record_new(call->vm, names, values, 4);
@@ -115,83 +88,70 @@ static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_
 
 // Room for n places of the joints, held.
 static double *take_places(CagCall *call, const CagRobot *r, size_t n) {
-  return cag_hold(call, cag_malloc((n * r->joint_count + 1) * sizeof(double)));
+  return cag_hold_array(call, n * r->joint_count, sizeof(double));
 }
 
-// robot, from, to, n
-bool cag_robots_joint_path(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_joint_path(CagCall *call, const struct cag_robots_joint_path *a, CagValue *result) {
+  const size_t joints = a->robot->joint_count, n = (size_t)a->n;
   double from[CAG_ROBOT_JOINTS_MAX], to[CAG_ROBOT_JOINTS_MAX];
-  long n;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, true, from) ||
-      !cag_arg_joints(call, 2, r, true, to) || !cag_arg_integer(call, 3, 2, POSES_MAX, &n))
+  if (!cag_arg_joints(call, 1, a->robot, true, from) ||
+      !cag_arg_joints(call, 2, a->robot, true, to))
     return false;
-  size_t joints = r->joint_count;
-  double *q = take_places(call, r, (size_t)n);
-  for (size_t k = 0; k < (size_t)n; k++)
-    for (size_t i = 0; i < joints; i++) {
-      double t = (double)k / (double)(n - 1);
-      q[k * joints + i] = (1 - t) * from[i] + t * to[i];
-    }
-  return give_places(call, r, q, (size_t)n, result);
+  double *q = take_places(call, a->robot, n);
+  for (size_t k = 0; k < n; k++) {
+    const double t = (double)k / (double)(n - 1);
+    for (size_t i = 0; i < joints; i++) q[k * joints + i] = (1 - t) * from[i] + t * to[i];
+  }
+  return give_places(call, a->robot, q, n, result);
 }
 
 static bool going(void *vm) { return cag_keep_going(vm); }
 
-// robot, from, to, n, near, cross
-bool cag_robots_line_path(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_line_path(CagCall *call, const struct cag_robots_line_path *a, CagValue *result) {
   CagTransform from, to;
   double near[CAG_ROBOT_JOINTS_MAX];
-  long n;
-  bool point = false;
-  CagRobotWay way = {.near = near, .going = going, .data = call->vm};
-  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &from, &way.position_only) ||
-      !read_target(call, 2, &to, &point))
+  const size_t n = (size_t)a->n;
+  bool point;
+  CagRobotWay way = {.near = near, .cross = a->cross, .going = going, .data = call->vm};
+  if (!cag_arg_target(call, 1, &from, &way.position_only) || !cag_arg_target(call, 2, &to, &point))
     return false;
   if (point != way.position_only)
     return cag_fail_type(
         call, 2, way.position_only ? "a point, as the start is" : "a pose, as the start is");
-  if (!cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
-      !cag_arg_joints_or_home(call, 4, r, false, near) ||
-      !cag_arg_bool_or(call, 5, false, &way.cross))
-    return false;
-  double *q = take_places(call, r, (size_t)n);
-  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, call->err);
-  return cag_geometry_ok(call, status) && give_places(call, r, q, (size_t)n, result);
+  if (!cag_arg_joints_or_home(call, 4, a->robot, false, near)) return false;
+  double *q = take_places(call, a->robot, n);
+  CagStatus status = cag_robot_line_path(a->robot, &from, &to, n, &way, q, call->err);
+  return cag_geometry_ok(call, status) && give_places(call, a->robot, q, n, result);
 }
 
 // Poses, or points where the tool may be turned as it likes; *out is held.
-static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *n, bool *points) {
-  CagList *list = NULL;
-  if (!cag_arg_list(call, argument, &list)) return false;
+static bool read_poses(CagCall *call, CagTransform **out, size_t *n, bool *points) {
+  CagList *list;
+  if (!cag_arg_list(call, 1, &list)) return false;
   *n = list->length;
   *points = list->dim == 3;
-  *out = cag_hold(call, cag_malloc((*n + 1) * sizeof **out));
-  for (size_t i = 0; i < *n; i++) {
+  *out = cag_hold_array(call, list->length, sizeof **out);
+  for (size_t i = 0; i < list->length; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
     const double *x = *points ? list->as.numbers + 3 * i : NULL;
     bool finite = *points && isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
     if (finite) (*out)[i] = cag_translate(cag_vec3(x[0], x[1], x[2]));
     else if (v.type != CAG_TRANSFORM)
-      return cag_fail_element(call, argument, i, v, "poses, or points of space,");
-    else if (!cag_pose_of_value(call, argument, v, &(*out)[i])) return false;
+      return cag_fail_element(call, 1, i, v, "poses, or points of space,");
+    else if (!cag_pose_of_value(call, 1, v, &(*out)[i])) return false;
   }
   return true;
 }
 
-// robot, poses, near, jumps
-bool cag_robots_follow(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
-  CagTransform *poses = NULL;
+bool cag_robots_follow(CagCall *call, const struct cag_robots_follow *a, CagValue *result) {
+  CagTransform *poses;
   double near[CAG_ROBOT_JOINTS_MAX];
-  size_t n = 0;
-  CagRobotWay way = {.near = near, .going = going, .data = call->vm};
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints_or_home(call, 2, r, false, near) ||
-      !cag_arg_bool_or(call, 3, false, &way.jumps) ||
-      !read_poses(call, 1, &poses, &n, &way.position_only))
+  size_t n;
+  CagRobotWay way = {.near = near, .jumps = a->jumps, .going = going, .data = call->vm};
+  if (!cag_arg_joints_or_home(call, 2, a->robot, false, near) ||
+      !read_poses(call, &poses, &n, &way.position_only))
     return false;
-  double *q = take_places(call, r, n);
-  return cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, call->err)) &&
-         give_places(call, r, q, n, result);
+  double *q = take_places(call, a->robot, n);
+  return cag_geometry_ok(call, cag_robot_follow(a->robot, poses, n, &way, q, call->err)) &&
+         give_places(call, a->robot, q, n, result);
 }

@@ -116,15 +116,10 @@ static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q,
   return true;
 }
 
-// robot, q, holding, limits
-bool cag_robots_posed(CagCall *call, CagValue *result) {
-  CagRobot *r = NULL;
+bool cag_robots_posed(CagCall *call, const struct cag_robots_posed *a, CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX];
-  bool limits;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 3, true, &limits) ||
-      !cag_arg_joints_or_home(call, 1, r, limits, q))
-    return false;
-  CagValue holding = cag_given(call, 2) ? call->values[2] : cag_none();
+  if (!cag_arg_joints_or_home(call, 1, a->robot, a->limits, q)) return false;
+  CagValue holding = cag_given(call, 2) ? a->holding : cag_none();
   // Checked before it is moved, so that errors name this function.
   if (holding.type != CAG_NONE && !cag_shapes_collect(call, holding, cag_builder_new(call->vm)))
     return false;

@@ -41,9 +41,7 @@ static bool cloud_value(CagCall *call, const CagVec3 *points, size_t n, double r
   cag_release_held(call, indices);
   cag_release_held(call, counts);
   cag_release_held(call, vertices);
-  if (!cag_geometry_ok(call, status)) return false;
-  *out = cag_mesh_value(call->vm, m);
-  return true;
+  return cag_mesh_result(call, status, &m, out);
 }
 
 static CagBounds bounds_of(const CagVec3 *points, size_t n) {

@@ -31,18 +31,17 @@ static bool begins(const char *text, const char *with) {
   return strncmp(text, with, strlen(with)) == 0;
 }
 
-static bool can_be_read(const char *file) {
-  static const char *const endings[] = {".stl", ".obj", ".ply", ".gltf", ".glb"};
+static bool ends_with(const char *file, const char *const *endings, size_t n) {
   const char *dot = strrchr(file, '.');
-  for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+  for (size_t i = 0; dot && i < n; i++)
     if (!strcasecmp(dot, endings[i])) return true;
   return false;
 }
 
-static bool is_gltf(const char *file) {
-  const char *dot = strrchr(file, '.');
-  return dot && (!strcasecmp(dot, ".gltf") || !strcasecmp(dot, ".glb"));
-}
+// glTF's endings are the last two.
+static const char *const mesh_endings[] = {".stl", ".obj", ".ply", ".gltf", ".glb"};
+static bool can_be_read(const char *file) { return ends_with(file, mesh_endings, 5); }
+static bool is_gltf(const char *file) { return ends_with(file, mesh_endings + 3, 2); }
 
 static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, const char *help) {
   cag_fail_call(m->call, 0, CAG_ERR_urdf_mesh, "cannot read the mesh \"%.120s\" (%s, line %ld): %s",
@@ -123,37 +122,29 @@ static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
 
 // --- Bodies ---
 
-static CagTransform scaled(const double factors[3]) {
-  CagTransform t = cag_transform_identity();
-  for (int i = 0; i < 3; i++) t.m[i][i] = factors[i];
-  t.planar = false;
-  return t;
-}
-
 static bool make_body(Import *m, const CagUrdfBody *b, CagTransform *place, CagValue *out) {
+  CagCall *call = m->call;
   CagSolid *s = NULL;
   const double *size = b->size;
+  const CagVec3 sides = cag_vec3(size[0], size[1], size[2]);
   switch (b->kind) {
-  case CAG_URDF_BODY_BOX: {
-    CagStatus status = cag_solid_box(cag_vec3(size[0], size[1], size[2]), true, &s, m->call->err);
-    return cag_solid_result(m->call, status, &s, out);
-  }
+  case CAG_URDF_BODY_BOX:
+    return cag_solid_result(call, cag_solid_box(sides, true, &s, call->err), &s, out);
   case CAG_URDF_BODY_CYLINDER: {
     CagTransform down = cag_translate(cag_vec3(0, 0, -size[1] / 2));
     *place = cag_transform_multiply(place, &down);
-    CagStatus status = cag_solid_cylinder(size[1], size[0], size[0], &s, m->call->err);
-    return cag_solid_result(m->call, status, &s, out);
+    CagStatus status = cag_solid_cylinder(size[1], size[0], size[0], &s, call->err);
+    return cag_solid_result(call, status, &s, out);
   }
-  case CAG_URDF_BODY_SPHERE: {
-    CagStatus status = cag_solid_sphere(size[0], &s, m->call->err);
-    return cag_solid_result(m->call, status, &s, out);
-  }
+  case CAG_URDF_BODY_SPHERE:
+    return cag_solid_result(call, cag_solid_sphere(size[0], &s, call->err), &s, out);
   case CAG_URDF_BODY_MESH: break;
   }
   // glTF says its own unit, which the reader has made millimeters.
-  double unit = is_gltf(b->file) ? 1 : 1000, factors[3];
-  for (int i = 0; i < 3; i++) factors[i] = b->scale[i] * unit;
-  CagTransform scale = scaled(factors);
+  const double unit = is_gltf(b->file) ? 1 : 1000;
+  CagTransform scale = cag_transform_identity();
+  for (int i = 0; i < 3; i++) scale.m[i][i] = b->scale[i] * unit;
+  scale.planar = false;
   *place = cag_transform_multiply(place, &scale);
   return read_file(m, b, out);
 }
@@ -245,18 +236,12 @@ static bool make_robot(Import *m, CagValue *result) {
                        .convention = CAG_ROBOT_CLASSIC,
                        .base = m->rows.base,
                        .tool = m->rows.tool};
-  const CagStatus status = cag_robot_new(&spec, &robot, m->call->err);
-  if (!cag_geometry_ok(call, status)) return false;
+  if (!cag_geometry_ok(call, cag_robot_new(&spec, &robot, call->err))) return false;
   *result = cag_robot_value(call->vm, robot, name, list);
   return true;
 }
 
 // --- The call ---
-
-static bool name_or_none(CagCall *call, int argument, const char **out) {
-  *out = NULL;
-  return !cag_given(call, argument) || cag_arg_text(call, argument, out);
-}
 
 static bool read_chain(Import *m) {
   CagCall *call = m->call;
@@ -265,15 +250,13 @@ static bool read_chain(Import *m) {
   const char *slash = strrchr(m->path, '/');
   if (!cag_vm_open_file(call, 0, m->path, &bytes, &size)) return false;
   cag_hold(call, bytes);
-  CagStatus status =
-      cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, m->call->err);
+  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, call->err);
   cag_release_held(call, bytes);
-  if (status == CAG_OK)
-    status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, m->call->err);
+  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, call->err);
   cag_hold_for(call, cag_free, chain);
   if (status == CAG_OK)
     status = cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows,
-                           m->call->err);
+                           call->err);
   return cag_geometry_ok(call, status);
 }
 
@@ -283,12 +266,14 @@ static void release_import(void *import) {
   cag_urdf_tree_free(&m->tree);
 }
 
-// path, tip, base, shapes
-bool cag_robot_files_read_urdf(CagCall *call, CagValue *result) {
+bool cag_robot_files_read_urdf(CagCall *call, const struct cag_robot_files_read_urdf *a,
+                               CagValue *result) {
   Import *m = cag_hold_array(call, 1, sizeof *m);
   cag_hold_for(call, release_import, m);
   m->call = call;
-  return cag_arg_text(call, 0, &m->path) && name_or_none(call, 1, &m->tip) &&
-         name_or_none(call, 2, &m->base) && cag_arg_bool_or(call, 3, true, &m->shapes) &&
-         read_chain(m) && make_robot(m, result);
+  m->path = a->path;
+  m->tip = a->tip;
+  m->base = a->base;
+  m->shapes = a->shapes;
+  return read_chain(m) && make_robot(m, result);
 }

@@ -33,8 +33,7 @@ static bool fail_field(CagCall *call, const char *name) {
   for (size_t i = 0; i < FIELD_COUNT; i++) names[i] = fields[i].name;
   cag_fail_call(call, 1, CAG_ERR_material_field, "found a field that no material has: `%s`", name);
   const char *nearest = cag_nearest_name(name, names, FIELD_COUNT);
-  if (nearest) cag_fail_help(call->vm, "did you mean `%s`?", nearest);
-  return false;
+  return nearest && cag_fail_help(call->vm, "did you mean `%s`?", nearest);
 }
 
 static bool check_texture(CagCall *call, const char *text) {
@@ -44,8 +43,7 @@ static bool check_texture(CagCall *call, const char *text) {
                 "expects \"wood\", \"marble\", \"concrete\" or \"clay\" as `texture`, found \"%s\"",
                 text);
   const char *nearest = cag_nearest_name(text, textures, TEXTURE_COUNT);
-  if (nearest) cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
-  return false;
+  return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
 
 // Checks one field; colors become [r, g, b].
@@ -175,10 +173,9 @@ static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
   return true;
 }
 
-bool cag_scenes_material(CagCall *call, CagValue *result) {
-  CagRecord *given, *material;
-  return cag_arg_record(call, 1, &given) && check_material(call, given, &material) &&
-         say_material(call, material, result);
+bool cag_scenes_material(CagCall *call, const struct cag_scenes_material *a, CagValue *result) {
+  CagRecord *material = NULL;
+  return check_material(call, a->m, &material) && say_material(call, material, result);
 }
 
 bool cag_scenes_color(CagCall *call, CagValue *result) {
@@ -189,28 +186,25 @@ bool cag_scenes_color(CagCall *call, CagValue *result) {
   return say_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
 }
 
-bool cag_scenes_named(CagCall *call, CagValue *result) {
-  const char *name;
-  CagValue v = call->values[0];
-  if (!cag_arg_text(call, 1, &name)) return false;
-  if (!*name) return cag_fail_call(call, 1, CAG_ERR_value, "expects a name that is not empty");
+bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue *result) {
+  const CagValue v = a->G, name = call->values[1];
+  if (!*a->name) return cag_fail_call(call, 1, CAG_ERR_value, "expects a name that is not empty");
   if (v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING) {
     *result = cag_record_get(CAG_AS_SCENE(v)->fields, "name").type == CAG_TEXT
                   ? v
-                  : with_field(call->vm, v, "name", call->values[1]);
+                  : with_field(call->vm, v, "name", name);
     return true;
   }
   if (!copy_shape(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
-  if (!shape->name) shape->name = CAG_AS_TEXT(call->values[1]);
+  if (!shape->name) shape->name = CAG_AS_TEXT(name);
   return true;
 }
 
-bool cag_scenes_tolerance(CagCall *call, CagValue *result) {
-  double tolerance;
-  if (!cag_arg_positive(call, 1, &tolerance) || !copy_shape(call, result)) return false;
+bool cag_scenes_tolerance(CagCall *call, const struct cag_scenes_tolerance *a, CagValue *result) {
+  if (!copy_shape(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
-  if (shape->tolerance == 0) shape->tolerance = tolerance;
+  if (shape->tolerance == 0) shape->tolerance = a->t;
   return true;
 }
 
@@ -234,12 +228,9 @@ bool cag_scenes_group(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_scenes_line_style(CagCall *call, CagValue *result) {
-  CagLineStyle line = {.set = true};
-  if ((cag_given(call, 1) && !cag_arg_positive(call, 1, &line.radius)) ||
-      (cag_given(call, 2) && !cag_arg_positive(call, 2, &line.dash)) || !copy_shape(call, result))
-    return false;
+bool cag_scenes_line_style(CagCall *call, const struct cag_scenes_line_style *a, CagValue *result) {
+  if (!copy_shape(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
-  if (!shape->line.set) shape->line = line;
+  if (!shape->line.set) shape->line = (CagLineStyle){true, a->radius, a->dash};
   return true;
 }

@@ -10,22 +10,12 @@
 static bool fail_color(CagCall *call, int argument, const char *what, const char *text) {
   size_t n;
   const char *const *names = cag_color_names(&n);
-  cag_fail_call(
-      call, argument, CAG_ERR_color,
-      "expects a color as `%s`: a CSS name, \"#0a8\", \"#00aa88\" or [r, g, b]; \"%s\" is "
-      "none",
-      what, text);
+  cag_fail_call(call, argument, CAG_ERR_color,
+                "expects a color as `%s`: a CSS name, \"#0a8\", \"#00aa88\" or [r, g, b]; \"%s\" "
+                "is none",
+                what, text);
   const char *nearest = cag_nearest_name(text, names, n);
-  if (nearest) cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
-  return false;
-}
-
-// A fourth part, that other programs take for opacity.
-static void fail_alpha(CagCall *call, const double x[4]) {
-  cag_fail_help(call->vm,
-                "a color has no opacity; write material(G, { color: [%.6g, %.6g, %.6g], "
-                "transmission: %.6g })",
-                x[0], x[1], x[2], 1 - x[3]);
+  return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
 
 bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, CagColor *out) {
@@ -41,8 +31,12 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
     cag_fail_call(call, argument, CAG_ERR_type,
                   "expects a color as `%s`: a CSS name, \"#0a8\" or [r, g, b]; found %s", what,
                   cag_type_article(v));
-    if (numbers && n == 4) fail_alpha(call, x);
-    return false;
+    // Other programs take a fourth part for opacity.
+    return numbers && n == 4 &&
+           cag_fail_help(call->vm,
+                         "a color has no opacity; write material(G, { color: [%.6g, %.6g, %.6g], "
+                         "transmission: %.6g })",
+                         x[0], x[1], x[2], 1 - x[3]);
   }
   for (size_t i = 0; i < 3; i++)
     if (!(x[i] >= 0 && isfinite(x[i])))
@@ -69,134 +63,93 @@ static bool scene_result(CagCall *call, CagType type, const char *kind, const ch
 // Pixels along one side: more would be 10 GB of picture.
 #define PIXELS_MAX 65536
 
-static bool read_size(CagCall *call, int argument, CagValue *out) {
-  const double *x;
-  size_t n;
-  double size[2] = {1280, 720};
-  if (cag_given(call, argument)) {
-    if (!cag_arg_numbers(call, argument, &x, &n)) return false;
-    bool good = n == 2;
-    for (size_t i = 0; good && i < 2; i++) {
-      size[i] = x[i];
-      good = x[i] >= 1 && x[i] <= PIXELS_MAX && x[i] == floor(x[i]);
-    }
-    if (!good)
-      return cag_fail_call(call, argument, CAG_ERR_value,
-                           "expects [width, height] in whole pixels up to %d as `size`",
-                           PIXELS_MAX);
-  }
-  *out = cag_vector(call->vm, size, 2);
-  return true;
-}
+static bool is_pixels(double x) { return x >= 1 && x <= PIXELS_MAX && x == floor(x); }
 
-bool cag_scenes_camera(CagCall *call, CagValue *result) {
+bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValue *result) {
   static const char *const names[] = {"eye",   "target", "up",    "fov",     "kind",
                                       "width", "size",   "focus", "aperture"};
-  static const char *const kinds[] = {"perspective", "orthographic", NULL};
-  CagVec3 eye, target, up;
-  double fov, width = 0, focus = 0, aperture;
-  int kind;
-  CagValue size;
-  if (!cag_arg_vec(call, 0, &eye, NULL) ||
-      !cag_arg_vec_or(call, 1, cag_vec3(0, 0, 0), &target, NULL) ||
-      !cag_arg_direction(call, 2, cag_vec3(0, 0, 1), &up, NULL))
-    return false;
-  if (cag_norm(cag_sub(eye, target)) == 0)
+  static const char *const kinds[] = {"perspective", "orthographic"};
+  const double widest = 179; // degrees: the tangent of the half grows without end towards 180
+  double size[] = {1280, 720};
+  if (cag_norm(cag_sub(a->eye.at, a->target.at)) == 0)
     return cag_fail_call(call, cag_given(call, 1) ? 1 : 0, CAG_ERR_view,
                          "expects two different points as `eye` and `target`");
-  if (!cag_arg_angle_or(call, 3, 40 * CAG_RADIANS_PER_DEGREE, &fov)) return false;
-  const double widest = 179; // degrees: the tangent of the half grows without end towards 180
-  if (!(fov > 0 && fov <= widest * CAG_RADIANS_PER_DEGREE))
+  if (!(a->fov > 0 && a->fov <= widest * CAG_RADIANS_PER_DEGREE))
     return cag_fail_call(call, 3, CAG_ERR_view, "expects a `fov` above 0deg, of 179deg at most");
-  if (!cag_arg_choice(call, 4, kinds, &kind) ||
-      (cag_given(call, 5) && !cag_arg_positive(call, 5, &width)) || !read_size(call, 6, &size) ||
-      (cag_given(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
-      !cag_arg_number_or(call, 8, 0, &aperture))
-    return false;
-  if (!(aperture >= 0 && isfinite(aperture)))
+  if (cag_given(call, 6)) {
+    const double *x = a->size.items;
+    if (a->size.count != 2 || !is_pixels(x[0]) || !is_pixels(x[1]))
+      return cag_fail_call(call, 6, CAG_ERR_value,
+                           "expects [width, height] in whole pixels up to %d as `size`",
+                           PIXELS_MAX);
+    memcpy(size, x, sizeof size);
+  }
+  if (!(a->aperture >= 0 && isfinite(a->aperture)))
     return cag_fail_call(call, 8, CAG_ERR_value, "expects an `aperture` of 0 or more");
-  CagValue fields[] = {cag_point(call->vm, eye, 3),
-                       cag_point(call->vm, target, 3),
-                       cag_point(call->vm, up, 3),
-                       cag_angle(cag_degrees_shown(fov)),
-                       cag_text_c(call->vm, kinds[kind]),
-                       width > 0 ? cag_number(width) : cag_none(),
-                       size,
-                       focus > 0 ? cag_number(focus) : cag_none(),
-                       cag_number(aperture)};
-  return scene_result(call, CAG_CAMERA, kinds[kind], names, fields, 9, result);
+  CagValue fields[] = {cag_point(call->vm, a->eye.at, 3),
+                       cag_point(call->vm, a->target.at, 3),
+                       cag_point(call->vm, a->up.at, 3),
+                       cag_angle(cag_degrees_shown(a->fov)),
+                       cag_text_c(call->vm, kinds[a->kind]),
+                       a->width > 0 ? cag_number(a->width) : cag_none(),
+                       cag_vector(call->vm, size, 2),
+                       a->focus > 0 ? cag_number(a->focus) : cag_none(),
+                       cag_number(a->aperture)};
+  return scene_result(call, CAG_CAMERA, kinds[a->kind], names, fields, 9, result);
 }
 
 // --- Lights ---
 
-// `color` and `strength` stand at `at` and the parameter after it.
-static bool read_light(CagCall *call, int at, CagValue *color, CagValue *strength) {
+// A light of n fields, which are the parameters. The last two are the color, which is read here,
+// and the strength.
+static bool light_result(CagCall *call, const char *kind, const char *const *names,
+                         CagValue *fields, size_t n, double strength, CagValue *result) {
+  const int color = (int)n - 2;
   CagColor c = {1, 1, 1};
-  double s;
-  if (cag_given(call, at) && !cag_color_read(call, at, "color", call->values[at], &c)) return false;
-  if (!cag_arg_number_or(call, at + 1, 1, &s)) return false;
-  if (!(s >= 0 && isfinite(s)))
-    return cag_fail_call(call, at + 1, CAG_ERR_value, "expects a `strength` of 0 or more");
-  *color = cag_color_value(call->vm, c);
-  *strength = cag_number(s);
-  return true;
+  if (cag_given(call, color) && !cag_color_read(call, color, "color", call->values[color], &c))
+    return false;
+  if (!(strength >= 0 && isfinite(strength)))
+    return cag_fail_call(call, color + 1, CAG_ERR_value, "expects a `strength` of 0 or more");
+  fields[n - 2] = cag_color_value(call->vm, c);
+  fields[n - 1] = cag_number(strength);
+  return scene_result(call, CAG_LIGHT, kind, names, fields, n, result);
 }
 
-bool cag_scenes_sun(CagCall *call, CagValue *result) {
+bool cag_scenes_sun(CagCall *call, const struct cag_scenes_sun *a, CagValue *result) {
   static const char *const names[] = {"direction", "color", "strength"};
-  CagVec3 direction;
-  CagValue fields[3];
-  if (!cag_arg_direction(call, 0, cag_vec3(0, 0, 0), &direction, NULL) ||
-      !read_light(call, 1, &fields[1], &fields[2]))
-    return false;
-  fields[0] = cag_point(call->vm, direction, 3);
-  return scene_result(call, CAG_LIGHT, "sun", names, fields, 3, result);
+  CagValue fields[3] = {cag_point(call->vm, a->direction.at, 3)};
+  return light_result(call, "sun", names, fields, 3, a->strength, result);
 }
 
-bool cag_scenes_point_light(CagCall *call, CagValue *result) {
+bool cag_scenes_point_light(CagCall *call, const struct cag_scenes_point_light *a,
+                            CagValue *result) {
   static const char *const names[] = {"position", "color", "strength"};
-  CagVec3 position;
-  CagValue fields[3];
-  if (!cag_arg_vec(call, 0, &position, NULL) || !read_light(call, 1, &fields[1], &fields[2]))
-    return false;
-  fields[0] = cag_point(call->vm, position, 3);
-  return scene_result(call, CAG_LIGHT, "point", names, fields, 3, result);
+  CagValue fields[3] = {cag_point(call->vm, a->position.at, 3)};
+  return light_result(call, "point", names, fields, 3, a->strength, result);
 }
 
-// Position and target, which must differ.
-static bool read_beam(CagCall *call, CagValue fields[2]) {
-  CagVec3 position, target;
-  if (!cag_arg_vec(call, 0, &position, NULL) || !cag_arg_vec(call, 1, &target, NULL)) return false;
+// A light at a position that looks at a target, with its angle or size.
+static bool beam_result(CagCall *call, const char *kind, const char *const *names, CagVec3 position,
+                        CagVec3 target, CagValue width, double strength, CagValue *result) {
   if (cag_norm(cag_sub(position, target)) == 0)
     return cag_fail_call(call, 1, CAG_ERR_view,
                          "expects two different points as `position` and `target`");
-  fields[0] = cag_point(call->vm, position, 3);
-  fields[1] = cag_point(call->vm, target, 3);
-  return true;
+  CagValue fields[5] = {cag_point(call->vm, position, 3), cag_point(call->vm, target, 3), width};
+  return light_result(call, kind, names, fields, 5, strength, result);
 }
 
-bool cag_scenes_spot_light(CagCall *call, CagValue *result) {
+bool cag_scenes_spot_light(CagCall *call, const struct cag_scenes_spot_light *a, CagValue *result) {
   static const char *const names[] = {"position", "target", "angle", "color", "strength"};
-  CagValue fields[5];
-  double angle;
-  if (!read_beam(call, fields) || !cag_arg_angle_or(call, 2, 30 * CAG_RADIANS_PER_DEGREE, &angle) ||
-      !read_light(call, 3, &fields[3], &fields[4]))
-    return false;
-  if (!(angle > 0 && angle < 180 * CAG_RADIANS_PER_DEGREE))
+  if (!(a->angle > 0 && a->angle < 180 * CAG_RADIANS_PER_DEGREE))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects an `angle` above 0deg and below 180deg");
-  fields[2] = cag_angle(cag_degrees_shown(angle));
-  return scene_result(call, CAG_LIGHT, "spot", names, fields, 5, result);
+  return beam_result(call, "spot", names, a->position.at, a->target.at,
+                     cag_angle(cag_degrees_shown(a->angle)), a->strength, result);
 }
 
-bool cag_scenes_area_light(CagCall *call, CagValue *result) {
+bool cag_scenes_area_light(CagCall *call, const struct cag_scenes_area_light *a, CagValue *result) {
   static const char *const names[] = {"position", "target", "size", "color", "strength"};
-  CagValue fields[5];
-  double size;
-  if (!read_beam(call, fields) || !cag_arg_positive(call, 2, &size) ||
-      !read_light(call, 3, &fields[3], &fields[4]))
-    return false;
-  fields[2] = cag_number(size);
-  return scene_result(call, CAG_LIGHT, "area", names, fields, 5, result);
+  return beam_result(call, "area", names, a->position.at, a->target.at, cag_number(a->size),
+                     a->strength, result);
 }
 
 // --- Settings ---
@@ -241,13 +194,11 @@ bool cag_scenes_background(CagCall *call, CagValue *result) {
   return scene_result(call, CAG_SETTING, "background", names, &field, 1, result);
 }
 
-bool cag_scenes_ground(CagCall *call, CagValue *result) {
+bool cag_scenes_ground(CagCall *call, const struct cag_scenes_ground *a, CagValue *result) {
   static const char *const names[] = {"z", "size", "material", "name"};
-  double z, size;
-  if (!cag_arg_number_or(call, 0, 0, &z) || !cag_arg_number_or(call, 1, INFINITY, &size))
-    return false;
-  if (!isfinite(z)) return cag_fail_call(call, 0, CAG_ERR_value, "expects a finite `z`");
-  if (!(size > 0)) return cag_fail_call(call, 1, CAG_ERR_value, "expects a `size` greater than 0");
-  CagValue fields[] = {cag_number(z), cag_number(size), cag_none(), cag_none()};
+  if (!isfinite(a->z)) return cag_fail_call(call, 0, CAG_ERR_value, "expects a finite `z`");
+  if (!(a->size > 0))
+    return cag_fail_call(call, 1, CAG_ERR_value, "expects a `size` greater than 0");
+  CagValue fields[] = {cag_number(a->z), cag_number(a->size), cag_none(), cag_none()};
   return scene_result(call, CAG_SETTING, "ground", names, fields, 4, result);
 }

@@ -9,13 +9,6 @@
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
-static bool point_is_finite(CagCall *call, CagVec3 p) {
-  if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) return true;
-  cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
-  cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
-  return false;
-}
-
 // n vectors of 2, 3 or 4 numbers. Those of 2 stay plane under a planar transform.
 static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x, size_t n,
                           size_t dim, size_t out_dim, double *out) {
@@ -25,7 +18,10 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
       continue;
     }
     CagVec3 p = cag_transform_point(t, cag_vec3(x[0], x[1], dim == 3 ? x[2] : 0));
-    if (!point_is_finite(call, p)) return false;
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) {
+      cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
+      return cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
+    }
     out[0] = p.x;
     out[1] = p.y;
     if (out_dim == 3) out[2] = p.z;

@@ -2,45 +2,40 @@
 
 #include <string.h>
 
-#include "interp/builtin/shapes.h"
+#include "interp/builtin/transforms.h"
 
-bool cag_transforms_inverse(CagCall *call, CagValue *result) {
-  CagTransform t, out;
-  if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_transform_inverse(&t, &out, call->err)))
-    return false;
-  out.planar = t.planar;
-  *result = cag_transform_value(call->vm, &out);
+bool cag_transforms_inverse(CagCall *call, const struct cag_transforms_inverse *a,
+                            CagValue *result) {
+  CagTransform out;
+  return cag_transform_result(call, cag_transform_inverse(&a->T, &out, call->err), &out,
+                              a->T.planar, result);
+}
+
+bool cag_transforms_determinant(CagCall *call, const struct cag_transforms_determinant *a,
+                                CagValue *result) {
+  (void)call;
+  *result = cag_number(cag_transform_determinant(&a->T));
   return true;
 }
 
-bool cag_transforms_determinant(CagCall *call, CagValue *result) {
-  CagTransform t;
-  if (!cag_arg_transform(call, 0, &t)) return false;
-  *result = cag_number(cag_transform_determinant(&t));
-  return true;
-}
-
-bool cag_transforms_transpose(CagCall *call, CagValue *result) {
-  CagTransform t, out;
-  if (!cag_arg_transform(call, 0, &t)) return false;
+bool cag_transforms_transpose(CagCall *call, const struct cag_transforms_transpose *a,
+                              CagValue *result) {
+  CagTransform out;
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) out.m[i][j] = t.m[j][i];
-  out.planar = t.planar;
-  *result = cag_transform_value(call->vm, &out);
+    for (int j = 0; j < 4; j++) out.m[i][j] = a->T.m[j][i];
+  return cag_transform_result(call, CAG_OK, &out, a->T.planar, result);
+}
+
+bool cag_transforms_position(CagCall *call, const struct cag_transforms_position *a,
+                             CagValue *result) {
+  const CagVec3 origin = cag_vec3(a->T.m[0][3], a->T.m[1][3], a->T.m[2][3]);
+  *result = cag_point(call->vm, origin, a->T.planar ? 2 : 3);
   return true;
 }
 
-bool cag_transforms_position(CagCall *call, CagValue *result) {
-  CagTransform t;
-  if (!cag_arg_transform(call, 0, &t)) return false;
-  *result = cag_point(call->vm, cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]), t.planar ? 2 : 3);
-  return true;
-}
-
-bool cag_transforms_rotation(CagCall *call, CagValue *result) {
-  CagTransform t;
-  if (!cag_arg_transform(call, 0, &t)) return false;
+bool cag_transforms_rotation(CagCall *call, const struct cag_transforms_rotation *a,
+                             CagValue *result) {
+  CagTransform t = a->T;
   for (int i = 0; i < 3; i++) t.m[i][3] = 0;
   *result = cag_transform_value(call->vm, &t);
   return true;
@@ -48,10 +43,11 @@ bool cag_transforms_rotation(CagCall *call, CagValue *result) {
 
 static CagValue shown_angle(double radians) { return cag_angle(cag_degrees_shown(radians)); }
 
-static bool give_angles(CagCall *call, const char *const *names, const double angles[3],
-                        bool singular, CagValue *result) {
+static bool angles_result(CagCall *call, CagStatus status, const char *const *names,
+                          const double *angles, const bool *singular, CagValue *result) {
+  if (!cag_geometry_ok(call, status)) return false;
   CagValue values[] = {shown_angle(angles[0]), shown_angle(angles[1]), shown_angle(angles[2]),
-                       cag_bool(singular)};
+                       cag_bool(*singular)};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
@@ -61,54 +57,45 @@ bool cag_transforms_euler_of(CagCall *call, const struct cag_transforms_euler_of
   static const char *const names[] = {"a", "b", "c", "singular"};
   double angles[3];
   bool singular;
-  if (!cag_geometry_ok(call, cag_euler_of(&a->T, a->order, angles, &singular, call->err)))
-    return false;
-  return give_angles(call, names, angles, singular, result);
+  return angles_result(call, cag_euler_of(&a->T, a->order, angles, &singular, call->err), names,
+                       angles, &singular, result);
 }
 
-bool cag_transforms_rpy_of(CagCall *call, CagValue *result) {
+bool cag_transforms_rpy_of(CagCall *call, const struct cag_transforms_rpy_of *a, CagValue *result) {
   static const char *const names[] = {"roll", "pitch", "yaw", "singular"};
-  CagTransform t;
   double angles[3];
   bool singular;
-  if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_rpy_of(&t, angles, &singular, call->err)))
-    return false;
-  return give_angles(call, names, angles, singular, result);
+  return angles_result(call, cag_rpy_of(&a->T, angles, &singular, call->err), names, angles,
+                       &singular, result);
 }
 
-bool cag_transforms_axis_angle_of(CagCall *call, CagValue *result) {
+bool cag_transforms_axis_angle_of(CagCall *call, const struct cag_transforms_axis_angle_of *a,
+                                  CagValue *result) {
   static const char *const names[] = {"axis", "angle", "singular"};
-  CagTransform t;
   CagVec3 axis;
   double angle;
   bool singular;
-  if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_axis_angle_of(&t, &axis, &angle, &singular, call->err)))
+  if (!cag_geometry_ok(call, cag_axis_angle_of(&a->T, &axis, &angle, &singular, call->err)))
     return false;
   CagValue values[] = {cag_point(call->vm, axis, 3), shown_angle(angle), cag_bool(singular)};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
 
-bool cag_transforms_quaternion_of(CagCall *call, CagValue *result) {
-  CagTransform t;
+bool cag_transforms_quaternion_of(CagCall *call, const struct cag_transforms_quaternion_of *a,
+                                  CagValue *result) {
   double wxyz[4];
-  if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_quaternion_of(&t, wxyz, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, cag_quaternion_of(&a->T, wxyz, call->err))) return false;
   *result = cag_vector(call->vm, wxyz, 4);
   return true;
 }
 
-bool cag_transforms_classify(CagCall *call, CagValue *result) {
+bool cag_transforms_classify(CagCall *call, const struct cag_transforms_classify *a,
+                             CagValue *result) {
   static const char *const names[] = {"class", "scale",       "axis",           "angle",
                                       "fixed", "fixed_point", "fixed_direction"};
-  CagTransform t;
   CagTransformClass c;
-  if (!cag_arg_transform(call, 0, &t) ||
-      !cag_geometry_ok(call, cag_transform_classify(&t, &c, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, cag_transform_classify(&a->T, &c, call->err))) return false;
   bool has_point = strcmp(c.fixed, "none") != 0 && strcmp(c.fixed, "all") != 0;
   bool has_direction = !strcmp(c.fixed, "line") || !strcmp(c.fixed, "plane");
   CagValue values[] = {
@@ -135,10 +122,10 @@ bool cag_transforms_homogeneous(CagCall *call, const struct cag_transforms_homog
   return true;
 }
 
-bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
-  const double *h;
-  size_t n;
-  if (!cag_arg_numbers(call, 0, &h, &n)) return false;
+bool cag_transforms_dehomogenize(CagCall *call, const struct cag_transforms_dehomogenize *a,
+                                 CagValue *result) {
+  const double *h = a->h.items;
+  const size_t n = a->h.count;
   if (n != 3 && n != 4)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects [x, y, w] or [x, y, z, w], found %zu numbers", n);
@@ -158,8 +145,6 @@ bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
 
 bool cag_transforms_mix(CagCall *call, const struct cag_transforms_mix *a, CagValue *result) {
   CagTransform out;
-  if (!cag_geometry_ok(call, cag_transform_mix(&a->A, &a->B, a->t, &out, call->err))) return false;
-  out.planar = a->A.planar && a->B.planar;
-  *result = cag_transform_value(call->vm, &out);
-  return true;
+  return cag_transform_result(call, cag_transform_mix(&a->A, &a->B, a->t, &out, call->err), &out,
+                              a->A.planar && a->B.planar, result);
 }

@@ -2,29 +2,27 @@
 
 #include <string.h>
 
-#include "interp/builtin/shapes.h"
+#include "interp/builtin/transforms.h"
 
-static bool transform_result(CagCall *call, CagStatus status, CagTransform *t, bool planar,
-                             CagValue *result) {
+bool cag_transform_result(CagCall *call, CagStatus status, CagTransform *made, bool planar,
+                          CagValue *result) {
   if (!cag_geometry_ok(call, status)) return false;
-  t->planar = planar;
-  *result = cag_transform_value(call->vm, t);
+  made->planar = planar;
+  *result = cag_transform_value(call->vm, made);
   return true;
 }
 
 bool cag_transforms_reflect_line(CagCall *call, const struct cag_transforms_reflect_line *a,
                                  CagValue *result) {
   CagTransform t;
-  return transform_result(call, cag_reflect_line(a->P.at, a->Q.at, &t, call->err), &t,
-                          a->P.dimension == 2 && a->Q.dimension == 2, result);
+  return cag_transform_result(call, cag_reflect_line(a->P.at, a->Q.at, &t, call->err), &t,
+                              a->P.dimension == 2 && a->Q.dimension == 2, result);
 }
 
-bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
-  CagVec3 p;
-  int dimension;
-  if (!cag_arg_vec(call, 0, &p, &dimension)) return false;
-  CagTransform t = cag_reflect_point(p);
-  return transform_result(call, CAG_OK, &t, dimension == 2, result);
+bool cag_transforms_reflect_point(CagCall *call, const struct cag_transforms_reflect_point *a,
+                                  CagValue *result) {
+  CagTransform t = cag_reflect_point(a->P.at);
+  return cag_transform_result(call, CAG_OK, &t, a->P.dimension == 2, result);
 }
 
 // Rows of numbers, 2 to 4 of 2 to 4; *columns and *count tell the shape.
@@ -47,71 +45,60 @@ static bool read_rows(CagCall *call, double m[4][4], size_t *count, size_t *colu
   return true;
 }
 
-bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
-  static const char *const kinds[] = {"plane", "linear", NULL};
+bool cag_transforms_from_rows(CagCall *call, const struct cag_transforms_from_rows *a,
+                              CagValue *result) {
   double m[4][4];
   size_t rows, columns;
-  int linear;
-  if (!read_rows(call, m, &rows, &columns) || !cag_arg_choice(call, 1, kinds, &linear))
-    return false;
-  CagTransform t = cag_transform_identity();
-  bool planar = rows <= 3 && columns == rows && !linear;
-  if (rows == 2 && columns == 2) {
-    for (int i = 0; i < 2; i++)
-      for (int j = 0; j < 2; j++) t.m[i][j] = m[i][j];
-    planar = true;
-  } else if (rows == 3 && columns == 3 && !linear) {
-    // Homogeneous in the plane: x, y and w; z stays as it is.
-    static const int place[3] = {0, 1, 3};
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) t.m[place[i]][place[j]] = m[i][j];
-  } else if ((rows == 3 && (columns == 3 || columns == 4)) || (rows == 4 && columns == 4)) {
-    for (size_t i = 0; i < rows; i++)
-      for (size_t j = 0; j < columns; j++) t.m[i][j] = m[i][j];
-  } else {
+  if (!read_rows(call, m, &rows, &columns)) return false;
+  const bool linear = a->kind == 1, square = rows == columns && rows > 0;
+  // Homogeneous in the plane: x, y and w; z stays as it is.
+  const bool flat = square && rows == 3 && !linear;
+  if (!(square || (rows == 3 && columns == 4)))
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects 2x2, 3x3, 3x4 or 4x4 rows, found %zu rows of %zu", rows, columns);
-  }
-  return transform_result(call, CAG_OK, &t, planar, result);
+  CagTransform t = cag_transform_identity();
+  static const size_t place[] = {0, 1, 3};
+  for (size_t i = 0; i < rows; i++)
+    for (size_t j = 0; j < columns; j++) t.m[flat ? place[i] : i][flat ? place[j] : j] = m[i][j];
+  return cag_transform_result(call, CAG_OK, &t, flat || rows == 2, result);
 }
 
 bool cag_transforms_axes(CagCall *call, const struct cag_transforms_axes *a, CagValue *result) {
   CagTransform t;
-  return transform_result(call, cag_axes(a->origin.at, a->x.at, a->y.at, &t, call->err), &t, false,
-                          result);
+  return cag_transform_result(call, cag_axes(a->origin.at, a->x.at, a->y.at, &t, call->err), &t,
+                              false, result);
 }
 
 bool cag_transforms_look_at(CagCall *call, const struct cag_transforms_look_at *a,
                             CagValue *result) {
   CagTransform t;
-  return transform_result(call, cag_look_at(a->from.at, a->to.at, a->up.at, &t, call->err), &t,
-                          false, result);
+  return cag_transform_result(call, cag_look_at(a->from.at, a->to.at, a->up.at, &t, call->err), &t,
+                              false, result);
 }
 
 bool cag_transforms_euler(CagCall *call, const struct cag_transforms_euler *a, CagValue *result) {
   CagTransform t;
-  return transform_result(call, cag_euler(a->a, a->b, a->c, a->order, &t, call->err), &t, false,
-                          result);
+  return cag_transform_result(call, cag_euler(a->a, a->b, a->c, a->order, &t, call->err), &t, false,
+                              result);
 }
 
 bool cag_transforms_rpy(CagCall *call, const struct cag_transforms_rpy *a, CagValue *result) {
   CagTransform t = cag_rpy(a->roll, a->pitch, a->yaw);
-  return transform_result(call, CAG_OK, &t, false, result);
+  return cag_transform_result(call, CAG_OK, &t, false, result);
 }
 
-bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
-  double wxyz[4];
+bool cag_transforms_quaternion(CagCall *call, const struct cag_transforms_quaternion *a,
+                               CagValue *result) {
+  const double wxyz[] = {a->w, a->x, a->y, a->z};
   CagTransform t;
-  for (int i = 0; i < 4; i++)
-    if (!cag_arg_finite(call, i, &wxyz[i])) return false;
-  return transform_result(call, cag_quaternion(wxyz, &t, call->err), &t, false, result);
+  return cag_transform_result(call, cag_quaternion(wxyz, &t, call->err), &t, false, result);
 }
 
 bool cag_transforms_axis_angle(CagCall *call, const struct cag_transforms_axis_angle *a,
                                CagValue *result) {
   CagTransform t;
-  return transform_result(call, cag_rotate(a->V.at, a->angle, cag_vec3(0, 0, 0), &t, call->err), &t,
-                          false, result);
+  return cag_transform_result(call, cag_rotate(a->V.at, a->angle, cag_vec3(0, 0, 0), &t, call->err),
+                              &t, false, result);
 }
 
 // Turn about Z by the first angle, then about the turned Y by the second, then a step along the
@@ -121,7 +108,7 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
   CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
   CagTransform t = cag_transform_multiply(&tilted, &place);
   if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
-  return transform_result(call, CAG_OK, &t, false, result);
+  return cag_transform_result(call, CAG_OK, &t, false, result);
 }
 
 bool cag_transforms_cylindrical(CagCall *call, const struct cag_transforms_cylindrical *a,
@@ -134,41 +121,27 @@ bool cag_transforms_spherical(CagCall *call, const struct cag_transforms_spheric
   return give_position(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
 }
 
-// theta, d, a, alpha
-static bool read_link(CagCall *call, double link[4]) {
-  return cag_arg_angle(call, 0, &link[0]) && cag_arg_finite(call, 1, &link[1]) &&
-         cag_arg_finite(call, 2, &link[2]) && cag_arg_angle(call, 3, &link[3]);
+bool cag_transforms_dh(CagCall *call, const struct cag_transforms_dh *a, CagValue *result) {
+  CagTransform t = cag_dh(a->theta, a->d, a->a, a->alpha);
+  return cag_transform_result(call, CAG_OK, &t, false, result);
 }
 
-bool cag_transforms_dh(CagCall *call, CagValue *result) {
-  double link[4];
-  if (!read_link(call, link)) return false;
-  CagTransform t = cag_dh(link[0], link[1], link[2], link[3]);
-  return transform_result(call, CAG_OK, &t, false, result);
+bool cag_transforms_mdh(CagCall *call, const struct cag_transforms_mdh *a, CagValue *result) {
+  CagTransform t = cag_mdh(a->theta, a->d, a->a, a->alpha);
+  return cag_transform_result(call, CAG_OK, &t, false, result);
 }
 
-bool cag_transforms_mdh(CagCall *call, CagValue *result) {
-  double link[4];
-  if (!read_link(call, link)) return false;
-  CagTransform t = cag_mdh(link[0], link[1], link[2], link[3]);
-  return transform_result(call, CAG_OK, &t, false, result);
-}
-
-bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
-  CagVec3 *points, *images;
-  size_t n, m;
-  int d, e;
+bool cag_transforms_from_pairs(CagCall *call, const struct cag_transforms_from_pairs *a,
+                               CagValue *result) {
+  const size_t n = a->points.count;
+  const bool planar = a->points.dimension == 2 && a->images.dimension == 2;
   CagTransform t;
-  if (!cag_arg_points(call, 0, &points, &n, &d)) return false;
-  cag_hold(call, points);
-  if (!cag_arg_points(call, 1, &images, &m, &e)) return false;
-  cag_hold(call, images);
-  if (n != m)
+  if (a->images.count != n)
     return cag_fail_call(call, 1, CAG_ERR_length,
-                         "expects one image for each of %zu points, found %zu", n, m);
-  const bool planar = d == 2 && e == 2;
-  return transform_result(call, cag_transform_from(points, images, n, planar, &t, call->err), &t,
-                          planar, result);
+                         "expects one image for each of %zu points, found %zu", n, a->images.count);
+  return cag_transform_result(
+      call, cag_transform_from(a->points.items, a->images.items, n, planar, &t, call->err), &t,
+      planar, result);
 }
 
 // --- solve_frame ---
@@ -201,12 +174,12 @@ static bool read_side(CagCall *call, int side, const CagRecord *frames, Unknown 
   return true;
 }
 
-// Product of the frames of a side in [from, to).
+// Product of the frames of a side in [from, to), or up to its end.
 static CagTransform product(CagCall *call, int side, size_t from, size_t to,
                             const CagRecord *frames) {
   const CagList *names = CAG_AS_LIST(call->values[side]);
   CagTransform t = cag_transform_identity();
-  for (size_t i = from; i < to; i++) {
+  for (size_t i = from; i < to && i < names->length; i++) {
     CagValue name = cag_list_get(call->vm, names, i);
     CagValue frame = cag_record_get_text(call->vm, frames, CAG_AS_TEXT(name));
     t = cag_transform_multiply(&t, &CAG_AS_TRANSFORM(frame)->t);
@@ -214,21 +187,17 @@ static CagTransform product(CagCall *call, int side, size_t from, size_t to,
   return t;
 }
 
-bool cag_transforms_solve_frame(CagCall *call, CagValue *result) {
-  CagRecord *frames;
+bool cag_transforms_solve_frame(CagCall *call, const struct cag_transforms_solve_frame *a,
+                                CagValue *result) {
   Unknown unknown = {0};
-  if (!cag_arg_record(call, 2, &frames) || !read_side(call, 0, frames, &unknown) ||
-      !read_side(call, 1, frames, &unknown))
+  if (!read_side(call, 0, a->frames, &unknown) || !read_side(call, 1, a->frames, &unknown))
     return false;
   if (!unknown.name)
     return cag_fail_call(call, 2, CAG_ERR_value, "expects all frames but one: none is unknown");
   // before * X * after = other
-  size_t length = CAG_AS_LIST(call->values[unknown.side])->length;
-  int other_side = 1 - unknown.side;
-  size_t other_length = CAG_AS_LIST(call->values[other_side])->length;
-  CagTransform before = product(call, unknown.side, 0, unknown.at, frames);
-  CagTransform after = product(call, unknown.side, unknown.at + 1, length, frames);
-  CagTransform other = product(call, other_side, 0, other_length, frames);
+  CagTransform before = product(call, unknown.side, 0, unknown.at, a->frames);
+  CagTransform after = product(call, unknown.side, unknown.at + 1, SIZE_MAX, a->frames);
+  CagTransform other = product(call, 1 - unknown.side, 0, SIZE_MAX, a->frames);
   CagTransform undo_before, undo_after;
   if (!cag_geometry_ok(call, cag_transform_inverse(&before, &undo_before, call->err)) ||
       !cag_geometry_ok(call, cag_transform_inverse(&after, &undo_after, call->err)))

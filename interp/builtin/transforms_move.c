@@ -59,14 +59,20 @@ static bool make_or_move(CagCall *call, CagValue *result, MakeTransform make) {
   return true;
 }
 
+static bool made(CagCall *call, CagStatus status, bool planar, CagTransform *out) {
+  if (!cag_geometry_ok(call, status)) return false;
+  out->planar = planar;
+  return true;
+}
+
 static bool make_translate(CagCall *call, int at, CagTransform *out) {
   CagVec3 v;
   int dimension;
   if (!cag_arg_vec(call, at, &v, &dimension)) return false;
   *out = cag_translate(v);
-  out->planar = dimension == 2;
-  return true;
+  return made(call, CAG_OK, dimension == 2, out);
 }
+
 bool cag_transforms_translate(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_translate);
 }
@@ -82,8 +88,7 @@ static bool fail_angle(CagCall *call, int dimension, CagVec3 axis) {
 }
 
 static bool make_rotate(CagCall *call, int at, CagTransform *out) {
-  static const CagVec3 zero = {0, 0, 0};
-  CagVec3 axis = {0, 0, 1}, about;
+  CagVec3 axis = {0, 0, 1}, about = {0, 0, 0};
   int axis_dimension = 2, about_dimension = 2;
   double angle;
   // Without an axis the turn is about Z.
@@ -95,16 +100,13 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   // By position it follows the angle; by its name it stands behind the place of an axis.
   size_t place = (size_t)next + 1;
   if (plain && at > 0 && place + 1 < call->count && cag_given(call, (int)place + 1)) place++;
-  if (place < call->count && cag_given(call, (int)place)) {
-    if (!cag_arg_vec(call, (int)place, &about, &about_dimension)) return false;
-  } else {
-    about = zero;
-  }
-  if (!cag_geometry_ok(call, cag_rotate(axis, angle, about, out, call->err))) return false;
-  out->planar = plain && about_dimension == 2;
+  if (place < call->count && cag_given(call, (int)place) &&
+      !cag_arg_vec(call, (int)place, &about, &about_dimension))
+    return false;
   // What is moved about a line along Z stays in the plane of the drawing.
-  if (at > 0 && axis.x == 0 && axis.y == 0 && about.z == 0) out->planar = true;
-  return true;
+  const bool upright = at > 0 && axis.x == 0 && axis.y == 0 && about.z == 0;
+  return made(call, cag_rotate(axis, angle, about, out, call->err),
+              upright || (plain && about_dimension == 2), out);
 }
 
 // The angles of `rpy` in radians, from a list of three.
@@ -160,7 +162,7 @@ bool cag_transforms_rotate(CagCall *call, CagValue *result) {
 }
 
 static bool make_scale(CagCall *call, int at, CagTransform *out) {
-  CagVec3 factors, about;
+  CagVec3 factors, about = {0, 0, 0};
   int dimension = 2, about_dimension = 2;
   if (call->values[at].type == CAG_NUMBER) {
     double f;
@@ -172,37 +174,34 @@ static bool make_scale(CagCall *call, int at, CagTransform *out) {
     if (!cag_arg_vec(call, at, &factors, &dimension)) return false;
     if (dimension == 2) factors.z = 1;
   }
-  if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &about, &about_dimension)) return false;
-  if (!cag_given(call, at + 1)) about_dimension = 2;
-  if (!cag_geometry_ok(call, cag_scale(factors, about, out, call->err))) return false;
-  out->planar = dimension == 2 && about_dimension == 2;
-  return true;
+  if (cag_given(call, at + 1) && !cag_arg_vec(call, at + 1, &about, &about_dimension)) return false;
+  return made(call, cag_scale(factors, about, out, call->err),
+              dimension == 2 && about_dimension == 2, out);
 }
+
 bool cag_transforms_scale(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_scale);
 }
 
 static bool make_reflect(CagCall *call, int at, CagTransform *out) {
-  if (call->values[at].type == CAG_PLANE) {
-    const CagPlane *plane = &CAG_AS_PLANE(call->values[at])->plane;
+  const CagValue v = call->values[at];
+  CagVec3 normal, through = {0, 0, 0};
+  int dimension, through_dimension = 2;
+  if (v.type == CAG_PLANE) {
+    const CagPlane *plane = &CAG_AS_PLANE(v)->plane;
     if (cag_given(call, at + 1))
       return cag_fail_call(call, at + 1, CAG_ERR_value,
                            "takes no `through` beside a plane, which has its own point");
-    if (!cag_geometry_ok(call, cag_reflect(plane->normal, plane->point, out, call->err)))
-      return false;
-    out->planar = false;
-    return true;
+    return made(call, cag_reflect(plane->normal, plane->point, out, call->err), false, out);
   }
-  if (call->values[at].type != CAG_LIST) return cag_fail_type(call, at, "a normal or a plane");
-  CagVec3 normal, through;
-  int dimension, through_dimension = 2;
-  if (!cag_arg_vec(call, at, &normal, &dimension)) return false;
-  if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &through, &through_dimension)) return false;
-  if (!cag_given(call, at + 1)) through_dimension = dimension;
-  if (!cag_geometry_ok(call, cag_reflect(normal, through, out, call->err))) return false;
-  out->planar = dimension == 2 && through_dimension == 2;
-  return true;
+  if (v.type != CAG_LIST) return cag_fail_type(call, at, "a normal or a plane");
+  if (!cag_arg_vec(call, at, &normal, &dimension) ||
+      (cag_given(call, at + 1) && !cag_arg_vec(call, at + 1, &through, &through_dimension)))
+    return false;
+  return made(call, cag_reflect(normal, through, out, call->err),
+              dimension == 2 && through_dimension == 2, out);
 }
+
 bool cag_transforms_reflect(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_reflect);
 }
@@ -212,9 +211,9 @@ static bool make_shear(CagCall *call, int at, CagTransform *out) {
   for (int i = 0; i < 6; i++)
     if (cag_given(call, at + i) && !cag_arg_finite(call, at + i, &k[i])) return false;
   *out = cag_shear(k[0], k[1], k[2], k[3], k[4], k[5]);
-  out->planar = k[1] == 0 && k[3] == 0 && k[4] == 0 && k[5] == 0;
-  return true;
+  return made(call, CAG_OK, k[1] == 0 && k[3] == 0 && k[4] == 0 && k[5] == 0, out);
 }
+
 bool cag_transforms_shear(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_shear);
 }
@@ -222,31 +221,22 @@ bool cag_transforms_shear(CagCall *call, CagValue *result) {
 static bool make_project(CagCall *call, int at, CagTransform *out) {
   CagPlane onto;
   CagVec3 along = {0, 0, 0}, from;
-  int dimension;
-  bool parallel = cag_given(call, at + 1);
-  bool central = cag_given(call, at + 2);
+  const bool parallel = cag_given(call, at + 1), central = cag_given(call, at + 2);
   if (!cag_arg_plane(call, at, &onto)) return false;
   if (parallel && central)
     return cag_fail_call(call, at + 2, CAG_ERR_value,
                          "takes `along` (parallel) or `from` (central), not both");
-  CagStatus status;
-  if (central) {
-    if (!cag_arg_vec(call, at + 2, &from, &dimension)) return false;
-    status = cag_project_central(&onto, from, out, call->err);
-  } else {
-    if (parallel && !cag_arg_direction(call, at + 1, along, &along, &dimension)) return false;
-    status = cag_project_parallel(&onto, along, out, call->err);
-  }
-  if (!cag_geometry_ok(call, status)) return false;
-  out->planar = false;
-  return true;
+  if (central)
+    return cag_arg_vec(call, at + 2, &from, NULL) &&
+           made(call, cag_project_central(&onto, from, out, call->err), false, out);
+  if (parallel && !cag_arg_direction(call, at + 1, along, &along, NULL)) return false;
+  return made(call, cag_project_parallel(&onto, along, out, call->err), false, out);
 }
+
 bool cag_transforms_project(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_project);
 }
 
-bool cag_transforms_moved(CagCall *call, CagValue *result) {
-  CagTransform t;
-  if (!cag_arg_transform(call, 1, &t)) return false;
-  return cag_transform_apply(call->vm, &t, call->values[0], result);
+bool cag_transforms_moved(CagCall *call, const struct cag_transforms_moved *a, CagValue *result) {
+  return cag_transform_apply(call->vm, &a->T, a->G, result);
 }

@@ -7,69 +7,53 @@
 // other by more than this share of their data's size do not meet. Both are some hundred roundings.
 #define LINE_TOLERANCE 1e-12
 
-bool cag_transforms_plane(CagCall *call, CagValue *result) {
+bool cag_transforms_plane(CagCall *call, const struct cag_transforms_plane *a, CagValue *result) {
   CagPlane plane;
-  CagVec3 p, q, r;
+  CagVec3 p, q;
   CagStatus status;
   const double *row;
   size_t n;
   if (!cag_given(call, 1)) {
     if (!cag_arg_numbers(call, 0, &row, &n)) return false;
-    if (n != 4) {
-      cag_fail_call(call, 0, CAG_ERR_value,
-                    "expects the 4 numbers of a x + b y + c z + d = 0, or a point and a normal, or "
-                    "three points; found %zu numbers alone",
-                    n);
-      return false;
-    }
+    if (n != 4)
+      return cag_fail_call(call, 0, CAG_ERR_value,
+                           "expects the 4 numbers of a x + b y + c z + d = 0, or a point and a "
+                           "normal, or three points; found %zu numbers alone",
+                           n);
     status = cag_plane_from_row(row, &plane, call->err);
   } else {
     if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL)) return false;
-    if (cag_given(call, 2)) {
-      if (!cag_arg_vec(call, 2, &r, NULL)) return false;
-      status = cag_plane_through(p, q, r, &plane, call->err);
-    } else {
-      status = cag_plane(p, q, &plane, call->err);
-    }
+    status = cag_given(call, 2) ? cag_plane_through(p, q, a->R.at, &plane, call->err)
+                                : cag_plane(p, q, &plane, call->err);
   }
   if (!cag_geometry_ok(call, status)) return false;
   *result = cag_plane_value(call->vm, &plane);
   return true;
 }
 
-bool cag_transforms_polar(CagCall *call, CagValue *result) {
-  double r, angle, sine, cosine;
-  CagVec3 center;
-  int dimension = 2;
-  if (!cag_arg_finite(call, 0, &r) || !cag_arg_angle(call, 1, &angle) ||
-      !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &center, &dimension))
-    return false;
-  if (!cag_given(call, 2)) dimension = 2;
-  cag_sincos(angle, &sine, &cosine);
-  *result = cag_point(call->vm, cag_madd(center, r, cag_vec3(cosine, sine, 0)), dimension);
+bool cag_transforms_polar(CagCall *call, const struct cag_transforms_polar *a, CagValue *result) {
+  double sine, cosine;
+  cag_sincos(a->angle, &sine, &cosine);
+  *result = cag_point(call->vm, cag_madd(a->center.at, a->r, cag_vec3(cosine, sine, 0)),
+                      a->center.dimension);
   return true;
 }
 
-bool cag_transforms_intersect_lines(CagCall *call, CagValue *result) {
-  CagVec3 p[4];
-  int dimension = 2;
-  for (int i = 0; i < 4; i++) {
-    int d;
-    if (!cag_arg_vec(call, i, &p[i], &d)) return false;
-    if (d == 3) dimension = 3;
-  }
-  CagVec3 a = cag_sub(p[1], p[0]), b = cag_sub(p[3], p[2]), between = cag_sub(p[2], p[0]);
-  for (int i = 0; i < 2; i++)
-    if (cag_norm(i == 0 ? a : b) == 0)
-      return cag_fail_call(call, 2 * i + 1, CAG_ERR_value,
-                           "expects two different points of each line");
-  CagVec3 n = cag_cross(a, b);
-  double nn = cag_dot(n, n), size = cag_norm(a) + cag_norm(b) + cag_norm(between);
+bool cag_transforms_intersect_lines(CagCall *call, const struct cag_transforms_intersect_lines *a,
+                                    CagValue *result) {
+  const CagVec3 pq = cag_sub(a->Q.at, a->P.at), rs = cag_sub(a->S.at, a->R.at);
+  const CagVec3 between = cag_sub(a->R.at, a->P.at), n = cag_cross(pq, rs);
+  if (cag_norm(pq) == 0 || cag_norm(rs) == 0)
+    return cag_fail_call(call, cag_norm(pq) == 0 ? 1 : 3, CAG_ERR_value,
+                         "expects two different points of each line");
+  double nn = cag_dot(n, n), size = cag_norm(pq) + cag_norm(rs) + cag_norm(between);
   *result = cag_none();
-  if (sqrt(nn) <= LINE_TOLERANCE * cag_norm(a) * cag_norm(b)) return true;
+  if (sqrt(nn) <= LINE_TOLERANCE * cag_norm(pq) * cag_norm(rs)) return true;
   if (fabs(cag_dot(between, n)) / sqrt(nn) > 1000 * LINE_TOLERANCE * size) return true;
-  double t = cag_dot(cag_cross(between, b), n) / nn;
-  *result = cag_point(call->vm, cag_madd(p[0], t, a), dimension);
+  double t = cag_dot(cag_cross(between, rs), n) / nn;
+  const bool space =
+      a->P.dimension == 3 || a->Q.dimension == 3 || a->R.dimension == 3 || a->S.dimension == 3;
+  *result = cag_point(call->vm, cag_madd(a->P.at, t, pq), space ? 3 : 2);
   return true;
 }
 
@@ -84,49 +68,45 @@ bool cag_transforms_distance_to_line(CagCall *call, const struct cag_transforms_
          cag_fail_call(call, -1, CAG_ERR_value, "expects points so near that distances are finite");
 }
 
-// Vector area of the closed polygon and its centroid: shoelace sums taken from the first point,
+// Size of the vector area of the closed polygon, and its centroid: shoelace sums taken from the first point,
 // which keeps them small. A polygon of space is taken as seen along its vector area.
-static CagVec3 polygon_area(const CagVec3 *p, size_t n, CagVec3 *centroid) {
+static bool polygon_area(CagCall *call, CagPoints polygon, double *out, CagVec3 *centroid) {
+  const CagVec3 *p = polygon.items;
+  const size_t n = polygon.count;
   CagVec3 area = {0, 0, 0}, moment = {0, 0, 0};
+  if (n < 3)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects at least 3 points of a polygon, found %zu", n);
   for (size_t i = 1; i + 1 < n; i++)
     area = cag_madd(area, 0.5, cag_cross(cag_sub(p[i], p[0]), cag_sub(p[i + 1], p[0])));
   CagVec3 normal = cag_unit(area);
-  double whole = cag_norm(area);
   for (size_t i = 1; i + 1 < n; i++) {
     CagVec3 a = cag_sub(p[i], p[0]), b = cag_sub(p[i + 1], p[0]);
     moment = cag_madd(moment, cag_dot(normal, cag_cross(a, b)) / 6, cag_add(a, b));
   }
-  *centroid = whole > 0 ? cag_madd(p[0], 1 / whole, moment) : p[0];
-  return area;
-}
-
-static bool read_polygon(CagCall *call, CagVec3 *area, CagVec3 *centroid, int *dimension) {
-  CagVec3 *points;
-  size_t n;
-  if (!cag_arg_points(call, 0, &points, &n, dimension)) return false;
-  cag_hold(call, points);
-  if (n < 3)
-    return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects at least 3 points of a polygon, found %zu", n);
-  *area = polygon_area(points, n, centroid);
+  *out = cag_norm(area);
+  *centroid = *out > 0 ? cag_madd(p[0], 1 / *out, moment) : p[0];
   return true;
 }
 
-bool cag_transforms_area_of_points(CagCall *call, CagValue *result) {
-  CagVec3 area, centroid;
-  int dimension;
-  if (!read_polygon(call, &area, &centroid, &dimension)) return false;
-  *result = cag_number(cag_norm(area));
+bool cag_transforms_area_of_points(CagCall *call, const struct cag_transforms_area_of_points *a,
+                                   CagValue *result) {
+  double area;
+  CagVec3 centroid;
+  if (!polygon_area(call, a->points, &area, &centroid)) return false;
+  *result = cag_number(area);
   return true;
 }
 
-bool cag_transforms_centroid_of_points(CagCall *call, CagValue *result) {
-  CagVec3 area, centroid;
-  int dimension;
-  if (!read_polygon(call, &area, &centroid, &dimension)) return false;
-  if (cag_norm(area) == 0)
+bool cag_transforms_centroid_of_points(CagCall *call,
+                                       const struct cag_transforms_centroid_of_points *a,
+                                       CagValue *result) {
+  double area;
+  CagVec3 centroid;
+  if (!polygon_area(call, a->points, &area, &centroid)) return false;
+  if (area == 0)
     return cag_fail_call(call, 0, CAG_ERR_value, "expects a polygon with an area, found none");
-  *result = cag_point(call->vm, centroid, dimension);
+  *result = cag_point(call->vm, centroid, a->points.dimension);
   return true;
 }
 
