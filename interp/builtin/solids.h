@@ -6,6 +6,8 @@
 #include "geom/surface/quadric.h"
 #include "interp/builtin/shapes.h"
 
+// All shapes in a shape, group or list, as a list.
+bool cag_list_shapes(CagCall *call, CagValue v, CagList **out);
 // Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays are
 // held, since a caller could not hold one without risking the other.
 bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **counts,

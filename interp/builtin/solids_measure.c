@@ -128,10 +128,16 @@ static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   }
 }
 
-static bool read_body(CagCall *call, bool volume, Body *out) {
+bool cag_list_shapes(CagCall *call, CagValue v, CagList **out) {
   CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  *out = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  return true;
+}
+
+static bool read_body(CagCall *call, bool volume, Body *out) {
+  CagList *shapes;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   *out = (Body){0};
   for (size_t i = 0; i < shapes->length; i++) {
     Body one;

@@ -4,6 +4,7 @@
 #define CAG_INTERP_BUILTIN_SURFACES_H
 
 #include "geom/meet/section.h"
+#include "geom/surface/motion.h"
 #include "geom/surface/quadric.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
@@ -12,6 +13,8 @@
 bool cag_arg_side(CagCall *call, int argument, CagSurface **out);
 // "right" or "left", or two of them for u and v: the side from which limits are meant.
 bool cag_arg_surface_sides(CagCall *call, int argument, CagSide out[2]);
+// How a frame moves along a path: "rmf", "frenet", "fixed", or the direction that its y is next to.
+bool cag_arg_orient(CagCall *call, int argument, CagPathMotion *how);
 // A side of each of two surfaces (0: u0, 1: u1, 2: v0, 3: v1), where they are given.
 bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given);
 // Reads the net of a triangular Bezier surface, rows of 1, 2, 3 ... points; *net is malloc'd.
@@ -20,6 +23,9 @@ bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree);
 // The equation of the first argument: a quadric surface, the sheets of one, a sphere, or what
 // `quadric` takes.
 bool cag_arg_quadric(CagCall *call, CagQuadric *q);
+// The control points of a surface; fails, saying that it has no `what`, where there are none.
+bool cag_surface_net(CagCall *call, const CagSurface *s, const char *what,
+                     CagSurfaceNurbsView *net);
 // "net-not-rectangular": row 0 of the first argument has `wanted` points, this row another number.
 bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found);
 // Reads u and v of a surface from the parameters `at` and the next.
@@ -32,6 +38,8 @@ typedef struct CagSurfaceArray {
   size_t count;
 } CagSurfaceArray;
 CagSurfaceArray *cag_hold_surfaces(CagCall *call);
+// Points in space as a list of rows.
+CagValue cag_table_value(CagVm *vm, const CagVec3 *points, size_t rows, size_t columns);
 // The curves as a list.
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list);
 

@@ -15,6 +15,13 @@ CagSurfaceArray *cag_hold_surfaces(CagCall *call) {
   return a;
 }
 
+CagValue cag_table_value(CagVm *vm, const CagVec3 *points, size_t rows, size_t columns) {
+  CagBuilder *table = cag_builder_new(vm);
+  for (size_t i = 0; i < rows; i++)
+    cag_builder_add(vm, table, cag_points_value(vm, points + i * columns, columns, 3));
+  return cag_builder_finish(vm, table);
+}
+
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list) {
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < list->count; i++)
