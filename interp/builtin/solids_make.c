@@ -52,18 +52,13 @@ bool cag_solids_cone(CagCall *call, const struct cag_solids_cone *a, CagValue *r
   return upright_result(call, a->height, a->radius, 0, a->centered, result);
 }
 
-bool cag_solids_prism(CagCall *call, CagValue *result) {
-  double height;
-  if (!cag_arg_finite(call, 1, &height)) return false;
-  // The first two and the last argument of an extrusion; the others are not given.
-  CagValue values[6] = {call->values[0], call->values[1], cag_unset(),
-                        cag_unset(),     cag_unset(),     call->values[2]};
-  bool centered;
-  if (!cag_arg_bool_or(call, 2, false, &centered)) return false;
-  CagCall extrude = *call;
-  extrude.values = values;
-  extrude.count = 6;
-  return cag_surfaces_extrude(&extrude, result);
+bool cag_solids_prism(CagCall *call, const struct cag_solids_prism *a, CagValue *result) {
+  const struct cag_surfaces_extrude extrusion = {.C = a->region,
+                                                 .height = cag_number(a->height),
+                                                 .scale = 1,
+                                                 .caps = true,
+                                                 .centered = a->centered};
+  return cag_surfaces_extrude(call, &extrusion, result);
 }
 
 CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,
