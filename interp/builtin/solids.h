@@ -9,8 +9,9 @@
 
 // All shapes in a shape, group or list, as a list.
 bool cag_list_shapes(CagCall *call, CagValue v, CagList **out);
-// Gives the group of what was built.
+// Gives the group of what was built. The latter gives a single shape as it is.
 bool cag_group_result(CagCall *call, CagBuilder *shapes, CagValue *result);
+bool cag_shapes_result(CagCall *call, CagBuilder *shapes, CagValue *result);
 // The default fineness of meshes, with the limits of the run.
 CagTessellation cag_run_tessellation(CagVm *vm);
 // Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays are

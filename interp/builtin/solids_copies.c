@@ -13,6 +13,13 @@ bool cag_group_result(CagCall *call, CagBuilder *shapes, CagValue *result) {
   return true;
 }
 
+bool cag_shapes_result(CagCall *call, CagBuilder *shapes, CagValue *result) {
+  const CagValue list = cag_builder_finish(call->vm, shapes);
+  const bool single = CAG_AS_LIST(list)->length == 1;
+  *result = single ? cag_list_get(call->vm, CAG_AS_LIST(list), 0) : cag_group_value(call->vm, list);
+  return true;
+}
+
 bool cag_solids_around(CagCall *call, const struct cag_solids_around *a, CagValue *result) {
   const CagVec3 axis = a->axis.at, through = a->through.at;
   CagBuilder *copies = cag_builder_new(call->vm);

@@ -270,17 +270,7 @@ bool cag_solids_half_space(CagCall *call, const struct cag_solids_half_space *a,
   return cag_solid_result(call, status, &s, result);
 }
 
-// The part of a form's side within a box, or between two heights.
-static CagStatus bounded_form(CagCall *call, const CagQuadric *q, CagSolid *const *within, size_t n,
-                              CagSolid **out, CagError *err) {
-  CagSolid *all[3] = {NULL};
-  CagStatus status = cag_solid_quadric(q, &all[0], err);
-  for (size_t i = 0; i < n; i++) all[1 + i] = within[i];
-  if (!status) status = combine(call, CAG_INTERSECTION, all, n + 1, out, err);
-  cag_solid_release(all[0]);
-  return status;
-}
-
+// What lies between two heights.
 static CagStatus heights(double low, double high, CagSolid *out[2], CagError *err) {
   CagPlane floor = {{0, 0, low}, {0, 0, -1}}, roof = {{0, 0, high}, {0, 0, 1}};
   CagStatus status = cag_solid_half_space(&floor, &out[0], err);
@@ -288,24 +278,23 @@ static CagStatus heights(double low, double high, CagSolid *out[2], CagError *er
 }
 
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
-  CagSolid **ends = cag_hold_solid_array(call, 2), *made = NULL;
-  size_t n = 0;
-  if (cag_given(call, within)) {
-    CagValue v = call->values[within];
-    double low, high;
-    bool angle;
-    if (v.type == CAG_SOLID) {
-      ends[n++] = cag_solid_retain(CAG_AS_SHAPE(v)->as.solid);
-    } else {
-      if (v.type != CAG_RANGE || !cag_arg_interval(call, within, &low, &high, &angle) || angle)
-        return cag_fail_type(call, within, "a solid or a range of z");
-      if (!(low < high))
-        return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
-      if (!cag_geometry_ok(call, heights(low, high, ends, call->err))) return false;
-      n = 2;
-    }
+  CagSolid **parts = cag_hold_solid_array(call, 3), *made = NULL;
+  const CagValue v = call->values[within];
+  size_t n = 1;
+  double low, high;
+  bool angle;
+  if (v.type == CAG_SOLID) {
+    parts[n++] = cag_solid_retain(CAG_AS_SHAPE(v)->as.solid);
+  } else if (cag_given(call, within)) {
+    if (v.type != CAG_RANGE || !cag_arg_interval(call, within, &low, &high, &angle) || angle)
+      return cag_fail_type(call, within, "a solid or a range of z");
+    if (!(low < high))
+      return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
+    if (!cag_geometry_ok(call, heights(low, high, parts + 1, call->err))) return false;
+    n = 3;
   }
-  CagStatus status = bounded_form(call, q, ends, n, &made, call->err);
+  CagStatus status = cag_solid_quadric(q, &parts[0], call->err);
+  if (!status) status = combine(call, CAG_INTERSECTION, parts, n, &made, call->err);
   if (!status) say_place(call, made);
   return cag_solid_result(call, status, &made, result);
 }
@@ -321,11 +310,9 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagSolid *parts[2] = {NULL, c->by}, *made = NULL;
   CagBounds reach;
   if (!read_one(c->call, v, 0, &parts[0])) return false;
-  CagStatus status =
-      cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, c->call->err);
+  CagStatus status = combine(c->call, CAG_INTERSECTION, parts, 2, &made, c->call->err);
   cag_solid_release(parts[0]);
   if (!cag_geometry_ok(c->call, status)) return false;
-  say_place(c->call, made);
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
   // What lies outside as a whole is left out; where only a mesh could tell, it is kept.

@@ -94,9 +94,9 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
     if (v.type == CAG_SURFACE) {
       faces[i] = cag_surface_retain(shape->as.surface);
     } else if (v.type == CAG_REGION) {
-      CagStatus status =
-          cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err);
-      if (!cag_geometry_ok(call, status)) return false;
+      if (!cag_geometry_ok(
+              call, cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err)))
+        return false;
     } else {
       return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",
                            cag_type_article(v));

@@ -36,6 +36,8 @@ bool cag_surface_net(CagCall *call, const CagSurface *s, const char *what,
                      CagSurfaceNurbsView *net);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
+// Reads a surface or side, and u and v of it, from the first three parameters.
+bool cag_arg_side_uv(CagCall *call, CagSurface **s, double *u, double *v);
 
 // --- What is held until the built-in ends (surfaces_held.c) ---
 // Surfaces that the core makes; cag_hold_surfaces gives an empty array to be filled.
@@ -46,6 +48,8 @@ typedef struct CagSurfaceArray {
 CagSurfaceArray *cag_hold_surfaces(CagCall *call);
 // Points in space as a list of rows.
 CagValue cag_table_value(CagVm *vm, const CagVec3 *points, size_t rows, size_t columns);
+// {u: u, v: v}
+CagValue cag_uv_value(CagVm *vm, CagValue u, CagValue v);
 // The curves as a list.
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list);
 

@@ -17,7 +17,7 @@ bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v
          cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, v);
 }
 
-static bool read_at(CagCall *call, CagSurface **s, double *u, double *v) {
+bool cag_arg_side_uv(CagCall *call, CagSurface **s, double *u, double *v) {
   return cag_arg_side(call, 0, s) && cag_arg_uv(call, *s, 1, u, v);
 }
 
@@ -40,7 +40,8 @@ bool cag_surfaces_partial(CagCall *call, CagValue *result) {
   CagVec3 out[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
   double u, v;
   long du, dv;
-  if (!read_at(call, &s, &u, &v) || !cag_arg_integer_or(call, 3, 1, 0, CAG_MAX_PARTIAL, &du) ||
+  if (!cag_arg_side_uv(call, &s, &u, &v) ||
+      !cag_arg_integer_or(call, 3, 1, 0, CAG_MAX_PARTIAL, &du) ||
       !cag_arg_integer_or(call, 4, 0, 0, CAG_MAX_PARTIAL - du, &dv))
     return false;
   const int n = (int)(du + dv);
@@ -56,7 +57,7 @@ bool cag_surfaces_normal(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagVec3 n;
   double u, v;
-  if (!read_at(call, &s, &u, &v) ||
+  if (!cag_arg_side_uv(call, &s, &u, &v) ||
       !cag_geometry_ok(call, cag_surface_normal(s, u, v, &n, call->err)))
     return false;
   *result = cag_point(call->vm, n, 3);
@@ -67,7 +68,7 @@ bool cag_surfaces_tangent_plane(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagPlane plane;
   double u, v;
-  if (!read_at(call, &s, &u, &v) ||
+  if (!cag_arg_side_uv(call, &s, &u, &v) ||
       !cag_geometry_ok(call, cag_surface_point(s, u, v, &plane.point, call->err)) ||
       !cag_geometry_ok(call, cag_surface_normal(s, u, v, &plane.normal, call->err)))
     return false;
@@ -75,14 +76,11 @@ bool cag_surfaces_tangent_plane(CagCall *call, CagValue *result) {
   return true;
 }
 
-static const char *const directions[] = {"u", "v"};
-
 bool cag_surfaces_domain(CagCall *call, CagValue *result) {
   CagSurface *s;
   if (!cag_arg_side(call, 0, &s)) return false;
-  CagValue values[] = {cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
-                       cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  *result = cag_uv_value(call->vm, cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
+                         cag_domain_value(call->vm, s->angular_v, s->v0, s->v1));
   return true;
 }
 
@@ -150,7 +148,6 @@ bool cag_surfaces_is_closed(CagCall *call, const struct cag_surfaces_is_closed *
 
 bool cag_surfaces_closed_in(CagCall *call, const struct cag_surfaces_closed_in *a,
                             CagValue *result) {
-  CagValue values[] = {cag_bool(a->S->closed_u), cag_bool(a->S->closed_v)};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  *result = cag_uv_value(call->vm, cag_bool(a->S->closed_u), cag_bool(a->S->closed_v));
   return true;
 }

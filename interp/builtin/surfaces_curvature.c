@@ -18,7 +18,7 @@ static bool read_forms(CagCall *call, Forms *f) {
   CagSurface *s;
   CagVec3 d[9];
   double u, v;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
+  if (!cag_arg_side_uv(call, &s, &u, &v) ||
       !cag_geometry_ok(call,
                        cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err)))
     return false;

@@ -145,9 +145,7 @@ static CagValue table_value(CagVm *vm, const double *x, size_t r, size_t s) {
 }
 
 static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r, size_t s) {
-  static const char *const names[] = {"u", "v"};
-  CagValue values[] = {table_value(vm, u, r, s), table_value(vm, v, r, s)};
-  return cag_record_new(vm, names, values, 2);
+  return cag_uv_value(vm, table_value(vm, u, r, s), table_value(vm, v, r, s));
 }
 
 // Points of the surface less the data.
@@ -170,12 +168,11 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
 
 // As they can be given again.
 static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_t net[2]) {
-  static const char *const names[] = {"u", "v"};
-  CagValue values[] = {cag_none(), cag_none()};
+  CagValue by[] = {cag_none(), cag_none()};
   if (!report->planes) return cag_none();
   const int k = report->planes_along;
-  values[k] = cag_numbers_value(vm, report->planes, net[k]);
-  return cag_record_new(vm, names, values, 2);
+  by[k] = cag_numbers_value(vm, report->planes, net[k]);
+  return cag_uv_value(vm, by[0], by[1]);
 }
 
 static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,

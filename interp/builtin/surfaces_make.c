@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "geom/solid/csg.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
@@ -140,9 +141,9 @@ static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
                           const CagRegion *region, CagVec3 way, const CagTransform *place,
                           CagValue *result) {
   CagBuilder *sides = cag_builder_new(call->vm);
-  CagValue side = cag_none();
   for (size_t i = 0; i < region->count; i++) {
     CagSurface *s = NULL, *placed = NULL;
+    CagValue side;
     CagStatus status =
         cag_surface_extrude(region->loops[i], way, a->twist, a->scale, &s, call->err);
     if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, call->err);
@@ -151,9 +152,7 @@ static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
         !cag_builder_add(call->vm, sides, side))
       return false;
   }
-  *result =
-      region->count == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
-  return true;
+  return cag_shapes_result(call, sides, result);
 }
 
 // `way` is in the region's own coordinates.

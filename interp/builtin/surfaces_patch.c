@@ -96,32 +96,25 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
 
 // --- Composite ---
 
-// Arrays of a grid, held.
-typedef struct GridData {
-  CagVec3 *points, *tangents;
-  double *steps[2];
-} GridData;
-
-static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
-  if (!cag_given(call, 3)) return true;
+static bool read_steps(CagCall *call, CagHermiteGrid *g) {
   CagList *list;
+  if (!cag_given(call, 3)) return true;
   if (!cag_arg_list(call, 3, &list)) return false;
   if (list->length != 2) return cag_fail_value(call, 3, "two lists, for u and v");
   for (int k = 0; k < 2; k++) {
-    size_t wanted = k == 0 ? m : n;
-    CagValue line = cag_list_get(call->vm, list, (size_t)k);
+    const size_t wanted = (k == 0 ? g->nu : g->nv) - 1;
+    const CagValue line = cag_list_get(call->vm, list, (size_t)k);
     if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != wanted || CAG_AS_LIST(line)->dim != 1)
       return cag_fail_call(call, 3, CAG_ERR_length, "expects %zu numbers for %c in `lengths`",
-                           wanted, k == 0 ? 'u' : 'v');
-    d->steps[k] = cag_hold_array(call, wanted, sizeof(double));
-    memcpy(d->steps[k], CAG_AS_LIST(line)->as.numbers, wanted * sizeof(double));
+                           wanted, "uv"[k]);
+    *(k == 0 ? &g->steps_u : &g->steps_v) = CAG_AS_LIST(line)->as.numbers;
   }
   return true;
 }
 
-static bool read_edges(CagCall *call, const CagRecord *edges, CagHermiteGrid *g, GridData *d) {
+static bool read_edges(CagCall *call, const CagRecord *edges, CagHermiteGrid *g) {
   static const char *const names[] = {"u0", "u1", "v0", "v1"};
-  CagVec3 *at = d->tangents;
+  CagVec3 *at = cag_hold_array(call, 2 * (g->nu + g->nv), sizeof *at);
   const CagVec3 **into[] = {&g->u_start, &g->u_end, &g->v_start, &g->v_end};
   for (int k = 0; k < 4; k++) {
     CagValue line = cag_record_get(edges, names[k]);
@@ -141,7 +134,6 @@ static bool read_edges(CagCall *call, const CagRecord *edges, CagHermiteGrid *g,
 
 bool cag_surfaces_hermite_surface(CagCall *call, const struct cag_surfaces_hermite_surface *a,
                                   CagValue *result) {
-  GridData d = {0};
   CagHermiteGrid g = {0};
   CagList *rows;
   CagSurface *s = NULL;
@@ -150,14 +142,11 @@ bool cag_surfaces_hermite_surface(CagCall *call, const struct cag_surfaces_hermi
   CagValue first = g.nu ? cag_list_get(call->vm, rows, 0) : cag_none();
   if (first.type != CAG_LIST) return cag_fail_type(call, 0, "rows of points");
   g.nv = CAG_AS_LIST(first)->length;
-  d.points = cag_hold(call, cag_malloc((g.nu * g.nv + 1) * sizeof *d.points));
-  d.tangents = cag_hold(call, cag_malloc(2 * (g.nu + g.nv) * sizeof *d.tangents));
-  if (!read_table(call, 0, g.nu, g.nv, d.points) || !read_edges(call, a->edge_tangents, &g, &d) ||
-      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, g.nu - 1, g.nv - 1, &d))
+  CagVec3 *points = cag_hold_array(call, g.nu * g.nv, sizeof *points);
+  if (!read_table(call, 0, g.nu, g.nv, points) || !read_edges(call, a->edge_tangents, &g) ||
+      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, &g))
     return false;
-  g.points = d.points;
-  g.steps_u = d.steps[0];
-  g.steps_v = d.steps[1];
+  g.points = points;
   return cag_surface_result(call, cag_surface_hermite_grid(&g, &s, call->err), &s, result);
 }
 

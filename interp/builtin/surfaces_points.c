@@ -14,8 +14,6 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static const char *const directions[] = {"u", "v"};
-
 // --- One direction of a net ---
 
 typedef struct Axis {
@@ -63,8 +61,8 @@ static CagValue spans_value(CagVm *vm, const Axis *a) {
 bool cag_tensors_spans(CagCall *call, const struct cag_tensors_spans *a, CagValue *result) {
   Net n;
   if (!read_net(call, a->S, &n)) return false;
-  CagValue values[] = {spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1])};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  *result =
+      cag_uv_value(call->vm, spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1]));
   return true;
 }
 
@@ -92,14 +90,25 @@ bool cag_tensors_support(CagCall *call, const struct cag_tensors_support *a, Cag
   if (!read_net(call, a->S, &n) || !cag_arg_integer(call, 1, 0, (long)n.axis[0].distinct - 1, &i) ||
       !cag_arg_integer(call, 2, 0, (long)n.axis[1].distinct - 1, &j))
     return false;
-  CagValue values[] = {support_value(call->vm, &n.axis[0], (size_t)i),
-                       support_value(call->vm, &n.axis[1], (size_t)j)};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  *result = cag_uv_value(call->vm, support_value(call->vm, &n.axis[0], (size_t)i),
+                         support_value(call->vm, &n.axis[1], (size_t)j));
   return true;
 }
 
 static CagValue point_value(CagVm *vm, const double *h) {
   return h[3] > 0 ? cag_point(vm, cag_project(h), 3) : cag_none();
+}
+
+// Rows of points, which lie `stride` apart.
+static CagValue net_value(CagVm *vm, const double *h, size_t rows, size_t columns, size_t stride) {
+  CagBuilder *table = cag_builder_new(vm);
+  for (size_t i = 0; i < rows; i++) {
+    CagBuilder *row = cag_builder_new(vm);
+    for (size_t j = 0; j < columns; j++)
+      cag_builder_add(vm, row, point_value(vm, h + 4 * (i * stride + j)));
+    cag_builder_add(vm, table, cag_builder_finish(vm, row));
+  }
+  return cag_builder_finish(vm, table);
 }
 
 static CagValue indices_value(CagVm *vm, const Axis *a, size_t span) {
@@ -141,16 +150,9 @@ bool cag_tensors_acting_points(CagCall *call, const struct cag_tensors_acting_po
     values[k] = range_of(call->vm, axis->knots[span[k]], axis->knots[span[k] + 1]);
     values[2 + k] = indices_value(call->vm, axis, span[k]);
   }
-  CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = span[0] - (size_t)n.axis[0].degree; i <= span[0]; i++) {
-    CagBuilder *row = cag_builder_new(call->vm);
-    for (size_t j = span[1] - (size_t)n.axis[1].degree; j <= span[1]; j++)
-      if (!cag_builder_add(call->vm, row,
-                           point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j))))
-        return false;
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
-  }
-  values[4] = cag_builder_finish(call->vm, rows);
+  const size_t p = (size_t)n.axis[0].degree, q = (size_t)n.axis[1].degree, nv = n.view.nv;
+  const double *first = n.view.homogeneous + 4 * ((span[0] - p) * nv + span[1] - q);
+  values[4] = net_value(call->vm, first, p + 1, q + 1, nv);
   *result = cag_record_new(call->vm, names, values, 5);
   return true;
 }
@@ -245,34 +247,28 @@ bool cag_tensors_denominator(CagCall *call, const struct cag_tensors_denominator
 
 // --- Polynomials ---
 
-// Powers of one direction from Bernstein points, in place: n + 1 rows of `width` points, of the
-// parameter from 0 to `length`.
-static void to_powers(CagVec3 *b, int n, size_t width, double length) {
-  // Forward differences, each row below the one that it is taken from.
-  for (int k = 1; k <= n; k++)
-    for (int i = n; i >= k; i--)
-      for (size_t c = 0; c < width; c++)
-        b[(size_t)i * width + c] =
-            cag_sub(b[(size_t)i * width + c], b[(size_t)(i - 1) * width + c]);
-  double power = 1;
-  for (int i = 0; i <= n; i++, power *= length)
-    for (size_t c = 0; c < width; c++)
-      b[(size_t)i * width + c] = cag_scaled(b[(size_t)i * width + c], cag_binomial(n, i) / power);
+// Powers of one direction from Bernstein points, in place, of the parameter from 0 to `length`:
+// n + 1 lines, which lie `line` apart, of `width` points, which lie `across` apart.
+static void to_powers(CagVec3 *b, int n, size_t line, size_t width, size_t across, double length) {
+  for (size_t c = 0; c < width; c++, b += across) {
+    // Forward differences, each after the one that it is taken from.
+    for (int k = 1; k <= n; k++)
+      for (int i = n; i >= k; i--)
+        b[(size_t)i * line] = cag_sub(b[(size_t)i * line], b[(size_t)(i - 1) * line]);
+    double power = 1;
+    for (int i = 0; i <= n; i++, power *= length)
+      b[(size_t)i * line] = cag_scaled(b[(size_t)i * line], cag_binomial(n, i) / power);
+  }
 }
 
 static CagValue piece_powers(CagCall *call, const CagSurface *piece, double lu, double lv) {
   CagSurfaceNurbsView v;
   cag_surface_nurbs_view(piece, &v);
-  size_t n = v.nu, m = v.nv;
-  CagVec3 *b = cag_hold(call, cag_malloc(2 * n * m * sizeof *b));
-  CagVec3 *turned = b + n * m;
+  const size_t n = v.nu, m = v.nv;
+  CagVec3 *b = cag_hold(call, cag_malloc(n * m * sizeof *b));
   for (size_t i = 0; i < n * m; i++) b[i] = cag_project(v.homogeneous + 4 * i);
-  to_powers(b, (int)n - 1, m, lu);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < m; j++) turned[j * n + i] = b[i * m + j];
-  to_powers(turned, (int)m - 1, n, lv);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < m; j++) b[i * m + j] = turned[j * n + i];
+  to_powers(b, (int)n - 1, m, m, 1, lu);
+  to_powers(b, (int)m - 1, 1, n, m, lv);
   CagValue table = cag_table_value(call->vm, b, n, m);
   cag_release_held(call, b);
   return table;
@@ -410,20 +406,13 @@ bool cag_tensors_bezier_join(CagCall *call, const struct cag_tensors_bezier_join
   CagStatus status = cag_surface_join_lines(a->S, a->edge, degree, &how, &lines, &n, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, cag_free, lines);
-  CagBuilder *rows = cag_builder_new(call->vm), *weights = cag_builder_new(call->vm);
+  CagValue weights[2];
   for (size_t i = 0; i < 2; i++) {
-    CagBuilder *row = cag_builder_new(call->vm);
     double *w;
-    CagValue list = cag_list_numbers(call->vm, n, &w);
-    for (size_t j = 0; j < n; j++) {
-      const double *h = lines + 4 * (i * n + j);
-      w[j] = h[3];
-      if (!cag_builder_add(call->vm, row, point_value(call->vm, h))) return false;
-    }
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
-    if (!cag_builder_add(call->vm, weights, list)) return false;
+    weights[i] = cag_list_numbers(call->vm, n, &w);
+    for (size_t j = 0; j < n; j++) w[j] = lines[4 * (i * n + j) + 3];
   }
-  CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
+  CagValue values[] = {net_value(call->vm, lines, 2, n, n), cag_list_values(call->vm, weights, 2)};
   *result = cag_record_new(call->vm, names, values, 2);
   return true;
 }
@@ -482,7 +471,7 @@ bool cag_tensors_creases(CagCall *call, const struct cag_tensors_creases *a, Cag
     }
     both[k] = cag_builder_finish(call->vm, list);
   }
-  *result = cag_record_new(call->vm, directions, both, 2);
+  *result = cag_uv_value(call->vm, both[0], both[1]);
   return true;
 }
 
@@ -528,10 +517,9 @@ bool cag_tensors_flat_spans(CagCall *call, const struct cag_tensors_flat_spans *
     for (size_t j = (size_t)v->degree; j < v->count; j++) {
       if (!(u->knots[i] < u->knots[i + 1] && v->knots[j] < v->knots[j + 1])) continue;
       if (!acting_flat(&n, i, j)) continue;
-      CagValue values[] = {range_of(call->vm, u->knots[i], u->knots[i + 1]),
-                           range_of(call->vm, v->knots[j], v->knots[j + 1])};
-      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2)))
-        return false;
+      const CagValue over = cag_uv_value(call->vm, range_of(call->vm, u->knots[i], u->knots[i + 1]),
+                                         range_of(call->vm, v->knots[j], v->knots[j + 1]));
+      if (!cag_builder_add(call->vm, list, over)) return false;
     }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "geom/surface/trimmed.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -39,12 +40,10 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
                                          &patches->count, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
-  for (size_t i = 0; i < patches->count; i++) {
-    *result = cag_surface_value(call->vm, cag_surface_retain(patches->items[i]));
-    if (!cag_builder_add(call->vm, list, *result)) return false;
-  }
-  if (patches->count != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
-  return true;
+  for (size_t i = 0; i < patches->count; i++)
+    cag_builder_add(call->vm, list,
+                    cag_surface_value(call->vm, cag_surface_retain(patches->items[i])));
+  return cag_shapes_result(call, list, result);
 }
 
 // --- By numbers ---

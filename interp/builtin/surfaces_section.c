@@ -196,7 +196,7 @@ bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvat
   CagSurface *s;
   CagCurve *line = NULL;
   double u, v;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v)) return false;
+  if (!cag_arg_side_uv(call, &s, &u, &v)) return false;
   return cag_curve_result(call, cag_surface_curvature_line(s, u, v, a->by == 0, &line, call->err),
                           &line, result);
 }

@@ -1,6 +1,7 @@
 // Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
 
 #include "geom/surface/loft.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
@@ -130,16 +131,15 @@ static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *
                         CagValue *result) {
   size_t n = section->curve ? 1 : section->region->count;
   CagBuilder *sides = cag_builder_new(call->vm);
-  CagValue side = cag_none();
   for (size_t i = 0; i < n; i++) {
     CagSurface *s = NULL;
+    CagValue side;
     const CagCurve *c = section->curve ? section->curve : section->region->loops[i];
     CagStatus status = cag_surface_sweep(c, motion, &s, call->err);
     if (!cag_surface_result(call, status, &s, &side) || !cag_builder_add(call->vm, sides, side))
       return false;
   }
-  *result = n == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
-  return true;
+  return cag_shapes_result(call, sides, result);
 }
 
 static void release_motion(void *motion) { cag_motion_release(motion); }
