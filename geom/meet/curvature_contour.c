@@ -11,10 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define X(name, text) text,
-const char *const cag_curvatures[] = {CAG_CURVATURES(X) NULL};
-#undef X
-
 // A normal shorter than this part of |S_u| |S_v| is none: rounding of a pole is near 1e-16.
 #define NO_NORMAL CAG_ROUNDING
 // Part of the inverse size (squared: Gaussian) below which curvature is none.

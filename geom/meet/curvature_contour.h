@@ -5,20 +5,14 @@
 
 #include "geom/meet/section.h"
 
-// X(NAME, text): Gaussian curvature, the mean of the principal ones, the larger and the smaller of
-// them, signed by the normal along S_u x S_v.
-#define CAG_CURVATURES(X)                                                                          \
-  X(GAUSSIAN, "gaussian")                                                                          \
-  X(MEAN, "mean")                                                                                  \
-  X(MAX, "max")                                                                                    \
-  X(MIN, "min")
+// Gaussian curvature, the mean of the principal ones, the larger and the smaller of them, signed by
+// the normal along S_u x S_v.
 typedef enum CagCurvature {
-#define X(name, text) CAG_CURVATURE_##name,
-  CAG_CURVATURES(X)
-#undef X
+  CAG_CURVATURE_GAUSSIAN,
+  CAG_CURVATURE_MEAN,
+  CAG_CURVATURE_MAX,
+  CAG_CURVATURE_MIN
 } CagCurvature;
-// Their words, ending with NULL.
-extern const char *const cag_curvatures[];
 
 // The curves where the curvature has the value `level` (1/length, Gaussian 1/length^2) are added to
 // the list, as exact and in as many pieces as sections (cag_surface_section).

@@ -21,18 +21,14 @@ typedef struct Subject {
   bool angle;
 } Subject;
 
-static bool read_subject(CagCall *call, Subject *out) {
-  *out = (Subject){.call = call};
-  if (!cag_arg_function(call, 0, &out->function)) return false;
-  return cag_arg_interval(call, 1, &out->start, &out->end, &out->angle);
+static Subject subject(CagCall *call, CagValue f, CagRangeEnds range) {
+  return (Subject){call, f, range.start, range.end, range.angle};
 }
 
-static bool read_finite_subject(CagCall *call, Subject *out) {
-  if (!read_subject(call, out)) return false;
-  if (!isfinite(out->start) || !isfinite(out->end))
-    return cag_fail_value(call, 1, "a finite range");
-  return out->start <= out->end ||
-         cag_fail_value(call, 1, "a range whose start is not above its end");
+static bool check_finite(const Subject *f) {
+  if (!isfinite(f->start) || !isfinite(f->end)) return cag_fail_value(f->call, 1, "a finite range");
+  return f->start <= f->end ||
+         cag_fail_value(f->call, 1, "a range whose start is not above its end");
 }
 
 static CagValue parameter(const Subject *f, double x) {
@@ -374,16 +370,10 @@ static bool integrate(Integrand *g, double sign, CagValue *result) {
   return good;
 }
 
-bool cag_calculus_integrate(CagCall *call, CagValue *result) {
-  Integrand g = {0};
-  if (!read_subject(call, &g.subject)) return false;
-  double sign = 1;
-  if (g.subject.start > g.subject.end) {
-    double start = g.subject.start;
-    g.subject.start = g.subject.end;
-    g.subject.end = start;
-    sign = -1;
-  }
+bool cag_calculus_integrate(CagCall *call, const struct cag_calculus_integrate *a,
+                            CagValue *result) {
+  const double start = a->range.start, end = a->range.end, sign = start > end ? -1 : 1;
+  Integrand g = {.subject = {call, a->f, fmin(start, end), fmax(start, end), a->range.angle}};
   if (g.subject.start == g.subject.end && isinf(g.subject.start))
     return cag_fail_value(call, 1, "a range with a finite part");
   return integrate(&g, sign, result);
@@ -445,12 +435,11 @@ static bool brent_minimum(const Subject *f, double sign, double a, double c, Ext
 
 // The least value of sign * f: a scan in equal steps, then Brent's method about each of the lowest
 // valleys that the scan shows.
-static bool least(CagCall *call, double sign, CagValue *result) {
+static bool least(Subject f, double sign, CagValue *result) {
   enum { SCAN = 128, VALLEYS = 4 };
-  Subject f;
   double y[SCAN + 1];
   bool taken[SCAN + 1] = {false};
-  if (!read_finite_subject(call, &f)) return false;
+  if (!check_finite(&f)) return false;
   double width = f.end - f.start;
   for (int i = 0; i <= SCAN; i++) {
     double x = i == SCAN ? f.end : f.start + width * i / SCAN;
@@ -478,11 +467,17 @@ static bool least(CagCall *call, double sign, CagValue *result) {
   CagValue value;
   if (!evaluate(&f, best.x, &value)) return false;
   CagValue pair[] = {parameter(&f, best.x), value};
-  *result = cag_list_values(call->vm, pair, 2);
+  *result = cag_list_values(f.call->vm, pair, 2);
   return true;
 }
-bool cag_calculus_minimize(CagCall *call, CagValue *result) { return least(call, 1, result); }
-bool cag_calculus_maximize(CagCall *call, CagValue *result) { return least(call, -1, result); }
+
+bool cag_calculus_minimize(CagCall *call, const struct cag_calculus_minimize *a, CagValue *result) {
+  return least(subject(call, a->f, a->range), 1, result);
+}
+
+bool cag_calculus_maximize(CagCall *call, const struct cag_calculus_maximize *a, CagValue *result) {
+  return least(subject(call, a->f, a->range), -1, result);
+}
 
 // --- find_root ---
 
@@ -541,10 +536,11 @@ static bool brent_root(const Subject *f, double a, double fa, double b, double f
                        STEPS_MOST);
 }
 
-bool cag_calculus_find_root(CagCall *call, CagValue *result) {
-  Subject f;
+bool cag_calculus_find_root(CagCall *call, const struct cag_calculus_find_root *a,
+                            CagValue *result) {
+  const Subject f = subject(call, a->f, a->range);
   double fa, fb, root;
-  if (!read_finite_subject(call, &f)) return false;
+  if (!check_finite(&f)) return false;
   if (!evaluate_number(&f, f.start, &fa) || !evaluate_number(&f, f.end, &fb)) return false;
   if (fa == 0) root = f.start;
   else if (fb == 0) root = f.end;

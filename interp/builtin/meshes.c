@@ -12,22 +12,19 @@
 
 // A mesh, or that which bounds a polyhedron.
 static bool read_mesh(CagCall *call, const CagMesh **m) {
-  *m = NULL;
-  const CagSolid *s =
-      call->values[0].type == CAG_SOLID ? CAG_AS_SHAPE(call->values[0])->as.solid : NULL;
-  if (s && s->kind == CAG_SOLID_MESH) {
-    CagMesh *moved = NULL;
-    CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
-    if (!cag_geometry_ok(call, status)) return false;
-    *m = CAG_AS_SHAPE(cag_mesh_value(call->vm, moved))->as.mesh; // the heap lets it go
-    return true;
-  }
-  if (s)
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
+  *m = shape->as.mesh;
+  if (call->values[0].type != CAG_SOLID) return true;
+  const CagSolid *s = shape->as.solid;
+  if (s->kind != CAG_SOLID_MESH)
     return cag_fail_call(call, 0, CAG_ERR_type,
                          "expects a mesh or a polyhedron, found a solid with faces of its own; "
                          "`tessellate` makes a mesh of it");
-  *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
-  return true;
+  CagMesh *moved = NULL;
+  CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
+  cag_hold_mesh(call, moved);
+  *m = moved;
+  return cag_geometry_ok(call, status);
 }
 
 // --- From lists ---
@@ -66,18 +63,14 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
   return true;
 }
 
-bool cag_solids_mesh(CagCall *call, CagValue *result) {
-  CagVec3 *vertices;
-  size_t n, faces;
+bool cag_solids_mesh(CagCall *call, const struct cag_solids_mesh *a, CagValue *result) {
+  size_t faces;
   uint32_t *counts, *indices;
   CagMesh *m = NULL;
-  if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
-  cag_hold(call, vertices);
-  if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
-  CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_mesh_value(call->vm, m);
-  return true;
+  if (!cag_arg_faces(call, 1, a->vertices.count, &counts, &indices, &faces)) return false;
+  CagStatus status = cag_mesh_from_faces(a->vertices.items, a->vertices.count, indices, counts,
+                                         faces, &m, call->err);
+  return cag_mesh_result(call, status, &m, result);
 }
 
 // --- Data and checks ---
@@ -138,24 +131,15 @@ bool cag_solids_euler_characteristic(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_solids_weld(CagCall *call, CagValue *result) {
-  const CagMesh *m;
+bool cag_solids_weld(CagCall *call, const struct cag_solids_weld *a, CagValue *result) {
   CagMesh *out = NULL;
-  double tolerance;
-  if (!read_mesh(call, &m) || !cag_arg_finite(call, 1, &tolerance)) return false;
-  if (!cag_mesh_result(call, cag_mesh_weld(m, tolerance, &out, call->err), &out, result))
-    return false;
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  return cag_changed_mesh_result(call, cag_mesh_weld(a->M, a->tolerance, &out, call->err), &out,
+                                 result);
 }
 
-bool cag_solids_flip(CagCall *call, CagValue *result) {
-  const CagMesh *m;
+bool cag_solids_flip(CagCall *call, const struct cag_solids_flip *a, CagValue *result) {
   CagMesh *out = NULL;
-  if (!read_mesh(call, &m)) return false;
-  if (!cag_mesh_result(call, cag_mesh_flip(m, &out, call->err), &out, result)) return false;
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  return cag_changed_mesh_result(call, cag_mesh_flip(a->M, &out, call->err), &out, result);
 }
 
 // --- Tessellation ---
@@ -196,22 +180,22 @@ static CagStatus keep_edges(CagMesh **mesh, const CagTessellation *how, CagError
   return CAG_OK;
 }
 
-static bool read_how(CagCall *call, CagTessellation *how) {
-  *how = CAG_TESSELLATION_DEFAULT;
-  if (call->vm->max_triangles > 0) how->max_triangles = call->vm->max_triangles;
-  how->interrupt = cag_vm_stop(call->vm);
-  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &how->tolerance)) return false;
-  if (!cag_arg_angle_or(call, 2, how->angle, &how->angle)) return false;
-  if (!(how->angle > 0))
-    return cag_fail_call(call, 2, CAG_ERR_value, "expects an angle greater than 0");
-  return !cag_given(call, 3) || cag_arg_positive(call, 3, &how->max_edge);
+CagTessellation cag_run_tessellation(CagVm *vm) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
+  how.interrupt = cag_vm_stop(vm);
+  return how;
 }
 
-bool cag_solids_tessellate(CagCall *call, CagValue *result) {
-  CagTessellation how;
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!read_how(call, &how) || !cag_shapes_collect(call, call->values[0], builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+bool cag_solids_tessellate(CagCall *call, const struct cag_solids_tessellate *a, CagValue *result) {
+  CagTessellation how = cag_run_tessellation(call->vm);
+  CagList *shapes;
+  how.tolerance = a->tolerance;
+  how.angle = a->angle;
+  how.max_edge = a->max_edge;
+  if (!(how.angle > 0))
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects an angle greater than 0");
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a shape");
   const size_t n = shapes->length;
   CagMesh **meshes = cag_hold_mesh_array(call, n), *whole = NULL;

@@ -3,7 +3,7 @@
 #include "geom/mesh/check.h"
 #include "interp/builtin/solids.h"
 
-static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
+static bool give_check(CagCall *call, CagStatus status, const CagMeshCheck *c, CagValue *result) {
   static const char *const names[] = {"vertices",
                                       "edges",
                                       "faces",
@@ -17,7 +17,8 @@ static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
                                       "solid",
                                       "genus",
                                       "volume"};
-  bool whole = c->closed && c->oriented;
+  if (!cag_geometry_ok(call, status)) return false;
+  const bool whole = c->closed && c->oriented;
   const CagValue values[] = {cag_number((double)c->vertices),
                              cag_number((double)c->edges),
                              cag_number((double)c->faces),
@@ -31,27 +32,22 @@ static CagValue check_value(CagVm *vm, const CagMeshCheck *c) {
                              cag_bool(c->solid),
                              whole ? cag_number((double)c->genus) : cag_none(),
                              whole ? cag_number(c->volume) : cag_none()};
-  return cag_record_new(vm, names, values, sizeof values / sizeof *values);
-}
-
-bool cag_checks_check_mesh(CagCall *call, CagValue *result) {
-  CagMeshCheck check = {0};
-  const CagMesh *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
-  if (!cag_geometry_ok(call, cag_mesh_check(m, &check, call->err))) return false;
-  *result = check_value(call->vm, &check);
+  *result = cag_record_new(call->vm, names, values, sizeof values / sizeof *values);
   return true;
 }
 
-bool cag_checks_check_faces(CagCall *call, CagValue *result) {
+bool cag_checks_check_mesh(CagCall *call, const struct cag_checks_check_mesh *a, CagValue *result) {
   CagMeshCheck check = {0};
-  CagVec3 *vertices;
-  size_t n, faces;
+  return give_check(call, cag_mesh_check(a->M, &check, call->err), &check, result);
+}
+
+bool cag_checks_check_faces(CagCall *call, const struct cag_checks_check_faces *a,
+                            CagValue *result) {
+  CagMeshCheck check = {0};
+  size_t faces;
   uint32_t *counts, *indices;
-  if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
-  cag_hold(call, vertices);
-  if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
-  CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = check_value(call->vm, &check);
-  return true;
+  if (!cag_arg_faces(call, 1, a->vertices.count, &counts, &indices, &faces)) return false;
+  CagStatus status = cag_faces_check(a->vertices.items, a->vertices.count, indices, counts, faces,
+                                     &check, call->err);
+  return give_check(call, status, &check, result);
 }

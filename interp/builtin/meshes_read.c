@@ -41,28 +41,24 @@ static CagStatus open_beside(void *context, const char *name, char **bytes, size
               : cag_fail(err, CAG_E_CALLBACK, CAG_ERR_file, "path", -1, "cannot read %s", name);
 }
 
-bool cag_mesh_files_read_mesh(CagCall *call, CagValue *result) {
-  const char *path;
+bool cag_mesh_files_read_mesh(CagCall *call, const struct cag_mesh_files_read_mesh *a,
+                              CagValue *result) {
   char *bytes;
   size_t size;
-  if (!cag_arg_text(call, 0, &path) || !cag_vm_open_file(call, 0, path, &bytes, &size))
-    return false;
+  if (!cag_vm_open_file(call, 0, a->path, &bytes, &size)) return false;
   cag_hold(call, bytes);
-  Opener opener = {call, path};
-  const char *slash = strrchr(path, '/');
-  const size_t left = cag_account_room();
-  CagMeshFile file = {.name = slash ? slash + 1 : path,
+  Opener opener = {call, a->path};
+  const char *slash = strrchr(a->path, '/');
+  CagMeshFile file = {.name = slash ? slash + 1 : a->path,
                       .bytes = bytes,
                       .size = size,
                       .max_triangles = call->vm->max_triangles,
-                      .max_memory = left,
+                      .max_memory = cag_account_room(),
                       .interrupt = cag_vm_stop(call->vm),
                       .open = open_beside,
                       .context = &opener};
   CagMesh *m = NULL;
   CagStatus status = cag_mesh_read(&file, &m, call->err);
   cag_release_held(call, bytes); // before the mesh has its value
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_mesh_value(call->vm, m);
-  return true;
+  return cag_mesh_result(call, status, &m, result);
 }

@@ -4,8 +4,16 @@
 #define CAG_INTERP_BUILTIN_SOLIDS_H
 
 #include "geom/surface/quadric.h"
+#include "geom/tessellate/tessellate.h"
 #include "interp/builtin/shapes.h"
 
+// All shapes in a shape, group or list, as a list.
+bool cag_list_shapes(CagCall *call, CagValue v, CagList **out);
+// Gives the group of what was built. The latter gives a single shape as it is.
+bool cag_group_result(CagCall *call, CagBuilder *shapes, CagValue *result);
+bool cag_shapes_result(CagCall *call, CagBuilder *shapes, CagValue *result);
+// The default fineness of meshes, with the limits of the run.
+CagTessellation cag_run_tessellation(CagVm *vm);
 // Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays are
 // held, since a caller could not hold one without risking the other.
 bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **counts,

@@ -174,9 +174,8 @@ static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands,
 // them, if there is one.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagValue *said) {
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, v, builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  CagList *shapes;
+  if (!cag_list_shapes(call, v, &shapes)) return false;
   if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, call->err));
   CagSolid **parts = cag_hold_solid_array(call, shapes->length);
   *said = cag_list_get(call->vm, shapes, 0);
@@ -264,29 +263,14 @@ bool cag_solids_intersection(CagCall *call, CagValue *result) {
 
 // --- Sides ---
 
-bool cag_solids_half_space(CagCall *call, CagValue *result) {
-  CagPlane plane;
+bool cag_solids_half_space(CagCall *call, const struct cag_solids_half_space *a, CagValue *result) {
   CagSolid *s = NULL;
-  if (!cag_arg_plane(call, 0, &plane)) return false;
-  const CagStatus status = cag_solid_half_space(&plane, &s, call->err);
+  const CagStatus status = cag_solid_half_space(&a->plane, &s, call->err);
   if (!status) say_place(call, s);
   return cag_solid_result(call, status, &s, result);
 }
 
-// The part of a form's side within a box, or between two heights.
-static CagStatus bounded_form(CagCall *call, const CagQuadric *q, CagSolid *const *within, size_t n,
-                              CagSolid **out, CagError *err) {
-  CagSolid *all[3] = {NULL};
-  CagStatus status = cag_solid_quadric(q, &all[0], err);
-  for (size_t i = 0; i < n; i++) all[1 + i] = within[i];
-  if (!status)
-    status = n == 0
-                 ? (*out = cag_solid_retain(all[0]), CAG_OK)
-                 : cag_solid_combine(CAG_INTERSECTION, all, n + 1, cag_vm_stop(call->vm), out, err);
-  cag_solid_release(all[0]);
-  return status;
-}
-
+// What lies between two heights.
 static CagStatus heights(double low, double high, CagSolid *out[2], CagError *err) {
   CagPlane floor = {{0, 0, low}, {0, 0, -1}}, roof = {{0, 0, high}, {0, 0, 1}};
   CagStatus status = cag_solid_half_space(&floor, &out[0], err);
@@ -294,24 +278,23 @@ static CagStatus heights(double low, double high, CagSolid *out[2], CagError *er
 }
 
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
-  CagSolid **ends = cag_hold_solid_array(call, 2), *made = NULL;
-  size_t n = 0;
-  if (cag_given(call, within)) {
-    CagValue v = call->values[within];
-    double low, high;
-    bool angle;
-    if (v.type == CAG_SOLID) {
-      ends[n++] = cag_solid_retain(CAG_AS_SHAPE(v)->as.solid);
-    } else {
-      if (v.type != CAG_RANGE || !cag_arg_interval(call, within, &low, &high, &angle) || angle)
-        return cag_fail_type(call, within, "a solid or a range of z");
-      if (!(low < high))
-        return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
-      if (!cag_geometry_ok(call, heights(low, high, ends, call->err))) return false;
-      n = 2;
-    }
+  CagSolid **parts = cag_hold_solid_array(call, 3), *made = NULL;
+  const CagValue v = call->values[within];
+  size_t n = 1;
+  double low, high;
+  bool angle;
+  if (v.type == CAG_SOLID) {
+    parts[n++] = cag_solid_retain(CAG_AS_SHAPE(v)->as.solid);
+  } else if (cag_given(call, within)) {
+    if (v.type != CAG_RANGE || !cag_arg_interval(call, within, &low, &high, &angle) || angle)
+      return cag_fail_type(call, within, "a solid or a range of z");
+    if (!(low < high))
+      return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
+    if (!cag_geometry_ok(call, heights(low, high, parts + 1, call->err))) return false;
+    n = 3;
   }
-  CagStatus status = bounded_form(call, q, ends, n, &made, call->err);
+  CagStatus status = cag_solid_quadric(q, &parts[0], call->err);
+  if (!status) status = combine(call, CAG_INTERSECTION, parts, n, &made, call->err);
   if (!status) say_place(call, made);
   return cag_solid_result(call, status, &made, result);
 }
@@ -327,11 +310,9 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagSolid *parts[2] = {NULL, c->by}, *made = NULL;
   CagBounds reach;
   if (!read_one(c->call, v, 0, &parts[0])) return false;
-  CagStatus status =
-      cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, c->call->err);
+  CagStatus status = combine(c->call, CAG_INTERSECTION, parts, 2, &made, c->call->err);
   cag_solid_release(parts[0]);
   if (!cag_geometry_ok(c->call, status)) return false;
-  say_place(c->call, made);
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
   // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
@@ -341,16 +322,15 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
 }
 
 static CagTessellation fineness(const Clip *c, const CagShape *shape) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagTessellation how = cag_run_tessellation(c->call->vm);
   how.tolerance = shape->tolerance;
-  if (c->call->vm->max_triangles > 0) how.max_triangles = c->call->vm->max_triangles;
-  how.interrupt = cag_vm_stop(c->call->vm);
   return how;
 }
 
 // Takes the mesh over.
-static bool add_clipped(const Clip *c, CagMesh *m, CagValue v, CagBuilder *into) {
-  CagValue value = cag_mesh_value(c->call->vm, m);
+static bool add_clipped(const Clip *c, CagStatus status, CagMesh *m, CagValue v, CagBuilder *into) {
+  CagValue value;
+  if (!cag_mesh_result(c->call, status, &m, &value)) return false;
   cag_shape_say_alike(value, v);
   return m->triangle_count == 0 || cag_builder_add(c->call->vm, into, value);
 }
@@ -365,8 +345,7 @@ static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
   else status = cag_surface_planar(shape->as.region, &shape->placement, &s, c->call->err);
   if (!status) status = cag_surface_clip(s, c->by, &how, &m, c->call->err);
   cag_surface_release(s);
-  if (!cag_geometry_ok(c->call, status)) return false;
-  return add_clipped(c, m, v, into);
+  return add_clipped(c, status, m, v, into);
 }
 
 static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
@@ -397,34 +376,31 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   if (cag_mesh_is_watertight(mesh, NULL)) return clip_solid(c, v, into);
   const CagTessellation how = fineness(c, CAG_AS_SHAPE(v));
   CagMesh *m = NULL;
-  return cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, c->call->err)) &&
-         add_clipped(c, m, v, into);
+  const CagStatus status = cag_mesh_clip(mesh, c->by, &how, &m, c->call->err);
+  return add_clipped(c, status, m, v, into);
 }
 
 // Nothing of a shape: an empty solid of what has an inside, else an empty mesh.
-static bool clipped_away(CagCall *call, CagValue v, CagValue *result) {
+static bool clipped_away(CagCall *call, CagValue *result) {
+  const CagValue v = call->values[0];
   CagSolid *s = NULL;
   CagMesh *m = NULL;
   const bool body = v.type == CAG_SOLID ||
                     (v.type == CAG_MESH && cag_mesh_is_watertight(CAG_AS_SHAPE(v)->as.mesh, NULL));
-  const CagStatus status = body ? cag_solid_empty(&s, call->err)
-                                : cag_mesh_new(0, 0, false, false, false, &m, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = body ? cag_solid_value(call->vm, s) : cag_mesh_value(call->vm, m);
-  cag_shape_say_alike(*result, v);
-  return true;
+  return body ? cag_changed_solid_result(call, cag_solid_empty(&s, call->err), &s, result)
+              : cag_changed_mesh_result(
+                    call, cag_mesh_new(0, 0, false, false, false, &m, call->err), &m, result);
 }
 
 bool cag_solids_is_empty(CagCall *call, CagValue *result) {
-  CagBuilder *builder = cag_builder_new(call->vm);
+  CagList *shapes;
   const CagValue v = call->values[0];
   *result = cag_bool(false);
   // The places of an intersection are records.
   if (v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0 &&
       !cag_is_shape(cag_list_get(call->vm, CAG_AS_LIST(v), 0)))
     return true;
-  if (!cag_shapes_collect(call, v, builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (!cag_list_shapes(call, v, &shapes)) return false;
   bool empty = true;
   for (size_t i = 0; empty && i < shapes->length; i++)
     if (!cag_keep_going(call->vm) ||
@@ -444,18 +420,18 @@ bool cag_solids_clip(CagCall *call, CagValue *result) {
     return false;
   }
   cag_hold_solid(call, c.by);
-  CagBuilder *shapes = cag_builder_new(call->vm), *kept = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
-  const CagList *list = CAG_AS_LIST(cag_builder_finish(call->vm, shapes));
-  for (size_t i = 0; i < list->length; i++)
-    if (!cag_keep_going(call->vm) || !clip_shape(&c, cag_list_get(call->vm, list, i), kept))
+  CagList *shapes;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
+  CagBuilder *kept = cag_builder_new(call->vm);
+  for (size_t i = 0; i < shapes->length; i++)
+    if (!cag_keep_going(call->vm) || !clip_shape(&c, cag_list_get(call->vm, shapes, i), kept))
       return false;
   CagValue parts = cag_builder_finish(call->vm, kept);
-  size_t n = CAG_AS_LIST(parts)->length;
-  CagType first = call->values[0].type;
-  if (n == 0 && first != CAG_GROUP && first != CAG_LIST && first != CAG_CURVE)
-    return clipped_away(call, call->values[0], result);
-  bool single = n == 1 && first != CAG_GROUP && first != CAG_LIST;
+  const size_t n = CAG_AS_LIST(parts)->length;
+  const CagType first = call->values[0].type;
+  const bool one = first != CAG_GROUP && first != CAG_LIST;
+  if (n == 0 && one && first != CAG_CURVE) return clipped_away(call, result);
+  const bool single = n == 1 && one;
   *result =
       single ? cag_list_get(call->vm, CAG_AS_LIST(parts), 0) : cag_group_value(call->vm, parts);
   return true;

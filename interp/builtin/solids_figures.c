@@ -1,5 +1,6 @@
 // Shapes that explain other shapes: control nets, isolines, arrows, frames.
 
+#include "geom/basis/bernstein.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
@@ -10,41 +11,23 @@ static bool add_line(CagCall *call, CagBuilder *list, const CagVec3 *points, siz
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
-static bool give_group(CagCall *call, CagBuilder *list, CagValue *result) {
-  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
-  return true;
-}
-
-static CagVec3 point_of(const double *h) { return cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]); }
-
-static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
+bool cag_solids_control_net(CagCall *call, const struct cag_solids_control_net *a,
+                            CagValue *result) {
   CagSurfaceNurbsView net;
-  if (!cag_surface_nurbs_view(s, &net)) {
-    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-             "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
-             s->kind->name);
-    return cag_fail_geometry(call, call->err);
-  }
+  if (!cag_surface_net(call, a->S, "control points", &net)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   size_t nu = net.distinct_u, nv = net.distinct_v;
   CagVec3 *points = cag_hold_array(call, nu > nv ? nu : nv, sizeof *points);
   for (size_t i = 0; i < nu; i++) {
-    for (size_t j = 0; j < nv; j++) points[j] = point_of(net.homogeneous + 4 * (i * net.nv + j));
+    for (size_t j = 0; j < nv; j++) points[j] = cag_project(net.homogeneous + 4 * (i * net.nv + j));
     if (!add_line(call, list, points, nv, net.periodic_v, 3)) return false;
   }
   for (size_t j = 0; j < nv; j++) {
-    for (size_t i = 0; i < nu; i++) points[i] = point_of(net.homogeneous + 4 * (i * net.nv + j));
+    for (size_t i = 0; i < nu; i++) points[i] = cag_project(net.homogeneous + 4 * (i * net.nv + j));
     if (!add_line(call, list, points, nu, net.periodic_u, 3)) return false;
   }
-  return give_group(call, list, result);
+  return cag_group_result(call, list, result);
 }
-
-bool cag_solids_control_net(CagCall *call, CagValue *result) {
-  return surface_net(call, CAG_AS_SHAPE(call->values[0])->as.surface, result);
-}
-
-// More lines than a picture can show.
-#define ISOLINES_MAX 100000
 
 static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, int direction,
                          long n) {
@@ -57,23 +40,19 @@ static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, i
     if ((i == 0 && poles[0]) || (i == last && poles[1])) continue;
     double at = last == 0 ? from : from + (to - from) * ((double)i / (double)last);
     CagCurve *c = NULL;
-    CagStatus status = cag_surface_isocurve(s, direction, at, &c, call->err);
-    if (!cag_geometry_ok(call, status) ||
-        !cag_builder_add(call->vm, list, cag_curve_value(call->vm, c)))
+    CagValue line;
+    if (!cag_curve_result(call, cag_surface_isocurve(s, direction, at, &c, call->err), &c, &line) ||
+        !cag_builder_add(call->vm, list, line))
       return false;
   }
   return true;
 }
 
-bool cag_solids_isolines(CagCall *call, CagValue *result) {
+bool cag_solids_isolines(CagCall *call, const struct cag_solids_isolines *a, CagValue *result) {
   CagSurface *s;
-  long nu, nv;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_integer(call, 1, 0, ISOLINES_MAX, &nu) ||
-      !cag_arg_integer(call, 2, 0, ISOLINES_MAX, &nv))
-    return false;
   CagBuilder *list = cag_builder_new(call->vm);
-  return add_isolines(call, list, s, 0, nu) && add_isolines(call, list, s, 1, nv) &&
-         give_group(call, list, result);
+  return cag_arg_side(call, 0, &s) && add_isolines(call, list, s, 0, a->nu) &&
+         add_isolines(call, list, s, 1, a->nv) && cag_group_result(call, list, result);
 }
 
 // Proportions of an arrow: the shaft's radius by its length, the head's length and radius by the
@@ -88,23 +67,20 @@ static bool make_arrow(CagCall *call, CagVec3 p, CagVec3 v, double radius, CagVa
   double length = cag_norm(v);
   double head_length = fmin(HEAD_LENGTH * radius, HEAD_PART * length);
   CagVec3 neck = cag_madd(p, 1 - head_length / length, v);
-  if (!cag_geometry_ok(call, cag_solid_rod(p, neck, radius, radius, &shaft, call->err)))
+  CagValue parts[2];
+  if (!cag_solid_result(call, cag_solid_rod(p, neck, radius, radius, &shaft, call->err), &shaft,
+                        &parts[0]) ||
+      !cag_solid_result(
+          call, cag_solid_rod(neck, cag_add(p, v), HEAD_RADIUS * radius, 0, &head, call->err),
+          &head, &parts[1]))
     return false;
-  CagValue parts[2] = {cag_solid_value(call->vm, shaft)};
-  if (!cag_geometry_ok(
-          call, cag_solid_rod(neck, cag_add(p, v), HEAD_RADIUS * radius, 0, &head, call->err)))
-    return false;
-  parts[1] = cag_solid_value(call->vm, head);
   *result = cag_group_value(call->vm, cag_list_values(call->vm, parts, 2));
   return true;
 }
 
-bool cag_solids_arrow(CagCall *call, CagValue *result) {
-  CagVec3 p, v;
-  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_direction(call, 1, p, &v, NULL)) return false;
-  double radius = SHAFT * cag_norm(v);
-  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &radius)) return false;
-  return make_arrow(call, p, v, radius, result);
+bool cag_solids_arrow(CagCall *call, const struct cag_solids_arrow *a, CagValue *result) {
+  const double radius = cag_given(call, 2) ? a->radius : SHAFT * cag_norm(a->V.at);
+  return make_arrow(call, a->P.at, a->V.at, radius, result);
 }
 
 bool cag_solids_triad(CagCall *call, const struct cag_solids_triad *a, CagValue *result) {

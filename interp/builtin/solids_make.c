@@ -8,23 +8,18 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-bool cag_solids_box(CagCall *call, CagValue *result) {
+bool cag_solids_box(CagCall *call, const struct cag_solids_box *a, CagValue *result) {
   CagVec3 size;
-  int dimension = 3;
-  bool centered;
+  int dimension = 0;
   CagSolid *s = NULL;
-  if (call->values[0].type == CAG_NUMBER) {
-    double side;
-    if (!cag_arg_positive(call, 0, &side)) return false;
-    size = cag_vec3(side, side, side);
+  if (a->size.type == CAG_NUMBER) {
+    if (!cag_arg_positive(call, 0, &size.x)) return false;
+    size.y = size.z = size.x;
   } else {
-    if (call->values[0].type != CAG_LIST)
-      return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
-    if (!cag_arg_vec(call, 0, &size, &dimension)) return false;
+    if (a->size.type == CAG_LIST && !cag_arg_vec(call, 0, &size, &dimension)) return false;
     if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
   }
-  if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
-  return cag_solid_result(call, cag_solid_box(size, centered, &s, call->err), &s, result);
+  return cag_solid_result(call, cag_solid_box(size, a->centered, &s, call->err), &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, const struct cag_solids_sphere *a, CagValue *result) {
@@ -52,18 +47,13 @@ bool cag_solids_cone(CagCall *call, const struct cag_solids_cone *a, CagValue *r
   return upright_result(call, a->height, a->radius, 0, a->centered, result);
 }
 
-bool cag_solids_prism(CagCall *call, CagValue *result) {
-  double height;
-  if (!cag_arg_finite(call, 1, &height)) return false;
-  // The first two and the last argument of an extrusion; the others are not given.
-  CagValue values[6] = {call->values[0], call->values[1], cag_unset(),
-                        cag_unset(),     cag_unset(),     call->values[2]};
-  bool centered;
-  if (!cag_arg_bool_or(call, 2, false, &centered)) return false;
-  CagCall extrude = *call;
-  extrude.values = values;
-  extrude.count = 6;
-  return cag_surfaces_extrude(&extrude, result);
+bool cag_solids_prism(CagCall *call, const struct cag_solids_prism *a, CagValue *result) {
+  const struct cag_surfaces_extrude extrusion = {.C = a->region,
+                                                 .height = cag_number(a->height),
+                                                 .scale = 1,
+                                                 .caps = true,
+                                                 .centered = a->centered};
+  return cag_surfaces_extrude(call, &extrusion, result);
 }
 
 CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,
@@ -104,9 +94,9 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
     if (v.type == CAG_SURFACE) {
       faces[i] = cag_surface_retain(shape->as.surface);
     } else if (v.type == CAG_REGION) {
-      CagStatus status =
-          cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err);
-      if (!cag_geometry_ok(call, status)) return false;
+      if (!cag_geometry_ok(
+              call, cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err)))
+        return false;
     } else {
       return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",
                            cag_type_article(v));
@@ -163,9 +153,8 @@ bool cag_solids_solid(CagCall *call, CagValue *result) {
     return true;
   }
   if (v.type == CAG_MESH) return solid_of_mesh(call, v, result);
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, v, builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  CagList *shapes;
+  if (!cag_list_shapes(call, v, &shapes)) return false;
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects surfaces");
   const CagValue first = cag_list_get(call->vm, shapes, 0);
   if (shapes->length == 1 && first.type == CAG_MESH) return solid_of_mesh(call, first, result);

@@ -128,10 +128,16 @@ static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   }
 }
 
-static bool read_body(CagCall *call, bool volume, Body *out) {
+bool cag_list_shapes(CagCall *call, CagValue v, CagList **out) {
   CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  *out = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  return true;
+}
+
+static bool read_body(CagCall *call, bool volume, Body *out) {
+  CagList *shapes;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   *out = (Body){0};
   for (size_t i = 0; i < shapes->length; i++) {
     Body one;
@@ -180,21 +186,20 @@ bool cag_solids_centroid(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_solids_inertia(CagCall *call, CagValue *result) {
+bool cag_solids_inertia(CagCall *call, const struct cag_solids_inertia *a, CagValue *result) {
   static const char *const names[] = {"mass", "center", "matrix"};
   Body body;
   bool empty;
-  double density = 1, *m;
-  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
+  double *m;
   if (!read_massive(call, &body, &empty)) return false;
   CagValue matrix = cag_list_vectors(call->vm, 3, 3, &m);
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3;
-    m[3 * i + i] = density * body.moment[i];
-    m[3 * i + j] = m[3 * j + i] = 0 - density * body.product[i];
+    m[3 * i + i] = a->density * body.moment[i];
+    m[3 * i + j] = m[3 * j + i] = 0 - a->density * body.product[i];
   }
   const CagValue center = empty ? cag_none() : center_value(call, &body);
-  CagValue values[] = {cag_number(density * body.volume), center, matrix};
+  CagValue values[] = {cag_number(a->density * body.volume), center, matrix};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }

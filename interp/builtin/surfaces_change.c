@@ -4,46 +4,37 @@
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/surfaces.h"
 
-bool cag_surfaces_area(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_surfaces_area(CagCall *call, const struct cag_surfaces_area *a, CagValue *result) {
   CagVec3 centroid;
   double area;
-  if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_area(s, &area, &centroid, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, cag_surface_area(a->S, &area, &centroid, call->err))) return false;
   *result = cag_number(area);
   return true;
 }
 
-bool cag_surfaces_volume(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_surfaces_volume(CagCall *call, const struct cag_surfaces_volume *a, CagValue *result) {
   double terms[10] = {0};
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  if (!cag_surface_is_closed(s)) {
-    cag_fail(
-        call->err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
-        "the surface has a boundary, so it holds no volume; `solid` of all sides tells the gap");
-    return cag_fail_geometry(call, call->err);
-  }
-  if (!cag_geometry_ok(call, cag_surface_volume_terms(s, terms, call->err))) return false;
+  CagStatus status =
+      cag_surface_is_closed(a->S)
+          ? cag_surface_volume_terms(a->S, terms, call->err)
+          : cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
+                     "the surface has a boundary, so it holds no volume; `solid` of all sides "
+                     "tells the gap");
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_number(fabs(terms[0]));
   return true;
 }
 
 // Of the body within, or of an open surface itself.
-bool cag_surfaces_centroid(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_surfaces_centroid(CagCall *call, const struct cag_surfaces_centroid *a, CagValue *result) {
   CagVec3 center;
   double terms[10] = {0}, area;
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  CagStatus status = cag_surface_is_closed(s) ? cag_surface_volume_terms(s, terms, call->err)
-                                              : cag_surface_area(s, &area, &center, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
+  CagStatus status = CAG_OK;
+  if (cag_surface_is_closed(a->S)) status = cag_surface_volume_terms(a->S, terms, call->err);
   if (terms[0] != 0)
     center = cag_vec3(terms[1] / terms[0], terms[2] / terms[0], terms[3] / terms[0]);
-  else if (cag_surface_is_closed(s) &&
-           !cag_geometry_ok(call, cag_surface_area(s, &area, &center, call->err)))
-    return false;
+  else if (!status) status = cag_surface_area(a->S, &area, &center, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_point(call->vm, center, 3);
   return true;
 }
@@ -68,11 +59,7 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   for (size_t j = 0; j < nv; j++) vs[j] = step(s->v0, s->v1, j, nv - 1);
   CagStatus status = cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = 0; i < nu; i++)
-    if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3)))
-      return false;
-  *result = cag_builder_finish(call->vm, rows);
+  *result = cag_table_value(call->vm, points, nu, nv);
   return true;
 }
 
@@ -82,10 +69,9 @@ bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {
   return cag_changed_surface_result(call, cag_surface_to_nurbs(s, &out, call->err), &out, result);
 }
 
-bool cag_surfaces_flip(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  return cag_changed_surface_result(call, cag_surface_flip(s, &out, call->err), &out, result);
+bool cag_surfaces_flip(CagCall *call, const struct cag_surfaces_flip *a, CagValue *result) {
+  CagSurface *out = NULL;
+  return cag_changed_surface_result(call, cag_surface_flip(a->S, &out, call->err), &out, result);
 }
 
 bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
@@ -100,15 +86,8 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
                          "expects either `u:` or `v:`, which is fixed");
   bool read = u ? cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, false, &at)
                 : cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, false, &at);
-  if (!read || !cag_geometry_ok(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, c);
-  return true;
-}
-
-static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurve *c) {
-  return cag_geometry_ok(call, status) &&
-         cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+  return read &&
+         cag_curve_result(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, call->err), &c, result);
 }
 
 static bool is_unrolled(const CagSurface *s) {
@@ -144,35 +123,8 @@ static CagStatus outline(const CagSurface *s, CagCurve **out, CagError *err) {
   return status;
 }
 
-bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
-  CagSurface *s;
-  const CagRegion *region;
-  CagTransform frame;
-  CagCurve *c = NULL;
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  CagBuilder *list = cag_builder_new(call->vm);
-  if (cag_surface_planar_view(s, &region, &frame)) {
-    for (size_t i = 0; i < region->count; i++) {
-      CagStatus status = cag_curve_transform(region->loops[i], &frame, &c, call->err);
-      if (!add_curve(call, list, status, c)) return false;
-    }
-    *result = cag_builder_finish(call->vm, list);
-    return true;
-  }
-  if (cag_surface_trimmed_view(s, NULL, &region)) {
-    for (size_t i = 0; i < region->count; i++) {
-      CagStatus status = cag_trimmed_loop(s, i, &c, call->err);
-      if (!add_curve(call, list, status, c)) return false;
-    }
-    *result = cag_builder_finish(call->vm, list);
-    return true;
-  }
-  if (is_unrolled(s)) {
-    const CagStatus status = outline(s, &c, call->err);
-    if (!add_curve(call, list, status, c)) return false;
-    *result = cag_builder_finish(call->vm, list);
-    return true;
-  }
+bool cag_surfaces_boundary(CagCall *call, const struct cag_surfaces_boundary *a, CagValue *result) {
+  const CagSurface *s = a->S;
   const struct {
     bool edge;
     int direction;
@@ -181,10 +133,24 @@ bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
                {!s->closed_u && !s->pole_u1, 0, s->u1},
                {!s->closed_v && !s->pole_v0, 1, s->v0},
                {!s->closed_v && !s->pole_v1, 1, s->v1}};
-  for (int i = 0; i < 4; i++) {
-    if (!sides[i].edge) continue;
-    CagStatus status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &c, call->err);
-    if (!add_curve(call, list, status, c)) return false;
+  const CagRegion *region;
+  CagTransform frame;
+  const bool planar = cag_surface_planar_view(s, &region, &frame);
+  const bool trimmed = !planar && cag_surface_trimmed_view(s, NULL, &region);
+  const bool unrolled = !planar && !trimmed && is_unrolled(s);
+  const size_t n = planar || trimmed ? region->count : unrolled ? 1 : 4;
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++) {
+    CagCurve *c = NULL;
+    CagStatus status;
+    CagValue curve;
+    if (planar) status = cag_curve_transform(region->loops[i], &frame, &c, call->err);
+    else if (trimmed) status = cag_trimmed_loop(s, i, &c, call->err);
+    else if (unrolled) status = outline(s, &c, call->err);
+    else if (!sides[i].edge) continue;
+    else status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &c, call->err);
+    if (!cag_curve_result(call, status, &c, &curve) || !cag_builder_add(call->vm, list, curve))
+      return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

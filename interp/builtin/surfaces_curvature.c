@@ -18,7 +18,7 @@ static bool read_forms(CagCall *call, Forms *f) {
   CagSurface *s;
   CagVec3 d[9];
   double u, v;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
+  if (!cag_arg_side_uv(call, &s, &u, &v) ||
       !cag_geometry_ok(call,
                        cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, call->err)))
     return false;
@@ -39,26 +39,24 @@ static bool read_forms(CagCall *call, Forms *f) {
 // The same where curvature is asked for, which a pole does not have by its partials.
 static bool read_regular(CagCall *call, Forms *f) {
   if (!read_forms(call, f)) return false;
-  if (f->area > FLAT_SINE * FLAT_SINE * f->E * f->G) return true;
-  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
-           "the surface has no two independent tangents here (a pole or a fold), so its curvature "
-           "cannot be told");
-  return cag_fail_geometry(call, call->err);
+  return f->area > FLAT_SINE * FLAT_SINE * f->E * f->G ||
+         cag_geometry_ok(
+             call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
+                            "the surface has no two independent tangents here (a pole or a fold), "
+                            "so its curvature cannot be told"));
 }
 
 bool cag_surfaces_first_form(CagCall *call, CagValue *result) {
   Forms f;
   if (!read_forms(call, &f)) return false;
-  double form[] = {f.E, f.F, f.G};
-  *result = cag_vector(call->vm, form, 3);
+  *result = cag_vector(call->vm, (double[]){f.E, f.F, f.G}, 3);
   return true;
 }
 
 bool cag_surfaces_second_form(CagCall *call, CagValue *result) {
   Forms f;
   if (!read_regular(call, &f)) return false;
-  double form[] = {f.L, f.M, f.N};
-  *result = cag_vector(call->vm, form, 3);
+  *result = cag_vector(call->vm, (double[]){f.L, f.M, f.N}, 3);
   return true;
 }
 
@@ -81,20 +79,19 @@ bool cag_surfaces_mean_curvature(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_surfaces_normal_curvature(CagCall *call, CagValue *result) {
+bool cag_surfaces_normal_curvature(CagCall *call, const struct cag_surfaces_normal_curvature *a,
+                                   CagValue *result) {
   Forms f;
-  CagVec3 v;
-  if (!cag_arg_direction(call, 3, cag_vec3(0, 0, 0), &v, NULL) || !read_regular(call, &f))
-    return false;
-  // The tangent a su + b sv below v.
+  if (!read_regular(call, &f)) return false;
+  // The tangent x su + y sv below v.
+  const CagVec3 v = a->V.at;
   double p = cag_dot(v, f.su), q = cag_dot(v, f.sv);
-  double a = (f.G * p - f.F * q) / f.area, b = (f.E * q - f.F * p) / f.area;
-  double length = f.E * a * a + 2 * f.F * a * b + f.G * b * b;
+  double x = (f.G * p - f.F * q) / f.area, y = (f.E * q - f.F * p) / f.area;
+  double length = f.E * x * x + 2 * f.F * x * y + f.G * y * y;
   if (length <= FLAT_SINE * FLAT_SINE * cag_dot(v, v))
     return cag_fail_call(call, 3, CAG_ERR_value,
-                         "expects a direction along the surface, found one "
-                         "along its normal");
-  *result = cag_number((f.L * a * a + 2 * f.M * a * b + f.N * b * b) / length);
+                         "expects a direction along the surface, found one along its normal");
+  *result = cag_number((f.L * x * x + 2 * f.M * x * y + f.N * y * y) / length);
   return true;
 }
 

@@ -8,9 +8,6 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-// How far a coordinate that is held may be off, in mm, unless said otherwise: as of curves.
-#define HELD_WITHIN 1e-9
-
 // Two whole numbers, or one for both.
 static bool read_pair(CagCall *call, int argument, long fallback, long low, long high,
                       long out[2]) {
@@ -36,68 +33,20 @@ static bool read_pair(CagCall *call, int argument, long fallback, long low, long
   return true;
 }
 
-// Reads rows of points of one length into an array that is held.
-static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
-  CagList *rows;
-  *points = NULL;
-  if (!cag_arg_list(call, 0, &rows)) return false;
-  *r = rows->length;
-  for (size_t i = 0; i < *r; i++) {
-    CagValue row = cag_list_get(call->vm, rows, i);
-    if (row.type != CAG_LIST) return cag_fail_element(call, 0, i, row, "rows of points");
-    const CagList *line = CAG_AS_LIST(row);
-    if (i == 0) {
-      *s = line->length;
-      *points = cag_hold(call, cag_malloc((*r * *s + 1) * sizeof **points));
-    }
-    if (line->length != *s) return cag_fail_rows(call, *s, i, line->length);
-    for (size_t j = 0; j < *s; j++) {
-      const double *x;
-      size_t n;
-      CagValue p = cag_list_get(call->vm, line, j);
-      if (!cag_as_vector(p, &x, &n) || n < 2 || n > 3 || !isfinite(x[0] + x[1] + x[n - 1]))
-        return cag_fail_call(call, 0, CAG_ERR_type,
-                             "expects points of 2 or 3 finite numbers, found %s at [%zu][%zu]",
-                             cag_type_article(p), i, j);
-      (*points)[i * *s + j] = cag_vec3(x[0], x[1], n == 3 ? x[2] : 0);
-    }
-  }
-  if (*r > 0 && *s > 0) return true;
-  return cag_fail_value(call, 0, "rows of points");
-}
-
-// The value for a direction of an argument that is one for both, or a list of two.
-static CagValue one_of_two(CagCall *call, int argument, int direction) {
-  CagValue v = call->values[argument];
-  if (v.type != CAG_LIST || CAG_AS_LIST(v)->length != 2) return v;
-  return cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)direction);
-}
-
-static bool read_closed(CagCall *call, int argument, bool closed[2]) {
-  for (int k = 0; k < 2; k++) {
-    CagValue v = one_of_two(call, argument, k);
-    closed[k] = v.type == CAG_BOOL && v.as.boolean;
-    if (v.type != CAG_BOOL && v.type != CAG_UNSET)
-      return cag_fail_type(call, argument, "a bool, or two for u and v");
-  }
-  return true;
-}
-
 // Knots of `count` points, or none for what the function makes itself.
 static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGridData *g) {
   for (int k = 0; k < 2; k++) {
-    CagValue v = one_of_two(call, argument, k);
+    CagValue v = cag_one_of_two(call, argument, k);
     const double *x;
     size_t n, wanted = count[k] + (size_t)(k ? g->degree_v : g->degree_u) + 1;
     if (v.type == CAG_UNSET || v.type == CAG_NONE || g->closed[k]) continue;
     if (!cag_as_vector(v, &x, &n))
       return cag_fail_type(call, argument, "none, or two lists of knots for u and v");
-    if (n != wanted) {
-      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", k,
-               "%zu control points of degree %d need %zu `knots` in %c, found %zu", count[k],
-               k ? g->degree_v : g->degree_u, wanted, "uv"[k], n);
-      return cag_fail_geometry(call, call->err);
-    }
+    if (n != wanted)
+      return cag_geometry_ok(
+          call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", k,
+                         "%zu control points of degree %d need %zu `knots` in %c, found %zu",
+                         count[k], k ? g->degree_v : g->degree_u, wanted, "uv"[k], n));
     g->knots[k] = x;
   }
   return true;
@@ -123,16 +72,10 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
                                "uv"[k], lines, g -> r, g -> s);
 }
 
-typedef struct Data {
-  CagGridData g;
-  CagVec3 *points; // held
-} Data;
-
 // A spacing, or a record of parameters u and v, of which one may be left to the chords.
-static bool read_parameters(CagCall *call, int argument, Data *d) {
+static bool read_parameters(CagCall *call, int argument, CagGridData *g) {
   static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
   static const char *const names[] = {"u", "v"};
-  CagGridData *g = &d->g;
   int spacing;
   if (call->values[argument].type != CAG_RECORD) {
     if (!cag_arg_choice(call, argument, spacings, &spacing)) return false;
@@ -149,26 +92,27 @@ static bool read_parameters(CagCall *call, int argument, Data *d) {
   return true;
 }
 
-static bool read_data(CagCall *call, int parameters, int closed, Data *d) {
+// The grid, its degrees, and the arguments at these places.
+static bool read_data(CagCall *call, int parameters, int closed, CagGridData *g) {
+  CagVec3 *points;
   long degree[2];
-  if (!read_grid(call, &d->points, &d->g.r, &d->g.s) || !read_pair(call, 1, 3, 0, 1000, degree) ||
-      !read_closed(call, closed, d->g.closed))
+  if (!cag_arg_grid(call, &points, &g->r, &g->s) || !read_pair(call, 1, 3, 0, 1000, degree) ||
+      !cag_arg_closed(call, closed, g->closed))
     return false;
-  d->g.points = d->points;
-  d->g.degree_u = (int)degree[0];
-  d->g.degree_v = (int)degree[1];
-  return read_parameters(call, parameters, d);
+  g->points = points;
+  g->degree_u = (int)degree[0];
+  g->degree_v = (int)degree[1];
+  return read_parameters(call, parameters, g);
 }
 
 // The planes of one direction: positions, or "auto".
 static bool read_positions(CagCall *call, int argument, CagValue v, CagGridData *g) {
   if (v.type == CAG_TEXT && strcmp(CAG_AS_TEXT(v)->bytes, "auto") == 0) return true;
   if (v.type == CAG_RANGE && !cag_as_list(call->vm, v, &v)) return false;
-  if (!cag_as_vector(v, &g->planes, &g->plane_count))
-    return cag_fail_type(call, argument,
-                         "\"auto\", a list of positions (of rows of control points), or a record "
-                         "with one of these as u or v");
-  return true;
+  return cag_as_vector(v, &g->planes, &g->plane_count) ||
+         cag_fail_type(call, argument,
+                       "\"auto\", a list of positions (of rows of control points), or a record "
+                       "with one of these as u or v");
 }
 
 static bool read_planes(CagCall *call, int argument, CagGridData *g) {
@@ -201,9 +145,7 @@ static CagValue table_value(CagVm *vm, const double *x, size_t r, size_t s) {
 }
 
 static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r, size_t s) {
-  static const char *const names[] = {"u", "v"};
-  CagValue values[] = {table_value(vm, u, r, s), table_value(vm, v, r, s)};
-  return cag_record_new(vm, names, values, 2);
+  return cag_uv_value(vm, table_value(vm, u, r, s), table_value(vm, v, r, s));
 }
 
 // Points of the surface less the data.
@@ -226,12 +168,11 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
 
 // As they can be given again.
 static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_t net[2]) {
-  static const char *const names[] = {"u", "v"};
-  CagValue values[] = {cag_none(), cag_none()};
+  CagValue by[] = {cag_none(), cag_none()};
   if (!report->planes) return cag_none();
   const int k = report->planes_along;
-  values[k] = cag_numbers_value(vm, report->planes, net[k]);
-  return cag_record_new(vm, names, values, 2);
+  by[k] = cag_numbers_value(vm, report->planes, net[k]);
+  return cag_uv_value(vm, by[0], by[1]);
 }
 
 static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,
@@ -252,65 +193,52 @@ static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g
 
 // grid, degree, parameters, knots, closed
 bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
-  Data d = {0};
+  CagGridData g = {0};
   CagSurface *s = NULL;
-  return read_data(call, 2, 4, &d) && read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
-         cag_surface_result(call, cag_surface_interpolate(&d.g, &s, call->err), &s, result);
+  return read_data(call, 2, 4, &g) && read_knots(call, 3, (const size_t[]){g.r, g.s}, &g) &&
+         cag_surface_result(call, cag_surface_interpolate(&g, &s, call->err), &s, result);
 }
 
 static void release_report(void *report) { cag_grid_report_free(report); }
 
-// grid, degree, count, parameters, knots, closed, corrections, fixed, planes, error
-static bool fit(CagCall *call, bool report, CagValue *result) {
-  Data d = {0};
+// grid, degree, count, parameters, knots, closed, ..., planes
+static bool fit(CagCall *call, long corrections, int fixed, double error, bool report,
+                CagValue *result) {
+  CagGridData g = {.corrections = (int)corrections, .hold = (CagGridHold)fixed, .slack = error};
   CagSurface *s = NULL;
-  static const char *const coordinates[] = {"none", "x", "y", "z", NULL};
-  long count[2], rounds;
-  int fixed;
-  if (!read_data(call, 3, 5, &d) || !read_pair(call, 2, 0, 0, 10000, count) ||
-      !cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds) ||
-      !cag_arg_choice(call, 7, coordinates, &fixed) ||
-      !cag_arg_number_or(call, 9, HELD_WITHIN, &d.g.slack))
-    return false;
-  if (!(d.g.slack >= 0)) return cag_fail_value(call, 9, "a distance of 0 or more");
-  d.g.hold = (CagGridHold)fixed;
-  d.g.corrections = (int)rounds;
+  long count[2];
+  if (!read_data(call, 3, 5, &g) || !read_pair(call, 2, 0, 0, 10000, count)) return false;
   const size_t net[2] = {(size_t)count[0], (size_t)count[1]};
-  if (!read_planes(call, 8, &d.g) || !read_knots(call, 4, net, &d.g)) return false;
+  if (!read_planes(call, 8, &g) || !read_knots(call, 4, net, &g)) return false;
   CagGridReport *found = cag_hold_array(call, 1, sizeof *found);
   cag_hold_for(call, release_report, found);
-  CagStatus status = cag_surface_fit(&d.g, net[0], net[1], &s, found, call->err);
+  CagStatus status = cag_surface_fit(&g, net[0], net[1], &s, found, call->err);
   return cag_surface_result(call, status, &s, result) &&
-         (!report || give_report(call, s, &d.g, net, found, result));
+         (!report || give_report(call, s, &g, net, found, result));
 }
 
-bool cag_surfaces_fit_surface(CagCall *call, CagValue *result) { return fit(call, false, result); }
-
-bool cag_surfaces_fit_surface_report(CagCall *call, CagValue *result) {
-  return fit(call, true, result);
+bool cag_surfaces_fit_surface(CagCall *call, const struct cag_surfaces_fit_surface *a,
+                              CagValue *result) {
+  return fit(call, a->corrections, a->fixed, a->error, false, result);
 }
 
-// grid, parameters, ends, closed
-bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
-  static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
+bool cag_surfaces_fit_surface_report(CagCall *call, const struct cag_surfaces_fit_surface_report *a,
+                                     CagValue *result) {
+  return fit(call, a->corrections, a->fixed, a->error, true, result);
+}
+
+bool cag_surfaces_grid_parameters(CagCall *call, const struct cag_surfaces_grid_parameters *a,
+                                  CagValue *result) {
   CagVec3 *points = NULL;
-  CagGridData g = {0};
-  int spacing;
-  double end[2] = {1, 1};
-  const double *x;
+  CagGridData g = {.spacing = (CagGridSpacing)a->parameters};
+  const double *end = (const double[]){1, 1};
   size_t n;
-  if (!read_grid(call, &points, &g.r, &g.s) || !cag_arg_choice(call, 1, spacings, &spacing) ||
-      !read_closed(call, 3, g.closed))
-    return false;
-  if (cag_given(call, 2)) {
-    if (!cag_as_vector(call->values[2], &x, &n) || n != 2 || !(x[0] > 0 && x[1] > 0) ||
-        !isfinite(x[0] + x[1]))
-      return cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
-    memcpy(end, x, sizeof end);
-  }
+  if (!cag_arg_grid(call, &points, &g.r, &g.s) || !cag_arg_closed(call, 3, g.closed)) return false;
+  if (cag_given(call, 2) && (!cag_as_vector(a->ends, &end, &n) || n != 2 ||
+                             !(end[0] > 0 && end[1] > 0) || !isfinite(end[0] + end[1])))
+    return cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
   double *u = cag_hold_array(call, 2 * g.r * g.s, sizeof *u), *v = u + g.r * g.s;
   g.points = points;
-  g.spacing = (CagGridSpacing)spacing;
   cag_grid_parameters(&g, end, u, v);
   *result = pair_value(call->vm, u, v, g.r, g.s);
   return true;
@@ -325,7 +253,6 @@ bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_dev
                                  CagValue *result) {
   CagBounds box;
   double worst = 0;
-  if (!(a->tolerance >= 0)) return cag_fail_value(call, 1, "a a->tolerance of 0 or more");
   if (!cag_geometry_ok(call, cag_surface_bounds(a->S, &box, call->err))) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
@@ -340,20 +267,16 @@ bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_dev
       CagVec3 n = cag_cross(d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]);
       double length = cag_norm(n);
       if (length == 0) continue;
-      double a = cag_dot(n, d[cag_partial(2, 2, 0)]), b = cag_dot(n, d[cag_partial(2, 1, 1)]);
-      double c = cag_dot(n, d[cag_partial(2, 0, 2)]);
-      double k = (a * c - b * b) / (length * length * length * length);
+      double uu = cag_dot(n, d[cag_partial(2, 2, 0)]), uv = cag_dot(n, d[cag_partial(2, 1, 1)]);
+      double vv = cag_dot(n, d[cag_partial(2, 0, 2)]);
+      double k = (uu * vv - uv * uv) / (length * length * length * length);
       worst = fmax(worst, fabs(k) * size * size);
     }
   *result = cag_bool(worst <= a->tolerance);
   return true;
 }
 
-bool cag_surfaces_unroll(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  if (!cag_arg_surface(call, 0, &s) ||
-      !cag_surface_result(call, cag_surface_unroll(s, &out, call->err), &out, result))
-    return false;
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+bool cag_surfaces_unroll(CagCall *call, const struct cag_surfaces_unroll *a, CagValue *result) {
+  CagSurface *out = NULL;
+  return cag_changed_surface_result(call, cag_surface_unroll(a->S, &out, call->err), &out, result);
 }

@@ -1,4 +1,5 @@
-// Surfaces and curves that the core makes several of, held until the built-in ends.
+// Surfaces and curves that the core makes several of, held until the built-in ends, and values of
+// results.
 
 #include "base/memory.h"
 #include "interp/builtin/surfaces.h"
@@ -13,6 +14,18 @@ CagSurfaceArray *cag_hold_surfaces(CagCall *call) {
   CagSurfaceArray *a = cag_hold_array(call, 1, sizeof *a);
   cag_hold_for(call, release_surfaces, a);
   return a;
+}
+
+CagValue cag_table_value(CagVm *vm, const CagVec3 *points, size_t rows, size_t columns) {
+  CagBuilder *table = cag_builder_new(vm);
+  for (size_t i = 0; i < rows; i++)
+    cag_builder_add(vm, table, cag_points_value(vm, points + i * columns, columns, 3));
+  return cag_builder_finish(vm, table);
+}
+
+CagValue cag_uv_value(CagVm *vm, CagValue u, CagValue v) {
+  static const char *const names[] = {"u", "v"};
+  return cag_record_new(vm, names, (CagValue[]){u, v}, 2);
 }
 
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list) {

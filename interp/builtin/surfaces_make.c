@@ -3,11 +3,10 @@
 #include <stdlib.h>
 
 #include "geom/solid/csg.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
-
-static void release_region(void *region) { cag_region_release(region); }
 
 // --- Revolution ---
 
@@ -53,11 +52,10 @@ bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransf
   if (!cag_geometry_ok(call, cag_region_area(region, &area, &centroid, call->err))) return false;
   CagVec3 center = cag_sub(cag_transform_point(place, centroid), through);
   if (fabs(cag_dot(a, n)) > AXIS_IN_PLANE ||
-      fabs(cag_dot(center, n)) > AXIS_IN_PLANE * (1 + cag_norm(center))) {
-    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
-             "`axis` does not lie in the plane of the region");
-    return cag_fail_geometry(call, call->err);
-  }
+      fabs(cag_dot(center, n)) > AXIS_IN_PLANE * (1 + cag_norm(center)))
+    return cag_geometry_ok(call,
+                           cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis",
+                                    -1, "`axis` does not lie in the plane of the region"));
   CagVec3 radial = cag_cross(n, a);
   if (cag_dot(center, radial) < 0) radial = cag_scaled(radial, -1);
   CagTransform flat = half_plane(place, radial, a, through), frame;
@@ -99,35 +97,26 @@ static CagStatus revolve_curve(const CagCurve *c, bool stand, CagVec3 axis, CagV
   return status;
 }
 
-static bool read_axis(CagCall *call, int argument, CagVec3 *axis) {
-  if (!cag_arg_vec_or(call, argument, cag_vec3(0, 0, 1), axis, NULL)) return false;
-  if (cag_norm(*axis) > 0) return true;
-  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
-           "`axis` must have a direction; it is the zero vector");
-  return cag_fail_geometry(call, call->err);
-}
-
-bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
-  CagVec3 axis, through;
+bool cag_surfaces_revolve(CagCall *call, const struct cag_surfaces_revolve *a, CagValue *result) {
+  const CagVec3 axis = a->axis.at, through = a->through.at;
+  const CagValue v = a->C;
   double from, to;
-  CagValue v = call->values[0];
-  if (!read_axis(call, 1, &axis) || !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &through, NULL) ||
-      !read_turn(call, 3, &from, &to))
-    return false;
+  if (!(cag_norm(axis) > 0))
+    return cag_geometry_ok(call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
+                                          "`axis` must have a direction; it is the zero vector"));
+  if (!read_turn(call, 3, &from, &to)) return false;
   bool along_z = axis.x == 0 && axis.y == 0;
   if (v.type == CAG_CURVE) {
     const CagCurve *c = CAG_AS_SHAPE(v)->as.curve;
     CagSurface *s = NULL;
     CagStatus status =
         revolve_curve(c, along_z && c->dimension == 2, axis, through, from, to, &s, call->err);
-    if (!cag_surface_result(call, status, &s, result)) return false;
-    cag_shape_say_alike(*result, v);
-    return true;
+    return cag_changed_surface_result(call, status, &s, result);
   }
   CagRegion *region;
   CagTransform place;
   if (!cag_arg_region(call, 0, &region, &place)) return false;
-  cag_hold_for(call, release_region, region);
+  cag_hold_region(call, region);
   if (along_z && place.planar) {
     CagTransform up = upright();
     place = cag_transform_multiply(&up, &place);
@@ -139,84 +128,72 @@ bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
 
 // --- Extrusion ---
 
-typedef struct Extrusion {
-  CagVec3 v;
-  bool height; // v is a height along the section's normal
-  double twist, scale;
-  bool caps, centered;
-} Extrusion;
-
-static bool read_extrusion(CagCall *call, Extrusion *e) {
-  CagValue v = call->values[1];
-  double height = 0;
-  e->height = v.type == CAG_NUMBER;
-  if (e->height && !cag_arg_finite(call, 1, &height)) return false;
-  e->v = cag_vec3(0, 0, height);
-  if (!e->height && v.type != CAG_LIST) return cag_fail_type(call, 1, "a height or a vector");
-  if (!e->height && !cag_arg_vec(call, 1, &e->v, NULL)) return false;
-  return cag_arg_angle_or(call, 2, 0, &e->twist) && cag_arg_number_or(call, 3, 1, &e->scale) &&
-         cag_arg_bool_or(call, 4, true, &e->caps) && cag_arg_bool_or(call, 5, false, &e->centered);
+// A height (along the section's normal), or a vector.
+static bool read_way(CagCall *call, CagVec3 *way) {
+  *way = cag_vec3(0, 0, 0);
+  if (call->values[1].type == CAG_NUMBER) return cag_arg_finite(call, 1, &way->z);
+  return call->values[1].type == CAG_LIST ? cag_arg_vec(call, 1, way, NULL)
+                                          : cag_fail_type(call, 1, "a height or a vector");
 }
 
 // The sides of a region, one for each of its curves, without caps.
-static bool extrude_sides(CagCall *call, const CagRegion *region, const Extrusion *e,
-                          const CagTransform *place, CagValue *result) {
+static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
+                          const CagRegion *region, CagVec3 way, const CagTransform *place,
+                          CagValue *result) {
   CagBuilder *sides = cag_builder_new(call->vm);
-  CagValue side = cag_none();
   for (size_t i = 0; i < region->count; i++) {
     CagSurface *s = NULL, *placed = NULL;
+    CagValue side;
     CagStatus status =
-        cag_surface_extrude(region->loops[i], e->v, e->twist, e->scale, &s, call->err);
+        cag_surface_extrude(region->loops[i], way, a->twist, a->scale, &s, call->err);
     if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, call->err);
     cag_surface_release(s);
     if (!cag_surface_result(call, status, &placed, &side) ||
         !cag_builder_add(call->vm, sides, side))
       return false;
   }
-  *result =
-      region->count == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
-  return true;
+  return cag_shapes_result(call, sides, result);
 }
 
-static bool extrude_region(CagCall *call, const CagRegion *region, Extrusion e,
-                           const CagTransform *place, CagValue *result) {
-  CagTransform back;
+// `way` is in the region's own coordinates.
+static bool extrude_region(CagCall *call, const struct cag_surfaces_extrude *a,
+                           const CagRegion *region, CagVec3 way, const CagTransform *place,
+                           CagValue *result) {
   CagSolid *s = NULL, *placed = NULL;
-  // In the region's own coordinates, and placed then. A height is along the normal there.
-  if (!e.height) {
-    if (!cag_geometry_ok(call, cag_transform_inverse(place, &back, call->err))) return false;
-    e.v = cag_transform_vector(&back, e.v);
-  }
-  if (!e.caps) return extrude_sides(call, region, &e, place, result);
-  CagStatus status = cag_solid_extrude(region, e.v, e.twist, e.scale, &s, call->err);
+  if (!a->caps) return extrude_sides(call, a, region, way, place, result);
+  CagStatus status = cag_solid_extrude(region, way, a->twist, a->scale, &s, call->err);
   if (status == CAG_OK) status = cag_solid_transform(s, place, &placed, call->err);
   cag_solid_release(s);
   return cag_solid_result(call, status, &placed, result);
 }
 
-bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
-  Extrusion e;
+bool cag_surfaces_extrude(CagCall *call, const struct cag_surfaces_extrude *a, CagValue *result) {
   CagRegion *region;
-  CagTransform place;
-  CagValue v = call->values[0];
-  if (!read_extrusion(call, &e)) return false;
-  const CagCurve *c = v.type == CAG_CURVE ? CAG_AS_SHAPE(v)->as.curve : NULL;
-  CagVec3 way = e.v;
-  if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
+  CagTransform place, back;
+  CagVec3 way;
+  if (!read_way(call, &way)) return false;
+  const CagCurve *c = a->C.type == CAG_CURVE ? CAG_AS_SHAPE(a->C)->as.curve : NULL;
+  if (c && (!c->closed || c->dimension == 3 || !a->caps)) {
     CagSurface *s = NULL;
-    CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, call->err);
+    CagStatus status = cag_surface_extrude(c, way, a->twist, a->scale, &s, call->err);
     if (!cag_surface_result(call, status, &s, result)) return false;
   } else {
     if (!cag_arg_region(call, 0, &region, &place)) return false;
-    cag_hold_for(call, release_region, region);
-    if (e.height) way = cag_transform_vector(&place, e.v);
-    if (!extrude_region(call, region, e, &place, result)) return false;
+    cag_hold_region(call, region);
+    CagVec3 own = way;
+    if (a->height.type == CAG_NUMBER) {
+      way = cag_transform_vector(&place, way);
+    } else {
+      if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, call->err))) return false;
+      own = cag_transform_vector(&back, way);
+    }
+    if (!extrude_region(call, a, region, own, &place, result)) return false;
   }
-  if (e.centered) {
-    const CagTransform back = cag_translate(cag_scaled(way, -0.5));
-    if (!cag_transform_apply(call->vm, &back, *result, result)) return false;
+  if (a->centered) {
+    const CagTransform half = cag_translate(cag_scaled(way, -0.5));
+    if (!cag_transform_apply(call->vm, &half, *result, result)) return false;
   }
-  if (cag_is_shape(v)) cag_shape_say_alike(*result, v);
+  if (cag_is_shape(a->C)) cag_shape_say_alike(*result, a->C);
   return true;
 }
 
@@ -227,12 +204,9 @@ bool cag_surfaces_ruled(CagCall *call, const struct cag_surfaces_ruled *a, CagVa
   return cag_surface_result(call, cag_surface_ruled(a->A, a->B, &s, call->err), &s, result);
 }
 
-bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
-  CagVec3 p[4];
+bool cag_surfaces_bilinear(CagCall *call, const struct cag_surfaces_bilinear *a, CagValue *result) {
   CagSurface *s = NULL;
-  for (int i = 0; i < 4; i++)
-    if (!cag_arg_vec(call, i, &p[i], NULL)) return false;
-  CagStatus status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &s, call->err);
+  CagStatus status = cag_surface_bilinear(a->P.at, a->Q.at, a->R.at, a->S.at, &s, call->err);
   return cag_surface_result(call, status, &s, result);
 }
 
@@ -244,14 +218,13 @@ bool cag_surfaces_translational(CagCall *call, const struct cag_surfaces_transla
 
 // The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
 // azimuth, and S_u x S_v points outward.
-bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
-  double radius;
+bool cag_surfaces_sphere_surface(CagCall *call, const struct cag_surfaces_sphere_surface *a,
+                                 CagValue *result) {
   CagCurve *meridian = NULL;
   CagSurface *s = NULL;
-  if (!cag_arg_positive(call, 0, &radius)) return false;
   CagTransform from_pole = {{{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
   CagStatus status =
-      cag_curve_arc(radius, radius, 0, FULL_TURN / 2, &from_pole, &meridian, call->err);
+      cag_curve_arc(a->radius, a->radius, 0, FULL_TURN / 2, &from_pole, &meridian, call->err);
   if (status == CAG_OK)
     status = revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s,
                            call->err);

@@ -11,6 +11,7 @@
 #include "geom/surface/mapped.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
@@ -52,8 +53,6 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
   return cag_fail_call(call, argument, id, "%s: %s", what, said);
 }
 
-static void release_curve(void *curve) { cag_curve_release(curve); }
-
 // The curve's smooth pieces one by one: a function has no corners of its own.
 static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue offset,
                       CagValue *result) {
@@ -76,7 +75,7 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
     ok = cag_call(vm, lambda, arguments, 4, &piece) || tell_of_mapping(call, 0, LEAVES);
     if (!ok) break;
     pieces[i] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
-    cag_hold_for(call, release_curve, pieces[i]);
+    cag_hold_curve(call, pieces[i]);
   }
   cag_root_pop(vm, 1);
   if (!ok) return false;
@@ -111,9 +110,14 @@ static bool map_smooth(CagCall *call, CagValue g, const CagSurface *s, CagValue 
 
 // --- Bodies, as meshes ---
 
-static CagStatus region_mesh(const CagShape *shape, const CagTessellation *how, CagMesh **out,
-                             CagError *err) {
+static CagStatus body_mesh(CagValue v, const CagTessellation *how, CagMesh **out, CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
   CagSurface *flat = NULL;
+  if (v.type == CAG_MESH) {
+    *out = cag_mesh_retain(shape->as.mesh);
+    return CAG_OK;
+  }
+  if (v.type == CAG_SOLID) return cag_solid_tessellate(shape->as.solid, how, out, err);
   CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
   if (status == CAG_OK) status = cag_surface_tessellate(flat, how, out, err);
   cag_surface_release(flat);
@@ -131,45 +135,37 @@ static bool lies_flat(const CagMesh *m) {
 
 static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
                      CagValue *result) {
-  const CagShape *shape = CAG_AS_SHAPE(g);
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *flat = NULL, *image = NULL;
-  CagStatus status;
-  if (g.type == CAG_MESH) {
-    flat = cag_mesh_retain(shape->as.mesh);
-    status = CAG_OK;
-  } else if (g.type == CAG_REGION) status = region_mesh(shape, &how, &flat, call->err);
-  else status = cag_solid_tessellate(shape->as.solid, &how, &flat, call->err);
+  CagStatus status = body_mesh(g, &how, &flat, call->err);
   if (status == CAG_OK && g.type != CAG_MESH && tolerance > 0) {
     // The surface stretches what is drawn in its parameters: by how much, the domain tells.
     CagBounds box;
     status = cag_surface_bounds(s, &box, call->err);
     double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
     double domain = hypot(s->u1 - s->u0, s->v1 - s->v0);
-    if (status == CAG_OK && size > 0) {
+    if (size > 0) {
       how.tolerance = FINER * tolerance * domain / size;
       cag_mesh_release(flat);
       flat = NULL;
-      status = g.type == CAG_REGION ? region_mesh(shape, &how, &flat, call->err)
-                                    : cag_solid_tessellate(shape->as.solid, &how, &flat, call->err);
+      status = body_mesh(g, &how, &flat, call->err);
     }
   }
   if (status == CAG_OK)
     status = cag_mesh_onto_surface(flat, s, tolerance, lies_flat(flat), how.max_triangles, &image,
                                    call->err);
   cag_mesh_release(flat);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_mesh_value(call->vm, image);
-  return true;
+  return cag_mesh_result(call, status, &image, result);
 }
 
 // Maps of parameters know nothing of the curves that a surface is trimmed by.
 static bool refuse_trimmed(CagCall *call, CagValue g) {
   if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
     return true;
-  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
-           "a trimmed surface cannot be mapped: map the whole one and trim that, or map its mesh");
-  return cag_fail_geometry(call, call->err);
+  return cag_geometry_ok(
+      call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
+                     "a trimmed surface cannot be mapped: map the whole one and trim that, or map "
+                     "its mesh"));
 }
 
 static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
@@ -184,13 +180,11 @@ static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double toler
 
 // Each of a group or list.
 static bool map_several(CagCall *call, const CagSurface *s, double tolerance, CagValue *result) {
-  CagBuilder *shapes = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
-  CagValue all = cag_builder_finish(call->vm, shapes);
-  const CagList *list = CAG_AS_LIST(all);
+  CagList *list;
+  if (!cag_list_shapes(call, call->values[0], &list)) return false;
   CagBuilder *images = cag_builder_new(call->vm);
   // Mapping the next one may call the script.
-  cag_root_push(call->vm, all);
+  cag_root_push(call->vm, cag_object(CAG_LIST, list));
   cag_root_push(call->vm, cag_builder_value(images));
   bool ok = true;
   for (size_t i = 0; ok && i < list->length; i++) {
@@ -203,30 +197,25 @@ static bool map_several(CagCall *call, const CagSurface *s, double tolerance, Ca
   return ok;
 }
 
-bool cag_surfaces_map_onto(CagCall *call, CagValue *result) {
-  CagSurface *s;
-  double tolerance = 0;
-  CagValue g = call->values[0];
-  if (!cag_arg_surface(call, 1, &s)) return false;
-  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &tolerance)) return false;
-  if (g.type == CAG_GROUP || g.type == CAG_LIST) return map_several(call, s, tolerance, result);
-  return map_one(call, g, s, tolerance, result);
+bool cag_surfaces_map_onto(CagCall *call, const struct cag_surfaces_map_onto *a, CagValue *result) {
+  return a->G.type == CAG_GROUP || a->G.type == CAG_LIST
+             ? map_several(call, a->S, a->tolerance, result)
+             : map_one(call, a->G, a->S, a->tolerance, result);
 }
 
-bool cag_surfaces_remap(CagCall *call, CagValue *result) {
-  CagSurface *s;
-  CagValue f, lambda;
-  if (!cag_arg_surface(call, 0, &s) || !refuse_trimmed(call, call->values[0]) ||
-      !cag_arg_function(call, 1, &f) ||
+bool cag_surfaces_remap(CagCall *call, const struct cag_surfaces_remap *a, CagValue *result) {
+  const CagSurface *s = a->S;
+  const bool u = cag_given(call, 2), v = cag_given(call, 3);
+  CagValue lambda;
+  if (!refuse_trimmed(call, call->values[0]) ||
       !cag_vm_compile_lambda(call->vm,
                              "(s, f, a, b) => surface((u, v) => s(f(u, v)[0], f(u, v)[1]), u: a, "
                              "v: b)",
                              &lambda))
     return false;
-  CagValue a = call->values[2], b = call->values[3];
-  if (a.type == CAG_UNSET) a = cag_domain_value(call->vm, s->angular_u, s->u0, s->u1);
-  if (b.type == CAG_UNSET) b = cag_domain_value(call->vm, s->angular_v, s->v0, s->v1);
-  CagValue arguments[4] = {call->values[0], f, a, b};
+  CagValue arguments[4] = {call->values[0], a->f,
+                           u ? a->u : cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
+                           v ? a->v : cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
   if (!cag_call(call->vm, lambda, arguments, 4, result))
     return tell_of_mapping(call, 1, "expects a function that gives [u, v] of the surface as `f`");
   cag_shape_say_alike(*result, call->values[0]);

@@ -37,19 +37,16 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
   return true;
 }
 
-bool cag_meetings_intersect(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_meetings_intersect(CagCall *call, const struct cag_meetings_intersect *a,
+                            CagValue *result) {
   CagStatus status;
-  double tolerance = 0;
-  const CagValue other = call->values[1];
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  if (cag_given(call, 2) && !cag_arg_positive(call, 2, &tolerance)) return false;
-  if (other.type == CAG_CURVE) return with_curve(call, s, CAG_AS_SHAPE(other)->as.curve, result);
+  const CagValue other = a->A;
+  if (other.type == CAG_CURVE) return with_curve(call, a->S, CAG_AS_SHAPE(other)->as.curve, result);
   CagCurveList *list = cag_hold_curve_list(call);
   if (other.type == CAG_PLANE)
-    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, list, call->err);
+    status = cag_surface_section(a->S, &CAG_AS_PLANE(other)->plane, a->tolerance, list, call->err);
   else if (other.type == CAG_SURFACE)
-    status = cag_surface_intersect(s, CAG_AS_SHAPE(other)->as.surface, tolerance,
+    status = cag_surface_intersect(a->S, CAG_AS_SHAPE(other)->as.surface, a->tolerance,
                                    cag_vm_stop(call->vm), list, call->err);
   else return cag_fail_type(call, 1, "a curve, a surface or a plane");
   if (!cag_geometry_ok(call, status)) return false;

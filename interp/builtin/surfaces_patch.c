@@ -7,13 +7,10 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-bool cag_surfaces_coons(CagCall *call, CagValue *result) {
-  CagCurve *side[4];
+bool cag_surfaces_coons(CagCall *call, const struct cag_surfaces_coons *a, CagValue *result) {
   CagSurface *s = NULL;
-  for (int k = 0; k < 4; k++)
-    if (!cag_arg_curve(call, k, &side[k])) return false;
-  return cag_surface_result(
-      call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, call->err), &s, result);
+  return cag_surface_result(call, cag_surface_coons(a->u0, a->u1, a->v0, a->v1, &s, call->err), &s,
+                            result);
 }
 
 bool cag_surfaces_developable(CagCall *call, const struct cag_surfaces_developable *a,
@@ -23,14 +20,6 @@ bool cag_surfaces_developable(CagCall *call, const struct cag_surfaces_developab
 }
 
 // --- Tables of vectors ---
-
-static bool read_vector(CagValue v, CagVec3 *out) {
-  const double *x;
-  size_t n;
-  if (!cag_as_vector(v, &x, &n) || n < 2 || n > 3) return false;
-  *out = cag_vec3(x[0], x[1], n == 3 ? x[2] : 0);
-  return isfinite(out->x) && isfinite(out->y) && isfinite(out->z);
-}
 
 static bool read_line(CagCall *call, int argument, CagValue line, const char *what, size_t n,
                       CagVec3 *out) {
@@ -42,7 +31,7 @@ static bool read_line(CagCall *call, int argument, CagValue line, const char *wh
                          what, CAG_AS_LIST(line)->length);
   for (size_t i = 0; i < n; i++) {
     CagValue v = cag_list_get(call->vm, CAG_AS_LIST(line), i);
-    if (!read_vector(v, &out[i]))
+    if (!cag_read_vector(v, &out[i]))
       return cag_fail_call(call, argument, CAG_ERR_type,
                            "expects vectors of 2 or 3 finite numbers %s, found %s at [%zu]", what,
                            cag_type_article(v), i);
@@ -70,9 +59,8 @@ static bool read_table(CagCall *call, int argument, size_t rows, size_t n, CagVe
 
 bool cag_surfaces_coons_bicubic(CagCall *call, CagValue *result) {
   static const char *const modes[] = {"zero", "adini", NULL};
-  CagHermiteCorners c;
+  CagHermiteCorners c = {0};
   CagSurface *s = NULL;
-  memset(&c, 0, sizeof c);
   if (!read_table(call, 0, 2, 2, c.p[0]) || !read_table(call, 1, 2, 2, c.pu[0]) ||
       !read_table(call, 2, 2, 2, c.pv[0]))
     return false;
@@ -91,8 +79,8 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
   CagHermiteCorners c;
   CagSurface *s = NULL;
   double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
-  if (!read_table(call, 0, 4, 4, q)) return false;
-  if ((cag_given(call, 1) && !cag_arg_interval(call, 1, &u0, &u1, NULL)) ||
+  if (!read_table(call, 0, 4, 4, q) ||
+      (cag_given(call, 1) && !cag_arg_interval(call, 1, &u0, &u1, NULL)) ||
       (cag_given(call, 2) && !cag_arg_interval(call, 2, &v0, &v1, NULL)))
     return false;
   for (int i = 0; i < 2; i++)
@@ -108,34 +96,25 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
 
 // --- Composite ---
 
-// Arrays of a grid, held.
-typedef struct GridData {
-  CagVec3 *points, *tangents;
-  double *steps[2];
-} GridData;
-
-static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
-  if (!cag_given(call, 3)) return true;
+static bool read_steps(CagCall *call, CagHermiteGrid *g) {
   CagList *list;
+  if (!cag_given(call, 3)) return true;
   if (!cag_arg_list(call, 3, &list)) return false;
   if (list->length != 2) return cag_fail_value(call, 3, "two lists, for u and v");
   for (int k = 0; k < 2; k++) {
-    size_t wanted = k == 0 ? m : n;
-    CagValue line = cag_list_get(call->vm, list, (size_t)k);
+    const size_t wanted = (k == 0 ? g->nu : g->nv) - 1;
+    const CagValue line = cag_list_get(call->vm, list, (size_t)k);
     if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != wanted || CAG_AS_LIST(line)->dim != 1)
       return cag_fail_call(call, 3, CAG_ERR_length, "expects %zu numbers for %c in `lengths`",
-                           wanted, k == 0 ? 'u' : 'v');
-    d->steps[k] = cag_hold_array(call, wanted, sizeof(double));
-    memcpy(d->steps[k], CAG_AS_LIST(line)->as.numbers, wanted * sizeof(double));
+                           wanted, "uv"[k]);
+    *(k == 0 ? &g->steps_u : &g->steps_v) = CAG_AS_LIST(line)->as.numbers;
   }
   return true;
 }
 
-static bool read_edges(CagCall *call, CagHermiteGrid *g, GridData *d) {
+static bool read_edges(CagCall *call, const CagRecord *edges, CagHermiteGrid *g) {
   static const char *const names[] = {"u0", "u1", "v0", "v1"};
-  CagRecord *edges;
-  if (!cag_arg_record(call, 1, &edges)) return false;
-  CagVec3 *at = d->tangents;
+  CagVec3 *at = cag_hold_array(call, 2 * (g->nu + g->nv), sizeof *at);
   const CagVec3 **into[] = {&g->u_start, &g->u_end, &g->v_start, &g->v_end};
   for (int k = 0; k < 4; k++) {
     CagValue line = cag_record_get(edges, names[k]);
@@ -153,8 +132,8 @@ static bool read_edges(CagCall *call, CagHermiteGrid *g, GridData *d) {
   return true;
 }
 
-bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
-  GridData d = {0};
+bool cag_surfaces_hermite_surface(CagCall *call, const struct cag_surfaces_hermite_surface *a,
+                                  CagValue *result) {
   CagHermiteGrid g = {0};
   CagList *rows;
   CagSurface *s = NULL;
@@ -163,51 +142,39 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   CagValue first = g.nu ? cag_list_get(call->vm, rows, 0) : cag_none();
   if (first.type != CAG_LIST) return cag_fail_type(call, 0, "rows of points");
   g.nv = CAG_AS_LIST(first)->length;
-  d.points = cag_hold(call, cag_malloc((g.nu * g.nv + 1) * sizeof *d.points));
-  d.tangents = cag_hold(call, cag_malloc(2 * (g.nu + g.nv) * sizeof *d.tangents));
-  if (!read_table(call, 0, g.nu, g.nv, d.points) || !read_edges(call, &g, &d) ||
-      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, g.nu - 1, g.nv - 1, &d))
+  CagVec3 *points = cag_hold_array(call, g.nu * g.nv, sizeof *points);
+  if (!read_table(call, 0, g.nu, g.nv, points) || !read_edges(call, a->edge_tangents, &g) ||
+      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, &g))
     return false;
-  g.points = d.points;
-  g.steps_u = d.steps[0];
-  g.steps_v = d.steps[1];
+  g.points = points;
   return cag_surface_result(call, cag_surface_hermite_grid(&g, &s, call->err), &s, result);
 }
 
 // --- Triangles ---
 
-static bool read_triangle(CagCall *call, int argument, const CagList *rows, CagVec3 *out) {
-  char what[96];
-  for (size_t i = 0; i < rows->length; i++) {
-    snprintf(what, sizeof what, "in row %zu of `%s`", i, cag_parameter_name(call, argument));
-    if (!read_line(call, argument, cag_list_get(call->vm, rows, i), what, i + 1, out)) return false;
-    out += i + 1;
-  }
-  return true;
-}
-
 bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree) {
   CagList *rows;
   if (!cag_arg_list(call, argument, &rows)) return false;
-  size_t n = rows->length;
+  const size_t n = rows->length;
+  char what[96];
   if (n < 1 || n > CAG_TRIANGLE_ROWS) {
-    char wanted[48];
-    snprintf(wanted, sizeof wanted, "1 to %d rows of points", CAG_TRIANGLE_ROWS);
-    return cag_fail_value(call, argument, wanted);
+    snprintf(what, sizeof what, "1 to %d rows of points", CAG_TRIANGLE_ROWS);
+    return cag_fail_value(call, argument, what);
   }
   *degree = (int)n - 1;
-  CagVec3 *points = cag_hold_array(call, n * (n + 1) / 2, sizeof *points);
-  if (!read_triangle(call, argument, rows, points)) return false;
-  *net = cag_give_held(call, points);
+  CagVec3 *row = *net = cag_hold_array(call, n * (n + 1) / 2, sizeof **net);
+  for (size_t i = 0; i < n; row += ++i) {
+    snprintf(what, sizeof what, "in row %zu of `%s`", i, cag_parameter_name(call, argument));
+    if (!read_line(call, argument, cag_list_get(call->vm, rows, i), what, i + 1, row)) return false;
+  }
   return true;
 }
 
 bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
-  CagVec3 *net = NULL;
-  int degree = 0;
+  CagVec3 *net;
+  int degree;
   CagSurface *s = NULL;
-  if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
-  cag_hold(call, net);
-  return cag_surface_result(call, cag_surface_bezier_triangle(net, degree, &s, call->err), &s,
+  return cag_arg_triangle(call, 0, &net, &degree) &&
+         cag_surface_result(call, cag_surface_bezier_triangle(net, degree, &s, call->err), &s,
                             result);
 }

@@ -1,7 +1,6 @@
 // Control points of Bezier and B-spline surfaces: which act where, what they are multiplied by,
 // edits of corners and edges, and the patches' other forms.
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,12 +14,6 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-static const char *const directions[] = {"u", "v"};
-
-static CagValue vector_value(CagVm *vm, CagVec3 p) {
-  return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
-}
-
 // --- One direction of a net ---
 
 typedef struct Axis {
@@ -32,21 +25,15 @@ typedef struct Axis {
 
 // A surface with control points: its view and the two axes.
 typedef struct Net {
-  CagSurface *s;
+  const CagSurface *s;
   CagSurfaceNurbsView view;
   Axis axis[2];
 } Net;
 
-static bool read_net(CagCall *call, Net *n) {
-  if (!cag_arg_surface(call, 0, &n->s)) return false;
-  if (!cag_surface_nurbs_view(n->s, &n->view)) {
-    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-             "a surface of kind %s has no control points; `to_nurbs` gives its rational form where "
-             "there is one",
-             n->s->kind->name);
-    return cag_fail_geometry(call, call->err);
-  }
+static bool read_net(CagCall *call, const CagSurface *s, Net *n) {
   const CagSurfaceNurbsView *v = &n->view;
+  n->s = s;
+  if (!cag_surface_net(call, s, "control points", &n->view)) return false;
   n->axis[0] = (Axis){v->degree_u, v->nu, v->distinct_u, v->periodic_u, v->knots_u};
   n->axis[1] = (Axis){v->degree_v, v->nv, v->distinct_v, v->periodic_v, v->knots_v};
   return true;
@@ -71,11 +58,11 @@ static CagValue spans_value(CagVm *vm, const Axis *a) {
   return cag_builder_finish(vm, list);
 }
 
-bool cag_tensors_spans(CagCall *call, CagValue *result) {
+bool cag_tensors_spans(CagCall *call, const struct cag_tensors_spans *a, CagValue *result) {
   Net n;
-  if (!read_net(call, &n)) return false;
-  CagValue values[] = {spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1])};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  if (!read_net(call, a->S, &n)) return false;
+  *result =
+      cag_uv_value(call->vm, spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1]));
   return true;
 }
 
@@ -97,20 +84,31 @@ static CagValue support_value(CagVm *vm, const Axis *a, size_t i) {
   return cag_builder_finish(vm, list);
 }
 
-bool cag_tensors_support(CagCall *call, CagValue *result) {
+bool cag_tensors_support(CagCall *call, const struct cag_tensors_support *a, CagValue *result) {
   Net n;
   long i, j;
-  if (!read_net(call, &n) || !cag_arg_integer(call, 1, 0, (long)n.axis[0].distinct - 1, &i) ||
+  if (!read_net(call, a->S, &n) || !cag_arg_integer(call, 1, 0, (long)n.axis[0].distinct - 1, &i) ||
       !cag_arg_integer(call, 2, 0, (long)n.axis[1].distinct - 1, &j))
     return false;
-  CagValue values[] = {support_value(call->vm, &n.axis[0], (size_t)i),
-                       support_value(call->vm, &n.axis[1], (size_t)j)};
-  *result = cag_record_new(call->vm, directions, values, 2);
+  *result = cag_uv_value(call->vm, support_value(call->vm, &n.axis[0], (size_t)i),
+                         support_value(call->vm, &n.axis[1], (size_t)j));
   return true;
 }
 
 static CagValue point_value(CagVm *vm, const double *h) {
-  return h[3] > 0 ? vector_value(vm, cag_project(h)) : cag_none();
+  return h[3] > 0 ? cag_point(vm, cag_project(h), 3) : cag_none();
+}
+
+// Rows of points, which lie `stride` apart.
+static CagValue net_value(CagVm *vm, const double *h, size_t rows, size_t columns, size_t stride) {
+  CagBuilder *table = cag_builder_new(vm);
+  for (size_t i = 0; i < rows; i++) {
+    CagBuilder *row = cag_builder_new(vm);
+    for (size_t j = 0; j < columns; j++)
+      cag_builder_add(vm, row, point_value(vm, h + 4 * (i * stride + j)));
+    cag_builder_add(vm, table, cag_builder_finish(vm, row));
+  }
+  return cag_builder_finish(vm, table);
 }
 
 static CagValue indices_value(CagVm *vm, const Axis *a, size_t span) {
@@ -121,48 +119,40 @@ static CagValue indices_value(CagVm *vm, const Axis *a, size_t span) {
 }
 
 bool cag_arg_surface_sides(CagCall *call, int argument, CagSide out[2]) {
-  static const char *const sides[] = {"right", "left", NULL};
-  CagValue v = call->values[argument];
+  const CagValue v = call->values[argument];
+  const bool two = v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2;
   out[0] = out[1] = CAG_SIDE_RIGHT;
-  if (v.type == CAG_UNSET) return true;
-  for (int k = 0; k < 2; k++) {
-    CagValue one = v;
-    if (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2)
-      one = cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k);
-    bool known = one.type == CAG_TEXT && (strcmp(CAG_AS_TEXT(one)->bytes, sides[0]) == 0 ||
-                                          strcmp(CAG_AS_TEXT(one)->bytes, sides[1]) == 0);
-    if (!known) return cag_fail_value(call, argument, "\"right\" or \"left\", or two for u and v");
-    if (strcmp(CAG_AS_TEXT(one)->bytes, sides[1]) == 0) out[k] = CAG_SIDE_LEFT;
+  for (int k = 0; k < 2 && cag_given(call, argument); k++) {
+    const CagValue one = two ? cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k) : v;
+    const char *side = one.type == CAG_TEXT ? CAG_AS_TEXT(one)->bytes : "";
+    if (strcmp(side, "left") == 0) out[k] = CAG_SIDE_LEFT;
+    else if (strcmp(side, "right") != 0)
+      return cag_fail_value(call, argument, "\"right\" or \"left\", or two for u and v");
   }
   return true;
 }
 
-bool cag_tensors_acting_points(CagCall *call, CagValue *result) {
+bool cag_tensors_acting_points(CagCall *call, const struct cag_tensors_acting_points *a,
+                               CagValue *result) {
   static const char *const names[] = {"u", "v", "rows", "columns", "points"};
   Net n;
   double t[2];
   CagSide side[2];
-  if (!read_net(call, &n) || !read_place(call, &n, 1, t) || !cag_arg_surface_sides(call, 3, side))
+  if (!read_net(call, a->S, &n) || !read_place(call, &n, 1, t) ||
+      !cag_arg_surface_sides(call, 3, side))
     return false;
   size_t span[2];
   CagValue values[5];
   for (int k = 0; k < 2; k++) {
-    const Axis *a = &n.axis[k];
-    span[k] = cag_knots_span(a->knots, a->count, a->degree, t[k], side[k] == CAG_SIDE_LEFT,
-                             (size_t)a->degree);
-    values[k] = range_of(call->vm, a->knots[span[k]], a->knots[span[k] + 1]);
-    values[2 + k] = indices_value(call->vm, a, span[k]);
+    const Axis *axis = &n.axis[k];
+    span[k] = cag_knots_span(axis->knots, axis->count, axis->degree, t[k], side[k] == CAG_SIDE_LEFT,
+                             (size_t)axis->degree);
+    values[k] = range_of(call->vm, axis->knots[span[k]], axis->knots[span[k] + 1]);
+    values[2 + k] = indices_value(call->vm, axis, span[k]);
   }
-  CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = span[0] - (size_t)n.axis[0].degree; i <= span[0]; i++) {
-    CagBuilder *row = cag_builder_new(call->vm);
-    for (size_t j = span[1] - (size_t)n.axis[1].degree; j <= span[1]; j++)
-      if (!cag_builder_add(call->vm, row,
-                           point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j))))
-        return false;
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
-  }
-  values[4] = cag_builder_finish(call->vm, rows);
+  const size_t p = (size_t)n.axis[0].degree, q = (size_t)n.axis[1].degree, nv = n.view.nv;
+  const double *first = n.view.homogeneous + 4 * ((span[0] - p) * nv + span[1] - q);
+  values[4] = net_value(call->vm, first, p + 1, q + 1, nv);
   *result = cag_record_new(call->vm, names, values, 5);
   return true;
 }
@@ -180,20 +170,20 @@ static double *basis_line(CagCall *call, const Axis *a, double t) {
   return out;
 }
 
-bool cag_tensors_basis(CagCall *call, CagValue *result) {
+bool cag_tensors_basis(CagCall *call, const struct cag_tensors_basis *a, CagValue *result) {
   Net n;
   double t[2], sum = 0;
-  if (!read_net(call, &n) || !read_place(call, &n, 1, t)) return false;
+  if (!read_net(call, a->S, &n) || !read_place(call, &n, 1, t)) return false;
   double *bu = basis_line(call, &n.axis[0], t[0]), *bv = basis_line(call, &n.axis[1], t[1]);
   size_t nu = n.axis[0].distinct, nv = n.axis[1].distinct;
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nv; j++)
       sum += bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3];
-  if (!(sum > 0)) {
-    cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
-             "all weights that act at this point are 0: give one of them a positive value");
-    return cag_fail_geometry(call, call->err);
-  }
+  if (!(sum > 0))
+    return cag_geometry_ok(
+        call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
+                       "all weights that act at this point are 0: give one of them a positive "
+                       "value"));
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++) {
     double *out;
@@ -221,14 +211,13 @@ static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurfa
   return cag_geometry_ok(call, status);
 }
 
-static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
+static bool part_at(CagCall *call, const CagSurface *s, long du, bool weights, CagVec3 *out) {
   Net n;
   double u, v;
-  long du, dv;
+  long dv;
   CagSurface *part = NULL;
   CagVec3 d[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
-  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &u, &v) ||
-      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_PARTIAL, &du) ||
+  if (!read_net(call, s, &n) || !cag_arg_uv(call, s, 1, &u, &v) ||
       !cag_arg_integer_or(call, 4, 0, 0, CAG_MAX_PARTIAL - du, &dv) ||
       !homogeneous_part(call, &n, weights, &part))
     return false;
@@ -241,82 +230,69 @@ static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
   return true;
 }
 
-bool cag_tensors_numerator(CagCall *call, CagValue *result) {
+bool cag_tensors_numerator(CagCall *call, const struct cag_tensors_numerator *a, CagValue *result) {
   CagVec3 d;
-  if (!part_at(call, false, &d)) return false;
-  *result = vector_value(call->vm, d);
+  if (!part_at(call, a->S, a->du, false, &d)) return false;
+  *result = cag_point(call->vm, d, 3);
   return true;
 }
 
-bool cag_tensors_denominator(CagCall *call, CagValue *result) {
+bool cag_tensors_denominator(CagCall *call, const struct cag_tensors_denominator *a,
+                             CagValue *result) {
   CagVec3 d;
-  if (!part_at(call, true, &d)) return false;
+  if (!part_at(call, a->S, a->du, true, &d)) return false;
   *result = cag_number(d.z);
   return true;
 }
 
 // --- Polynomials ---
 
-// Powers of one direction from Bernstein points, in place: n + 1 rows of `width` points, of the
-// parameter from 0 to `length`.
-static void to_powers(CagVec3 *b, int n, size_t width, double length) {
-  // Forward differences, each row below the one that it is taken from.
-  for (int k = 1; k <= n; k++)
-    for (int i = n; i >= k; i--)
-      for (size_t c = 0; c < width; c++)
-        b[(size_t)i * width + c] =
-            cag_sub(b[(size_t)i * width + c], b[(size_t)(i - 1) * width + c]);
-  double power = 1;
-  for (int i = 0; i <= n; i++, power *= length)
-    for (size_t c = 0; c < width; c++)
-      b[(size_t)i * width + c] = cag_scaled(b[(size_t)i * width + c], cag_binomial(n, i) / power);
-}
-
-static CagValue table_of(CagVm *vm, const CagVec3 *p, size_t n, size_t m) {
-  CagBuilder *rows = cag_builder_new(vm);
-  for (size_t i = 0; i < n; i++) cag_builder_add(vm, rows, cag_points_value(vm, p + i * m, m, 3));
-  return cag_builder_finish(vm, rows);
+// Powers of one direction from Bernstein points, in place, of the parameter from 0 to `length`:
+// n + 1 lines, which lie `line` apart, of `width` points, which lie `across` apart.
+static void to_powers(CagVec3 *b, int n, size_t line, size_t width, size_t across, double length) {
+  for (size_t c = 0; c < width; c++, b += across) {
+    // Forward differences, each after the one that it is taken from.
+    for (int k = 1; k <= n; k++)
+      for (int i = n; i >= k; i--)
+        b[(size_t)i * line] = cag_sub(b[(size_t)i * line], b[(size_t)(i - 1) * line]);
+    double power = 1;
+    for (int i = 0; i <= n; i++, power *= length)
+      b[(size_t)i * line] = cag_scaled(b[(size_t)i * line], cag_binomial(n, i) / power);
+  }
 }
 
 static CagValue piece_powers(CagCall *call, const CagSurface *piece, double lu, double lv) {
   CagSurfaceNurbsView v;
   cag_surface_nurbs_view(piece, &v);
-  size_t n = v.nu, m = v.nv;
-  CagVec3 *b = cag_hold(call, cag_malloc(2 * n * m * sizeof *b));
-  CagVec3 *turned = b + n * m;
+  const size_t n = v.nu, m = v.nv;
+  CagVec3 *b = cag_hold(call, cag_malloc(n * m * sizeof *b));
   for (size_t i = 0; i < n * m; i++) b[i] = cag_project(v.homogeneous + 4 * i);
-  to_powers(b, (int)n - 1, m, lu);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < m; j++) turned[j * n + i] = b[i * m + j];
-  to_powers(turned, (int)m - 1, n, lv);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < m; j++) b[i * m + j] = turned[j * n + i];
-  CagValue table = table_of(call->vm, b, n, m);
+  to_powers(b, (int)n - 1, m, m, 1, lu);
+  to_powers(b, (int)m - 1, 1, n, m, lv);
+  CagValue table = cag_table_value(call->vm, b, n, m);
   cag_release_held(call, b);
   return table;
 }
 
-static size_t span_lengths(const Axis *a, double *out) {
-  size_t n = 0;
+// The lengths of the spans; held.
+static double *span_lengths(CagCall *call, const Axis *a) {
+  double *lengths = cag_hold_array(call, a->count, sizeof *lengths), *next = lengths;
   for (size_t i = (size_t)a->degree; i < a->count; i++)
-    if (a->knots[i] < a->knots[i + 1]) out[n++] = a->knots[i + 1] - a->knots[i];
-  return n;
+    if (a->knots[i] < a->knots[i + 1]) *next++ = a->knots[i + 1] - a->knots[i];
+  return lengths;
 }
 
-bool cag_tensors_polynomials(CagCall *call, CagValue *result) {
+bool cag_tensors_polynomials(CagCall *call, const struct cag_tensors_polynomials *a,
+                             CagValue *result) {
   Net n;
   size_t nu, nv;
-  if (!read_net(call, &n)) return false;
-  if (n.view.rational) {
-    cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
-             "the surface has weights, so it is not a polynomial: ask for `numerator` and "
-             "`denominator`");
-    return cag_fail_geometry(call, call->err);
-  }
-  double *lu = cag_hold_array(call, n.axis[0].count, sizeof *lu);
-  double *lv = cag_hold_array(call, n.axis[1].count, sizeof *lv);
-  span_lengths(&n.axis[0], lu);
-  span_lengths(&n.axis[1], lv);
+  if (!read_net(call, a->S, &n)) return false;
+  if (n.view.rational)
+    return cag_geometry_ok(
+        call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
+                       "the surface has weights, so it is not a polynomial: ask for `numerator` "
+                       "and `denominator`"));
+  const double *lu = span_lengths(call, &n.axis[0]), *lv = span_lengths(call, &n.axis[1]);
   CagSurfaceArray *pieces = cag_hold_surfaces(call);
   CagStatus status = cag_surface_to_bezier(n.s, &pieces->items, &nu, &nv, call->err);
   if (!cag_geometry_ok(call, status)) return false;
@@ -336,25 +312,22 @@ bool cag_tensors_polynomials(CagCall *call, CagValue *result) {
 
 // --- Corners ---
 
-bool cag_tensors_patch_corners(CagCall *call, CagValue *result) {
+bool cag_tensors_patch_corners(CagCall *call, const struct cag_tensors_patch_corners *a,
+                               CagValue *result) {
   static const char *const names[] = {"corners", "tangents_u", "tangents_v", "twists"};
-  CagSurface *s;
   CagHermiteCorners c;
-  if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_corners(s, &c, call->err)))
-    return false;
-  CagValue values[] = {table_of(call->vm, c.p[0], 2, 2), table_of(call->vm, c.pu[0], 2, 2),
-                       table_of(call->vm, c.pv[0], 2, 2), table_of(call->vm, c.puv[0], 2, 2)};
+  if (!cag_geometry_ok(call, cag_surface_corners(a->S, &c, call->err))) return false;
+  CagValue values[] = {
+      cag_table_value(call->vm, c.p[0], 2, 2), cag_table_value(call->vm, c.pu[0], 2, 2),
+      cag_table_value(call->vm, c.pv[0], 2, 2), cag_table_value(call->vm, c.puv[0], 2, 2)};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
 
-bool cag_tensors_hermite_matrix(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_tensors_hermite_matrix(CagCall *call, const struct cag_tensors_hermite_matrix *a,
+                                CagValue *result) {
   CagHermiteCorners c;
-  if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_hermite_corners(s, &c, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, cag_surface_hermite_corners(a->S, &c, call->err))) return false;
   CagVec3 q[16];
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
@@ -363,7 +336,7 @@ bool cag_tensors_hermite_matrix(CagCall *call, CagValue *result) {
       q[4 * (2 + i) + j] = c.pu[i][j];
       q[4 * (2 + i) + 2 + j] = c.puv[i][j];
     }
-  *result = table_of(call->vm, q, 4, 4);
+  *result = cag_table_value(call->vm, q, 4, 4);
   return true;
 }
 
@@ -377,39 +350,25 @@ static bool read_edit(CagCall *call, int argument, CagCornerEdit *e, int k) {
   return cag_arg_vec(call, argument, &e->vector[k], NULL);
 }
 
-// S, u, v, tangent_u, tangent_v, twist
-bool cag_tensors_edit_corner(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  CagCornerEdit e = {0};
-  long u, v;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, 1, &u) ||
-      !cag_arg_integer(call, 2, 0, 1, &v))
-    return false;
-  e.u = (int)u;
-  e.v = (int)v;
+bool cag_tensors_edit_corner(CagCall *call, const struct cag_tensors_edit_corner *a,
+                             CagValue *result) {
+  CagSurface *out = NULL;
+  CagCornerEdit e = {.u = (int)a->u, .v = (int)a->v};
   for (int k = 0; k < 3; k++)
     if (!read_edit(call, 3 + k, &e, k)) return false;
-  return cag_surface_result(call, cag_surface_edit_corner(s, &e, &out, call->err), &out, result);
+  return cag_surface_result(call, cag_surface_edit_corner(a->S, &e, &out, call->err), &out, result);
 }
 
-bool cag_tensors_set_point(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  CagVec3 p;
-  long i, j;
-  double weight = -1;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, LONG_MAX, &i) ||
-      !cag_arg_integer(call, 2, 0, LONG_MAX, &j) || !cag_arg_vec(call, 3, &p, NULL))
-    return false;
-  if (cag_given(call, 4)) {
-    if (!cag_arg_finite(call, 4, &weight)) return false;
-    if (weight < 0) {
-      char text[32];
-      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
-               "`weight` must not be negative, it is %s", cag_number_text(weight, text));
-      return cag_fail_geometry(call, call->err);
-    }
-  }
-  CagStatus status = cag_surface_set_point(s, (size_t)i, (size_t)j, p, weight, &out, call->err);
+bool cag_tensors_set_point(CagCall *call, const struct cag_tensors_set_point *a, CagValue *result) {
+  CagSurface *out = NULL;
+  char text[32];
+  if (a->weight < 0)
+    return cag_geometry_ok(call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight,
+                                          "weight", -1, "`weight` must not be negative, it is %s",
+                                          cag_number_text(a->weight, text)));
+  const double weight = cag_given(call, 4) ? a->weight : -1; // the core keeps the old one
+  CagStatus status =
+      cag_surface_set_point(a->S, (size_t)a->i, (size_t)a->j, a->P.at, weight, &out, call->err);
   return cag_surface_result(call, status, &out, result);
 }
 
@@ -417,60 +376,43 @@ bool cag_tensors_set_point(CagCall *call, CagValue *result) {
 
 static const char *const sides[] = {"u0", "u1", "v0", "v1", NULL};
 
-static bool read_match(CagCall *call, int ratio, int shear, CagEdgeMatch *how) {
+// A number, or two for the ends of the edge.
+static bool read_shear(CagCall *call, int argument, double shear[2]) {
   const double *x;
   size_t n;
-  *how = (CagEdgeMatch){1, {0, 0}};
-  if (!cag_arg_number_or(call, ratio, 1, &how->ratio)) return false;
-  if (!cag_given(call, shear)) return true;
-  if (call->values[shear].type == CAG_NUMBER) {
-    if (!cag_arg_finite(call, shear, &how->shear[0])) return false;
-    how->shear[1] = how->shear[0];
+  if (!cag_given(call, argument)) return true;
+  if (call->values[argument].type == CAG_NUMBER) {
+    if (!cag_arg_finite(call, argument, &shear[0])) return false;
+    shear[1] = shear[0];
     return true;
   }
-  if (!cag_as_vector(call->values[shear], &x, &n) || n != 2 || !isfinite(x[0] + x[1]))
-    return cag_fail_value(call, shear, "a number, or two for the ends of the edge");
-  how->shear[0] = x[0];
-  how->shear[1] = x[1];
+  if (!cag_as_vector(call->values[argument], &x, &n) || n != 2 || !isfinite(x[0] + x[1]))
+    return cag_fail_value(call, argument, "a number, or two for the ends of the edge");
+  memcpy(shear, x, 2 * sizeof *x);
   return true;
 }
 
-// S, edge, ratio, shear, degree
-bool cag_tensors_bezier_join(CagCall *call, CagValue *result) {
-  static const char *const order[] = {"u1", "u0", "v0", "v1", NULL}; // the default comes first
-  static const int SIDE[] = {1, 0, 2, 3};
+bool cag_tensors_bezier_join(CagCall *call, const struct cag_tensors_bezier_join *a,
+                             CagValue *result) {
   static const char *const names[] = {"points", "weights"};
-  CagSurface *s;
-  CagEdgeMatch how;
-  int edge;
-  long degree;
+  CagEdgeMatch how = {.ratio = a->ratio};
+  int degree = (int)a->degree;
   double *lines = NULL;
   size_t n = 0;
   CagSurfaceNurbsView v;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_choice(call, 1, order, &edge) ||
-      !read_match(call, 2, 3, &how))
-    return false;
-  int side = SIDE[edge];
-  bool known = cag_surface_nurbs_view(s, &v);
-  long usual = !known ? 3 : side < 2 ? v.degree_u : v.degree_v;
-  if (!cag_arg_integer_or(call, 4, usual, 1, 1000, &degree)) return false;
-  CagStatus status = cag_surface_join_lines(s, side, (int)degree, &how, &lines, &n, call->err);
+  if (!read_shear(call, 3, how.shear)) return false;
+  if (degree == 0)
+    degree = !cag_surface_nurbs_view(a->S, &v) ? 3 : a->edge < 2 ? v.degree_u : v.degree_v;
+  CagStatus status = cag_surface_join_lines(a->S, a->edge, degree, &how, &lines, &n, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, cag_free, lines);
-  CagBuilder *rows = cag_builder_new(call->vm), *weights = cag_builder_new(call->vm);
+  CagValue weights[2];
   for (size_t i = 0; i < 2; i++) {
-    CagBuilder *row = cag_builder_new(call->vm);
     double *w;
-    CagValue list = cag_list_numbers(call->vm, n, &w);
-    for (size_t j = 0; j < n; j++) {
-      const double *h = lines + 4 * (i * n + j);
-      w[j] = h[3];
-      if (!cag_builder_add(call->vm, row, point_value(call->vm, h))) return false;
-    }
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
-    if (!cag_builder_add(call->vm, weights, list)) return false;
+    weights[i] = cag_list_numbers(call->vm, n, &w);
+    for (size_t j = 0; j < n; j++) w[j] = lines[4 * (i * n + j) + 3];
   }
-  CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
+  CagValue values[] = {net_value(call->vm, lines, 2, n, n), cag_list_values(call->vm, weights, 2)};
   *result = cag_record_new(call->vm, names, values, 2);
   return true;
 }
@@ -496,16 +438,14 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
                         "each, such as [\"u1\", \"u0\"]");
 }
 
-// A, B, ratio, shear, edges
-bool cag_tensors_match_edge(CagCall *call, CagValue *result) {
-  CagSurface *a, *b, *out = NULL;
-  CagEdgeMatch how;
+bool cag_tensors_match_edge(CagCall *call, const struct cag_tensors_match_edge *a,
+                            CagValue *result) {
+  CagSurface *out = NULL;
+  CagEdgeMatch how = {.ratio = a->ratio};
   int edges[2];
   bool given;
-  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
-      !read_match(call, 2, 3, &how) || !cag_arg_edges(call, 4, edges, &given))
-    return false;
-  CagStatus status = cag_surface_match(a, b, &how, given ? edges : NULL, &out, call->err);
+  if (!read_shear(call, 3, how.shear) || !cag_arg_edges(call, 4, edges, &given)) return false;
+  CagStatus status = cag_surface_match(a->A, a->B, &how, given ? edges : NULL, &out, call->err);
   if (!cag_surface_result(call, status, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[1]);
   return true;
@@ -513,26 +453,25 @@ bool cag_tensors_match_edge(CagCall *call, CagValue *result) {
 
 // --- Flat and creased places ---
 
-bool cag_tensors_creases(CagCall *call, CagValue *result) {
+bool cag_tensors_creases(CagCall *call, const struct cag_tensors_creases *a, CagValue *result) {
   static const char *const names[] = {"at", "angle"};
-  CagSurface *s;
   CagValue both[2];
-  if (!cag_arg_surface(call, 0, &s)) return false;
   for (int k = 0; k < 2; k++) {
     CagCrease *found = NULL;
     size_t n = 0;
-    if (!cag_geometry_ok(call, cag_surface_creases(s, k, &found, &n, call->err))) return false;
+    if (!cag_geometry_ok(call, cag_surface_creases(a->S, k, &found, &n, call->err))) return false;
     cag_hold_for(call, cag_free, found);
     CagBuilder *list = cag_builder_new(call->vm);
     for (size_t i = 0; i < n; i++) {
-      CagValue values[] = {cag_parameter_value(k == 0 ? s->angular_u : s->angular_v, found[i].at),
-                           cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
+      CagValue values[] = {
+          cag_parameter_value(k == 0 ? a->S->angular_u : a->S->angular_v, found[i].at),
+          cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
       if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2)))
         return false;
     }
     both[k] = cag_builder_finish(call->vm, list);
   }
-  *result = cag_record_new(call->vm, directions, both, 2);
+  *result = cag_uv_value(call->vm, both[0], both[1]);
   return true;
 }
 
@@ -568,19 +507,19 @@ static bool acting_flat(const Net *n, size_t su, size_t sv) {
   return true;
 }
 
-bool cag_tensors_flat_spans(CagCall *call, CagValue *result) {
+bool cag_tensors_flat_spans(CagCall *call, const struct cag_tensors_flat_spans *a,
+                            CagValue *result) {
   Net n;
-  if (!read_net(call, &n)) return false;
+  if (!read_net(call, a->S, &n)) return false;
   const Axis *u = &n.axis[0], *v = &n.axis[1];
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = (size_t)u->degree; i < u->count; i++)
     for (size_t j = (size_t)v->degree; j < v->count; j++) {
       if (!(u->knots[i] < u->knots[i + 1] && v->knots[j] < v->knots[j + 1])) continue;
       if (!acting_flat(&n, i, j)) continue;
-      CagValue values[] = {range_of(call->vm, u->knots[i], u->knots[i + 1]),
-                           range_of(call->vm, v->knots[j], v->knots[j + 1])};
-      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2)))
-        return false;
+      const CagValue over = cag_uv_value(call->vm, range_of(call->vm, u->knots[i], u->knots[i + 1]),
+                                         range_of(call->vm, v->knots[j], v->knots[j + 1]));
+      if (!cag_builder_add(call->vm, list, over)) return false;
     }
   *result = cag_builder_finish(call->vm, list);
   return true;
@@ -588,21 +527,20 @@ bool cag_tensors_flat_spans(CagCall *call, CagValue *result) {
 
 // --- The net as a mesh ---
 
-bool cag_tensors_net_mesh(CagCall *call, CagValue *result) {
+bool cag_tensors_net_mesh(CagCall *call, const struct cag_tensors_net_mesh *a, CagValue *result) {
   Net n;
   CagMesh *m = NULL;
-  if (!read_net(call, &n)) return false;
+  if (!read_net(call, a->S, &n)) return false;
   const CagSurfaceNurbsView *v = &n.view;
   size_t nu = v->distinct_u, nv = v->distinct_v;
   size_t cu = v->periodic_u ? nu : nu - 1, cv = v->periodic_v ? nv : nv - 1;
   for (size_t i = 0; i < nu * nv; i++)
-    if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0)) {
-      cag_fail(
-          call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
-          "control point [%zu, %zu] has the weight 0 and so no place: the net has a hole there",
-          i / nv, i % nv);
-      return cag_fail_geometry(call, call->err);
-    }
+    if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0))
+      return cag_geometry_ok(
+          call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
+                         "control point [%zu, %zu] has the weight 0 and so no place: the net has a "
+                         "hole there",
+                         i / nv, i % nv));
   if (!cag_geometry_ok(call,
                        cag_mesh_new(nu * nv, 2 * cu * cv, false, false, false, &m, call->err)))
     return false;
@@ -611,13 +549,13 @@ bool cag_tensors_net_mesh(CagCall *call, CagValue *result) {
   uint32_t *t = m->triangles;
   for (size_t i = 0; i < cu; i++)
     for (size_t j = 0; j < cv; j++) {
-      uint32_t a = (uint32_t)(i * nv + j), b = (uint32_t)((i + 1) % nu * nv + j);
-      uint32_t c = (uint32_t)((i + 1) % nu * nv + (j + 1) % nv),
-               d = (uint32_t)(i * nv + (j + 1) % nv);
-      double ac = cag_norm(cag_sub(m->positions[a], m->positions[c]));
-      double bd = cag_norm(cag_sub(m->positions[b], m->positions[d]));
-      const uint32_t by_ac[6] = {a, b, c, a, c, d}, by_bd[6] = {a, b, d, b, c, d};
-      memcpy(t, ac <= bd ? by_ac : by_bd, sizeof by_ac);
+      const uint32_t p = (uint32_t)(i * nv + j), q = (uint32_t)((i + 1) % nu * nv + j);
+      const uint32_t r = (uint32_t)((i + 1) % nu * nv + (j + 1) % nv);
+      const uint32_t s = (uint32_t)(i * nv + (j + 1) % nv);
+      const double pr = cag_norm(cag_sub(m->positions[p], m->positions[r]));
+      const double qs = cag_norm(cag_sub(m->positions[q], m->positions[s]));
+      const uint32_t by_pr[6] = {p, q, r, p, r, s}, by_qs[6] = {p, q, s, q, r, s};
+      memcpy(t, pr <= qs ? by_pr : by_qs, sizeof by_pr);
       t += 6;
     }
   *result = cag_mesh_value(call->vm, m);

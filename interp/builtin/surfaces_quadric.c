@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "geom/surface/trimmed.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -39,12 +40,10 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
                                          &patches->count, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
-  for (size_t i = 0; i < patches->count; i++) {
-    *result = cag_surface_value(call->vm, cag_surface_retain(patches->items[i]));
-    if (!cag_builder_add(call->vm, list, *result)) return false;
-  }
-  if (patches->count != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
-  return true;
+  for (size_t i = 0; i < patches->count; i++)
+    cag_builder_add(call->vm, list,
+                    cag_surface_value(call->vm, cag_surface_retain(patches->items[i])));
+  return cag_shapes_result(call, list, result);
 }
 
 // --- By numbers ---
@@ -61,7 +60,7 @@ static bool fail_equation(CagCall *call, const CagList *list) {
                        list->length);
 }
 
-static bool read_equation(CagCall *call, CagQuadric *q) {
+bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) {
   CagList *list;
   double rows[4][4];
   const double *x;
@@ -81,75 +80,68 @@ static bool read_equation(CagCall *call, CagQuadric *q) {
   return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, call->err));
 }
 
-bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) { return read_equation(call, q); }
-
 bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
   CagQuadric q;
-  return read_equation(call, &q) && give_patches(call, &q, 1, result);
+  return cag_surfaces_read_form(call, &q) && give_patches(call, &q, 1, result);
 }
 
 // --- By name: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
 
-// Semi-axes from the parameters 0..n-1.
-static bool read_axes(CagCall *call, int n, double axes[3]) {
-  for (int i = 0; i < n; i++)
-    if (!cag_arg_positive(call, i, &axes[i])) return false;
-  return true;
-}
-
 static double inverse_square(double x) { return 1 / (x * x); }
 
-bool cag_surfaces_ellipsoid(CagCall *call, CagValue *result) {
-  double s[3];
-  if (!read_axes(call, 3, s)) return false;
-  CagQuadric q = {
-      {inverse_square(s[0]), inverse_square(s[1]), inverse_square(s[2]), 0, 0, 0, 0, 0, 0, -1}};
+bool cag_surfaces_ellipsoid(CagCall *call, const struct cag_surfaces_ellipsoid *a,
+                            CagValue *result) {
+  const CagQuadric q = {
+      {inverse_square(a->a), inverse_square(a->b), inverse_square(a->c), 0, 0, 0, 0, 0, 0, -1}};
   return give_patches(call, &q, 3, result);
 }
 
-bool cag_surfaces_hyperboloid(CagCall *call, CagValue *result) {
-  double s[3];
-  long sheets;
-  if (!read_axes(call, 3, s) || !cag_arg_integer_or(call, 3, 1, 1, 2, &sheets)) return false;
-  CagQuadric q = {{inverse_square(s[0]), inverse_square(s[1]), -inverse_square(s[2]), 0, 0, 0, 0, 0,
-                   0, sheets == 1 ? -1 : 1}};
+bool cag_surfaces_hyperboloid(CagCall *call, const struct cag_surfaces_hyperboloid *a,
+                              CagValue *result) {
+  const CagQuadric q = {{inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0,
+                         0, 0, 0, a->sheets == 1 ? -1 : 1}};
   return give_patches(call, &q, 4, result);
 }
 
-bool cag_surfaces_elliptic_cone(CagCall *call, CagValue *result) {
-  double s[3];
-  if (!read_axes(call, 3, s)) return false;
-  CagQuadric q = {
-      {inverse_square(s[0]), inverse_square(s[1]), -inverse_square(s[2]), 0, 0, 0, 0, 0, 0, 0}};
+bool cag_surfaces_elliptic_cone(CagCall *call, const struct cag_surfaces_elliptic_cone *a,
+                                CagValue *result) {
+  const CagQuadric q = {
+      {inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0, 0, 0, 0, 0}};
   return give_patches(call, &q, 3, result);
 }
 
 // x^2/a^2 + sign y^2/b^2 + j z + k = 0
-static bool two_axes(CagCall *call, double sign, double j, double k, CagValue *result) {
-  double s[3];
-  if (!read_axes(call, 2, s)) return false;
-  CagQuadric q = {{inverse_square(s[0]), sign * inverse_square(s[1]), 0, 0, 0, 0, 0, 0, j, k}};
+static bool two_axes(CagCall *call, double a, double b, double sign, double j, double k,
+                     CagValue *result) {
+  const CagQuadric q = {{inverse_square(a), sign * inverse_square(b), 0, 0, 0, 0, 0, 0, j, k}};
   return give_patches(call, &q, 2, result);
 }
 
-bool cag_surfaces_paraboloid(CagCall *call, CagValue *result) {
-  return two_axes(call, 1, -1, 0, result);
-}
-bool cag_surfaces_hyperbolic_paraboloid(CagCall *call, CagValue *result) {
-  return two_axes(call, -1, -1, 0, result);
-}
-bool cag_surfaces_elliptic_cylinder(CagCall *call, CagValue *result) {
-  return two_axes(call, 1, 0, -1, result);
-}
-bool cag_surfaces_hyperbolic_cylinder(CagCall *call, CagValue *result) {
-  return two_axes(call, -1, 0, -1, result);
+bool cag_surfaces_paraboloid(CagCall *call, const struct cag_surfaces_paraboloid *a,
+                             CagValue *result) {
+  return two_axes(call, a->a, a->b, 1, -1, 0, result);
 }
 
-bool cag_surfaces_parabolic_cylinder(CagCall *call, CagValue *result) {
-  double s[3];
-  if (!read_axes(call, 1, s)) return false;
-  CagQuadric q = {{0, 1, 0, 0, 0, 0, -4 * s[0], 0, 0, 0}};
-  return give_patches(call, &q, 1, result);
+bool cag_surfaces_hyperbolic_paraboloid(CagCall *call,
+                                        const struct cag_surfaces_hyperbolic_paraboloid *a,
+                                        CagValue *result) {
+  return two_axes(call, a->a, a->b, -1, -1, 0, result);
+}
+
+bool cag_surfaces_elliptic_cylinder(CagCall *call, const struct cag_surfaces_elliptic_cylinder *a,
+                                    CagValue *result) {
+  return two_axes(call, a->a, a->b, 1, 0, -1, result);
+}
+
+bool cag_surfaces_hyperbolic_cylinder(CagCall *call,
+                                      const struct cag_surfaces_hyperbolic_cylinder *a,
+                                      CagValue *result) {
+  return two_axes(call, a->a, a->b, -1, 0, -1, result);
+}
+
+bool cag_surfaces_parabolic_cylinder(CagCall *call, const struct cag_surfaces_parabolic_cylinder *a,
+                                     CagValue *result) {
+  return give_patches(call, &(CagQuadric){{0, 1, 0, 0, 0, 0, -4 * a->a, 0, 0, 0}}, 1, result);
 }
 
 // --- Classification ---
@@ -193,7 +185,7 @@ static bool turned_sphere(const CagSurface *s, CagQuadric *q) {
 
 bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   CagValue v = call->values[0];
-  if (v.type == CAG_LIST) return read_equation(call, q);
+  if (v.type == CAG_LIST) return cag_surfaces_read_form(call, q);
   if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->as.items->length > 0)
     v = cag_list_get(call->vm, CAG_AS_SHAPE(v)->as.items, 0);
   if (v.type == CAG_SURFACE) {
@@ -203,12 +195,12 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   }
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
-  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_not_a_quadric, "", -1,
-           "expects a quadric, a sphere, or the 10 numbers or 4 rows of one, found %s %s",
-           cag_article(v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name
-                                             : cag_type_name(v)),
-           v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name : cag_type_name(v));
-  return cag_fail_geometry(call, call->err);
+  const char *kind =
+      v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name : cag_type_name(v);
+  return cag_geometry_ok(
+      call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_not_a_quadric, "", -1,
+                     "expects a quadric, a sphere, or the 10 numbers or 4 rows of one, found %s %s",
+                     cag_article(kind), kind));
 }
 
 bool cag_surfaces_classify(CagCall *call, CagValue *result) {

@@ -39,10 +39,9 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
   return cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, call->err));
 }
 
-// S, curves, u, v
-bool cag_surfaces_trim(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+bool cag_surfaces_trim(CagCall *call, const struct cag_surfaces_trim *a, CagValue *result) {
+  const CagSurface *s = a->S;
+  CagSurface *out = NULL;
   if (cag_given(call, 1)) {
     CagRegion *region;
     if (cag_given(call, 2) || cag_given(call, 3))
@@ -60,11 +59,11 @@ bool cag_surfaces_trim(CagCall *call, CagValue *result) {
                                     &out, result);
 }
 
-bool cag_surfaces_split(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_surfaces_split(CagCall *call, const struct cag_surfaces_split *a, CagValue *result) {
+  const CagSurface *s = a->S;
   int direction;
   double t;
-  if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t)) return false;
+  if (!read_place(call, s, 1, &direction, &t)) return false;
   const double low = direction == 0 ? s->u0 : s->v0, high = direction == 0 ? s->u1 : s->v1;
   if (!(t > low && t < high)) {
     const double shown = (direction == 0 ? s->angular_u : s->angular_v) ? 180 / M_PI : 1;
@@ -78,8 +77,7 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
   CagBuilder *parts = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++) {
     CagSurface *part = NULL;
-    double lo = k == 0 ? (direction == 0 ? s->u0 : s->v0) : t;
-    double hi = k == 0 ? t : (direction == 0 ? s->u1 : s->v1);
+    const double lo = k == 0 ? low : t, hi = k == 0 ? t : high;
     CagStatus status = direction == 0 ? cag_surface_part(s, lo, hi, s->v0, s->v1, &part, call->err)
                                       : cag_surface_part(s, s->u0, s->u1, lo, hi, &part, call->err);
     CagValue v;
@@ -91,15 +89,13 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_surfaces_insert_knot(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
+bool cag_surfaces_insert_knot(CagCall *call, const struct cag_surfaces_insert_knot *a,
+                              CagValue *result) {
+  CagSurface *out = NULL;
   int direction;
-  long times;
   double t;
-  if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t) ||
-      !cag_arg_integer_or(call, 3, 1, 1, 25, &times))
-    return false;
-  CagStatus status = cag_surface_insert_knot(s, direction, t, (int)times, &out, call->err);
+  if (!read_place(call, a->S, 1, &direction, &t)) return false;
+  CagStatus status = cag_surface_insert_knot(a->S, direction, t, (int)a->times, &out, call->err);
   return cag_changed_surface_result(call, status, &out, result);
 }
 
@@ -121,13 +117,11 @@ static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {
   return cag_arg_numbers(call, argument, &out->knots, &out->count);
 }
 
-bool cag_surfaces_refine(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
+bool cag_surfaces_refine(CagCall *call, const struct cag_surfaces_refine *a, CagValue *result) {
+  CagSurface *out = NULL;
   CagRefinement r[2];
-  if (!cag_arg_surface(call, 0, &s) || !read_refinement(call, 1, &r[0]) ||
-      !read_refinement(call, 2, &r[1]))
-    return false;
-  return cag_changed_surface_result(call, cag_surface_refine_by(s, r, &out, call->err), &out,
+  return read_refinement(call, 1, &r[0]) && read_refinement(call, 2, &r[1]) &&
+         cag_changed_surface_result(call, cag_surface_refine_by(a->S, r, &out, call->err), &out,
                                     result);
 }
 
@@ -137,12 +131,11 @@ bool cag_surfaces_elevate(CagCall *call, const struct cag_surfaces_elevate *a, C
       call, cag_surface_elevate(a->S, (int)a->u, (int)a->v, &out, call->err), &out, result);
 }
 
-bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
-  CagSurface *s;
+bool cag_surfaces_to_bezier(CagCall *call, const struct cag_surfaces_to_bezier *a,
+                            CagValue *result) {
   size_t nu, nv;
-  if (!cag_arg_surface(call, 0, &s)) return false;
   CagSurfaceArray *pieces = cag_hold_surfaces(call);
-  CagStatus status = cag_surface_to_bezier(s, &pieces->items, &nu, &nv, call->err);
+  CagStatus status = cag_surface_to_bezier(a->S, &pieces->items, &nu, &nv, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   pieces->count = nu * nv;
   CagBuilder *rows = cag_builder_new(call->vm);
@@ -159,42 +152,34 @@ bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {
-  CagSurface *s, *out = NULL;
-  if (!cag_arg_surface(call, 0, &s)) return false;
-  return cag_changed_surface_result(call, cag_surface_transpose(s, &out, call->err), &out, result);
+bool cag_surfaces_transpose_uv(CagCall *call, const struct cag_surfaces_transpose_uv *a,
+                               CagValue *result) {
+  CagSurface *out = NULL;
+  return cag_changed_surface_result(call, cag_surface_transpose(a->S, &out, call->err), &out,
+                                    result);
 }
 
 // --- Two surfaces ---
 
-#define SEAM_TOLERANCE 1e-9
-
-bool cag_surfaces_join_surfaces(CagCall *call, CagValue *result) {
-  CagSurface *a, *b, *out = NULL;
-  double tolerance;
-  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
-      !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance))
-    return false;
-  return cag_changed_surface_result(call, cag_surface_join(a, b, tolerance, &out, call->err), &out,
-                                    result);
+bool cag_surfaces_join_surfaces(CagCall *call, const struct cag_surfaces_join_surfaces *a,
+                                CagValue *result) {
+  CagSurface *out = NULL;
+  return cag_changed_surface_result(
+      call, cag_surface_join(a->A, a->B, a->tolerance, &out, call->err), &out, result);
 }
 
-bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
+bool cag_surfaces_continuity(CagCall *call, const struct cag_surfaces_continuity *a,
+                             CagValue *result) {
   static const char *const names[] = {"class", "gap",      "angle", "first_jump", "curvature_jump",
                                       "edges", "reversed", "C0",    "G1",         "C1",
                                       "G2"};
   static const char *const sides[] = {"u0", "u1", "v0", "v1"};
-  CagSurface *a, *b;
   CagSeam seam;
-  double tolerance;
   int edges_given[2];
   bool given;
-  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
-      !cag_arg_edges(call, cag_given(call, 4) ? 4 : 2, edges_given, &given) ||
-      !cag_arg_number_or(call, 3, SEAM_TOLERANCE, &tolerance))
-    return false;
+  if (!cag_arg_edges(call, cag_given(call, 4) ? 4 : 2, edges_given, &given)) return false;
   CagStatus status =
-      cag_surface_seam_on(a, b, given ? edges_given : NULL, tolerance, &seam, call->err);
+      cag_surface_seam_on(a->A, a->B, given ? edges_given : NULL, a->tolerance, &seam, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
   CagBuilder *edges = cag_builder_new(call->vm);
@@ -226,8 +211,6 @@ bool cag_surfaces_offset(CagCall *call, const struct cag_surfaces_offset *a, Cag
 bool cag_surfaces_thicken(CagCall *call, const struct cag_surfaces_thicken *a, CagValue *result) {
   CagSolid *out = NULL;
   if (a->d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
-  if (!cag_geometry_ok(call, cag_solid_thicken(a->S, a->d, &out, call->err))) return false;
-  *result = cag_solid_value(call->vm, out);
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  return cag_changed_solid_result(call, cag_solid_thicken(a->S, a->d, &out, call->err), &out,
+                                  result);
 }

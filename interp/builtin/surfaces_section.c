@@ -7,17 +7,22 @@
 #include "geom/meet/curvature_contour.h"
 #include "geom/meet/curvature_line.h"
 #include "geom/surface/motion.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
 // --- Quadrics ---
 
+static CagValue coefficients(CagVm *vm, CagQuadric q) {
+  for (int i = 0; i < 10; i++) q.c[i] += 0.0; // no -0
+  return cag_vector(vm, q.c, 10);
+}
+
 bool cag_sections_coefficients(CagCall *call, CagValue *result) {
   CagQuadric q;
   if (!cag_arg_quadric(call, &q)) return false;
-  for (int i = 0; i < 10; i++) q.c[i] += 0.0; // no -0
-  *result = cag_vector(call->vm, q.c, 10);
+  *result = coefficients(call->vm, q);
   return true;
 }
 
@@ -31,13 +36,12 @@ bool cag_sections_rows(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_sections_at(CagCall *call, CagValue *result) {
+bool cag_sections_at(CagCall *call, const struct cag_sections_at *a, CagValue *result) {
   static const char *const names[] = {"value", "gradient"};
   CagQuadric q;
-  CagVec3 p;
-  if (!cag_arg_quadric(call, &q) || !cag_arg_vec(call, 1, &p, NULL)) return false;
-  CagValue values[] = {cag_number(cag_quadric_value(&q, p)),
-                       cag_point(call->vm, cag_quadric_gradient(&q, p), 3)};
+  if (!cag_arg_quadric(call, &q)) return false;
+  CagValue values[] = {cag_number(cag_quadric_value(&q, a->P.at)),
+                       cag_point(call->vm, cag_quadric_gradient(&q, a->P.at), 3)};
   *result = cag_record_new(call->vm, names, values, 2);
   return true;
 }
@@ -51,24 +55,22 @@ bool cag_sections_center(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_sections_tangent(CagCall *call, CagValue *result) {
+bool cag_sections_tangent(CagCall *call, const struct cag_sections_tangent *a, CagValue *result) {
   CagQuadric q;
-  CagVec3 p;
   CagPlane plane;
-  if (!cag_arg_quadric(call, &q) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_quadric_tangent_plane(&q, p, &plane, call->err)))
+  if (!cag_arg_quadric(call, &q) ||
+      !cag_geometry_ok(call, cag_quadric_tangent_plane(&q, a->P.at, &plane, call->err)))
     return false;
   *result = cag_plane_value(call->vm, &plane);
   return true;
 }
 
-bool cag_sections_rulings(CagCall *call, CagValue *result) {
+bool cag_sections_rulings(CagCall *call, const struct cag_sections_rulings *a, CagValue *result) {
   static const char *const names[] = {"count", "directions"};
   CagQuadric q;
-  CagVec3 p;
   CagRulings found;
-  if (!cag_arg_quadric(call, &q) || !cag_arg_vec(call, 1, &p, NULL) ||
-      !cag_geometry_ok(call, cag_quadric_rulings(&q, p, &found, call->err)))
+  if (!cag_arg_quadric(call, &q) ||
+      !cag_geometry_ok(call, cag_quadric_rulings(&q, a->P.at, &found, call->err)))
     return false;
   CagValue values[] = {found.all ? cag_text_c(call->vm, "all") : cag_number((double)found.count),
                        cag_points_value(call->vm, found.direction, found.count, 3)};
@@ -76,14 +78,12 @@ bool cag_sections_rulings(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_sections_moved(CagCall *call, CagValue *result) {
+bool cag_sections_moved(CagCall *call, const struct cag_sections_moved *a, CagValue *result) {
   CagQuadric q, moved;
-  CagTransform t;
-  if (!cag_arg_quadric(call, &q) || !cag_arg_transform(call, 1, &t) ||
-      !cag_geometry_ok(call, cag_quadric_transform(&q, &t, &moved, call->err)))
+  if (!cag_arg_quadric(call, &q) ||
+      !cag_geometry_ok(call, cag_quadric_transform(&q, &a->T, &moved, call->err)))
     return false;
-  for (int i = 0; i < 10; i++) moved.c[i] += 0.0;
-  *result = cag_vector(call->vm, moved.c, 10);
+  *result = coefficients(call->vm, moved);
   return true;
 }
 
@@ -123,114 +123,82 @@ bool cag_sections_section_conic(CagCall *call, CagValue *result) {
 
 // --- Sections and outlines ---
 
-static bool read_tolerance(CagCall *call, int argument, double *tolerance) {
-  *tolerance = 0;
-  if (!cag_given(call, argument)) return true;
-  return cag_arg_positive(call, argument, tolerance);
+// The faces of a surface or solid; of other shapes none.
+static size_t faces_of(CagValue v, CagSurface *const **faces) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  *faces = v.type == CAG_SOLID ? shape->as.solid->faces : (CagSurface *const *)&shape->as.surface;
+  return v.type == CAG_SURFACE ? 1 : v.type == CAG_SOLID ? shape->as.solid->face_count : 0;
 }
 
-// All the shapes of a group or list; the caller keeps the list alive.
-static bool read_shapes(CagCall *call, CagValue v, CagList **out) {
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, v, builder)) return false;
-  *out = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  return true;
+// The curves that a section or outline has of one shape are added to a list.
+typedef bool (*CurvesOf)(CagCall *call, CagValue shape, const void *question, CagCurveList *list);
+
+// The curves of all the shapes in the first argument.
+static bool give_curves(CagCall *call, CurvesOf curves_of, const void *question, CagValue *result) {
+  CagList *shapes;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
+  CagCurveList *list = cag_hold_curve_list(call);
+  // Formulas are called back: the shapes stay.
+  cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
+  bool ok = true;
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    ok = curves_of(call, cag_list_get(call->vm, shapes, i), question, list);
+  cag_root_pop(call->vm, 1);
+  if (ok) *result = cag_curve_list_value(call->vm, list);
+  return ok;
 }
 
-static CagStatus region_surface(const CagShape *shape, CagSurface **out, CagError *err) {
-  return cag_surface_planar(shape->as.region, &shape->placement, out, err);
-}
-
-static bool section_of(CagCall *call, CagValue v, const CagPlane *plane, double tolerance,
-                       CagCurveList *list) {
-  CagShape *shape = CAG_AS_SHAPE(v);
+static bool section_of(CagCall *call, CagValue v, const void *question, CagCurveList *list) {
+  const struct cag_sections_section *a = question;
+  const CagShape *shape = CAG_AS_SHAPE(v);
   CagSurface *flat = NULL;
   CagStatus status;
   if (v.type == CAG_SURFACE)
-    status = cag_surface_section(shape->as.surface, plane, tolerance, list, call->err);
+    status = cag_surface_section(shape->as.surface, &a->plane, a->tolerance, list, call->err);
   else if (v.type == CAG_SOLID)
-    status = cag_solid_section(shape->as.solid, plane, tolerance, list, call->err);
-  else if (v.type == CAG_MESH) status = cag_mesh_section(shape->as.mesh, plane, list, call->err);
+    status = cag_solid_section(shape->as.solid, &a->plane, a->tolerance, list, call->err);
+  else if (v.type == CAG_MESH)
+    status = cag_mesh_section(shape->as.mesh, &a->plane, list, call->err);
   else if (v.type == CAG_REGION) {
-    status = region_surface(shape, &flat, call->err);
-    if (!status) status = cag_surface_section(flat, plane, tolerance, list, call->err);
+    status = cag_surface_planar(shape->as.region, &shape->placement, &flat, call->err);
+    if (!status) status = cag_surface_section(flat, &a->plane, a->tolerance, list, call->err);
     cag_surface_release(flat);
   } else return cag_fail_type(call, 0, "surfaces, solids, meshes or regions");
-  if (status && cag_is_empty_shape(call->err)) return true;
-  return cag_geometry_ok(call, status);
+  return (status && cag_is_empty_shape(call->err)) || cag_geometry_ok(call, status);
 }
 
-bool cag_sections_section(CagCall *call, CagValue *result) {
-  CagPlane plane;
-  double tolerance;
-  CagList *shapes;
-  if (!cag_arg_plane(call, 1, &plane) || !read_tolerance(call, 2, &tolerance) ||
-      !read_shapes(call, call->values[0], &shapes))
-    return false;
-  CagCurveList *list = cag_hold_curve_list(call);
-  // Formulas are called back: the shapes stay.
-  CagValue kept = cag_object(CAG_LIST, shapes);
-  cag_root_push(call->vm, kept);
-  bool ok = true;
-  for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = section_of(call, cag_list_get(call->vm, shapes, i), &plane, tolerance, list);
-  cag_root_pop(call->vm, 1);
-  if (ok) *result = cag_curve_list_value(call->vm, list);
-  return ok;
+bool cag_sections_section(CagCall *call, const struct cag_sections_section *a, CagValue *result) {
+  return give_curves(call, section_of, a, result);
 }
 
-static bool contour_of(CagCall *call, CagValue v, CagVec3 direction, CagVec3 eye, bool central,
-                       double tolerance, CagCurveList *list) {
+static bool contour_of(CagCall *call, CagValue v, const void *question, CagCurveList *list) {
+  const struct cag_sections_contour *a = question;
+  CagSurface *const *faces;
+  const size_t n = faces_of(v, &faces);
   CagStatus status = CAG_OK;
-  if (v.type == CAG_SURFACE)
-    status = cag_surface_contour(CAG_AS_SHAPE(v)->as.surface, direction, eye, central, tolerance,
-                                 list, call->err);
-  else if (v.type == CAG_SOLID) {
-    const CagSolid *s = CAG_AS_SHAPE(v)->as.solid;
-    for (size_t i = 0; !status && i < s->face_count; i++)
-      status =
-          cag_surface_contour(s->faces[i], direction, eye, central, tolerance, list, call->err);
-  } else return cag_fail_type(call, 0, "surfaces or solids");
+  if (v.type != CAG_SURFACE && v.type != CAG_SOLID)
+    return cag_fail_type(call, 0, "surfaces or solids");
+  for (size_t i = 0; !status && i < n; i++)
+    status = cag_surface_contour(faces[i], cag_unit(a->direction.at), a->from.at,
+                                 cag_given(call, 2), a->tolerance, list, call->err);
   return cag_geometry_ok(call, status);
 }
 
-bool cag_sections_contour(CagCall *call, CagValue *result) {
-  CagVec3 direction = {0, 0, 0}, eye = {0, 0, 0};
-  double tolerance;
-  CagList *shapes;
-  bool central = cag_given(call, 2);
-  bool parallel = cag_given(call, 1);
-  if (central == parallel)
+bool cag_sections_contour(CagCall *call, const struct cag_sections_contour *a, CagValue *result) {
+  if (cag_given(call, 1) == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value,
                          "needs either the direction of the view or, as `from`, the eye's place");
-  if (parallel && !cag_arg_direction(call, 1, direction, &direction, NULL)) return false;
-  if (central && !cag_arg_vec(call, 2, &eye, NULL)) return false;
-  if (!read_tolerance(call, 3, &tolerance) || !read_shapes(call, call->values[0], &shapes))
-    return false;
-  CagCurveList *list = cag_hold_curve_list(call);
-  CagValue kept = cag_object(CAG_LIST, shapes);
-  cag_root_push(call->vm, kept);
-  bool ok = true;
-  for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = contour_of(call, cag_list_get(call->vm, shapes, i), cag_unit(direction), eye, central,
-                    tolerance, list);
-  cag_root_pop(call->vm, 1);
-  if (ok) *result = cag_curve_list_value(call->vm, list);
-  return ok;
+  return give_curves(call, contour_of, a, result);
 }
 
-bool cag_sections_curvature_line(CagCall *call, CagValue *result) {
-  static const char *const which[] = {"max", "min", NULL};
+bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvature_line *a,
+                                 CagValue *result) {
   CagSurface *s;
   CagCurve *line = NULL;
   double u, v;
-  int k;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
-      !cag_arg_choice(call, 3, which, &k) ||
-      !cag_geometry_ok(call, cag_surface_curvature_line(s, u, v, k == 0, &line, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, line);
-  return true;
+  if (!cag_arg_side_uv(call, &s, &u, &v)) return false;
+  return cag_curve_result(call, cag_surface_curvature_line(s, u, v, a->by == 0, &line, call->err),
+                          &line, result);
 }
 
 // --- Contour lines of curvature ---
@@ -271,16 +239,8 @@ typedef struct ContourQuestion {
 // `everywhere` stays true only where all of this shape has the curvature, too.
 static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, CagCurveList *out,
                                        bool *everywhere, CagError *err) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagSurface *const *faces = NULL;
-  size_t n = 0;
-  if (v.type == CAG_SURFACE) {
-    faces = (CagSurface *const *)&shape->as.surface;
-    n = 1;
-  } else if (v.type == CAG_SOLID) {
-    faces = shape->as.solid->faces;
-    n = shape->as.solid->face_count;
-  }
+  CagSurface *const *faces;
+  const size_t n = faces_of(v, &faces);
   if (n == 0)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "%s has no surfaces to draw lines of equal curvature on",
@@ -312,18 +272,15 @@ static bool contour_record(CagCall *call, const CagList *shapes, const ContourQu
   return true;
 }
 
-bool cag_sections_curvature_contours(CagCall *call, CagValue *result) {
-  ContourQuestion q = {CAG_CURVATURE_GAUSSIAN, 0, 0};
+bool cag_sections_curvature_contours(CagCall *call, const struct cag_sections_curvature_contours *a,
+                                     CagValue *result) {
+  ContourQuestion q = {(CagCurvature)a->of, 0, a->tolerance};
   double *levels = NULL;
   size_t n = 0;
   CagList *shapes;
-  int of;
-  if (!cag_arg_choice(call, 2, cag_curvatures, &of) || !read_tolerance(call, 3, &q.tolerance) ||
-      !read_shapes(call, call->values[0], &shapes))
-    return false;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a surface");
   if (!read_contour_levels(call, 1, &levels, &n)) return false;
-  q.of = (CagCurvature)of;
   CagCurveList *list = cag_hold_curve_list(call);
   // Formulas are called back: the shapes and the records stay.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
@@ -342,26 +299,17 @@ bool cag_sections_curvature_contours(CagCall *call, CagValue *result) {
 
 // --- Frames along a path ---
 
-bool cag_sections_path_frame(CagCall *call, CagValue *result) {
-  CagCurve *path, *space = NULL;
+bool cag_sections_path_frame(CagCall *call, const struct cag_sections_path_frame *a,
+                             CagValue *result) {
+  CagPathMotion how = {.scale = {1, 1, NULL}};
+  CagCurve *space = NULL;
   double t;
-  if (!cag_arg_curve(call, 0, &path) ||
-      !cag_arg_parameter(call, 1, path->angular, path->start, path->end, false, &t))
+  if (!cag_arg_parameter(call, 1, a->C->angular, a->C->start, a->C->end, false, &t) ||
+      !cag_arg_orient(call, 2, &how))
     return false;
-  CagPathMotion how = {CAG_ORIENT_RMF, {0, 0, 0}, {0, 0, NULL}, {1, 1, NULL}};
-  static const char *const orients[] = {"rmf", "frenet", "fixed", NULL};
-  int orient = 0;
-  if (call->values[2].type == CAG_LIST) {
-    how.orient = CAG_ORIENT_UP;
-    if (!cag_arg_vec(call, 2, &how.up, NULL)) return false;
-  } else if (!cag_arg_choice(call, 2, orients, &orient)) {
-    return false;
-  } else {
-    how.orient = orient == 0 ? CAG_ORIENT_RMF : orient == 1 ? CAG_ORIENT_FRENET : CAG_ORIENT_FIXED;
-  }
   CagMotion *motion = NULL;
   CagTransform frame;
-  CagStatus status = cag_curve_to_space(path, &space, call->err);
+  CagStatus status = cag_curve_to_space(a->C, &space, call->err);
   if (status == CAG_OK) status = cag_motion_along(space, &how, &motion, call->err);
   if (status == CAG_OK) status = cag_motion_frame(motion, t, &frame, call->err);
   cag_curve_release(space);

@@ -1,6 +1,7 @@
 // Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
 
 #include "geom/surface/loft.h"
+#include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
@@ -93,16 +94,13 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
                   : cag_arg_finite(call, argument, &out->end);
   }
   Sampled s = {call, argument, path->angular, angles};
-  const char *name = cag_builtin_signature_of(call->builtin)->parameters[argument];
   CagStatus status = cag_chebyshev_fit(sample_number, &s, path->start, path->end, 1, FIT_TOLERANCE,
-                                       name, &fit, call->err);
+                                       cag_parameter_name(call, argument), &fit, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_series, fit);
   out->function = fit;
   return true;
 }
-
-// --- Results ---
 
 // --- Sections ---
 
@@ -112,8 +110,6 @@ typedef struct Section {
   const CagCurve *curve; // borrowed
   CagRegion *region;     // held
 } Section;
-
-static void release_region(void *region) { cag_region_release(region); }
 
 static bool read_section(CagCall *call, bool caps, Section *out) {
   CagValue v = call->values[0];
@@ -127,7 +123,7 @@ static bool read_section(CagCall *call, bool caps, Section *out) {
   }
   CagTransform place;
   if (!cag_arg_region(call, 0, &out->region, &place)) return false;
-  cag_hold_for(call, release_region, out->region);
+  cag_hold_region(call, out->region);
   return true;
 }
 
@@ -135,32 +131,39 @@ static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *
                         CagValue *result) {
   size_t n = section->curve ? 1 : section->region->count;
   CagBuilder *sides = cag_builder_new(call->vm);
-  CagValue side = cag_none();
   for (size_t i = 0; i < n; i++) {
     CagSurface *s = NULL;
+    CagValue side;
     const CagCurve *c = section->curve ? section->curve : section->region->loops[i];
     CagStatus status = cag_surface_sweep(c, motion, &s, call->err);
     if (!cag_surface_result(call, status, &s, &side) || !cag_builder_add(call->vm, sides, side))
       return false;
   }
-  *result = n == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
-  return true;
+  return cag_shapes_result(call, sides, result);
 }
 
-static bool sweep_section(CagCall *call, const Section *section, const CagMotion *motion, bool caps,
+static void release_motion(void *motion) { cag_motion_release(motion); }
+
+// Sweeps the section, and takes the motion over.
+static bool sweep_section(CagCall *call, const Section *section, CagMotion *motion, bool caps,
                           CagValue *result) {
-  if (section->curve || !caps) return sweep_sides(call, section, motion, result);
   CagSolid *s = NULL;
-  return cag_solid_result(call, cag_solid_sweep(section->region, motion, &s, call->err), &s,
-                          result);
+  cag_hold_for(call, release_motion, motion);
+  const bool ok =
+      section->curve || !caps
+          ? sweep_sides(call, section, motion, result)
+          : cag_solid_result(call, cag_solid_sweep(section->region, motion, &s, call->err), &s,
+                             result);
+  if (ok && cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
+  return ok;
 }
 
 // --- Sweeps ---
 
-static bool read_orient(CagCall *call, int argument, CagPathMotion *how) {
+bool cag_arg_orient(CagCall *call, int argument, CagPathMotion *how) {
   static const char *const names[] = {"rmf", "frenet", "fixed", NULL};
   static const CagOrient orients[] = {CAG_ORIENT_RMF, CAG_ORIENT_FRENET, CAG_ORIENT_FIXED};
-  CagValue v = call->values[argument];
+  const CagValue v = call->values[argument];
   int choice;
   if (v.type == CAG_LIST) {
     how->orient = CAG_ORIENT_UP;
@@ -173,80 +176,55 @@ static bool read_orient(CagCall *call, int argument, CagPathMotion *how) {
   return true;
 }
 
-static void release_motion(void *motion) { cag_motion_release(motion); }
-
-bool cag_surfaces_sweep(CagCall *call, CagValue *result) {
-  CagCurve *path;
+bool cag_surfaces_sweep(CagCall *call, const struct cag_surfaces_sweep *a, CagValue *result) {
   CagPathMotion how = {0};
   CagMotion *motion = NULL;
   Section section = {0};
-  bool caps;
-  if (!cag_arg_curve(call, 1, &path) || !read_orient(call, 2, &how) ||
-      !cag_arg_bool_or(call, 5, true, &caps) || !read_section(call, caps, &section) ||
-      !read_along(call, 3, path, true, 0, &how.twist) ||
-      !read_along(call, 4, path, false, 1, &how.scale) ||
-      !cag_geometry_ok(call, cag_motion_along(path, &how, &motion, call->err)))
-    return false;
-  cag_hold_for(call, release_motion, motion);
-  if (!sweep_section(call, &section, motion, caps, result)) return false;
-  if (cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  return cag_arg_orient(call, 2, &how) && read_section(call, a->caps, &section) &&
+         read_along(call, 3, a->path, true, 0, &how.twist) &&
+         read_along(call, 4, a->path, false, 1, &how.scale) &&
+         cag_geometry_ok(call, cag_motion_along(a->path, &how, &motion, call->err)) &&
+         sweep_section(call, &section, motion, a->caps, result);
 }
 
-bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
-  CagValue map;
+bool cag_surfaces_sweep_by(CagCall *call, const struct cag_surfaces_sweep_by *a, CagValue *result) {
   CagChebyshev *rows = NULL;
   CagMotion *motion = NULL;
   Section section = {0};
-  bool caps, angle;
-  double from, to;
-  if (!cag_arg_function(call, 1, &map) || !cag_arg_interval(call, 2, &from, &to, &angle) ||
-      !cag_arg_bool_or(call, 3, true, &caps))
-    return false;
+  const bool angle = a->range.angle;
+  const double unit = angle ? CAG_RADIANS_PER_DEGREE : 1;
+  const double from = a->range.start * unit, to = a->range.end * unit;
   if (!(from < to) || !isfinite(from) || !isfinite(to))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a range that ends after its start");
-  double unit = angle ? CAG_RADIANS_PER_DEGREE : 1;
   Sampled s = {call, 1, angle, false};
-  if (!read_section(call, caps, &section)) return false;
-  CagStatus status = cag_chebyshev_fit(sample_rows, &s, from * unit, to * unit, 12, FIT_TOLERANCE,
-                                       "map", &rows, call->err);
+  if (!read_section(call, a->caps, &section)) return false;
+  CagStatus status =
+      cag_chebyshev_fit(sample_rows, &s, from, to, 12, FIT_TOLERANCE, "map", &rows, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_series, rows);
-  status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  cag_hold_for(call, release_motion, motion);
-  if (!sweep_section(call, &section, motion, caps, result)) return false;
-  if (cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  return cag_geometry_ok(call, cag_motion_affine(rows, from, to, angle, &motion, call->err)) &&
+         sweep_section(call, &section, motion, a->caps, result);
 }
 
-bool cag_surfaces_tube(CagCall *call, CagValue *result) {
-  CagCurve *path;
+bool cag_surfaces_tube(CagCall *call, const struct cag_surfaces_tube *a, CagValue *result) {
   CagSurface *s = NULL;
   CagSolid *solid = NULL;
   CagAlong radius = {0};
-  bool caps;
-  bool changing = cag_is_function(call->values[1]);
-  if (!cag_arg_curve(call, 0, &path) || !cag_arg_bool_or(call, 2, true, &caps) ||
-      (!changing && !cag_arg_positive(call, 1, &radius.end)))
+  const bool changing = cag_is_function(a->radius);
+  if (changing ? !read_along(call, 1, a->path, false, 0, &radius)
+               : !cag_arg_positive(call, 1, &radius.end))
     return false;
-  if (changing && !read_along(call, 1, path, false, 0, &radius)) return false;
-  if (caps) {
-    CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, call->err)
-                                : cag_solid_tube(path, radius.end, &solid, call->err);
-    if (!cag_solid_result(call, status, &solid, result)) return false;
-  } else {
-    CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, call->err)
-                                : cag_surface_tube(path, radius.end, &s, call->err);
-    if (!cag_surface_result(call, status, &s, result)) return false;
+  if (a->caps) {
+    CagStatus status = changing ? cag_solid_tube_along(a->path, &radius, &solid, call->err)
+                                : cag_solid_tube(a->path, radius.end, &solid, call->err);
+    return cag_changed_solid_result(call, status, &solid, result);
   }
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  CagStatus status = changing ? cag_surface_tube_along(a->path, &radius, &s, call->err)
+                              : cag_surface_tube(a->path, radius.end, &s, call->err);
+  return cag_changed_surface_result(call, status, &s, result);
 }
 
 // --- Lofts ---
-
-static void release_curve(void *curve) { cag_curve_release(curve); }
 
 // A curve as it is, or the outline of a region without holes, placed and held.
 static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve **out) {
@@ -265,18 +243,14 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
   CagStatus status =
       cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  cag_hold_for(call, release_curve, placed);
+  cag_hold_curve(call, placed);
   *out = placed;
   return true;
 }
 
-bool cag_surfaces_loft(CagCall *call, CagValue *result) {
+bool cag_surfaces_loft(CagCall *call, const struct cag_surfaces_loft *a, CagValue *result) {
   CagList *list;
-  long degree;
-  bool closed, caps;
-  if (!cag_arg_list(call, 0, &list) || !cag_arg_integer_or(call, 1, 3, 1, 25, &degree) ||
-      !cag_arg_bool_or(call, 2, false, &closed) || !cag_arg_bool_or(call, 3, true, &caps))
-    return false;
+  if (!cag_arg_list(call, 0, &list)) return false;
   if (list->length < 2) return cag_fail_value(call, 0, "at least 2 curves");
   const CagCurve **curves = cag_hold_array(call, list->length, sizeof *curves);
   bool all_closed = true;
@@ -286,8 +260,9 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   }
   CagSurface *side = NULL;
   CagSolid *solid = NULL;
-  CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, call->err);
-  if (caps && all_closed && status == CAG_OK) {
+  CagStatus status =
+      cag_surface_loft(curves, list->length, (int)a->degree, a->closed, &side, call->err);
+  if (a->caps && all_closed && status == CAG_OK) {
     status = cag_solid_loft(side, &solid, call->err);
     cag_surface_release(side);
     if (!cag_solid_result(call, status, &solid, result)) return false;

@@ -4,10 +4,6 @@
 #include "geom/surface/triangle.h"
 #include "interp/builtin/surfaces.h"
 
-static CagValue vector_value(CagVm *vm, CagVec3 p) {
-  return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
-}
-
 static CagValue net_value(CagVm *vm, const CagVec3 *net, int degree) {
   CagBuilder *rows = cag_builder_new(vm);
   for (int row = 0; row <= degree; row++) {
@@ -17,46 +13,41 @@ static CagValue net_value(CagVm *vm, const CagVec3 *net, int degree) {
   return cag_builder_finish(vm, rows);
 }
 
-static bool read_coordinates(CagCall *call, int argument, double out[3]) {
-  const double *w;
+// The net, and the coordinates W.
+static bool read_place(CagCall *call, CagVec3 **net, int *degree, const double **w) {
   size_t n;
-  if (!cag_arg_numbers(call, argument, &w, &n)) return false;
+  if (!cag_arg_numbers(call, 1, w, &n)) return false;
   if (n != 3)
-    return cag_fail_call(call, argument, CAG_ERR_length,
-                         "expects 3 barycentric coordinates, found %zu", n);
-  for (int c = 0; c < 3; c++) out[c] = w[c];
-  return true;
+    return cag_fail_call(call, 1, CAG_ERR_length, "expects 3 barycentric coordinates, found %zu",
+                         n);
+  return cag_arg_triangle(call, 0, net, degree);
 }
 
 bool cag_triangles_triangle_point(CagCall *call, CagValue *result) {
   static const char *const names[] = {"point", "ds", "dt", "normal"};
   CagVec3 *net = NULL;
   int degree = 0;
-  double w[3];
+  const double *w;
   CagTriangleJet jet = {0};
-  if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
-  cag_hold(call, net);
+  if (!read_place(call, &net, &degree, &w)) return false;
   if (!cag_geometry_ok(call, cag_triangle_at(net, degree, w, &jet, call->err))) return false;
   CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
-  CagValue values[] = {vector_value(call->vm, jet.point), vector_value(call->vm, jet.ds),
-                       vector_value(call->vm, jet.dt),
-                       cag_norm(normal) > 0 ? vector_value(call->vm, normal) : cag_none()};
+  CagValue values[] = {cag_point(call->vm, jet.point, 3), cag_point(call->vm, jet.ds, 3),
+                       cag_point(call->vm, jet.dt, 3),
+                       cag_norm(normal) > 0 ? cag_point(call->vm, normal, 3) : cag_none()};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
 
-bool cag_triangles_triangle_elevate(CagCall *call, CagValue *result) {
+bool cag_triangles_triangle_elevate(CagCall *call, const struct cag_triangles_triangle_elevate *a,
+                                    CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
-  long times;
-  if (!cag_arg_integer_or(call, 1, 1, 0, CAG_TRIANGLE_ROWS, &times) ||
-      !cag_arg_triangle(call, 0, &net, &degree))
-    return false;
-  cag_hold(call, net);
-  if (degree + times >= CAG_TRIANGLE_ROWS)
+  if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
+  if (degree + a->times >= CAG_TRIANGLE_ROWS)
     return cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
-                         CAG_TRIANGLE_ROWS - 1, degree, times);
-  for (; times > 0; times--) {
+                         CAG_TRIANGLE_ROWS - 1, degree, a->times);
+  for (long i = 0; i < a->times; i++) {
     CagVec3 *raised = cag_hold_array(call, cag_triangle_count(degree + 1), sizeof *raised);
     cag_triangle_elevate(net, degree++, raised);
     cag_release_held(call, net);
@@ -70,9 +61,8 @@ bool cag_triangles_triangle_elevate(CagCall *call, CagValue *result) {
 bool cag_triangles_triangle_split(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
-  double w[3];
-  if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
-  cag_hold(call, net);
+  const double *w;
+  if (!read_place(call, &net, &degree, &w)) return false;
   size_t n = cag_triangle_count(degree);
   CagVec3 *parts = cag_hold_array(call, 3 * n, sizeof *parts);
   CagStatus status = cag_triangle_split(
