@@ -6,6 +6,11 @@
 #include "geom/curve/region.h"
 #include "interp/builtin/shapes.h"
 
+// The parameter of a curve: the second argument, after the curve.
+static inline bool cag_arg_at(CagCall *call, const CagCurve *c, double *t) {
+  return cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, t);
+}
+
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
 
