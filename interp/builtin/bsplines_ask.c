@@ -186,43 +186,33 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   return true;
 }
 
-// radius, segments, center, normal, start
-bool cag_bsplines_nurbs_circle(CagCall *call, CagValue *result) {
-  double radius, from;
-  long segments;
+bool cag_bsplines_nurbs_circle(CagCall *call, const struct cag_bsplines_nurbs_circle *a,
+                               CagValue *result) {
   CagTransform frame;
-  return cag_arg_positive(call, 0, &radius) &&
-         cag_arg_integer_or(call, 1, 4, 3, SEGMENTS_MAX, &segments) &&
-         cag_arg_angle_or(call, 4, 0, &from) && cag_arg_circle_frame(call, 2, &frame) &&
-         give_arcs(call, radius, from, FULL_TURN, (size_t)segments, &frame, result);
+  return cag_circle_frame(call, a->center, a->normal, &frame) &&
+         give_arcs(call, a->radius, a->start, FULL_TURN, (size_t)a->segments, &frame, result);
 }
 
-// radius, range, segments, center, normal
-bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
-  double radius, from, to;
-  long segments;
-  bool angle;
+bool cag_bsplines_nurbs_arc(CagCall *call, const struct cag_bsplines_nurbs_arc *a,
+                            CagValue *result) {
+  const double from = a->range.start, to = a->range.end, sweep = to - from;
   CagTransform frame;
   char text[32];
-  if (!cag_arg_positive(call, 0, &radius) || !cag_arg_interval(call, 1, &from, &to, &angle) ||
-      !cag_arg_integer_or(call, 2, 1, 1, SEGMENTS_MAX, &segments) ||
-      !cag_arg_circle_frame(call, 3, &frame))
-    return false;
-  if (!angle || !isfinite(from) || !isfinite(to))
+  if (!cag_circle_frame(call, a->center, a->normal, &frame)) return false;
+  if (!a->range.angle || !isfinite(from) || !isfinite(to))
     return cag_fail_type(call, 1, "a range of angles");
-  const double sweep = to - from;
   CagStatus status = CAG_OK;
   if (sweep == 0)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                       "the range has no length");
-  else if (!(fabs(sweep) / (double)segments < HALF_TURN))
+  else if (!(fabs(sweep) / (double)a->segments < HALF_TURN))
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
                       "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
                       "take more `segments`",
-                      cag_number_text(fabs(sweep), text), segments);
+                      cag_number_text(fabs(sweep), text), a->segments);
   return cag_geometry_ok(call, status) &&
-         give_arcs(call, radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
-                   (size_t)segments, &frame, result);
+         give_arcs(call, a->radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
+                   (size_t)a->segments, &frame, result);
 }
 
 // --- Pictures ---

@@ -14,9 +14,12 @@ static inline bool cag_arg_at(CagCall *call, const CagCurve *c, double *t) {
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
 
-// The frame of a circle by its `center` and `normal`, the parameters `at` and the next: z along the
-// normal; planar where neither is of space.
-bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out);
+// The frame of a circle: z along the normal (0: none is given), x level, or X where the normal is
+// along Z; planar where neither is of space.
+bool cag_circle_frame(CagCall *call, CagPoint center, CagPoint normal, CagTransform *out);
+// The result that the core made over the ascending range: reversed where the range runs backwards.
+bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
+                             CagValue *result);
 // Weights, one for each of n points; NULL where there are none. "weight-count".
 bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out);
 
