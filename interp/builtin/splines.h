@@ -12,7 +12,7 @@ bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long i
 // Points all of one dimension ("dimension-mismatch"); malloc'd.
 bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *dimension);
 // A vector of the dimension that the points have.
-bool cag_splines_vec(CagCall *call, int argument, int dimension, CagVec3 *out);
+bool cag_splines_check_dimension(CagCall *call, int argument, CagPoint p, int dimension);
 // "chord", "uniform", "centripetal"; n parameters, or the n - 1 lengths between them. *own is
 // malloc'd, NULL where spacing says it.
 bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, size_t n,

@@ -43,12 +43,10 @@ bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, i
   return true;
 }
 
-bool cag_splines_vec(CagCall *call, int argument, int dimension, CagVec3 *out) {
-  int d;
-  if (!cag_arg_vec(call, argument, out, &d)) return false;
-  if (d == dimension) return true;
-  return cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
-                          "the points have %d numbers, this vector has %d", dimension, d);
+bool cag_splines_check_dimension(CagCall *call, int argument, CagPoint p, int dimension) {
+  return p.dimension == dimension ||
+         cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
+                          "the points have %d numbers, this vector has %d", dimension, p.dimension);
 }
 
 bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, size_t n,
