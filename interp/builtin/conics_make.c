@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 
 // --- Parabola and hyperbola ---
@@ -143,29 +144,19 @@ bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
   return cag_curve_result(call, cag_curve_conic(&k, &c, call->err), &c, result);
 }
 
-typedef struct Branches { // held
-  CagCurve *c[2];
-  size_t n;
-} Branches;
-
-static void free_branches(void *what) {
-  Branches *b = what;
-  for (size_t i = 0; i < b->n; i++) cag_curve_release(b->c[i]);
-  cag_free(b);
-}
-
 bool cag_conics_branches(CagCall *call, const struct cag_conics_branches *a, CagValue *result) {
   const CagRangeEnds range = a->range;
   CagConic k;
   CagValue items[2];
   if (!cag_arg_conic(call, 0, &k)) return false;
   if (range.angle) return cag_fail_type(call, 1, "a range of numbers");
-  Branches *b = cag_hold_array(call, 1, sizeof *b);
-  cag_hold_for(call, free_branches, cag_give_held(call, b));
-  CagStatus status = cag_conic_branches(&k, range.start, range.end, b->c, &b->n, call->err);
+  CagCurveList *b = cag_hold_curve_list(call);
+  b->items = cag_give_held(call, cag_hold_array(call, 2, sizeof *b->items));
+  CagStatus status = cag_conic_branches(&k, range.start, range.end, b->items, &b->count, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  for (size_t i = 0; i < b->n; i++) items[i] = cag_curve_value(call->vm, cag_curve_retain(b->c[i]));
-  *result = cag_list_values(call->vm, items, b->n);
+  for (size_t i = 0; i < b->count; i++)
+    items[i] = cag_curve_value(call->vm, cag_curve_retain(b->items[i]));
+  *result = cag_list_values(call->vm, items, b->count);
   return true;
 }
 

@@ -11,6 +11,9 @@ static inline bool cag_arg_at(CagCall *call, const CagCurve *c, double *t) {
   return cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, t);
 }
 
+// "a curve of kind helix has no weights; ...": false, as all that fails.
+bool cag_fail_no_data(CagCall *call, const CagCurve *c, const char *what);
+
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
 
