@@ -23,8 +23,6 @@ bool cag_circle_frame(CagCall *call, CagPoint center, CagPoint normal, CagTransf
 // The result that the core made over the ascending range: reversed where the range runs backwards.
 bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
                              CagValue *result);
-// Weights, one for each of n points; NULL where there are none. "weight-count".
-bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out);
 
 // Brings loops given in space into the x, y plane of a frame, as plane curves; *in_space: it is not
 // that of the world. Fails with "not-planar".

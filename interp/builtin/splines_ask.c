@@ -265,19 +265,15 @@ static void to_bezier_points(const CagVec3 g[4], int from, CagVec3 b[4]) {
   b[2] = cag_madd(b[3], -1.0 / 3, d1);
 }
 
-// convert_cubic(points, from = "bezier")
-bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"bezier", "hermite", "power", "parabolic", NULL};
-  CagVec3 *g, b[4];
-  size_t n;
-  int dimension, from;
-  if (!cag_arg_choice(call, 1, names, &from) || !cag_splines_points(call, 0, &g, &n, &dimension))
-    return false;
-  cag_hold(call, g);
-  if (n != 4)
+bool cag_splines_convert_cubic(CagCall *call, const struct cag_splines_convert_cubic *a,
+                               CagValue *result) {
+  static const char *const names[] = {"bezier", "hermite", "power", "parabolic"};
+  CagVec3 b[4];
+  if (!cag_splines_check_points(call, 0, &a->points)) return false;
+  if (a->points.count != 4)
     return cag_splines_fail(call, CAG_ERR_point_count, "points", -1,
-                            "a cubic has four points and vectors; these are %zu", n);
-  to_bezier_points(g, from, b);
+                            "a cubic has four points and vectors; these are %zu", a->points.count);
+  to_bezier_points(a->points.items, a->from, b);
   const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
   const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
   const CagVec3 cube = cag_add(cag_sub(b[3], b[0]), cag_scaled(cag_sub(b[1], b[2]), 3));
@@ -286,7 +282,8 @@ bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
                                {b[0], d0, bend, cube},
                                {cag_madd(b[3], -2, d0), b[0], b[3], cag_madd(b[0], 2, d1)}};
   CagValue values[4];
-  for (int i = 0; i < 4; i++) values[i] = cag_points_value(call->vm, forms[i], 4, dimension);
+  for (int i = 0; i < 4; i++)
+    values[i] = cag_points_value(call->vm, forms[i], 4, a->points.dimension);
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
