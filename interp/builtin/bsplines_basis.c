@@ -58,10 +58,9 @@ bool cag_bsplines_classify_knots(CagCall *call, const struct cag_bsplines_classi
   if (!read_degree(call, a->knots, 1, 2, &p)) return false;
   const size_t n = count - (size_t)p - 1, k = (size_t)p;
   if (n < k + 1)
-    return cag_geometry_ok(call,
-                           cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
-                                    "a curve of degree %d needs at least %zu `knots`, found %zu", p,
-                                    2 * k + 2, count));
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+                         "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2,
+                         count);
   // The range may be empty, which only a curve minds; multiplicities may be too high.
   char text[32];
   CagBuilder *list = cag_builder_new(call->vm);
@@ -70,11 +69,10 @@ bool cag_bsplines_classify_knots(CagCall *call, const struct cag_bsplines_classi
     for (run = 1; i + run < count && x[i + run] == x[i]; run++) {}
     const bool inner = x[i] > x[0] && x[i] < x[count - 1];
     if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n]))
-      return cag_geometry_ok(
-          call,
-          cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
-                   "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
-                   cag_number_text(x[i], text), run, p, p, p + 1));
+      return cag_fail_core(
+          call, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
+          "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
+          cag_number_text(x[i], text), run, p, p, p + 1);
     const double pair[2] = {x[i], (double)run};
     if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
     segments += i + run < count && x[i] >= x[k] && x[i + run] <= x[n];
@@ -296,9 +294,8 @@ bool cag_bsplines_oslo(CagCall *call, const struct cag_bsplines_oslo *a, CagValu
   int p;
   if (!read_degree(call, a->knots, 2, 3, &p)) return false;
   if (n < count)
-    return cag_geometry_ok(
-        call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
-                       "`refined` has %zu knots, less than the %zu of `knots`", n, count));
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
+                         "`refined` has %zu knots, less than the %zu of `knots`", n, count);
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
   if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");

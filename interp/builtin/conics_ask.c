@@ -229,9 +229,8 @@ bool cag_conics_implicit_at(CagCall *call, const struct cag_conics_implicit_at *
   cag_conic_polar(&k, a->P.at, line);
   const double fx = 2 * line[0], fy = 2 * line[1], n = hypot(fx, fy);
   if (n == 0)
-    return cag_geometry_ok(
-        call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "", -1,
-                       "the gradient is zero here: a singular point without slope and curvature"));
+    return cag_fail_core(call, CAG_E_DEGENERATE, CAG_ERR_singular_point, "", -1,
+                         "the gradient is zero here: a singular point without slope and curvature");
   const double bend = 2 * k.c[0] * fy * fy - 2 * k.c[1] * fx * fy + 2 * k.c[2] * fx * fx;
   const double curvature = fabs(bend) / (n * n * n), gradient[2] = {fx, fy};
   CagValue values[] = {cag_number(cag_conic_value(&k, a->P.at) + 0.0), row_value(call, gradient, 2),
@@ -303,9 +302,8 @@ bool cag_conics_signed_curvature(CagCall *call, const struct cag_conics_signed_c
   if (!derivatives_at(call, a->C, d)) return false;
   const double n = cag_norm(d[1]);
   if (n == 0)
-    return cag_geometry_ok(call,
-                           cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t",
-                                    -1, "the derivative vanishes here: there is no curvature"));
+    return cag_fail_core(call, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t", -1,
+                         "the derivative vanishes here: there is no curvature");
   *result = cag_number((d[1].x * d[2].y - d[1].y * d[2].x) / (n * n * n) + 0.0);
   return true;
 }

@@ -1,8 +1,5 @@
 // Conics made: by their axes, their equation, through points, as arcs, and as points.
 
-#include <stdarg.h>
-#include <stdio.h>
-
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
@@ -11,17 +8,8 @@
 
 // --- Parabola and hyperbola ---
 
-__attribute__((format(printf, 3, 4))) static bool fail_domain(CagCall *call, const char *argument,
-                                                              const char *format, ...) {
-  CagError err;
-  char message[200];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
-  cag_fail(&err, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, "%s", message);
-  return cag_fail_geometry(call, &err);
-}
+#define FAIL_DOMAIN(call, argument, ...)                                                           \
+  cag_fail_core(call, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, __VA_ARGS__)
 
 // The parameter where x or y is reached; x on the upper half.
 typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is_x, double *t);
@@ -29,7 +17,7 @@ typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is
 static bool parabola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
   (void)b;
   if (is_x && value < 0)
-    return fail_domain(call, "x", "a parabola begins at x = 0; it has no point at x = %.17g",
+    return FAIL_DOMAIN(call, "x", "a parabola begins at x = 0; it has no point at x = %.17g",
                        value);
   *t = is_x ? sqrt(value / a) : value / (2 * a);
   return true;
@@ -37,7 +25,7 @@ static bool parabola_at(CagCall *call, double a, double b, double value, bool is
 
 static bool hyperbola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
   if (is_x && value < a)
-    return fail_domain(
+    return FAIL_DOMAIN(
         call, "x", "the right branch begins at x = %.17g; it has no point at x = %.17g", a, value);
   // asinh of y keeps its digits near the vertex, where acosh of x loses them.
   *t = asinh(is_x ? sqrt((value - a) * (value + a)) / a : value / b);
@@ -334,7 +322,7 @@ static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out
   Axes k;
   if (!read_axes(call, c, &k)) return false;
   if (fmin(k.from, k.to) <= -M_PI || fmax(k.from, k.to) >= M_PI)
-    return fail_domain(call, "",
+    return FAIL_DOMAIN(call, "",
                        "the rational form reaches its point at 180deg only at infinity: "
                        "the arc must lie between -180deg and 180deg");
   const double from = tan(k.from / 2), to = tan(k.to / 2);
@@ -381,7 +369,7 @@ static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double slack = 1e-9 * (box.max.x - box.min.x);
   if (!status && (box.min.x < fmin(from, to) - slack || box.max.x > fmax(from, to) + slack))
-    return fail_domain(call, "", "x must go one way from the start to the end");
+    return FAIL_DOMAIN(call, "", "x must go one way from the start to the end");
   for (size_t i = 1; !status && i + 1 < n; i++) {
     const double x = from + (to - from) * ((double)i / (double)(n - 1));
     status = find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i],

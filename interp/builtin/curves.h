@@ -6,6 +6,9 @@
 #include "geom/curve/region.h"
 #include "interp/builtin/shapes.h"
 
+// Fails with an error of geometry: a status, id, argument, index, format, and what it formats.
+#define cag_fail_core(call, ...) cag_geometry_ok(call, cag_fail((call)->err, __VA_ARGS__))
+
 // The parameter of a curve: the second argument, after the curve.
 static inline bool cag_arg_at(CagCall *call, const CagCurve *c, double *t) {
   return cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, t);

@@ -44,9 +44,8 @@ static bool frame_at(CagCall *call, const CagCurve *c, bool bent, CagFrenet *out
   if (!cag_arg_at(call, c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, out, call->err)))
     return false;
   return !bent || out->has_normal ||
-         cag_geometry_ok(call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
-                                        "the curvature is 0 here, so there is neither normal nor "
-                                        "binormal"));
+         cag_fail_core(call, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
+                       "the curvature is 0 here, so there is neither normal nor binormal");
 }
 
 bool cag_curves_normal(CagCall *call, const struct cag_curves_normal *a, CagValue *result) {
@@ -133,11 +132,10 @@ bool cag_curves_end_point(CagCall *call, const struct cag_curves_end_point *a, C
 }
 
 bool cag_fail_no_data(CagCall *call, const CagCurve *c, const char *what) {
-  return cag_geometry_ok(
-      call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-                     "a curve of kind %s has no %s; `to_nurbs` gives its rational form where there "
-                     "is one",
-                     c->kind->name, what));
+  return cag_fail_core(
+      call, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+      "a curve of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
+      c->kind->name, what);
 }
 
 bool cag_curves_degree(CagCall *call, const struct cag_curves_degree *a, CagValue *result) {

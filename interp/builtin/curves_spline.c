@@ -21,10 +21,9 @@ bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *ou
 
 static bool check_weights(CagCall *call, int argument, const CagNumbers *weights, size_t n) {
   return !cag_given(call, argument) || weights->count == n ||
-         cag_geometry_ok(call,
-                         cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
-                                  "expects one of `weights` for each of %zu points, found %zu", n,
-                                  weights->count));
+         cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+                       "expects one of `weights` for each of %zu points, found %zu", n,
+                       weights->count);
 }
 
 bool cag_curves_bezier(CagCall *call, const struct cag_curves_bezier *a, CagValue *result) {
@@ -46,11 +45,10 @@ static bool read_knots(CagCall *call, size_t n, int degree, const CagVec3 *point
     size_t count;
     if (!cag_arg_numbers(call, 2, knots, &count)) return false;
     return count == wanted ||
-           cag_geometry_ok(
-               call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
-                              "%zu points of degree %d need %zu `knots` (points + degree + 1), "
-                              "found %zu",
-                              n, degree, wanted, count));
+           cag_fail_core(
+               call, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+               "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n,
+               degree, wanted, count);
   }
   if ((type == CAG_TEXT && !cag_arg_text(call, 2, &name)) ||
       !cag_geometry_ok(call, cag_degree_check(n, degree, call->err)))

@@ -47,10 +47,9 @@ static bool read_bent(CagCall *call, const CagCurve *c, double *t, CagFrenet *ou
   if (!cag_arg_at(call, c, t) || !cag_geometry_ok(call, cag_curve_frenet(c, *t, out, call->err)))
     return false;
   return out->has_normal ||
-         cag_geometry_ok(
-             call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
-                            "the curvature is 0 here, so there is neither normal nor circle of "
-                            "curvature"));
+         cag_fail_core(call, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
+                       "the curvature is 0 here, so there is neither normal nor circle of "
+                       "curvature");
 }
 
 bool cag_frenet_frame_derivative(CagCall *call, const struct cag_frenet_frame_derivative *a,
@@ -229,9 +228,8 @@ bool cag_frenet_helix_motion(CagCall *call, const struct cag_frenet_helix_motion
   const double r = a->radius, v = a->speed, time = a->time, omega = a->turning;
   const double turned = call->values[1].as.number * time, b = v / omega, r2 = r * r + b * b;
   if (omega == 0)
-    return cag_geometry_ok(
-        call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
-                       "`turning` must not be 0: the point moves along a line, not a helix"));
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
+                         "`turning` must not be 0: the point moves along a line, not a helix");
   double s, c;
   cag_sincos_degrees(turned, &s, &c);
   CagValue values[] = {cag_point(call->vm, cag_vec3(r * c, r * s, v * time), 3),

@@ -6,9 +6,8 @@
 #include "geom/curve/cubic.h"
 #include "interp/builtin/curves.h"
 
-// A geometry error of the built-ins themselves.
-bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
-                      const char *format, ...) __attribute__((format(printf, 5, 6)));
+// An error of geometry about an argument.
+#define cag_splines_fail(call, ...) cag_fail_core(call, CAG_E_ARGUMENT, __VA_ARGS__)
 // Whether points are all of one dimension ("dimension-mismatch").
 bool cag_splines_check_points(CagCall *call, int argument, const CagPoints *points);
 // Reads tangents, all of the dimension that the points have.

@@ -57,23 +57,13 @@ static void bspline_matrix(int p, double *out) {
 }
 
 static void parabolic_matrix(double a, double b, double *out) {
-  const double c = 1 - a, ab = a * b;
-  const double m[16] = {-c * c / a,
-                        (c + ab) / a,
-                        (-c - ab) / (1 - b),
-                        b * b / (1 - b), //
-                        2 * c * c / a,
-                        (-2 * c - ab) / a,
-                        (2 * c - b * (1 - 2 * a)) / (1 - b),
-                        -b * b / (1 - b), //
-                        -c * c / a,
-                        (1 - 2 * a) / a,
-                        a,
-                        0, //
-                        0,
-                        1,
-                        0,
-                        0};
+  const double c = 1 - a, d = 1 - b, ab = a * b;
+  const double m[4][4] = {
+      {-c * c / a, (c + ab) / a, (-c - ab) / d, b * b / d},
+      {2 * c * c / a, (-2 * c - ab) / a, (2 * c - b * (1 - 2 * a)) / d, -b * b / d},
+      {-c * c / a, (1 - 2 * a) / a, a, 0},
+      {0, 1, 0, 0},
+  };
   memcpy(out, m, sizeof m);
 }
 

@@ -1,7 +1,5 @@
 // Hermite curves, cubic splines with their end conditions, parabolic blends, polynomials.
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -9,17 +7,6 @@
 #include "interp/builtin/support.h"
 
 // --- Shared ---
-
-bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
-                      const char *format, ...) {
-  char message[sizeof call->err->message];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
-  cag_fail(call->err, CAG_E_ARGUMENT, id, argument, index, "%s", message);
-  return cag_fail_geometry(call, call->err);
-}
 
 bool cag_splines_check_points(CagCall *call, int argument, const CagPoints *points) {
   const CagList *list = CAG_AS_LIST(call->values[argument]);
