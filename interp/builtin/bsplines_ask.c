@@ -10,25 +10,20 @@
 #include "interp/builtin/curves.h"
 #include "interp/builtin/support.h"
 
-static bool read_nurbs(CagCall *call, const CagNurbs **out) {
-  CagCurve *c;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  *out = cag_nurbs_data(c);
-  if (*out) return true;
-  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-           "a curve of kind %s has no control points; `to_nurbs` gives its rational form where "
-           "there is one",
-           c->kind->name);
-  return cag_fail_geometry(call, call->err);
+// The B-spline of a Bezier or B-spline curve; NULL: it is none, and the error is set.
+static const CagNurbs *nurbs_of(CagCall *call, const CagCurve *c) {
+  const CagNurbs *nurbs = cag_nurbs_data(c);
+  if (!nurbs) cag_fail_no_data(call, c, "control points");
+  return nurbs;
 }
 
 static CagValue range_of(CagCall *call, const CagNurbs *c, double a, double b) {
   return cag_domain_value(call->vm, c->base.angular, a, b);
 }
 
-bool cag_bsplines_spans(CagCall *call, CagValue *result) {
-  const CagNurbs *c;
-  if (!read_nurbs(call, &c)) return false;
+bool cag_bsplines_spans(CagCall *call, const struct cag_bsplines_spans *a, CagValue *result) {
+  const CagNurbs *c = nurbs_of(call, a->C);
+  if (!c) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < c->pieces; i++)
     if (!cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1])))
@@ -39,21 +34,21 @@ bool cag_bsplines_spans(CagCall *call, CagValue *result) {
 
 // Of a closed curve a control point acts about its own place, and where that passes the seam, about
 // the other end too: the ranges come one after the other.
-bool cag_bsplines_support(CagCall *call, CagValue *result) {
-  const CagNurbs *c;
+bool cag_bsplines_support(CagCall *call, const struct cag_bsplines_support *a, CagValue *result) {
+  const CagNurbs *c = nurbs_of(call, a->C);
   long i;
-  if (!read_nurbs(call, &c) || !cag_arg_integer(call, 1, 0, (long)c->distinct - 1, &i))
-    return false;
+  if (!c || !cag_arg_integer(call, 1, 0, (long)c->distinct - 1, &i)) return false;
   const size_t p = (size_t)c->degree;
   CagBuilder *list = cag_builder_new(call->vm);
   double from = 0, to = 0; // the range in the making, empty at first
   for (size_t k = (size_t)i; k < c->count; k += c->distinct) {
-    const double a = fmax(c->knots[k], c->base.start), b = fmin(c->knots[k + p + 1], c->base.end);
-    if (!(a < b)) continue;
-    if (from < to && a > to && !cag_builder_add(call->vm, list, range_of(call, c, from, to)))
+    const double start = fmax(c->knots[k], c->base.start);
+    const double end = fmin(c->knots[k + p + 1], c->base.end);
+    if (!(start < end)) continue;
+    if (from < to && start > to && !cag_builder_add(call->vm, list, range_of(call, c, from, to)))
       return false;
-    from = from < to && a <= to ? from : a;
-    to = b;
+    from = from < to && start <= to ? from : start;
+    to = end;
   }
   const CagValue last = from < to ? range_of(call, c, from, to) : cag_none();
   if (c->periodic && !cag_builder_add(call->vm, list, last)) return false;
@@ -66,18 +61,14 @@ static CagValue control_point(CagCall *call, const CagNurbs *c, size_t i) {
   return h[3] > 0 ? cag_point(call->vm, cag_project(h), c->base.dimension) : cag_none();
 }
 
-bool cag_bsplines_acting_points(CagCall *call, CagValue *result) {
+bool cag_bsplines_acting_points(CagCall *call, const struct cag_bsplines_acting_points *a,
+                                CagValue *result) {
   static const char *const names[] = {"span", "indices", "points"};
-  static const char *const sides[] = {"right", "left", NULL};
-  const CagNurbs *c;
+  const CagNurbs *c = nurbs_of(call, a->C);
   double t;
-  int side;
-  if (!read_nurbs(call, &c) ||
-      !cag_arg_parameter(call, 1, c->base.angular, c->base.start, c->base.end, false, &t) ||
-      !cag_arg_choice(call, 2, sides, &side))
-    return false;
+  if (!c || !cag_arg_at(call, a->C, &t)) return false;
   const size_t p = (size_t)c->degree;
-  const size_t span = cag_knots_span(c->knots, c->count, c->degree, t, side == 1, p);
+  const size_t span = cag_knots_span(c->knots, c->count, c->degree, t, a->side == CAG_SIDE_LEFT, p);
   CagBuilder *indices = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
   for (size_t i = span - p; i <= span; i++)
     if (!cag_builder_add(call->vm, indices, cag_number((double)(i % c->distinct))) ||
@@ -116,9 +107,10 @@ static bool collinear(const CagNurbs *c, size_t span) {
   return true;
 }
 
-bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
-  const CagNurbs *c;
-  if (!read_nurbs(call, &c)) return false;
+bool cag_bsplines_straight_spans(CagCall *call, const struct cag_bsplines_straight_spans *a,
+                                 CagValue *result) {
+  const CagNurbs *c = nurbs_of(call, a->C);
+  if (!c) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = (size_t)c->degree; i < c->count; i++) {
     if (!(c->knots[i] < c->knots[i + 1]) || !collinear(c, i)) continue;
@@ -129,19 +121,13 @@ bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
   return true;
 }
 
-// The weight function: C, t, derivative, side
-bool cag_bsplines_denominator(CagCall *call, CagValue *result) {
-  static const char *const sides[] = {"right", "left", NULL};
-  const CagNurbs *c;
+bool cag_bsplines_denominator(CagCall *call, const struct cag_bsplines_denominator *a,
+                              CagValue *result) {
+  const CagNurbs *c = nurbs_of(call, a->C);
+  const long order = a->derivative;
   double t;
-  long order;
-  int side;
-  if (!read_nurbs(call, &c) ||
-      !cag_arg_parameter(call, 1, c->base.angular, c->base.start, c->base.end, false, &t) ||
-      !cag_arg_integer_or(call, 2, 0, 0, CAG_MAX_DERIVATIVE, &order) ||
-      !cag_arg_choice(call, 3, sides, &side))
-    return false;
-  const size_t i = cag_nurbs_piece(c, t, side == 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, c->pieces);
+  if (!c || !cag_arg_at(call, a->C, &t)) return false;
+  const size_t i = cag_nurbs_piece(c, t, (CagSide)a->side, c->pieces);
   const double length = c->cuts[i + 1] - c->cuts[i];
   double out[4 * (CAG_MAX_DERIVATIVE + 1)];
   cag_bezier_derivatives(cag_nurbs_bezier(c, i), c->degree, (t - c->cuts[i]) / length, (int)order,
@@ -153,7 +139,6 @@ bool cag_bsplines_denominator(CagCall *call, CagValue *result) {
 
 // --- Circles ---
 
-#define SEGMENTS_MAX 1000000
 #define HALF_TURN 180
 #define FULL_TURN 6.283185307179586 // 2 pi
 
@@ -181,77 +166,64 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   knots[n + 2] = (double)q;
   CagStatus status =
       cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_curve_value(call->vm, c);
-  return true;
+  return cag_curve_result(call, status, &c, result);
 }
 
-// radius, segments, center, normal, start
-bool cag_bsplines_nurbs_circle(CagCall *call, CagValue *result) {
-  double radius, from;
-  long segments;
+bool cag_bsplines_nurbs_circle(CagCall *call, const struct cag_bsplines_nurbs_circle *a,
+                               CagValue *result) {
   CagTransform frame;
-  return cag_arg_positive(call, 0, &radius) &&
-         cag_arg_integer_or(call, 1, 4, 3, SEGMENTS_MAX, &segments) &&
-         cag_arg_angle_or(call, 4, 0, &from) && cag_arg_circle_frame(call, 2, &frame) &&
-         give_arcs(call, radius, from, FULL_TURN, (size_t)segments, &frame, result);
+  return cag_circle_frame(call, a->center, a->normal, &frame) &&
+         give_arcs(call, a->radius, a->start, FULL_TURN, (size_t)a->segments, &frame, result);
 }
 
-// radius, range, segments, center, normal
-bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
-  double radius, from, to;
-  long segments;
-  bool angle;
+bool cag_bsplines_nurbs_arc(CagCall *call, const struct cag_bsplines_nurbs_arc *a,
+                            CagValue *result) {
+  const double from = a->range.start, to = a->range.end, sweep = to - from;
   CagTransform frame;
   char text[32];
-  if (!cag_arg_positive(call, 0, &radius) || !cag_arg_interval(call, 1, &from, &to, &angle) ||
-      !cag_arg_integer_or(call, 2, 1, 1, SEGMENTS_MAX, &segments) ||
-      !cag_arg_circle_frame(call, 3, &frame))
-    return false;
-  if (!angle || !isfinite(from) || !isfinite(to))
+  if (!cag_circle_frame(call, a->center, a->normal, &frame)) return false;
+  if (!a->range.angle || !isfinite(from) || !isfinite(to))
     return cag_fail_type(call, 1, "a range of angles");
-  const double sweep = to - from;
   CagStatus status = CAG_OK;
   if (sweep == 0)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                       "the range has no length");
-  else if (!(fabs(sweep) / (double)segments < HALF_TURN))
+  else if (!(fabs(sweep) / (double)a->segments < HALF_TURN))
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
                       "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
                       "take more `segments`",
-                      cag_number_text(fabs(sweep), text), segments);
+                      cag_number_text(fabs(sweep), text), a->segments);
   return cag_geometry_ok(call, status) &&
-         give_arcs(call, radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
-                   (size_t)segments, &frame, result);
+         give_arcs(call, a->radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
+                   (size_t)a->segments, &frame, result);
 }
 
 // --- Pictures ---
 
-bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+bool cag_bsplines_control_net(CagCall *call, const struct cag_bsplines_control_net *a,
+                              CagValue *result) {
+  CagCurve *out = NULL;
   const CagVec3 *corners;
   size_t n;
   bool closed;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  if (cag_curve_vertices(c, &corners, &n, &closed)) {
+  if (cag_curve_vertices(a->C, &corners, &n, &closed)) {
     *result = call->values[0];
     return true;
   }
-  const CagNurbs *nurbs;
-  if (!read_nurbs(call, &nurbs)) return false;
+  const CagNurbs *nurbs = nurbs_of(call, a->C);
+  if (!nurbs) return false;
   CagVec3 *points = cag_hold_array(call, nurbs->distinct, sizeof *points);
   n = 0;
   for (size_t i = 0; i < nurbs->distinct; i++)
     if (nurbs->homogeneous[4 * i + 3] > 0) points[n++] = cag_project(nurbs->homogeneous + 4 * i);
   CagStatus status =
-      cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_curve_value(call->vm, out);
-  return true;
+      cag_curve_polyline(points, n, nurbs->periodic && n > 2, a->C->dimension, &out, call->err);
+  return cag_curve_result(call, status, &out, result);
 }
 
 // Teeth of a comb for each piece where nothing is said.
 #define TEETH 20
+#define TEETH_MAX 1000000
 // Length of the longest tooth, as part of the size of the curve, where nothing is said.
 #define LONGEST_TOOTH 0.25
 
@@ -277,6 +249,12 @@ static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError
   return CAG_OK;
 }
 
+// Adds a line of the comb to the list.
+static bool add_line(CagCall *call, CagStatus status, CagCurve **line, CagBuilder *list) {
+  CagValue v;
+  return cag_curve_result(call, status, line, &v) && cag_builder_add(call->vm, list, v);
+}
+
 static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
                       CagValue *result) {
   CagVec3 *tips = cag_hold_array(call, comb->n, sizeof *tips);
@@ -287,34 +265,27 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
     tips[i] = cag_madd(comb->feet[i], scale, comb->teeth[i]);
     if (cag_norm(cag_sub(tips[i], comb->feet[i])) == 0) continue;
     status = cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, call->err);
-    if (!cag_geometry_ok(call, status)) return false;
-    if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
+    if (!add_line(call, status, &line, list)) return false;
   }
   status = cag_curve_polyline(tips, comb->n, false, c->dimension, &line, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
+  if (!add_line(call, status, &line, list)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return true;
 }
 
-// C, n, scale
-bool cag_bsplines_curvature_comb(CagCall *call, CagValue *result) {
-  CagCurve *c;
-  CagBounds box;
-  long n;
-  double scale = 0, most = 0;
-  if (!cag_arg_curve(call, 0, &c)) return false;
+bool cag_bsplines_curvature_comb(CagCall *call, const struct cag_bsplines_curvature_comb *a,
+                                 CagValue *result) {
+  const CagCurve *c = a->C;
   const size_t pieces = (c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0) + 1;
-  const long usual = pieces < SEGMENTS_MAX / TEETH ? (long)pieces * TEETH + 1 : SEGMENTS_MAX;
-  const bool given = cag_given(call, 2);
-  if ((cag_given(call, 1) ? !cag_arg_integer(call, 1, 2, SEGMENTS_MAX, &n) : (n = usual, false)) ||
-      (given && !cag_arg_finite(call, 2, &scale)) ||
-      !cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err)))
-    return false;
-  Comb comb = {.n = (size_t)n};
+  const size_t usual = pieces < TEETH_MAX / TEETH ? pieces * TEETH + 1 : TEETH_MAX;
+  Comb comb = {.n = cag_given(call, 1) ? (size_t)a->n : usual};
+  CagBounds box;
+  double scale = a->scale, most = 0;
+  if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err))) return false;
   comb.feet = cag_hold_array(call, 2 * comb.n, sizeof(CagVec3));
   comb.teeth = comb.feet + comb.n;
   if (!cag_geometry_ok(call, make_comb(c, &comb, &most, call->err))) return false;
-  if (!given && most > 0) scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
+  if (!cag_given(call, 2) && most > 0)
+    scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
   return give_comb(call, c, &comb, scale, result);
 }

@@ -7,47 +7,38 @@
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/curves.h"
 
-// Most knots that one call makes.
-#define KNOTS_MAX 100000000
-
-bool cag_bsplines_uniform_knots(CagCall *call, CagValue *result) {
-  long count;
-  double start = 0, step = 1, *out;
-  if (!cag_arg_integer(call, 0, 1, KNOTS_MAX, &count) ||
-      (cag_given(call, 1) && !cag_arg_finite(call, 1, &start)) ||
-      (cag_given(call, 2) && !cag_arg_positive(call, 2, &step)))
-    return false;
-  *result = cag_list_numbers(call->vm, (size_t)count, &out);
-  for (long i = 0; i < count; i++) out[i] = start + (double)i * step;
+bool cag_bsplines_uniform_knots(CagCall *call, const struct cag_bsplines_uniform_knots *a,
+                                CagValue *result) {
+  double *out;
+  *result = cag_list_numbers(call->vm, (size_t)a->count, &out);
+  for (long i = 0; i < a->count; i++) out[i] = a->start + (double)i * a->step;
   return true;
 }
 
-// The knots of argument 0 and a degree; at least degree + 2 of them, ascending and finite.
-static bool read_knots(CagCall *call, int degree_at, int order_at, const double **knots,
-                       size_t *count, int *degree) {
-  if (!cag_arg_numbers(call, 0, knots, count) ||
-      !cag_arg_degree(call, degree_at, order_at, 3, degree))
-    return false;
+// The degree, for which the knots must be at least degree + 2, ascending and finite.
+static bool read_degree(CagCall *call, CagNumbers knots, int degree_at, int order_at, int *degree) {
+  const double *x = knots.items;
+  const size_t count = knots.count;
+  if (!cag_arg_degree(call, degree_at, order_at, 3, degree)) return false;
   CagStatus status = CAG_OK;
   char a[32], b[32];
   if (*degree < 1 || *degree > CAG_MAX_DEGREE)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                       "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, *degree);
-  else if (*count < (size_t)*degree + 2)
+  else if (count < (size_t)*degree + 2)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                       "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
-                      *count);
-  for (size_t i = 0; status == CAG_OK && i < *count; i++) {
-    if (!isfinite((*knots)[i]))
+                      count);
+  for (size_t i = 0; status == CAG_OK && i < count; i++) {
+    if (!isfinite(x[i]))
       status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
                         "knots[%zu] is not a finite number", i);
-    else if (i > 0 && (*knots)[i] < (*knots)[i - 1])
-      status =
-          cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
-                   "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s", i,
-                   cag_number_text((*knots)[i], a), i - 1, cag_number_text((*knots)[i - 1], b));
+    else if (i > 0 && x[i] < x[i - 1])
+      status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
+                        "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s",
+                        i, cag_number_text(x[i], a), i - 1, cag_number_text(x[i - 1], b));
   }
-  if (status == CAG_OK && !((*knots)[0] < (*knots)[*count - 1]))
+  if (status == CAG_OK && !(x[0] < x[count - 1]))
     status =
         cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", 0, "all knots are equal");
   return cag_geometry_ok(call, status);
@@ -57,19 +48,19 @@ static CagValue interval(CagCall *call, double a, double b) {
   return cag_domain_value(call->vm, false, a, b);
 }
 
-bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
+bool cag_bsplines_classify_knots(CagCall *call, const struct cag_bsplines_classify_knots *a,
+                                 CagValue *result) {
   static const char *const names[] = {"class", "degree",   "points",    "multiplicities",
                                       "range", "segments", "full_range"};
-  const double *x;
-  size_t count;
+  const double *x = a->knots.items;
+  const size_t count = a->knots.count;
   int p;
-  if (!read_knots(call, 1, 2, &x, &count, &p)) return false;
+  if (!read_degree(call, a->knots, 1, 2, &p)) return false;
   const size_t n = count - (size_t)p - 1, k = (size_t)p;
-  if (n < k + 1) {
-    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
-             "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2, count);
-    return cag_fail_geometry(call, call->err);
-  }
+  if (n < k + 1)
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+                         "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2,
+                         count);
   // The range may be empty, which only a curve minds; multiplicities may be too high.
   char text[32];
   CagBuilder *list = cag_builder_new(call->vm);
@@ -77,12 +68,11 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
   for (size_t i = 0, run; i < count; i += run) {
     for (run = 1; i + run < count && x[i + run] == x[i]; run++) {}
     const bool inner = x[i] > x[0] && x[i] < x[count - 1];
-    if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n])) {
-      cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
-               "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
-               cag_number_text(x[i], text), run, p, p, p + 1);
-      return cag_fail_geometry(call, call->err);
-    }
+    if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n]))
+      return cag_fail_core(
+          call, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
+          "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
+          cag_number_text(x[i], text), run, p, p, p + 1);
     const double pair[2] = {x[i], (double)run};
     if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
     segments += i + run < count && x[i] >= x[k] && x[i + run] <= x[n];
@@ -143,20 +133,18 @@ static CagStatus basis_at(const Basis *b, double t, double *out, CagError *err) 
   return status;
 }
 
-static bool read_basis_weights(CagCall *call, int argument, Basis *b) {
-  size_t count;
+static bool check_basis_weights(CagCall *call, CagNumbers weights, size_t n) {
   char text[32];
-  if (!cag_given(call, argument)) return true;
-  if (!cag_arg_numbers(call, argument, &b->weights, &count)) return false;
   CagStatus status = CAG_OK;
-  if (count != b->n)
-    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
-                      "expects one of `weights` for each of %zu functions, found %zu", b->n, count);
-  for (size_t i = 0; status == CAG_OK && i < count; i++)
-    if (!(b->weights[i] >= 0))
+  if (weights.count != n)
+    status =
+        cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+                 "expects one of `weights` for each of %zu functions, found %zu", n, weights.count);
+  for (size_t i = 0; status == CAG_OK && i < n; i++)
+    if (!(weights.items[i] >= 0))
       status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                         "weights must not be negative: weights[%zu] = %s", i,
-                        cag_number_text(b->weights[i], text));
+                        cag_number_text(weights.items[i], text));
   return cag_geometry_ok(call, status);
 }
 
@@ -183,32 +171,28 @@ static bool give_basis(CagCall *call, const Basis *b, CagValue *result) {
   return true;
 }
 
-// knots, degree, t, derivative, order, weights, side
-bool cag_bsplines_basis(CagCall *call, CagValue *result) {
-  static const char *const sides[] = {"right", "left", NULL};
-  Basis b = {0};
-  long derivative;
-  int side;
-  if (!read_knots(call, 1, 4, &b.knots, &b.count, &b.degree) ||
-      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_DERIVATIVE, &derivative) ||
-      !cag_arg_choice(call, 6, sides, &side))
-    return false;
+bool cag_bsplines_basis(CagCall *call, const struct cag_bsplines_basis *a, CagValue *result) {
+  Basis b = {.knots = a->knots.items,
+             .weights = a->weights.items,
+             .count = a->knots.count,
+             .derivative = (int)a->derivative,
+             .left = a->side == CAG_SIDE_LEFT};
+  if (!read_degree(call, a->knots, 1, 4, &b.degree)) return false;
   b.n = b.count - (size_t)b.degree - 1;
-  b.derivative = (int)derivative;
-  b.left = side == 1;
-  if (!read_basis_weights(call, 5, &b)) return false;
-  b.rows =
-      cag_hold_array(call, (size_t)(derivative + 1) * b.n + (size_t)b.degree + 2, sizeof *b.rows);
-  b.work = b.rows + (size_t)(derivative + 1) * b.n;
+  if (cag_given(call, 5) && !check_basis_weights(call, a->weights, b.n)) return false;
+  const size_t size = (size_t)(b.derivative + 1) * b.n;
+  b.rows = cag_hold_array(call, size + (size_t)b.degree + 2, sizeof *b.rows);
+  b.work = b.rows + size;
   return give_basis(call, &b, result);
 }
 
-bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
-  const double *x;
-  size_t count, at;
+bool cag_bsplines_basis_triangle(CagCall *call, const struct cag_bsplines_basis_triangle *a,
+                                 CagValue *result) {
+  const double *x = a->knots.items, t = a->t;
+  const size_t count = a->knots.count;
+  size_t at;
   int p;
-  double t;
-  if (!read_knots(call, 1, 3, &x, &count, &p) || !cag_arg_finite(call, 2, &t) ||
+  if (!read_degree(call, a->knots, 1, 3, &p) ||
       !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, call->err)))
     return false;
   double *rows = cag_hold_array(call, (size_t)(p + 1) * (count - 1), sizeof *rows);
@@ -250,18 +234,17 @@ static CagValue piece_record(CagCall *call, const double *x, size_t count, int p
   return cag_record_new(vm, names, values, 4);
 }
 
-bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
-  const double *x;
-  size_t count;
+bool cag_bsplines_basis_pieces(CagCall *call, const struct cag_bsplines_basis_pieces *a,
+                               CagValue *result) {
+  const double *x = a->knots.items;
+  const size_t count = a->knots.count;
   int p;
-  bool local;
-  if (!read_knots(call, 1, 2, &x, &count, &p) || !cag_arg_bool_or(call, 3, false, &local))
-    return false;
+  if (!read_degree(call, a->knots, 1, 2, &p)) return false;
   double *table = cag_hold_array(call, (size_t)(p + 1) * (size_t)(p + 1), sizeof *table);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i + 1 < count; i++)
     if (x[i] < x[i + 1])
-      if (!cag_builder_add(call->vm, list, piece_record(call, x, count, p, i, local, table)))
+      if (!cag_builder_add(call->vm, list, piece_record(call, x, count, p, i, a->local, table)))
         return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
@@ -279,14 +262,12 @@ static CagValue indices(CagCall *call, long low, long high, long most) {
   return list;
 }
 
-// i, degree, order, count
-bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
+bool cag_bsplines_basis_dependency(CagCall *call, const struct cag_bsplines_basis_dependency *a,
+                                   CagValue *result) {
   static const char *const names[] = {"needs", "feeds"};
-  long i, count = LONG_MAX / 2;
+  const long i = a->i, count = cag_given(call, 3) ? a->count : LONG_MAX / 2;
   int p;
-  if (!cag_arg_integer(call, 0, 0, KNOTS_MAX, &i) || !cag_arg_degree(call, 1, 2, 3, &p) ||
-      (cag_given(call, 3) && !cag_arg_integer(call, 3, 1, KNOTS_MAX, &count)))
-    return false;
+  if (!cag_arg_degree(call, 1, 2, 3, &p)) return false;
   if (p > CAG_MAX_DEGREE)
     return cag_fail_call(call, 1, CAG_ERR_value, "takes a degree up to %d", CAG_MAX_DEGREE);
   CagBuilder *needs = cag_builder_new(call->vm), *feeds = cag_builder_new(call->vm);
@@ -307,17 +288,14 @@ bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
 // Most numbers in the tables of one refinement: 800 MB.
 #define TABLE_MAX 1e8
 
-// knots, refined, degree, order
-bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
-  const double *x, *y;
-  size_t count, n;
+bool cag_bsplines_oslo(CagCall *call, const struct cag_bsplines_oslo *a, CagValue *result) {
+  const double *x = a->knots.items, *y = a->refined.items;
+  const size_t count = a->knots.count, n = a->refined.count;
   int p;
-  if (!read_knots(call, 2, 3, &x, &count, &p) || !cag_arg_numbers(call, 1, &y, &n)) return false;
-  if (n < count) {
-    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
-             "`refined` has %zu knots, less than the %zu of `knots`", n, count);
-    return cag_fail_geometry(call, call->err);
-  }
+  if (!read_degree(call, a->knots, 2, 3, &p)) return false;
+  if (n < count)
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
+                         "`refined` has %zu knots, less than the %zu of `knots`", n, count);
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
   if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
@@ -387,16 +365,15 @@ static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n,
   return CAG_OK;
 }
 
-// points, degree, start, end, order
-bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  size_t n;
-  int dimension, p;
+bool cag_bsplines_phantom_points(CagCall *call, const struct cag_bsplines_phantom_points *a,
+                                 CagValue *result) {
+  const CagVec3 *points = a->points.items;
+  const size_t n = a->points.count;
+  const int dimension = a->points.dimension;
+  int p;
   EndCondition start, end;
-  if (!cag_arg_degree(call, 1, 4, 3, &p) || !cag_arg_points(call, 0, &points, &n, &dimension))
-    return false;
-  cag_hold(call, points);
-  if (!cag_geometry_ok(call, cag_degree_check(n, p, call->err)) ||
+  if (!cag_arg_degree(call, 1, 4, 3, &p) ||
+      !cag_geometry_ok(call, cag_degree_check(n, p, call->err)) ||
       !read_end(call, 2, points[0], dimension, &start) ||
       !read_end(call, 3, points[n - 1], dimension, &end))
     return false;

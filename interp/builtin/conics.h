@@ -4,7 +4,7 @@
 #define CAG_INTERP_BUILTIN_CONICS_H
 
 #include "geom/curve/conic.h"
-#include "interp/builtin/shapes.h"
+#include "interp/builtin/curves.h"
 
 // The equation of a conic from six coefficients, 3 rows of its symmetric matrix, or a curve.
 bool cag_arg_conic(CagCall *call, int argument, CagConic *out);

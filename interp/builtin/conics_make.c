@@ -1,47 +1,15 @@
 // Conics made: by their axes, their equation, through points, as arcs, and as points.
 
-#include <stdarg.h>
-#include <stdio.h>
-
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
-
-// Most points that one call makes.
-#define POINTS_MAX 100000000
 
 // --- Parabola and hyperbola ---
 
-// As of circles: z along the normal, x level; of a normal along Z x is X.
-static bool read_frame(CagCall *call, int at, CagTransform *out) {
-  CagVec3 center, normal;
-  int dimension = 2;
-  if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
-  if (!cag_given(call, at)) dimension = 2;
-  *out = cag_translate(center);
-  out->planar = dimension == 2 && !cag_given(call, at + 1);
-  if (!cag_given(call, at + 1)) return true;
-  if (!cag_arg_direction(call, at + 1, center, &normal, NULL)) return false;
-  CagVec3 x = cag_cross(cag_vec3(0, 0, 1), normal);
-  if (x.x == 0 && x.y == 0) x = cag_vec3(1, 0, 0);
-  if (!cag_geometry_ok(call, cag_axes(center, x, cag_cross(normal, x), out, call->err)))
-    return false;
-  out->planar = false;
-  return true;
-}
-
-__attribute__((format(printf, 3, 4))) static bool fail_domain(CagCall *call, const char *argument,
-                                                              const char *format, ...) {
-  CagError err;
-  char message[200];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
-  cag_fail(&err, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, "%s", message);
-  return cag_fail_geometry(call, &err);
-}
+#define FAIL_DOMAIN(call, argument, ...)                                                           \
+  cag_fail_core(call, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, __VA_ARGS__)
 
 // The parameter where x or y is reached; x on the upper half.
 typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is_x, double *t);
@@ -49,7 +17,7 @@ typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is
 static bool parabola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
   (void)b;
   if (is_x && value < 0)
-    return fail_domain(call, "x", "a parabola begins at x = 0; it has no point at x = %.17g",
+    return FAIL_DOMAIN(call, "x", "a parabola begins at x = 0; it has no point at x = %.17g",
                        value);
   *t = is_x ? sqrt(value / a) : value / (2 * a);
   return true;
@@ -57,73 +25,59 @@ static bool parabola_at(CagCall *call, double a, double b, double value, bool is
 
 static bool hyperbola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
   if (is_x && value < a)
-    return fail_domain(
+    return FAIL_DOMAIN(
         call, "x", "the right branch begins at x = %.17g; it has no point at x = %.17g", a, value);
   // asinh of y keeps its digits near the vertex, where acosh of x loses them.
   *t = asinh(is_x ? sqrt((value - a) * (value + a)) / a : value / b);
   return true;
 }
 
-// The curve over a range; from the larger to the smaller parameter it is that over the ascending
-// range, reversed.
-static bool give_ranged(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
-                        CagValue *result) {
-  if (status || !backwards) return cag_curve_result(call, status, made, result);
-  CagCurve *reversed = NULL;
-  status = cag_curve_reverse(*made, &reversed, call->err);
-  cag_curve_release(*made);
-  return cag_curve_result(call, status, &reversed, result);
-}
-
-// Exactly one of range, x and y, of which the last two stand at `x_at` and after.
-static bool read_range(CagCall *call, int range_at, int x_at, double a, double b, Inverse inverse,
-                       double *from, double *to, bool *angle) {
-  const bool range = cag_given(call, range_at), x = cag_given(call, x_at),
-             y = cag_given(call, x_at + 1);
-  *angle = false;
-  if (range + x + y != 1)
+// Exactly one of the range, x, and y is given, of which the last two stand at `x_at` and after. Sets
+// the range of the parameter, radians if it is an angle.
+static bool find_range(CagCall *call, int x_at, double a, double b, Inverse inverse,
+                       CagRangeEnds *range) {
+  const bool x = cag_given(call, x_at), y = cag_given(call, x_at + 1);
+  if (cag_given(call, x_at - 3) + x + y != 1)
     return cag_fail_call(
         call, -1, CAG_ERR_value,
         "needs one of `range`, `x` and `y` to say which part of the curve is meant");
-  if (range) {
-    if (!cag_arg_interval(call, range_at, from, to, angle)) return false;
-    if (*angle) {
-      *from *= CAG_RADIANS_PER_DEGREE;
-      *to *= CAG_RADIANS_PER_DEGREE;
-    }
-    return true;
+  range->angle = false;
+  if (x || y) {
+    double first, last;
+    return cag_arg_interval(call, x ? x_at : x_at + 1, &first, &last, NULL) &&
+           inverse(call, a, b, first, x, &range->start) &&
+           inverse(call, a, b, last, x, &range->end);
   }
-  double first, last;
-  return cag_arg_interval(call, x ? x_at : x_at + 1, &first, &last, NULL) &&
-         inverse(call, a, b, first, x, from) && inverse(call, a, b, last, x, to);
+  if (!cag_arg_interval(call, x_at - 3, &range->start, &range->end, &range->angle)) return false;
+  if (range->angle) range->start *= CAG_RADIANS_PER_DEGREE;
+  if (range->angle) range->end *= CAG_RADIANS_PER_DEGREE;
+  return true;
 }
 
-bool cag_conics_parabola(CagCall *call, CagValue *result) {
-  double a, from, to;
-  bool angle;
+bool cag_conics_parabola(CagCall *call, const struct cag_conics_parabola *a, CagValue *result) {
+  CagRangeEnds r;
   CagTransform frame;
   CagCurve *c = NULL;
-  if (!cag_arg_positive(call, 0, &a) ||
-      !read_range(call, 1, 4, a, 0, parabola_at, &from, &to, &angle) ||
-      !read_frame(call, 2, &frame))
+  if (!find_range(call, 4, a->a, 0, parabola_at, &r) ||
+      !cag_circle_frame(call, a->center, a->normal, &frame))
     return false;
-  CagStatus status = cag_curve_parabola(a, angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC,
-                                        fmin(from, to), fmax(from, to), &frame, &c, call->err);
-  return give_ranged(call, status, from > to, &c, result);
+  CagStatus status =
+      cag_curve_parabola(a->a, r.angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC,
+                         fmin(r.start, r.end), fmax(r.start, r.end), &frame, &c, call->err);
+  return cag_ranged_curve_result(call, status, r.start > r.end, &c, result);
 }
 
-bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
-  double a, b, from, to;
-  bool angle;
+bool cag_conics_hyperbola(CagCall *call, const struct cag_conics_hyperbola *a, CagValue *result) {
+  CagRangeEnds r;
   CagTransform frame;
   CagCurve *c = NULL;
-  if (!cag_arg_positive(call, 0, &a) || !cag_arg_positive(call, 1, &b) ||
-      !read_range(call, 2, 5, a, b, hyperbola_at, &from, &to, &angle) ||
-      !read_frame(call, 3, &frame))
+  if (!find_range(call, 5, a->a, a->b, hyperbola_at, &r) ||
+      !cag_circle_frame(call, a->center, a->normal, &frame))
     return false;
-  CagStatus status = cag_curve_hyperbola(a, b, angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC,
-                                         fmin(from, to), fmax(from, to), &frame, &c, call->err);
-  return give_ranged(call, status, from > to, &c, result);
+  CagStatus status =
+      cag_curve_hyperbola(a->a, a->b, r.angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC,
+                          fmin(r.start, r.end), fmax(r.start, r.end), &frame, &c, call->err);
+  return cag_ranged_curve_result(call, status, r.start > r.end, &c, result);
 }
 
 // --- By equation ---
@@ -159,12 +113,11 @@ bool cag_arg_conic(CagCall *call, int argument, CagConic *out) {
          cag_geometry_ok(call, cag_conic_of_curve(c, out, call->err));
 }
 
-bool cag_conics_conic(CagCall *call, CagValue *result) {
+bool cag_conics_conic(CagCall *call, const struct cag_conics_conic *a, CagValue *result) {
   CagConic k;
   CagCurve *c = NULL;
-  bool halved;
-  if (!read_equation(call, 0, &k) || !cag_arg_bool_or(call, 1, false, &halved)) return false;
-  if (halved) {
+  if (!read_equation(call, 0, &k)) return false;
+  if (a->halved) {
     k.c[1] *= 2;
     k.c[3] *= 2;
     k.c[4] *= 2;
@@ -179,30 +132,19 @@ bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
   return cag_curve_result(call, cag_curve_conic(&k, &c, call->err), &c, result);
 }
 
-typedef struct Branches { // held
-  CagCurve *c[2];
-  size_t n;
-} Branches;
-
-static void free_branches(void *what) {
-  Branches *b = what;
-  for (size_t i = 0; i < b->n; i++) cag_curve_release(b->c[i]);
-  cag_free(b);
-}
-
-bool cag_conics_branches(CagCall *call, CagValue *result) {
+bool cag_conics_branches(CagCall *call, const struct cag_conics_branches *a, CagValue *result) {
+  const CagRangeEnds range = a->range;
   CagConic k;
   CagValue items[2];
-  double from = -2, to = 2;
-  if (!cag_arg_conic(call, 0, &k) ||
-      (cag_given(call, 1) && !cag_arg_interval(call, 1, &from, &to, NULL)))
-    return false;
-  Branches *b = cag_hold_array(call, 1, sizeof *b);
-  cag_hold_for(call, free_branches, cag_give_held(call, b));
-  if (!cag_geometry_ok(call, cag_conic_branches(&k, from, to, b->c, &b->n, call->err)))
-    return false;
-  for (size_t i = 0; i < b->n; i++) items[i] = cag_curve_value(call->vm, cag_curve_retain(b->c[i]));
-  *result = cag_list_values(call->vm, items, b->n);
+  if (!cag_arg_conic(call, 0, &k)) return false;
+  if (range.angle) return cag_fail_type(call, 1, "a range of numbers");
+  CagCurveList *b = cag_hold_curve_list(call);
+  b->items = cag_give_held(call, cag_hold_array(call, 2, sizeof *b->items));
+  CagStatus status = cag_conic_branches(&k, range.start, range.end, b->items, &b->count, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  for (size_t i = 0; i < b->count; i++)
+    items[i] = cag_curve_value(call->vm, cag_curve_retain(b->items[i]));
+  *result = cag_list_values(call->vm, items, b->count);
   return true;
 }
 
@@ -268,16 +210,17 @@ bool cag_conics_conic_by(CagCall *call, CagValue *result) {
   static const char *const kinds[] = {"general", "axis", "circle", "line", NULL};
   CagList *list = NULL;
   CagVec3 *points = NULL;
-  size_t n = 0, m = 0;
+  size_t n = 0;
   int kind, dimension = 2;
-  if (!cag_arg_choice(call, 2, kinds, &kind)) return false;
-  if (cag_given(call, 1) && !cag_arg_list(call, 1, &list)) return false;
-  bool none = call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->length == 0;
+  if (!cag_arg_choice(call, 2, kinds, &kind) ||
+      (cag_given(call, 1) && !cag_arg_list(call, 1, &list)))
+    return false;
+  const bool none = call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->length == 0;
   if (!none && !cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   cag_hold_for(call, cag_free, points);
-  m = list ? list->length : 0;
-  CagConicTangent *tangents = cag_hold_array(call, m, sizeof *tangents);
   if (!check_plane(call, 0, dimension)) return false;
+  const size_t m = list ? list->length : 0;
+  CagConicTangent *tangents = cag_hold_array(call, m, sizeof *tangents);
   for (size_t i = 0; i < m; i++)
     if (!read_tangent(call, cag_list_get(call->vm, list, i), i, &tangents[i])) return false;
   return make_by(call, points, n, tangents, m, (CagConicShape)kind, result);
@@ -285,49 +228,37 @@ bool cag_conics_conic_by(CagCall *call, CagValue *result) {
 
 // --- Arcs ---
 
-bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
-  CagVec3 p[3], shoulder;
-  int dimension = 2, d;
-  double weight, rho;
+bool cag_conics_conic_arc(CagCall *call, const struct cag_conics_conic_arc *a, CagValue *result) {
+  const CagVec3 p = a->P.at, apex = a->apex.at, q = a->Q.at;
+  const bool in_space = a->P.dimension == 3 || a->apex.dimension == 3 || a->Q.dimension == 3;
+  double weight = a->weight;
   CagCurve *c = NULL;
-  for (int i = 0; i < 3; i++) {
-    if (!cag_arg_vec(call, i, &p[i], &d)) return false;
-    if (d == 3) dimension = 3;
-  }
-  int said = 0;
-  for (int i = 3; i < 6; i++) said += cag_given(call, i);
-  if (said != 1)
+  if (cag_given(call, 3) + cag_given(call, 4) + cag_given(call, 5) != 1)
     return cag_fail_call(
         call, -1, CAG_ERR_value,
         "needs one of `rho`, `shoulder` and `weight` to say how far the arc bulges");
   if (cag_given(call, 3)) {
-    if (!cag_arg_finite(call, 3, &rho)) return false;
-    if (!(rho >= 0 && rho < 1))
+    if (!(a->rho >= 0 && a->rho < 1))
       return cag_fail_value(call, 3,
                             "a number from 0 (the chord) to less than 1 (0.5: a parabola)");
-    weight = rho / (1 - rho);
-  } else if (cag_given(call, 4)) {
-    if (!cag_arg_vec(call, 4, &shoulder, NULL) ||
-        !cag_geometry_ok(call,
-                         cag_conic_shoulder_weight(p[0], p[1], p[2], shoulder, &weight, call->err)))
-      return false;
-  } else if (!cag_arg_finite(call, 5, &weight)) {
+    weight = a->rho / (1 - a->rho);
+  } else if (cag_given(call, 4) &&
+             !cag_geometry_ok(
+                 call, cag_conic_shoulder_weight(p, apex, q, a->shoulder.at, &weight, call->err))) {
     return false;
   }
-  return cag_curve_result(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, call->err),
+  return cag_curve_result(call, cag_conic_arc(p, apex, q, weight, in_space ? 3 : 2, &c, call->err),
                           &c, result);
 }
 
-bool cag_conics_conic_segment(CagCall *call, CagValue *result) {
-  static const char *const sides[] = {"lower", "upper", NULL};
+bool cag_conics_conic_segment(CagCall *call, const struct cag_conics_conic_segment *a,
+                              CagValue *result) {
   CagConic k;
   CagCurve *c = NULL;
-  double from, to;
-  int upper;
-  if (!cag_arg_conic(call, 0, &k) || !cag_arg_interval(call, 1, &from, &to, NULL) ||
-      !cag_arg_choice(call, 2, sides, &upper))
-    return false;
-  return cag_curve_result(call, cag_conic_segment(&k, from, to, upper, &c, call->err), &c, result);
+  if (!cag_arg_conic(call, 0, &k)) return false;
+  if (a->x.angle) return cag_fail_type(call, 1, "a range of numbers");
+  return cag_curve_result(
+      call, cag_conic_segment(&k, a->x.start, a->x.end, a->branch, &c, call->err), &c, result);
 }
 
 // --- Points ---
@@ -391,7 +322,7 @@ static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out
   Axes k;
   if (!read_axes(call, c, &k)) return false;
   if (fmin(k.from, k.to) <= -M_PI || fmax(k.from, k.to) >= M_PI)
-    return fail_domain(call, "",
+    return FAIL_DOMAIN(call, "",
                        "the rational form reaches its point at 180deg only at infinity: "
                        "the arc must lie between -180deg and 180deg");
   const double from = tan(k.from / 2), to = tan(k.to / 2);
@@ -438,7 +369,7 @@ static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double slack = 1e-9 * (box.max.x - box.min.x);
   if (!status && (box.min.x < fmin(from, to) - slack || box.max.x > fmax(from, to) + slack))
-    return fail_domain(call, "", "x must go one way from the start to the end");
+    return FAIL_DOMAIN(call, "", "x must go one way from the start to the end");
   for (size_t i = 1; !status && i + 1 < n; i++) {
     const double x = from + (to - from) * ((double)i / (double)(n - 1));
     status = find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i],
@@ -452,19 +383,14 @@ static bool by_parameter(CagCall *call, const CagCurve *c, size_t n, CagVec3 *ou
   return cag_geometry_ok(call, cag_conic_points(c, n, out, call->err));
 }
 
-bool cag_conics_conic_points(CagCall *call, CagValue *result) {
-  static const char *const ways[] = {"parameter", "angle", "length", "rational", "x", NULL};
+bool cag_conics_conic_points(CagCall *call, const struct cag_conics_conic_points *a,
+                             CagValue *result) {
+  // In the order of the words of `by`.
   static bool (*const make[])(CagCall *, const CagCurve *, size_t,
                               CagVec3 *) = {by_parameter, by_angle, by_length, by_rational, by_x};
-  CagCurve *given;
-  long n;
-  int way;
-  if (!cag_arg_curve(call, 0, &given) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
-      !cag_arg_choice(call, 2, ways, &way))
-    return false;
-  const CagCurve *c = cag_curve_conic_branch(given) ? cag_curve_conic_branch(given) : given;
-  CagVec3 *points = cag_hold(call, cag_malloc(sizeof *points * (size_t)n));
-  if (!make[way](call, c, (size_t)n, points)) return false;
-  *result = cag_points_value(call->vm, points, (size_t)n, c->dimension);
+  const CagCurve *c = cag_curve_conic_branch(a->C) ? cag_curve_conic_branch(a->C) : a->C;
+  CagVec3 *points = cag_hold(call, cag_malloc(sizeof *points * (size_t)a->n));
+  if (!make[a->by](call, c, (size_t)a->n, points)) return false;
+  *result = cag_points_value(call->vm, points, (size_t)a->n, c->dimension);
   return true;
 }

@@ -11,6 +11,12 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
+// The curve itself, or of a conic the one branch that it has.
+static const CagCurve *branch_of(const CagCurve *c) {
+  const CagCurve *branch = cag_curve_conic_branch(c);
+  return branch ? branch : c;
+}
+
 // A line, taken whole, or the circle of a circle or arc.
 static bool read_touched(CagCall *call, int argument, CagTouched *out) {
   CagCurve *c;
@@ -25,8 +31,7 @@ static bool read_touched(CagCall *call, int argument, CagTouched *out) {
     *out = (CagTouched){p[0], cag_sub(p[1], p[0]), 0};
     return true;
   }
-  const CagCurve *branch = cag_curve_conic_branch(c) ? cag_curve_conic_branch(c) : c;
-  if (c->dimension == 2 && cag_curve_arc_axes(branch, &out->p, &x, &y, &rate)) {
+  if (c->dimension == 2 && cag_curve_arc_axes(branch_of(c), &out->p, &x, &y, &rate)) {
     out->radius = cag_norm(x);
     out->d = cag_vec3(0, 0, 0);
     if (fabs(cag_norm(y) - out->radius) <= round * out->radius &&
@@ -57,95 +62,72 @@ static bool read_contact(CagCall *call, int argument, bool inside[2]) {
   return true;
 }
 
-bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
-  static const char *const sides[] = {"left", "right", NULL};
-  static const char *const nearness[] = {"far", "near", NULL};
-  CagTouched a, b;
-  CagTouchChoice choice;
+bool cag_conics_circle_tangent(CagCall *call, const struct cag_conics_circle_tangent *a,
+                               CagValue *result) {
+  CagTouched p, q;
+  CagTouchChoice choice = {.right = a->side, .near = a->nearness};
   CagVec3 center, touch[2];
   CagCurve *c = NULL;
-  double radius;
-  int side, near;
-  if (!read_touched(call, 0, &a) || !read_touched(call, 1, &b) ||
-      !cag_arg_positive(call, 2, &radius) || !cag_arg_choice(call, 3, sides, &side) ||
-      !cag_arg_choice(call, 4, nearness, &near) || !read_contact(call, 5, choice.inside))
-    return false;
-  choice.right = side == 1;
-  choice.near = near == 1;
-  if (!cag_geometry_ok(call, cag_tangent_circle(&a, &b, radius, choice, &center, touch, call->err)))
+  if (!read_touched(call, 0, &p) || !read_touched(call, 1, &q) ||
+      !read_contact(call, 5, choice.inside) ||
+      !cag_geometry_ok(call,
+                       cag_tangent_circle(&p, &q, a->radius, choice, &center, touch, call->err)))
     return false;
   CagTransform frame = cag_translate(center);
   frame.planar = true;
-  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_curve_value(call->vm, c);
-  return true;
+  CagStatus status = cag_curve_arc(a->radius, a->radius, 0, FULL_TURN, &frame, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
 }
 
 bool cag_conics_fillet(CagCall *call, const struct cag_conics_fillet *a, CagValue *result) {
   CagCurve *arc = NULL;
   double t, t2;
-  if (!cag_geometry_ok(call, cag_fillet(a->A, a->B, a->radius, &arc, &t, &t2, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, arc);
-  return true;
+  CagStatus status = cag_fillet(a->A, a->B, a->radius, &arc, &t, &t2, call->err);
+  return cag_curve_result(call, status, &arc, result);
 }
 
-static bool give_lines(CagCall *call, const CagTangentLine *lines, size_t n, CagValue *result) {
+bool cag_conics_tangent_lines(CagCall *call, const struct cag_conics_tangent_lines *a,
+                              CagValue *result) {
+  const CagCurve *c = branch_of(a->C);
+  CagTangentLine *lines = NULL;
+  size_t n = 0;
+  CagStatus status;
+  if (a->P.type == CAG_CURVE) {
+    status = cag_tangents_of_two(c, branch_of(CAG_AS_SHAPE(a->P)->as.curve), &lines, &n, call->err);
+  } else {
+    CagPoint p;
+    if (!cag_arg_vec(call, 1, &p.at, &p.dimension)) return false;
+    if (p.dimension != 2) return cag_fail_value(call, 1, "a point [x, y] of the plane, or a curve");
+    status = cag_tangents_from_point(c, p.at, &lines, &n, call->err);
+  }
+  if (!cag_geometry_ok(call, status)) return false;
+  cag_hold_for(call, cag_free, lines);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < n; i++) {
-    CagCurve *c = NULL;
-    CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, call->err);
-    if (!cag_geometry_ok(call, status)) return false;
-    if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, c))) return false;
+    CagCurve *line = NULL;
+    CagValue v;
+    status = cag_curve_line(lines[i].p, lines[i].q, 2, &line, call->err);
+    if (!cag_curve_result(call, status, &line, &v) || !cag_builder_add(call->vm, list, v))
+      return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
 
-bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
-  CagCurve *a, *b;
-  CagVec3 p;
-  CagTangentLine *lines = NULL;
-  size_t n = 0;
-  int dimension;
-  CagStatus status;
-  if (!cag_arg_curve(call, 0, &a)) return false;
-  if (cag_curve_conic_branch(a)) a = (CagCurve *)cag_curve_conic_branch(a);
-  if (call->values[1].type == CAG_CURVE) {
-    if (!cag_arg_curve(call, 1, &b)) return false;
-    if (cag_curve_conic_branch(b)) b = (CagCurve *)cag_curve_conic_branch(b);
-    status = cag_tangents_of_two(a, b, &lines, &n, call->err);
-  } else {
-    if (!cag_arg_vec(call, 1, &p, &dimension)) return false;
-    if (dimension != 2) return cag_fail_value(call, 1, "a point [x, y] of the plane, or a curve");
-    status = cag_tangents_from_point(a, p, &lines, &n, call->err);
-  }
-  if (!cag_geometry_ok(call, status)) return false;
-  cag_hold_for(call, cag_free, lines);
-  return give_lines(call, lines, n, result);
+bool cag_conics_rounded(CagCall *call, const struct cag_conics_rounded *a, CagValue *result) {
+  CagCurve *out = NULL;
+  CagStatus status = cag_curve_rounded(a->C, a->radius, &out, call->err);
+  return cag_changed_curve_result(call, status, &out, result);
 }
 
-bool cag_conics_rounded(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  double radius;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &radius) ||
-      !cag_geometry_ok(call, cag_curve_rounded(c, radius, &out, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, out);
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
-}
-
-bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
+bool cag_conics_rounded_region(CagCall *call, const struct cag_conics_rounded_region *a,
+                               CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   const CagRegion *region = shape->as.region;
   CagRegion *out = NULL;
-  double radius;
-  if (!cag_arg_positive(call, 1, &radius)) return false;
   CagCurve **loops = cag_hold_array(call, region->count, sizeof *loops);
   for (size_t i = 0; i < region->count; i++) {
-    CagStatus status = cag_curve_rounded(region->loops[i], radius, &loops[i], call->err);
+    CagStatus status = cag_curve_rounded(region->loops[i], a->radius, &loops[i], call->err);
     if (!cag_geometry_ok(call, status)) return false;
     cag_hold_curve(call, loops[i]);
   }

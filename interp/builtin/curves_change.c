@@ -4,78 +4,50 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
 #include "interp/builtin/curves.h"
+#include "interp/builtin/holds.h"
 
-bool cag_curves_reverse(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_reverse(c, &out, call->err), &out, result);
+bool cag_curves_reverse(CagCall *call, const struct cag_curves_reverse *a, CagValue *result) {
+  CagCurve *out = NULL;
+  return cag_changed_curve_result(call, cag_curve_reverse(a->C, &out, call->err), &out, result);
 }
 
-bool cag_curves_trim(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+bool cag_curves_trim(CagCall *call, const struct cag_curves_trim *a, CagValue *result) {
+  CagCurve *out = NULL;
   double from, to;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
-    return false;
-  CagStatus status = cag_curve_trim(c, from, to, &out, call->err);
+  if (!cag_arg_parameter_range(call, 1, a->C->angular, &from, &to)) return false;
+  CagStatus status = cag_curve_trim(a->C, from, to, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
+bool cag_curves_reparametrize(CagCall *call, const struct cag_curves_reparametrize *a,
+                              CagValue *result) {
+  CagCurve *out = NULL;
   double from, to;
-  bool angle;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_interval(call, 1, &from, &to, &angle)) return false;
-  if (angle) {
-    from *= CAG_RADIANS_PER_DEGREE;
-    to *= CAG_RADIANS_PER_DEGREE;
-  }
-  CagStatus status = cag_curve_reparametrize_as(c, from, to, angle, &out, call->err);
+  const bool angle = a->range.type == CAG_RANGE && CAG_AS_RANGE(a->range)->angle;
+  if (!cag_arg_parameter_range(call, 1, angle, &from, &to)) return false;
+  CagStatus status = cag_curve_reparametrize_as(a->C, from, to, angle, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
-}
-
-// Parts of a curve, held.
-typedef struct Pieces {
-  CagCurve **curves;
-  size_t n;
-} Pieces;
-
-static void free_pieces(void *what) {
-  Pieces *p = what;
-  for (size_t i = 0; i < p->n; i++) cag_curve_release(p->curves[i]);
-  cag_free(p->curves);
-  cag_free(p);
-}
-
-static Pieces *pieces_new(CagCall *call) {
-  Pieces *p = cag_hold_array(call, 1, sizeof *p);
-  cag_hold_for(call, free_pieces, cag_give_held(call, p));
-  return p;
 }
 
 // The parts, with what was said about the whole.
-static CagValue pieces_value(CagCall *call, const Pieces *p) {
+static CagValue parts_value(CagCall *call, const CagCurveList *parts) {
   CagBuilder *list = cag_builder_new(call->vm);
-  for (size_t i = 0; i < p->n; i++) {
-    CagValue piece = cag_curve_value(call->vm, cag_curve_retain(p->curves[i]));
-    cag_shape_say_alike(piece, call->values[0]);
-    cag_builder_add(call->vm, list, piece);
+  for (size_t i = 0; i < parts->count; i++) {
+    CagValue part = cag_curve_value(call->vm, cag_curve_retain(parts->items[i]));
+    cag_shape_say_alike(part, call->values[0]);
+    cag_builder_add(call->vm, list, part);
   }
   return cag_builder_finish(call->vm, list);
 }
 
-bool cag_curves_split(CagCall *call, CagValue *result) {
-  CagCurve *c;
+bool cag_curves_split(CagCall *call, const struct cag_curves_split *a, CagValue *result) {
   double t;
-  if (!cag_arg_curve(call, 0, &c) ||
-      !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t))
-    return false;
-  Pieces *halves = pieces_new(call);
-  halves->curves = cag_malloc(2 * sizeof *halves->curves);
-  CagStatus status = halves->curves ? cag_curve_halves(c, t, halves->curves, call->err)
-                                    : cag_fail_memory(call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  halves->n = 2;
-  *result = pieces_value(call, halves);
+  if (!cag_arg_at(call, a->C, &t)) return false;
+  CagCurveList *halves = cag_hold_curve_list(call);
+  halves->items = cag_give_held(call, cag_hold_array(call, 2, sizeof *halves->items));
+  if (!cag_geometry_ok(call, cag_curve_halves(a->C, t, halves->items, call->err))) return false;
+  halves->count = 2;
+  *result = parts_value(call, halves);
   return true;
 }
 
@@ -98,10 +70,9 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_to_nurbs(c, &out, call->err), &out, result);
+bool cag_curves_to_nurbs(CagCall *call, const struct cag_curves_to_nurbs *a, CagValue *result) {
+  CagCurve *out = NULL;
+  return cag_changed_curve_result(call, cag_curve_to_nurbs(a->C, &out, call->err), &out, result);
 }
 
 // No limit of the turn: only the distance counts.
@@ -124,16 +95,16 @@ bool cag_curves_polygonize(CagCall *call, const struct cag_curves_polygonize *a,
 
 // --- Another form of the same points ---
 
-bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
-  CagCurve *c;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  Pieces *p = pieces_new(call);
-  if (!cag_geometry_ok(call, cag_curve_to_bezier(c, &p->curves, &p->n, call->err))) return false;
-  *result = pieces_value(call, p);
+bool cag_bsplines_to_bezier(CagCall *call, const struct cag_bsplines_to_bezier *a,
+                            CagValue *result) {
+  CagCurveList *p = cag_hold_curve_list(call);
+  CagStatus status = cag_curve_to_bezier(a->C, &p->items, &p->count, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  *result = parts_value(call, p);
   return true;
 }
 
-// Most times that a degree is raised or a knot inserted or taken away at once.
+// Most times that a degree is raised or a knot inserted or taken away at once, as rows say.
 #define TIMES_MAX 1000
 
 bool cag_bsplines_elevate(CagCall *call, const struct cag_bsplines_elevate *a, CagValue *result) {
@@ -142,83 +113,66 @@ bool cag_bsplines_elevate(CagCall *call, const struct cag_bsplines_elevate *a, C
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-// A tolerance in mm, positive or inf.
-static bool read_tolerance(CagCall *call, int argument, double *out) {
-  if (!cag_arg_number(call, argument, out)) return false;
-  return *out >= 0 ||
-         cag_fail_call(call, argument, CAG_ERR_value, "expects a `tolerance` of 0 or more");
-}
-
-bool cag_bsplines_reduce_degree(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  double tolerance;
-  if (!cag_arg_curve(call, 0, &c) || !read_tolerance(call, 1, &tolerance)) return false;
-  CagStatus status = cag_curve_reduce_degree(c, tolerance, &out, NULL, call->err);
+bool cag_bsplines_reduce_degree(CagCall *call, const struct cag_bsplines_reduce_degree *a,
+                                CagValue *result) {
+  CagCurve *out = NULL;
+  CagStatus status = cag_curve_reduce_degree(a->C, a->tolerance, &out, NULL, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  double t;
-  long times;
-  if (!cag_arg_curve(call, 0, &c) ||
-      !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t) ||
-      !cag_arg_integer_or(call, 2, 1, 1, TIMES_MAX, &times))
-    return false;
-  double knots[TIMES_MAX];
-  for (long i = 0; i < times; i++) knots[i] = t;
-  CagStatus status = cag_curve_insert_knots(c, knots, (size_t)times, &out, call->err);
+bool cag_bsplines_insert_knot(CagCall *call, const struct cag_bsplines_insert_knot *a,
+                              CagValue *result) {
+  CagCurve *out = NULL;
+  double t, knots[TIMES_MAX];
+  if (!cag_arg_at(call, a->C, &t)) return false;
+  for (long i = 0; i < a->times; i++) knots[i] = t;
+  CagStatus status = cag_curve_insert_knots(a->C, knots, (size_t)a->times, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
 // Part of the size of the curve within which a knot counts as one without effect.
 #define WITHOUT_EFFECT 1e-9
 
-static bool tolerance_of_size(CagCall *call, const CagCurve *c, int argument, double part,
-                              double *out) {
+// Where no tolerance is given, it is a part of the size.
+static bool tolerance_of_size(CagCall *call, const CagCurve *c, double part, double *tolerance) {
   CagBounds box;
-  if (cag_given(call, argument)) return read_tolerance(call, argument, out);
+  if (cag_given(call, 2)) return true;
   if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, call->err))) return false;
-  *out = part * cag_norm(cag_sub(box.max, box.min));
+  *tolerance = part * cag_norm(cag_sub(box.max, box.min));
   return true;
 }
 
-// C, t, tolerance, times
-bool cag_bsplines_remove_knot(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  double t, tolerance;
-  long times;
-  if (!cag_arg_curve(call, 0, &c) ||
-      !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t) ||
-      !tolerance_of_size(call, c, 2, WITHOUT_EFFECT, &tolerance) ||
-      !cag_arg_integer_or(call, 3, 1, 1, TIMES_MAX, &times))
+bool cag_bsplines_remove_knot(CagCall *call, const struct cag_bsplines_remove_knot *a,
+                              CagValue *result) {
+  CagCurve *out = NULL;
+  double t, tolerance = a->tolerance;
+  if (!cag_arg_at(call, a->C, &t) || !tolerance_of_size(call, a->C, WITHOUT_EFFECT, &tolerance))
     return false;
-  CagStatus status = cag_curve_remove_knot(c, t, (int)times, tolerance, &out, NULL, call->err);
+  CagStatus status =
+      cag_curve_remove_knot(a->C, t, (int)a->times, tolerance, &out, NULL, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-bool cag_bsplines_refine(CagCall *call, CagValue *result) {
+bool cag_bsplines_refine(CagCall *call, const struct cag_bsplines_refine *a, CagValue *result) {
   static const char *const ways[] = {"midpoints", NULL};
-  CagCurve *c, *out = NULL;
+  CagCurve *out = NULL;
+  CagNumbers knots;
   CagStatus status;
-  const double *knots;
-  size_t n;
   int way;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  if (cag_given(call, 1) && call->values[1].type != CAG_TEXT) {
-    if (!cag_arg_numbers(call, 1, &knots, &n)) return false;
-    status = cag_curve_insert_knots(c, knots, n, &out, call->err);
+  if (a->knots.type != CAG_UNSET && a->knots.type != CAG_TEXT) {
+    if (!cag_arg_numbers(call, 1, &knots.items, &knots.count)) return false;
+    status = cag_curve_insert_knots(a->C, knots.items, knots.count, &out, call->err);
   } else {
     if (!cag_arg_choice(call, 1, ways, &way)) return false;
-    status = cag_curve_insert_midpoints(c, &out, call->err);
+    status = cag_curve_insert_midpoints(a->C, &out, call->err);
   }
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  return cag_changed_curve_result(call, cag_curve_clamp(c, &out, call->err), &out, result);
+bool cag_bsplines_clamp_ends(CagCall *call, const struct cag_bsplines_clamp_ends *a,
+                             CagValue *result) {
+  CagCurve *out = NULL;
+  return cag_changed_curve_result(call, cag_curve_clamp(a->C, &out, call->err), &out, result);
 }
 
 // --- Curves near it ---
@@ -241,14 +195,14 @@ bool cag_bsplines_approximate(CagCall *call, const struct cag_bsplines_approxima
 // How exact an offset is where nothing is said, as part of its curve's size.
 #define OFFSET_TOLERANCE 1e-6
 
-bool cag_bsplines_offset(CagCall *call, CagValue *result) {
-  CagCurve *c, *out = NULL;
-  double d, tolerance;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_finite(call, 1, &d) ||
-      !tolerance_of_size(call, c, 2, OFFSET_TOLERANCE, &tolerance))
-    return false;
+bool cag_bsplines_offset(CagCall *call, const struct cag_bsplines_offset *a, CagValue *result) {
+  CagCurve *out = NULL;
+  double tolerance = a->tolerance;
+  if (!tolerance_of_size(call, a->C, OFFSET_TOLERANCE, &tolerance)) return false;
   if (!(tolerance > 0))
-    return cag_fail_call(call, 2, CAG_ERR_value, "expects a positive `tolerance`");
-  CagStatus status = cag_curve_offset(c, d, tolerance, &out, call->err);
+    return cag_fail_call(call, 2, CAG_ERR_value,
+                         tolerance < 0 ? "expects a `tolerance` of 0 or more"
+                                       : "expects a positive `tolerance`");
+  CagStatus status = cag_curve_offset(a->C, a->d, tolerance, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);
 }

@@ -12,17 +12,10 @@ bool cag_curves_line(CagCall *call, const struct cag_curves_line *a, CagValue *r
   return cag_curve_result(call, status, &c, result);
 }
 
-bool cag_curves_polyline(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  size_t n;
-  int dimension;
-  bool closed;
+bool cag_curves_polyline(CagCall *call, const struct cag_curves_polyline *a, CagValue *result) {
   CagCurve *c = NULL;
-  if (!cag_arg_bool_or(call, 1, false, &closed) ||
-      !cag_arg_points(call, 0, &points, &n, &dimension))
-    return false;
-  cag_hold(call, points);
-  CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, call->err);
+  CagStatus status = cag_curve_polyline(a->points.items, a->points.count, a->closed,
+                                        a->points.dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
@@ -35,59 +28,48 @@ static CagStatus level_frame(CagVec3 center, CagVec3 normal, CagTransform *out, 
   return cag_axes(center, x, cag_cross(normal, x), out, err);
 }
 
-bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out) {
-  CagVec3 center, normal;
-  int dimension = 2;
-  bool has_normal = cag_given(call, at + 1);
-  if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
-  if (!cag_given(call, at)) dimension = 2;
-  *out = cag_translate(center);
-  out->planar = dimension == 2 && !has_normal;
-  if (!has_normal) return true;
-  if (!cag_arg_direction(call, at + 1, center, &normal, NULL) ||
-      !cag_geometry_ok(call, level_frame(center, normal, out, call->err)))
+bool cag_circle_frame(CagCall *call, CagPoint center, CagPoint normal, CagTransform *out) {
+  const bool flat = cag_norm(normal.at) == 0;
+  *out = cag_translate(center.at);
+  if (!flat && !cag_geometry_ok(call, level_frame(center.at, normal.at, out, call->err)))
     return false;
-  out->planar = false;
+  out->planar = flat && center.dimension == 2;
   return true;
 }
 
-// A range of angles, full circle where it is not given.
-static bool read_turn(CagCall *call, int argument, double *from, double *to) {
-  *from = 0;
-  *to = FULL_TURN;
-  return !cag_given(call, argument) || cag_arg_parameter_range(call, argument, true, from, to);
+bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
+                             CagValue *result) {
+  if (status != CAG_OK || !backwards) return cag_curve_result(call, status, made, result);
+  CagCurve *reversed = NULL;
+  status = cag_curve_reverse(*made, &reversed, call->err);
+  cag_curve_release(*made);
+  return cag_curve_result(call, status, &reversed, result);
 }
 
-// The arc over a range of angles; from the larger to the smaller one it runs clockwise.
-static bool give_arc(CagCall *call, double a, double b, double from, double to, int frame_at,
-                     CagValue *result) {
+// The arc over a range of angles in degrees; from the larger to the smaller one it runs clockwise.
+static bool give_arc(CagCall *call, double a, double b, CagRangeEnds range, CagPoint center,
+                     CagPoint normal, CagValue *result) {
   CagTransform frame;
   CagCurve *c = NULL;
-  if (!cag_arg_circle_frame(call, frame_at, &frame)) return false;
+  if (!cag_circle_frame(call, center, normal, &frame)) return false;
+  const double from = range.start * CAG_RADIANS_PER_DEGREE, to = range.end * CAG_RADIANS_PER_DEGREE;
   CagStatus status = cag_curve_arc(a, b, fmin(from, to), fmax(from, to), &frame, &c, call->err);
-  if (status != CAG_OK || from < to) return cag_curve_result(call, status, &c, result);
-  CagCurve *clockwise = NULL;
-  status = cag_curve_reverse(c, &clockwise, call->err);
-  cag_curve_release(c);
-  return cag_curve_result(call, status, &clockwise, result);
+  return cag_ranged_curve_result(call, status, !(from < to), &c, result);
 }
 
-bool cag_curves_circle(CagCall *call, CagValue *result) {
-  double radius;
-  return cag_arg_positive(call, 0, &radius) &&
-         give_arc(call, radius, radius, 0, FULL_TURN, 1, result);
+bool cag_curves_circle(CagCall *call, const struct cag_curves_circle *a, CagValue *result) {
+  return give_arc(call, a->radius, a->radius, (CagRangeEnds){0, 360, true}, a->center, a->normal,
+                  result);
 }
 
-bool cag_curves_arc(CagCall *call, CagValue *result) {
-  double radius, from, to;
-  return cag_arg_positive(call, 0, &radius) && read_turn(call, 1, &from, &to) &&
-         give_arc(call, radius, radius, from, to, 2, result);
+bool cag_curves_arc(CagCall *call, const struct cag_curves_arc *a, CagValue *result) {
+  if (!a->range.angle) return cag_fail_type(call, 1, "a range of angles");
+  return give_arc(call, a->radius, a->radius, a->range, a->center, a->normal, result);
 }
 
-bool cag_curves_ellipse(CagCall *call, CagValue *result) {
-  double a, b, from, to;
-  return cag_arg_positive(call, 0, &a) && cag_arg_positive(call, 1, &b) &&
-         read_turn(call, 2, &from, &to) && give_arc(call, a, b, from, to, 3, result);
+bool cag_curves_ellipse(CagCall *call, const struct cag_curves_ellipse *a, CagValue *result) {
+  if (!a->range.angle) return cag_fail_type(call, 2, "a range of angles");
+  return give_arc(call, a->a, a->b, a->range, a->center, a->normal, result);
 }
 
 // --- Through three points ---
@@ -110,24 +92,18 @@ static CagStatus circumcircle(const CagVec3 p[3], CagVec3 *center, CagVec3 *norm
   return CAG_OK;
 }
 
-static bool read_three(CagCall *call, CagVec3 p[3], int *dimension) {
-  *dimension = 2;
-  for (int i = 0; i < 3; i++) {
-    int d;
-    if (!cag_arg_vec(call, i, &p[i], &d)) return false;
-    if (d == 3) *dimension = 3;
-  }
-  return true;
+static int dimension_of_three(CagPoint p, CagPoint q, CagPoint r) {
+  return p.dimension == 3 || q.dimension == 3 || r.dimension == 3 ? 3 : 2;
 }
 
-bool cag_curves_circle_through(CagCall *call, CagValue *result) {
-  CagVec3 p[3], center, normal;
-  int dimension;
+bool cag_curves_circle_through(CagCall *call, const struct cag_curves_circle_through *a,
+                               CagValue *result) {
+  const CagVec3 p[] = {a->P.at, a->Q.at, a->R.at};
+  const int dimension = dimension_of_three(a->P, a->Q, a->R);
+  CagVec3 center, normal;
   CagTransform frame;
   CagCurve *c = NULL;
-  if (!read_three(call, p, &dimension) ||
-      !cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err))) return false;
   double radius = cag_norm(cag_sub(p[0], center));
   CagStatus status = CAG_OK;
   frame = cag_translate(center);
@@ -137,14 +113,14 @@ bool cag_curves_circle_through(CagCall *call, CagValue *result) {
   return cag_curve_result(call, status, &c, result);
 }
 
-bool cag_curves_arc_through(CagCall *call, CagValue *result) {
-  CagVec3 p[3], center, normal;
-  int dimension;
+bool cag_curves_arc_through(CagCall *call, const struct cag_curves_arc_through *a,
+                            CagValue *result) {
+  const CagVec3 p[] = {a->P.at, a->Q.at, a->R.at};
+  const int dimension = dimension_of_three(a->P, a->Q, a->R);
+  CagVec3 center, normal;
   CagTransform frame;
   CagCurve *c = NULL;
-  if (!read_three(call, p, &dimension) ||
-      !cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err)))
-    return false;
+  if (!cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err))) return false;
   // The first point is at angle 0, and the normal is such that the second comes before the third.
   CagVec3 x = cag_sub(p[0], center), y = cag_cross(normal, x), last = cag_sub(p[2], center);
   double radius = cag_norm(x);

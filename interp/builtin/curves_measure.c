@@ -5,25 +5,23 @@
 #include "base/memory.h"
 #include "interp/builtin/curves.h"
 
-// Most points or parts that one call makes.
-#define PARTS_MAX 100000000
-
 bool cag_curves_length(CagCall *call, CagValue *result) {
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]); // a curve or region
+  const CagCurve *c = shape->as.curve;
   double length, from, to;
+  CagStatus status;
   if (call->values[0].type == CAG_REGION) {
-    const CagRegion *region = CAG_AS_SHAPE(call->values[0])->as.region;
     if (cag_given(call, 1))
       return cag_fail_call(call, 1, CAG_ERR_value, "takes no range of a region");
-    if (!cag_geometry_ok(call, cag_region_perimeter(region, &length, call->err))) return false;
-    *result = cag_number(length);
-    return true;
+    status = cag_region_perimeter(shape->as.region, &length, call->err);
+  } else {
+    from = c->start;
+    to = c->end;
+    if (cag_given(call, 1) && !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
+      return false;
+    status = cag_curve_length(c, from, to, &length, call->err);
   }
-  CagCurve *c;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  from = c->start;
-  to = c->end;
-  if (cag_given(call, 1) && !cag_arg_parameter_range(call, 1, c->angular, &from, &to)) return false;
-  if (!cag_geometry_ok(call, cag_curve_length(c, from, to, &length, call->err))) return false;
+  if (!cag_geometry_ok(call, status)) return false;
   *result = cag_number(length);
   return true;
 }
@@ -246,20 +244,14 @@ static CagStatus divide_by_chord(CagCall *call, const CagCurve *c, size_t n, dou
   return status ? status : equalize_chords(call, c, n, t, length, err);
 }
 
-bool cag_curves_divide(CagCall *call, CagValue *result) {
-  static const char *const ways[] = {"length", "chord", "parameter", NULL};
-  CagCurve *c;
-  long parts;
-  int by;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer(call, 1, 1, PARTS_MAX, &parts) ||
-      !cag_arg_choice(call, 2, ways, &by))
-    return false;
-  size_t n = (size_t)parts;
+bool cag_curves_divide(CagCall *call, const struct cag_curves_divide *a, CagValue *result) {
+  const CagCurve *c = a->C;
+  const size_t n = (size_t)a->n;
   double *t = cag_hold(call, cag_malloc((n + 1) * sizeof *t));
   for (size_t i = 0; i <= n; i++) t[i] = step(c, i, n);
   CagStatus status = CAG_OK;
-  if (by == 0) status = divide_by_length(c, n, t, call->err);
-  if (by == 1) status = divide_by_chord(call, c, n, t, call->err);
+  if (a->by == 0) status = divide_by_length(c, n, t, call->err);
+  if (a->by == 1) status = divide_by_chord(call, c, n, t, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   if (!c->angular) {
     *result = cag_numbers_value(call->vm, t, n + 1);

@@ -54,16 +54,14 @@ static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, 
   return true;
 }
 
-bool cag_bsplines_intersect(CagCall *call, CagValue *result) {
-  CagCurve *c;
-  if (!cag_arg_curve(call, 0, &c)) return false;
-  const CagValue other = call->values[1];
+bool cag_bsplines_intersect(CagCall *call, const struct cag_bsplines_intersect *a,
+                            CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   bool ok;
-  if (other.type == CAG_CURVE) ok = with_curve(call, c, CAG_AS_SHAPE(other)->as.curve, list);
-  else if (other.type == CAG_PLANE) ok = with_plane(call, c, &CAG_AS_PLANE(other)->plane, list);
-  else if (other.type == CAG_SURFACE)
-    ok = with_surface(call, c, CAG_AS_SHAPE(other)->as.surface, list);
+  if (a->A.type == CAG_CURVE) ok = with_curve(call, a->C, CAG_AS_SHAPE(a->A)->as.curve, list);
+  else if (a->A.type == CAG_PLANE) ok = with_plane(call, a->C, &CAG_AS_PLANE(a->A)->plane, list);
+  else if (a->A.type == CAG_SURFACE)
+    ok = with_surface(call, a->C, CAG_AS_SHAPE(a->A)->as.surface, list);
   else return cag_fail_type(call, 1, "a curve, a surface or a plane");
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;

@@ -7,101 +7,88 @@
 #include "interp/builtin/curves.h"
 
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out) {
+  const bool by_order = cag_given(call, order);
   long given;
-  if (cag_given(call, order)) {
-    if (cag_given(call, degree))
-      return cag_fail_call(call, order, CAG_ERR_value,
-                           "takes `degree` or `order` (one more than the degree), not both");
-    if (!cag_arg_integer(call, order, 0, INT_MAX, &given)) return false;
-    *out = (int)given - 1;
-    return true;
-  }
-  if (!cag_arg_integer_or(call, degree, fallback, -1, INT_MAX - 1, &given)) return false;
-  *out = (int)given;
+  if (by_order && cag_given(call, degree))
+    return cag_fail_call(call, order, CAG_ERR_value,
+                         "takes `degree` or `order` (one more than the degree), not both");
+  if (by_order ? !cag_arg_integer(call, order, 0, INT_MAX, &given)
+               : !cag_arg_integer_or(call, degree, fallback, -1, INT_MAX - 1, &given))
+    return false;
+  *out = (int)given - by_order;
   return true;
 }
 
-bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out) {
-  size_t count;
-  *out = NULL;
-  if (!cag_given(call, argument)) return true;
-  if (!cag_arg_numbers(call, argument, out, &count)) return false;
-  if (count == n) return true;
-  cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
-           "expects one of `weights` for each of %zu points, found %zu", n, count);
-  return cag_fail_geometry(call, call->err);
+static bool check_weights(CagCall *call, int argument, const CagNumbers *weights, size_t n) {
+  return !cag_given(call, argument) || weights->count == n ||
+         cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
+                       "expects one of `weights` for each of %zu points, found %zu", n,
+                       weights->count);
 }
 
-bool cag_curves_bezier(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  const double *weights;
-  size_t n;
-  int dimension;
+bool cag_curves_bezier(CagCall *call, const struct cag_curves_bezier *a, CagValue *result) {
+  const CagPoints *p = &a->points;
   CagCurve *c = NULL;
-  if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  cag_hold(call, points);
-  if (!cag_arg_weights(call, 1, n, &weights)) return false;
-  return cag_curve_result(call, cag_curve_bezier(points, weights, n, dimension, &c, call->err), &c,
-                          result);
-}
-
-// Knots from a name or a list.
-static bool read_knots(CagCall *call, int argument, size_t n, int degree, const CagVec3 *points,
-                       const double **knots) {
-  const char *type = "open";
-  if (cag_given(call, argument) && call->values[argument].type != CAG_TEXT) {
-    size_t count;
-    if (!cag_arg_numbers(call, argument, knots, &count)) return false;
-    if (count == n + (size_t)degree + 1) return true;
-    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
-             "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n, degree,
-             n + (size_t)degree + 1, count);
-    return cag_fail_geometry(call, call->err);
-  }
-  if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
-  if (!cag_geometry_ok(call, cag_degree_check(n, degree, call->err))) return false;
-  double *made = cag_hold_array(call, n + (size_t)degree + 1, sizeof *made);
-  *knots = made;
-  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, made, call->err));
-}
-
-// points, degree, knots, closed, weights, order
-static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dimension,
-                         CagValue *result) {
-  int degree = 0;
-  bool closed;
-  const double *weights, *knots = NULL;
-  CagCurve *c = NULL;
-  CagStatus status;
-  if (!cag_arg_degree(call, 1, 5, 3, &degree) || !cag_arg_bool_or(call, 3, false, &closed) ||
-      !cag_arg_weights(call, 4, n, &weights))
-    return false;
-  if (closed) {
-    if (cag_given(call, 2) && call->values[2].type != CAG_TEXT)
-      return cag_fail_call(call, 2, CAG_ERR_value,
-                           "takes no list of `knots` for a closed curve: they are uniform");
-    // A polygon that comes back to its first point has that once.
-    const CagVec3 a = points[0], b = points[n - 1];
-    const bool again = n > 2 && a.x == b.x && a.y == b.y && a.z == b.z;
-    status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, call->err);
-    return cag_curve_result(call, status, &c, result);
-  }
-  if (!read_knots(call, 2, n, degree, points, &knots)) return false;
-  status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, call->err);
+  if (!check_weights(call, 1, &a->weights, p->count)) return false;
+  CagStatus status =
+      cag_curve_bezier(p->items, a->weights.items, p->count, p->dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
-bool cag_curves_bspline(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  size_t n;
-  int dimension;
-  if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  cag_hold(call, points);
-  return make_bspline(call, points, n, dimension, result);
+// Knots from a name or a list, the third argument.
+static bool read_knots(CagCall *call, size_t n, int degree, const CagVec3 *points,
+                       const double **knots) {
+  const size_t wanted = n + (size_t)degree + 1;
+  const CagType type = call->values[2].type;
+  const char *name = "open";
+  if (type != CAG_UNSET && type != CAG_TEXT) {
+    size_t count;
+    if (!cag_arg_numbers(call, 2, knots, &count)) return false;
+    return count == wanted ||
+           cag_fail_core(
+               call, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
+               "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n,
+               degree, wanted, count);
+  }
+  if ((type == CAG_TEXT && !cag_arg_text(call, 2, &name)) ||
+      !cag_geometry_ok(call, cag_degree_check(n, degree, call->err)))
+    return false;
+  double *made = cag_hold_array(call, wanted, sizeof *made);
+  *knots = made;
+  return cag_geometry_ok(call, cag_knots_make(name, n, degree, points, made, call->err));
 }
 
-bool cag_curves_nurbs(CagCall *call, CagValue *result) {
-  if (cag_given(call, 4)) return cag_curves_bspline(call, result);
+bool cag_curves_bspline(CagCall *call, const struct cag_curves_bspline *a, CagValue *result) {
+  const CagVec3 *points = a->points.items;
+  const size_t n = a->points.count;
+  const int dimension = a->points.dimension;
+  int degree = 0;
+  const double *weights = a->weights.items, *knots = NULL;
+  CagCurve *c = NULL;
+  CagStatus status;
+  if (!cag_arg_degree(call, 1, 5, 3, &degree) || !check_weights(call, 4, &a->weights, n))
+    return false;
+  if (a->closed) {
+    if (cag_given(call, 2) && a->knots.type != CAG_TEXT)
+      return cag_fail_call(call, 2, CAG_ERR_value,
+                           "takes no list of `knots` for a closed curve: they are uniform");
+    // A polygon that comes back to its first point has that once.
+    const CagVec3 first = points[0], last = points[n - 1];
+    const bool again = n > 2 && first.x == last.x && first.y == last.y && first.z == last.z;
+    status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, call->err);
+  } else {
+    if (!read_knots(call, n, degree, points, &knots)) return false;
+    status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, call->err);
+  }
+  return cag_curve_result(call, status, &c, result);
+}
+
+bool cag_curves_nurbs(CagCall *call, const struct cag_curves_nurbs *a, CagValue *result) {
+  if (cag_given(call, 4)) {
+    const struct cag_curves_bspline same = {a->points, a->degree,  a->knots,
+                                            a->closed, a->weights, a->order};
+    return cag_curves_bspline(call, &same, result);
+  }
   cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, one for each point");
   cag_fail_help(call->vm, "without weights it is a `bspline`");
   return false;
@@ -147,13 +134,10 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   return true;
 }
 
-// A higher degree has no values that a double can tell apart.
-#define BERNSTEIN_MAX 1000
-
-bool cag_curves_bernstein(CagCall *call, CagValue *result) {
-  long n;
-  double t, *b;
-  if (!cag_arg_integer(call, 0, 0, BERNSTEIN_MAX, &n) || !cag_arg_finite(call, 1, &t)) return false;
+bool cag_curves_bernstein(CagCall *call, const struct cag_curves_bernstein *a, CagValue *result) {
+  const long n = a->n;
+  const double t = a->t;
+  double *b;
   *result = cag_list_numbers(call->vm, (size_t)n + 1, &b);
   // B(i, k) = (1 - t) B(i, k - 1) + t B(i - 1, k - 1)
   b[0] = 1;

@@ -5,13 +5,8 @@
 
 #include "base/memory.h"
 #include "geom/curve/frenet.h"
-#include "interp/builtin/shapes.h"
+#include "interp/builtin/curves.h"
 #include "interp/builtin/support.h"
-
-static bool read_at(CagCall *call, CagCurve **c, double *t) {
-  return cag_arg_curve(call, 0, c) &&
-         cag_arg_parameter(call, 1, (*c)->angular, (*c)->start, (*c)->end, false, t);
-}
 
 static CagValue rows_value(CagVm *vm, double m[3][3]) {
   const CagVec3 rows[3] = {
@@ -47,22 +42,26 @@ bool cag_frenet_frenet_of(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool fail_no_normal(CagCall *call) {
-  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
-           "the curvature is 0 here, so there is neither normal nor circle of curvature");
-  return cag_fail_geometry(call, call->err);
+// The parameter of the curve and the frame there, which must have a normal.
+static bool read_bent(CagCall *call, const CagCurve *c, double *t, CagFrenet *out) {
+  if (!cag_arg_at(call, c, t) || !cag_geometry_ok(call, cag_curve_frenet(c, *t, out, call->err)))
+    return false;
+  return out->has_normal ||
+         cag_fail_core(call, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
+                       "the curvature is 0 here, so there is neither normal nor circle of "
+                       "curvature");
 }
 
-bool cag_frenet_frame_derivative(CagCall *call, CagValue *result) {
+bool cag_frenet_frame_derivative(CagCall *call, const struct cag_frenet_frame_derivative *a,
+                                 CagValue *result) {
   static const char *const names[] = {"by_length", "by_parameter", "tangent", "normal", "binormal"};
-  CagCurve *c;
+  const CagCurve *c = a->C;
   CagFrenet f;
   CagVec3 d[2];
   double t;
-  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, call->err)) ||
+  if (!read_bent(call, c, &t, &f) ||
       !cag_geometry_ok(call, cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, call->err)))
     return false;
-  if (!f.has_normal) return fail_no_normal(call);
   const double k = f.curvature, w = f.torsion, speed = cag_norm(d[1]);
   double by_length[3][3] = {{0, k, 0}, {-k, 0, w}, {0, -w, 0}}, by_parameter[3][3];
   for (int i = 0; i < 3; i++)
@@ -101,19 +100,19 @@ bool cag_frenet_triad_derivative(CagCall *call, CagValue *result) {
 
 // --- At one parameter ---
 
-bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
-  CagCurve *c, *circle;
+bool cag_frenet_osculating_circle(CagCall *call, const struct cag_frenet_osculating_circle *a,
+                                  CagValue *result) {
+  static const char *const names[] = {"radius", "center", "circle"};
+  CagCurve *circle;
   CagFrenet f;
   double t;
-  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, call->err)))
-    return false;
-  if (!f.has_normal) return fail_no_normal(call);
+  if (!read_bent(call, a->C, &t, &f)) return false;
   const double radius = 1 / f.curvature;
   const CagVec3 center = cag_madd(f.point, radius, f.normal);
   // From the point on in the direction of the curve.
   const CagVec3 columns[4] = {cag_scaled(f.normal, -1), f.tangent, f.binormal, center};
   CagTransform frame = cag_transform_identity();
-  frame.planar = c->dimension == 2;
+  frame.planar = a->C->dimension == 2;
   // In the plane a curve that bends to the right has y on the right of x.
   for (int j = 0; j < 4; j++) {
     if (frame.planar && j == 2) continue;
@@ -123,37 +122,32 @@ bool cag_frenet_osculating_circle(CagCall *call, CagValue *result) {
   }
   CagStatus status = cag_curve_arc(radius, radius, 0, 2 * acos(-1), &frame, &circle, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  static const char *const names[] = {"radius", "center", "circle"};
-  CagValue values[] = {cag_number(radius), cag_point(call->vm, center, c->dimension),
+  CagValue values[] = {cag_number(radius), cag_point(call->vm, center, a->C->dimension),
                        cag_curve_value(call->vm, circle)};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
 
-bool cag_frenet_tangent_line(CagCall *call, CagValue *result) {
-  CagCurve *c, *line;
+bool cag_frenet_tangent_line(CagCall *call, const struct cag_frenet_tangent_line *a,
+                             CagValue *result) {
+  CagCurve *line = NULL;
   CagVec3 p, v;
-  double t, length;
-  if (!read_at(call, &c, &t) || !cag_arg_number_or(call, 2, 1, &length) ||
-      !cag_geometry_ok(call, cag_curve_point(c, t, &p, call->err)) ||
-      !cag_geometry_ok(call, cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &v, call->err)) ||
-      !cag_geometry_ok(call,
-                       cag_curve_line(p, cag_madd(p, length, v), c->dimension, &line, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, line);
-  return true;
+  double t;
+  if (!cag_arg_at(call, a->C, &t)) return false;
+  CagStatus status = cag_curve_point(a->C, t, &p, call->err);
+  if (!status) status = cag_curve_tangent(a->C, t, CAG_SIDE_RIGHT, &v, call->err);
+  if (!status)
+    status = cag_curve_line(p, cag_madd(p, a->length, v), a->C->dimension, &line, call->err);
+  return cag_curve_result(call, status, &line, result);
 }
 
-bool cag_frenet_plane_contact(CagCall *call, CagValue *result) {
+bool cag_frenet_plane_contact(CagCall *call, const struct cag_frenet_plane_contact *a,
+                              CagValue *result) {
   static const char *const names[] = {"coefficients", "order", "before", "after", "crosses"};
-  CagCurve *c;
-  CagVec3 normal;
   CagContact found;
   double t;
-  int dimension;
-  if (!read_at(call, &c, &t) ||
-      !cag_arg_direction(call, 2, cag_vec3(0, 0, 1), &normal, &dimension) ||
-      !cag_geometry_ok(call, cag_curve_contact(c, t, normal, &found, call->err)))
+  if (!cag_arg_at(call, a->C, &t) ||
+      !cag_geometry_ok(call, cag_curve_contact(a->C, t, a->normal.at, &found, call->err)))
     return false;
   CagValue values[] = {cag_numbers_value(call->vm, found.c + 1, 3),
                        found.order < 0 ? cag_number(HUGE_VAL) : cag_number(found.order),
@@ -181,18 +175,17 @@ static void free_special_points(void *s) {
   cag_free(s);
 }
 
-bool cag_frenet_special_points(CagCall *call, CagValue *result) {
+bool cag_frenet_special_points(CagCall *call, const struct cag_frenet_special_points *a,
+                               CagValue *result) {
   static const char *const names[] = {"singular", "straightening", "flattening",
                                       "still",    "straight",      "planar"};
-  CagCurve *c;
-  if (!cag_arg_curve(call, 0, &c)) return false;
   CagSpecialPoints *found = cag_hold_array(call, 1, sizeof *found);
   cag_hold_for(call, free_special_points, cag_give_held(call, found));
-  if (!cag_geometry_ok(call, cag_curve_special_points(c, found, call->err))) return false;
+  if (!cag_geometry_ok(call, cag_curve_special_points(a->C, found, call->err))) return false;
   CagValue values[6];
   for (int k = 0; k < CAG_VANISHINGS; k++) {
-    values[k] = parameters_value(call, c, &found->points[k], false);
-    values[3 + k] = parameters_value(call, c, &found->stretches[k], true);
+    values[k] = parameters_value(call, a->C, &found->points[k], false);
+    values[3 + k] = parameters_value(call, a->C, &found->stretches[k], true);
   }
   *result = cag_record_new(call->vm, names, values, 6);
   return true;
@@ -228,37 +221,33 @@ bool cag_frenet_circular_vectors(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_frenet_helix_motion(CagCall *call, CagValue *result) {
+bool cag_frenet_helix_motion(CagCall *call, const struct cag_frenet_helix_motion *a,
+                             CagValue *result) {
   static const char *const names[] = {"point", "velocity", "angle",     "rise",
                                       "pitch", "length",   "curvature", "torsion"};
-  double a, turning, v, time;
-  if (!cag_arg_positive(call, 0, &a) || !cag_arg_degrees(call, 1, &turning) ||
-      !cag_arg_finite(call, 2, &v) || !cag_arg_finite(call, 3, &time))
-    return false;
-  if (turning == 0) {
-    cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
-             "`turning` must not be 0: the point moves along a line, not a helix");
-    return cag_fail_geometry(call, call->err);
-  }
+  const double r = a->radius, v = a->speed, time = a->time, omega = a->turning;
+  const double turned = call->values[1].as.number * time, b = v / omega, r2 = r * r + b * b;
+  if (omega == 0)
+    return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
+                         "`turning` must not be 0: the point moves along a line, not a helix");
   double s, c;
-  cag_sincos_degrees(turning * time, &s, &c);
-  const double omega = turning * CAG_RADIANS_PER_DEGREE, b = v / omega, r2 = a * a + b * b;
-  CagValue values[] = {cag_point(call->vm, cag_vec3(a * c, a * s, v * time), 3),
-                       cag_point(call->vm, cag_vec3(-a * omega * s, a * omega * c, v), 3),
-                       cag_angle(turning * time),
+  cag_sincos_degrees(turned, &s, &c);
+  CagValue values[] = {cag_point(call->vm, cag_vec3(r * c, r * s, v * time), 3),
+                       cag_point(call->vm, cag_vec3(-r * omega * s, r * omega * c, v), 3),
+                       cag_angle(turned),
                        cag_number(b),
                        cag_number(2 * acos(-1) * b),
-                       cag_number(hypot(a * omega, v) * fabs(time)),
-                       cag_number(a / r2),
+                       cag_number(hypot(r * omega, v) * fabs(time)),
+                       cag_number(r / r2),
                        cag_number(b / r2)};
   *result = cag_record_new(call->vm, names, values, 8);
   return true;
 }
 
-bool cag_frenet_constant_curve(CagCall *call, CagValue *result) {
+bool cag_frenet_constant_curve(CagCall *call, const struct cag_frenet_constant_curve *a,
+                               CagValue *result) {
   static const char *const names[] = {"kind", "radius", "rise", "pitch"};
-  double k, w;
-  if (!cag_arg_finite(call, 0, &k) || !cag_arg_finite(call, 1, &w)) return false;
+  const double k = a->curvature, w = a->torsion;
   if (k < 0) return cag_fail_value(call, 0, "a curvature of 0 or more");
   const bool bent = k > 0;
   // In units of the larger of both, so that squares neither overflow nor vanish.

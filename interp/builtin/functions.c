@@ -173,30 +173,29 @@ static CagStatus curve_eval(void *context, double t, int order, CagVec3 *out, Ca
   return cag_vm_call_back(f->vm, answer_curve, &q) ? CAG_OK : fail_callback(f->vm, err);
 }
 
-static bool check_finite_range(CagCall *call, int argument, double a, double b) {
-  return (isfinite(a) && isfinite(b)) || cag_fail_value(call, argument, "a range with finite ends");
+// A range of the parameter with finite ends, which become radians if it is of angles.
+static bool read_domain(CagCall *call, int argument, CagRangeEnds *out) {
+  if (!cag_arg_interval(call, argument, &out->start, &out->end, &out->angle)) return false;
+  if (!isfinite(out->start) || !isfinite(out->end))
+    return cag_fail_value(call, argument, "a range with finite ends");
+  if (out->angle) out->start *= CAG_RADIANS_PER_DEGREE;
+  if (out->angle) out->end *= CAG_RADIANS_PER_DEGREE;
+  return true;
 }
 
-bool cag_functions_curve(CagCall *call, CagValue *result) {
-  CagValue function;
-  double a, b;
-  bool angle;
-  if (!cag_arg_function(call, 0, &function) || !cag_arg_interval(call, 1, &a, &b, &angle) ||
-      !check_finite_range(call, 1, a, b))
-    return false;
-  if (angle) {
-    a *= CAG_RADIANS_PER_DEGREE;
-    b *= CAG_RADIANS_PER_DEGREE;
-  }
-  Formula *f = formula_new(call, function, 1);
-  f->angular[0] = angle;
+bool cag_functions_curve(CagCall *call, const struct cag_functions_curve *a, CagValue *result) {
+  CagRangeEnds t;
+  if (!read_domain(call, 1, &t)) return false;
+  Formula *f = formula_new(call, a->f, 1);
+  f->angular[0] = t.angle;
   // The first point tells whether the curve is of the plane or of space.
   CagVec3 p;
-  CagCurve *c;
+  CagCurve *c = NULL;
   const CagCurveFunction geometry = {curve_eval, formula_free, f};
-  CagStatus status = a < b ? curve_eval(f, a, 0, &p, call->err) : CAG_OK;
+  CagStatus status = t.start < t.end ? curve_eval(f, t.start, 0, &p, call->err) : CAG_OK;
   if (!status)
-    status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, a, b, angle, &c, call->err);
+    status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, t.start, t.end, t.angle, &c,
+                                call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, f);
   *result = cag_curve_value(call->vm, c);
@@ -260,22 +259,17 @@ static CagStatus equations_eval(void *context, double s, int order, double *curv
   return cag_vm_call_back(vm, answer_equation, &q) ? CAG_OK : fail_callback(vm, err);
 }
 
-bool cag_functions_natural_curve(CagCall *call, CagValue *result) {
-  CagValue curvature, torsion = cag_none();
-  double length;
-  CagTransform frame = cag_transform_identity();
-  CagCurve *c;
+bool cag_functions_natural_curve(CagCall *call, const struct cag_functions_natural_curve *a,
+                                 CagValue *result) {
+  const CagTransform frame = cag_given(call, 3) ? a->frame : cag_transform_identity();
   const bool twisted = cag_given(call, 2);
-  if (!cag_arg_function(call, 0, &curvature) || !cag_arg_positive(call, 1, &length) ||
-      (twisted && !cag_arg_function(call, 2, &torsion)) ||
-      (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
-    return false;
+  CagCurve *c;
   Equations *e = cag_hold_array(call, 1, sizeof *e);
-  e->curvature = formula_new(call, curvature, 1);
-  if (twisted) e->torsion = formula_new(call, torsion, 1);
+  e->curvature = formula_new(call, a->curvature, 1);
+  if (twisted) e->torsion = formula_new(call, a->torsion, 1);
   const CagNaturalEquations equations = {equations_eval, equations_free, e};
-  CagStatus status = cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2,
-                                       &c, call->err);
+  CagStatus status = cag_curve_natural(&equations, a->length, &frame,
+                                       twisted || !frame.planar ? 3 : 2, &c, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, e->torsion);
   cag_give_held(call, e->curvature);
@@ -293,7 +287,7 @@ typedef struct SurfaceQuestion {
   size_t nv;
   int order;
   CagVec3 *out;
-  bool row; // S, S_u, S_v of all vs; else all partials at vs[0]
+  bool row; // S, S_u, S_v of all vs; else all partials at the only one
 } SurfaceQuestion;
 
 static CagVec3 coefficient(const CagSeries *x, size_t k, double factor) {
@@ -303,23 +297,20 @@ static CagVec3 coefficient(const CagSeries *x, size_t k, double factor) {
 static bool answer_surface(CagVm *vm, void *context) {
   (void)vm;
   SurfaceQuestion *q = context;
-  CagSeries like = {.variables = 2, .order = q->order}, x[3];
-  for (size_t k = 0; q->row && k < q->nv; k++) {
-    const double at[2] = {q->u, q->vs[k]};
-    if (!call_formula(q->formula, at, &like, read_point, x)) return false;
-    CagVec3 *out = q->out + k * (q->order ? 3 : 1);
-    for (size_t i = 0; i < (q->order ? 3u : 1u); i++) out[i] = coefficient(x, i, 1);
-  }
-  if (q->row) return true;
-  const double at[2] = {q->u, q->vs[0]};
-  if (!call_formula(q->formula, at, &like, read_point, x)) return false;
   const int n = q->order;
+  CagSeries like = {.variables = 2, .order = n}, x[3];
   double factorial[CAG_MAX_PARTIAL + 1] = {1};
   for (int i = 1; i <= n; i++) factorial[i] = factorial[i - 1] * i;
-  for (int i = 0; i <= n; i++)
-    for (int j = 0; i + j <= n; j++)
-      q->out[cag_partial(n, i, j)] =
-          coefficient(x, cag_jet_offset(2, i + j) + (size_t)j, factorial[i] * factorial[j]);
+  for (size_t k = 0; k < q->nv; k++) {
+    const double at[2] = {q->u, q->vs[k]};
+    if (!call_formula(q->formula, at, &like, read_point, x)) return false;
+    const size_t count = n ? 3 : 1;
+    for (size_t i = 0; q->row && i < count; i++) q->out[k * count + i] = coefficient(x, i, 1);
+    for (int i = 0; !q->row && i <= n; i++)
+      for (int j = 0; i + j <= n; j++)
+        q->out[cag_partial(n, i, j)] =
+            coefficient(x, cag_jet_offset(2, i + j) + (size_t)j, factorial[i] * factorial[j]);
+  }
   return true;
 }
 
@@ -337,25 +328,18 @@ static CagStatus surface_row(void *context, double u, const double *vs, size_t n
   return cag_vm_call_back(f->vm, answer_surface, &q) ? CAG_OK : fail_callback(f->vm, err);
 }
 
-bool cag_functions_surface(CagCall *call, CagValue *result) {
-  CagValue function;
-  double range[2][2] = {{0, 1}, {0, 1}};
-  if (!cag_arg_function(call, 0, &function)) return false;
-  Formula like = {0};
-  for (int i = 0; i < 2; i++) {
-    if (!cag_given(call, 1 + i)) continue;
-    if (!cag_arg_interval(call, 1 + i, &range[i][0], &range[i][1], &like.angular[i]) ||
-        !check_finite_range(call, 1 + i, range[i][0], range[i][1]))
-      return false;
-    for (int k = 0; like.angular[i] && k < 2; k++) range[i][k] *= CAG_RADIANS_PER_DEGREE;
-  }
-  Formula *f = formula_new(call, function, 2);
-  f->angular[0] = like.angular[0];
-  f->angular[1] = like.angular[1];
+bool cag_functions_surface(CagCall *call, const struct cag_functions_surface *a, CagValue *result) {
+  CagRangeEnds u = {0, 1, false}, v = {0, 1, false};
+  if ((cag_given(call, 1) && !read_domain(call, 1, &u)) ||
+      (cag_given(call, 2) && !read_domain(call, 2, &v)))
+    return false;
+  Formula *f = formula_new(call, a->f, 2);
+  f->angular[0] = u.angle;
+  f->angular[1] = v.angle;
   const CagSurfaceFunction geometry = {surface_eval, surface_row, formula_free, f};
   CagSurface *s;
-  CagStatus status = cag_surface_function(&geometry, range[0][0], range[0][1], f->angular[0],
-                                          range[1][0], range[1][1], f->angular[1], &s, call->err);
+  CagStatus status = cag_surface_function(&geometry, u.start, u.end, u.angle, v.start, v.end,
+                                          v.angle, &s, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, f);
   *result = cag_surface_value(call->vm, s);

@@ -24,9 +24,7 @@ static bool plane_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
   CagStatus status = cag_curve_polyline(corners, count, true, 2, &loop, call->err);
   if (!status) status = cag_region_new(loop, NULL, 0, &region, call->err);
   cag_curve_release(loop);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_region_value(call->vm, region, NULL);
-  return true;
+  return cag_region_result(call, status, &region, result);
 }
 
 static bool space_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue *result) {
@@ -35,9 +33,7 @@ static bool space_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
   CagStatus status = cag_hull_space(points, n, &m, call->err);
   if (!status) status = cag_solid_from_mesh(m, &s, call->err);
   cag_mesh_release(m);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_solid_value(call->vm, s);
-  return true;
+  return cag_solid_result(call, status, &s, result);
 }
 
 typedef struct Cloud {
@@ -49,11 +45,7 @@ typedef struct Cloud {
 static void release_cloud(void *cloud) { cag_free(((Cloud *)cloud)->points); }
 
 static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagError *err) {
-  if (cloud->n + n > cloud->capacity) {
-    const size_t capacity = 2 * (cloud->n + n);
-    if (!CAG_RESIZE(cloud->points, capacity)) return cag_fail_memory(err);
-    cloud->capacity = capacity;
-  }
+  if (!CAG_RESERVE(cloud->points, cloud->capacity, cloud->n + n)) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) cloud->points[cloud->n++] = points[i];
   return CAG_OK;
 }
@@ -93,6 +85,14 @@ static CagStatus add_region(Cloud *cloud, const CagShape *shape, CagError *err) 
   return status;
 }
 
+static CagTessellation tessellation_of(const CagVm *vm, double tolerance) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = tolerance;
+  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
+  how.interrupt = cag_vm_stop(vm);
+  return how;
+}
+
 static CagStatus mesh_of(const CagVm *vm, CagValue v, double tolerance, CagMesh **out,
                          CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
@@ -105,10 +105,7 @@ static CagStatus mesh_of(const CagVm *vm, CagValue v, double tolerance, CagMesh 
                                          : cag_surface_bounds(shape->as.surface, &box, err);
   if (status) return status;
   if (tolerance <= 0) tolerance = HULL_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.tolerance = tolerance;
-  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = cag_vm_stop(vm);
+  const CagTessellation how = tessellation_of(vm, tolerance);
   return v.type == CAG_SOLID ? cag_solid_tessellate(shape->as.solid, &how, out, err)
                              : cag_surface_tessellate(shape->as.surface, &how, out, err);
 }
@@ -163,14 +160,11 @@ bool cag_hulls_convex_hull(CagCall *call, CagValue *result) {
 
 // --- Curves on surfaces ---
 
-bool cag_hulls_curve_on(CagCall *call, CagValue *result) {
+bool cag_hulls_curve_on(CagCall *call, const struct cag_hulls_curve_on *a, CagValue *result) {
   CagSurface *s;
-  CagCurve *c, *on = NULL;
-  if (!cag_arg_side(call, 0, &s) || !cag_arg_curve(call, 1, &c) ||
-      !cag_geometry_ok(call, cag_curve_on_surface(s, c, &on, call->err)))
-    return false;
-  *result = cag_curve_value(call->vm, on);
-  return true;
+  CagCurve *on = NULL;
+  if (!cag_arg_side(call, 0, &s)) return false;
+  return cag_curve_result(call, cag_curve_on_surface(s, a->C, &on, call->err), &on, result);
 }
 
 // --- Inside and apart ---
@@ -178,34 +172,27 @@ bool cag_hulls_curve_on(CagCall *call, CagValue *result) {
 // A shape as parts. Surfaces, curves and meshes that were made for it live as long as it does.
 typedef struct Body {
   CagParts parts;
-  CagCurve **curves;
-  size_t curve_count;
+  CagCurveList curves;
   double size;
 } Body;
 
 static void body_free(Body *b) {
-  for (size_t i = 0; i < b->curve_count; i++) cag_curve_release(b->curves[i]);
-  cag_free(b->curves);
+  cag_curve_list_free(&b->curves);
   cag_parts_free(&b->parts);
 }
 
 static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
-  if (!CAG_RESIZE(b->curves, b->curve_count + 1)) return cag_fail_memory(err);
-  b->curves[b->curve_count++] = cag_curve_retain(c);
-  return cag_parts_add_curve(&b->parts, c, tolerance, err);
+  CagStatus status = cag_curve_list_add(&b->curves, cag_curve_retain(c), err);
+  return status ? status : cag_parts_add_curve(&b->parts, c, tolerance, err);
 }
 
 static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
                                   CagError *err) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  CagMesh *m;
+  const CagTessellation how = tessellation_of(vm, tolerance);
   const bool flat = cag_surface_planar_view(s, NULL, NULL);
-  how.tolerance = tolerance;
-  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = cag_vm_stop(vm);
+  CagMesh *m = NULL;
   CagStatus status = cag_surface_tessellate(s, &how, &m, err);
-  if (status) return status;
-  status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
+  if (!status) status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
   cag_mesh_release(m);
   return status;
 }
@@ -240,14 +227,10 @@ static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face,
 // Set operations and bodies within meshes are as far away as their triangles.
 static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                    CagError *err) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  CagMesh *m;
-  how.tolerance = tolerance;
-  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = cag_vm_stop(vm);
+  const CagTessellation how = tessellation_of(vm, tolerance);
+  CagMesh *m = NULL;
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
-  if (status) return status;
-  status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
+  if (!status) status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
   cag_mesh_release(m);
   return status;
 }
@@ -347,15 +330,12 @@ static bool is_body(CagValue v) {
   return m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL);
 }
 
-bool cag_hulls_contains(CagCall *call, CagValue *result) {
-  CagVec3 p;
+bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagValue *result) {
   bool inside = false;
-  const CagValue v = call->values[0];
-  if (!cag_arg_vec(call, 1, &p, NULL)) return false;
-  if (!is_body(v))
+  if (!is_body(a->G))
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects a closed mesh; this one has an open edge and no inside");
-  if (!cag_geometry_ok(call, holds(call->vm, v, p, &inside, call->err))) return false;
+  if (!cag_geometry_ok(call, holds(call->vm, a->G, a->P.at, &inside, call->err))) return false;
   *result = cag_bool(inside);
   return true;
 }
@@ -386,12 +366,19 @@ static bool read_side(CagCall *call, int argument, Side *out) {
   return true;
 }
 
+static size_t side_count(const Side *s) { return s->point ? 1 : s->shapes->length; }
+
+// Adds the point, or shape i.
+static CagStatus body_add_part(CagVm *vm, Body *b, const Side *side, size_t i, CagError *err) {
+  return side->point ? cag_parts_add_point(&b->parts, side->p, err)
+                     : body_add_shape(vm, b, cag_list_get(vm, side->shapes, i),
+                                      HULL_TOLERANCE * side->body.size, err);
+}
+
 static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
   CagStatus status = CAG_OK;
-  if (side->point) return cag_parts_add_point(&side->body.parts, side->p, err);
-  for (size_t i = 0; !status && i < side->shapes->length; i++)
-    status = body_add_shape(vm, &side->body, cag_list_get(vm, side->shapes, i),
-                            HULL_TOLERANCE * side->body.size, err);
+  for (size_t i = 0; !status && i < side_count(side); i++)
+    status = body_add_part(vm, &side->body, side, i, err);
   return status;
 }
 
@@ -403,13 +390,9 @@ static CagStatus swallows(CagVm *vm, const Side *outer, const Side *inner, bool 
   for (size_t i = 0; !status && !*yes && !outer->point && i < outer->shapes->length; i++) {
     const CagValue v = cag_list_get(vm, outer->shapes, i);
     if (!is_body(v)) continue;
-    for (size_t k = 0; !status && !*yes && (inner->point ? k < 1 : k < inner->shapes->length);
-         k++) {
+    for (size_t k = 0; !status && !*yes && k < side_count(inner); k++) {
       Body one = {0};
-      if (inner->point) status = cag_parts_add_point(&one.parts, inner->p, err);
-      else
-        status = body_add_shape(vm, &one, cag_list_get(vm, inner->shapes, k),
-                                HULL_TOLERANCE * inner->body.size, err);
+      status = body_add_part(vm, &one, inner, k, err);
       if (!status && one.parts.n) status = holds(vm, v, one.parts.items[0].p[0], yes, err);
       body_free(&one);
     }

@@ -56,23 +56,21 @@ static bool read_shapes(CagCall *call, CagList **out) {
 typedef CagStatus (*MakeMesh)(const void *what, const CagShape *shape, CagValue v,
                               const CagTessellation *how, Meshes *out, CagError *err);
 
-static bool make_meshes(CagCall *call, int tolerance, MakeMesh make, const void *what,
+// tolerance 0: that of each shape.
+static bool make_meshes(CagCall *call, double tolerance, MakeMesh make, const void *what,
                         Meshes *out) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagList *shapes;
   if (call->vm->max_triangles > 0) how.max_triangles = call->vm->max_triangles;
   how.interrupt = cag_vm_stop(call->vm);
-  bool said = cag_given(call, tolerance);
-  if ((said && !cag_arg_positive(call, tolerance, &how.tolerance)) || !read_shapes(call, &shapes))
-    return false;
+  if (!read_shapes(call, &shapes)) return false;
   // Formulas are called back: the shapes stay.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++) {
     CagValue v = cag_list_get(call->vm, shapes, i);
-    CagTessellation own = how;
-    if (!said) own.tolerance = CAG_AS_SHAPE(v)->tolerance;
-    ok = cag_geometry_ok(call, make(what, CAG_AS_SHAPE(v), v, &own, out, call->err));
+    how.tolerance = tolerance > 0 ? tolerance : CAG_AS_SHAPE(v)->tolerance;
+    ok = cag_geometry_ok(call, make(what, CAG_AS_SHAPE(v), v, &how, out, call->err));
   }
   cag_root_pop(call->vm, 1);
   return ok;
@@ -148,18 +146,15 @@ static void find_span(const Meshes *m, CagSurfaceValue kind, double *from, doubl
   }
 }
 
-static bool read_span(CagCall *call, int argument, bool slope, double *from, double *to) {
-  bool angle;
-  if (!cag_arg_interval(call, argument, from, to, &angle)) return false;
-  if (angle && !slope)
-    return cag_fail_call(call, argument, CAG_ERR_value,
+static bool check_span(CagCall *call, CagRangeEnds range, bool slope) {
+  if (range.angle && !slope)
+    return cag_fail_call(call, 2, CAG_ERR_value,
                          "expects a range of numbers: curvatures are 1/mm (mean and principal) and "
                          "1/mm2 (Gaussian)");
-  if (!isfinite(*from) || !isfinite(*to) || *from == *to)
-    return cag_fail_call(call, argument, CAG_ERR_value,
-                         "expects a range with two different finite ends, found %g..%g", *from,
-                         *to);
-  return true;
+  return (isfinite(range.start) && isfinite(range.end) && range.start != range.end) ||
+         cag_fail_call(call, 2, CAG_ERR_value,
+                       "expects a range with two different finite ends, found %g..%g", range.start,
+                       range.end);
 }
 
 static bool is_symmetric(double from, double to) {
@@ -167,55 +162,52 @@ static bool is_symmetric(double from, double to) {
   return from * to < 0 && fabs(from + to) <= same * (fabs(from) + fabs(to));
 }
 
-bool cag_quality_colored_by(CagCall *call, CagValue *result) {
-  static const char *const scales[] = {"auto", "sequence", "diverging", NULL};
-  int kind, colors;
-  double from = 0, to = 0;
-  if (!cag_arg_choice(call, 1, cag_surface_values, &kind) ||
-      !cag_arg_choice(call, 3, scales, &colors))
-    return false;
+bool cag_quality_colored_by(CagCall *call, const struct cag_quality_colored_by *a,
+                            CagValue *result) {
+  double from = a->range.start, to = a->range.end;
+  int kind;
+  if (!cag_arg_choice(call, 1, cag_surface_values, &kind)) return false;
   CagSurfaceValue value = (CagSurfaceValue)kind;
-  bool said = cag_given(call, 2);
-  if (said && !read_span(call, 2, value == CAG_VALUE_SLOPE, &from, &to)) return false;
+  const bool said = cag_given(call, 2);
+  if (said && !check_span(call, a->range, value == CAG_VALUE_SLOPE)) return false;
   Meshes *parts = hold_meshes(call);
-  if (!make_meshes(call, 4, value_mesh, &value, parts)) return false;
+  if (!make_meshes(call, a->tolerance, value_mesh, &value, parts)) return false;
   if (!said) find_span(parts, value, &from, &to);
-  bool diverging = colors == 2 || (colors == 0 && is_symmetric(from, to));
+  const bool diverging = a->colors == 2 || (a->colors == 0 && is_symmetric(from, to));
   CagColorScale scale = {diverging ? CAG_SCALE_DIVERGING : CAG_SCALE_SEQUENCE, from, to, 0};
   return give_mesh(call, parts, scale, result);
 }
 
 // --- What a colored mesh says ---
 
-static bool read_colored(CagCall *call, const CagMesh **out) {
-  *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
-  if ((*out)->scale.kind && (*out)->uv) return true;
-  cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
-           "the mesh has no values: `colored_by` and `zebra` make meshes that have");
-  return cag_fail_geometry(call, call->err);
+static bool check_colored(CagCall *call, const CagMesh *m) {
+  return (m->scale.kind && m->uv) ||
+         cag_geometry_ok(
+             call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
+                            "the mesh has no values: `colored_by` and `zebra` make meshes that "
+                            "have"));
 }
 
-bool cag_quality_values_of(CagCall *call, CagValue *result) {
-  const CagMesh *m;
+bool cag_quality_values_of(CagCall *call, const struct cag_quality_values_of *a, CagValue *result) {
+  const CagMesh *m = a->M;
   double *x;
-  if (!read_colored(call, &m)) return false;
+  if (!check_colored(call, m)) return false;
   *result = cag_list_numbers(call->vm, m->vertex_count, &x);
   for (size_t v = 0; v < m->vertex_count; v++) x[v] = m->uv[2 * v] + 0.0;
   return true;
 }
 
-bool cag_quality_color_range(CagCall *call, CagValue *result) {
-  const CagMesh *m;
-  if (!read_colored(call, &m)) return false;
-  *result = cag_domain_value(call->vm, false, m->scale.from, m->scale.to);
+bool cag_quality_color_range(CagCall *call, const struct cag_quality_color_range *a,
+                             CagValue *result) {
+  if (!check_colored(call, a->M)) return false;
+  *result = cag_domain_value(call->vm, false, a->M->scale.from, a->M->scale.to);
   return true;
 }
 
-bool cag_quality_scale_color(CagCall *call, CagValue *result) {
-  const CagMesh *m;
-  double x;
-  if (!read_colored(call, &m) || !cag_arg_finite(call, 1, &x)) return false;
-  CagColor c = cag_color_scale_at(&m->scale, x);
+bool cag_quality_scale_color(CagCall *call, const struct cag_quality_scale_color *a,
+                             CagValue *result) {
+  if (!check_colored(call, a->M)) return false;
+  const CagColor c = cag_color_scale_at(&a->M->scale, a->value);
   const double rgb[] = {c.r, c.g, c.b};
   *result = cag_vector(call->vm, rgb, 3);
   return true;
@@ -258,37 +250,29 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
   return status;
 }
 
-// `across` made perpendicular to the view; where none is said the world's Z, or Y for a view along
-// it.
-static bool read_across(CagCall *call, int argument, CagVec3 eye, CagVec3 *out) {
+// `across` made perpendicular to the view; where none is said (0) the world's Z, or Y for a view
+// along it.
+static bool find_across(CagCall *call, CagVec3 v, CagVec3 eye, CagVec3 *out) {
   const double parallel = 1e-9; // sine
-  CagVec3 v = cag_vec3(0, 0, 1);
-  bool said = cag_given(call, argument);
-  if (said && !cag_arg_direction(call, argument, v, &v, NULL)) return false;
-  if (!said && cag_norm(cag_cross(v, eye)) < parallel) v = cag_vec3(0, 1, 0);
+  if (cag_norm(v) == 0) {
+    v = cag_vec3(0, 0, 1);
+    if (cag_norm(cag_cross(v, eye)) < parallel) v = cag_vec3(0, 1, 0);
+  }
   v = cag_unit(v);
   CagVec3 square = cag_madd(v, -cag_dot(v, eye), eye);
   if (cag_norm(square) < parallel)
-    return cag_fail_call(call, argument, CAG_ERR_value,
+    return cag_fail_call(call, 3, CAG_ERR_value,
                          "expects a direction that is not the one to the eye");
   *out = cag_unit(square);
   return true;
 }
 
-bool cag_quality_zebra(CagCall *call, CagValue *result) {
+bool cag_quality_zebra(CagCall *call, const struct cag_quality_zebra *a, CagValue *result) {
   const CagVec3 usual = {0.4, -0.8, 0.5}; // from the front, a little above
-  Zebra z;
-  long stripes;
-  bool said = cag_given(call, 2);
-  z.eye = usual;
-  if (!cag_arg_integer_or(call, 1, 8, 1, CAG_SCALE_STRIPES_MAX, &stripes) ||
-      (said && !cag_arg_direction(call, 2, usual, &z.eye, NULL)))
-    return false;
-  z.stripes = (int)stripes;
-  z.eye = cag_unit(z.eye);
-  if (!read_across(call, 3, z.eye, &z.across)) return false;
+  Zebra z = {.eye = cag_unit(cag_given(call, 2) ? a->view.at : usual), .stripes = (int)a->stripes};
+  if (!find_across(call, a->across.at, z.eye, &z.across)) return false;
   Meshes *parts = hold_meshes(call);
-  return make_meshes(call, 4, zebra_mesh, &z, parts) &&
+  return make_meshes(call, a->tolerance, zebra_mesh, &z, parts) &&
          give_mesh(call, parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
 }
 
@@ -299,7 +283,7 @@ bool cag_quality_zebra(CagCall *call, CagValue *result) {
 // The cosines of the levels: of a count, angles evenly between 0 and 180 degrees, ends left out; of
 // a list, its angles. *out is held.
 static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
-  bool listed = cag_given(call, argument) && call->values[argument].type == CAG_LIST;
+  const bool listed = call->values[argument].type == CAG_LIST;
   long count = 11;
   const double straight = 3.14159265358979323846;
   CagList *list = NULL;
@@ -353,22 +337,19 @@ static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *resul
   return true;
 }
 
-bool cag_quality_isophotes(CagCall *call, CagValue *result) {
-  CagVec3 direction = {0, 0, 1};
-  double *cosines = NULL, tolerance = 0;
+bool cag_quality_isophotes(CagCall *call, const struct cag_quality_isophotes *a, CagValue *result) {
+  const CagVec3 direction = cag_unit(a->direction.at);
+  double *cosines = NULL;
   size_t n;
   CagList *shapes;
   CagCurveList *list = cag_hold_curve_list(call);
-  if (cag_given(call, 1) && !cag_arg_direction(call, 1, direction, &direction, NULL)) return false;
-  if (cag_given(call, 3) && !cag_arg_positive(call, 3, &tolerance)) return false;
   if (!read_shapes(call, &shapes) || !read_levels(call, 2, &cosines, &n)) return false;
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   bool ok = true;
-  direction = cag_unit(direction);
   for (size_t i = 0; ok && i < shapes->length; i++)
     for (size_t k = 0; ok && k < n; k++)
       ok = cag_geometry_ok(call, isophotes_of(cag_list_get(call->vm, shapes, i), direction,
-                                              cosines[k], tolerance, list, call->err)) &&
+                                              cosines[k], a->tolerance, list, call->err)) &&
            cag_keep_going(call->vm);
   ok = ok && give_curves(call, list, result);
   cag_root_pop(call->vm, 1);

@@ -55,23 +55,7 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
   return true;
 }
 
-// A region without boundary curves is empty, so it cannot have holes.
-static bool bounded_by_none(CagCall *call, CagValue *result) {
-  CagList *holes = NULL;
-  CagRegion *region = NULL;
-  if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
-  const CagStatus status =
-      holes && holes->length ? cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
-                                        "the outline is empty, so holes[0] does not lie within it")
-                             : cag_region_empty(&region, call->err);
-  return cag_region_result(call, status, &region, result);
-}
-
-static bool is_empty_list(CagValue v) { return v.type == CAG_LIST && CAG_AS_LIST(v)->length == 0; }
-
-static bool bounded_by_some(CagCall *call, CagValue *result) {
-  CagList *holes = NULL;
-  if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
+static bool bounded_by_some(CagCall *call, const CagList *holes, CagValue *result) {
   const CagList *several = list_of_curves(call, call->values[0]);
   const size_t outer = several ? several->length : 1, n = outer + (holes ? holes->length : 0);
   CagCurve **loops = cag_hold_curve_array(call, n);
@@ -85,13 +69,25 @@ static bool bounded_by_some(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_region(CagCall *call, CagValue *result) {
-  return is_empty_list(call->values[0]) ? bounded_by_none(call, result)
-                                        : bounded_by_some(call, result);
+  const CagValue outline = call->values[0];
+  CagList *holes = NULL;
+  CagRegion *region = NULL;
+  if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
+  if (outline.type != CAG_LIST || CAG_AS_LIST(outline)->length > 0)
+    return bounded_by_some(call, holes, result);
+  // A region without boundary curves is empty, so it cannot have holes.
+  const CagStatus status =
+      holes && holes->length ? cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
+                                        "the outline is empty, so holes[0] does not lie within it")
+                             : cag_region_empty(&region, call->err);
+  return cag_region_result(call, status, &region, result);
 }
 
 bool cag_curves_polygon(CagCall *call, CagValue *result) {
+  CagList *holes = NULL;
   if (call->values[0].type != CAG_LIST) return cag_fail_type(call, 0, "a list of points");
-  return bounded_by_some(call, result);
+  if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
+  return bounded_by_some(call, holes, result);
 }
 
 bool cag_curves_rectangle(CagCall *call, const struct cag_curves_rectangle *a, CagValue *result) {
@@ -99,8 +95,6 @@ bool cag_curves_rectangle(CagCall *call, const struct cag_curves_rectangle *a, C
   CagStatus status = cag_region_rectangle(a->w, a->h, a->radius, &region, call->err);
   return cag_region_result(call, status, &region, result);
 }
-
-// More corners than any polygon of a drawing; a circle says it better.
 
 bool cag_curves_regular_polygon(CagCall *call, const struct cag_curves_regular_polygon *a,
                                 CagValue *result) {
@@ -114,10 +108,11 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
   CagBuilder *loops = cag_builder_new(call->vm);
   for (size_t i = 0; i < shape->as.region->count; i++) {
     CagCurve *placed = NULL;
+    CagValue loop;
     CagStatus status =
         cag_curve_transform(shape->as.region->loops[i], &shape->placement, &placed, call->err);
-    if (!cag_geometry_ok(call, status)) return false;
-    if (!cag_builder_add(call->vm, loops, cag_curve_value(call->vm, placed))) return false;
+    if (!cag_curve_result(call, status, &placed, &loop) || !cag_builder_add(call->vm, loops, loop))
+      return false;
   }
   *result = cag_builder_finish(call->vm, loops);
   return true;
@@ -226,37 +221,35 @@ bool cag_regions_intersect(CagCall *call, CagValue *result) {
   return combine(call, CAG_REGION_INTERSECTION, result);
 }
 
-bool cag_regions_offset(CagCall *call, CagValue *result) {
+bool cag_regions_offset(CagCall *call, const struct cag_regions_offset *a, CagValue *result) {
   const double part = 1e-6; // of the size, where no tolerance is given
-  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
-  double d, tolerance;
+  const CagShape *shape = CAG_AS_SHAPE(a->R);
+  double tolerance = a->tolerance;
   CagRegion *out = NULL;
   CagBounds box = {{0, 0, 0}, {1, 1, 0}};
-  if (!cag_arg_number(call, 1, &d) ||
-      (!cag_region_is_empty(shape->as.region) &&
-       !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, call->err))) ||
-      !cag_arg_number_or(call, 2, part * cag_norm(cag_sub(box.max, box.min)), &tolerance))
+  if (!cag_region_is_empty(shape->as.region) &&
+      !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, call->err)))
     return false;
+  if (!cag_given(call, 2)) tolerance = part * cag_norm(cag_sub(box.max, box.min));
   if (!(tolerance > 0))
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a tolerance greater than 0");
-  CagStatus status = cag_region_offset(shape->as.region, d, tolerance, &out, call->err);
+  CagStatus status = cag_region_offset(shape->as.region, a->d, tolerance, &out, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   *result = cag_region_value(call->vm, out, &shape->placement);
-  cag_shape_say_alike(*result, call->values[0]);
+  cag_shape_say_alike(*result, a->R);
   return true;
 }
 
-bool cag_regions_inertia(CagCall *call, CagValue *result) {
+bool cag_regions_inertia(CagCall *call, const struct cag_regions_inertia *a, CagValue *result) {
   static const char *const names[] = {"mass", "center", "matrix"};
-  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
-  double density = 1, area, xx, xy, yy, *m;
+  const CagShape *shape = CAG_AS_SHAPE(a->R);
+  const double density = a->density;
+  double area = 0, xx = 0, xy = 0, yy = 0, *m;
   CagVec3 center;
-  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
   if (!shape->placement.planar)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "takes regions of the plane; this one was moved into space");
   const bool empty = cag_region_is_empty(shape->as.region);
-  area = xx = xy = yy = 0;
   CagStatus status = CAG_OK;
   if (!empty)
     status = cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, call->err);

@@ -57,27 +57,17 @@ static void bspline_matrix(int p, double *out) {
 }
 
 static void parabolic_matrix(double a, double b, double *out) {
-  const double c = 1 - a, ab = a * b;
-  const double m[16] = {-c * c / a,
-                        (c + ab) / a,
-                        (-c - ab) / (1 - b),
-                        b * b / (1 - b), //
-                        2 * c * c / a,
-                        (-2 * c - ab) / a,
-                        (2 * c - b * (1 - 2 * a)) / (1 - b),
-                        -b * b / (1 - b), //
-                        -c * c / a,
-                        (1 - 2 * a) / a,
-                        a,
-                        0, //
-                        0,
-                        1,
-                        0,
-                        0};
+  const double c = 1 - a, d = 1 - b, ab = a * b;
+  const double m[4][4] = {
+      {-c * c / a, (c + ab) / a, (-c - ab) / d, b * b / d},
+      {2 * c * c / a, (-2 * c - ab) / a, (2 * c - b * (1 - 2 * a)) / d, -b * b / d},
+      {-c * c / a, (1 - 2 * a) / a, a, 0},
+      {0, 1, 0, 0},
+  };
   memcpy(out, m, sizeof m);
 }
 
-// Entries of higher degrees are beyond what a double holds exactly.
+// Entries of higher degrees are beyond what a double holds exactly. The first is also in a row.
 #define BEZIER_MATRIX_MOST 50
 #define BSPLINE_MATRIX_MOST 15
 
@@ -109,26 +99,25 @@ bool cag_splines_basis_matrix(CagCall *call, CagValue *result) {
   return true;
 }
 
-bool cag_splines_bezier_matrices(CagCall *call, CagValue *result) {
+bool cag_splines_bezier_matrices(CagCall *call, const struct cag_splines_bezier_matrices *a,
+                                 CagValue *result) {
   static const char *const names[] = {"N", "C", "D"};
   double m[3][(BEZIER_MATRIX_MOST + 1) * (BEZIER_MATRIX_MOST + 1)];
-  long n;
-  if (!cag_arg_integer(call, 0, 0, BEZIER_MATRIX_MOST, &n)) return false;
-  bezier_matrix((int)n, m[0], m[1], m[2]);
+  bezier_matrix((int)a->n, m[0], m[1], m[2]);
   CagValue values[3];
-  for (int i = 0; i < 3; i++) values[i] = matrix_value(call->vm, m[i], (size_t)n + 1);
+  for (int i = 0; i < 3; i++) values[i] = matrix_value(call->vm, m[i], (size_t)a->n + 1);
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
 
-// A higher degree has no values that a double can tell apart.
+// A higher degree has no values that a double can tell apart. It is also in the row.
 #define BERNSTEIN_MOST 1000
 
-bool cag_splines_bernstein_maxima(CagCall *call, CagValue *result) {
+bool cag_splines_bernstein_maxima(CagCall *call, const struct cag_splines_bernstein_maxima *a,
+                                  CagValue *result) {
   static const char *const names[] = {"t", "value"};
+  const long n = a->n;
   double b[BERNSTEIN_MOST + 1], *t, *value;
-  long n;
-  if (!cag_arg_integer(call, 0, 0, BERNSTEIN_MOST, &n)) return false;
   CagValue values[] = {cag_list_numbers(call->vm, (size_t)n + 1, &t),
                        cag_list_numbers(call->vm, (size_t)n + 1, &value)};
   for (long i = 0; i <= n; i++) {
@@ -141,12 +130,10 @@ bool cag_splines_bernstein_maxima(CagCall *call, CagValue *result) {
   return true;
 }
 
-// hermite_basis(t, length = 1)
-bool cag_splines_hermite_basis(CagCall *call, CagValue *result) {
-  double t, h, *f;
-  if (!cag_arg_finite(call, 0, &t) ||
-      (cag_given(call, 1) ? !cag_arg_finite(call, 1, &h) : (h = 1, false)))
-    return false;
+bool cag_splines_hermite_basis(CagCall *call, const struct cag_splines_hermite_basis *a,
+                               CagValue *result) {
+  const double t = a->t, h = a->length;
+  double *f;
   char text[32];
   if (!(h > 0))
     return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "length", -1,
@@ -162,20 +149,18 @@ bool cag_splines_hermite_basis(CagCall *call, CagValue *result) {
 
 // --- Polynomials of pieces ---
 
-bool cag_splines_polynomials(CagCall *call, CagValue *result) {
-  CagCurve *c;
-  CagVec3 *a;
+bool cag_splines_polynomials(CagCall *call, const struct cag_splines_polynomials *a,
+                             CagValue *result) {
+  CagVec3 *c;
   size_t pieces;
   int degree;
-  if (!cag_arg_curve(call, 0, &c) ||
-      !cag_geometry_ok(call, cag_curve_coefficients(c, &a, &pieces, &degree, call->err)))
+  if (!cag_geometry_ok(call, cag_curve_coefficients(a->C, &c, &pieces, &degree, call->err)))
     return false;
-  cag_hold(call, a);
+  cag_hold(call, c);
   CagBuilder *rows = cag_builder_new(call->vm);
-  const size_t stride = (size_t)degree + 1;
+  const size_t n = (size_t)degree + 1;
   for (size_t i = 0; i < pieces; i++)
-    if (!cag_builder_add(call->vm, rows,
-                         cag_points_value(call->vm, a + i * stride, stride, c->dimension)))
+    if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, c + i * n, n, a->C->dimension)))
       return false;
   *result = cag_builder_finish(call->vm, rows);
   return true;
@@ -183,25 +168,25 @@ bool cag_splines_polynomials(CagCall *call, CagValue *result) {
 
 // --- Cubic segments ---
 
-static bool read_segment(CagCall *call, bool plane, CagVec3 v[4], int *dimension) {
-  if (!cag_arg_vec(call, 0, &v[0], dimension)) return false;
+// The ends of a segment of the plane and its vectors there, checked to have 2 numbers.
+static bool check_segment(CagCall *call, const CagPoint *v[4]) {
+  const int dimension = v[0]->dimension;
   for (int i = 1; i < 4; i++)
-    if (!cag_splines_vec(call, i, *dimension, &v[i])) return false;
-  if (!plane || *dimension == 2) return true;
-  return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "", -1,
+    if (!cag_splines_check_dimension(call, i, *v[i], dimension)) return false;
+  return dimension == 2 ||
+         cag_splines_fail(call, CAG_ERR_dimension_mismatch, "", -1,
                           "inflections, cusps and loops are those of plane segments: give points "
                           "and tangents of 2 numbers");
 }
 
-bool cag_splines_hermite_shape(CagCall *call, CagValue *result) {
+bool cag_splines_hermite_shape(CagCall *call, const struct cag_splines_hermite_shape *a,
+                               CagValue *result) {
   static const char *const names[] = {"chord",       "k0",           "k1",          "ratio0",
                                       "ratio1",      "within_limit", "projection0", "projection1",
                                       "inflections", "cusp",         "loop"};
-  CagVec3 v[4];
-  int dimension;
   CagHermiteShape s;
-  if (!read_segment(call, true, v, &dimension) ||
-      !cag_geometry_ok(call, cag_hermite_shape(v[0], v[1], v[2], v[3], &s, call->err)))
+  if (!check_segment(call, (const CagPoint *[]){&a->P, &a->Q, &a->V, &a->W}) ||
+      !cag_geometry_ok(call, cag_hermite_shape(a->P.at, a->Q.at, a->V.at, a->W.at, &s, call->err)))
     return false;
   CagValue values[] = {cag_number(s.chord),
                        cag_number(s.speed[0]),
@@ -218,28 +203,25 @@ bool cag_splines_hermite_shape(CagCall *call, CagValue *result) {
   return true;
 }
 
-// hermite_by_curvature(P, Q, V, W, start, finish)
-bool cag_splines_hermite_by_curvature(CagCall *call, CagValue *result) {
-  CagVec3 v[4];
-  int dimension;
-  double k[2], lengths[4][2];
-  if (!read_segment(call, true, v, &dimension) || !cag_arg_finite(call, 4, &k[0]) ||
-      !cag_arg_finite(call, 5, &k[1]))
-    return false;
-  for (int i = 2; i < 4; i++) {
-    if (cag_norm(v[i]) == 0)
-      return cag_splines_fail(call, CAG_ERR_zero_vector, cag_parameter_name(call, i), -1,
-                              "the direction at the %s is the zero vector",
-                              i == 2 ? "start" : "end");
-    v[i] = cag_unit(v[i]);
-  }
-  const size_t n = cag_hermite_by_curvature(v[0], v[1], v[2], v[3], k, lengths);
+bool cag_splines_hermite_by_curvature(CagCall *call,
+                                      const struct cag_splines_hermite_by_curvature *a,
+                                      CagValue *result) {
+  if (!check_segment(call, (const CagPoint *[]){&a->P, &a->Q, &a->V, &a->W})) return false;
+  const bool no_start = cag_norm(a->V.at) == 0;
+  if (no_start || cag_norm(a->W.at) == 0)
+    return cag_splines_fail(call, CAG_ERR_zero_vector, no_start ? "V" : "W", -1,
+                            "the direction at the %s is the zero vector",
+                            no_start ? "start" : "end");
   static const double unit[2] = {0, 1};
+  const CagVec3 p[2] = {a->P.at, a->Q.at}, v = cag_unit(a->V.at), w = cag_unit(a->W.at);
+  const double k[2] = {a->start, a->finish};
+  double lengths[4][2];
+  const size_t n = cag_hermite_by_curvature(p[0], p[1], v, w, k, lengths);
   CagValue curves[4];
   for (size_t i = 0; i < n; i++) {
-    const CagVec3 tangents[2] = {cag_scaled(v[2], lengths[i][0]), cag_scaled(v[3], lengths[i][1])};
+    const CagVec3 tangents[2] = {cag_scaled(v, lengths[i][0]), cag_scaled(w, lengths[i][1])};
     CagCurve *c = NULL;
-    CagStatus status = cag_curve_hermite(v, tangents, 2, unit, 2, &c, call->err);
+    CagStatus status = cag_curve_hermite(p, tangents, 2, unit, 2, &c, call->err);
     if (!cag_curve_result(call, status, &c, &curves[i])) return false;
   }
   *result = cag_list_values(call->vm, curves, n);
@@ -273,19 +255,15 @@ static void to_bezier_points(const CagVec3 g[4], int from, CagVec3 b[4]) {
   b[2] = cag_madd(b[3], -1.0 / 3, d1);
 }
 
-// convert_cubic(points, from = "bezier")
-bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"bezier", "hermite", "power", "parabolic", NULL};
-  CagVec3 *g, b[4];
-  size_t n;
-  int dimension, from;
-  if (!cag_arg_choice(call, 1, names, &from) || !cag_splines_points(call, 0, &g, &n, &dimension))
-    return false;
-  cag_hold(call, g);
-  if (n != 4)
+bool cag_splines_convert_cubic(CagCall *call, const struct cag_splines_convert_cubic *a,
+                               CagValue *result) {
+  static const char *const names[] = {"bezier", "hermite", "power", "parabolic"};
+  CagVec3 b[4];
+  if (!cag_splines_check_points(call, 0, &a->points)) return false;
+  if (a->points.count != 4)
     return cag_splines_fail(call, CAG_ERR_point_count, "points", -1,
-                            "a cubic has four points and vectors; these are %zu", n);
-  to_bezier_points(g, from, b);
+                            "a cubic has four points and vectors; these are %zu", a->points.count);
+  to_bezier_points(a->points.items, a->from, b);
   const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
   const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
   const CagVec3 cube = cag_add(cag_sub(b[3], b[0]), cag_scaled(cag_sub(b[1], b[2]), 3));
@@ -294,7 +272,8 @@ bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
                                {b[0], d0, bend, cube},
                                {cag_madd(b[3], -2, d0), b[0], b[3], cag_madd(b[0], 2, d1)}};
   CagValue values[4];
-  for (int i = 0; i < 4; i++) values[i] = cag_points_value(call->vm, forms[i], 4, dimension);
+  for (int i = 0; i < 4; i++)
+    values[i] = cag_points_value(call->vm, forms[i], 4, a->points.dimension);
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
@@ -318,7 +297,6 @@ bool cag_splines_bezier_join(CagCall *call, CagValue *result) {
 
 static CagValue number_or_none(double x) { return isnan(x) ? cag_none() : cag_number(x); }
 
-// continuity(C, D, tolerance = 1e-9)
 bool cag_splines_continuity(CagCall *call, const struct cag_splines_continuity *a,
                             CagValue *result) {
   static const char *const names[] = {"class", "C0",         "C1",          "C2",
@@ -327,7 +305,7 @@ bool cag_splines_continuity(CagCall *call, const struct cag_splines_continuity *
   CagJoint j;
   if (!(a->tolerance >= 0))
     return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
-                            "the a->tolerance is 0 or more");
+                            "the tolerance is 0 or more");
   if (!cag_geometry_ok(call, cag_curve_joint(a->C, a->D, a->tolerance, &j, call->err)))
     return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
@@ -368,7 +346,6 @@ static size_t polygon_crossings(const CagCurve *curve, CagVec3 normal, double of
   return n;
 }
 
-// line_crossings(C, normal, offset)
 bool cag_splines_line_crossings(CagCall *call, const struct cag_splines_line_crossings *a,
                                 CagValue *result) {
   static const char *const names[] = {"t", "points", "curve_crossings", "polygon_crossings"};
@@ -377,7 +354,7 @@ bool cag_splines_line_crossings(CagCall *call, const struct cag_splines_line_cro
   const double square = cag_dot(a->normal.at, a->normal.at);
   if (!(square > 0))
     return cag_splines_fail(call, CAG_ERR_zero_vector, "normal", -1,
-                            "the a->normal.at of a line or plane is not the zero vector");
+                            "the normal of a line or plane is not the zero vector");
   const CagPlane plane = {cag_scaled(a->normal.at, a->offset / square), cag_unit(a->normal.at)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(a->C, &plane, &meetings, &n, call->err)))
     return false;
@@ -394,14 +371,10 @@ bool cag_splines_line_crossings(CagCall *call, const struct cag_splines_line_cro
   return true;
 }
 
-bool cag_splines_hulls_disjoint(CagCall *call, CagValue *result) {
-  CagVec3 *a, *b;
-  size_t n, m;
-  int d;
-  if (!cag_arg_points(call, 0, &a, &n, &d)) return false;
-  cag_hold(call, a);
-  if (!cag_arg_points(call, 1, &b, &m, &d)) return false;
-  cag_hold(call, b);
-  *result = cag_bool(cag_hulls_disjoint(a, n, b, m));
+bool cag_splines_hulls_disjoint(CagCall *call, const struct cag_splines_hulls_disjoint *a,
+                                CagValue *result) {
+  (void)call;
+  *result = cag_bool(
+      cag_hulls_disjoint(a->points.items, a->points.count, a->others.items, a->others.count));
   return true;
 }

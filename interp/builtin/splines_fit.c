@@ -5,32 +5,24 @@
 #include "interp/builtin/splines.h"
 #include "interp/builtin/support.h"
 
-// data_parameters(points, by = "chord")
-bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"chord", "uniform", "centripetal", NULL};
-  CagVec3 *points;
-  size_t n;
-  int dimension, choice;
-  double *out;
-  if (!cag_arg_choice(call, 1, names, &choice) ||
-      !cag_splines_points(call, 0, &points, &n, &dimension))
-    return false;
-  cag_hold(call, points);
-  *result = cag_list_numbers(call->vm, n, &out);
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) {
+bool cag_splines_data_parameters(CagCall *call, const struct cag_splines_data_parameters *a,
+                                 CagValue *result) {
+  const CagVec3 *points = a->points.items;
+  double sum = 0, *out;
+  if (!cag_splines_check_points(call, 0, &a->points)) return false;
+  *result = cag_list_numbers(call->vm, a->points.count, &out);
+  for (size_t i = 0; i < a->points.count; i++) {
     double step = i == 0 ? 0 : 1;
-    if (i > 0 && choice != CAG_SPACING_UNIFORM) step = cag_norm(cag_sub(points[i], points[i - 1]));
-    out[i] = sum += choice == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
+    if (i > 0 && a->by != CAG_SPACING_UNIFORM) step = cag_norm(cag_sub(points[i], points[i - 1]));
+    out[i] = sum += a->by == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
   }
-  if (isfinite(sum)) return true;
-  return cag_splines_fail(call, CAG_ERR_not_finite, "points", -1,
-                          "the distances of the points overflow");
+  return isfinite(sum) || cag_splines_fail(call, CAG_ERR_not_finite, "points", -1,
+                                           "the distances of the points overflow");
 }
 
 static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count) {
   static const char *const names[] = {"auto", "open", "averaged", NULL};
-  const CagType type = cag_given(call, argument) ? call->values[argument].type : CAG_UNSET;
+  const CagType type = call->values[argument].type;
   if (type != CAG_LIST && type != CAG_RANGE) {
     int choice;
     if (!cag_arg_choice(call, argument, names, &choice)) return false;
@@ -48,52 +40,45 @@ static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count)
                           count, d->degree, wanted, given);
 }
 
-// What both read, except the knots. The arrays are held.
-static bool read_data(CagCall *call, int degree, int order, int parameters, CagFitData *d) {
-  CagVec3 *points;
+// What both read, except the knots. The parameters are held.
+static bool read_data(CagCall *call, const CagPoints *points, int degree, int order, int parameters,
+                      CagFitData *d) {
   double *own;
-  *d = (CagFitData){0};
+  *d = (CagFitData){.points = points->items, .n = points->count, .dimension = points->dimension};
   if (!cag_arg_degree(call, degree, order, 3, &d->degree) ||
-      !cag_splines_points(call, 0, &points, &d->n, &d->dimension))
+      !cag_splines_check_points(call, 0, points) ||
+      !cag_splines_parameters(call, parameters, CAG_SPACING_CHORD, d->n, &d->spacing, &own))
     return false;
-  d->points = cag_hold(call, points);
-  if (!cag_splines_parameters(call, parameters, CAG_SPACING_CHORD, d->n, &d->spacing, &own))
-    return false;
-  cag_hold_for(call, cag_free, own);
   d->parameters = own;
   return true;
 }
 
-// interpolate(points, degree = 3, parameters = "chord", tangents = none, knots = "auto",
-//             order = none)
-bool cag_splines_interpolate(CagCall *call, CagValue *result) {
+bool cag_splines_interpolate(CagCall *call, const struct cag_splines_interpolate *a,
+                             CagValue *result) {
   CagFitData d;
-  CagVec3 *tangents = NULL;
-  size_t count = 0;
-  int dimension;
+  CagPoints tangents = {0};
   CagCurve *c = NULL;
-  if (!read_data(call, 1, 5, 2, &d) ||
-      (cag_given(call, 3) && !cag_splines_points(call, 3, &tangents, &count, &dimension)))
+  if (!read_data(call, &a->points, 1, 5, 2, &d) ||
+      (cag_given(call, 3) && !cag_splines_tangents(call, 3, d.dimension, &tangents)) ||
+      !read_knots(call, 4, &d, d.n + tangents.count))
     return false;
-  cag_hold_for(call, cag_free, tangents);
-  if (tangents && dimension != d.dimension)
-    return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
-                            "the points have %d numbers, the tangents %d", d.dimension, dimension);
-  if (!read_knots(call, 4, &d, d.n + count)) return false;
-  CagStatus status = cag_curve_interpolate(&d, tangents, count, &c, call->err);
+  CagStatus status = cag_curve_interpolate(&d, tangents.items, tangents.count, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
 // fit(points, degree = 3, count = degree + 1, parameters = "chord", fixed = "ends", knots = "auto",
 //     error = 1e-9, order = none)
-static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, CagCurve **out) {
+static bool fit(CagCall *call, CagFitReport *report, CagPoints *points, CagCurve **out) {
   static const char *const names[] = {"ends", "none", "x", "y", "z", NULL};
   CagFitData d;
   int fixed;
   long count;
   double slack;
   if (!cag_arg_choice(call, 4, names, &fixed) || !cag_arg_number_or(call, 6, 1e-9, &slack) ||
-      !read_data(call, 1, 7, 3, &d) ||
+      !cag_arg_points(call, 0, &points->items, &points->count, &points->dimension))
+    return false;
+  cag_hold(call, points->items);
+  if (!read_data(call, points, 1, 7, 3, &d) ||
       !cag_arg_integer_or(call, 2, d.degree + 1L, 1, 100000000, &count))
     return false;
   if (!(slack >= 0))
@@ -101,8 +86,6 @@ static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, 
                             "the error that is allowed is 0 or more");
   // Too many control points are told as that, not as the wrong number of knots.
   if ((size_t)count <= d.n && !read_knots(call, 5, &d, (size_t)count)) return false;
-  *n = d.n;
-  *dimension = d.dimension;
   CagStatus status = cag_curve_fit(&d, (size_t)count, fixed == 0, fixed >= 2 ? fixed - 2 : -1,
                                    slack, out, report, call->err);
   return cag_geometry_ok(call, status);
@@ -110,9 +93,8 @@ static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, 
 
 bool cag_splines_fit(CagCall *call, CagValue *result) {
   CagCurve *c;
-  size_t n;
-  int dimension;
-  if (!fit(call, NULL, &n, &dimension, &c)) return false;
+  CagPoints points;
+  if (!fit(call, NULL, &points, &c)) return false;
   *result = cag_curve_value(call->vm, c);
   return true;
 }
@@ -153,16 +135,15 @@ bool cag_splines_fit_report(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagFitReport *report = cag_hold_array(call, 1, sizeof *report);
   cag_hold_for(call, free_report, report);
-  size_t n = 0;
-  int dimension = 0;
-  if (!fit(call, report, &n, &dimension, &c)) return false;
-  const CagValue curve = cag_curve_value(call->vm, c);
-  CagValue values[] = {curve,
-                       cag_numbers_value(call->vm, report->parameters, n),
-                       cag_points_value(call->vm, report->residuals, n, dimension),
-                       cag_number(report->rms),
-                       cag_number(report->largest),
-                       cag_number(report->rounds)};
+  CagPoints points;
+  if (!fit(call, report, &points, &c)) return false;
+  CagValue values[] = {
+      cag_curve_value(call->vm, c),
+      cag_numbers_value(call->vm, report->parameters, points.count),
+      cag_points_value(call->vm, report->residuals, points.count, points.dimension),
+      cag_number(report->rms),
+      cag_number(report->largest),
+      cag_number(report->rounds)};
   *result = cag_record_new(call->vm, names, values, 6);
   return true;
 }

@@ -1,7 +1,5 @@
 // Hermite curves, cubic splines with their end conditions, parabolic blends, polynomials.
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -10,45 +8,39 @@
 
 // --- Shared ---
 
-bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
-                      const char *format, ...) {
-  char message[sizeof call->err->message];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
-  cag_fail(call->err, CAG_E_ARGUMENT, id, argument, index, "%s", message);
-  return cag_fail_geometry(call, call->err);
-}
-
-bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *dimension) {
-  if (!cag_arg_points(call, argument, out, n, dimension)) return false;
+bool cag_splines_check_points(CagCall *call, int argument, const CagPoints *points) {
   const CagList *list = CAG_AS_LIST(call->values[argument]);
-  if ((int)list->dim == *dimension) return true;
+  if ((int)list->dim == points->dimension) return true;
   // Lists of points of one dimension are packed: here one is different.
+  const char *name = cag_parameter_name(call, argument);
   const double *x;
   size_t first = 0, size = 0;
   for (size_t i = 0; i < list->length; i++) {
     cag_as_vector(cag_list_get(call->vm, list, i), &x, &size);
     if (i == 0) first = size;
-    else if (size != first) {
-      cag_free(*out);
-      return cag_splines_fail(
-          call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), (long)i,
-          "the points are of the plane or of space, not both: %s[0] has %zu "
-          "numbers and %s[%zu] has %zu",
-          cag_parameter_name(call, argument), first, cag_parameter_name(call, argument), i, size);
-    }
+    else if (size != first)
+      return cag_splines_fail(call, CAG_ERR_dimension_mismatch, name, (long)i,
+                              "the points are of the plane or of space, not both: %s[0] has %zu "
+                              "numbers and %s[%zu] has %zu",
+                              name, first, name, i, size);
   }
   return true;
 }
 
-bool cag_splines_vec(CagCall *call, int argument, int dimension, CagVec3 *out) {
-  int d;
-  if (!cag_arg_vec(call, argument, out, &d)) return false;
-  if (d == dimension) return true;
-  return cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
-                          "the points have %d numbers, this vector has %d", dimension, d);
+bool cag_splines_tangents(CagCall *call, int argument, int dimension, CagPoints *out) {
+  if (!cag_arg_points(call, argument, &out->items, &out->count, &out->dimension)) return false;
+  cag_hold(call, out->items);
+  return cag_splines_check_points(call, argument, out) &&
+         (out->dimension == dimension ||
+          cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
+                           "the points have %d numbers, the tangents %d", dimension,
+                           out->dimension));
+}
+
+bool cag_splines_check_dimension(CagCall *call, int argument, CagPoint p, int dimension) {
+  return p.dimension == dimension ||
+         cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
+                          "the points have %d numbers, this vector has %d", dimension, p.dimension);
 }
 
 bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, size_t n,
@@ -83,57 +75,50 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
                               "the lengths of the segments are positive: parameters[%zu] = %s", i,
                               cag_number_text(x[i], text));
   }
-  *own = cag_give_held(call, u);
+  *own = u;
   return true;
 }
 
 // --- Points with parameters ---
 
 typedef struct Data {
-  CagVec3 *points;
+  const CagVec3 *points;
   size_t n;
   int dimension;
-  double *u;
+  double *u; // held
 } Data;
 
-// Both arrays are held.
-static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data *out) {
+static bool read_data(CagCall *call, const CagPoints *points, int parameters, CagSpacing otherwise,
+                      Data *out) {
   CagSpacing spacing;
-  Data d = {0};
-  if (!cag_splines_points(call, 0, &d.points, &d.n, &d.dimension)) return false;
-  cag_hold(call, d.points);
-  if (!cag_splines_parameters(call, parameters, otherwise, d.n, &spacing, &d.u)) return false;
-  const bool given = d.u;
-  if (given) cag_hold(call, d.u);
-  else d.u = cag_hold_array(call, d.n, sizeof *d.u);
+  Data d = {points->items, points->count, points->dimension, NULL};
+  if (!cag_splines_check_points(call, 0, points) ||
+      !cag_splines_parameters(call, parameters, otherwise, d.n, &spacing, &d.u))
+    return false;
+  CagStatus status = CAG_OK;
+  if (!d.u) {
+    d.u = cag_hold_array(call, d.n, sizeof *d.u);
+    status = cag_spacing_parameters(d.points, d.n, spacing, d.u, call->err);
+  }
   *out = d;
-  return given ||
-         cag_geometry_ok(call, cag_spacing_parameters(d.points, d.n, spacing, d.u, call->err));
+  return cag_geometry_ok(call, status);
 }
 
-// hermite(points, tangents, parameters = "uniform", limit = none)
-bool cag_splines_hermite(CagCall *call, CagValue *result) {
+bool cag_splines_hermite(CagCall *call, const struct cag_splines_hermite *a, CagValue *result) {
   Data d;
-  CagVec3 *tangents;
-  size_t count;
-  int dimension;
-  double limit = INFINITY;
+  CagPoints tangents;
   CagCurve *c = NULL;
-  if (cag_given(call, 3) && !cag_arg_positive(call, 3, &limit)) return false;
-  if (!read_data(call, 2, CAG_SPACING_UNIFORM, &d) ||
-      !cag_splines_points(call, 1, &tangents, &count, &dimension))
+  if (!read_data(call, &a->points, 2, CAG_SPACING_UNIFORM, &d) ||
+      !cag_splines_tangents(call, 1, d.dimension, &tangents))
     return false;
-  cag_hold(call, tangents);
-  if (count != d.n)
+  if (tangents.count != d.n)
     return cag_splines_fail(call, CAG_ERR_point_count, "tangents", -1,
                             "there is one tangent to each point: %zu points, %zu tangents", d.n,
-                            count);
-  if (dimension != d.dimension)
-    return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
-                            "the points have %d numbers, the tangents %d", d.dimension, dimension);
+                            tangents.count);
   if (!cag_geometry_ok(call, cag_parameters_check(d.u, d.n, call->err))) return false;
-  if (isfinite(limit)) cag_hermite_limit(d.points, tangents, d.n, d.u, limit);
-  CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, call->err);
+  if (cag_given(call, 3)) cag_hermite_limit(d.points, tangents.items, d.n, d.u, a->limit);
+  CagStatus status =
+      cag_curve_hermite(d.points, tangents.items, d.n, d.u, d.dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
@@ -147,23 +132,8 @@ static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue 
   return true;
 }
 
-static bool check_tangent(CagCall *call, int argument) {
-  CagVec3 v;
-  int dimension;
-  return !cag_given(call, argument) || cag_arg_vec(call, argument, &v, &dimension);
-}
-
-static CagValue tangent_or_none(CagCall *call, int argument) {
-  return cag_given(call, argument) ? call->values[argument] : cag_none();
-}
-
-bool cag_splines_clamped(CagCall *call, CagValue *result) {
-  CagVec3 v;
-  int dimension;
-  bool direction;
-  return cag_arg_vec(call, 0, &v, &dimension) && cag_arg_vec(call, 1, &v, &dimension) &&
-         cag_arg_bool_or(call, 2, false, &direction) &&
-         give_ends(call, "clamped", call->values[0], call->values[1], direction, result);
+bool cag_splines_clamped(CagCall *call, const struct cag_splines_clamped *a, CagValue *result) {
+  return give_ends(call, "clamped", call->values[0], call->values[1], a->direction, result);
 }
 
 bool cag_splines_relaxed(CagCall *call, CagValue *result) {
@@ -178,12 +148,10 @@ bool cag_splines_anticyclic(CagCall *call, CagValue *result) {
   return give_ends(call, "anticyclic", cag_none(), cag_none(), false, result);
 }
 
-bool cag_splines_ends(CagCall *call, CagValue *result) {
-  bool direction;
-  return check_tangent(call, 0) && check_tangent(call, 1) &&
-         cag_arg_bool_or(call, 2, false, &direction) &&
-         give_ends(call, "ends", tangent_or_none(call, 0), tangent_or_none(call, 1), direction,
-                   result);
+bool cag_splines_ends(CagCall *call, const struct cag_splines_ends *a, CagValue *result) {
+  const CagValue start = cag_given(call, 0) ? call->values[0] : cag_none();
+  const CagValue finish = cag_given(call, 1) ? call->values[1] : cag_none();
+  return give_ends(call, "ends", start, finish, a->direction, result);
 }
 
 // The tangent of one end from its field; a direction gets the natural speed of its segment.
@@ -219,19 +187,14 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
   return true;
 }
 
-static bool read_ends(CagCall *call, int argument, const Data *d, CagCubicEnds *out) {
-  CagRecord *r;
+static bool read_ends(CagCall *call, CagValue ends, const Data *d, CagCubicEnds *out) {
   *out = (CagCubicEnds){.closing = CAG_CUBIC_ENDS};
-  if (!cag_given(call, argument)) return true;
+  if (ends.type == CAG_UNSET) return true;
   // relaxed, cyclic and anticyclic are taken uncalled as well.
-  if (call->values[argument].type != CAG_RECORD)
-    return cag_fail_type(call, argument,
-                         "end conditions (clamped(V, V), relaxed(), cyclic(), anticyclic() or "
-                         "ends(start, finish))");
-  r = CAG_AS_RECORD(call->values[argument]);
-  const CagValue type = cag_record_get(r, "type");
+  const CagRecord *r = ends.type == CAG_RECORD ? CAG_AS_RECORD(ends) : NULL;
+  const CagValue type = r ? cag_record_get(r, "type") : cag_unset();
   if (type.type != CAG_TEXT)
-    return cag_fail_type(call, argument,
+    return cag_fail_type(call, 1,
                          "end conditions (clamped(V, V), relaxed(), cyclic(), anticyclic() or "
                          "ends(start, finish))");
   const char *name = CAG_AS_TEXT(type)->bytes;
@@ -265,31 +228,25 @@ static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
   return true;
 }
 
-// cubic_spline(points, ends = relaxed(), parameters = "chord", tension = 0)
-bool cag_splines_cubic_spline(CagCall *call, CagValue *result) {
+bool cag_splines_cubic_spline(CagCall *call, const struct cag_splines_cubic_spline *a,
+                              CagValue *result) {
   Data d;
   CagCubicEnds ends;
   double *tension = NULL;
   CagCurve *c = NULL;
-  if (!read_data(call, 2, CAG_SPACING_CHORD, &d) ||
+  if (!read_data(call, &a->points, 2, CAG_SPACING_CHORD, &d) ||
       !cag_geometry_ok(call, cag_parameters_check(d.u, d.n, call->err)) ||
-      !read_ends(call, 1, &d, &ends) || !read_tension(call, 3, d.n, &tension))
+      !read_ends(call, a->ends, &d, &ends) || !read_tension(call, 3, d.n, &tension))
     return false;
   CagStatus status =
       cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
-// --- Blends: (points, alpha, ends = "open", closed = false) ---
+// --- Blends ---
 
-static bool read_blend_ends(CagCall *call, CagBlendEnds *out) {
-  static const char *const names[] = {"open", "parabola", NULL};
-  int choice;
-  bool closed;
-  if (!cag_arg_choice(call, 2, names, &choice) || !cag_arg_bool_or(call, 3, false, &closed))
-    return false;
-  *out = closed ? CAG_BLEND_CLOSED : choice ? CAG_BLEND_PARABOLA : CAG_BLEND_OPEN;
-  return true;
+static CagBlendEnds blend_ends(int ends, bool closed) {
+  return closed ? CAG_BLEND_CLOSED : ends ? CAG_BLEND_PARABOLA : CAG_BLEND_OPEN;
 }
 
 // Ratios of the parabolas from one number or a list, held; NULL for "chord".
@@ -300,7 +257,7 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
   double same = 0.5;
   size_t given = count;
   *out = NULL;
-  const CagType type = cag_given(call, 1) ? call->values[1].type : CAG_UNSET;
+  const CagType type = call->values[1].type;
   if (type == CAG_TEXT) {
     int choice;
     return cag_arg_choice(call, 1, names, &choice);
@@ -320,53 +277,41 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
   return true;
 }
 
-bool cag_splines_parabolic_blend(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  size_t n;
-  int dimension;
+bool cag_splines_parabolic_blend(CagCall *call, const struct cag_splines_parabolic_blend *a,
+                                 CagValue *result) {
+  const CagPoints *p = &a->points;
+  const CagBlendEnds ends = blend_ends(a->ends, a->closed);
   double *ratios = NULL;
-  CagBlendEnds ends;
   CagCurve *c = NULL;
-  if (!read_blend_ends(call, &ends) || !cag_splines_points(call, 0, &points, &n, &dimension))
+  if (!cag_splines_check_points(call, 0, p) || !read_ratios(call, p->count, ends, &ratios))
     return false;
-  cag_hold(call, points);
-  if (!read_ratios(call, n, ends, &ratios)) return false;
   CagStatus status =
-      cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, call->err);
+      cag_curve_parabolic_blend(p->items, p->count, ratios, 1, ends, p->dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
-bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  size_t n;
-  int dimension;
-  double alpha;
-  CagBlendEnds ends;
+bool cag_splines_catmull_rom(CagCall *call, const struct cag_splines_catmull_rom *a,
+                             CagValue *result) {
+  const CagPoints *p = &a->points;
   CagCurve *c = NULL;
   char text[32];
-  if (!read_blend_ends(call, &ends) || !cag_arg_number_or(call, 1, 0.5, &alpha)) return false;
-  if (!(alpha >= 0 && alpha <= 1))
+  if (!(a->alpha >= 0 && a->alpha <= 1))
     return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, "alpha", -1,
                             "the power of the distances is between 0 and 1: alpha = %s",
-                            cag_number_text(alpha, text));
-  if (!cag_splines_points(call, 0, &points, &n, &dimension)) return false;
-  cag_hold(call, points);
+                            cag_number_text(a->alpha, text));
+  if (!cag_splines_check_points(call, 0, p)) return false;
   CagStatus status =
-      cag_curve_parabolic_blend(points, n, NULL, alpha, ends, dimension, &c, call->err);
+      cag_curve_parabolic_blend(p->items, p->count, NULL, a->alpha, blend_ends(a->ends, a->closed),
+                                p->dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
-// polynomial_curve(coefficients, length = 1)
-bool cag_splines_polynomial_curve(CagCall *call, CagValue *result) {
-  CagVec3 *coefficients;
-  size_t n;
-  int dimension;
-  double length;
+bool cag_splines_polynomial_curve(CagCall *call, const struct cag_splines_polynomial_curve *a,
+                                  CagValue *result) {
+  const CagPoints *p = &a->coefficients;
   CagCurve *c = NULL;
-  if (!cag_arg_number_or(call, 1, 1, &length) ||
-      !cag_splines_points(call, 0, &coefficients, &n, &dimension))
-    return false;
-  cag_hold(call, coefficients);
-  CagStatus status = cag_curve_polynomial(coefficients, n, length, dimension, &c, call->err);
+  if (!cag_splines_check_points(call, 0, p)) return false;
+  CagStatus status =
+      cag_curve_polynomial(p->items, p->count, a->length, p->dimension, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
