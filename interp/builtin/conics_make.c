@@ -32,8 +32,8 @@ static bool hyperbola_at(CagCall *call, double a, double b, double value, bool i
   return true;
 }
 
-// Exactly one of the range, x, and y is given, of which the last two stand at `x_at` and after. Sets
-// the range of the parameter, radians if it is an angle.
+// Exactly one of the range, x, and y is given: the range stands three places before x, and y after
+// it. Sets the range of the parameter, radians if it is an angle.
 static bool find_range(CagCall *call, int x_at, double a, double b, Inverse inverse,
                        CagRangeEnds *range) {
   const bool x = cag_given(call, x_at), y = cag_given(call, x_at + 1);

@@ -71,30 +71,29 @@ static void parabolic_matrix(double a, double b, double *out) {
 #define BEZIER_MATRIX_MOST 50
 #define BSPLINE_MATRIX_MOST 15
 
-// basis_matrix(kind, degree = 3, alpha = 0.5, beta = 0.5)
-bool cag_splines_basis_matrix(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"bezier",      "bspline",   "hermite",
-                                      "catmull_rom", "parabolic", NULL};
+bool cag_splines_basis_matrix(CagCall *call, const struct cag_splines_basis_matrix *a,
+                              CagValue *result) {
+  enum { BEZIER, BSPLINE, HERMITE, CATMULL_ROM, PARABOLIC }; // as the row has them
   static const double hermite[16] = {2, -2, 1, 1, -3, 3, -2, -1, 0, 0, 1, 0, 1, 0, 0, 0};
-  double m[(BEZIER_MATRIX_MOST + 1) * (BEZIER_MATRIX_MOST + 1)], alpha, beta;
+  const bool parabolic = a->kind == PARABOLIC;
+  const long most = a->kind == BEZIER    ? BEZIER_MATRIX_MOST
+                    : a->kind == BSPLINE ? BSPLINE_MATRIX_MOST
+                                         : 3;
+  double m[(BEZIER_MATRIX_MOST + 1) * (BEZIER_MATRIX_MOST + 1)];
   char text[32];
-  int kind;
   long degree;
-  if (!cag_arg_choice(call, 0, names, &kind)) return false;
-  const long most = kind == 0 ? BEZIER_MATRIX_MOST : kind == 1 ? BSPLINE_MATRIX_MOST : 3;
-  if (!cag_arg_integer_or(call, 1, 3, kind < 2 ? 0 : 3, most, &degree) ||
-      !cag_arg_number_or(call, 2, 0.5, &alpha) || !cag_arg_number_or(call, 3, 0.5, &beta))
-    return false;
-  const double *ratios[2] = {&alpha, &beta};
-  for (int i = 0; i < 2; i++)
-    if (kind == 4 && !(*ratios[i] > 0 && *ratios[i] < 1))
+  if (!cag_arg_integer_or(call, 1, 3, a->kind <= BSPLINE ? 0 : 3, most, &degree)) return false;
+  for (int i = 0; i < 2; i++) {
+    const double ratio = i ? a->beta : a->alpha;
+    if (parabolic && !(ratio > 0 && ratio < 1))
       return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, i ? "beta" : "alpha", -1,
                               "a parabola passes its middle point between 0 and 1: %s = %s",
-                              i ? "beta" : "alpha", cag_number_text(*ratios[i], text));
-  if (kind == 0) bezier_matrix((int)degree, m, NULL, NULL);
-  else if (kind == 1) bspline_matrix((int)degree, m);
-  else if (kind == 2) memcpy(m, hermite, sizeof hermite);
-  else parabolic_matrix(kind == 3 ? 0.5 : alpha, kind == 3 ? 0.5 : beta, m);
+                              i ? "beta" : "alpha", cag_number_text(ratio, text));
+  }
+  if (a->kind == BEZIER) bezier_matrix((int)degree, m, NULL, NULL);
+  else if (a->kind == BSPLINE) bspline_matrix((int)degree, m);
+  else if (a->kind == HERMITE) memcpy(m, hermite, sizeof hermite);
+  else parabolic_matrix(parabolic ? a->alpha : 0.5, parabolic ? a->beta : 0.5, m);
   *result = matrix_value(call->vm, m, (size_t)degree + 1);
   return true;
 }
