@@ -4,7 +4,7 @@
 // axes, then a turn. A scale that leaves a primitive one of its kind changes the sizes that are
 // told; what is left of the placement is told behind them, in the order in which it is applied.
 
-#include "geom/solid/solid.h"
+#include "geom/solid/kind.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -70,13 +70,6 @@ static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
 }
 
-// Whether mirrors across the solid's own axes leave it as it is: any of a sphere, torus and
-// centered box, those across x and y of a cylinder.
-static bool has_mirror_planes(const CagSolid *s) {
-  return s->kind == CAG_SOLID_SPHERE || s->kind == CAG_SOLID_CYLINDER ||
-         s->kind == CAG_SOLID_TORUS || (s->kind == CAG_SOLID_BOX && s->centered);
-}
-
 // The axis that a mirror turns round: that which stands most against itself.
 static int mirrored_axis(const Placed *p) {
   int axis = 0;
@@ -100,11 +93,12 @@ static Placed take_apart(const CagSolid *s) {
     p.square &= fabs(cag_dot(here, next)) <= ALIKE * cag_norm(here) * cag_norm(next);
   }
   bool mirrors = cag_transform_mirrors(&p.map);
-  const int axis = s->kind == CAG_SOLID_CYLINDER ? 0 : mirrored_axis(&p);
+  const CagSolidKindRow *kind = &cag_solid_kinds[s->kind];
+  const int axis = kind->scaling == CAG_SCALES_UPRIGHT ? 0 : mirrored_axis(&p);
   if (mirrors) p.scale[axis] *= -1;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) p.turn.m[i][j] = p.map.m[i][j] / p.scale[j];
-  if (mirrors && has_mirror_planes(s)) p.scale[axis] *= -1;
+  if (mirrors && kind->is_symmetric && kind->is_symmetric(s)) p.scale[axis] *= -1;
   return p;
 }
 
@@ -114,15 +108,15 @@ static bool alike(double a, double b) { return fabs(a - b) <= ALIKE * fmax(fabs(
 static bool scales_sizes(const CagSolid *s, const Placed *p) {
   const double *k = p->scale;
   bool round = alike(k[0], k[1]), uniform = round && alike(k[1], k[2]);
-  switch (s->kind) {
-  case CAG_SOLID_BOX: return p->square && k[0] > 0 && k[1] > 0 && k[2] > 0;
-  case CAG_SOLID_CYLINDER: return p->square && round;
-  case CAG_SOLID_SPHERE:
-  case CAG_SOLID_TORUS: return p->square && uniform;
-  case CAG_SOLID_TUBE:
+  switch (cag_solid_kinds[s->kind].scaling) {
+  case CAG_SCALES_NOT: return false;
+  case CAG_SCALES_EACH_AXIS: return p->square && k[0] > 0 && k[1] > 0 && k[2] > 0;
+  case CAG_SCALES_UPRIGHT: return p->square && round;
+  case CAG_SCALES_EVENLY: return p->square && uniform;
+  case CAG_SCALES_MIRRORED:
     return p->square && alike(fabs(k[0]), fabs(k[1])) && alike(fabs(k[1]), fabs(k[2]));
-  default: return false;
   }
+  return false;
 }
 
 // --- What it is ---
@@ -131,21 +125,9 @@ static double scaled_size(double size, double scale) {
   return alike(fabs(scale), 1) ? size : tidy(size * fabs(scale), 0);
 }
 
-static void add_cylinder(Text *t, const double size[3]) {
-  add_number(t, size[2] == 0 ? "cone, height " : "cylinder, height ", size[0]);
-  add_number(t, ", radius ", size[1]);
-  if (size[2] != 0 && size[1] != size[2]) add_number(t, ", top ", size[2]);
-}
-
-static void add_box(Text *t, const CagSolid *s, const double size[3]) {
-  add_number(t, "box, ", size[0]);
-  add_number(t, " x ", size[1]);
-  add_number(t, " x ", size[2]);
-  if (s->centered) add(t, ", centered");
-}
-
-// A half space has no size. It is described by its plane after all transforms.
-static void add_half_space(Text *t, const CagSolid *s) {
+void cag_describe_half_space(const CagSolid *s, const double size[3], char *buffer, size_t n) {
+  (void)size;
+  Text text = {buffer, n, 0}, *t = &text;
   CagQuadric form;
   add(t, "half space");
   if (!cag_solid_form(s, &form)) return;
@@ -159,37 +141,13 @@ static void add_half_space(Text *t, const CagSolid *s) {
 }
 
 static void add_form(Text *t, const CagSolid *s, const double scale[3]) {
-  // A cylinder's height is along z, its radii are across.
-  const bool upright = s->kind == CAG_SOLID_CYLINDER;
-  const double size[3] = {scaled_size(s->a, scale[upright ? 2 : 0]), scaled_size(s->b, scale[1]),
-                          scaled_size(s->c, scale[upright ? 0 : 2])};
-  switch (s->kind) {
-  case CAG_SOLID_BOX: add_box(t, s, size); return;
-  case CAG_SOLID_SPHERE: add_number(t, "sphere, radius ", size[0]); return;
-  case CAG_SOLID_CYLINDER: add_cylinder(t, size); return;
-  case CAG_SOLID_TORUS:
-    add_number(t, "torus, major ", size[0]);
-    add_number(t, ", minor ", size[1]);
-    return;
-  case CAG_SOLID_EXTRUSION:
-  case CAG_SOLID_REVOLUTION:
-  case CAG_SOLID_SWEEP:
-  case CAG_SOLID_LOFT:
-  case CAG_SOLID_SHELL:
-    add(t, "%s, %zu %s", cag_solid_kind_name(s->kind), s->face_count,
-        s->face_count == 1 ? "face" : "faces");
-    return;
-  case CAG_SOLID_TUBE: add_number(t, "tube, radius ", size[0]); return;
-  case CAG_SOLID_MESH: add(t, "polyhedron, %zu triangles", s->core->mesh->triangle_count); return;
-  case CAG_SOLID_HALF_SPACE: add_half_space(t, s); return;
-  case CAG_SOLID_QUADRIC: add(t, "%s", cag_solid_kind_name(s->kind)); return;
-  case CAG_SOLID_UNION:
-  case CAG_SOLID_DIFFERENCE:
-  case CAG_SOLID_INTERSECTION:
-    if (s->core->count == 0) add(t, "empty solid");
-    else add(t, "%s of %zu solids", cag_solid_kind_name(s->kind), s->core->count);
-    return;
-  }
+  const CagSolidKindRow *kind = &cag_solid_kinds[s->kind];
+  const double own[3] = {s->a, s->b, s->c};
+  double size[3];
+  char text[200];
+  for (int i = 0; i < 3; i++) size[i] = scaled_size(own[i], scale[kind->size_axes[i]]);
+  kind->describe(s, size, text, sizeof text);
+  add(t, "%s", text);
 }
 
 // --- What was done to it ---
@@ -207,7 +165,7 @@ static void add_turn(Text *t, const CagSolid *s, const CagTransform *turn, bool 
   double angle;
   bool none;
   CagError ignored;
-  bool about_z = s->kind == CAG_SOLID_CYLINDER || s->kind == CAG_SOLID_TORUS;
+  const bool about_z = cag_solid_kinds[s->kind].turns_about_z;
   if (sized && s->kind == CAG_SOLID_SPHERE) return;
   if (sized && about_z && alike(turn->m[2][2], 1)) return;
   if (cag_axis_angle_of(turn, &axis, &angle, &none, &ignored) || fabs(angle) <= ALIKE) return;
@@ -256,26 +214,4 @@ void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
 
 void cag_solid_describe_form(const CagSolid *s, char *buffer, size_t size) {
   describe(s, false, buffer, size);
-}
-
-const char *cag_solid_kind_name(CagSolidKind kind) {
-  static const char *const names[] = {
-      [CAG_SOLID_BOX] = "box",
-      [CAG_SOLID_SPHERE] = "sphere",
-      [CAG_SOLID_CYLINDER] = "cylinder",
-      [CAG_SOLID_TORUS] = "torus",
-      [CAG_SOLID_EXTRUSION] = "extrusion",
-      [CAG_SOLID_REVOLUTION] = "revolution",
-      [CAG_SOLID_TUBE] = "tube",
-      [CAG_SOLID_SWEEP] = "sweep",
-      [CAG_SOLID_LOFT] = "loft",
-      [CAG_SOLID_SHELL] = "shell",
-      [CAG_SOLID_MESH] = "polyhedron",
-      [CAG_SOLID_HALF_SPACE] = "half_space",
-      [CAG_SOLID_QUADRIC] = "quadric",
-      [CAG_SOLID_UNION] = "union",
-      [CAG_SOLID_DIFFERENCE] = "difference",
-      [CAG_SOLID_INTERSECTION] = "intersection",
-  };
-  return names[kind];
 }

@@ -13,6 +13,7 @@
 #include "geom/distance/separation.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/kind.h"
 
 // A point is on a boundary when it is nearer than this part of the size: rounding of transforms.
 #define ON_BOUNDARY CAG_ROUNDING
@@ -51,30 +52,6 @@ void cag_inside_free(CagInside *inside) {
   cag_free(inside);
 }
 
-// --- Equations: how far p is outside of a primitive in its own coordinates; negative inside ---
-
-static double beyond_box(const CagSolid *s, CagVec3 p) {
-  CagVec3 half = cag_vec3(s->a / 2, s->b / 2, s->c / 2);
-  if (!s->centered) p = cag_sub(p, half);
-  return fmax(fabs(p.x) - half.x, fmax(fabs(p.y) - half.y, fabs(p.z) - half.z));
-}
-
-static double beyond_frustum(const CagSolid *s, CagVec3 p) {
-  double height = s->a, radius = s->b, top = s->c, slope = (top - radius) / height;
-  double side = (hypot(p.x, p.y) - radius - slope * p.z) / hypot(1, slope);
-  return fmax(side, fmax(-p.z, p.z - height));
-}
-
-static bool beyond(const CagSolid *s, CagVec3 p, double *out) {
-  switch (s->kind) {
-  case CAG_SOLID_BOX: *out = beyond_box(s, p); return true;
-  case CAG_SOLID_SPHERE: *out = cag_norm(p) - s->a; return true;
-  case CAG_SOLID_CYLINDER: *out = beyond_frustum(s, p); return true;
-  case CAG_SOLID_TORUS: *out = hypot(hypot(p.x, p.y) - s->a, p.z) - s->b; return true;
-  default: return false;
-  }
-}
-
 // --- Meshes ---
 
 static CagStatus leaf_mesh(CagInside *inside, const CagSolid *s, LeafMesh **out, CagError *err) {
@@ -102,12 +79,12 @@ static bool outside_box(const CagBounds *b, CagVec3 p) {
 static CagStatus side_of_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side,
                               CagError *err) {
   CagInside *inside = context;
-  double distance;
-  if (beyond(leaf, p, &distance)) { // no mesh: only to choose by the kind
+  const CagSolidKindRow *kind = &cag_solid_kinds[leaf->kind];
+  if (kind->beyond) { // no mesh is needed
     CagTransform back;
     CagStatus status = cag_transform_inverse(&leaf->placement, &back, err);
     if (status) return status;
-    beyond(leaf, cag_transform_point(&back, p), &distance);
+    const double distance = kind->beyond(leaf, cag_transform_point(&back, p));
     *side = fabs(distance) <= inside->slack ? 0 : distance < 0 ? -1 : 1;
     return CAG_OK;
   }

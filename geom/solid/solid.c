@@ -12,6 +12,7 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/kind.h"
 
 CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err) {
   CagSolid *s = cag_calloc(1, sizeof *s);
@@ -274,24 +275,11 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   return CAG_OK;
 }
 
-// The corners tell.
-static void box_bounds(const CagSolid *s, CagBounds *out) {
-  const CagVec3 size = cag_vec3(s->a, s->b, s->c);
-  const CagVec3 low = s->centered ? cag_scaled(size, -0.5) : cag_vec3(0, 0, 0);
-  *out = CAG_BOUNDS_EMPTY;
-  for (int k = 0; k < 8; k++) {
-    const CagVec3 step = cag_vec3(k & 1 ? size.x : 0, k & 2 ? size.y : 0, k & 4 ? size.z : 0);
-    cag_bounds_add(out, cag_transform_point(&s->placement, cag_add(low, step)));
-  }
-}
-
 CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   if (s->face_count == 0) return cag_csg_bounds(s, out, err);
-  if (s->kind == CAG_SOLID_BOX) {
-    box_bounds(s, out);
-    return CAG_OK;
-  }
+  const CagSolidKindRow *kind = &cag_solid_kinds[s->kind];
+  if (kind->bounds) return kind->bounds(s, out, err);
   for (size_t i = 0; i < s->face_count; i++) {
     CagBounds face;
     CagStatus status = cag_surface_bounds(s->faces[i], &face, err);
@@ -313,68 +301,6 @@ CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
 
 // --- Mass ---
 
-// A body in its own coordinates: volume, centroid, and second moments (xx yy zz xy yz zx) about the
-// centroid.
-typedef struct Body {
-  double volume, moment[6];
-  CagVec3 centroid;
-  double area;
-  CagVec3 area_centroid;
-} Body;
-
-static Body box_body(const CagSolid *s) {
-  double v = s->a * s->b * s->c;
-  Body b = {.volume = v, .area = 2 * (s->a * s->b + s->b * s->c + s->c * s->a)};
-  b.moment[0] = v * s->a * s->a / 12;
-  b.moment[1] = v * s->b * s->b / 12;
-  b.moment[2] = v * s->c * s->c / 12;
-  if (!s->centered) b.centroid = cag_vec3(s->a / 2, s->b / 2, s->c / 2);
-  b.area_centroid = b.centroid;
-  return b;
-}
-
-static Body sphere_body(const CagSolid *s) {
-  double r = s->a;
-  Body b = {.volume = 4 * M_PI / 3 * r * r * r, .area = 4 * M_PI * r * r};
-  for (int k = 0; k < 3; k++) b.moment[k] = b.volume * r * r / 5;
-  return b;
-}
-
-// A frustum on z = 0: integrals of powers of the radius R (1 - t) + r t over t = z / h.
-static Body frustum_body(const CagSolid *s) {
-  double h = s->a, R = s->b, r = s->c;
-  double square = (R * R + R * r + r * r) / 3;
-  double first = (R * R + 2 * R * r + 3 * r * r) / 12, second = R * R / 30 + R * r / 10 + r * r / 5;
-  double fourth =
-      (R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r) / 5;
-  Body b = {.volume = M_PI * h * square, .centroid = {0, 0, h * first / square}};
-  b.moment[0] = b.moment[1] = M_PI / 4 * h * fourth;
-  b.moment[2] = M_PI * h * h * h * second - b.volume * b.centroid.z * b.centroid.z;
-  double side = M_PI * (R + r) * hypot(h, R - r), foot = M_PI * R * R, top = M_PI * r * r;
-  b.area = side + foot + top;
-  double side_z = h * (R + 2 * r) / (3 * (R + r));
-  b.area_centroid = cag_vec3(0, 0, (side * side_z + top * h) / b.area);
-  return b;
-}
-
-static Body torus_body(const CagSolid *s) {
-  double R = s->a, r = s->b;
-  Body b = {.volume = 2 * M_PI * M_PI * R * r * r, .area = 4 * M_PI * M_PI * R * r};
-  b.moment[0] = b.moment[1] = b.volume * (R * R / 2 + 3 * r * r / 8);
-  b.moment[2] = b.volume * r * r / 4;
-  return b;
-}
-
-static bool closed_form(const CagSolid *s, Body *out) {
-  switch (s->kind) {
-  case CAG_SOLID_BOX: *out = box_body(s); return true;
-  case CAG_SOLID_SPHERE: *out = sphere_body(s); return true;
-  case CAG_SOLID_CYLINDER: *out = frustum_body(s); return true;
-  case CAG_SOLID_TORUS: *out = torus_body(s); return true;
-  default: return false;
-  }
-}
-
 // The tensor of inertia, trace(J) E - J, from second moments. The diagonal adds the other two
 // moments, so that nothing is lost to a difference.
 static void set_inertia(CagMassProperties *m, const double j[3][3]) {
@@ -386,7 +312,7 @@ static void set_inertia(CagMassProperties *m, const double j[3][3]) {
 }
 
 // Moments under the placement: J' = |det| A J A^T.
-static void place_body(const Body *b, const CagTransform *t, CagMassProperties *m) {
+static void place_body(const CagSolidBody *b, const CagTransform *t, CagMassProperties *m) {
   const double j[3][3] = {{b->moment[0], b->moment[3], b->moment[5]},
                           {b->moment[3], b->moment[1], b->moment[4]},
                           {b->moment[5], b->moment[4], b->moment[2]}};
@@ -458,15 +384,16 @@ static CagStatus volume_of_faces(const CagSolid *s, CagMassProperties *m, CagErr
 
 CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *err) {
   CagMassProperties m = {0};
-  Body body;
+  const CagSolidKindRow *kind = &cag_solid_kinds[s->kind];
   double scale;
   if (s->face_count == 0) return cag_csg_mass(s, 0, out, err);
-  if (!closed_form(s, &body)) {
+  if (!kind->body) {
     CagStatus status = area_of_faces(s, &m, err);
     if (!status) status = volume_of_faces(s, &m, err);
     if (!status) *out = m;
     return status;
   }
+  const CagSolidBody body = kind->body(s);
   place_body(&body, &s->placement, &m);
   if (cag_transform_is_similarity(&s->placement, &scale)) {
     m.area = body.area * scale * scale;
