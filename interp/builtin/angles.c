@@ -44,8 +44,7 @@ static bool read_cosine(CagCall *call, double *x) {
   static const double OUTSIDE = 1e-12;
   if (!cag_arg_number(call, 0, x)) return false;
   if (!(fabs(*x) <= 1 + OUTSIDE)) return cag_fail_value(call, 0, "a number in -1..1");
-  if (*x > 1) *x = 1;
-  if (*x < -1) *x = -1;
+  *x = fmin(fmax(*x, -1), 1);
   return true;
 }
 

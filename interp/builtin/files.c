@@ -56,11 +56,10 @@ static bool check_utf8(Reader *r) {
   return true;
 }
 
-static bool reader_open(CagCall *call, Reader *r) {
-  *r = (Reader){.call = call};
+static bool reader_open(CagCall *call, const char *path, Reader *r) {
+  *r = (Reader){.call = call, .path = path};
   size_t n;
-  if (!cag_arg_text(call, 0, &r->path) || !cag_vm_open_file(call, 0, r->path, &r->bytes, &n))
-    return false;
+  if (!cag_vm_open_file(call, 0, path, &r->bytes, &n)) return false;
   cag_hold(call, r->bytes);
   r->at = r->bytes;
   r->end = r->bytes + n;
@@ -70,16 +69,16 @@ static bool reader_open(CagCall *call, Reader *r) {
   return check_utf8(r);
 }
 
-bool cag_files_read_text(CagCall *call, CagValue *result) {
+bool cag_files_read_text(CagCall *call, const struct cag_files_read_text *a, CagValue *result) {
   Reader r;
-  if (!reader_open(call, &r)) return false;
+  if (!reader_open(call, a->path, &r)) return false;
   *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
   return true;
 }
 
 // --- CSV (RFC 4180, any separator, any line ending) ---
 
-typedef struct Csv { // held
+typedef struct Csv {
   Reader r;
   char separator;
   CagString cell;
@@ -187,30 +186,19 @@ static bool row_record(Csv *c, CagText **names, size_t columns, CagRecord **firs
 
 enum { ROWS_BETWEEN_CHECKS = 1 << 12 };
 
-// Rows as lists, the one that has been read first.
-static bool read_lists(Csv *c, CagBuilder *built) {
-  bool found = true;
-  for (size_t n = 0; found; n++) {
-    CagVm *vm = c->r.call->vm;
-    if (!cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count))) return false;
-    if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
-    if (!read_row(c, &found)) return false;
-  }
-  return true;
-}
-
-// Rows as records, the header having been read.
-static bool read_records(Csv *c, CagBuilder *built) {
+// Rows as records where the first one, which has been read, is a header; else as lists.
+static bool read_rows(Csv *c, bool header, CagBuilder *built) {
   CagVm *vm = c->r.call->vm;
-  size_t columns = c->count;
+  const size_t columns = c->count;
   CagRecord *first = NULL;
   CagText **names = cag_hold_array(c->r.call, columns, sizeof(CagText *));
   bool found = true;
-  if (!read_names(c, names) || !read_row(c, &found)) return false;
+  if (header && (!read_names(c, names) || !read_row(c, &found))) return false;
   for (size_t n = 0; found; n++) {
-    CagValue record;
-    if (!row_record(c, names, columns, &first, &record)) return false;
-    if (!cag_builder_add(vm, built, record)) return false;
+    CagValue row;
+    if (!header) row = cag_list_values(vm, c->row, c->count);
+    else if (!row_record(c, names, columns, &first, &row)) return false;
+    if (!cag_builder_add(vm, built, row)) return false;
     if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
     if (!read_row(c, &found)) return false;
   }
@@ -221,33 +209,24 @@ static void free_csv(void *context) {
   Csv *c = context;
   cag_string_free(&c->cell);
   cag_free(c->row);
-  cag_free(c);
 }
 
-static Csv *csv_new(CagCall *call) {
+static bool is_separator(const char *s) {
+  return s[0] && !s[1] && !strchr("\"\r\n", s[0]) && (unsigned char)s[0] < 0x80;
+}
+
+bool cag_files_read_csv(CagCall *call, const struct cag_files_read_csv *a, CagValue *result) {
+  const char *separator = a->separator ? a->separator : ",";
+  bool found;
+  if (!is_separator(separator))
+    return cag_fail_value(call, 1, "one character, such as \",\" \";\" \"\\t\"");
   Csv *c = cag_hold_array(call, 1, sizeof *c);
-  cag_hold_for(call, free_csv, cag_give_held(call, c));
-  return c;
-}
-
-static bool read_separator(CagCall *call, char *out) {
-  const char *separator = ",";
-  if (cag_given(call, 1) && !cag_arg_text(call, 1, &separator)) return false;
-  *out = separator[0];
-  bool good = separator[0] && !separator[1] && !strchr("\"\r\n", separator[0]) &&
-              (unsigned char)separator[0] < 0x80;
-  return good || cag_fail_value(call, 1, "one character, such as \",\" \";\" \"\\t\"");
-}
-
-bool cag_files_read_csv(CagCall *call, CagValue *result) {
-  bool found, header = false, asked = cag_given(call, 2);
-  if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
-  Csv *c = csv_new(call);
-  if (!read_separator(call, &c->separator) || !reader_open(call, &c->r) || !read_row(c, &found))
-    return false;
+  cag_hold_for(call, free_csv, c);
+  c->separator = *separator;
+  if (!reader_open(call, a->path, &c->r) || !read_row(c, &found)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
-  if (!asked) header = !c->numbers;
-  if (found && !(header ? read_records(c, built) : read_lists(c, built))) return false;
+  const bool header = cag_given(call, 2) ? a->header : !c->numbers;
+  if (found && !read_rows(c, header, built)) return false;
   *result = cag_builder_finish(call->vm, built);
   return true;
 }
@@ -472,10 +451,9 @@ static bool read_json_value(Reader *r, int depth, CagValue *out) {
   return read_json_number(r, out);
 }
 
-bool cag_files_read_json(CagCall *call, CagValue *result) {
+bool cag_files_read_json(CagCall *call, const struct cag_files_read_json *a, CagValue *result) {
   Reader r;
-  if (!reader_open(call, &r)) return false;
-  if (!read_json_value(&r, 0, result)) return false;
+  if (!reader_open(call, a->path, &r) || !read_json_value(&r, 0, result)) return false;
   skip_blank(&r);
   return r.at == r.end || fail_at(&r, r.at, "something follows the value");
 }

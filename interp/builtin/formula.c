@@ -126,8 +126,8 @@ static const char *name_end(const char *s, const char *end) {
 
 typedef struct Parser {
   CagCall *call;
-  const CagText *text;
-  const char *at, *end; // the text has no zero before its end, and one there
+  const char *text;
+  const char *at, *end;
   const CagList *names;
   CagString *out; // the expression of the language; held
   int depth;
@@ -142,9 +142,9 @@ static bool fail_here(Parser *p, const char *place, const char *format, ...) {
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
   size_t column = 1;
-  for (const char *s = p->text->bytes; s < place; s += cag_character_size(s)) column++;
+  for (const char *s = p->text; s < place; s += cag_character_size(s)) column++;
   return cag_fail_call(p->call, 0, CAG_ERR_parse_text, "cannot read \"%.80s\": column %zu: %s",
-                       p->text->bytes, column, message);
+                       p->text, column, message);
 }
 
 static void write_text(Parser *p, const char *s) { cag_string_add(p->out, s, strlen(s)); }
@@ -336,14 +336,12 @@ static bool check_parameter(CagCall *call, const CagList *names, size_t i) {
       why);
 }
 
-bool cag_formula_formula(CagCall *call, CagValue *result) {
-  const char *text;
+bool cag_formula_formula(CagCall *call, const struct cag_formula_formula *a, CagValue *result) {
   CagList *names;
-  if (!cag_arg_text(call, 0, &text) || !cag_arg_list(call, 1, &names)) return false;
+  if (!cag_arg_list(call, 1, &names)) return false;
   for (size_t i = 0; i < names->length; i++)
     if (!check_parameter(call, names, i)) return false;
-  const CagText *t = CAG_AS_TEXT(call->values[0]);
-  Parser p = {call, t, t->bytes, t->bytes + t->length, names, cag_held_string(call), 0};
+  Parser p = {call, a->text, a->text, a->text + strlen(a->text), names, cag_held_string(call), 0};
   write_text(&p, "(");
   for (size_t i = 0; i < names->length; i++) {
     if (i > 0) write_text(&p, ", ");

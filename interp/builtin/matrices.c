@@ -13,6 +13,7 @@
 
 #include "geom/linalg/complex.h"
 #include "geom/linalg/dense.h"
+#include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
@@ -144,20 +145,12 @@ static bool solve_large(CagCall *call, Matrix *a, Matrix *b) {
   const double norm = norm_of_columns(a, cag_hold_array(call, n, sizeof(double)));
   double reciprocal = 0;
   bool singular;
-  CagError err = {0};
-  CagStatus status = cag_lu_factor(a->x, n, pivots, &singular, &err);
-  if (!status && !singular) status = cag_lu_condition(a->x, n, pivots, norm, &reciprocal, &err);
+  CagStatus status = cag_lu_factor(a->x, n, pivots, &singular, call->err);
+  if (!status && !singular)
+    status = cag_lu_condition(a->x, n, pivots, norm, &reciprocal, call->err);
   if (!status && !(reciprocal > DBL_EPSILON)) return fail_singular(call);
-  if (!status) status = cag_lu_solve(a->x, n, pivots, b->x, b->columns, &err);
-  return status == CAG_OK || cag_fail_geometry(call, &err);
-}
-
-// Replaces m by its LU decomposition. Returns whether a pivot is 0.
-static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots) {
-  const lapack_int n = (lapack_int)m->rows;
-  const lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots);
-  if (info < 0) cag_vm_out_of_memory(call->vm);
-  return info > 0;
+  if (!status) status = cag_lu_solve(a->x, n, pivots, b->x, b->columns, call->err);
+  return cag_geometry_ok(call, status);
 }
 
 // Replaces a by its LU decomposition, and b by the solution.
@@ -167,8 +160,10 @@ static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
   const lapack_int n = (lapack_int)a->rows, columns = (lapack_int)b->columns;
   lapack_int *pivots = cag_hold_array(call, a->rows, sizeof *pivots);
   double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', n, n, a->x, n), reciprocal = 0;
-  if (!decompose(call, a, pivots))
-    LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, a->x, n, norm, &reciprocal);
+  const lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, a->x, n, pivots);
+  if (info < 0) cag_vm_out_of_memory(call->vm);
+  // Where a pivot is 0, the reciprocal is.
+  if (info == 0) LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, a->x, n, norm, &reciprocal);
   if (!(reciprocal > DBL_EPSILON)) return fail_singular(call);
   LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, columns, a->x, n, pivots, b->x, columns);
   return true;
@@ -200,12 +195,10 @@ static bool copy_transposed(CagCall *call, const Matrix *m, bool back, double *c
 static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x, double cut) {
   Matrix turned = matrix_new(call, a->columns, a->rows);
   Matrix sides = matrix_new(call, x->columns, x->rows);
-  CagError err = {0};
-  if (!copy_transposed(call, a, false, turned.x) || !copy_transposed(call, x, false, sides.x))
-    return false;
-  if (cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
-    return cag_fail_geometry(call, &err);
-  return copy_transposed(call, x, true, sides.x);
+  return copy_transposed(call, a, false, turned.x) && copy_transposed(call, x, false, sides.x) &&
+         cag_geometry_ok(call, cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows,
+                                                 x->columns, &cut, call->err)) &&
+         copy_transposed(call, x, true, sides.x);
 }
 
 static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
@@ -268,8 +261,8 @@ static double small_determinant(const Matrix *m) {
 static bool large_determinant(CagCall *call, Matrix *m, double *out) {
   size_t *pivots = cag_hold_array(call, m->rows, sizeof *pivots);
   bool singular;
-  CagError err = {0};
-  if (cag_lu_factor(m->x, m->rows, pivots, &singular, &err)) return cag_fail_geometry(call, &err);
+  if (!cag_geometry_ok(call, cag_lu_factor(m->x, m->rows, pivots, &singular, call->err)))
+    return false;
   *out = 1;
   for (size_t i = 0; i < m->rows; i++) *out *= m->x[i * m->rows + i] * (pivots[i] == i ? 1 : -1);
   return true;
@@ -296,10 +289,7 @@ bool cag_matrices_transpose(CagCall *call, CagValue *result) {
   Matrix a;
   if (!read_rows(call, 0, &a)) return false;
   Matrix b = matrix_new(call, a.columns, a.rows);
-  for (size_t i = 0; i < a.rows; i++) {
-    for (size_t j = 0; j < a.columns; j++) b.x[j * a.rows + i] = a.x[i * a.columns + j];
-    if (!cag_keep_going(call->vm)) return false;
-  }
+  if (!copy_transposed(call, &a, false, b.x)) return false;
   cag_release_held(call, a.x);
   *result = give_rows(call->vm, &b, b.rows, false);
   return true;
@@ -340,8 +330,7 @@ bool cag_matrices_eigen(CagCall *call, CagValue *result) {
   size_t n = m.rows;
   double *values = cag_hold_array(call, n, sizeof *values);
   const bool large = is_large((double)n * (double)n * (double)n);
-  CagError err = {0};
-  if (large && cag_symmetric_eigen(m.x, n, values, &err)) return cag_fail_geometry(call, &err);
+  if (large && !cag_geometry_ok(call, cag_symmetric_eigen(m.x, n, values, call->err))) return false;
   // In column-major order the eigenvectors come out one after the other: the rows of what we give.
   if (!large &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
@@ -530,11 +519,10 @@ static int compare_roots(const void *a, const void *b) {
 }
 
 // All roots of the polynomial, sorted by real part, then imaginary part; *out is held.
-static bool all_roots(CagCall *call, Complex **out, size_t *count) {
+static bool all_roots(CagCall *call, CagNumbers coefficients, Complex **out, size_t *count) {
   enum { DEGREE_MOST = 200 }; // beyond, coefficients say too little about the roots
-  const double *c;
-  size_t n;
-  if (!cag_arg_numbers(call, 0, &c, &n)) return false;
+  const double *c = coefficients.items;
+  size_t n = coefficients.count;
   for (size_t i = 0; i < n; i++)
     if (!isfinite(c[i])) return cag_fail_value(call, 0, "finite coefficients");
   while (n > 0 && c[n - 1] == 0) n--;
@@ -545,40 +533,39 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
   if (degree > DEGREE_MOST)
     return cag_fail_value(call, 0, "a polynomial of a degree of at most 200");
   size_t room = n + 1;
-  Roots r = {.c = c + zeros, .degree = degree};
-  r.z = cag_hold_array(call, room, sizeof *r.z);
-  r.found = cag_hold_array(call, 2 * room, sizeof *r.found);
-  r.done = cag_hold_array(call, room, sizeof *r.done);
-  r.near = cag_hold_array(call, room, sizeof *r.near);
+  Roots r = {.c = c + zeros,
+             .degree = degree,
+             .z = cag_hold_array(call, room, sizeof *r.z),
+             .found = cag_hold_array(call, 2 * room, sizeof *r.found),
+             .done = cag_hold_array(call, room, sizeof *r.done),
+             .near = cag_hold_array(call, room, sizeof *r.near)};
   if (degree > 0 && !companion_roots(call, &r)) return false;
   collect_roots(&r);
-  for (size_t i = 0; i < zeros; i++) r.found[r.found_count++] = 0;
+  r.found_count += zeros; // their places are 0
   qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
   *out = r.found;
   *count = r.found_count;
   return true;
 }
 
-bool cag_matrices_roots(CagCall *call, CagValue *result) {
+bool cag_matrices_roots(CagCall *call, const struct cag_matrices_roots *a, CagValue *result) {
   Complex *z;
   size_t n, reals = 0;
-  double *numbers;
-  if (!all_roots(call, &z, &n)) return false;
-  for (size_t i = 0; i < n; i++) reals += cimag(z[i]) == 0;
-  *result = cag_list_values(call->vm, NULL, 0);
-  if (reals > 0) *result = cag_list_numbers(call->vm, reals, &numbers);
-  for (size_t i = 0, k = 0; i < n; i++)
-    if (cimag(z[i]) == 0) numbers[k++] = creal(z[i]) + 0.0;
+  if (!all_roots(call, a->coefficients, &z, &n)) return false;
+  double *numbers = cag_hold_array(call, n, sizeof *numbers);
+  for (size_t i = 0; i < n; i++)
+    if (cimag(z[i]) == 0) numbers[reals++] = creal(z[i]) + 0.0;
+  *result = cag_vector(call->vm, numbers, reals);
   return true;
 }
 
-bool cag_matrices_complex_roots(CagCall *call, CagValue *result) {
+bool cag_matrices_complex_roots(CagCall *call, const struct cag_matrices_complex_roots *a,
+                                CagValue *result) {
   Complex *z;
   size_t n;
   double *numbers;
-  if (!all_roots(call, &z, &n)) return false;
-  *result = cag_list_values(call->vm, NULL, 0);
-  if (n > 0) *result = cag_list_vectors(call->vm, n, 2, &numbers);
+  if (!all_roots(call, a->coefficients, &z, &n)) return false;
+  *result = cag_list_vectors(call->vm, n, 2, &numbers);
   for (size_t i = 0; i < n; i++) {
     numbers[2 * i] = creal(z[i]) + 0.0;
     numbers[2 * i + 1] = cimag(z[i]) + 0.0;

@@ -4,7 +4,6 @@
 // upper 53 bits of each output make a number of [0, 1): whole-number arithmetic only, so one seed
 // gives one list on every machine.
 
-#include <limits.h>
 #include <string.h>
 
 #include "interp/builtin/support.h"
@@ -52,12 +51,11 @@ typedef struct Source {
   size_t count;
 } Source;
 
-static bool read_source(CagCall *call, Source *out) {
-  *out = (Source){.start = 0, .end = 1};
-  if (!cag_given(call, 2)) return true;
-  if (!cag_arg_interval(call, 2, &out->start, &out->end, &out->angle)) return false;
+static bool read_source(CagCall *call, CagRangeEnds over, Source *out) {
+  *out = (Source){.start = over.start, .end = over.end, .angle = over.angle};
   if (!isfinite(out->start) || !isfinite(out->end))
     return cag_fail_value(call, 2, "a finite range");
+  if (!cag_given(call, 2)) return true;
   const CagRange *r = CAG_AS_RANGE(call->values[2]);
   if (!r->stepped) return true;
   out->elements = r;
@@ -76,22 +74,18 @@ static CagValue draw(Generator *g, const Source *from) {
   return from->angle ? cag_angle(x) : cag_number(x);
 }
 
-bool cag_random_random(CagCall *call, CagValue *result) {
+bool cag_random_random(CagCall *call, const struct cag_random_random *a, CagValue *result) {
   enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
-  double seed;
-  long n;
   Source source;
-  if (!cag_arg_finite(call, 0, &seed) || !cag_arg_integer(call, 1, 0, LONG_MAX, &n) ||
-      !read_source(call, &source))
-    return false;
+  if (!read_source(call, a->over, &source)) return false;
   // Whole seeds count as whole numbers, others by the bits of the double.
   uint64_t bits;
-  seed += 0.0;
+  const double seed = a->seed + 0.0;
   if (seed == floor(seed) && fabs(seed) < 0x1p62) bits = (uint64_t)(int64_t)seed;
   else memcpy(&bits, &seed, sizeof bits);
   Generator g = seeded(bits);
   CagBuilder *built = cag_builder_new(call->vm);
-  for (long i = 0; i < n; i++) {
+  for (long i = 0; i < a->n; i++) {
     if (!cag_builder_add(call->vm, built, draw(&g, &source))) return false;
     if (i % STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS - 1 && !cag_keep_going(call->vm))
       return false;

@@ -6,29 +6,24 @@
 
 #include "interp/builtin/support.h"
 
-bool cag_records_keys(CagCall *call, CagValue *result) {
-  CagRecord *r;
-  if (!cag_arg_record(call, 0, &r)) return false;
+bool cag_records_keys(CagCall *call, const struct cag_records_keys *a, CagValue *result) {
   CagBuilder *built = cag_builder_new(call->vm);
-  for (size_t i = 0; i < r->layout->count; i++)
-    if (!cag_builder_add(call->vm, built, cag_object(CAG_TEXT, r->layout->names[i]))) return false;
+  for (size_t i = 0; i < a->r->layout->count; i++) {
+    CagValue name = cag_object(CAG_TEXT, a->r->layout->names[i]);
+    if (!cag_builder_add(call->vm, built, name)) return false;
+  }
   *result = cag_builder_finish(call->vm, built);
   return true;
 }
 
-bool cag_records_values(CagCall *call, CagValue *result) {
-  CagRecord *r;
-  if (!cag_arg_record(call, 0, &r)) return false;
-  *result = cag_list_values(call->vm, r->fields, r->layout->count);
+bool cag_records_values(CagCall *call, const struct cag_records_values *a, CagValue *result) {
+  *result = cag_list_values(call->vm, a->r->fields, a->r->layout->count);
   return true;
 }
 
-bool cag_records_get(CagCall *call, CagValue *result) {
-  CagRecord *r;
-  const char *key;
-  if (!cag_arg_record(call, 0, &r) || !cag_arg_text(call, 1, &key)) return false;
-  *result = cag_record_get_text(call->vm, r, CAG_AS_TEXT(call->values[1]));
-  if (result->type == CAG_UNSET) *result = cag_given(call, 2) ? call->values[2] : cag_none();
+bool cag_records_get(CagCall *call, const struct cag_records_get *a, CagValue *result) {
+  *result = cag_record_get_text(call->vm, a->r, CAG_AS_TEXT(call->values[1]));
+  if (result->type == CAG_UNSET) *result = cag_given(call, 2) ? a->default_ : cag_none();
   return true;
 }
 

@@ -39,6 +39,7 @@ bool cag_pose_of_value(CagCall *call, int argument, CagValue v, CagTransform *ou
 bool cag_arg_target(CagCall *call, int argument, CagTransform *out, bool *point);
 
 // --- Results ---
+extern const char *const cag_joint_kinds[]; // names, by CagJointKind
 CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q);
 // One joint's value.
 CagValue cag_joint_value(const CagRobot *r, size_t joint, double q);

@@ -14,6 +14,8 @@ bool cag_arg_robot(CagCall *call, int argument, CagRobot **out) {
   return true;
 }
 
+const char *const cag_joint_kinds[] = {"revolute", "prismatic", "fixed"};
+
 static bool joint_turns(const CagRobot *r, size_t joint) {
   return r->links[r->joint_link[joint]].kind == CAG_JOINT_REVOLUTE;
 }
@@ -89,7 +91,7 @@ bool cag_arg_pose(CagCall *call, int argument, CagTransform *out) {
 }
 
 CagValue cag_joint_value(const CagRobot *r, size_t joint, double q) {
-  return joint_turns(r, joint) ? cag_angle(cag_degrees_shown(q)) : cag_number(q);
+  return cag_parameter_value(joint_turns(r, joint), q);
 }
 
 CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q) {
@@ -266,10 +268,9 @@ bool cag_robots_joint_axes(CagCall *call, const struct cag_robots_joint_axes *a,
 
 static CagValue table_row(CagVm *vm, const CagRobotLink *l) {
   static const char *const names[] = {"kind", "theta", "d", "a", "alpha", "limits", "transform"};
-  static const char *const kinds[] = {"revolute", "prismatic", "fixed"};
   bool moves = l->kind != CAG_JOINT_FIXED, turns = l->kind == CAG_JOINT_REVOLUTE;
   CagValue values[] = {
-      cag_text_c(vm, kinds[l->kind]),
+      cag_text_c(vm, cag_joint_kinds[l->kind]),
       moves ? cag_angle(cag_degrees_shown(l->theta)) : cag_none(),
       moves ? cag_number(l->d) : cag_none(),
       moves ? cag_number(l->a) : cag_none(),

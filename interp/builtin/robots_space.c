@@ -146,15 +146,13 @@ static bool read_axis(CagCall *call, int argument, CagValue v, size_t index, Cag
     return cag_fail_element(call, argument, index, v, "records with kind, point and direction");
   const CagRecord *record = CAG_AS_RECORD(v);
   CagValue kind = cag_record_get(record, "kind");
-  out->kind = CAG_JOINT_REVOLUTE;
-  if (kind.type != CAG_UNSET) {
-    bool text = kind.type == CAG_TEXT;
-    if (text && !strcmp(CAG_AS_TEXT(kind)->bytes, "prismatic")) out->kind = CAG_JOINT_PRISMATIC;
-    else if (!text || strcmp(CAG_AS_TEXT(kind)->bytes, "revolute") != 0)
-      return cag_fail_call(call, argument, CAG_ERR_value,
-                           "expects \"revolute\" or \"prismatic\" as the kind of axes [%zu]",
-                           index);
-  }
+  const char *name = kind.type == CAG_TEXT    ? CAG_AS_TEXT(kind)->bytes
+                     : kind.type == CAG_UNSET ? "revolute"
+                                              : "";
+  out->kind = strcmp(name, "prismatic") == 0 ? CAG_JOINT_PRISMATIC : CAG_JOINT_REVOLUTE;
+  if (strcmp(name, cag_joint_kinds[out->kind]) != 0)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects \"revolute\" or \"prismatic\" as the kind of axes [%zu]", index);
   return read_field_point(call, argument, record, index, "point", &out->point) &&
          read_field_point(call, argument, record, index, "direction", &out->direction);
 }
@@ -178,7 +176,7 @@ static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagT
     if (!cag_builder_add(vm, places, cag_transform_value(vm, &frames[i]))) return false;
     if (i == n) break;
     const CagRobotLink *l = &links[i];
-    CagValue row[] = {cag_text_c(vm, l->kind == CAG_JOINT_REVOLUTE ? "revolute" : "prismatic"),
+    CagValue row[] = {cag_text_c(vm, cag_joint_kinds[l->kind]),
                       cag_angle(cag_degrees_shown(l->theta)), cag_number(l->d), cag_number(l->a),
                       cag_angle(cag_degrees_shown(l->alpha))};
     if (!cag_builder_add(vm, rows, cag_record_new(vm, columns, row, 5))) return false;

@@ -46,14 +46,10 @@ static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, in
   return true;
 }
 
-bool cag_texts_text(CagCall *call, CagValue *result) {
-  enum { PLACES_MOST = 400 }; // no double has digits beyond these
+bool cag_texts_text(CagCall *call, const struct cag_texts_text *a, CagValue *result) {
   CagString *s = cag_held_string(call);
-  long digits;
-  if (!cag_given(call, 1)) cag_print_value(call->vm, s, call->values[0], false);
-  else if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits) ||
-           !print_places(call, s, call->values[0], (int)digits, 0))
-    return false;
+  if (!cag_given(call, 1)) cag_print_value(call->vm, s, a->x, false);
+  else if (!print_places(call, s, a->x, (int)a->digits, 0)) return false;
   *result = cag_text_from_string(call->vm, s);
   return !call->vm->failed;
 }
@@ -150,21 +146,18 @@ static bool map_characters(CagCall *call, utf8proc_int32_t (*f)(utf8proc_int32_t
                            CagValue *result) {
   const CagText *t;
   if (!read_text(call, 0, &t)) return false;
-  CagString s = {0};
+  CagString *s = cag_held_string(call);
   const char *end = t->bytes + t->length;
   size_t done = 0;
   for (const char *at = t->bytes; at < end; at += cag_character_size(at)) {
-    if (++done % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) {
-      cag_string_free(&s);
-      return false;
-    }
+    if (++done % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) return false;
     utf8proc_int32_t c;
     utf8proc_uint8_t mapped[4];
     utf8proc_iterate((const utf8proc_uint8_t *)at, end - at, &c);
     utf8proc_ssize_t n = utf8proc_encode_char(f(c), mapped);
-    cag_string_add(&s, (const char *)mapped, (size_t)n);
+    cag_string_add(s, (const char *)mapped, (size_t)n);
   }
-  *result = cag_text_from_string(call->vm, &s);
+  *result = cag_text_from_string(call->vm, s);
   return true;
 }
 bool cag_texts_upper(CagCall *call, CagValue *result) {

@@ -39,16 +39,14 @@ static bool robot_member(CagVm *vm, CagValue value, const char *name, CagValue *
 }
 
 static CagValue rate_value(double x, bool angle) {
-  if (x == 0) return cag_none();
-  return angle ? cag_angle(cag_degrees_shown(x)) : cag_number(x);
+  return x == 0 ? cag_none() : cag_parameter_value(angle, x);
 }
 
 static bool link_member(CagVm *vm, CagValue value, const char *name, CagValue *out) {
   const CagLinkValue *v = CAG_AS_LINK(value);
   const CagRobotLink *l = &v->link;
   bool turns = l->kind == CAG_JOINT_REVOLUTE, moves = l->kind != CAG_JOINT_FIXED;
-  static const char *const kinds[] = {"revolute", "prismatic", "fixed"};
-  if (!strcmp(name, "kind")) *out = cag_text_c(vm, kinds[l->kind]);
+  if (!strcmp(name, "kind")) *out = cag_text_c(vm, cag_joint_kinds[l->kind]);
   else if (!strcmp(name, "shape")) *out = v->shape;
   else if (!strcmp(name, "transform"))
     *out = moves ? cag_none() : cag_transform_value(vm, &l->fixed);
@@ -58,10 +56,7 @@ static bool link_member(CagVm *vm, CagValue value, const char *name, CagValue *o
   else if (!strcmp(name, "alpha")) *out = cag_angle(cag_degrees_shown(l->alpha));
   else if (!strcmp(name, "lead")) *out = cag_number(l->screw * 2 * M_PI);
   else if (!strcmp(name, "limits")) *out = moves ? range_of_link(vm, l) : cag_none();
-  else if (!strcmp(name, "home"))
-    *out = !moves  ? cag_none()
-           : turns ? cag_angle(cag_degrees_shown(l->home))
-                   : cag_number(l->home);
+  else if (!strcmp(name, "home")) *out = moves ? cag_parameter_value(turns, l->home) : cag_none();
   else if (!strcmp(name, "speed")) *out = rate_value(l->speed, turns);
   else if (!strcmp(name, "effort")) *out = rate_value(l->effort, false);
   else return false;
@@ -85,40 +80,29 @@ static const char *link_member_name(CagVm *vm, CagValue v, size_t i) {
 
 // --- Printed form ---
 
-static void add_angle(CagString *s, const char *name, double radians) {
-  if (radians == 0) return;
-  cag_string_printf(s, ", %s ", name);
-  cag_print_number(s, cag_degrees_shown(radians));
-  cag_string_printf(s, "deg");
-}
-
-static void add_length(CagString *s, const char *name, double x) {
+static void add_measure(CagString *s, const char *name, double x, const char *unit) {
   if (x == 0) return;
   cag_string_printf(s, ", %s ", name);
   cag_print_number(s, x);
-}
-
-static void add_limits(CagString *s, const CagRobotLink *l) {
-  const bool turns = l->kind == CAG_JOINT_REVOLUTE;
-  const char *unit = turns ? "deg" : "";
-  cag_string_printf(s, ", limits ");
-  cag_print_number(s, turns ? cag_degrees_shown(l->low) : l->low);
-  cag_string_printf(s, "%s..", unit);
-  cag_print_number(s, turns ? cag_degrees_shown(l->high) : l->high);
   cag_string_printf(s, "%s", unit);
 }
 
 static void print_link(CagVm *vm, CagString *s, CagValue v) {
   (void)vm;
   const CagRobotLink *l = &CAG_AS_LINK(v)->link;
-  static const char *const kinds[] = {"revolute link", "prismatic link", "fixed link"};
-  cag_string_printf(s, "%s", kinds[l->kind]);
+  cag_string_printf(s, "%s link", cag_joint_kinds[l->kind]);
   if (l->kind == CAG_JOINT_FIXED) return;
-  add_angle(s, l->kind == CAG_JOINT_REVOLUTE ? "offset" : "theta", l->theta);
-  add_length(s, l->kind == CAG_JOINT_REVOLUTE ? "d" : "offset", l->d);
-  add_length(s, "a", l->a);
-  add_angle(s, "alpha", l->alpha);
-  add_limits(s, l);
+  const bool turns = l->kind == CAG_JOINT_REVOLUTE;
+  const char *unit = turns ? "deg" : "";
+  add_measure(s, turns ? "offset" : "theta", cag_degrees_shown(l->theta), "deg");
+  add_measure(s, turns ? "d" : "offset", l->d, "");
+  add_measure(s, "a", l->a, "");
+  add_measure(s, "alpha", cag_degrees_shown(l->alpha), "deg");
+  cag_string_printf(s, ", limits ");
+  cag_print_number(s, turns ? cag_degrees_shown(l->low) : l->low);
+  cag_string_printf(s, "%s..", unit);
+  cag_print_number(s, turns ? cag_degrees_shown(l->high) : l->high);
+  cag_string_printf(s, "%s", unit);
 }
 
 static void print_robot(CagVm *vm, CagString *s, CagValue v) {
