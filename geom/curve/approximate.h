@@ -20,14 +20,15 @@ CagStatus cag_curve_approximate(const CagCurve *c, double tolerance, CagCurve **
 CagStatus cag_curve_offset(const CagCurve *c, double d, double tolerance, CagCurve **out,
                            CagError *err);
 
-// Largest distance of points of equal parameters, b's domain mapped to a's; from samples between
-// all breaks, refined.
+// Largest distance of points at equal parameters, with b's domain mapped to a's; from samples
+// between all breaks, refined.
 CagStatus cag_curve_deviation(const CagCurve *a, const CagCurve *b, double *out, CagError *err);
 
 // Point and first derivative at t.
 typedef CagStatus (*CagCurveSampler)(void *context, double t, CagSide side, CagVec3 out[2],
                                      CagError *err);
-// Cubic within the tolerance of the sampled points over cuts[0] .. cuts[n - 1], smooth between.
+// A cubic within the tolerance of the sampled points over cuts[0] .. cuts[n - 1], smooth between
+// the cuts.
 CagStatus cag_curve_fit_sampler(CagCurveSampler f, void *context, const double *cuts, size_t n,
                                 double tolerance, int dimension, CagCurve **out, CagError *err);
 
