@@ -64,8 +64,7 @@ typedef struct CagCurveList {
   size_t count, capacity;
 } CagCurveList;
 void cag_curve_list_free(CagCurveList *list);
-CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes ownership of
-                                                                              // c
+CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes over c
 // Joins the curves [first, list->count) end to end, where ends are closer than `same`. If more than
 // two ends meet, those with the smallest turn are joined.
 CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err);
