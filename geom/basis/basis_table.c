@@ -1,5 +1,5 @@
-// B-spline bases as data. Everything runs over one non-empty interval, on which a function of
-// degree q lives when its index is interval - q .. interval.
+// B-spline bases as data. Everything is evaluated on one non-empty interval, on which a function of
+// degree q is nonzero if its index is interval - q .. interval.
 
 #include "geom/basis/basis_table.h"
 
@@ -21,7 +21,8 @@ CagStatus cag_basis_interval(const double *knots, size_t count, int p, double t,
     if (knots[mid] <= t) lo = mid;
     else hi = mid;
   }
-  // The left limit is meant where the functions end, and the usable range, where there is one.
+  // Take the left limit at the end of the functions, and at the end of the usable range if there is
+  // one.
   const bool at_end = end > (size_t)p && t == knots[end];
   if (left || t >= knots[last] || at_end)
     while (lo > 0 && knots[lo] >= t) lo--;
@@ -49,8 +50,8 @@ void cag_basis_triangle(const double *x, size_t count, int p, size_t interval, d
   }
 }
 
-// window[j] is function interval - q + j of degree q. Those beyond the ends of the knots are kept
-// at 0; so are divisions that would need knots from there.
+// window[j] is function interval - q + j of degree q. Functions beyond the ends of the knots are 0,
+// as are quotients that would need knots from there.
 static bool exists(size_t count, size_t interval, int q, int j, size_t *i) {
   if (interval + (size_t)j < (size_t)q) return false;
   *i = interval + (size_t)j - (size_t)q;
@@ -65,7 +66,7 @@ void cag_basis_derivative(const double *x, size_t count, int p, size_t interval,
   work[0] = 1;
   size_t i;
   for (int q = 1; q <= p; q++) {
-    // Function j of degree q is made of j - 1 and j of degree q - 1, from the last down.
+    // Function j of degree q comes from j - 1 and j of degree q - 1; computed from the last down.
     const bool difference = q > p - order;
     for (int j = q; j >= 0; j--) {
       double value = 0;
@@ -83,7 +84,7 @@ void cag_basis_derivative(const double *x, size_t count, int p, size_t interval,
     if (exists(count, interval, p, j, &i)) out[i] = work[j];
 }
 
-// Powers of s = t - c into powers of t.
+// Converts powers of s = t - c to powers of t.
 static void shift(double *a, int p, double c) {
   for (int k = 0; k < p; k++)
     for (int i = p - 1; i >= k; i--) a[i] -= c * a[i + 1];
@@ -117,8 +118,8 @@ void cag_basis_piece(const double *x, size_t count, int p, size_t interval, bool
   for (int j = 0; j <= p; j++) shift(out + (size_t)j * stride, p, origin);
 }
 
-// Each knot of x occurs in y at least as often, what y has more lies in the usable range, and
-// nothing is there more than p + 1 times.
+// Each knot of x must occur in y at least as often, additional knots of y must lie in the usable
+// range, and no multiplicity there may exceed p + 1.
 static CagStatus check_refinement(const double *x, size_t count, const double *y, size_t n, int p,
                                   CagError *err) {
   const double start = x[p], end = x[count - 1 - (size_t)p];

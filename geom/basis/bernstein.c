@@ -1,4 +1,4 @@
-// Bernstein polynomials and Bezier pieces: de Casteljau in its several uses.
+// Bernstein polynomials and Bezier pieces: variants of de Casteljau's algorithm.
 
 #include "geom/basis/bernstein.h"
 
@@ -8,7 +8,7 @@ double cag_binomial(int n, int k) {
   if (k < 0 || k > n) return 0;
   if (k > n - k) k = n - k;
   double c = 1;
-  for (int i = 1; i <= k; i++) c = c * (n - k + i) / i; // whole at every step
+  for (int i = 1; i <= k; i++) c = c * (n - k + i) / i; // an integer at every step
   return c;
 }
 
@@ -37,7 +37,7 @@ void cag_bezier_derivatives(const double *b, int p, double u, int order, double 
   double d[4 * (CAG_MAX_DEGREE + 1)], difference[4 * (CAG_MAX_DEGREE + 1)];
   memcpy(d, b, sizeof(double) * 4 * (size_t)(p + 1));
   if (order > p) memset(out + 4 * (p + 1), 0, sizeof(double) * 4 * (size_t)(order - p));
-  // With k + 1 points left, their k-th difference is the k-th derivative.
+  // When k + 1 points are left, their k-th difference determines the k-th derivative.
   for (int left = p; left >= 0; left--) {
     if (left <= order) {
       memcpy(difference, d, sizeof(double) * 4 * (size_t)(left + 1));

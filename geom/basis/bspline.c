@@ -33,7 +33,7 @@ void cag_bspline_derivatives(const double *knots, int p, size_t span, double t, 
     int d = p - k;
     cag_bspline_basis(knots, d, span, t, row);
     for (d = p - k + 1; d <= p; d++) {
-      // Function j of degree d (support from span - d + j) is made of j - 1 and j of degree d - 1.
+      // Function j of degree d (support from span - d + j) comes from j - 1 and j of degree d - 1.
       double carried = 0;
       for (int j = 0; j <= d; j++) {
         double lower = 0;
@@ -48,8 +48,8 @@ void cag_bspline_derivatives(const double *knots, int p, size_t span, double t, 
   }
 }
 
-// Whether the piece between knots span and span + 1 is a Bezier curve as it stands: each end is a
-// knot p times.
+// Whether the piece between knots span and span + 1 is a Bezier curve already: both ends are knots
+// of multiplicity p.
 static bool is_bezier(const double *knots, int p, size_t span) {
   return knots[span + 1 - (size_t)p] == knots[span] && knots[span + (size_t)p] == knots[span + 1];
 }
@@ -64,7 +64,7 @@ void cag_bspline_piece(const double *homogeneous, const double *knots, int p, si
     memcpy(out, first, sizeof(double) * 4 * (size_t)(p + 1));
     return;
   }
-  // A thousand points take a second: who asked the work to end does not ask for the rest.
+  // A thousand points take a second; the caller does not use the result of canceled work.
   for (int j = 0; j <= p && !cag_stopped(); j++) {
     memcpy(d, first, sizeof(double) * 4 * (size_t)(p + 1));
     for (int s = 1; s <= p; s++) {
@@ -108,7 +108,7 @@ void cag_bspline_piece_derivatives(const double *homogeneous, const double *knot
 void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, double t) {
   const size_t r = cag_knots_span(knots, n, p, t, false, 0);
   double *h = homogeneous;
-  // Points above the span move up; the p of the span are cut, from the last down.
+  // Points above the span move up; the p points of the span are interpolated, from the last down.
   memmove(h + 4 * (r + 1), h + 4 * r, sizeof(double) * 4 * (n - r));
   for (size_t i = r; i + (size_t)p > r; i--) {
     double f = (t - knots[i]) / (knots[i + (size_t)p] - knots[i]);
@@ -144,8 +144,8 @@ static void raise_discrete(const double *x, int p, int q, double u, double *w) {
 // The weights of points span - p .. span in the point whose elevated knots are z[0] .. z[p + 2].
 // That point is the mean over l of the blossoms at z[1] .. z[p + 1] without z[l] (Ramshaw 1989,
 // Blossoms are polar forms). Each of them is a point of the curve over refined knots, so that its
-// weights are discrete B-splines, which are not negative (Cohen, Lyche, Riesenfeld 1980). `all`
-// leaves out no knot yet, `sum` adds up what leaves out one.
+// weights are discrete B-splines, which are not negative (Cohen, Lyche, Riesenfeld 1980). `all` are
+// the weights without omission, `sum` the sum of those that omit one knot.
 static void elevated_weights(const double *x, int p, const double *z, double *all, double *sum) {
   memset(all, 0, sizeof(double) * (size_t)(p + 1));
   memset(sum, 0, sizeof(double) * (size_t)(p + 1));

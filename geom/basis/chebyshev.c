@@ -12,11 +12,12 @@
 #define COUNT (DEGREE + 1)
 #define ORDERS (CAG_CHEBYSHEV_DERIVATIVES + 1)
 #define MAX_DEPTH 26
-// A piece this much shorter than the whole has a kink or a jump in it.
+// If the function is not resolved on a piece this short relative to the whole, it has a kink or a
+// jump there.
 #define JUMP_SHARE 1e-3
-// The first derivative jumps where its two limits differ by more than this share.
+// The first derivative jumps if its two limits differ by more than this fraction.
 #define KINK 1e-5
-// Joints nearer than this share of the interval are about the same kink.
+// Joints closer than this fraction of the interval belong to the same kink.
 #define SAME_KINK 1e-6
 
 typedef struct Piece {
@@ -68,7 +69,7 @@ static void transform(const double *values, size_t stride, double *out) {
   out[DEGREE] /= 2;
 }
 
-// Coefficients of the derivative by the piece's own parameter -1..1.
+// Coefficients of the derivative with respect to the piece's own parameter -1..1.
 static void differentiate(const double *c, double *out) {
   double above = 0, next = 0;
   for (int k = DEGREE; k >= 0; k--) {
@@ -98,7 +99,7 @@ static CagStatus add_piece(CagChebyshev *c, double a, double b, const double *va
   for (int part = 0; part < c->parts; part++) {
     double *to = series + (size_t)part * ORDERS * COUNT;
     transform(values + part, (size_t)c->parts, to);
-    // What is rounding would grow with every derivative.
+    // Rounding errors would grow with every derivative.
     for (int k = 0; k < COUNT; k++)
       if (fabs(to[k]) <= 1e-15 * c->size[part]) to[k] = 0;
     for (int k = 1; k < ORDERS; k++) differentiate(to + (k - 1) * COUNT, to + k * COUNT);

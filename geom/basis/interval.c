@@ -2,13 +2,13 @@
 
 #include "geom/basis/interval.h"
 
-// Longest series.
+// Maximum length of a series.
 #define MOST 16
 
 CagInterval cag_interval_cos(CagInterval a) {
   const double turn = 2 * M_PI;
   CagInterval out = {cag_lower(cos(a.lo), cos(a.hi)), cag_higher(cos(a.lo), cos(a.hi))};
-  // Highest at multiples of a turn, lowest half a turn later.
+  // The maximum is at multiples of a full turn, the minimum half a turn later.
   if (floor(a.hi / turn) >= ceil(a.lo / turn)) out.hi = 1;
   if (floor((a.hi - M_PI) / turn) >= ceil((a.lo - M_PI) / turn)) out.lo = -1;
   return out;

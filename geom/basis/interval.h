@@ -1,8 +1,8 @@
 // Intervals of numbers, and truncated power series whose coefficients are intervals (Moore 1966).
 //
-// The result of an operation holds every result for numbers of the given ranges, but for rounding.
-// Series of ranges hold the Taylor coefficients of a function about every place of an interval, and
-// so bound its derivatives there.
+// The result of an operation contains, up to rounding, every result for numbers from the operands.
+// A series of intervals contains the Taylor coefficients of a function about every point of an
+// interval, and so bounds its derivatives there.
 
 #ifndef CAG_GEOM_INTERVAL_H
 #define CAG_GEOM_INTERVAL_H
@@ -14,12 +14,12 @@ typedef struct CagInterval {
   double lo, hi;
 } CagInterval;
 
-// Of points and vectors.
+// A box: one interval for each coordinate of a point or vector.
 typedef struct CagInterval3 {
   CagInterval x, y, z;
 } CagInterval3;
 
-// Of numbers that are not NaN; the compiler has an instruction for each.
+// For numbers other than NaN, each compiles to one instruction.
 static inline double cag_lower(double a, double b) { return a < b ? a : b; }
 static inline double cag_higher(double a, double b) { return a > b ? a : b; }
 
@@ -62,22 +62,22 @@ static inline double cag_interval3_size(CagInterval3 a) {
               cag_interval_square(a.z).hi);
 }
 
-// The cosine of angles of the range.
+// The cosine of the angles in the interval.
 CagInterval cag_interval_cos(CagInterval a);
 
 // --- Series ---
 
-// Coefficients 0..n. Results may not overlap with operands.
+// Coefficients 0..n. Results must not overlap operands.
 
 // Sine and cosine of the series.
 void cag_intervals_sincos(const CagInterval *a, int n, CagInterval *s, CagInterval *c);
-// a / b. False: b may be 0.
+// a / b. Returns false if b may be 0.
 bool cag_intervals_quotient(const CagInterval *a, const CagInterval *b, int n, CagInterval *out);
 void cag_intervals3_cross(const CagInterval3 *a, const CagInterval3 *b, int n, CagInterval3 *out);
 void cag_intervals3_scaled(const CagInterval3 *a, const CagInterval *f, int n, CagInterval3 *out);
 void cag_intervals3_add(const CagInterval3 *a, const CagInterval3 *b, int n, CagInterval3 *out);
 void cag_intervals3_sub(const CagInterval3 *a, const CagInterval3 *b, int n, CagInterval3 *out);
-// Of unit length. False: a may be 0.
+// a / |a|. Returns false if a may be 0.
 bool cag_intervals3_unit(const CagInterval3 *a, int n, CagInterval3 *out);
 
 #endif

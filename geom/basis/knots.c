@@ -5,7 +5,7 @@
 #include "geom/basis/bernstein.h"
 #include "geom/linalg/tolerance.h"
 
-// Equal spacing is judged to this part of the range: steps of 0.1 are not equal bit for bit.
+// Spacing is uniform within this fraction of the range: steps of 0.1 are not equal bit for bit.
 #define EQUAL_SPACING CAG_COINCIDENT
 
 void cag_knots_open(size_t n, int p, double *knots) {
@@ -18,8 +18,8 @@ void cag_knots_periodic(size_t n, int p, double *knots) {
   for (size_t i = 0; i < n + (size_t)p + 1; i++) knots[i] = (double)i;
 }
 
-// The i-th inner knot has walked i (n - 1) / m of the polygon's n - 1 edges; edges shorter than
-// `least` count as that long.
+// Inner knot i is the parameter after i (n - 1) / m of the polygon's n - 1 edges; edges shorter
+// than `least` are counted with that length.
 static void walk(const CagVec3 *points, size_t n, int p, double least, double total,
                  double *knots) {
   const size_t m = n - (size_t)p;
@@ -36,7 +36,8 @@ static void walk(const CagVec3 *points, size_t n, int p, double least, double to
 }
 
 void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots) {
-  // Part of the mean edge that an edge counts at least, where repeated points would tear the curve.
+  // Minimum length of an edge as a fraction of the mean; otherwise repeated points would break the
+  // curve.
   const double short_edge = 1e-3;
   cag_knots_open(n, p, knots);
   double total = 0;
@@ -122,7 +123,7 @@ size_t cag_knots_span(const double *knots, size_t n, int p, double t, bool left,
       else hi = mid;
     }
   }
-  // The last usable knot, and limits from the left, belong to the span before.
+  // The last usable knot, and limits from the left, belong to the previous span.
   if (t >= knots[n] || left)
     while (lo > (size_t)p && knots[lo] >= t) lo--;
   while (knots[lo] >= knots[lo + 1] && lo + 1 < n) lo++;

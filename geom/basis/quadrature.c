@@ -1,8 +1,8 @@
-// Adaptive Gauss-Kronrod integration (Piessens et al., QUADPACK, 1983): of all intervals the one
-// with the largest error is halved, until the sum of the errors is within the tolerance.
+// Adaptive Gauss-Kronrod integration (Piessens et al., QUADPACK, 1983): the interval with the
+// largest error is halved until the sum of the errors is within the tolerance.
 //
-// No interval is given up for a lack of gain: beside a peak or a near cusp, halves only begin to
-// gain when they are as small as what makes it. Intervals whose error is rounding of their own
+// Intervals are not abandoned for lack of progress: near a peak or a near-cusp, halving begins to
+// help only at the scale of the feature. Intervals whose error is the rounding of their own
 // integral, or which cannot be halved, are set aside.
 
 #include "geom/basis/quadrature.h"
@@ -15,9 +15,9 @@
 #include "base/memory.h"
 #include "base/stop.h"
 
-// Intervals of one piece, beside which further ones would only follow noise. A cusp takes about 50.
+// Maximum number of intervals of a piece; more would only follow noise. A cusp takes about 50.
 #define MOST_INTERVALS 4000
-// Error of an interval that is rounding, as a part of its integral of absolute values.
+// An interval's error is rounding if it is below this fraction of its integral of absolute values.
 #define ROUNDING (4 * DBL_EPSILON)
 // This many cuts need no allocation. Inner integrals have few.
 #define FEW_CUTS 8
@@ -73,7 +73,8 @@ static CagStatus estimate(const Task *task, size_t piece, double a, double b, Es
     out->value[p] = half * k[p];
     double size = half * m[p], e = half * fabs(k[p] - g[p]);
     out->size = fmax(out->size, size);
-    // The difference is an estimate for the 7 points; that for the 15 is far smaller (QUADPACK).
+    // The difference estimates the error of the 7-point rule; that of the 15-point rule is far
+    // smaller (QUADPACK).
     if (size > 0) e = size * fmin(1, pow(200 * e / size, 1.5));
     out->error = fmax(out->error, e);
   }
@@ -88,7 +89,7 @@ typedef struct Interval {
   Estimate e;
 } Interval;
 
-// A heap, the largest error first, and the sums over all intervals.
+// A heap with the largest error first, and the sums over all intervals.
 typedef struct Pool {
   Interval *items;
   size_t count, capacity;
@@ -150,7 +151,7 @@ CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double 
   const size_t most = pool.made + MOST_INTERVALS;
   while (!status && pool.count > 0 && pool.made < most) {
     if (pool.error <= tolerance * pool.size) {
-      // The running sum may be off by rounding of what it once was.
+      // The running sum may contain rounding errors of its former magnitude.
       pool.error = heap_error(&pool);
       if (pool.error <= tolerance * pool.size) break;
     }

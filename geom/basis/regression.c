@@ -1,5 +1,5 @@
-// Least-squares fits of formulas: a QR factorisation of the matrix of powers, of x shifted and
-// scaled into -1 .. 1 so that high degrees stay well conditioned.
+// Least-squares fits of formulas: QR factorization of the Vandermonde matrix, with x shifted and
+// scaled to -1 .. 1 so that high degrees stay well conditioned.
 
 #include "geom/basis/regression.h"
 
@@ -12,7 +12,7 @@
 #include "geom/linalg/dense.h"
 #include "geom/linalg/tolerance.h"
 
-// x closer together than this share of their range are one.
+// Values of x closer than this fraction of their range are equal.
 #define SAME_X CAG_ROUNDING
 
 static int ascending(const void *a, const void *b) {
@@ -36,7 +36,7 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
                   distinct);
 }
 
-// Coefficients of p((x - m) / h), in place, become those of powers of x: Horner's scheme on
+// Converts coefficients of p((x - m) / h), in place, to those of powers of x: Horner's scheme on
 // polynomials.
 static void expand(double *c, int degree, double m, double h) {
   for (int i = 0; i <= degree; i++) c[i] /= pow(h, i);

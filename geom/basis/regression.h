@@ -14,9 +14,9 @@ typedef enum CagModel {
                         // 0
 } CagModel;
 
-// Coefficients, ascending; a and b of the other two models. out: degree + 1 numbers (2 of the other
-// models). *residual is the sum of squared deviations of y. Fails with "underdetermined" where
-// there are fewer different x than coefficients, "domain" with the index.
+// The coefficients in ascending order, or a and b. out: degree + 1 numbers for a polynomial, else
+// 2. *residual is the sum of the squared deviations in y. Fails with "underdetermined" if there are
+// fewer distinct x than coefficients, and with "domain" and the index of the point.
 CagStatus cag_fit_formula(const double *x, const double *y, size_t n, CagModel model, int degree,
                           double *out, double *residual, CagError *err);
 

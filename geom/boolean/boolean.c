@@ -1,4 +1,5 @@
-// Set operations of solids: reading the operands, the steps, and operations of many.
+// Set operations of solids: validation of the operands, the sequence of steps, and operations on
+// many operands.
 
 #include "geom/boolean/boolean.h"
 
@@ -10,14 +11,15 @@
 #include "geom/boolean/work.h"
 #include "geom/mesh/edges.h"
 
-// Products of three coordinates stay far from the ends of the range of doubles.
+// Products of three coordinates must stay far from overflow.
 #define MOST_COORDINATE 1e100
 
-// Points of one plane or place may be so far apart, of the largest coordinate: tens of thousands of
-// units of rounding, since operands were turned and moved before.
+// Points that are meant to coincide or to be coplanar may be this far apart, relative to the
+// largest coordinate: tens of thousands of rounding errors, since operands may have been
+// transformed before.
 #define SNAP 1e-11
 
-// An operand and its name in messages: an argument, or one of a list (index; -1: not).
+// An operand and its name in messages: an argument, or an item of a list (index; -1: not a list).
 typedef struct Operand {
   const CagMesh *mesh;
   const char *argument;
@@ -85,7 +87,7 @@ static CagStatus check_closed(BoolWork *w, const Operand *o, const uint32_t *tri
 }
 
 static CagStatus check_sense(BoolWork *w, const Operand *o) {
-  const double rounding = 1e-9; // of the volume of thin meshes
+  const double rounding = 1e-9; // of the volume, for thin meshes
   const CagMesh *m = o->mesh;
   double sum = 0, size = 0, area = 0, most = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -99,7 +101,7 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
   }
   for (size_t i = 0; i < m->vertex_count; i++) most = fmax(most, cag_norm(m->positions[i]));
   char name[64];
-  // What other operations left within rounding may be turned either way.
+  // Within rounding, results of other operations may be oriented either way.
   if (sum >= -rounding * size - SNAP * most * area) return CAG_OK;
   return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_inside_out, o->argument, o->index,
                   "the triangles of %s must run counter-clockwise as seen from outside, its volume "
@@ -107,7 +109,7 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
                   name_of(o, name), sum / 6);
 }
 
-// The same face of both operands, or one twice, is kept once: a hash by its corners.
+// A face of both operands, or a repeated face, is stored once: a hash table keyed by its corners.
 typedef struct FaceTable {
   uint32_t *slots;
   size_t mask;
@@ -142,7 +144,7 @@ static void add_face(BoolWork *w, FaceTable *table, const BoolFace *face) {
   w->faces[w->face_count++] = *face;
 }
 
-// Sees to an axis along which the face has area; false: it has none.
+// Finds an axis along which the projection of the face has area; false: there is none.
 static bool find_axis(BoolWork *w, BoolFace *f) {
   const CagVec3 a = w->points.at[f->v[0]];
   const CagVec3 n = cag_cross(cag_sub(w->points.at[f->v[1]], a), cag_sub(w->points.at[f->v[2]], a));
@@ -157,8 +159,8 @@ static bool find_axis(BoolWork *w, BoolFace *f) {
   return false;
 }
 
-// Triangles without area are left out: their neighbors are cut where they touch each other. Ends
-// early if the work is to end.
+// Triangles without area are skipped: their neighbors are cut where they touch each other. Ends
+// early if the work is canceled.
 static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
                       int operand) {
   for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
@@ -190,7 +192,7 @@ static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTa
 
 static bool has_fan(const BoolWork *w) {
   uint32_t *count = cag_calloc(w->points.n + 1, sizeof *count);
-  bool found = !count; // the search for flat faces runs out of memory then
+  bool found = !count; // the search for flat faces then runs out of memory
   for (size_t i = 0; !found && i < w->face_count; i++)
     for (int k = 0; k < 3; k++) found = found || ++count[w->faces[i].v[k]] >= BOOL_FAN;
   cag_free(count);
@@ -201,7 +203,7 @@ static bool is_of(const BoolFace *f, int operand) {
   return f->times[operand] == 1 && f->times[1 - operand] == 0;
 }
 
-// Triangulates the flat faces of an operand anew, where its triangles are in `parts` afterwards.
+// Retriangulates the flat faces of an operand; `parts` receives its triangles.
 static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolPart **parts,
                       size_t *n) {
   *n = 0;
@@ -216,7 +218,7 @@ static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolP
   return cag_bool_flatten(w, sources, true, parts, n);
 }
 
-// No more faces than before: their outlines are the same.
+// There are no more faces than before, since their outlines are the same.
 static bool replace_fans(BoolWork *w, FaceTable *table) {
   BoolSource *sources = cag_malloc((w->face_count + 1) * sizeof *sources);
   BoolPart *parts[2] = {NULL, NULL};
@@ -248,7 +250,7 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
   return done;
 }
 
-// --- What is one within rounding ---
+// --- Coincidence within rounding ---
 
 static double slack_of(const BoolWork *w) {
   double size = 0;
@@ -259,7 +261,7 @@ static double slack_of(const BoolWork *w) {
   return SNAP * size;
 }
 
-// The points of the plane, in the sense of the face.
+// Sets the points that span the plane, oriented like the face.
 static void set_plane(BoolWork *w, BoolFace *f, const uint32_t *plane) {
   memcpy(f->plane, f->v, sizeof f->plane);
   if (!plane || plane[0] == BOOL_NONE) return;
@@ -269,8 +271,8 @@ static void set_plane(BoolWork *w, BoolFace *f, const uint32_t *plane) {
   f->plane[2] = plane[1];
 }
 
-// Corners get their new numbers; plane: of each face, or NULL. Faces that become one are kept once,
-// those that lose their area go.
+// Renumbers the corners; plane: for each face, or NULL. Faces that become identical are stored
+// once, those that lose their area are dropped.
 static void renumber(BoolWork *w, FaceTable *table, const uint32_t *number, const uint32_t *plane) {
   const size_t count = w->face_count;
   memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
@@ -285,7 +287,7 @@ static void renumber(BoolWork *w, FaceTable *table, const uint32_t *number, cons
   cag_bool_forget_pairs(w);
 }
 
-// Faces that cancel out go.
+// Drops faces that cancel out.
 static void drop_faces(BoolWork *w) {
   size_t kept = 0;
   for (size_t f = 0; f < w->face_count; f++)
@@ -378,8 +380,8 @@ CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *
   return operate(op, operands, &how, out, err);
 }
 
-// Halves of the list first, so that each triangle goes through about log2 n operations. *out: a
-// mesh of the caller's own, or (*made false) an operand as it is.
+// Combines the halves of the list recursively, so that each triangle takes part in about log2 n
+// operations. *out: a mesh owned by the caller, or (*made false) an operand itself.
 static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const CagBooleanHow *how,
                       Operand *out, bool *made, CagError *err) {
   *out = o[0];
@@ -400,8 +402,8 @@ static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const CagB
   return status;
 }
 
-// The first operand with the second; the first alone is united with nothing, which clears parts
-// that cross each other.
+// Combines the first operand with the second. A single operand is united with nothing, which
+// resolves parts that cross each other.
 static CagStatus finish(CagSetOperation op, const Operand o[2], size_t n, const CagBooleanHow *how,
                         CagMesh **out, CagError *err) {
   if (n > 1) return operate(op, o, how, out, err);

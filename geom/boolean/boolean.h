@@ -1,12 +1,12 @@
-// Set operations of solids that triangle meshes bound.
+// Set operations on solids bounded by triangle meshes.
 //
-// What decides (which triangles meet, where, what lies inside) is exact: the operands' coordinates
-// are taken as they are, and points of intersection are rounded to doubles only after everything is
-// decided. Before that, corners that coincide to 1e-11 of the largest coordinate become one, and
-// faces of the operands that lie in one plane as nearly are put into it exactly
-// (boolean_snap.c). A point is inside a mesh where the mesh winds around it a positive number of
-// times, so meshes may have several parts, cavities, and parts that touch, cross or repeat each
-// other.
+// All decisions (which triangles meet, where, and what lies inside) are exact: the coordinates of
+// the operands are taken as given, and intersection points are rounded to doubles only after
+// everything is decided. Before that, vertices that coincide to within 1e-11 of the largest
+// coordinate are merged, and faces of the operands that are coplanar to the same accuracy are moved
+// exactly into one plane (snap.c). A point is inside a mesh if the winding number of the mesh about
+// it is positive, so a mesh may have several parts, cavities, and parts that touch, intersect, or
+// coincide.
 
 #ifndef CAG_GEOM_BOOLEAN_BOOLEAN_H
 #define CAG_GEOM_BOOLEAN_BOOLEAN_H
@@ -16,37 +16,37 @@
 typedef enum CagSetOperation { CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION } CagSetOperation;
 
 typedef struct CagBooleanHow {
-  const volatile int *interrupt; // NULL, or: not 0 stops with CAG_E_CALLBACK
-  bool keep_flat; // flat faces stay in the triangles that they were cut to: edges stay short
+  const volatile int *interrupt; // nonzero stops with CAG_E_CALLBACK; may be NULL
+  bool keep_flat; // do not merge the triangles of flat faces after cutting: edges stay short
 } CagBooleanHow;
 
-// The solid of a and b, bounded by a closed, consistently oriented mesh in which each edge is of
-// two triangles; without triangles where the solid is empty. Where parts touch along an edge or in
-// a point, each has vertices of its own there (weld does not join them).
+// The solid of a and b, bounded by a closed, consistently oriented mesh in which each edge belongs
+// to two triangles. The mesh has no triangles if the solid is empty. Where parts touch along an
+// edge or in a point, each has its own vertices (weld does not join them).
 //
-//   a, b       vertices are one point where their numbers are; each edge is run as often in one
-//              sense as in the other
-//   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
+//   a, b       vertices are identified by index; each edge must be run equally often in both
+//   directions
+//   interrupt  nonzero stops with CAG_E_CALLBACK; may be NULL
 //
-// Flat faces, and the facets of ruled ones, get as few triangles as their outlines allow, within
-// 1e-12 of the largest coordinate; triangles of two materials, or with normals that do not agree,
-// are no one face.
+// Flat faces, and the facets of ruled faces, get as few triangles as their outlines allow, within
+// 1e-12 of the largest coordinate. Triangles of different materials, or with normals that disagree,
+// do not belong to one face.
 //
-// The time is that of sorting the triangles, and of what meets. Flat faces that overlap in one
-// plane are cut along the outlines of each other, however they are divided into triangles.
+// The time grows with sorting the triangles, and with the number of intersections. Flat faces that
+// overlap in one plane are cut along each other's outlines, however they are triangulated.
 //
-// Normals are interpolated from the operands (turned where b's surface bounds a hole of a; of faces
-// where an operand has none); no operand has normals: none. uv is dropped. Each triangle has the
-// label of the one that it is a part of. Fails with "mesh-open" (argument "a" or "b", index of a
-// triangle), "mesh-inside-out", "vertex-out-of-range" (not finite, or beyond 1e100),
-// "mesh-too-large".
+// Normals are interpolated from the operands. They are reversed where b's surface bounds a hole of
+// a; if an operand has no normals, the normals of its faces are used, and if neither has any, the
+// result has none. uv is dropped. Each triangle keeps the label of the triangle that it is a part
+// of. Fails with "mesh-open" (argument "a" or "b", index of a triangle), "mesh-inside-out",
+// "vertex-out-of-range" (not finite, or beyond 1e100), "mesh-too-large".
 CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                            const volatile int *interrupt, CagMesh **out, CagError *err);
 
-// Of n >= 1 meshes: the union or intersection of all, or the first without all others. Errors name
-// the argument "meshes" and give the operand's number as the index.
+// The union or intersection of n >= 1 meshes, or the first minus all others. Errors name the
+// argument "meshes", with the operand's number as the index.
 //
-//   how   NULL: as usual
+//   how   NULL: the defaults
 CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes, size_t n,
                                 const CagBooleanHow *how, CagMesh **out, CagError *err);
 

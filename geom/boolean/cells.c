@@ -1,8 +1,9 @@
 // Winding numbers on both sides of each piece of a set operation.
 //
-// Around an edge, the pieces are sorted by angle; what is in front of one is behind the next.
-// Pieces are kept in a forest in which each knows how the winding numbers in front of it differ
-// from those in front of its parent. A ray from each root to infinity gives the numbers themselves.
+// The pieces around an edge are sorted by angle; the space in front of one is the space behind the
+// next. Pieces are kept in a union-find forest in which each stores how the winding numbers in
+// front of it differ from those in front of its parent. A ray from each root to infinity determines
+// the winding numbers there.
 
 #include <string.h>
 
@@ -10,26 +11,27 @@
 #include "geom/boolean/work.h"
 #include "geom/mesh/edges.h"
 
-#define STOP_INTERVAL 4096 // edges or rays between looks at the caller's wish to stop
+#define STOP_INTERVAL 4096 // edges or rays between checks of the stop flag
 
 typedef int32_t Winding[2];
 
 // A piece at an edge.
 typedef struct Leaf {
   uint32_t piece;
-  bool forward; // it runs the edge from the lower to the higher point
-  int half;     // of the turn that starts at the first leaf: 0 the first leaf, 1, 2 opposite, 3
+  bool forward; // it runs along the edge from the lower to the higher point
+  int half;     // sector of the full turn that starts at the first leaf: 0 the first leaf, 1, 2
+                // opposite, 3
 } Leaf;
 
 typedef struct Forest {
   BoolWork *w;
   uint32_t *parent;
-  Winding *more; // winding in front of a piece, less that in front of its parent
+  Winding *more; // winding in front of a piece, minus that in front of its parent
 } Forest;
 
 // --- The forest ---
 
-// Gives the root, and shortens the way to it; *more becomes relative to the root.
+// Returns the root, with path compression; *more becomes relative to the root.
 static uint32_t find_root(Forest *f, uint32_t i) {
   uint32_t root = i;
   Winding sum = {0, 0};
@@ -48,7 +50,7 @@ static uint32_t find_root(Forest *f, uint32_t i) {
   return root;
 }
 
-// Winding in front of `a` plus `at_a` is that in front of `b` plus `at_b`.
+// Records that the winding in front of `a` plus `at_a` equals that in front of `b` plus `at_b`.
 static void tie(Forest *f, uint32_t a, const Winding at_a, uint32_t b, const Winding at_b) {
   const uint32_t root_a = find_root(f, a), root_b = find_root(f, b);
   if (root_a == root_b) return;
@@ -65,8 +67,8 @@ static const uint32_t *plane_of(const BoolWork *w, uint32_t piece) {
   return w->faces[bool_pieces(w)[piece].plane].plane;
 }
 
-// The sign of the sine of the angle from one leaf to the other, about the edge's direction, which
-// both planes contain: their normals' cross product is along it.
+// The sign of the sine of the angle from one leaf to the other about the edge's direction. Both
+// planes contain the edge, so the cross product of their normals is parallel to it.
 static int sine(BoolWork *w, const Leaf *a, const Leaf *b, int axis, int along) {
   const int s =
       cag_bool_normals_cross(&w->points, plane_of(w, a->piece), plane_of(w, b->piece), axis);
@@ -111,7 +113,7 @@ static void sort_leaves(BoolWork *w, uint32_t low, uint32_t high, Leaf *leaf, si
   }
 }
 
-// Counter-clockwise of a piece that runs the edge forward is its front.
+// A piece that runs along the edge forward has its front on the counter-clockwise side.
 static void side_of(const BoolWork *w, const Leaf *l, bool after, Winding out) {
   const BoolPiece *p = &bool_pieces(w)[l->piece];
   const bool front = l->forward == after;
@@ -173,14 +175,15 @@ static CagStatus tie_pieces(Forest *f) {
 
 // --- Rays ---
 
-// A ray along x from `from`, moved a little along y and far less along z, so that it meets no edge.
+// A ray along x from `from`, perturbed a little along y and far less along z, so that it hits no
+// edge.
 typedef struct Ray {
   BoolWork *w;
   uint32_t from;
-  Winding sum; // of what it leaves, less what it enters
+  Winding sum; // of the spaces it leaves, minus those it enters
 } Ray;
 
-// The side of the line a, b, seen along x, on which the moved ray is.
+// The side of the line a, b, seen along x, on which the perturbed ray is.
 static int side_of_ray(const Ray *r, uint32_t a, uint32_t b) {
   const int side = cag_bool_turn(&r->w->points, a, b, r->from, 0);
   if (side) return side;
@@ -195,13 +198,13 @@ static void cross_face(void *context, uint32_t face) {
   if (seen == 0) return;
   for (int k = 0; k < 3; k++)
     if (side_of_ray(r, f->v[k], f->v[(k + 1) % 3]) != seen) return;
-  // Ahead of the start: the face's front is towards +x and the start behind it, or the reverse.
+  // The face is ahead of the start: it faces +x with the start behind it, or the reverse.
   if (cag_bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return;
   for (int k = 0; k < 2; k++) r->sum[k] += seen * f->times[k];
 }
 
-// The winding in front of a piece. The ray starts in the middle of the piece, on the side of +x; of
-// a piece along x, where the ray is moved to.
+// The winding in front of a piece. The ray starts at the centroid of the piece, on its +x side; for
+// a piece parallel to x, on the side towards which the ray is perturbed.
 static bool cast_ray(BoolWork *w, uint32_t piece, Winding front) {
   const BoolPiece *p = &bool_pieces(w)[piece];
   Ray r = {w, cag_bool_points_centroid(&w->points, p->v), {0, 0}};

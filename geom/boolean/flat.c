@@ -1,14 +1,15 @@
-// Flat faces in few triangles.
+// Merges the triangles of flat faces.
 //
-// Triangles that hang together over edges of two, lie in one plane and take their normals from one
-// field (a constant on flat faces, linear on the facets of a ruled one) are one flat face, whatever
-// cuts run through it. Its outline alone matters: points within it go, and so do points at which
-// the outline between the same two faces runs straight on. What is left is triangulated anew. A
-// point goes from both faces or from none, so their edges still fit; the solid changes by the
-// rounding that its points had before. Curved faces are not touched.
+// A flat face is a set of triangles that are connected by manifold edges, lie in one plane, and
+// take their normals from one field (constant on flat faces, linear on the facets of a ruled face),
+// whatever cuts run through it. Only its outline matters: points inside it are removed, and so are
+// points at which the outline between the same two faces is straight. The rest is retriangulated. A
+// point is removed from both faces or from none, so their edges still match; the solid changes only
+// by the rounding that its points had before. Curved faces are not changed.
 //
-// Coordinates are taken as rounded here, on both sides of an edge the same. Where rounding spoiled
-// an outline (it meets itself, or its area is not that of the triangles), its face stays as it was.
+// Coordinates are used as rounded, identically on both sides of an edge. If rounding spoiled an
+// outline (it crosses itself, or its area differs from that of the triangles), its face is left as
+// it is.
 
 #include <float.h>
 #include <stdlib.h>
@@ -19,25 +20,26 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/mesh/edges.h"
 
-// How far points of one plane or line may be off, of the largest coordinate: some thousand units of
-// rounding, since operands were turned and moved before, and a plane is told by one triangle.
+// Maximum deviation of points from a plane or line, relative to the largest coordinate: some
+// thousand rounding errors, since operands may have been transformed before, and the plane comes
+// from a single triangle.
 #define FLATNESS CAG_ROUNDING
 #define SAME_DIRECTION (1 - 1e-6) // cosine of 0.08 degrees, as in cag_mesh_weld
 #define SAME_AREA CAG_COINCIDENT
-// Faces that rounding spoiled are left out, and the rest is tried again this often.
+// If rounding spoiled faces, they are excluded and the rest is retried up to this often.
 #define ROUNDS 4
 #define STOP_INTERVAL 64
 
-// The edges between two flat faces that end in a point.
+// The edges between two flat faces that end at a point.
 typedef struct Corner {
   uint32_t next[2];
-  uint8_t count; // of edges; 3: more than two
-  bool kept;     // it must stay
+  uint8_t count; // number of edges; 3: more than two
+  bool kept;     // it must be kept
   bool seen;
 } Corner;
 
 typedef struct Field {
-  CagVec3 at, normal; // of the plane
+  CagVec3 at, normal; // point and normal of the plane
   CagVec3 v[3], n[3]; // corners and normals there
   bool constant;
 } Field;
@@ -47,18 +49,18 @@ typedef struct Flat {
   const BoolSource *sources;
   BoolPart *parts;
   size_t n;
-  bool normals, whole; // whole: no point goes
+  bool normals, whole; // whole: no points are removed
   double slack;
-  uint32_t *across; // of the edge from corner k of part i, at 3 i + k: the other part, or none
-  uint32_t *label;  // of parts: their flat face
+  uint32_t *across; // across the edge from corner k of part i, at 3 i + k: the other part, or none
+  uint32_t *label;  // flat face of each part
   size_t labels;
   uint32_t *start, *members; // parts by label
-  uint32_t *seed;            // of labels: the part whose face tells the plane
-  bool *frozen;              // labels that stay as they were
+  uint32_t *seed;            // for each label: the part whose face determines the plane
+  bool *frozen;              // labels that are not changed
   Corner *corners;           // of points
-  bool *gone;                // points
-  uint32_t *after;           // the next point of the outline, of points that are gone
-  uint32_t *number;          // of points: in `local`
+  bool *gone;                // points that are removed
+  uint32_t *after;           // for removed points: the next point of the outline
+  uint32_t *number;          // for each point: its index in `local`
   BoolPoints local;
   BoolNet net;
   BoolList places;   // of Place: of `local`
@@ -107,7 +109,7 @@ static bool find_neighbors(Flat *f) {
   return e != NULL;
 }
 
-// --- Which triangles are one flat face ---
+// --- Grouping triangles into flat faces ---
 
 static Field field_of(const Flat *f, const BoolSource *s) {
   const BoolFace *face = &f->w->faces[s->face];
@@ -126,7 +128,7 @@ static Field field_of(const Flat *f, const BoolSource *s) {
   return out;
 }
 
-// The field goes on linearly beyond its triangle.
+// The field, extended linearly beyond its triangle.
 static CagVec3 normal_of(const Field *s, CagVec3 p) {
   if (s->constant) return s->n[0];
   const CagVec3 whole = area_of(s->v[0], s->v[1], s->v[2]);
@@ -158,7 +160,7 @@ static const BoolSource *source_of(const Flat *f, uint32_t part) {
   return &f->sources[f->parts[part].source[0]];
 }
 
-// From one part over edges to all that go with it.
+// Collects the parts connected to the seed by edges that belong to its face.
 static bool grow(Flat *f, uint32_t seed, uint32_t label) {
   const BoolSource *first = source_of(f, seed), *tried = first;
   const Field field = field_of(f, first);
@@ -196,7 +198,7 @@ static int by_size(const void *a, const void *b) {
   return p->part < q->part ? -1 : p->part > q->part;
 }
 
-// The largest triangle of a face tells its plane best.
+// Sorts by size: the largest triangle of a face determines its plane best.
 static bool rank_parts(const Flat *f, Ranked **out) {
   Ranked *r = cag_malloc((f->n + 1) * sizeof *r);
   if (!r) return false;
@@ -221,8 +223,8 @@ static bool sort_by_label(Flat *f) {
   return true;
 }
 
-// Triangles of curved faces stand alone; so do most of meshes that have no normals, where a few
-// cuts are not worth the time.
+// Triangles of curved faces are not merged; neither are most triangles of meshes without normals,
+// where a few cuts are not worth the time.
 static bool stands_alone(const Flat *f, uint32_t label) {
   const size_t few = 8, n = f->start[label + 1] - f->start[label];
   const BoolSource *first = source_of(f, f->members[f->start[label]]);
@@ -249,7 +251,7 @@ static bool find_labels(Flat *f) {
   return true;
 }
 
-// --- Which points go ---
+// --- Removing points ---
 
 static bool is_border(const Flat *f, uint32_t part, int k) {
   const uint32_t other = f->across[3 * (size_t)part + (size_t)k];
@@ -290,7 +292,7 @@ static bool runs_straight(const Flat *f, uint32_t i) {
   return cag_dot(cag_sub(p, a), cag_sub(b, p)) > 0 && distance_from(p, a, b) <= f->slack;
 }
 
-// Appends the points that go from `from` on; gives where they end.
+// Collects the points to remove from `from` on; returns where they end.
 static uint32_t follow(Flat *f, uint32_t from, uint32_t at) {
   while (f->gone[at] && f->corners[at].count == 2 && !f->corners[at].seen) {
     Corner *c = &f->corners[at];
@@ -303,7 +305,7 @@ static uint32_t follow(Flat *f, uint32_t from, uint32_t at) {
   return at;
 }
 
-// A way of points that is bent as a whole stays, as does one that comes back.
+// Keeps a chain of points that is bent as a whole, or that returns to its start.
 static void check_way(Flat *f, uint32_t i) {
   const CagVec3 *at = f->w->points.at;
   Corner *c = &f->corners[i];
@@ -318,7 +320,7 @@ static void check_way(Flat *f, uint32_t i) {
   for (size_t k = 0; !straight && k < f->stack.n; k++) f->gone[way[k]] = false;
 }
 
-// Of the points that are used; those without a border edge lie within a face.
+// For points in use; those without a border edge are inside a face.
 static bool find_gone(Flat *f) {
   const size_t points = f->w->points.n;
   memset(f->gone, 0, points * sizeof *f->gone);
@@ -334,7 +336,7 @@ static bool find_gone(Flat *f) {
   return true;
 }
 
-// --- A face triangulated anew ---
+// --- Retriangulating a face ---
 
 static uint32_t local_number(Flat *f, uint32_t point, uint32_t source) {
   if (f->number[point] != BOOL_NONE) return f->number[point];
@@ -345,8 +347,7 @@ static uint32_t local_number(Flat *f, uint32_t point, uint32_t source) {
   return f->number[point] = n;
 }
 
-// The outline without the points that are gone. Each of these has one border edge that begins
-// there.
+// The outline without the removed points. Each of these has one border edge that starts there.
 static bool list_segments(Flat *f, uint32_t label) {
   f->segments.n = 0;
   for (int pass = 0; pass < 2; pass++)
@@ -373,7 +374,7 @@ static double seen(const BoolPoints *p, uint32_t i, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-// Starts the net with a triangle around all points, whose corners are the next three.
+// Starts the net with a triangle around all points; its corners are the next three points.
 static bool start_net(Flat *f, int axis, uint32_t large[3]) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const int first = (axis + 1) % 3, second = (axis + 2) % 3;
@@ -398,8 +399,8 @@ static bool start_net(Flat *f, int axis, uint32_t large[3]) {
   return cag_bool_net_start(&f->net, large);
 }
 
-// Cells inside of the outline: across an edge of it one is in where the other is out. *borders: how
-// many edges do so.
+// Marks the cells inside the outline: an edge of it separates inside from outside. *borders: number
+// of such edges.
 static bool mark_inside(Flat *f, uint32_t outer, size_t *borders) {
   const size_t n = f->net.cells.n;
   const BoolCell *cells = bool_cells(&f->net);
@@ -429,8 +430,8 @@ static bool mark_inside(Flat *f, uint32_t outer, size_t *borders) {
   return true;
 }
 
-// Is each edge of the outline one of the cells', with the face to its left (sign 1) or right? One
-// on which another point lies is not: its other face would not have that point.
+// Whether each edge of the outline is an edge of a cell, with the face to its left (sign 1) or
+// right. An edge with another point on it is not, since the other face would not have that point.
 static bool keeps_outline(const Flat *f, int sign) {
   const signed char *inside = f->inside.items;
   for (size_t i = 0; i < f->segments.n; i++) {
@@ -450,7 +451,7 @@ static double seen_area(const BoolPoints *p, const uint32_t v[3], int axis) {
   return axis == 0 ? n.x : axis == 1 ? n.y : n.z;
 }
 
-// Is the new face as large as the old one, each of whose triangles is seen from the same side?
+// Whether the new face has the area of the old one and all its triangles are oriented alike.
 static bool keeps_area(const Flat *f, uint32_t label, int axis, int sign) {
   double old = 0, size = 0, made = 0, around = 0;
   for (uint32_t i = f->start[label]; i < f->start[label + 1]; i++) {
@@ -486,7 +487,7 @@ static bool give_cells(Flat *f, int sign) {
   return true;
 }
 
-// *made false: rounding spoiled the outline.
+// *made is false if rounding spoiled the outline.
 static bool cut_face(Flat *f, uint32_t label, bool *made) {
   const CagVec3 n = field_of(f, source_of(f, f->seed[label])).normal;
   const double size[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
@@ -515,7 +516,7 @@ static bool retriangulate(Flat *f, uint32_t label, bool *made) {
   bool closed = true;
   for (size_t i = 0; done && i < f->segments.n; i++) {
     Segment *s = (Segment *)f->segments.items + i;
-    s->b = f->number[s->b]; // each end begins another segment
+    s->b = f->number[s->b]; // each end starts another segment
     closed = closed && s->b != BOOL_NONE;
   }
   const Place *places = f->places.items;
@@ -556,7 +557,7 @@ static bool gains(const Flat *f, uint32_t label) {
   return false;
 }
 
-// *spoiled: faces that stay as they were, to be tried again without.
+// *spoiled: some faces were excluded; try again without them.
 static bool make_faces(Flat *f, bool *spoiled) {
   *spoiled = false;
   f->out.n = 0;

@@ -1,5 +1,5 @@
-// Triangulations of a plane: points are put into the cell or edge where a walk finds them; segments
-// flip the edges that they cross out of the way (Sloan 1993).
+// Triangulations of a plane: points are inserted into the cell or edge found by a walk; segments
+// flip the edges that they cross (Sloan 1993).
 
 #include <float.h>
 
@@ -30,7 +30,7 @@ static void register_cell(BoolNet *n, uint32_t cell) {
   n->last = cell;
 }
 
-// Room for one more point, and the cells and the table that go with it.
+// Makes room for one more point, with its cells and table entries.
 static bool reserve(BoolNet *n) {
   if (!cag_bool_list_reserve(&n->cells, n->cells.n + 2, sizeof(BoolCell))) return false;
   if (!cag_bool_list_reserve(&n->vertices, n->vertices.n + 3, sizeof(uint32_t))) return false;
@@ -72,7 +72,7 @@ void cag_bool_net_free(BoolNet *n) {
 
 // --- Flips ---
 
-// Turns the edge opposite to corner e of a cell into the other diagonal of the two cells.
+// Replaces the edge opposite corner e of a cell by the other diagonal of the two cells.
 static void flip(BoolNet *n, uint32_t cell, int e) {
   BoolCell *c = &bool_cells(n)[cell];
   const BoolCell t = *c;
@@ -92,8 +92,8 @@ static void flip(BoolNet *n, uint32_t cell, int e) {
   register_cell(n, cell);
 }
 
-// Is d well inside the circle through a, b, c? Of rounded points, and only where rounding could not
-// have made it so: then each flip lowers the surface that the cells are lifted to, and flips end.
+// Whether d is certainly inside the circle through a, b, c, for rounded points. If rounding might
+// decide, the answer is no; therefore each flip lowers the lifted surface, and flips terminate.
 static bool in_circle(const BoolNet *n, const uint32_t v[3], uint32_t d) {
   double x[3], y[3], lift[3], value = 0, size = 0;
   for (int k = 0; k < 3; k++) {
@@ -131,8 +131,8 @@ static bool doubt(BoolNet *n, uint32_t cell, int e) {
   return true;
 }
 
-// The cell that runs the edge from a to b, and the corner opposite; false: there is none. Looks at
-// edge.cell first: some points have very many cells around them.
+// The cell with the directed edge from a to b, and the opposite corner; false: there is none. Tries
+// edge.cell first, since some points have very many cells around them.
 static bool find_edge(const BoolNet *n, BoolEdge edge, uint32_t *cell, int *corner) {
   const uint32_t a = edge.a, b = edge.b, start = n->cell_of[a];
   const BoolCell *had = &bool_cells(n)[edge.cell];
@@ -142,7 +142,7 @@ static bool find_edge(const BoolNet *n, BoolEdge edge, uint32_t *cell, int *corn
       *corner = (k + 2) % 3;
       return true;
     }
-  for (int step = 1; step <= 2; step++) { // counter-clockwise, from a border the other way
+  for (int step = 1; step <= 2; step++) { // counter-clockwise, then from a border the other way
     uint32_t at = start;
     do {
       const BoolCell *c = &bool_cells(n)[at];
@@ -188,8 +188,8 @@ static uint32_t next_random(BoolNet *n) {
   return n->random >> 16;
 }
 
-// Walks to the cell that has the point. *edge: the corner opposite to the edge that it is on; -1:
-// it is inside. A random first edge keeps the walk from going round in circles.
+// Walks to the cell that contains the point. *edge: the corner opposite the edge that it is on; -1:
+// it is inside. A random first edge prevents cycles.
 static uint32_t locate(BoolNet *n, uint32_t point, int *edge) {
   uint32_t at = n->last, from = BOOL_NONE;
   for (;;) {
@@ -228,8 +228,8 @@ static void split_cell(BoolNet *n, uint32_t cell, uint32_t p) {
   register_cell(n, cell);
 }
 
-// The half of a cell at an edge that p splits: its apex, the edge's start, p, and the rest of the
-// cell's edges; the other half gets the edge's end.
+// Splits a cell at an edge by p: its apex, the edge's start, p, and the remaining edges of the
+// cell; the other half gets the edge's end.
 static void split_edge(BoolNet *n, uint32_t cell, int e, uint32_t p) {
   const BoolCell t = bool_cells(n)[cell];
   const uint32_t other = t.neighbor[e], fixed = t.fixed[e];
@@ -258,7 +258,7 @@ static void split_edge(BoolNet *n, uint32_t cell, int e, uint32_t p) {
   register_cell(n, other);
 }
 
-// The cells around a new point: the edges opposite to it may want a flip.
+// Queues the edges opposite a new point for flips.
 static bool doubt_around(BoolNet *n, uint32_t p) {
   const uint32_t start = n->cell_of[p];
   for (int step = 1; step <= 2; step++) {
@@ -303,13 +303,13 @@ bool cag_bool_net_add_point(BoolNet *n, uint32_t point) {
 // --- Segments ---
 
 // Where the ray from `from` to `to` leaves the cells around `from`: along an edge to `target`, or
-// (target BOOL_NONE) across the edge opposite to corner `corner` of `cell`.
+// (target BOOL_NONE) across the edge opposite corner `corner` of `cell`.
 typedef struct Exit {
   uint32_t target, cell;
   int corner;
 } Exit;
 
-// Two coordinates decide: the third of a far corner says nothing.
+// Two coordinates decide: the third is unreliable for a far corner.
 static int order_in_plane(const BoolNet *n, uint32_t a, uint32_t b) {
   const int order = cag_bool_compare(n->points, a, b, (n->axis + 1) % 3);
   return order ? order : cag_bool_compare(n->points, a, b, (n->axis + 2) % 3);
@@ -336,7 +336,7 @@ static Exit find_exit(const BoolNet *n, uint32_t from, uint32_t to) {
     } while (at != BOOL_NONE && at != start);
     if (at == start) break;
   }
-  return (Exit){to, start, 0}; // not reached: the cells around a point leave no gap
+  return (Exit){to, start, 0}; // not reached: the cells around a point have no gap
 }
 
 static void fix_side(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
@@ -344,7 +344,7 @@ static void fix_side(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
   if (*fixed == BOOL_NONE) *fixed = cut;
 }
 
-// hint: a cell that may have the edge.
+// hint: a cell that may contain the edge.
 static void fix_edge(BoolNet *n, uint32_t a, uint32_t b, uint32_t hint, uint32_t cut) {
   uint32_t cell;
   int e;
@@ -361,7 +361,7 @@ static bool push_crossed(BoolNet *n, BoolEdge edge) {
   return true;
 }
 
-// Puts in the point in which a segment crosses a fixed edge.
+// Inserts the intersection of a segment with a fixed edge.
 static bool split_fixed(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
   if (n->simple) {
     n->spoiled = true;
@@ -376,8 +376,8 @@ static bool split_fixed(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
   return doubt_around(n, p) && settle_doubts(n);
 }
 
-// Lists the edges that the segment crosses, up to a point on it: *target. A fixed edge is split
-// instead, and *target is BOOL_NONE.
+// Lists the edges that the segment crosses, up to a point on it: *target. If it meets a fixed edge,
+// that edge is split instead, and *target is BOOL_NONE.
 static bool list_crossed(BoolNet *n, uint32_t from, uint32_t to, Exit exit, uint32_t cut,
                          uint32_t *target) {
   uint32_t at = exit.cell;
@@ -397,7 +397,7 @@ static bool list_crossed(BoolNet *n, uint32_t from, uint32_t to, Exit exit, uint
     *target = apex;
     if (side == 0) return true;
     at = next;
-    e = side > 0 ? (f + 1) % 3 : (f + 2) % 3; // on between right and apex, or apex and left
+    e = side > 0 ? (f + 1) % 3 : (f + 2) % 3; // continue between right and apex, or apex and left
   }
 }
 
@@ -433,7 +433,7 @@ bool cag_bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
     const Exit exit = find_exit(n, a, b);
     uint32_t target = exit.target;
     if (target == BOOL_NONE && !list_crossed(n, a, b, exit, number, &target)) return false;
-    if (target == BOOL_NONE) continue; // a fixed edge was split: now a point is on the way
+    if (target == BOOL_NONE) continue; // a fixed edge was split, so there is now a point on the way
     if (exit.target == BOOL_NONE && !flip_crossed(n, a, target)) return false;
     fix_edge(n, a, target, exit.target == BOOL_NONE ? n->last : exit.cell, number);
     a = target;

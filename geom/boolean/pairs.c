@@ -1,10 +1,9 @@
 // Which faces of a set operation meet, and in what.
 //
 // A tree of boxes over the faces in Morton order is traversed against itself. Two faces in
-// different planes meet in a point or a segment, whose ends are corners of one in the other, or
-// points where an edge of one goes through the other; which of these there are is settled by signs
-// of determinants of the operands' corners. Faces that overlap or touch in one plane become one
-// group, cut together.
+// different planes meet in a point or a segment. Its ends are corners of one face in the other, or
+// points where an edge of one passes through the other, as decided by signs of determinants of the
+// operands' corners. Faces that overlap or touch in one plane form a group and are cut together.
 
 #include <string.h>
 
@@ -26,7 +25,10 @@ static bool boxes_meet(const CagBounds *a, const CagBounds *b) {
          b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
-static double least(double a, double b) { return a < b ? a : b; } // numbers only: fmin is slower
+static double least(double a, double b) {
+  return a < b ? a : b;
+} // for numbers other than NaN;
+  // fmin is slower
 static double most(double a, double b) { return a > b ? a : b; }
 
 static void add_box(CagBounds *all, const CagBounds *b) {
@@ -53,7 +55,7 @@ typedef struct Place {
   uint32_t face;
 } Place;
 
-// Every third bit.
+// Moves each bit to every third position.
 static uint64_t spread(uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffffu;
   x = (x | x << 16) & 0x1f0000ff0000ffu;
@@ -67,10 +69,14 @@ static uint64_t grid_step(double x, double low, double high) {
   return high > low ? (uint64_t)((x - low) / (high - low) * steps) : 0;
 }
 
-// By code, those of one code as they are; n places more behind them to work with.
+// A stable sort by code; needs n more items of scratch space after p.
 static void sort_places(Place *p, size_t n) {
-  enum { BITS = 11, DIGITS = 6 }; // 66 bits: an even number of passes ends where it began
-  // A pass begins with a permutation in p, in which work that is to end leaves it.
+  enum {
+    BITS = 11,
+    DIGITS = 6
+  };  // 66 bits: an even number of passes, so that the result ends up
+      // in p
+  // Before each pass p holds a permutation, which remains if the work is canceled.
   for (int digit = 0; digit < DIGITS && !cag_stopped(); digit++) {
     size_t start[(1 << BITS) + 1] = {0};
     Place *from = digit % 2 ? p + n : p, *to = digit % 2 ? p : p + n;
@@ -148,7 +154,7 @@ void cag_bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, vo
   visit_ray(w, 0, from, visit, context);
 }
 
-// --- Faces of one plane ---
+// --- Coplanar faces ---
 
 uint32_t cag_bool_root(uint32_t *parent, uint32_t i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -181,7 +187,7 @@ static bool edges_cross(BoolWork *w, const uint32_t a[2], const uint32_t b[2], i
              0;
 }
 
-// Do two faces of one plane have more in common than whole edges and corners?
+// Whether two coplanar faces share more than whole edges and corners.
 static bool touch_in_plane(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   for (int k = 0; k < 3; k++) {
     if (!has_corner(g, f->v[k]) && cag_bool_is_in_face(w, g, f->v[k])) return true;
@@ -195,7 +201,7 @@ static bool touch_in_plane(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   return false;
 }
 
-// --- Faces of two planes ---
+// --- Faces in different planes ---
 
 typedef struct Meeting {
   uint32_t points[12];
@@ -209,7 +215,7 @@ static bool add_meeting(Meeting *m, uint32_t point) {
   return point != BOOL_NONE;
 }
 
-// Does the line a, b, which goes through g's plane, go through g or its edge?
+// Whether the line a, b, which crosses g's plane, passes through g or its boundary.
 static bool goes_through(BoolWork *w, const BoolFace *g, uint32_t a, uint32_t b) {
   int seen = 0;
   for (int k = 0; k < 3; k++) {
@@ -221,7 +227,7 @@ static bool goes_through(BoolWork *w, const BoolFace *g, uint32_t a, uint32_t b)
   return true;
 }
 
-// Corners and edges of f in g; side: of g's plane, by f's corners.
+// Corners and edges of f in g; side: sides of g's plane for f's corners.
 static bool meet_from(BoolWork *w, const BoolFace *f, const BoolFace *g, const int side[3],
                       Meeting *m) {
   for (int k = 0; k < 3; k++) {
@@ -262,9 +268,9 @@ static bool meet_in_space(BoolWork *w, uint32_t f, uint32_t g, const int side_f[
   return add_contact(w, f, first, last, two) && add_contact(w, g, first, last, one);
 }
 
-// Neighbors in a mesh: does an edge of f, seen along f's axis, have f on one side and all of g on
-// the other but for corners that both have? Most neighbors are told apart so, and without exact
-// numbers where they are nearly in one plane.
+// For neighbors in a mesh: whether an edge of f, seen along f's axis, separates f from g except for
+// their common corners. This distinguishes most neighbors, without exact arithmetic if they are
+// nearly coplanar.
 static bool are_beside(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   const bool shared[3] = {has_corner(f, g->v[0]), has_corner(f, g->v[1]), has_corner(f, g->v[2])};
   if (!shared[0] && !shared[1] && !shared[2]) return false;
@@ -281,7 +287,7 @@ static bool are_beside(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   return false;
 }
 
-// Gives whether f lies on one side of g's plane, at most one corner in it that both have.
+// Returns whether f is on one side of g's plane, touching it at most in one common corner.
 static bool find_sides(BoolWork *w, const BoolFace *f, const BoolFace *g, int side[3],
                        bool *shares) {
   int above = 0, below = 0, shared = 0;
@@ -305,7 +311,7 @@ static bool meet(void *context, uint32_t f, uint32_t g) {
     return true; // cut together anyway
   if (are_beside(w, one, two) || find_sides(w, one, two, side_f, &edge)) return true;
   const bool flat = !side_f[0] && !side_f[1] && !side_f[2];
-  if (edge && !flat) return true; // a common edge, and that is all
+  if (edge && !flat) return true; // only a common edge
   if (flat) {
     if (touch_in_plane(w, one, two)) join(w->plane_of, f, g);
     return true;

@@ -1,10 +1,10 @@
-// Faces of a set operation cut along what they meet.
+// Cuts the faces of a set operation along their intersections.
 //
-// A face that overlaps no other in its plane is triangulated with its contacts. Faces of one plane
-// that overlap are triangulated together, inside a large triangle and with their edges as segments;
-// each cell then is a piece of all faces that cover it. So pieces of two faces are either the same
-// or apart. Neighbors of one flat face are a patch, whose outline alone is put in: how it was
-// divided into triangles does not matter.
+// A face that overlaps no coplanar face is triangulated with its contacts. Coplanar faces that
+// overlap are triangulated together, inside a large triangle and with their edges as segments; each
+// cell is then a piece of all faces that cover it. So pieces of two faces are either identical or
+// disjoint. Neighbors in one flat face form a patch, of which only the outline is inserted, so the
+// division into triangles does not matter.
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,28 +13,28 @@
 #include "geom/boolean/net.h"
 #include "geom/mesh/edges.h"
 
-// Groups of faces, or points and segments of one, between looks at the caller's wish to stop.
+// Groups of faces, or points and segments of one, between checks of the stop flag.
 #define STOP_INTERVAL 64
 
-// The faces and contacts by the group that they belong to: a group's are items[start[root]] to
-// items[start[root + 1] - 1].
+// Faces or contacts sorted by group: those of a group are items[start[root]] to items[start[root +
+// 1] - 1].
 typedef struct Groups {
   size_t *start;
   uint32_t *items;
 } Groups;
 
-// What covers a cell.
+// The coverage of a cell.
 typedef struct Cover {
   int32_t times[2];
-  uint32_t face; // the first; BOOL_NONE: nothing
+  uint32_t face; // the first face; BOOL_NONE: none
   signed char facing;
   uint32_t mark; // the last patch that covered it, plus 1
 } Cover;
 
-// An edge of a face of a group, as seen: the face is to its left.
+// A projected edge of a face of a group: the face is to its left.
 typedef struct Side {
   uint32_t from, to, face, patch;
-  bool shared; // by more than two faces, so that it must stay
+  bool shared; // it belongs to more than two faces and must be kept
   bool inner;  // between two faces of a patch
 } Side;
 
@@ -45,10 +45,11 @@ typedef struct Cutter {
   BoolList points; // of Spot
   BoolList covers; // of Cover
   BoolList stack;  // of uint32_t
-  BoolList sides;  // of Side: of the group, those of one patch side by side
+  BoolList sides;  // of Side: of the group, sorted by patch
   BoolList walls;  // of uint32_t, by 3 * cell + corner: the last patch that ends there, plus 1
-  uint32_t *patch; // forest of the faces
-  uint8_t *shared; // of faces, by bits: edges of more than two faces, or touched by others
+  uint32_t *patch; // union-find forest of the faces
+  uint8_t *shared; // for each face, bits for the edges that have more than two faces or are touched
+                   // by others
 } Cutter;
 
 typedef struct Spot {
@@ -84,7 +85,7 @@ static bool add_piece(BoolWork *w, BoolPiece piece) {
   return true;
 }
 
-// One group may be large. Steps end with false where the caller wants a stop, as without memory.
+// One group may be large. Steps return false if canceled, as if memory ran out.
 static bool goes_on(const Cutter *c, size_t i) {
   return i % STOP_INTERVAL != 0 || cag_bool_stopped(c->w) == CAG_OK;
 }
@@ -118,7 +119,7 @@ static int by_y(const void *a, const void *b) {
 }
 static int by_y_down(const void *a, const void *b) { return by_y(b, a); }
 
-// Strips of about the square root of all points, up and down by turns.
+// Sorts into strips of about the square root of all points, alternating up and down.
 static bool add_points(Cutter *c) {
   Spot *spots = c->points.items;
   const size_t n = c->points.n;
@@ -175,7 +176,7 @@ static bool add_edges(Cutter *c) {
   return true;
 }
 
-// Those of contacts and, of faces that are cut together, the ends of their edges.
+// Collects the points of contacts and, for faces that are cut together, the ends of their edges.
 static bool note_points(Cutter *c, uint32_t root, bool edges) {
   c->points.n = 0;
   for (size_t i = c->contacts.start[root]; i < c->contacts.start[root + 1]; i++) {
@@ -191,7 +192,7 @@ static bool note_points(Cutter *c, uint32_t root, bool edges) {
 
 // --- Patches ---
 
-// Finds which edges are of more than two faces, once and only where faces are cut together.
+// Finds the edges of more than two faces, once, and only if faces are cut together.
 static bool find_shared(Cutter *c) {
   const BoolWork *w = c->w;
   if (c->shared) return true;
@@ -244,7 +245,7 @@ static bool list_sides(Cutter *c, uint32_t root) {
   return true;
 }
 
-// Do two triangles have one normal everywhere?
+// Whether two triangles have the same constant normal.
 static bool share_normal(const CagMesh *m, uint32_t one, uint32_t two) {
   const double same_direction = 1 - 1e-12;
   if (!m->normals) return true;
@@ -257,7 +258,7 @@ static bool share_normal(const CagMesh *m, uint32_t one, uint32_t two) {
   return true;
 }
 
-// Faces to two sides of an edge that have all in common.
+// Whether the faces at two sides of an edge belong to one flat face.
 static bool are_one(const BoolWork *w, const Side *one, const Side *two) {
   const BoolFace *f = &w->faces[one->face], *g = &w->faces[two->face];
   if (one->from != two->to || f->owner != g->owner || f->times[0] != g->times[0] ||
@@ -275,7 +276,7 @@ static int by_patch(const void *a, const void *b) {
   return p->from < q->from ? -1 : p->from > q->from;
 }
 
-// Joins the faces between which nothing changes, and sorts the sides by patches.
+// Joins the faces of flat faces into patches, and sorts the sides by patch.
 static void find_patches(Cutter *c, bool alone) {
   Side *s = c->sides.items;
   if (!alone) qsort(s, c->sides.n, sizeof *s, by_ends);
@@ -290,12 +291,12 @@ static void find_patches(Cutter *c, bool alone) {
     c->patch[a < b ? b : a] = a < b ? a : b;
     s[i].inner = s[i + 1].inner = true;
   }
-  if (alone) return; // three by three
+  if (alone) return; // each face has its own three sides
   for (size_t i = 0; i < c->sides.n; i++) s[i].patch = cag_bool_root(c->patch, s[i].face);
   qsort(s, c->sides.n, sizeof *s, by_patch);
 }
 
-// --- Which patches cover a cell ---
+// --- Coverage of cells by patches ---
 
 static bool cover(Cutter *c, uint32_t cell, uint32_t face, signed char facing) {
   const BoolFace *f = &c->w->faces[face];
@@ -309,7 +310,7 @@ static bool cover(Cutter *c, uint32_t cell, uint32_t face, signed char facing) {
   return true;
 }
 
-// The cells along an outline, inside of it.
+// Covers the cells along the inside of an outline.
 static bool cover_sides(Cutter *c, const Side *s, size_t n, uint32_t face, signed char facing) {
   uint32_t *walls = c->walls.items;
   for (size_t i = 0; i < n; i++) {
@@ -318,7 +319,7 @@ static bool cover_sides(Cutter *c, const Side *s, size_t n, uint32_t face, signe
     if (s[i].inner) continue;
     for (uint32_t at = s[i].from; at != s[i].to;) {
       at = cag_bool_net_step(&c->net, at, s[i].to, &cell, &e);
-      if (at == BOOL_NONE) break; // not reached: the segment is in
+      if (at == BOOL_NONE) break; // not reached: the segment was inserted
       walls[3 * (size_t)cell + (size_t)e] = face + 1;
       if (!cover(c, cell, face, facing)) return false;
     }
@@ -332,7 +333,7 @@ static double cell_area(const Cutter *c, const uint32_t v[3]) {
   return fabs(c->net.axis == 0 ? n.x : c->net.axis == 1 ? n.y : n.z);
 }
 
-// The cells of a patch: from its outline on inward. *covered is their area.
+// Covers the cells of a patch, from its outline inward. *covered is their area.
 static bool cover_patch(Cutter *c, const Side *s, size_t n, const BoolFace *rep, double *covered) {
   const uint32_t face = s->patch;
   const BoolFace *f = &c->w->faces[face];
@@ -352,7 +353,8 @@ static bool cover_patch(Cutter *c, const Side *s, size_t n, const BoolFace *rep,
   return true;
 }
 
-// All patches. *overlaps: one lies on itself, so that its cells do not tell how often.
+// Covers the cells of all patches. *overlaps: a patch overlaps itself, so its cells do not count
+// how often.
 static bool cover_cells(Cutter *c, const BoolFace *rep, bool *overlaps) {
   const double same_area = 1e-6; // far above rounding, far below a triangle that counts twice
   const Side *s = c->sides.items;
@@ -395,7 +397,7 @@ static bool triangulate_together(Cutter *c, uint32_t root, bool alone) {
          add_edges(c) && add_contacts(c, root) && cag_bool_net_improve(&c->net);
 }
 
-// alone: each face is a patch of its own.
+// alone: treats each face as a patch.
 static bool cut_together(Cutter *c, uint32_t root, bool alone) {
   const BoolFace *rep = &c->w->faces[root];
   bool overlaps = false;
@@ -433,7 +435,7 @@ CagStatus cag_bool_cut_faces(BoolWork *w) {
   CagStatus status = done ? CAG_OK : cag_fail_memory(w->err);
   size_t groups = 0;
   for (uint32_t f = 0; !status && f < w->face_count; f++) {
-    if (c.faces.start[f + 1] == c.faces.start[f]) continue; // another face speaks for its group
+    if (c.faces.start[f + 1] == c.faces.start[f]) continue; // another face represents its group
     if (groups++ % STOP_INTERVAL == 0) status = cag_bool_stopped(w);
     if (status || cut_group(&c, f)) continue;
     status = cag_bool_stopped(w);

@@ -1,8 +1,8 @@
-// Points of a set operation: corners of the operands, and points of intersection without rounding.
+// Points of a set operation: corners of the operands, and exact points of intersection.
 //
-// Each point has its coordinates rounded to the nearest doubles. Rounding keeps order: where two
-// rounded coordinates differ, the exact ones differ the same way. Larger questions are asked of the
-// rounded points first, with a bound of what rounding may have done, and then of the exact ones.
+// Each point also has its coordinates rounded to the nearest doubles. Rounding is monotone: if two
+// rounded coordinates differ, the exact ones differ the same way. Other predicates are evaluated on
+// the rounded points first, with an error bound, and exactly only if the bound does not decide.
 
 #include <float.h>
 #include <string.h>
@@ -13,9 +13,9 @@
 #include "geom/mesh/predicates.h"
 
 #define UNIT (DBL_EPSILON / 2)
-// Limbs of one computation. Coordinates span at most 2150 bits; a corner put on three planes takes
-// 7 times that, a point of planes through such corners about 60 times, 2000 limbs; fewer than 500
-// such numbers are made at a time.
+// Limbs for one computation. Coordinates have at most 2150 bits. A corner moved onto three planes
+// takes 7 times that, and an intersection of planes through such corners about 60 times, 2000
+// limbs; fewer than 500 such numbers are made at a time.
 #define SPACE_LIMBS ((size_t)1 << 20)
 #define BLOCK_LIMBS ((size_t)1 << 14)
 
@@ -104,7 +104,7 @@ static void enter_point(BoolPoints *p, uint32_t i) {
 static bool same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 uint32_t cag_bool_points_add(BoolPoints *p, CagVec3 at) {
-  at = cag_vec3(at.x + 0.0, at.y + 0.0, at.z + 0.0); // one zero for both
+  at = cag_vec3(at.x + 0.0, at.y + 0.0, at.z + 0.0); // merges the two zeros
   for (uint32_t i = p->heads[slot(p, at)]; i != BOOL_NONE; i = p->next[i])
     if (p->exact[i] == BOOL_NONE && same_place(p->at[i], at)) return i;
   const uint32_t i = append_point(p, at, BOOL_NONE);
@@ -196,7 +196,7 @@ static CagVec3 rounded(BoolPoints *p, const BoolHomogeneous *h) {
                   cag_exact_quotient(s, h->z, h->w));
 }
 
-// The number of the point, old or new.
+// The number of the point, added if it is new.
 static uint32_t add_exact(BoolPoints *p, BoolHomogeneous h) {
   h = positive(h);
   const CagVec3 at = rounded(p, &h);
@@ -248,7 +248,7 @@ int cag_bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis) {
   const bool given =
       p->exact[a] == BOOL_NONE && p->exact[b] == BOOL_NONE && p->exact[c] == BOOL_NONE;
   if (given) return cag_side_of_line(q, r, o);
-  // Differences of rounded coordinates of size m are off by up to 3 units of m.
+  // Differences of rounded coordinates of magnitude m are off by up to 3 units of m.
   const double m = fmax(fmax(fmax(fabs(q.x), fabs(q.y)), fmax(fabs(r.x), fabs(r.y))),
                         fmax(fabs(o.x), fabs(o.y)));
   const double off = 4 * UNIT * m;
@@ -268,7 +268,7 @@ static bool are_given(const BoolPoints *p, const uint32_t plane[3]) {
   return is_given(p, plane[0]) && is_given(p, plane[1]) && is_given(p, plane[2]);
 }
 
-// The way from a to b, times a positive number.
+// The vector from a to b, times a positive number.
 static void exact_way(BoolPoints *p, uint32_t a, uint32_t b, CagExact way[3]) {
   if (is_given(p, a) && is_given(p, b)) {
     for (int k = 0; k < 3; k++)
@@ -296,14 +296,14 @@ void cag_bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3])
   exact_normal(p, plane, normal);
 }
 
-// How far the coordinates of the way from a to b may be off because the points are rounded.
+// Error bounds of the coordinates of the vector from a to b, whose points are rounded.
 static void way_off(const BoolPoints *p, uint32_t a, uint32_t b, double off[3]) {
   for (int k = 0; k < 3; k++)
     off[k] = (is_given(p, a) ? 0 : 2 * UNIT * fabs(coordinate(p->at[a], k))) +
              (is_given(p, b) ? 0 : 2 * UNIT * fabs(coordinate(p->at[b], k)));
 }
 
-// A normal in doubles, and how far its coordinates may be off.
+// A normal in doubles, and error bounds of its coordinates.
 static void near_normal(const BoolPoints *p, const uint32_t plane[3], double n[3], double off[3]) {
   const CagVec3 a = p->at[plane[0]];
   const CagVec3 u = cag_sub(p->at[plane[1]], a), v = cag_sub(p->at[plane[2]], a);
@@ -406,7 +406,7 @@ uint32_t cag_bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint
   const BoolHomogeneous from = exact_point(p, a), to = exact_point(p, b);
   const CagExact s = exact_side(p, n, plane[0], &from), t = exact_side(p, n, plane[0], &to);
   BoolHomogeneous h;
-  // The sides come with the weights of the points: s of `from`, t of `to`.
+  // The side values carry the weights of the points: s that of `from`, t that of `to`.
   h.x = cag_exact_minor(&p->space, to.x, from.x, t, s);
   h.y = cag_exact_minor(&p->space, to.y, from.y, t, s);
   h.z = cag_exact_minor(&p->space, to.z, from.z, t, s);
@@ -414,7 +414,7 @@ uint32_t cag_bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint
   return add_exact(p, h);
 }
 
-// normal . x = *offset for the points of the plane.
+// normal . x = *offset for points x of the plane.
 static void exact_cut(BoolPoints *p, BoolCut c, CagExact n[3], CagExact *offset) {
   if (c.c != BOOL_NONE) exact_normal(p, (const uint32_t[3]){c.a, c.b, c.c}, n);
   else {

@@ -1,9 +1,10 @@
 // The mesh of a set operation: pieces that bound the solid, rounded to doubles and closed.
 //
-// Points that round to the same place become one; triangles that shrink to an edge or a point go,
-// and so do pairs of triangles that fall on each other with opposite senses. That keeps as many
-// triangles on one side of each edge as on the other. Where an edge is left with more than two,
-// they are joined in twos around the solid between them; corners that are joined become one vertex.
+// Points that round to the same location are merged. Triangles that collapse to an edge or a point
+// are dropped, and so are pairs of coincident triangles with opposite orientation. This keeps as
+// many triangles on one side of each edge as on the other. If an edge is left with more than two
+// triangles, they are joined in pairs around the solid between them; corners that are joined become
+// one vertex.
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,20 +13,20 @@
 #include "geom/boolean/work.h"
 #include "geom/mesh/edges.h"
 
-// A vertex of the result; its list is that of the other vertices of the same corners.
+// A vertex of the result, linked to the other vertices of the same corners.
 typedef struct Vertex {
   CagVec3 normal;
   uint32_t point, next, first;
 } Vertex;
 
-// Two triangles that are joined at an edge of more.
+// Two triangles joined at an edge that has more of them.
 typedef struct Pair {
   uint32_t low, high;
   uint32_t triangle[2];
   uint32_t corner[2]; // of the first triangle at the ends, as in `corner` below
 } Pair;
 
-// A triangle whose edge from low to high gets a point in the middle.
+// A triangle whose edge from low to high gets a midpoint.
 typedef struct Pinch {
   uint32_t low, high, triangle, middle;
 } Pinch;
@@ -35,7 +36,7 @@ typedef struct Builder {
   bool normals;
   BoolPart *parts;
   size_t n;
-  BoolSource *sources; // of the parts before flat faces were made
+  BoolSource *sources; // of the parts before flat faces were merged
   uint32_t *triangles;
   uint32_t *corner; // forest of the corners 3 t + k
   uint32_t *head;   // of a corner's root: its vertices
@@ -66,7 +67,8 @@ static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
   b->parts[b->n++] = part;
 }
 
-// Turned so that the least point comes first; gives whether the next is the greater of the others.
+// Rotates the corners so that the smallest comes first; returns whether the next is the larger of
+// the other two.
 static bool sorted_corners(const BoolPart *p, uint32_t v[3]) {
   int least = 0;
   for (int k = 1; k < 3; k++)
@@ -91,7 +93,8 @@ static int by_corners(const void *a, const void *b) {
   return p->source[0] < q->source[0] ? -1 : p->source[0] > q->source[0];
 }
 
-// Of the same three corners, first the triangles of one sense, then those of the other.
+// Among triangles with the same corners, keeps those of one orientation first, then those of the
+// other.
 static size_t cancel(BoolPart *p, size_t n) {
   uint32_t v[3];
   size_t ahead = 0;
@@ -166,8 +169,8 @@ static int by_angle(const void *a, const void *b) {
   return p->use < q->use ? -1 : 1;
 }
 
-// Counter-clockwise about the edge from low to high, from a triangle that runs it backward to one
-// that runs it forward there is solid: such neighbors are joined, like brackets.
+// Counter-clockwise about the edge from low to high, the space from a triangle that runs it
+// backward to one that runs it forward is solid: such neighbors are joined, like brackets.
 static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
   const CagVec3 *at = b->w->points.at;
   Spoke *spokes = cag_malloc(n * sizeof *spokes);
@@ -185,7 +188,7 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
   const bool done =
       spokes && open && cag_bool_list_reserve(&b->pairs, b->pairs.n + n / 2, sizeof(Pair));
   if (done) qsort(spokes, n, sizeof *spokes, by_angle);
-  // Twice around: brackets that open before the start and close after it.
+  // Two turns, for brackets that open before the start and close after it.
   size_t depth = 0;
   for (size_t i = 0; done && i < 2 * n; i++) {
     const CagMeshEdge **use = &spokes[i % n].use;
@@ -208,8 +211,8 @@ static size_t uses_of(const CagMeshEdge *e, size_t left) {
   return n;
 }
 
-// Do two of the pairs at an edge have one vertex at both ends? Where a solid touches itself along
-// an edge and hangs together around each end, they do.
+// Whether two of the pairs at an edge have the same vertices at both ends. This happens if a solid
+// touches itself along an edge and is connected around each end.
 static bool is_pinched(Builder *b, const Pair *p, size_t n) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < i; k++) {
@@ -222,7 +225,7 @@ static bool is_pinched(Builder *b, const Pair *p, size_t n) {
   return false;
 }
 
-// Gives each pair at such an edge a point in the middle of its own.
+// Gives each pair at such an edge its own midpoint.
 static bool part_pairs(Builder *b, const Pair *p, size_t n) {
   if (!cag_bool_list_reserve(&b->pinched, b->pinched.n + 2 * n, sizeof(Pinch))) return false;
   for (size_t i = 0; i < n; i++) {
@@ -280,7 +283,7 @@ static bool join_corners(Builder *b) {
   return done;
 }
 
-// Splits triangles, also those that come from splitting, until no edge is a pinched one.
+// Splits triangles, including those that result from splitting, until no edge is pinched.
 static bool split_pinched(Builder *b) {
   BoolList parts = {b->parts, b->n, b->n};
   for (uint32_t i = 0; i < b->n; i++) b->parts[i].origin = i;
@@ -297,13 +300,13 @@ static bool split_pinched(Builder *b) {
       half.v[k] = pinch->middle;
       b->parts[parts.n++] = half;
       b->parts[i].v[(k + 1) % 3] = pinch->middle;
-      k = -1; // from the start with what is left of the triangle
+      k = -1; // restart with the rest of the triangle
     }
   b->n = parts.n;
   return true;
 }
 
-// Ends: each round leaves fewer edges of more than two triangles.
+// Terminates: each round leaves fewer edges with more than two triangles.
 static bool join_all(Builder *b) {
   for (;;) {
     if (!join_corners(b) || !find_pinched(b)) return false;
@@ -314,7 +317,7 @@ static bool join_all(Builder *b) {
 
 // --- Normals ---
 
-// How much of each corner's normal there is at p.
+// The barycentric weights of p.
 static void weights_at(const CagVec3 v[3], CagVec3 p, double weight[3]) {
   const CagVec3 n = cag_cross(cag_sub(v[1], v[0]), cag_sub(v[2], v[0]));
   double sum = 0;

@@ -1,13 +1,12 @@
-// Corners and planes of the operands that are one within rounding.
+// Identifies corners and planes of the operands that coincide within rounding.
 //
-// Two solids that were turned separately have their corners rounded separately, so that faces meant
-// to lie in one plane cross each other at random, and what should be cut away leaves a film. Before
-// anything is decided, corners that nearly coincide become one, and planes that faces of both
-// operands have in common are found: the corners of these faces are moved onto them. A corner of
-// one such plane moves along one axis, one of two stays at one coordinate, and one of three becomes
-// the point where they meet; these points are not rounded, so that faces of one plane lie in it
-// exactly. Faces that share no plane with the other operand, and operands whose faces are exact,
-// stay as they are.
+// If two solids were transformed separately, their corners were rounded separately. Faces that
+// should be coplanar then cross each other at random, and a difference leaves a thin film. Before
+// anything is decided, corners that nearly coincide are merged, and planes shared by faces of both
+// operands are found; the corners of these faces are moved onto them. A corner of one such plane
+// moves along one axis, one of two keeps one coordinate, and one of three becomes their
+// intersection. These points are not rounded, so faces of one plane lie in it exactly. Faces that
+// share no plane with the other operand, and operands whose faces are exact, are not changed.
 
 #include <string.h>
 
@@ -15,13 +14,13 @@
 #include "base/stop.h"
 #include "geom/boolean/work.h"
 
-// Sine of the largest angle between faces of one plane, squared.
+// Squared sine of the largest angle between coplanar faces.
 #define PARALLEL 1e-6
-// Faces lower than this many slacks do not determine a plane.
+// Faces with a height below this many slacks do not determine a plane.
 #define THIN 1e3
-// Planes of a corner are independent where the volume that their normals span is above this.
+// Planes at a corner are independent if the volume spanned by their normals is above this.
 #define INDEPENDENT 1e-5
-// A plane may be so many slacks away from corners of its faces, and a corner may move as far.
+// A plane may be this many slacks away from corners of its faces, and a corner may move as far.
 #define REACH 8
 
 // --- Twins ---
@@ -46,7 +45,7 @@ static void cell_of(const Twins *t, CagVec3 p, int64_t at[3]) {
   at[2] = (int64_t)floor(p.z / t->cell);
 }
 
-// The cells that a box of one slack around the point reaches are at most eight.
+// A box of one slack around the point overlaps at most eight cells.
 static uint32_t find_twin(const Twins *t, CagVec3 p, double slack) {
   int64_t low[3], high[3], at[3];
   cell_of(t, cag_sub(p, cag_vec3(slack, slack, slack)), low);
@@ -64,7 +63,7 @@ CagStatus cag_bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
   Twins t = {.points = &w->points, .cell = 8 * w->slack, .mask = 1023};
   *found = false;
   for (uint32_t i = 0; i < n; i++) number[i] = i;
-  if (!(t.cell > 0)) return CAG_OK; // all corners lie in the origin
+  if (!(t.cell > 0)) return CAG_OK; // all corners are at the origin
   while (t.mask < 2 * n) t.mask = 2 * t.mask + 1;
   t.heads = cag_malloc((t.mask + 1) * sizeof *t.heads);
   t.next = cag_malloc((n + 1) * sizeof *t.next);
@@ -96,23 +95,23 @@ CagStatus cag_bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
 
 // --- Classes of faces ---
 
-// The plane of a face in doubles; an area of 0: the face tells none.
+// The plane of a face in doubles; area 0: the face determines none.
 typedef struct Plane {
   CagVec3 at, normal; // unit
   double area;
 } Plane;
 
-// A plane that operands share.
+// A plane shared by faces.
 typedef struct Class {
-  uint32_t face;  // the largest
-  uint8_t owners; // bit k: faces of operand k alone
+  uint32_t face;  // the largest face
+  uint8_t owners; // bit k: has faces that belong only to operand k
   uint32_t points[3];
 } Class;
 
 typedef struct Snap {
   BoolWork *w;
   Plane *planes;    // of the faces
-  uint32_t *parent; // forest of the faces: those of one plane that hang together
+  uint32_t *parent; // union-find forest of the faces: connected faces of one plane
   Class *classes;   // of roots
   // Corners and the classes of their faces: those of corner i from start[i] to start[i + 1] - 1.
   size_t *start;
@@ -148,7 +147,7 @@ static bool lies_in(const Snap *s, uint32_t face, const Plane *plane) {
   return true;
 }
 
-// Whether the smaller face lies in the plane of the larger, which tells it better.
+// Whether the smaller face lies in the plane of the larger, which is better determined.
 static bool are_coplanar(const Snap *s, uint32_t f, uint32_t g) {
   const Plane *p = &s->planes[f], *q = &s->planes[g];
   if (!(p->area > 0) || !(q->area > 0)) return false;
@@ -178,7 +177,7 @@ static uint32_t class_of(Snap *s, uint32_t face) {
   return is_shared(&s->classes[root]) ? root : BOOL_NONE;
 }
 
-// Of the faces that hang together. *found: operands share a plane.
+// Determines the classes of connected coplanar faces. *found: operands share a plane.
 static void tell_classes(Snap *s, bool *found) {
   *found = false;
   for (uint32_t f = 0; f < s->w->face_count; f++)
@@ -200,7 +199,7 @@ static bool holds(const Snap *s, uint32_t corner, size_t n, uint32_t class) {
   return false;
 }
 
-// Each class of a corner once; *count: of each corner, how many.
+// Lists each class of a corner once; *count: number for each corner.
 static bool list_members(Snap *s, uint32_t *count) {
   const BoolWork *w = s->w;
   memset(count, 0, (w->points.n + 1) * sizeof *count);
@@ -221,7 +220,8 @@ static bool list_members(Snap *s, uint32_t *count) {
   return true;
 }
 
-// Parts of one plane that thin faces keep apart meet at corners. *joined: there were some.
+// Joins parts of one plane that are separated by thin faces and meet at corners. *joined: there
+// were some.
 static void join_at_corners(Snap *s, const uint32_t *count, bool *joined) {
   *joined = false;
   for (uint32_t v = 0; v < s->w->points.n; v++)
@@ -238,8 +238,9 @@ static void join_at_corners(Snap *s, const uint32_t *count, bool *joined) {
 
 // --- Points of a plane ---
 
-// The next point of three: the farthest from the first, or from the line of the first two. Corners
-// of more than three planes come first: if all these planes go through them, they can stay.
+// The next of three points: the farthest from the first, or from the line of the first two. Corners
+// of more than three planes are preferred: if all these planes pass through them, they need not
+// move.
 static double spread(const BoolWork *w, const uint32_t *points, int n, uint32_t v) {
   const CagVec3 *at = w->points.at, off = cag_sub(at[v], at[points[0]]);
   if (n == 1) return cag_norm(off);
@@ -308,7 +309,7 @@ static CagVec3 class_normal(const Snap *s, uint32_t class) {
   return cag_unit(cag_cross(cag_sub(at[p[1]], at[p[0]]), cag_sub(at[p[2]], at[p[0]])));
 }
 
-// Up to three independent planes of a corner, those that span the most.
+// Up to three independent planes of a corner: those with the largest volume.
 static int choose_planes(const Snap *s, const uint32_t *classes, uint32_t n, uint32_t out[3]) {
   CagVec3 normal[2];
   int chosen = 0;
@@ -334,7 +335,7 @@ static int largest_axis(CagVec3 v) {
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-// The number of the corner on the planes; itself where it cannot be there.
+// The number of the corner moved onto the planes; the corner itself if that is impossible.
 static uint32_t moved_onto(Snap *s, uint32_t corner, const uint32_t *classes, int n) {
   BoolPoints *p = &s->w->points;
   uint32_t planes[3][3];
@@ -372,7 +373,7 @@ static bool move_corners(Snap *s, const uint32_t *count, size_t n, uint32_t *num
   return true;
 }
 
-// Faces whose corners all lie in their plane now have its points as theirs.
+// Replaces the plane of faces whose corners all lie in it now.
 static void tell_faces(Snap *s, const uint32_t *number, uint32_t *plane) {
   for (uint32_t f = 0; f < s->w->face_count; f++) {
     const uint32_t class = class_of(s, f);
@@ -398,7 +399,7 @@ static CagStatus find_classes(Snap *s, uint32_t *count, bool *found) {
   CagStatus status = cag_bool_visit_pairs(w, join_pair, s);
   if (status) return status;
   tell_classes(s, found);
-  while (*found && joined) { // ends: each round leaves fewer classes
+  while (*found && joined) { // terminates: each round leaves fewer classes
     if (cag_stop_check(w->err)) return w->err->status;
     if (!list_members(s, count)) return cag_fail_memory(w->err);
     join_at_corners(s, count, &joined);

@@ -1,8 +1,8 @@
-// Conics: parabolas and hyperbolas as curves, the general equation, and what the classical
-// constructions make of points and tangents.
+// Conics: parabolas and hyperbolas as curves, the general equation, and classical constructions
+// from points and tangents.
 //
 // The general conic is A x^2 + B xy + C y^2 + D x + E y + F = 0 without factors of 2. Angles are
-// radians. Everything here lies in the plane unless a frame says otherwise.
+// radians. Everything here lies in the plane unless a frame is given.
 
 #ifndef CAG_GEOM_CONIC_H
 #define CAG_GEOM_CONIC_H
@@ -11,7 +11,7 @@
 
 // --- Parabolas and hyperbolas as curves ---
 
-// How the parameter t runs along the curve; in the frame's plane the point is
+// The parametrization of a curve. In the frame's plane the point is
 typedef enum CagConicForm {
   CAG_FORM_QUADRATIC,  // parabola    (a t^2, 2 a t)
   CAG_FORM_TANGENT,    // parabola    (tan^2 t, 2 sqrt(a) tan t), t an angle
@@ -19,15 +19,15 @@ typedef enum CagConicForm {
   CAG_FORM_SECANT      // hyperbola   (a sec t, b tan t), t an angle; |t| > pi/2: the left branch
 } CagConicForm;
 
-// y^2 = 4 a x in the frame. Form: quadratic or tangent; the range of a tangent form stays off the
-// poles ("domain").
+// y^2 = 4 a x in the frame. Form: quadratic or tangent; the range of a tangent form must not
+// contain a pole ("domain").
 CagStatus cag_curve_parabola(double a, CagConicForm form, double start, double end,
                              const CagTransform *frame, CagCurve **out, CagError *err);
 // x^2/a^2 - y^2/b^2 = 1 in the frame. Form: hyperbolic or secant.
 CagStatus cag_curve_hyperbola(double a, double b, CagConicForm form, double start, double end,
                               const CagTransform *frame, CagCurve **out, CagError *err);
 
-// A parabola or hyperbola in its parameter angle = phase + rate t: with s, r the two functions of
+// A parabola or hyperbola by its parameter angle = phase + rate t. With s, r the two functions of
 // the form for a = b = 1, the point is center + r x + s y (quadratic: angle^2 x + angle y).
 typedef struct CagOpenConic {
   CagConicForm form;
@@ -36,8 +36,8 @@ typedef struct CagOpenConic {
 } CagOpenConic;
 bool cag_curve_open_conic(const CagCurve *c, CagOpenConic *out); // false: another kind
 
-// n points at equal steps of the parameter by the recurrences of circle, ellipse, parabola and
-// hyperbola; both ends are in and exact. Fails with "not-a-conic".
+// n points at equal steps of the parameter, by recurrences for circles, ellipses, parabolas, and
+// hyperbolas. Both ends are included and exact. Fails with "not-a-conic".
 CagStatus cag_conic_points(const CagCurve *c, size_t n, CagVec3 *out, CagError *err);
 
 // --- The general conic ---
@@ -51,63 +51,62 @@ typedef struct CagConicClass {
   // "double_line" "line" "plane" "empty"
   const char *name;
   double discriminant; // B^2 - 4 A C
-  bool has_center;     // a single center: ellipse, hyperbola, point, intersecting lines, and
-                       // ellipses without a real point
-  CagVec3 center;      // of a parabola its vertex
-  double angle; // of the major or real axis, in (-pi/2, pi/2]; of a parabola into its opening, in
-                // (-pi, pi]
-  double a, b;  // semi-axes (a >= b of an ellipse, a real of a hyperbola); of a parabola a = p,
-                // y^2 = 4 p x
-  double eccentricity; // of ellipse, hyperbola, parabola
+  bool has_center;     // there is a single center: ellipse, hyperbola, point, intersecting lines,
+                       // and ellipses without real points
+  CagVec3 center;      // for a parabola its vertex
+  double angle; // of the major or real axis, in (-pi/2, pi/2]; for a parabola of the direction in
+                // which it opens, in (-pi, pi]
+  double a, b;  // semi-axes (ellipse: a >= b; hyperbola: a is real); for a parabola a = p, y^2 = 4
+                // p x
+  double eccentricity; // for an ellipse, hyperbola, or parabola
   size_t focus_count;
   CagVec3 foci[2];
-  size_t line_count;  // lines that it consists of
-  double lines[2][3]; // p x + q y + r = 0, p^2 + q^2 = 1, first non-zero of p, q positive
-  double book_angle;  // in [-pi/4, pi/4], removes the xy term
-  double rotated[6];  // coefficients in the axes turned by book_angle
-  double standard[3]; // alpha x^2 + beta y^2 = kappa about the center; where has_center
+  size_t line_count;  // number of lines that the conic consists of
+  double lines[2][3]; // p x + q y + r = 0, p^2 + q^2 = 1, the first nonzero one of p, q is positive
+  double book_angle;  // in [-pi/4, pi/4]; rotation by it removes the xy term
+  double rotated[6];  // coefficients in the axes rotated by book_angle
+  double standard[3]; // alpha x^2 + beta y^2 = kappa about the center; if has_center
 } CagConicClass;
 
 // Fails with "not-finite" and the index.
 CagStatus cag_conic_check(const CagConic *c, CagError *err);
 CagStatus cag_conic_classify(const CagConic *c, CagConicClass *out, CagError *err);
 double cag_conic_value(const CagConic *c, CagVec3 p);
-// The line p x + q y + r = 0 that touches in the point of the conic; of any point its polar.
+// The polar line p x + q y + r = 0 of the point p; the tangent if p lies on the conic.
 void cag_conic_polar(const CagConic *c, CagVec3 p, double line[3]);
-// The equation when the conic is moved by a planar transform, projective ones included.
+// The equation of the image under a planar transform, which may be projective.
 CagStatus cag_conic_transform(const CagConic *c, const CagTransform *t, CagConic *out,
                               CagError *err);
-// The real curves: of a hyperbola, parabola and of lines the part with the parameter in [from, to]
-// (lines: millimeters from the point nearest to their common center). At most 2; each has one
-// reference.
+// The real branches as curves. Hyperbolas, parabolas, and lines are limited to the parameters
+// [from, to] (lines: millimeters from the point nearest to their common center). At most 2; each
+// has one reference.
 CagStatus cag_conic_branches(const CagConic *c, double from, double to, CagCurve *out[2], size_t *n,
                              CagError *err);
-// The equation of a circle, ellipse, parabola, hyperbola, their arcs, and Bezier curves of degree 2
-// in the plane. Fails with "not-a-conic".
+// The equation of a circle, ellipse, parabola, or hyperbola, their arcs, or a plane Bezier curve of
+// degree 2. Fails with "not-a-conic".
 CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err);
-// The same of a curve of space that lies in a plane, in coordinates of that plane: `frame` carries
-// them to space.
+// The same for a plane curve in space, in coordinates of its plane: `frame` maps them to space.
 CagStatus cag_conic_of_space_curve(const CagCurve *c, CagTransform *frame, CagConic *out,
                                    CagError *err);
 // The point at x with the smaller or larger y. Fails with "domain".
 CagStatus cag_conic_point_at(const CagConic *c, double x, bool upper, CagVec3 *out, CagError *err);
-// The arc over x in [from, to] (from > to runs the other way) on the branch of the smaller or
-// larger y. Fails with "domain".
+// The arc over x in [from, to] (reversed if from > to) on the branch with the smaller or larger y.
+// Fails with "domain".
 CagStatus cag_conic_segment(const CagConic *c, double from, double to, bool upper, CagCurve **out,
                             CagError *err);
 
 typedef enum CagLineConic {
   CAG_LINE_NONE,
-  CAG_LINE_ONE, // the line runs along an asymptote's or a parabola's axis' direction
+  CAG_LINE_ONE, // the line is parallel to an asymptote or to a parabola's axis
   CAG_LINE_TANGENT,
   CAG_LINE_TWO,
-  CAG_LINE_WITHIN // it belongs to the conic
+  CAG_LINE_WITHIN // the line is part of the conic
 } CagLineConic;
-// Where the line through p along d meets the conic: t[i] with p + t d, ascending.
+// Intersections of the line through p along d with the conic: p + t[i] d, ascending by t.
 CagStatus cag_conic_line(const CagConic *c, CagVec3 p, CagVec3 d, CagLineConic *kind, double t[2],
                          CagError *err);
 
-// Which equations are looked for: the six coefficients free, no xy term, circles, lines.
+// The family of equations to choose from: general, without xy term, circles, or lines.
 typedef enum CagConicShape {
   CAG_CONIC_GENERAL, // 5 conditions
   CAG_CONIC_AXIS,    // 4
@@ -117,26 +116,28 @@ typedef enum CagConicShape {
 typedef struct CagConicTangent {
   CagVec3 point, direction;
 } CagConicTangent;
-// The conic through the points that has each tangent's direction in its point (which is passed
-// through, too, whether it is among the points or not). Fails with "too-few-conditions",
-// "conditions-dependent", "conditions-contradict". Scaled to C = 1, where C vanishes to the first
-// other coefficient.
+// The conic through the points and tangents. It passes through each tangent's point in the
+// tangent's direction, whether or not the point is also listed in `points`. Fails with
+// "too-few-conditions", "conditions-dependent", "conditions-contradict". Scaled to C = 1, or if C
+// vanishes, to a first nonzero coefficient of 1.
 CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
                                     const CagConicTangent *tangents, size_t m, CagConicShape shape,
                                     CagConic *out, CagError *err);
 
-// A conic as one curve value: where it has one real branch (ellipse, circle; parabola and line over
-// [-2, 2]) it is that curve; otherwise every question but its image fails with "no-single-curve".
+// A conic as a curve. If it has a single real branch (ellipse, circle; parabola and line over [-2,
+// 2]) the curve is that branch; otherwise every operation other than transforming it fails with
+// "no-single-curve".
 CagStatus cag_curve_conic(const CagConic *conic, CagCurve **out, CagError *err);
 bool cag_curve_conic_view(const CagCurve *c, CagConic *out);
-// The one branch of such a curve (borrowed); NULL: there is none, or the curve is of another kind.
+// The single branch of such a curve (borrowed); NULL if there is none, or if the curve is of
+// another kind.
 const CagCurve *cag_curve_conic_branch(const CagCurve *c);
 
 // The arc from p to q with the end tangents p-apex and apex-q (plane or space), kind "bezier".
-// weight > 0: 1 is the parabola, less an ellipse, more a hyperbola; rho = weight / (1 + weight).
+// weight > 0: 1 is a parabola, less an ellipse, more a hyperbola; rho = weight / (1 + weight).
 CagStatus cag_conic_arc(CagVec3 p, CagVec3 apex, CagVec3 q, double weight, int dimension,
                         CagCurve **out, CagError *err);
-// The weight with which it passes through a point inside the triangle. Fails with
+// The weight for which the arc passes through a point inside the triangle. Fails with
 // "shoulder-outside".
 CagStatus cag_conic_shoulder_weight(CagVec3 p, CagVec3 apex, CagVec3 q, CagVec3 shoulder,
                                     double *weight, CagError *err);

@@ -1,5 +1,5 @@
-// Where a curve meets something else, found many times over: near a touch it is within rounding of
-// the other for a while, and every search finds places all along.
+// Merging of the contacts of a curve with another object. Near a tangency the curve stays within
+// rounding of the object for a while, and a search finds contacts all along that stretch.
 
 #ifndef CAG_GEOM_CONTACT_H
 #define CAG_GEOM_CONTACT_H
@@ -7,30 +7,30 @@
 #include "geom/curve/curve.h"
 
 typedef struct CagContact {
-  double t, at[2]; // the curve's parameter, and the other's
+  double t, at[2]; // the curve's parameter, and the object's parameters
   CagVec3 point;
   int multiplicity;
 } CagContact;
 
-// The curve and what it meets.
+// The curve and the object that it meets.
 typedef struct CagContactTask {
   const CagCurve *c;
   void *context;
-  // Distance of the curve's point at t from the other, from the foot found near `at`, which it
-  // updates; and the sine of the angle between the two there.
+  // The distance of the curve's point at t from the object, measured to the foot point found near
+  // `at`, which is updated; and the sine of the angle between the two there.
   CagStatus (*measure)(void *context, double t, double at[2], double *gap, double *sine,
                        CagError *err);
-  int places; // parameters of the other: 0 to 2
+  int places; // number of parameters of the object: 0 to 2
   double low[2], high[2];
   bool closed[2];
   double same; // distance below which the two meet
   double size, noise;
 } CagContactTask;
 
-// Sorts, and makes one of what belongs together: contacts between which the curve stays within
-// `same` of the other. Where the curve is tangential there, the contact becomes the place where it
-// is so, with the order of contact as its multiplicity (2: it touches; 1: it crosses). *overlap:
-// the curve runs along the other, to rounding, from one contact to the next of a group.
+// Sorts the contacts, and merges those between which the curve stays within `same` of the object.
+// If the curve is tangential in between, the merged contact is the point of tangency, with the
+// order of contact as its multiplicity (2: it touches; 1: it crosses). *overlap: the curve
+// coincides with the object, to rounding, between two contacts of a group.
 CagStatus cag_contacts_merge(const CagContactTask *task, CagContact *items, size_t *n,
                              bool *overlap, CagError *err);
 

@@ -1,11 +1,10 @@
-// Curves: immutable, reference counted values of several kinds behind one table of functions.
+// Curves: immutable, reference counted values of several kinds with a common table of functions.
 //
 // A curve maps its domain [start, end] to points of the plane (dimension 2: z is 0) or of space
-// (3). Points are always CagVec3. The parameter is natural (knots, radians ...); `angular` says
-// that the language shows it as an angle. Derivatives are by the parameter. Every algorithm that
-// serves all kinds (tangent, curvature, length, bounds, closest ...) is written against
-// CagCurveKind; a kind answers the few questions of the table. A kind's data follow the header:
-// struct { CagCurve base; ... }.
+// (3). Points are always CagVec3. The parameter is natural (knots, radians, ...); if `angular` is
+// set, the language shows it as an angle. Derivatives are with respect to the parameter. Algorithms
+// for all kinds (tangent, curvature, length, bounds, closest point, ...) use only the functions of
+// CagCurveKind. The data of a kind follow the header: struct { CagCurve base; ... }.
 
 #ifndef CAG_GEOM_CURVE_H
 #define CAG_GEOM_CURVE_H
@@ -16,56 +15,56 @@
 
 typedef struct CagCurve CagCurve;
 
-// Which limit is meant where the curve is not smooth: a knot, a corner.
+// The one-sided limit to take where the curve is not smooth: at a knot or a corner.
 typedef enum CagSide { CAG_SIDE_RIGHT, CAG_SIDE_LEFT } CagSide;
 
-// Highest derivative that any caller asks for.
+// Highest derivative that callers may request.
 #define CAG_MAX_DERIVATIVE 16
 
 typedef struct CagCurveKind {
   const char *name; // "line", "polyline", "arc", "helix", "bezier", "bspline", "nurbs" ...
-  // Point and derivatives 1..order at t (in the domain), limit from `side`: out[0..order].
+  // Point and derivatives 1..order at t (in the domain), as the limit from `side`: out[0..order].
   CagStatus (*eval)(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
                     CagError *err);
-  // Same for n ascending or arbitrary parameters: out[i * (order + 1) + k]. NULL: eval is called
-  // for each.
+  // The same for n parameters in any order: out[i * (order + 1) + k]. NULL: eval is called for
+  // each.
   CagStatus (*eval_many)(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
                          CagError *err);
-  // Exact rational form; NULL: there is none.
+  // Exact rational form; NULL if there is none.
   CagStatus (*to_nurbs)(const CagCurve *c, CagCurve **out, CagError *err);
-  // Image under a transform; a kind that is not closed under it gives another kind.
+  // Image under a transform; a kind that is not closed under it returns another kind.
   CagStatus (*transform)(const CagCurve *c, const CagTransform *t, CagCurve **out, CagError *err);
-  // The same points run backwards over the same domain; the part over [a, b]; the same points over
-  // [a, b] (affine change of t).
+  // The same points in reverse order over the same domain; the part over [a, b]; the same points
+  // over [a, b] (affine change of t).
   CagStatus (*reverse)(const CagCurve *c, CagCurve **out, CagError *err);
   CagStatus (*trim)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
   CagStatus (*reparametrize)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
-  // A box that holds the curve over [a, b], cheap and not always tight (hull of control points).
+  // A box that contains the curve over [a, b], cheap and not always tight (hull of control points).
   CagBounds (*hull)(const CagCurve *c, double a, double b);
-  // Interior parameters where the curve is less smooth than C-infinity (distinct, ascending).
-  // Returns their number, writes up to `capacity`.
+  // Interior parameters at which the curve is not C-infinity (distinct, ascending). Returns their
+  // number, writes up to `capacity`.
   size_t (*breaks)(const CagCurve *c, double *out, size_t capacity);
-  // One line for the language: "degree 3, 5 points" (without kind and domain). Writes a
-  // NUL-terminated text.
+  // A one-line description for the language, without kind and domain: "degree 3, 5 points".
+  // NUL-terminated.
   void (*describe)(const CagCurve *c, char *buffer, size_t size);
   void (*destroy)(
-      CagCurve *c); // frees what the kind took; the block itself is freed by cag_curve_release
+      CagCurve *c); // frees the data of the kind; cag_curve_release frees the block itself
 } CagCurveKind;
 
 struct CagCurve {
   const CagCurveKind *kind;
   int references;    // a curve belongs to one thread, or is shared read-only
   int dimension;     // 2 or 3
-  double start, end; // domain; start < end, except of a point, which may have start == end
+  double start, end; // domain; start < end, except that a point may have start == end
   bool angular;      // the parameter is an angle
-  bool closed;       // the ends meet (to rounding), judged at construction
+  bool closed;       // the ends coincide (to rounding), determined at construction
 };
 
 CagCurve *cag_curve_retain(const CagCurve *c);
-void cag_curve_release(CagCurve *c); // NULL is fine
+void cag_curve_release(CagCurve *c); // c may be NULL
 
-// Whether the header of a curve is sound: a kind, references, the dimension, and the domain. For
-// CAG_ASSERT and tests; the same for surfaces, meshes, and solids.
+// Whether the header of a curve is valid: kind, references, dimension, and domain. For CAG_ASSERT
+// and tests; surfaces, meshes, and solids have the same.
 bool cag_check_curve(const CagCurve *c);
 
 // --- Constructors (each fails with a reason and the argument; *out has one reference) ---
@@ -75,8 +74,8 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
 // Kind "point": one point over [start, end], start <= end. No tangent, length 0, never closed.
 CagStatus cag_curve_resting(CagVec3 p, int dimension, double start, double end, bool angular,
                             CagCurve **out, CagError *err);
-// Points center + a cos(t) x + b sin(t) y for t in [start, end] radians. Circle: a == b. frame: x,
-// y, center as columns (planar: dimension 2).
+// Points center + a cos(t) x + b sin(t) y for t in [start, end] radians. Circle: a == b. The
+// columns of frame are x, y, and center (planar: dimension 2).
 CagStatus cag_curve_arc(double a, double b, double start, double end, const CagTransform *frame,
                         CagCurve **out, CagError *err);
 // [r cos t, r sin t, pitch t / 2 pi], r = radius + taper * t / 2 pi; t in 0..2 pi |turns|; negative
@@ -90,16 +89,16 @@ CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t 
 // knots[degree]..knots[n].
 CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n, int degree,
                           const double *knots, int dimension, CagCurve **out, CagError *err);
-// Closed periodic B-spline of n distinct points: uniform knots, domain 0..n; `points` gives back
-// the n.
+// Closed periodic B-spline of n distinct points: uniform knots, domain 0..n; `points` returns the
+// n.
 CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, size_t n, int degree,
                                  int dimension, CagCurve **out, CagError *err);
-// Curves one after the other, each starting where the one before ends; domain 0..(sum of the
-// domains' lengths) or natural where alike.
+// Joins curves, each starting where the previous one ends. The domain is 0..(sum of the domains'
+// lengths), or natural if alike.
 CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err);
 
-// Knot vectors of n control points: "open" uniform integer 0,0,..,1,..,m,m; "periodic" 0,1,2,...;
-// "chord" by the points (Hartley and Judd 1978).
+// Knot vectors of n control points: "open" uniform integers 0,0,..,1,..,m,m; "periodic" 0,1,2,...;
+// "chord" from the points (Hartley and Judd 1978).
 CagStatus cag_knots_make(const char *type, size_t n, int degree, const CagVec3 *points,
                          double *knots, CagError *err);
 
@@ -114,15 +113,16 @@ typedef struct CagNurbsView {
   bool rational;
 } CagNurbsView;
 bool cag_curve_nurbs_view(const CagCurve *c, CagNurbsView *out); // false: not a NURBS kind
-// Vertices of a line or polyline (without the repeated first of a closed one); false: another kind.
+// Vertices of a line or polyline (without the repeated first one of a closed polyline); false:
+// another kind.
 bool cag_curve_vertices(const CagCurve *c, const CagVec3 **points, size_t *n, bool *closed);
-bool cag_curve_resting_view(const CagCurve *c, CagVec3 *p); // p may be NULL; false: no point
+bool cag_curve_resting_view(const CagCurve *c, CagVec3 *p); // p may be NULL; false: not a point
 // Data of an arc kind.
 bool cag_curve_arc_view(const CagCurve *c, double *a, double *b, CagTransform *frame);
 bool cag_curve_helix_view(const CagCurve *c, double *radius, double *pitch, double *turns,
                           double *taper, CagTransform *frame);
 
-// --- Questions to any curve. t outside the domain fails with CAG_E_DOMAIN "parameter-range"; a few
+// --- Queries of any curve. t outside the domain fails with CAG_E_DOMAIN "parameter-range"; a few
 // ulp outside is snapped to the end. ---
 CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
                          CagError *err);
@@ -133,11 +133,11 @@ CagStatus cag_curve_point(const CagCurve *c, double t, CagVec3 *out, CagError *e
 typedef struct CagFrenet {
   CagVec3 point, tangent, normal, binormal;
   double curvature, torsion;
-  bool has_normal; // false where the curvature is 0 (normal and binormal are then zero vectors)
+  bool has_normal; // false if the curvature is 0 (normal and binormal are then zero vectors)
 } CagFrenet;
 CagStatus cag_curve_frenet(const CagCurve *c, double t, CagFrenet *out, CagError *err);
 CagStatus cag_curve_tangent(const CagCurve *c, double t, CagSide side, CagVec3 *out,
-                            CagError *err); // its limit where C' = 0
+                            CagError *err); // the limit where C' = 0
 
 // Arc length over [a, b] to 1e-10 relative (adaptive Gauss-Kronrod on the smooth pieces); the
 // parameter at arc length s from the start.
@@ -152,24 +152,26 @@ CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, Cag
 CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagError *err);
 CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err);
 CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out,
-                             CagError *err); // "no-exact-form" where there is none
+                             CagError *err); // fails with "no-exact-form" if there is none
 CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve **out,
                               CagError *err);
 CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err);
-// The part over [a, b]; of a closed curve the range may run over the seam, at most one turn.
+// The part over [a, b]; for a closed curve the range may cross the seam, and cover at most one
+// turn.
 CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
-// The parts before and after t, anywhere in the domain: that of no length is a point over [t, t].
+// The parts before and after t, which may be anywhere in the domain: a part of zero length is a
+// point over [t, t].
 CagStatus cag_curve_halves(const CagCurve *c, double t, CagCurve *out[2], CagError *err);
 CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
                                   CagError *err);
-// The same over a range of angles (radians) or of numbers.
+// The same, with a range of angles (radians) or of numbers.
 CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool angular,
                                      CagCurve **out, CagError *err);
-// The curve without the stretches over which it stays in one point: for what is carried along it.
-// The domain stays. A curve that rests as a whole is given back.
+// The curve without the stretches on which it rests in one point, for sweeping along it. The domain
+// stays the same. A curve that rests throughout is returned unchanged.
 CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *err);
-// Makes a curve of space that lies in z = 0, but for rounding, one of the plane. The caller has
-// just made it: nothing else refers to it.
+// Turns a space curve that lies in z = 0, up to rounding, into a plane curve, in place. There must
+// be no other reference to it.
 void cag_curve_lay_flat(CagCurve *c);
 // The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
 // revolve.
@@ -179,11 +181,11 @@ CagStatus cag_curve_flatten(const CagCurve *c, const CagTransform *frame, CagCur
 CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);
 
 // Parameters of a polyline that stays within `tolerance` of the curve and turns by at most `angle`
-// (radians) a step; both ends and all breaks are in. *out is malloc'd.
+// (radians) per step; both ends and all breaks are included. *out is malloc'd.
 CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
                                size_t *n, CagError *err);
-// Closest point of the curve (the global one); intersections and others live in headers of their
-// own.
+// The closest point of the curve (the global minimum). Intersections and others have their own
+// headers.
 CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *point,
                             double *distance, CagError *err);
 

@@ -1,4 +1,4 @@
-// What the kinds of curves share among themselves; users of curves do not need it.
+// Shared by the implementations of the kinds of curves; not for users of curves.
 
 #ifndef CAG_GEOM_CURVE_FAMILY_H
 #define CAG_GEOM_CURVE_FAMILY_H
@@ -6,8 +6,8 @@
 #include "geom/curve/curve.h"
 #include "geom/linalg/tolerance.h"
 
-// Two points are one when they are nearer than this part of the size of the data: the rounding of a
-// few evaluations.
+// Points closer than this fraction of the size of the data are identical: the rounding of a few
+// evaluations.
 #define CAG_CURVE_SAME CAG_ROUNDING
 
 // Zeroed block of `size` bytes (a struct that starts with CagCurve) with one reference.
@@ -16,30 +16,31 @@ CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, 
 // Fails with "not-finite" and the index.
 CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *name, CagError *err);
 CagStatus cag_curve_check_number(double x, const char *name, CagError *err);
-// Largest coordinate of the points in size: what rounding is relative to.
+// Magnitude of the largest coordinate of the points, to which rounding is relative.
 double cag_curve_size(const CagVec3 *points, size_t n);
-// What rounding of coordinates in the box can be: no distance is known better, however small the
-// curve is beside its distance from the origin.
+// Bound of the rounding of coordinates in the box. Distances are not known better than this,
+// however small the curve is compared to its distance from the origin.
 double cag_curve_noise(const CagBounds *box);
-// 2 when a plane curve stays one under t.
+// 2 if a plane curve stays a plane curve under t.
 int cag_curve_image_dimension(const CagCurve *c, const CagTransform *t);
-// Image by way of the exact NURBS form, for maps that a kind is not closed under.
+// Image via the exact NURBS form, for maps that a kind is not closed under.
 CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, CagCurve **out,
                                     CagError *err);
-// The affine map of parameters that carries [c->start, c->end] to [a, b], exact at the ends.
+// The affine map of parameters from [c->start, c->end] to [a, b], exact at the ends.
 double cag_curve_remap(const CagCurve *c, double t, double a, double b);
-// Bound of the distance of the points over [a, b], where the curve is smooth, from the chord
-// between its ends. Goes to zero with the square of b - a.
+// Bound of the distance of the curve over [a, b], where it must be smooth, from the chord between
+// its ends. Proportional to the square of b - a in the limit.
 double cag_curve_sag(const CagCurve *c, double a, double b);
-// Control points of the cubic that meets the curve at a and b with its derivatives. False: points
-// between are not on it, to a part of its bend, or something cannot be evaluated.
+// Control points of the cubic with the points and derivatives of the curve at a and b. Returns
+// false if points in between are off the curve by more than a fraction of its sag, or if an
+// evaluation fails.
 bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q);
 // Interior breaks and both ends, malloc'd, ascending: *n values.
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err);
-// Straight from points[i] at t[i] to the next; t ascends strictly.
+// Linear from points[i] at t[i] to the next; t ascends strictly.
 CagStatus cag_curve_polyline_over(const CagVec3 *points, const double *t, size_t n, int dimension,
                                   CagCurve **out, CagError *err);
-// What cag_curve_trim does for [a, b], a < b <= a + period, of a closed curve, wherever it lies.
+// cag_curve_trim for [a, b], a < b <= a + period, of a closed curve, at any multiple of the period.
 CagStatus cag_curve_trim_over_seam(const CagCurve *c, double a, double b, CagCurve **out,
                                    CagError *err);
 // Axes of an arc kind: center + cos(angle) x + sin(angle) y, d angle / dt = rate.
@@ -51,23 +52,23 @@ typedef struct CagCoil {
   double radius, growth, climb, phase, rate;
 } CagCoil;
 bool cag_curve_coil(const CagCurve *c, CagCoil *out); // false: another kind
-// The same of an arc alone.
+// The same, for arcs only.
 bool cag_curve_arc_coil(const CagCurve *c, CagCoil *out);
-// Bound of |C''| over [a, b]; false: no helix.
+// Bound of |C''| over [a, b]; false: not a helix.
 bool cag_curve_helix_bend(const CagCurve *c, double a, double b, double *out);
 // Largest factor by which x u + y v lengthens the unit vector (u, v).
 double cag_curve_stretch(CagVec3 x, CagVec3 y);
 // The piece of a composite curve over [a, b] (within one piece), with its own parameters, which run
-// `rate` times as fast; NULL: no composite.
+// `rate` times as fast; NULL: not a composite curve.
 const CagCurve *cag_curve_composite_piece(const CagCurve *c, double a, double b, double *local_a,
                                           double *local_b, double *rate);
-// A box that holds the curve over [a, b] where points are all that is known of it: that of some,
-// wider in each direction by the largest second difference there. A smooth curve leaves its chord
-// by an eighth of that; a corner between two points hides at most half of the difference that it
-// makes. False: some of the points cannot be evaluated, and are left out.
+// A box that contains the curve over [a, b], for curves known only by points: the box of samples,
+// enlarged in each direction by the largest second difference there. A smooth curve leaves its
+// chord by an eighth of that; a corner between two samples hides at most half of the difference
+// that it causes. Returns false if some points cannot be evaluated; these are left out.
 bool cag_curve_sampled_hull(const CagCurve *c, double a, double b, CagBounds *out);
-// Points whose hull, plane and line are those of the curve (control points where there are some,
-// else samples); malloc'd.
+// Points with the same hull, plane, and line as the curve (control points if it has them, else
+// samples); malloc'd.
 CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError *err);
 
 #endif

@@ -1,8 +1,8 @@
 // B-splines from data points: interpolation and least squares (Piegl and Tiller 1997, chapter 9).
 //
-// Both systems are banded since over one span only degree + 1 basis functions act: interpolation
-// is solved by LAPACK's banded elimination with pivoting, least squares by Givens rotations of one
-// data row after the other into a banded triangle, which never squares the condition.
+// Both systems are banded, since only degree + 1 basis functions are nonzero on a span.
+// Interpolation uses LAPACK's banded elimination with pivoting. Least squares uses Givens rotations
+// that add one data row at a time to a banded triangle, which never squares the condition number.
 
 #ifndef CAG_GEOM_FIT_H
 #define CAG_GEOM_FIT_H
@@ -10,34 +10,34 @@
 #include "geom/curve/cubic.h"
 
 typedef enum CagFitKnots {
-  CAG_FIT_AUTO,     // even where the data allow it well, else averaged
-  CAG_FIT_OPEN,     // clamped, evenly spaced
-  CAG_FIT_AVERAGED, // clamped, by the data's parameters
+  CAG_FIT_AUTO,     // uniform if the data suit it, else averaged
+  CAG_FIT_OPEN,     // clamped, uniform
+  CAG_FIT_AVERAGED, // clamped, from the parameters of the data
   CAG_FIT_GIVEN
 } CagFitKnots;
 
 typedef struct CagFitData {
   const CagVec3 *points;
   size_t n;
-  CagSpacing spacing;       // of the parameters over the usable range of the knots ...
+  CagSpacing spacing;       // spacing of the parameters over the usable range of the knots ...
   const double *parameters; // ... or n numbers, ascending; NULL: by spacing
   CagFitKnots kind;
-  const double *knots; // of CAG_FIT_GIVEN
+  const double *knots; // for CAG_FIT_GIVEN
   int degree;
   int dimension;
 } CagFitData;
 
 typedef struct CagFitReport {
   double *parameters; // n, malloc'd
-  CagVec3 *residuals; // n, malloc'd: the curve less the data
+  CagVec3 *residuals; // n, malloc'd: curve minus data
   double rms, largest;
-  int rounds; // of the iteration that holds a coordinate
+  int rounds; // rounds of the iteration that keeps a coordinate exact
 } CagFitReport;
 void cag_fit_report_free(CagFitReport *r);
 
-// The curve through all points. tangents: NULL; 2 of them: at both ends (with n = 2 in both
-// points); n: in all points. They are by the parameter. Fails with "fit-singular",
-// "zero-chord-total", "bad-parameter", "order-range" and others.
+// The curve through all points. tangents: NULL; or 2: at both ends (with n = 2 at both points); or
+// n: at all points. They are derivatives with respect to the parameter. Fails with "fit-singular",
+// "zero-chord-total", "bad-parameter", "order-range", and others.
 CagStatus cag_curve_interpolate(const CagFitData *data, const CagVec3 *tangents,
                                 size_t tangent_count, CagCurve **out, CagError *err);
 

@@ -83,14 +83,14 @@ static CagStatus slope(const CagPartPair *pair, const double *x, Slope *out, Cag
   return CAG_OK;
 }
 
-// A flat triangle is one point where its first parameter is 0. From there the second one chooses
-// the way to go: along the side on which the distance falls more.
+// A flat triangle degenerates to one point where its first parameter is 0. There the second
+// parameter is chosen: the side along which the distance decreases more.
 static CagStatus leave_corners(CagPartPair *pair, Slope *here, CagError *err) {
   CagStatus status = CAG_OK;
   for (int side = 0, at = 0; !status && side < 2; at += pair->free[side++]) {
     if (!pair->part[side]->flat || pair->x[at] > 0) continue;
     const CagVec3 *p = pair->part[side]->p;
-    // The slope by the first parameter changes linearly with the second.
+    // The derivative with respect to the first parameter is linear in the second.
     Slope end[2];
     for (int k = 0; !status && k < 2; k++) {
       pair->x[at + 1] = k;
@@ -188,7 +188,7 @@ CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, C
   return status;
 }
 
-// The point of the triangle nearest to p, as shares of its second and third corner.
+// The point of the triangle nearest to p, as weights of its second and third corner.
 static double nearest_in_triangle(CagVec3 p, const CagVec3 t[3], double share[2]) {
   CagVec3 foot;
   if (cag_foot_in_triangle(p, t, &foot)) {

@@ -1,10 +1,10 @@
 // Distances of shapes.
 //
-// Two trees of boxes are walked together for the pairs of chords and triangles that are nearest;
-// from these Newton's method, damped and kept within smooth pieces, finds the nearest points of the
-// exact shapes. A second walk goes to the pairs that may still be nearer: those whose chords and
-// triangles, less what the shapes may leave them by, are nearer than the points found. Parts with
-// cores have bounds without such a margin.
+// Two trees of boxes are traversed together for the closest pairs of chords and triangles. Starting
+// from these, Newton's method, damped and kept within smooth pieces, finds the closest points of
+// the exact shapes. A second traversal tests all pairs that may still be closer: those whose
+// distance of chords and triangles, minus the sag of the shapes, is below the best distance found.
+// Parts with cores have bounds without such a margin.
 
 #include "geom/distance/separation.h"
 
@@ -17,20 +17,20 @@
 #include "geom/distance/part_pair.h"
 #include "geom/mesh/distance.h"
 
-// Pairs from which the exact search starts: neighbors share their nearest point, so that several
-// are needed for each place.
+// Pairs from which the exact search starts. Neighbors lead to the same closest point, so several
+// are needed for each location.
 #define CANDIDATES 24
-// The search for them ends after this many pairs: the second walk finds what it missed.
+// The search for them ends after this many pairs; the second traversal finds what it missed.
 #define MOST_LOOKED 50000
 #define LEAF 4
-// Newton's method starts again so often from the corner of a flat triangle.
+// Maximum number of restarts of Newton's method from the corner of a flat triangle.
 #define CORNER_ROUNDS 8
 // After this many pairs at the same distance, the shapes count as running along each other: the
 // number of such pairs is unlimited.
 #define SAME_PAIRS 4000
-// Pairs are equally near when their distances differ by less than this part of the size.
+// Pairs are equally close if their distances differ by less than this fraction of the size.
 #define EQUALLY_NEAR 1e-11
-// Shapes nearer than this part of their size meet.
+// Shapes closer than this fraction of their size meet.
 #define TOUCHING 1e-10
 
 // --- Parts ---
@@ -100,7 +100,7 @@ typedef struct Pieces {
   size_t n[2];
   bool closed[2];
   size_t *core;   // of each piece along u, as in CagPart
-  bool *straight; // each piece along u is flat, with straight edges
+  bool *straight; // for each piece along u: flat, with straight edges
 } Pieces;
 
 static void pieces_free(Pieces *pieces) {
@@ -211,7 +211,7 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
   return nearest;
 }
 
-// Keeps the point q of the second shape if it is the nearest so far to the point p of the first.
+// Keeps the point q of the second shape if it is the closest so far to the point p of the first.
 typedef struct Foot {
   double distance;
   CagVec3 p;
@@ -221,7 +221,7 @@ static void offer_foot(Foot *foot, CagVec3 p, CagVec3 q) {
   if (d < foot->distance) *foot = (Foot){d, q};
 }
 
-// The point of b nearest to a, for triangles that do not meet.
+// The point of b closest to a, for triangles that do not intersect.
 static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
   Foot nearest = {INFINITY, b->p[0]};
   CagVec3 foot;
@@ -233,7 +233,7 @@ static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
       const CagVec3 r = b->p[k], s = b->p[(k + 1) % 3];
       offer_foot(&nearest, p, cag_nearest_of_segment(p, r, s));
       offer_foot(&nearest, cag_nearest_of_segment(r, p, q), r);
-      // Where the lines are nearest, if both points are within.
+      // The closest points of the lines, if both are within the segments.
       const CagVec3 u = cag_sub(q, p), v = cag_sub(s, r), w = cag_sub(p, r);
       const double uu = cag_dot(u, u), vv = cag_dot(v, v), uv = cag_dot(u, v);
       const double det = uu * vv - uv * uv, uw = cag_dot(u, w), vw = cag_dot(v, w);
@@ -247,9 +247,9 @@ static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
 
 // --- Bounds by cores ---
 
-// The hull of up to three points, from which all points of a part have one distance.
+// The hull of up to three points; all points of the part have the same distance from it.
 typedef struct Hull {
-  CagPart part; // with the points alone
+  CagPart part; // only its points are used
   double radius;
 } Hull;
 
@@ -257,15 +257,15 @@ static Hull hull_of_core(const CagCore *core) {
   return (Hull){{.p = {core->p[0], core->p[1], core->p[1]}}, core->radius};
 }
 
-// False: the part is known to its sag only.
+// False: the part is known only up to its sag.
 static bool hull_of_part(const CagParts *parts, const CagPart *part, Hull *out) {
   if (part->core) *out = hull_of_core(&parts->cores[part->core - 1]);
   else *out = (Hull){.part = *part};
   return part->core || part->sag == 0;
 }
 
-// The largest distance of a point of the hull from a core's point or infinite line, which is as far
-// from all of its part as the core is: that of a corner, as the distance is a convex function.
+// The largest distance of a point of the hull from a core's point or infinite line. It is attained
+// at a corner, since the distance is convex.
 static double reach(const Hull *from, const Hull *core) {
   const CagVec3 *to = core->part.p, along = cag_unit(cag_sub(to[1], to[0]));
   double most = 0;
@@ -276,7 +276,7 @@ static double reach(const Hull *from, const Hull *core) {
   return most;
 }
 
-// A lower bound of the distance of two parts by their hulls: one is outside the other, or within.
+// A lower bound of the distance of two parts from their hulls: one is outside the other, or inside.
 static double hull_bound(const Hull *a, const Hull *b) {
   const double beside = chord_distance(&a->part, &b->part) - a->radius - b->radius;
   const double within = fabs(b->radius - a->radius);
@@ -290,7 +290,7 @@ static double hull_bound(const Hull *a, const Hull *b) {
 typedef struct Node {
   CagBounds box;
   double sag;          // the largest of its parts
-  size_t core;         // that of all parts; 0: none, or several
+  size_t core;         // core of all parts; 0: none, or several
   size_t first, count; // parts by `order`
   size_t left;         // children left and left + 1; 0: a leaf
 } Node;
@@ -304,7 +304,7 @@ typedef struct Tree {
 
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-// The loops over the parts of a node end early if the work is to end, which grow_tree tells.
+// Loops over the parts of a node end early if the work is canceled, which grow_tree reports.
 static CagBounds box_of(const Tree *t, size_t first, size_t count) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < count && !cag_stopped(); i++)
@@ -323,7 +323,7 @@ static Node node_of(const Tree *t, size_t first, size_t count) {
   return node;
 }
 
-// Parts below the middle of the box first; halves by number where all are on one side.
+// Splits at the middle of the box, or by count if all parts are on one side.
 static size_t divide(Tree *t, const Node *node) {
   const CagVec3 size = cag_sub(node->box.max, node->box.min);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -369,7 +369,7 @@ static double gap(const CagBounds *a, const CagBounds *b) {
   return sqrt(x * x + y * y + z * z);
 }
 
-// That of the boxes of two parts, which is far cheaper than that of their chords.
+// The distance of the boxes of two parts, which is far cheaper than that of their chords.
 static double part_gap(const CagPart *a, const CagPart *b) {
   CagBounds box[2];
   for (int i = 0; i < 2; i++) {
@@ -387,13 +387,13 @@ static double part_gap(const CagPart *a, const CagPart *b) {
   return gap(&box[0], &box[1]);
 }
 
-// The nearest pairs so far, ascending.
+// The closest pairs so far, ascending.
 typedef struct Nearest {
   size_t n;
   double distance[CANDIDATES];
   const CagPart *a[CANDIDATES], *b[CANDIDATES];
   size_t looked;                 // pairs of parts compared so far
-  const volatile int *interrupt; // not NULL and not 0: the search ends
+  const volatile int *interrupt; // nonzero cancels the search; may be NULL
 } Nearest;
 
 static double worst(const Nearest *s) {
@@ -459,17 +459,17 @@ typedef struct Search {
   CagError *err;
 } Search;
 
-// Shapes nearer than this meet; what may be nearer than the best by less than this is not looked
-// at.
+// Shapes closer than this meet. Pairs that cannot improve the best distance by this much are
+// skipped.
 static double touching(const Search *s) { return TOUCHING * s->size; }
 
 static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
 
-// A point, a straight piece of a curve, or a flat triangle: it is its own chord.
+// A point, a straight piece of a curve, or a flat triangle, whose chord is exact.
 static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core; }
 
-// From the ends of curves, where the search from the middle led to a farther minimum: keeps the
-// nearest.
+// Restarts from the ends of curves if the search from the middle led to a worse minimum; keeps the
+// best.
 static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 *p) {
   for (int side = 0, at = 0; side < 2; at += start->free[side++])
     for (int last = 0; last < 2 && start->part[side]->curve && !s->status; last++) {
@@ -484,7 +484,8 @@ static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 *p)
     }
 }
 
-// Lowers the best distance by what the pair leads to; `chords` is that of their chords.
+// Lowers the best distance by the minimum that the pair leads to; `chords` is the distance of their
+// chords.
 static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
   const CagPartPair start = cag_part_pair(a, b);
   CagPartPair pair = start;
@@ -637,7 +638,7 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, 
 
 // --- Inside ---
 
-// Solid angles (van Oosterom, Strackee 1983), over 4 pi. Ends early if the work is to end.
+// Solid angles (van Oosterom, Strackee 1983), over 4 pi. Ends early if the work is canceled.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p) {
   double sum = 0;
   for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {

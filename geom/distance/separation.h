@@ -1,4 +1,4 @@
-// How far two shapes are apart, and whether a point is within a closed mesh.
+// The distance of two shapes, and whether a point is inside a closed mesh.
 
 #ifndef CAG_GEOM_DISTANCE_SEPARATION_H
 #define CAG_GEOM_DISTANCE_SEPARATION_H
@@ -9,15 +9,15 @@
 
 // Small parts of a shape: points, chords of curves, triangles of exact surfaces, flat triangles.
 typedef struct CagPart {
-  CagVec3 p[3];              // corners; fewer are repeated
+  CagVec3 p[3];              // corners; the last is repeated if there are fewer
   const CagCurve *curve;     // borrowed; the part over [low[0], high[0]]
   const CagSurface *surface; // borrowed
   bool flat;                 // the triangle itself
-  double at[2];              // parameters within the part
-  double low[2], high[2];    // where the search may go: the smooth piece around
-  bool ring[2];              // may go around: a closed direction without breaks
-  double sag;                // how far the exact shape may leave its chord or triangle
-  size_t core;               // one more than the index of its core; 0: none
+  double at[2];              // parameters of a point in the part
+  double low[2], high[2];    // range of the search: the smooth piece around the part
+  bool ring[2];              // the search may wrap around: a closed direction without breaks
+  double sag;                // maximum distance of the exact shape from its chord or triangle
+  size_t core;               // index of its core plus one; 0: none
 } CagPart;
 
 typedef struct CagParts {
@@ -29,8 +29,8 @@ typedef struct CagParts {
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
 CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err);
-// The mesh of a surface, which has its parameters, to the tolerance; surface NULL: the mesh is the
-// shape.
+// The mesh of a surface, with its parameters, to the tolerance; if surface is NULL, the mesh is the
+// shape itself.
 CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
                              double tolerance, CagError *err);
 void cag_parts_free(CagParts *parts);
@@ -41,7 +41,7 @@ void cag_parts_free(CagParts *parts);
 // cores of spheres, cylinders, circles and straight parts have bounds that are exact: shapes that
 // run along each other at a constant distance, such as concentric spheres, need few pairs. For
 // other shapes at a constant distance the search ends when thousands of pairs lead to that distance
-// and none to another.
+// and no others.
 //
 //   most       maximum number of pairs to compare on the exact shapes
 //   point      closest point on b if the shapes do not meet; may be NULL
@@ -54,7 +54,7 @@ void cag_parts_free(CagParts *parts);
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
                              CagVec3 *point, const volatile int *interrupt, CagError *err);
 
-// How often a closed mesh winds about p: 1 inside, 0 outside, fractions on the boundary only.
+// The winding number of a closed mesh about p: 1 inside, 0 outside, fractions only on the boundary.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p);
 
 #endif

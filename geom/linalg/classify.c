@@ -1,5 +1,5 @@
-// What a transform is (its class, turn and fixed points), and the transform that sends given points
-// to given images.
+// Classification of transforms (class, rotation, and fixed points), and the transform that maps
+// given points to given images.
 
 #include <lapacke.h>
 #include <string.h>
@@ -9,13 +9,12 @@
 
 // Orthogonality and rank are tested to this fraction of the entries.
 #define CLASS_TOLERANCE CAG_COINCIDENT
-// Points count as on one line or plane when the determinant is this small beside its rows
+// Points are collinear or coplanar if the determinant is below this fraction of its rows.
 #define FLAT CAG_ROUNDING
 
 // --- Class ---
 
-// Scale of a linear part of `n` rows when its columns are at right angles and of one length; else
-// 0.
+// Scale of a linear part of `n` rows if its columns are orthogonal and of equal length; else 0.
 static double common_scale(const CagTransform *t, int n) {
   double first = 0, w = fabs(t->m[3][3]);
   for (int a = 0; a < n; a++)
@@ -47,7 +46,7 @@ static void find_turn(const CagTransform *t, CagTransformClass *out) {
 
 // --- Fixed points: eigenvectors of the homogeneous matrix that are finite points ---
 
-// Null space of a - lambda I (n x n, row-major) as orthonormal rows of `basis`; gives its
+// Null space of a - lambda I (n x n, row-major) as orthonormal rows of `basis`; returns its
 // dimension.
 static int null_space(const double *a, int n, double lambda, double basis[4][4]) {
   double m[16], s[4], u[16], vt[16], work[4], size = 0;
@@ -62,8 +61,9 @@ static int null_space(const double *a, int n, double lambda, double basis[4][4])
   return dimension;
 }
 
-// Reduces the basis to echelon form with the weight (last part) first: at most the first vector is
-// then finite, and it is scaled to weight 1; the others are directions. False: no finite point.
+// Reduces the basis to echelon form with the weight (last component) first: then at most the first
+// vector is finite, and it is scaled to weight 1; the others are directions. False: no finite
+// point.
 static bool split_finite(double basis[4][4], int dimension, int n) {
   int best = 0;
   for (int i = 1; i < dimension; i++)
@@ -80,7 +80,8 @@ static bool split_finite(double basis[4][4], int dimension, int n) {
   return true;
 }
 
-// Candidates for the eigenvalue: an affine map has its finite fixed points at the weight alone.
+// Candidates for the eigenvalue. The finite fixed points of an affine map have the eigenvalue of
+// the weight.
 static int candidates(const CagTransform *t, const double *a, int n, double out[4]) {
   if (cag_transform_is_affine(t)) {
     out[0] = t->m[3][3];
@@ -97,7 +98,7 @@ static int candidates(const CagTransform *t, const double *a, int n, double out[
 
 static void find_fixed(const CagTransform *t, CagTransformClass *out) {
   const int n = t->planar ? 3 : 4;
-  // Lengths are measured in the size of the translation, so that rank does not depend on units.
+  // Lengths are relative to the size of the translation, so that the rank does not depend on units.
   double unit = 0, a[16];
   for (int i = 0; i < 3; i++) unit = fmax(unit, fabs(t->m[i][3] / (t->m[3][3] ? t->m[3][3] : 1)));
   if (unit == 0) unit = 1;
@@ -124,7 +125,7 @@ static void find_fixed(const CagTransform *t, CagTransformClass *out) {
   out->fixed_point = v[0];
   if (found == 2 && found < n) out->fixed_direction = cag_unit(v[1]);
   if (found == 3 && found < n) out->fixed_direction = cag_unit(cag_cross(v[1], v[2]));
-  // The point of the set that is nearest to the origin says most.
+  // Report the point of the set that is nearest to the origin.
   CagVec3 d = out->fixed_direction;
   if (found == n) out->fixed_point = cag_vec3(0, 0, 0);
   else if (found == 2) out->fixed_point = cag_madd(v[0], -cag_dot(v[0], d), d);
@@ -152,7 +153,7 @@ CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, 
   return CAG_OK;
 }
 
-// --- Transforms by points ---
+// --- Transforms from point pairs ---
 
 static CagStatus fail_position(const char *argument, CagErrorId id, const char *problem,
                                CagError *err) {
@@ -210,8 +211,7 @@ static CagStatus from_simplex(const CagVec3 *p, const CagVec3 *q, int n, CagTran
   return CAG_OK;
 }
 
-// 3x3 matrix (in x, y, w of a 4x4) that sends the unit triangle's vertices and centroid to p0 ..
-// p3.
+// 3x3 matrix (in x, y, w of a 4x4) that maps the unit triangle's vertices and centroid to p0 .. p3.
 static CagStatus from_frame(const CagVec3 *p, const char *argument, CagTransform *t,
                             CagError *err) {
   for (int skip = 0; skip < 4; skip++) {
@@ -248,8 +248,8 @@ static CagStatus from_four(const CagVec3 *p, const CagVec3 *q, CagTransform *t, 
   if (status) return status;
   CagTransform m = cag_transform_multiply(&to, &inverse);
   m.m[2][2] = 1;
-  // The common factor makes the weight of the points' centroid 1 in size; then m33 itself 1 unless
-  // the origin goes to infinity.
+  // Scale so that the weight of the points' centroid has magnitude 1; then so that m33 is 1 unless
+  // the origin maps to infinity.
   CagVec3 c = cag_scaled(cag_add(cag_add(p[0], p[1]), cag_add(p[2], p[3])), 0.25);
   double size = 0;
   for (int i = 0; i < 4; i++) size = fmax(size, cag_norm(cag_sub(p[i], c)));

@@ -1,4 +1,4 @@
-// Linear systems that can be stopped: LU with partial pivoting, by panels of rows that stay in the
+// Linear systems that can be canceled: LU with partial pivoting, by panels of rows that stay in the
 // cache, and Gaussian elimination of banded matrices.
 
 #include "geom/linalg/dense.h"
@@ -11,9 +11,9 @@
 
 // Pivot rows of a panel.
 #define PANEL ((size_t)32)
-// Columns of right sides that are solved together.
+// Columns of right-hand sides that are solved together.
 #define STRIP ((size_t)256)
-// Operations between two looks at the stop flag.
+// Operations between checks of the stop flag.
 #define WORK_BETWEEN_LOOKS ((size_t)1 << 18)
 
 static void swap_rows(double *a, double *b, size_t n) {
@@ -28,7 +28,7 @@ static inline void subtract(double *restrict x, double factor, const double *res
   for (size_t j = 0; j < n; j++) x[j] -= factor * y[j];
 }
 
-// Factors columns from .. to of the rows from `from` on; whole rows are exchanged.
+// Factors columns from .. to of the rows from `from` on; exchanges whole rows.
 static CagStatus factor_panel(double *a, size_t n, size_t from, size_t to, size_t *pivots,
                               bool *singular, CagError *err) {
   for (size_t k = from; k < to; k++) {
@@ -58,7 +58,7 @@ CagStatus cag_lu_factor(double *a, size_t n, size_t *pivots, bool *singular, Cag
     const size_t to = n - from < PANEL ? n : from + PANEL, rest = n - to;
     CagStatus status = factor_panel(a, n, from, to, pivots, singular, err);
     if (status) return status;
-    // The panel's rows of U behind it, then all rows below.
+    // First the panel's rows of U to its right, then all rows below.
     for (size_t i = from + 1; i < n; i++) {
       double *row = a + i * n;
       for (size_t k = from; k < to && k < i; k++)
@@ -121,7 +121,7 @@ CagStatus cag_lu_condition(const double *lu, size_t n, const size_t *pivots, dou
   if (!x) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < n; i++) x[i] = 1 / (double)n;
-  // The column of the inverse whose norm is largest is approached along the gradient of the norm.
+  // Approaches the column of the inverse with the largest norm along the gradient of the norm.
   for (int step = 0; !status && step < STEPS_MOST; step++) {
     status = cag_lu_solve(lu, n, pivots, x, 1, err);
     if (status) break;
@@ -136,7 +136,7 @@ CagStatus cag_lu_condition(const double *lu, size_t n, const size_t *pivots, dou
     memset(x, 0, n * sizeof *x);
     x[best] = 1;
   }
-  // Higham's alternative vector, for which the above may be far too small.
+  // Higham's alternative vector, for matrices on which the above underestimates badly.
   for (size_t i = 0; i < n; i++)
     x[i] = (i % 2 ? -1 : 1) * (1 + (double)i / (double)(n > 1 ? n - 1 : 1));
   if (!status) status = cag_lu_solve(lu, n, pivots, x, 1, err);
@@ -157,7 +157,7 @@ static bool eliminate(double *column, size_t k, size_t below, size_t ld, size_t 
   if (column[best] == 0) return false;
   const size_t reach = k + ku + best < n ? k + ku + best : n - 1;
   if (reach > *last) *last = reach;
-  // One row on, an entry of the next column is ld - 1 further.
+  // One row further, an entry of the next column is ld - 1 later.
   for (size_t j = 0; best > 0 && j <= *last - k; j++) {
     double *entry = column + j * (ld - 1), x = entry[0];
     entry[0] = entry[best];

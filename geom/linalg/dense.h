@@ -1,8 +1,8 @@
-// Linear algebra that can be stopped: every function here asks cag_stop_check at least once in some
-// hundred thousand operations. LAPACK does not ask, so it solves only systems of a few million
-// operations (CAG_LAPACK_MOST); larger ones are solved here.
+// Linear algebra that can be canceled: every function here calls cag_stop_check at least once per
+// few hundred thousand operations. LAPACK does not, so it is used only for systems of up to a few
+// million operations (CAG_LAPACK_MOST); larger ones are solved here.
 //
-// Matrices are dense, by rows or by columns as each function says.
+// Matrices are dense, stored by rows or by columns as stated for each function.
 
 #ifndef CAG_GEOM_DENSE_H
 #define CAG_GEOM_DENSE_H
@@ -12,7 +12,7 @@
 
 #include "base/status.h"
 
-// Most multiplications for which LAPACK is called: some hundredths of a second.
+// Maximum number of multiplications for which LAPACK is called: some hundredths of a second.
 #define CAG_LAPACK_MOST 2e7
 
 // Replaces the n x n matrix `a`, by rows, by L and U of P a = L U (L has a unit diagonal), with
@@ -35,7 +35,7 @@ CagStatus cag_lu_condition(const double *lu, size_t n, const size_t *pivots, dou
 //
 // Without `cut`, the columns must be independent, and rows >= columns; the caller checks the
 // diagonal of R. Otherwise columns are pivoted, diagonal entries of R below `cut` times the largest
-// count as 0, and the solution is the shortest one.
+// count as 0, and the solution is the one of minimum norm.
 CagStatus cag_least_squares(double *a, size_t rows, size_t columns, double *right, size_t room,
                             size_t sides, const double *cut, CagError *err);
 
@@ -45,7 +45,7 @@ CagStatus cag_least_squares(double *a, size_t rows, size_t columns, double *righ
 CagStatus cag_band_solve(double *band, size_t n, size_t kl, size_t ku, double *right, size_t sides,
                          bool *singular, CagError *err);
 
-// Eigenvalues in rising order, and unit eigenvectors as the rows of `a`, of the symmetric n x n
+// Eigenvalues in ascending order, and unit eigenvectors as the rows of `a`, of the symmetric n x n
 // matrix `a`: tridiagonal form, then the QL method with implicit shifts (Martin and Wilkinson
 // 1968). CAG_E_CONVERGENCE if the method does not converge.
 CagStatus cag_symmetric_eigen(double *a, size_t n, double *values, CagError *err);

@@ -1,4 +1,4 @@
-// Least squares and eigenvalues by Householder reflections, which can be stopped.
+// Least squares and eigenvalues by Householder reflections, which can be canceled.
 
 #include <float.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/stop.h"
 #include "geom/linalg/dense.h"
 
-// Operations, and rows of a matrix, between two looks at the stop flag.
+// Operations, and rows of a matrix, between checks of the stop flag.
 #define WORK_BETWEEN_LOOKS ((size_t)1 << 18)
 #define LINES_BETWEEN_LOOKS ((size_t)64)
 
@@ -36,8 +36,8 @@ static double size_of(const double *x, size_t n) {
   return largest * sqrt(sum);
 }
 
-// Makes of x a vector v with v[0] = 1 for which (1 - beta v v^T) x has only its first entry, which
-// it returns. v[1..n) is left in x[1..n).
+// Turns x into a vector v with v[0] = 1 such that only the first entry of (1 - beta v v^T) x is
+// nonzero; returns that entry. v[1..n) is stored in x[1..n).
 static double reflect_to_first(double *x, size_t n, double *beta) {
   const double rest = size_of(x + 1, n - 1);
   *beta = 0;
@@ -62,7 +62,7 @@ typedef struct Factors {
   double *right;
   size_t room, sides;
   size_t *order; // column of the given matrix; NULL: not pivoted
-  double *norms; // of the columns: from the current row down, then what that was when computed
+  double *norms; // of the columns: from the current row down, and their values when last computed
   double *line;  // of `columns` numbers
 } Factors;
 
@@ -70,7 +70,7 @@ static void compute_norm(Factors *f, size_t j, size_t from) {
   f->norms[j] = f->norms[f->columns + j] = size_of(f->a + j * f->rows + from, f->rows - from);
 }
 
-// Takes row k from the norms. Where digits cancel, a norm is computed anew.
+// Removes row k from the norms. A norm that lost digits by cancellation is recomputed.
 static void reduce_norms(Factors *f, size_t k) {
   const double CANCELED = sqrt(DBL_EPSILON);
   for (size_t j = k + 1; j < f->columns && !cag_stopped(); j++) {
@@ -127,8 +127,8 @@ static CagStatus factor(Factors *f, const double *cut, CagError *err) {
   return CAG_OK;
 }
 
-// The rows of R are longer than the rank: reflections from the right leave a triangle. Row k is
-// kept in `z` (columns - rank numbers for each row), its factor in beta.
+// The rows of R are longer than the rank: reflections from the right reduce it to a triangle. Row k
+// is kept in `z` (columns - rank numbers for each row), its factor in beta.
 static CagStatus shorten_rows(Factors *f, double *z, double *beta, CagError *err) {
   const size_t rest = f->columns - f->rank, rows = f->rows;
   double *line = f->line;
@@ -284,7 +284,7 @@ static void rotate_rows(double *restrict x, double *restrict y, double c, double
   }
 }
 
-// One step with implicit shift on the block l .. m. Ends early if the work is to end.
+// One step with implicit shift on the block l .. m. Ends early if the work is canceled.
 static void ql_step(double *d, double *e, size_t l, size_t m, double *rows, size_t n) {
   double g = (d[l + 1] - d[l]) / (2 * e[l]), r = hypot(g, 1);
   double s = 1, c = 1, p = 0;
@@ -330,7 +330,7 @@ static CagStatus diagonalize(double *d, double *e, size_t n, double *rows, CagEr
   return CAG_OK;
 }
 
-// Selection: n exchanges of rows at most.
+// Selection sort: at most n exchanges of rows.
 static void sort_rising(double *d, size_t n, double *rows) {
   for (size_t i = 0; i + 1 < n; i++) {
     size_t least = i;

@@ -1,17 +1,17 @@
-// Rotations by Euler angles, roll-pitch-yaw and quaternions, and back from the matrix.
+// Conversion of Euler angles, roll-pitch-yaw, and quaternions to rotations and back.
 //
-// A matrix is taken apart after division by its scale, so that a similarity that does not mirror
-// serves as well. Arctangents of two arguments throughout: no angle is lost near 0 or 180 degrees.
+// Matrices are divided by their scale first, so that similarities without reflection are accepted.
+// Arctangents of two arguments are used throughout: angles near 0 or 180 degrees lose no accuracy.
 
 #include <string.h>
 
 #include "geom/linalg/tolerance.h"
 #include "geom/linalg/transform.h"
 
-// Cosine (or sine) of the middle angle under which the outer two turn about the same line
-// (Shuster 1993, A survey of attitude representations).
+// Cosine (or sine) of the middle angle below which the outer two axes are parallel (Shuster 1993, A
+// survey of attitude representations).
 #define GIMBAL 1e-10
-// Deviation from a rigid motion that the rounding of a chain of products leaves.
+// Accepted deviation from a rigid motion: rounding of a chain of products.
 #define RIGID CAG_COINCIDENT
 
 static CagStatus fail_not_finite(const char *name, CagError *err) {
@@ -31,7 +31,7 @@ static void turn(int axis, double angle, CagTransform *t) {
   *t = cag_transform_multiply(t, &r);
 }
 
-// Axis numbers of an order such as "zyx"; all 12 where neighbors differ.
+// Axis numbers of an order such as "zyx": all 12 in which neighbors differ.
 static CagStatus read_order(const char *order, int axes[3], CagError *err) {
   bool good = order && strlen(order) == 3;
   for (int i = 0; good && i < 3; i++) {
@@ -91,13 +91,13 @@ CagStatus cag_quaternion(const double wxyz[4], CagTransform *out, CagError *err)
   return CAG_OK;
 }
 
-// --- Taking apart ---
+// --- Decomposition ---
 
-// The rotation within a similarity that does not mirror.
+// The rotation of a similarity without reflection.
 static CagStatus rotation_part(const CagTransform *t, double r[3][3], CagError *err) {
   double scale, w = t->m[3][3];
   if (!cag_transform_is_similarity(t, &scale)) {
-    // A long chain of products is allowed more rounding than is_similarity gives.
+    // More rounding is accepted than by is_similarity, for long chains of products.
     CagVec3 c[3];
     for (int j = 0; j < 3; j++) c[j] = cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
     double aa = cag_dot(c[0], c[0]);
@@ -202,7 +202,7 @@ CagStatus cag_axis_angle_of(const CagTransform *t, CagVec3 *axis, double *angle,
   *singular = s == 0;
   *axis = *singular ? cag_vec3(0, 0, 1) : cag_unit(v);
   *angle = 2 * atan2(s, q[0]);
-  // Half a turn goes about the axis and about its opposite: the one with its first part positive.
+  // A half turn has two axes: choose the one whose first nonzero component is positive.
   double first = v.x != 0 ? v.x : v.y != 0 ? v.y : v.z;
   if (q[0] == 0 && first < 0) *axis = cag_scaled(*axis, -1);
   return CAG_OK;
@@ -220,7 +220,7 @@ static CagStatus require_rigid(const CagTransform *t, const char *name, CagError
 
 CagStatus cag_transform_mix(const CagTransform *a, const CagTransform *b, double t,
                             CagTransform *out, CagError *err) {
-  // Angle under which slerp and straight mixing are the same to rounding.
+  // Angle below which slerp and linear interpolation agree to rounding.
   const double straight = 1e-8;
   double p[4], q[4], m[4];
   if (!isfinite(t)) return fail_not_finite("t", err);

@@ -1,9 +1,9 @@
 // The tolerances that most of the core shares.
 //
-// They are fractions of the size of the data, or sines of angles, so results do not depend on units.
-// A double has a relative error of 1e-16. Three levels follow from it:
+// They are fractions of the size of the data, or sines of angles, so results do not depend on
+// units. A double has a relative error of 1e-16. Three levels follow from it:
 //
-// - CAG_ROUNDING is what rounding leaves after some thousand operations, with a margin of 10. Values
+// - CAG_ROUNDING is the rounding error of some thousand operations, with a margin of 10. Values
 //   that should be 0 and are below it are 0.
 // - CAG_COINCIDENT is where two points, lengths, or parameters count as one that were computed in
 //   different ways, or written in a file or a script with ten digits or more.

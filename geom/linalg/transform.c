@@ -1,7 +1,7 @@
-// 4x4 transforms: products, images, inverses, and the elementary maps that are not turns.
+// 4x4 transforms: products, images, inverses, and elementary maps other than rotations.
 //
-// Special angles and axes give exact matrices: a quarter turn is made of 0 and 1, so that a mesh
-// turned four times is the mesh itself.
+// Special angles and axes give exact matrices: a quarter turn consists of 0 and 1, so that a mesh
+// rotated four times is identical to the original.
 
 #include "geom/linalg/transform.h"
 #include "geom/linalg/tolerance.h"
@@ -9,10 +9,9 @@
 #include <float.h>
 #include <string.h>
 
-// Relative size of a determinant under which a matrix counts as singular: what is left of one after
-// the rounding of its entries.
+// A matrix is singular if its relative determinant is below this, the rounding of its entries.
 #define SINGULAR 1e-14
-// Deviation from a similarity that the rounding of a few products leaves.
+// Accepted deviation from a similarity: the rounding of a few products.
 #define SIMILAR CAG_ROUNDING
 
 // --- Angles ---
@@ -27,7 +26,8 @@ void cag_sincos(double angle, double *sine, double *cosine) {
                                   0.96592582628906828675,
                                   1};
   const double step = M_PI / 12;
-  // A multiple computed in degrees and scaled is a few roundings away from the nearest double.
+  // A multiple that was computed in degrees and converted is a few roundings away from the nearest
+  // double.
   const double slack = 4 * DBL_EPSILON * fabs(angle);
   const double farthest = 1e6; // steps; beyond, the slack would reach into ordinary angles
   double k = nearbyint(angle / step);
@@ -144,7 +144,7 @@ static CagStatus fail_singular(CagError *err) {
       "so that no transform undoes it");
 }
 
-// Adjugate of the linear part over its determinant: exact where the numbers are.
+// Adjugate of the linear part over its determinant: exact if the numbers are.
 static CagStatus invert_affine(const CagTransform *t, CagTransform *out, CagError *err) {
   CagVec3 a = column(t, 0), b = column(t, 1), c = column(t, 2), d = column(t, 3);
   double det = linear_determinant(t);
@@ -245,13 +245,13 @@ static CagStatus nonzero_vec(CagVec3 v, const char *name, CagError *err) {
                   "`%s` is the zero vector, which has no direction", name);
 }
 
-// Unit vector that is exact along an axis.
+// Unit vector, exact if it is along an axis.
 static CagVec3 direction(CagVec3 v) {
   double size = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
   return cag_unit((CagVec3){v.x / size, v.y / size, v.z / size});
 }
 
-// Sets the position so that `about` stays where it is under the linear part.
+// Sets the translation so that `about` is a fixed point.
 static void fix_point(CagTransform *t, CagVec3 about) {
   CagVec3 d = cag_sub(about, cag_transform_vector(t, about));
   t->m[0][3] = d.x;
@@ -364,7 +364,7 @@ CagStatus cag_plane(CagVec3 point, CagVec3 normal, CagPlane *out, CagError *err)
 }
 
 CagStatus cag_plane_through(CagVec3 p, CagVec3 q, CagVec3 r, CagPlane *out, CagError *err) {
-  // Sine of the angle at P under which the three points count as on one line.
+  // Sine of the angle at P below which the three points are collinear.
   const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(p, "P", err);
   if (!status) status = finite_vec(q, "Q", err);
@@ -396,7 +396,7 @@ void cag_plane_row(const CagPlane *p, double row[4]) {
   row[3] = -cag_dot(p->normal, p->point) + 0.0;
 }
 
-// The row of a plane goes with the inverse from the right.
+// The row of a plane is multiplied by the inverse from the right.
 CagStatus cag_plane_transform(const CagPlane *p, const CagTransform *t, CagPlane *out,
                               CagError *err) {
   CagTransform inverse;
@@ -412,7 +412,7 @@ CagStatus cag_plane_transform(const CagPlane *p, const CagTransform *t, CagPlane
   CagPlane r;
   status = cag_plane_from_row(image, &r, err);
   if (status) return status;
-  // The plane's own point stays its point wherever it has an image.
+  // Keep the image of the plane's point as its point, if it has one.
   CagVec3 q = cag_transform_point(t, p->point);
   if (isfinite(q.x) && isfinite(q.y) && isfinite(q.z)) r.point = q;
   *out = r;
@@ -440,7 +440,8 @@ CagStatus cag_project_parallel(const CagPlane *onto, CagVec3 along, CagTransform
   return CAG_OK;
 }
 
-// M = (row . from) I - from row, whose image of p is the point of the line from-p in the plane.
+// M = (row . from) I - from row, which maps p to the intersection of the line from-p with the
+// plane.
 CagStatus cag_project_central(const CagPlane *onto, CagVec3 from, CagTransform *out,
                               CagError *err) {
   CagStatus status = finite_vec(from, "from", err);
@@ -471,7 +472,7 @@ static CagTransform frame_of(CagVec3 x, CagVec3 y, CagVec3 z, CagVec3 origin) {
 }
 
 CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagError *err) {
-  // Sine of the angle between the axes under which y gives no direction beside x.
+  // Sine of the angle between the axes below which y does not determine a direction.
   const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(origin, "origin", err);
   if (!status) status = nonzero_vec(x, "x", err);
@@ -487,7 +488,7 @@ CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagE
   return CAG_OK;
 }
 
-// z looks from `from` to `to`, y is as far down as it can be: x is to the right.
+// z points from `from` to `to`, y as far down as possible, and x to the right.
 CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, CagError *err) {
   const double flat = CAG_ROUNDING;
   CagStatus status = finite_vec(from, "from", err);

@@ -1,7 +1,7 @@
-// 4x4 homogeneous transforms on column vectors, and everything that makes one or takes one apart.
+// 4x4 homogeneous transforms on column vectors: constructors, composition, and decomposition.
 //
-// Angles are radians. m[row][column]. `planar`: made of 2-D data alone, so plane things stay plane
-// under it.
+// Angles are radians. m[row][column]. `planar`: made from 2-D data only, so plane objects stay
+// plane under it.
 
 #ifndef CAG_GEOM_TRANSFORM_H
 #define CAG_GEOM_TRANSFORM_H
@@ -14,19 +14,19 @@ typedef struct CagTransform {
   bool planar;
 } CagTransform;
 
-// Sine and cosine of an angle in radians, exact (0, +-1/2, +-1 ...) where the angle is a double
+// Sine and cosine of an angle in radians, exact (0, +-1/2, +-1 ...) if the angle is the double
 // nearest to a multiple of pi/12.
 void cag_sincos(double angle, double *sine, double *cosine);
 
 CagTransform cag_transform_identity(void); // planar
 CagTransform cag_transform_multiply(const CagTransform *a,
                                     const CagTransform *b); // applies b first
-// Image of a point, divided by w (a point at infinity gives infinite coordinates); of a vector (not
-// moved).
+// Image of a point, divided by w (infinite coordinates for a point at infinity); image of a vector
+// (not translated).
 CagVec3 cag_transform_point(const CagTransform *t, CagVec3 p);
 CagVec3 cag_transform_vector(const CagTransform *t, CagVec3 v);
-// Derivatives 0..order of a point that moves become those of its image: those of the homogeneous
-// coordinates, and the quotient rule. False: the point goes to infinity.
+// Replaces derivatives 0..order of a moving point by those of its image, using homogeneous
+// coordinates and the quotient rule. Returns false if the image is at infinity.
 #define CAG_TRANSFORM_ORDER 16
 bool cag_transform_derivatives(const CagTransform *t, int order, CagVec3 *d);
 void cag_transform_homogeneous(const CagTransform *t, const double h[4], double out[4]);
@@ -35,16 +35,18 @@ CagStatus cag_transform_inverse(const CagTransform *t, CagTransform *out,
 double cag_transform_determinant(const CagTransform *t); // of the 4x4
 bool cag_transform_is_affine(const CagTransform *t);     // last row is [0 0 0 w]
 bool cag_transform_is_similarity(
-    const CagTransform *t, double *scale); // uniform scale (mirrors too), exactly or to rounding
+    const CagTransform *t, double *scale); // uniform scale, with or without reflection, exactly or
+                                           // to rounding
 bool cag_transform_mirrors(const CagTransform *t); // determinant of the linear part < 0
 
 CagTransform cag_translate(CagVec3 v);
-// Rotation by `angle` about the axis through `about`, right-hand sense. Fails on a zero axis.
+// Rotation by `angle` (right-hand rule) about the axis through the point `about`. Fails for a zero
+// axis.
 CagStatus cag_rotate(CagVec3 axis, double angle, CagVec3 about, CagTransform *out, CagError *err);
 CagStatus cag_scale(CagVec3 factors, CagVec3 about, CagTransform *out, CagError *err);
 CagStatus cag_reflect(CagVec3 normal, CagVec3 through, CagTransform *out, CagError *err);
 CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out,
-                           CagError *err); // line of the XY plane
+                           CagError *err); // line in the XY plane
 CagTransform cag_reflect_point(CagVec3 p);
 CagTransform cag_shear(double xy, double xz, double yx, double yz, double zx, double zy);
 
@@ -60,12 +62,12 @@ CagStatus cag_plane_transform(const CagPlane *p, const CagTransform *t, CagPlane
                               CagError *err);
 
 CagStatus cag_project_parallel(const CagPlane *onto, CagVec3 along, CagTransform *out,
-                               CagError *err); // along zero: at right angles
+                               CagError *err); // along zero: perpendicular to the plane
 CagStatus cag_project_central(const CagPlane *onto, CagVec3 from, CagTransform *out, CagError *err);
 CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out,
                    CagError *err); // orthonormal: y is made perpendicular to x
 CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, CagError *err);
-// Turns about the moving axes that `order` names ("zyx", "zyz" ...: all 12).
+// Rotations about the moving axes named by `order` ("zyx", "zyz" ...: all 12).
 CagStatus cag_euler(double a, double b, double c, const char *order, CagTransform *out,
                     CagError *err);
 CagTransform cag_rpy(double roll, double pitch, double yaw);
@@ -74,31 +76,32 @@ CagStatus cag_quaternion(const double wxyz[4], CagTransform *out,
 CagTransform cag_dh(double theta, double d, double a, double alpha);
 CagTransform cag_mdh(double theta, double d, double a, double alpha);
 
-// Inverses of these; `singular` is set at gimbal lock, where the documented branch is taken (c = 0,
-// or yaw = 0).
+// The inverses of these; `singular` is set at gimbal lock, and the documented branch is chosen (c =
+// 0, or yaw = 0).
 CagStatus cag_euler_of(const CagTransform *t, const char *order, double abc[3], bool *singular,
                        CagError *err);
 CagStatus cag_rpy_of(const CagTransform *t, double rpy[3], bool *singular, CagError *err);
 CagStatus cag_axis_angle_of(const CagTransform *t, CagVec3 *axis, double *angle, bool *singular,
                             CagError *err);
 CagStatus cag_quaternion_of(const CagTransform *t, double wxyz[4], CagError *err); // w >= 0
-// Slerp of the rotations, linear between the positions; both must be rigid.
+// Slerp of the rotations, linear interpolation of the positions; both must be rigid.
 CagStatus cag_transform_mix(const CagTransform *a, const CagTransform *b, double t,
                             CagTransform *out, CagError *err);
-// Transform by 2 (similarity) or 3 (affine) point pairs of the plane, 4 (affine) of space, or 4
-// plane pairs (projective) when `planar`.
+// The transform that maps points to images: 2 (similarity) or 3 (affine) pairs in the plane, 4
+// (affine) in space, or 4 pairs in the plane (projective) if `planar`.
 CagStatus cag_transform_from(const CagVec3 *points, const CagVec3 *images, size_t n, bool planar,
                              CagTransform *out, CagError *err);
 
 typedef struct CagTransformClass {
   const char *name;  // "rigid" "mirror" "similarity" "affine" "projective"
   double scale;      // of a similarity, else 1
-  bool has_rotation; // axis and angle are meant
+  bool has_rotation; // axis and angle are set
   CagVec3 axis;
   double angle;
   const char *fixed; // "all" "plane" "line" "point" "none"
   CagVec3 fixed_point,
-      fixed_direction; // a point of the fixed set; direction of a line, normal of a plane
+      fixed_direction; // a point of the fixed set; direction of a fixed line, normal of a fixed
+                       // plane
 } CagTransformClass;
 CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, CagError *err);
 

@@ -1,4 +1,4 @@
-// Points and vectors of space.
+// Points and vectors in space.
 
 #ifndef CAG_GEOM_VEC_H
 #define CAG_GEOM_VEC_H

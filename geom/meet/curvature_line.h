@@ -5,9 +5,10 @@
 
 #include "geom/surface/surface.h"
 
-// The principal curvatures, k[0] <= k[1], signed by the normal along S_u x S_v, and their
-// directions as unit vectors a S_u + b S_v with (a, b) in `step`. False where the surface has no
-// normal, or both are one (an umbilic; k is set then) and no direction is singled out.
+// The principal curvatures, k[0] <= k[1], signed by the normal along S_u x S_v, and the principal
+// directions as unit vectors a S_u + b S_v with (a, b) in `step`. *found is false if the surface
+// has no normal, or at an umbilic, where both curvatures are equal (k is still set) and there are
+// no unique directions.
 typedef struct CagPrincipal {
   CagVec3 point;
   double k[2];
@@ -17,11 +18,11 @@ typedef struct CagPrincipal {
 CagStatus cag_surface_principal(const CagSurface *s, double u, double v, bool *found,
                                 CagPrincipal *out, CagError *err);
 
-// The line of the larger (`larger`) or smaller principal curvature through a place, to both sides
-// until it comes back, leaves the surface, or meets an umbilic. A pole of the parameters where the
-// surface is smooth it passes over, straight on, if it leads right into it. Fails with "umbilic"
-// where the place is one. Exact where it is a line or an arc of a conic; else cubics, to about 1e-8
-// of its size.
+// The line of the larger (`larger`) or smaller principal curvature through a point, extended in
+// both directions until it closes, leaves the surface, or reaches an umbilic. It passes straight
+// over a pole of the parametrization if the surface is smooth there and the line leads right into
+// the pole. Fails with "umbilic" if the point is an umbilic. Exact if the line is a straight line
+// or an arc of a conic; else cubics, accurate to about 1e-8 of its size.
 CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bool larger,
                                      CagCurve **out, CagError *err);
 

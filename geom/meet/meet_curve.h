@@ -1,4 +1,4 @@
-// Where a curve meets a surface: all places, crossings and touches.
+// Intersections of a curve with a surface: all crossings and tangencies.
 
 #ifndef CAG_GEOM_MEET_MEET_CURVE_H
 #define CAG_GEOM_MEET_MEET_CURVE_H
@@ -8,11 +8,11 @@
 typedef struct CagSurfaceMeeting {
   double t, u, v;
   CagVec3 point;
-  int multiplicity; // 1: it crosses; the order of contact where it touches
+  int multiplicity; // 1: it crosses; else the order of contact
 } CagSurfaceMeeting;
 
-// Ascending by t; *out is malloc'd (NULL where there are none). Seams and joints count once. Fails
-// with "overlap" where the curve runs within the surface.
+// Ascending by t; *out is malloc'd (NULL if there are none). Seams and joints count once. Fails
+// with "overlap" if a part of the curve lies in the surface.
 CagStatus cag_surface_intersect_curve(const CagSurface *s, const CagCurve *c,
                                       CagSurfaceMeeting **out, size_t *n, CagError *err);
 

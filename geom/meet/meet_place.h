@@ -14,11 +14,12 @@ typedef struct CagMarchTangent {
   CagVec3 p, du, dv, normal;
 } CagMarchTangent;
 
-// Evaluates the partials of side k up to the order, as cag_surface_eval does, on the node's patch.
+// Evaluates the partials of side k up to the given order, like cag_surface_eval, on the node's
+// patch.
 bool cag_march_partials(CagMarch *m, int k, const CagMarchNode *node, int order, CagVec3 *out);
-// What side k is like at the node, seen from the node's patch.
+// The tangent plane of side k at the node, on the node's patch.
 bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out);
-// Moves the parameters so that the point comes to x, as far as the tangent plane tells.
+// Moves the parameters so that the point comes to x, to first order.
 void cag_march_move(CagMarch *m, int k, const CagMarchTangent *t, CagVec3 x, CagMarchNode *node);
 // Tests whether the node lies within the outline of side k, or of both sides.
 bool cag_march_belongs_to(CagMarch *m, int k, const CagMarchNode *node, bool *out);
@@ -30,12 +31,12 @@ CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVe
 CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
                                      CagMarchNode *node);
 
-// Where the surfaces are nearly parallel they may cross around a summit of the gap between them.
-// Estimates up to 4 places of such crossings within the reach, and returns how many.
+// Nearly parallel surfaces may intersect in a small loop around an extremum of the gap between
+// them. Estimates up to 4 points of such loops within the reach, and returns their number.
 size_t cag_march_find_round(CagMarch *m, const CagMarchNode *seed, double reach,
                             CagMarchNode out[4]);
-// Where the surfaces cross at a small angle, they may cross again beside the node. Estimates that
-// place from the curvatures. False: there is none within the reach, or the status is set.
+// Surfaces that cross at a small angle may cross again close to the node. Estimates that location
+// from the curvatures. Returns false if there is none within the reach, or if the status is set.
 bool cag_march_find_twin(CagMarch *m, const CagMarchNode *node, double reach, CagMarchNode *out);
 
 #endif

@@ -1,5 +1,5 @@
-// The seeds from which the curves in which two surfaces meet are marched: points where the
-// triangles of their meshes meet or are close to each other.
+// Seeds for marching intersection curves of two surfaces: points where the triangles of their
+// meshes intersect or are close to each other.
 
 #ifndef CAG_GEOM_MEET_MEET_SEED_H
 #define CAG_GEOM_MEET_MEET_SEED_H
@@ -9,15 +9,15 @@
 
 typedef struct CagMarchSide {
   const CagSurface *s;
-  const CagRegion *region; // its inside belongs; NULL: all
+  const CagRegion *region; // only its inside counts; NULL: the whole surface
   CagMesh *mesh;
   CagPatches patches;
 } CagMarchSide;
 
 typedef struct CagMarchNode {
   CagVec3 x, tangent; // unit
-  double at[2][2];    // u, v on each
-  size_t patch[2][2]; // they lie in, by u and v
+  double at[2][2];    // u, v on each surface
+  size_t patch[2][2]; // the patches that contain them, by u and v
 } CagMarchNode;
 
 typedef struct CagMarchSeeds {
@@ -47,17 +47,17 @@ struct CagMarch {
   CagMarchLocate *locate;           // locates crossings or touches
   const volatile int *interrupt;
   CagError *err;
-  CagStatus status; // of what failed for good
+  CagStatus status; // of the failure that ends the march
 };
 
-// Gives false, with the status of what failed for good.
+// Records the status of a permanent failure; returns false.
 bool cag_march_fail(CagMarch *m, CagStatus status);
-// The range of the node's patch of side k in a direction: two values.
+// The range of the node's patch on side k in a direction: two values.
 const double *cag_march_range(const CagMarch *m, int k, const CagMarchNode *node, int direction);
 bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed);
-// Adds seeds with their parameters on both sides. Crossings are where triangles meet. Touches are
-// where triangles with nearly the same direction are within `margin` of each other, one for each
-// cell of space.
+// Adds seeds with their parameters on both sides. Crossings are points where triangles intersect.
+// Touches are points where nearly parallel triangles are within `margin` of each other, one for
+// each cell of space.
 bool cag_march_find_seeds(CagMarch *m, double margin);
 
 #endif

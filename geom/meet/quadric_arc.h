@@ -1,4 +1,4 @@
-// The sides of the box that cuts a quadric, and the conics in which the quadric meets them.
+// The sides of the box that trims a quadric, and the conics in which they intersect it.
 
 #ifndef CAG_GEOM_MEET_QUADRIC_ARC_H
 #define CAG_GEOM_MEET_QUADRIC_ARC_H
@@ -13,11 +13,11 @@
 CagTransform cag_box_side_frame(const CagBounds *box, int side, bool mirrored,
                                 CagBounds *rectangle);
 
-// A stretch of an outline is at most so many arcs.
+// Maximum number of arcs for a stretch of an outline.
 #define CAG_QUADRIC_ARCS 64
 
-// Gives the stretch a..b of a loop of a trimmed quadric as exact arcs of a conic or a line, if it
-// lies on a side of the box or range that cut the quadric. *n is 0 if it does not, or if the
+// Returns the stretch a..b of a loop of a trimmed quadric as exact arcs of a conic or a line, if it
+// lies on a side of the box or range that trims the quadric. *n is 0 if it does not, or if the
 // surface is not from cag_quadric_patches. `loop` is the loop in space.
 CagStatus cag_quadric_side_arcs(const CagSurface *s, const CagCurve *loop, double a, double b,
                                 CagCurve *out[CAG_QUADRIC_ARCS], size_t *n, CagError *err);

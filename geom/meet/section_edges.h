@@ -14,9 +14,9 @@ CagStatus cag_section_edges(const CagSurface *s, const CagPlane *plane, double s
 // surface.
 CagStatus cag_section_touches(const CagSurface *s, const CagPlane *plane, const CagBounds *box,
                               double tolerance, CagCurveList *out, CagError *err);
-// Adds the circles in which a plane that touches a torus twice cuts it; a stretched torus has
-// ellipses. The surface may be a whole torus or a part of one, in any form. *is is set if the plane
-// is of this kind.
+// Adds the circles in which a bitangent plane cuts a torus (Villarceau circles), or ellipses for a
+// stretched torus. The surface may be a whole torus or a part of one, in any form. *is is set if
+// the plane is of this kind.
 CagStatus cag_section_villarceau(const CagSurface *s, const CagPlane *plane, double size,
                                  CagCurveList *out, bool *is, CagError *err);
 // Drops curves with index `first` or higher that run along another curve within `near`. Of two such

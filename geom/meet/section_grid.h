@@ -1,7 +1,7 @@
-// Curves on which a function of a surface is 0: the grid on a patch, and where it is crossed.
+// Zero curves of a function on a surface: the grid on a patch, and the crossings of its edges.
 //
-// A value of 0 counts as positive, so that curves along the grid, seams and poles need no care:
-// they run along the side of the cells that are negative.
+// A value of 0 counts as positive. Curves along grid lines, seams, and poles therefore need no
+// special case: they run on the negative side, inside the cells.
 
 #ifndef CAG_GEOM_MEET_SECTION_GRID_H
 #define CAG_GEOM_MEET_SECTION_GRID_H
@@ -10,7 +10,7 @@
 
 #include "geom/meet/level_patch.h"
 
-// As often as the cells may be halved where the function is rough.
+// Maximum number of times that the cells are halved if the function is rough.
 #define CAG_TRACER_HALVINGS 3
 
 typedef struct CagTraceNode {
@@ -18,22 +18,22 @@ typedef struct CagTraceNode {
   CagVec3 p, t;
   bool regular;   // t is the tangent
   bool branching; // two branches cross there
-  bool flat;      // the function does not change there
+  bool flat;      // the function is stationary there
 } CagTraceNode;
 
 typedef struct CagTracer {
   const CagSurface *s;
   const CagLevel *level;
-  CagLevelPatch patch;     // what is traced now: all of the surface where the function is not sided
-  const CagRegion *region; // of a trimmed surface; NULL: all of the rectangle belongs to it
+  CagLevelPatch patch;     // the current patch; the whole surface if the function is not sided
+  const CagRegion *region; // of a trimmed surface; NULL: the whole rectangle belongs to it
   double tolerance, size;
-  double zero_beside; // what is rounding beside a pole
+  double zero_beside; // magnitude of rounding errors next to a pole
   double *lines[2];
   size_t n[2];     // grid lines
-  size_t cells[2]; // as many as there were before they were halved
+  size_t cells[2]; // their number before halving
   size_t finer;
   bool torn;      // a run has a gap
-  int branchings; // found between two crossings
+  int branchings; // found between two crossings of a run
   double *values;
   // Crossings of the edges along u (first) and along v.
   size_t edge_count;
@@ -47,26 +47,26 @@ typedef struct CagTracer {
   CagError *err;
 } CagTracer;
 
-// The value, 0 where it is rounding; and what is rounding there.
+// The value, or 0 if it is within rounding; and the bound used for that.
 double cag_tracer_settled(CagTracer *t, double u, double v);
 double cag_tracer_zero(const CagTracer *t, double u, double v);
-// Point and tangent at the node's parameters; gives the value and its gradient.
+// Sets point and tangent at the node's parameters; returns the value and its gradient.
 double cag_tracer_inspect(CagTracer *t, CagTraceNode *node, double gradient[2]);
-// Goes from the node by Newton's method, within hu and hv of it, to where the gradient vanishes.
+// Finds a critical point of the function by Newton's method from the node, within hu and hv of it.
 // The determinant of the second derivatives is negative at a saddle.
 bool cag_tracer_critical(CagTracer *t, CagTraceNode *node, double hu, double hv, double *bend,
                          double *determinant);
-// The zero between two places with the values f0 and f1, of which one is negative.
+// The zero between two points with the values f0 and f1, exactly one of which is negative.
 void cag_tracer_crossing(CagTracer *t, double u0, double v0, double f0, double u1, double v1,
                          double f1, CagTraceNode *out);
 
-// The grid over the patch, twice as fine (from `finer` times) until the function is smooth from one
-// line to the next. These give false when out of memory or with a status.
+// Makes the grid on the patch, refined `finer` times and further until the function is smooth from
+// one line to the next. These return false if memory ran out or the status is set.
 bool cag_tracer_make_grid(CagTracer *t, size_t finer);
-// The values at the crossings of its lines, again.
+// Evaluates the function at the grid points again.
 bool cag_tracer_fill(CagTracer *t);
 double cag_tracer_largest(const CagTracer *t);
-// Adds lines through loops that are smaller than a cell, and finds and links the crossings.
+// Adds lines through loops smaller than a cell, and finds and links the crossings.
 bool cag_tracer_link(CagTracer *t);
 
 #endif

@@ -1,22 +1,23 @@
-// What is made of traced runs: joined where they go on, with a tangent at each point.
+// Joins traced runs end to end, and computes tangents at their points.
 
 #ifndef CAG_GEOM_MEET_SECTION_JOIN_H
 #define CAG_GEOM_MEET_SECTION_JOIN_H
 
 #include "geom/meet/section.h"
 
-// cos 40 degrees: where chords turn by more, a run has a corner.
+// cos 40 degrees: a run has a corner where its chords turn by more.
 #define CAG_TRACE_CORNER 0.766
 
-// How runs are joined: points nearer than `same` are one. Tangents tell whether one goes on
-// smoothly, and where they are unknown the chords do, unless `sided`: then specks are dropped.
+// Options for joining runs. Points closer than `same` are identified. Tangents decide whether a run
+// continues smoothly; where they are unknown chords decide, unless `sided`, which drops tiny runs
+// instead.
 typedef struct CagTraceJoint {
   double same, size, tolerance;
   bool sided;
 } CagTraceJoint;
 
 void cag_trace_free(CagTrace *t);
-// False: no memory.
+// False: out of memory.
 bool cag_traces_join(CagTraces *t, const CagTraceJoint *how);
 
 #endif

@@ -1,4 +1,4 @@
-// Distances and nearest points from a point to a segment and to a triangle of space.
+// Distances and nearest points from a point to a segment and to a triangle in space.
 
 #ifndef CAG_GEOM_MESH_DISTANCE_H
 #define CAG_GEOM_MESH_DISTANCE_H
@@ -14,17 +14,17 @@ static inline double cag_distance_to_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
   return cag_norm(cag_sub(ap, cag_scaled(ab, t)));
 }
 
-// Is a triangle so thin that rounding turns its plane? Then its edges speak for it: they are nearer
-// than its height. With corners off by e and the longest edge l, the plane of a triangle of height
-// h is off by l e / h at its ends; that is more than h where h is below sqrt(e l). n: the cross
-// product of the edges from a.
+// Whether a triangle is so thin that its plane is determined by rounding. Then the distances of its
+// edges are used instead, which is off by less than its height. With corners off by e and longest
+// edge l, the plane of a triangle of height h is off by l e / h at its ends; that is more than h if
+// h is below sqrt(e l). n: the cross product of the edges from a.
 static inline bool cag_triangle_is_thin(CagVec3 a, CagVec3 ab, CagVec3 ac, CagVec3 n) {
-  const double rounding = 16 * 2.220446049250313e-16; // of coordinates, by their evaluation
+  const double rounding = 16 * 2.220446049250313e-16; // relative, of the evaluated coordinates
   double area2 = cag_dot(n, n), l2 = fmax(cag_dot(ab, ab), cag_dot(ac, ac));
   return !(area2 * area2 > rounding * rounding * (cag_dot(a, a) + l2) * (l2 * l2 * l2));
 }
 
-// Also of triangles that are a segment or a point.
+// Handles triangles that degenerate to a segment or a point.
 static inline double cag_distance_to_triangle(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c) {
   CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
   bool inside = cag_dot(cag_cross(ab, ap), n) >= 0 && cag_dot(cag_cross(ap, ac), n) >= 0 &&
@@ -42,7 +42,8 @@ static inline CagVec3 cag_nearest_of_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
   return length2 > 0 ? cag_madd(a, fmin(1, fmax(0, along / length2)), way) : a;
 }
 
-// The foot of p in the plane of the triangle, if it is inside. False: it is not.
+// The perpendicular foot of p in the plane of the triangle. Returns false if it is outside the
+// triangle.
 static inline bool cag_foot_in_triangle(CagVec3 p, const CagVec3 t[3], CagVec3 *foot) {
   const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
   if (cag_triangle_is_thin(t[0], ab, ac, n)) return false;

@@ -1,5 +1,5 @@
-// Numbers without rounding: whole numbers of any length times a power of two. Every double is one,
-// and sums and products stay exact; a quotient is rounded once, correctly.
+// Exact numbers: integers of any length times a power of two. Every double is such a number, and
+// sums and products are exact; quotients are rounded once, correctly.
 
 #ifndef CAG_GEOM_MESH_EXACT_H
 #define CAG_GEOM_MESH_EXACT_H
@@ -8,23 +8,23 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// sign * sum(limb[i] 2^(64 i)) * 2^exponent. Zero has no limbs; else the first and the last are not
-// zero. The limbs belong to the space that the number was made in.
+// sign * sum(limb[i] 2^(64 i)) * 2^exponent. Zero has no limbs; otherwise the first and the last
+// limb are nonzero. The limbs belong to the space in which the number was made.
 typedef struct CagExact {
   const uint64_t *limb;
   int n, exponent, sign;
 } CagExact;
 
-// Room for the numbers of one computation; used = 0 frees them all. Where it does not suffice,
-// `full` is set and the numbers are wrong, but memory is safe as long as no single number needs
-// more than `size`.
+// Memory for the numbers of one computation; used = 0 frees them all. If it is too small, `full` is
+// set and the numbers are wrong, but memory is safe as long as no single number needs more than
+// `size`.
 typedef struct CagExactSpace {
   uint64_t *limbs;
   size_t used, size;
   bool full;
 } CagExactSpace;
 
-CagExact cag_exact(CagExactSpace *s, double x); // x finite
+CagExact cag_exact(CagExactSpace *s, double x); // x must be finite
 CagExact cag_exact_sum(CagExactSpace *s, CagExact a, CagExact b);
 CagExact cag_exact_product(CagExactSpace *s, CagExact a, CagExact b);
 static inline CagExact cag_exact_negative(CagExact a) {
@@ -38,8 +38,8 @@ static inline CagExact cag_exact_difference(CagExactSpace *s, CagExact a, CagExa
 CagExact cag_exact_step(CagExactSpace *s, double a, double b);
 // a d - b c
 CagExact cag_exact_minor(CagExactSpace *s, CagExact a, CagExact b, CagExact c, CagExact d);
-// The double nearest to x / w, w > 0; of two as near the lower one; 0 below 2^-960. Equal quotients
-// give equal doubles, and larger ones never smaller doubles.
+// The double nearest to x / w, w > 0; the lower one in a tie; 0 below 2^-960. Equal quotients give
+// equal doubles, and the result is monotone.
 double cag_exact_quotient(CagExactSpace *s, CagExact x, CagExact w);
 
 #endif

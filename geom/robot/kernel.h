@@ -1,7 +1,8 @@
-// The innermost loops of robots: sines of all joints at once, and one stage of a chain.
+// The innermost loops of robot kinematics: sines of all joint angles at once, and one stage of a
+// chain.
 //
-// A frame is kept by its columns, so that a turn about its own z or x mixes two of them. All is
-// inline: forward kinematics, Jacobians and the inverse solver are sequences of these.
+// A frame is stored by columns, so that a rotation about its own z or x axis mixes two of them.
+// Everything is inline: forward kinematics, Jacobians, and the inverse solver are built from these.
 
 #ifndef CAG_GEOM_ROBOT_KERNEL_H
 #define CAG_GEOM_ROBOT_KERNEL_H
@@ -41,7 +42,8 @@ static inline void cag_robot_frame_to(const CagRobotFrame *f, CagTransform *t) {
                       false};
 }
 
-// Multiplies the frame by a stage's matrix from the right; sine and cosine are of its turn.
+// Multiplies the frame by a stage's matrix from the right; sine and cosine are those of its
+// rotation.
 static inline void cag_robot_advance(CagRobotFrame *f, const CagRobotStage *s, double sine,
                                      double cosine, double q) {
   CagVec3 x = cag_madd(cag_scaled(f->x, cosine), sine, f->y);
@@ -63,14 +65,14 @@ static inline void cag_robot_advance(CagRobotFrame *f, const CagRobotStage *s, d
 #undef COLUMN
 }
 
-// Sines and cosines of all joints' angles, within 1.5 units in the last place, and exact where an
-// angle is a multiple of a quarter turn to a few roundings. Straight-line code, so that the
-// compiler does several joints at once: the quadrant is read off the bits of a shifted number, the
-// remainder within an eighth turn goes into the polynomials of fdlibm.
+// Sines and cosines of all joint angles, within 1.5 units in the last place, and exact if an angle
+// is within a few roundings of a multiple of a quarter turn. Straight-line code that the compiler
+// can vectorize: the quadrant is read from the bits of a shifted number, and the remainder, within
+// an eighth of a turn, is evaluated by the polynomials of fdlibm.
 static inline void cag_robot_sines(const double *angle, size_t n, double *sine, double *cosine) {
   const double to_quarters = 6.36619772367581382433e-01;
-  const double shifter = 6755399441055744.0; // 1.5 * 2^52: leaves the nearest whole number
-  // A quarter turn in three parts, the first two of 33 bits, so that small multiples are exact.
+  const double shifter = 6755399441055744.0; // 1.5 * 2^52: adding it rounds to the nearest integer
+  // A quarter turn in three parts, the first two with 33 bits, so that small multiples are exact.
   const double part1 = 1.57079632673412561417e+00, part2 = 6.07710050630396597660e-11,
                part3 = 2.02226624879595063154e-21;
   const double roundings = 4 * 2.220446049250313e-16;
@@ -94,7 +96,7 @@ static inline void cag_robot_sines(const double *angle, size_t n, double *sine, 
     c = 4.16666666666666019037e-02 + z * c;
     double half = 0.5 * z, rest = 1 - half;
     c = rest + (((1 - rest) - half) + z * z * c);
-    // Odd quadrants exchange the two; the second bit turns the signs.
+    // Odd quadrants swap sine and cosine; the second bit flips the signs.
     uint64_t odd = 0 - (quadrant & 1), a, b;
     memcpy(&a, &s, sizeof a);
     memcpy(&b, &c, sizeof b);
@@ -106,7 +108,7 @@ static inline void cag_robot_sines(const double *angle, size_t n, double *sine, 
   }
 }
 
-// Angles beyond which the parts of a quarter turn are too few.
+// For larger angles the three parts of a quarter turn are not precise enough.
 #define CAG_ROBOT_ANGLE_MAX 1e5
 
 static inline void cag_robot_turns(const CagRobot *r, const double *q, CagRobotTurns *t) {

@@ -1,42 +1,43 @@
-// Numerical inverse kinematics for every chain: damped least squares within the joint limits, with
-// restarts from a low-discrepancy sequence, so that a call gives the same answer every time.
+// Numerical inverse kinematics for arbitrary chains: damped least squares within the joint limits,
+// with restarts from a low-discrepancy sequence, so results are reproducible.
 //
-// Joint values are radians and lengths, q has joint_count of them.
+// Joint values are radians and lengths; q has joint_count of them.
 
 #ifndef CAG_GEOM_ROBOT_NUMERIC_H
 #define CAG_GEOM_ROBOT_NUMERIC_H
 
 #include "geom/robot/robot.h"
 
-// How a pose is looked for. Zeros are the usual.
+// Options of a search. Zeros are the defaults.
 typedef struct CagRobotSearch {
-  const double *near;        // where to start; NULL: home. Brought within the limits.
-  double position, rotation; // errors (length, radians) with which to be content; 0: 1e-9 of the
-                             // reach, 1e-9. What is found is always made as good as rounding lets.
-  bool position_only;        // the tool may be turned as it likes
-  size_t starts;             // most starts; 0: as many as the steps let
-  size_t steps;              // most steps of the iteration in all; 0: 8000
-  size_t alternatives; // after a solution so many further starts for ones that are nearer to `near`
-  bool stay_near; // chains with freedom to spare are moved towards `near` without moving the tool
+  const double *near;        // start values, clamped to the limits; NULL: home
+  double position, rotation; // accepted errors (length, radians); 0: 1e-9 of the reach, 1e-9.
+                             // Solutions are always refined to rounding accuracy.
+  bool position_only;        // the orientation of the tool is free
+  size_t starts;             // maximum number of starts; 0: as many as the steps allow
+  size_t steps;              // maximum number of iterations in total; 0: 8000
+  size_t alternatives; // after a solution, the number of further starts that look for ones closer
+                       // to `near`
+  bool stay_near;      // redundant chains are moved towards `near` without moving the tool
 } CagRobotSearch;
 
-// What was found: `q` lies within the limits, solution or not.
+// The result of a search: `q` lies within the limits even if no solution was found.
 typedef struct CagRobotFound {
   bool solved;
-  double position, rotation; // errors of the pose at q; the best of all starts when not solved
+  double position, rotation; // errors of the pose at q; if not solved, the best of all starts
   size_t steps;
 } CagRobotFound;
 
-// Never fails; `target` is rigid. q may be where search->near lies.
+// Never fails. `target` must be rigid. q may alias search->near.
 CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
                                const CagRobotSearch *search, double *q);
 
-// Distance of two poses: of their origins and of their rotations (the angle between).
+// Distance of two poses: between their origins, and the angle between their orientations.
 void cag_robot_pose_distance(const CagTransform *a, const CagTransform *b, double *position,
                              double *rotation);
-// Part of the rates dq that leaves the tool where it is: (I - J^+ J) dq.
+// The part of the rates dq that does not move the tool: (I - J^+ J) dq.
 void cag_robot_null_motion(const CagRobot *r, const double *q, const double *dq, double *out);
-// Point k >= 1 of a sequence that fills the joint limits evenly.
+// Point k >= 1 of a low-discrepancy sequence within the joint limits.
 void cag_robot_sequence(const CagRobot *r, size_t k, double *q);
 
 #endif

@@ -1,4 +1,4 @@
-// What the parts of making a closed shell share (shell.c, shell_split.c, shell_loop.c).
+// Shared by the parts of closed shell construction (shell.c, shell_split.c, shell_loop.c).
 
 #ifndef CAG_GEOM_SOLID_SHELL_H
 #define CAG_GEOM_SOLID_SHELL_H
@@ -19,7 +19,7 @@ typedef struct CagShellBoundary {
 typedef struct CagShellBoundaries {
   CagShellBoundary *at;
   size_t n;
-  double size, slack; // slack: edges that gape no more are one
+  double size, slack; // slack: edges with gaps up to this coincide
 } CagShellBoundaries;
 
 typedef struct CagShellLink {
@@ -32,7 +32,7 @@ typedef struct CagShellLinks {
   size_t n, room;
 } CagShellLinks;
 
-// Faces, each with the number that the caller knows it by.
+// Faces, each with the index under which the caller knows it.
 typedef struct CagShellFaces {
   CagSurface **at;
   size_t *origin;
@@ -44,19 +44,19 @@ CagStatus cag_shell_add_face(CagShellFaces *f, const CagSurface *face, size_t or
 void cag_shell_free_faces(CagShellFaces *f);
 CagStatus cag_shell_add_link(CagShellLinks *l, CagShellLink link, CagError *err);
 
-// Sense of a side as a part of the face's boundary: whether its parameter runs with the face on its
-// left (seen from outside).
+// Orientation of a side within the face's boundary: whether the face is on the left of its
+// parameter direction (seen from outside).
 static inline int cag_shell_sense(int side) { return side == 0 || side == 3 ? -1 : 1; }
 // Whether the boundary is a loop of a planar face.
 static inline bool cag_shell_is_loop(const CagShellBoundary *b) { return b->side >= 4; }
 
-// Cuts faces at the ends of other edges that lie within theirs. *split: there were some, and *out
-// is the new faces, the caller's own.
+// Splits faces at the ends of other faces' edges that lie within their own edges. *split: some were
+// split, and *out has the new faces, owned by the caller.
 CagStatus cag_shell_split(const CagShellBoundaries *all, const CagShellFaces *faces, bool *split,
                           CagShellFaces *out, CagError *err);
 
-// Pairs loops of planar faces with the sides of other faces that run along them, and their straight
-// pieces with each other. Adds edges to the solid, and links.
+// Pairs loops of planar faces with the sides of other faces that run along them, and straight
+// pieces of loops with each other. Adds edges to the solid, and links.
 CagStatus cag_shell_pair_loops(CagSolid *s, CagShellBoundaries *all, CagShellLinks *links,
                                CagError *err);
 

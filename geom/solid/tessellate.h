@@ -6,7 +6,7 @@
 #include "geom/solid/solid.h"
 #include "geom/tessellate/tessellate.h"
 
-// The boundary as a watertight mesh. Of a set operation, the mesh of the result.
+// The boundary as a watertight mesh; for a set operation, the mesh of the result.
 CagStatus cag_solid_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
                                CagError *err);
 

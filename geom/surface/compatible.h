@@ -1,5 +1,5 @@
-// Two NURBS curves brought to one degree, one domain and one knot vector, so that their control
-// points can be joined by rulings.
+// Brings two NURBS curves to a common degree, domain, and knot vector, so that their control points
+// can be joined by rulings.
 
 #ifndef CAG_GEOM_SURFACE_COMPATIBLE_H
 #define CAG_GEOM_SURFACE_COMPATIBLE_H
@@ -10,10 +10,10 @@ typedef struct CagCompatible {
   int degree;
   size_t count;
   double *knots;  // count + degree + 1, over 0..1
-  double *net[2]; // count x 4, homogeneous, of each curve
+  double *net[2]; // count x 4, homogeneous, for each curve
 } CagCompatible;
 
-// The curves need exact forms. Release with cag_compatible_free.
+// Both curves must have exact forms. Release with cag_compatible_free.
 CagStatus cag_curves_compatible(const CagCurve *a, const CagCurve *b, CagCompatible *out,
                                 CagError *err);
 void cag_compatible_free(CagCompatible *c);

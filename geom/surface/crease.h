@@ -1,4 +1,4 @@
-// The patches of a surface: what its creases, along which the normal jumps, cut it into.
+// Divides a surface into patches along its creases, across which the normal jumps.
 
 #ifndef CAG_GEOM_SURFACE_CREASE_H
 #define CAG_GEOM_SURFACE_CREASE_H
@@ -6,7 +6,7 @@
 #include "geom/surface/surface.h"
 
 // The ends of the patches along a direction (n + 1 values, to be freed): the edges of the surface
-// and the breaks where its normals jump, or all breaks.
+// and the breaks across which the normal jumps, or all breaks.
 CagStatus cag_surface_patch_ends(const CagSurface *s, bool all, int direction, double **out,
                                  size_t *n, CagError *err);
 
@@ -14,20 +14,20 @@ typedef struct CagPatches {
   const CagSurface *s;
   double *ends[2]; // n[d] + 1 of them
   size_t n[2];
-  bool wraps[2]; // one patch that goes on smoothly over the seam
+  bool wraps[2]; // the direction has a single patch that continues smoothly across the seam
 } CagPatches;
 
 CagStatus cag_patches_open(const CagSurface *s, CagPatches *out, CagError *err);
 void cag_patches_free(CagPatches *p);
-// The number of the patch about a parameter.
+// Index of the patch that contains a parameter.
 size_t cag_patches_find(const CagPatches *p, int direction, double x);
 
 typedef struct CagPatchPlace {
   size_t patch[2];
   double at[2];
 } CagPatchPlace;
-// The same place in all patches that have it: first as it is given. On their edges up to `near` of
-// a patch's width counts. The count, of at most 9.
+// The same point in all patches that contain it, the given patch first. Points within `near` of an
+// edge, relative to the patch's width, count as on the edge. Returns the number, at most 9.
 size_t cag_patches_beside(const CagPatches *p, const CagPatchPlace *place, double near,
                           CagPatchPlace out[9]);
 

@@ -1,23 +1,23 @@
-// Changes to a surface by its control points: corners, single points, the lines next to an edge;
-// and where a surface has creases.
+// Edits a surface by its control points (corners, single points, the rows next to an edge), and
+// finds creases.
 
 #ifndef CAG_GEOM_SURFACE_EDIT_H
 #define CAG_GEOM_SURFACE_EDIT_H
 
 #include "geom/surface/patches.h"
 
-// Points, tangents and twists at the four corners, by the true parameters.
+// Points, tangents, and twists at the four corners, as derivatives with respect to u and v.
 CagStatus cag_surface_corners(const CagSurface *s, CagHermiteCorners *out, CagError *err);
-// The same of a surface that is one bicubic patch, or of lower degrees, which these data determine.
-// Fails with "not-one-patch" (inner knots), "degree-too-high", "rational-patch".
+// The same for a surface that is one patch of degree 3 or lower in both directions, which these
+// data determine. Fails with "not-one-patch" (inner knots), "degree-too-high", "rational-patch".
 CagStatus cag_surface_hermite_corners(const CagSurface *s, CagHermiteCorners *out, CagError *err);
 
-// Control point [i, j] of the distinct ones is put to p, its weight too where it is not negative.
+// Sets control point [i, j] of the distinct ones to p, and its weight if not negative.
 CagStatus cag_surface_set_point(const CagSurface *s, size_t i, size_t j, CagVec3 p, double weight,
                                 CagSurface **out, CagError *err);
 
-// What becomes of the tangents by u and by v and of the twist at a corner, in this order: each is
-// multiplied by its factor, or becomes the vector.
+// Edit of the u tangent, the v tangent, and the twist at a corner, in this order: each is
+// multiplied by its factor, or replaced by the vector.
 typedef struct CagCornerEdit {
   int u, v; // which end: 0 or 1
   bool by_vector[3];
@@ -28,26 +28,26 @@ typedef struct CagCornerEdit {
 CagStatus cag_surface_edit_corner(const CagSurface *s, const CagCornerEdit *edit, CagSurface **out,
                                   CagError *err);
 
-// How a neighbor continues a surface A across an edge: B_across = ratio A_across + shear(t)
-// A_along, with the shear linear from one end of the edge to the other. Ratio 1 without shear is
-// C1, else the tangent planes agree (G1).
+// How a neighbor B continues a surface A across an edge: B_across = ratio A_across + shear(t)
+// A_along, with the shear linear along the edge. Ratio 1 without shear is C1; otherwise the tangent
+// planes agree (G1).
 typedef struct CagEdgeMatch {
   double ratio, shear[2];
 } CagEdgeMatch;
-// The first two lines of control points of a patch over 0..1 of the degree that continues s across
-// the side (0: u0, 1: u1, 2: v0, 3: v1), in the sense of the side's parameter: 2 x *count x 4
-// homogeneous numbers, malloc'd. Fails with "join-folds" (ratio not positive), "join-degenerate" (a
-// line that has no length across the edge), "join-shear" (shear on an edge of several pieces),
-// "negative-weight".
+// The first two rows of control points of a patch over 0..1 of the given degree that continues s
+// across the side (0: u0, 1: u1, 2: v0, 3: v1), in the direction of the side's parameter: 2 x
+// *count x 4 homogeneous numbers, malloc'd. Fails with "join-folds" (ratio not positive),
+// "join-degenerate" (a line of zero length across the edge), "join-shear" (shear on an edge with
+// several pieces), "negative-weight".
 CagStatus cag_surface_join_lines(const CagSurface *s, int side, int degree, const CagEdgeMatch *how,
                                  double **lines, size_t *count, CagError *err);
-// b with its two lines next to the edge that is nearest to one of a moved, so that it continues a
-// there. Sides: NULL, or one of each.
+// Moves the two rows of b next to its edge nearest to an edge of a, so that b continues a there.
+// Sides: NULL, or one of each.
 CagStatus cag_surface_match(const CagSurface *a, const CagSurface *b, const CagEdgeMatch *how,
                             const int sides[2], CagSurface **out, CagError *err);
 
-// A line u = at (direction 0) or v = at on which the tangents from both sides differ by up to this
-// angle (radians).
+// A line u = at (direction 0) or v = at across which the tangents differ by up to this angle
+// (radians).
 typedef struct CagCrease {
   double at, angle;
 } CagCrease;

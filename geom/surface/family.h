@@ -1,50 +1,50 @@
-// What the kinds of surfaces share among themselves; users of surfaces do not need it.
+// Shared by the implementations of the kinds of surfaces; not for users of surfaces.
 
 #ifndef CAG_GEOM_SURFACE_FAMILY_H
 #define CAG_GEOM_SURFACE_FAMILY_H
 
 #include "geom/surface/surface.h"
 
-// Two points are one when they are nearer than this part of the size of the data: rounding of a few
-// evaluations, far below any tolerance a user gives.
+// Points closer than this fraction of the size of the data are identical: the rounding of a few
+// evaluations, far below any tolerance of a user.
 #define CAG_SURFACE_SAME 1e-11
 
 // Zeroed block of `size` bytes (a struct that starts with CagSurface) with one reference.
 CagStatus cag_surface_block(size_t size, const CagSurfaceKind *kind, double u0, double u1,
                             double v0, double v1, CagSurface **out, CagError *err);
-// Fills closed_u, closed_v and the poles by evaluation along the edges.
+// Determines closed_u, closed_v, and the poles by evaluation along the edges.
 void cag_surface_judge(CagSurface *s);
 
-// The same surface seen through an affine map, and with v run backwards where `flip`. Evaluates
-// exactly; knows no exact form of its own beyond that of `inner`.
+// The image of a surface under an affine map, with v reversed if `flip`. Evaluates exactly; it has
+// no exact form beyond that of `inner`.
 CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, bool flip,
                              CagSurface **out, CagError *err);
-// Whether the surface is one seen through a map with v run backwards.
+// Whether the surface is a placed one with v reversed.
 bool cag_surface_is_flipped(const CagSurface *s);
-// For kinds that have no image of their own: affine maps give a placed surface, projective ones
-// need the exact NURBS form.
+// For kinds without a transform of their own: affine maps return a placed surface, projective ones
+// require the exact NURBS form.
 CagStatus cag_surface_transform_placed(const CagSurface *s, const CagTransform *t, CagSurface **out,
                                        CagError *err);
 
-// A curve as one of space, or retained as it is when it already is one.
+// A curve as a space curve; retained unchanged if it already is one.
 CagStatus cag_surface_space_curve(const CagCurve *c, CagCurve **out, CagError *err);
 
 // NURBS surface from homogeneous points (w x, w y, w z, w), nu x nv x 4.
 CagStatus cag_surface_from_homogeneous(const double *net, size_t nu, size_t nv, int degree_u,
                                        int degree_v, const double *knots_u, const double *knots_v,
                                        CagSurface **out, CagError *err);
-// NURBS surface whose parameters are exchanged: S'(u, v) = S(v, u).
+// The NURBS surface with exchanged parameters: S'(u, v) = S(v, u).
 CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagError *err);
 
-// A piece of a conic or a polynomial as a NURBS curve in homogeneous coordinates (x, y, w): the
-// building stone of exact forms.
+// A piece of a conic or polynomial as a NURBS curve in homogeneous coordinates (x, y, w): the
+// building block of exact forms.
 typedef enum CagConicArc {
   CAG_ARC_CIRCLE,    // cos t, sin t
   CAG_ARC_HYPERBOLA, // cosh t, sinh t
   CAG_ARC_PARABOLA,  // t^2, t
   CAG_ARC_LINE       // 1, t
 } CagConicArc;
-#define CAG_CONIC_ARC_POINTS 19 // a circle turned twice, in pieces of at most 90 degrees
+#define CAG_CONIC_ARC_POINTS 19 // a circle covered twice, in pieces of at most 90 degrees
 #define CAG_CONIC_ARC_KNOTS (CAG_CONIC_ARC_POINTS + 3)
 typedef struct CagConicNurbs {
   int degree;
@@ -54,8 +54,8 @@ typedef struct CagConicNurbs {
 } CagConicNurbs;
 void cag_conic_nurbs(CagConicArc arc, double from, double to, CagConicNurbs *out);
 
-// The breaks of the surface on which another surface is based, within the range of the latter,
-// which stores them. Free `at`.
+// The breaks of an underlying surface within the range of a surface based on it, which stores them.
+// Free `at`.
 typedef struct CagKeptBreaks {
   double *at;
   size_t n;
@@ -63,10 +63,11 @@ typedef struct CagKeptBreaks {
 CagStatus cag_surface_keep_breaks(const CagSurface *inner, int direction, double lo, double hi,
                                   CagKeptBreaks *out, CagError *err);
 size_t cag_surface_kept_breaks(const CagKeptBreaks *kept, double *out, size_t capacity);
-// Ascending, distinct values of a within (lo, hi), to `same`; returns their number.
+// Sorts the values of a within (lo, hi) and removes duplicates, up to rounding; returns their
+// number.
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi);
 
-// Gets the radii of a surface of kind "torus". Returns false for another kind.
+// The radii of a surface of kind "torus". Returns false for another kind.
 bool cag_surface_torus_view(const CagSurface *s, double *major, double *minor);
 
 #endif

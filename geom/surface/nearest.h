@@ -1,4 +1,4 @@
-// The place of a surface that is nearest to a point.
+// The point of a surface nearest to a given point.
 
 #ifndef CAG_GEOM_SURFACE_NEAREST_H
 #define CAG_GEOM_SURFACE_NEAREST_H
@@ -10,8 +10,8 @@ typedef struct CagSurfaceNearest {
   CagVec3 point;
 } CagSurfaceNearest;
 
-// Of several that are equally near it is one. Trimmed surfaces and regions count within their
-// outlines only.
+// One of several equally near points. Only the part of a trimmed surface or region within its
+// outlines counts.
 CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest *out,
                               CagError *err);
 

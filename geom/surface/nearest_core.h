@@ -6,9 +6,9 @@
 #include "geom/surface/nearest.h"
 
 // The core of a tube is its center line, and the core of an offset is its base surface. For a point
-// outside, the distance of the core less the constant distance is a lower bound, which is stored in
-// *bound. *out is the point of the surface that belongs to the nearest point of the core. *known is
-// set if the surface is a tube, an offset, or the image of one by a similarity.
+// outside, the distance from the core minus the constant distance is a lower bound, which is stored
+// in *bound. *out is the point of the surface that corresponds to the nearest point of the core.
+// *known is set if the surface is a tube, an offset, or the image of one under a similarity.
 CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bound,
                                       CagSurfaceNearest *out, bool *known, CagError *err);
 

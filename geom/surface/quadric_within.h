@@ -1,53 +1,52 @@
-// The part of one sheet of a quadric between planes.
+// The part of one sheet of a quadric within half spaces.
 
 #ifndef CAG_GEOM_QUADRIC_WITHIN_H
 #define CAG_GEOM_QUADRIC_WITHIN_H
 
 #include "geom/surface/quadric.h"
 
-// What is kept: n . X <= d, of points of the world.
+// The half space that is kept: n . X <= d, in world coordinates.
 typedef struct CagQuadricSide {
   CagVec3 n;
   double d;
 } CagQuadricSide;
 #define CAG_QUADRIC_SIDES 6
 
-// One sheet: the unit form's piece over u0..u1 (angles: the whole turn) and v0..v1, which may be
-// infinite.
+// One sheet: the unit form over u0..u1 (angles: the full turn) and v0..v1, which may be infinite.
 typedef struct CagQuadricSheet {
   CagQuadricShape shape;
-  CagTransform frame; // unit form -> world
+  CagTransform frame; // unit form to world
   double u0, u1, v0, v1;
-  double size; // of the result, about: outlines keep to 1e-11 of it
+  double size; // approximate size of the result; outlines are accurate to 1e-11 of it
 } CagQuadricSheet;
 
-// Adds the pieces to list[*n], of at most `most`: patches where the piece is a rectangle of
-// parameters, else trimmed ones.
+// Appends the pieces to list[*n], which has room for `most`: plain patches if a piece is a
+// rectangle of parameters, else trimmed ones.
 CagStatus cag_quadric_sheet_within(const CagQuadricSheet *sheet, const CagQuadricSide *sides,
                                    size_t side_count, CagSurface **list, size_t most, size_t *n,
                                    CagError *err);
 
-// --- Among the two files that make it ---
+// --- Internal ---
 
-// A side in coordinates of the unit form: a x + b y + c z <= d.
+// A half space in coordinates of the unit form: a x + b y + c z <= d.
 typedef struct CagQuadricCut {
   double a, b, c, d;
 } CagQuadricCut;
 
-// What ends a piece in v: a root of side number `side`, or (negative) the domain at `value`.
+// The end of a piece in v: a root of side number `side`, or (negative) the domain at `value`.
 typedef struct CagQuadricBound {
   int side, branch;
   double value;
 } CagQuadricBound;
 
-// Between two neighboring places of u, one interval of v that lies within all sides.
+// Between two neighboring places in u, one interval of v that lies within all half spaces.
 typedef struct CagQuadricCell {
   size_t place; // its left end
   CagQuadricBound low, high;
 } CagQuadricCell;
 
-// A place in u where the intervals change; `folds`: the sides whose two roots are one there, by
-// bits.
+// A value of u at which the intervals change; `folds`: a bit for each side whose two roots coincide
+// there.
 typedef struct CagQuadricPlace {
   double u;
   unsigned folds;
@@ -63,13 +62,13 @@ typedef struct CagQuadricCells {
   size_t cell_count;
 } CagQuadricCells;
 
-// The bound at u; `folded`: where its two roots are one.
+// The bound at u; `folded`: the two roots coincide.
 double cag_quadric_bound_at(const CagQuadricCells *c, const CagQuadricBound *b, double u,
                             bool folded);
-// Whether it is the same v at all u.
+// Whether the bound is the same v for all u.
 bool cag_quadric_bound_is_straight(const CagQuadricCells *c, const CagQuadricBound *b);
 CagVec3 cag_quadric_unit_point(CagQuadricShape shape, double u, double v);
-// The outlines of the cells together, as surfaces.
+// The outlines of the combined cells, as surfaces.
 CagStatus cag_quadric_outline(const CagQuadricCells *c, CagSurface **list, size_t most, size_t *n,
                               CagError *err);
 

@@ -1,18 +1,18 @@
-// Surfaces that a section sweeps under a motion.
+// Surfaces swept by a section under a motion.
 
 #ifndef CAG_GEOM_SWEPT_H
 #define CAG_GEOM_SWEPT_H
 
 #include "geom/surface/motion.h"
 
-// u as in the section, v as of the motion. The section's x and y go along the motion's x and y; of
-// a section in space z goes along its z (not around corners: "section-not-plane").
+// u is the section's parameter, v the motion's. The section's x and y follow the motion's x and y
+// axes; for a section in space z follows its z axis (not around corners: "section-not-plane").
 CagStatus cag_surface_sweep(const CagCurve *section, const CagMotion *motion, CagSurface **out,
                             CagError *err);
-// A circle whose radius changes along the path.
+// A circle whose radius varies along the path.
 CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, CagSurface **out,
                                  CagError *err);
-// Gets the center line of a tube of constant radius without corners. A point of the tube has this
+// The center line of a tube of constant radius without corners. A point of the tube has this
 // distance from the point of the line with the same v. Returns false for another surface.
 bool cag_surface_tube_view(const CagSurface *s, const CagCurve **center, double *radius);
 // Section and motion of a sweep or tube; false: another kind.

@@ -1,13 +1,13 @@
 // The internals of tessellation: the data that its steps share.
 //
-// A face's parameter rectangle is cut at the breaks into smooth cells, these by halving into leaves
-// where the curvature varies (plan.c). A leaf has a grid of nu x nv quadrilaterals. The sides of
-// leaves lie on lines, u = const or v = const; each line is divided once, for the leaves on both of
-// its sides, at the seam for both ends of the domain, and at edges of a solid for both faces
-// (lines.c, even.c). The nodes of lines become vertices (nodes.c). Then each leaf's grid is filled
-// in and stitched to the nodes around it (fill.c), the sides of cusps get normals of their own
-// (sides.c), edges of triangles that lean away from the surface are flipped (turn_edges.c), and
-// plane faces are triangulated from the nodes of their loops (planar.c).
+// A face's parameter rectangle is cut at the breaks into smooth cells, and these are bisected into
+// leaves where the curvature varies (plan.c). A leaf has a grid of nu x nv quadrilaterals. The
+// sides of leaves lie on lines, u = const or v = const. Each line is divided only once for the
+// leaves on both of its sides: a seam once for both ends of the domain, and an edge of a solid once
+// for both faces (lines.c, even.c). The nodes of lines become vertices (nodes.c). Then each leaf's
+// grid is filled in and stitched to the nodes around it (fill.c), the sides of cusps get separate
+// normals (sides.c), edges of triangles that lean away from the surface are flipped (turn_edges.c),
+// and planar faces are triangulated from the nodes of their loops (planar.c).
 //
 // If the surface bends least along lines that cross both families of parameter lines at an angle,
 // as on a thread, whole cells become strips instead of leaves with grids (strips.c). A strip is a
@@ -15,7 +15,8 @@
 // its sides lie where lines of least bending, called slants, meet them.
 //
 // Vertices of lines come first in the mesh, interiors of leaves after them. While it is built,
-// `weld` is a union-find forest over the vertices of lines whose roots are the least members.
+// `weld` is a union-find forest over the vertices of lines whose roots are the members with the
+// lowest index.
 
 #ifndef CAG_GEOM_TESSELLATE_TESSELLATION_H
 #define CAG_GEOM_TESSELLATE_TESSELLATION_H
@@ -36,39 +37,40 @@ typedef struct Slants {
 typedef struct Leaf {
   double from[2], to[2];     // [0]: u, [1]: v
   Slants slants;             // of a strip; its n are 1
-  uint32_t n[2], planned[2]; // as it is, and before cag_tess_make_even_lines
+  uint32_t n[2], planned[2]; // current, and before cag_tess_make_even_lines
   uint32_t face;
   uint32_t line[4];     // by side
   size_t nodes[4];      // index of the side's first node among all nodes
   uint32_t segments[4]; // of the side
-  bool regular;         // the sides' nodes are those of the grid
+  bool regular;         // the sides' nodes coincide with those of the grid
 } Leaf;
 
-// A piece of a line between two neighboring leaf corners (of either side), in n equal steps.
+// A piece of a line between two neighboring leaf corners (on either side), in n equal steps.
 typedef struct Atom {
   double from, to;
-  double needed; // steps, before rounding up
+  double needed; // number of steps, before rounding up
   uint32_t n;
   bool corner; // `from` is a corner of a leaf of this face
 } Atom;
 
-// Line of fixed `coordinate` in direction `fixed` (0: u, 1: v). The leaves before it (lower
-// coordinates) and after it see the vertices of nodes for their side. At a seam the leaves before
-// it are those at the far end of the domain, whose coordinate is `before`.
+// A line with fixed `coordinate` in direction `fixed` (0: u, 1: v). The leaves before it (lower
+// coordinates) and after it use the vertices of nodes for their side. At a seam the leaves before
+// it are those at the far end of the domain, with the coordinate `before`.
 typedef struct Line {
   uint32_t face;
   int fixed;
   double coordinate, before;
-  bool seam, pole, border, is_break; // border: an end of the domain, and no seam or pole
+  bool seam, pole, border, is_break; // border: an end of the domain that is not a seam or pole
   size_t atom, atom_count;
   size_t node, node_count; // node_count = sum of n + 1
   uint32_t joined;         // line of another face with the same nodes, or NO_INDEX
   bool joined_reversed;
-  double *own_parameters; // of nodes, where the join's map is not affine piece by piece; else NULL
+  double *own_parameters; // of nodes, if the parameters of joined lines are not related by a
+                          // piecewise affine map; else NULL
 } Line;
 
-// Parameter along the line, vertices for leaves before [0] and after [1] it; at a leaf corner these
-// are in the table of corners.
+// Parameter along the line, and the vertices for leaves before [0] and after [1] it; at a leaf
+// corner the vertices are in the corner table.
 typedef struct Node {
   double t;
   uint32_t vertex[2];
@@ -85,19 +87,19 @@ typedef struct Corner {
 typedef struct Face {
   const CagSurface *surface;
   bool planar;
-  double *breaks[2]; // with both ends of the domain
+  double *breaks[2]; // including both ends of the domain
   size_t break_count[2];
   size_t leaf, leaf_count;
   size_t line, line_count;
-  uint32_t *triangles; // of a planar face
+  uint32_t *triangles; // of planar faces only
   size_t triangle_count;
 } Face;
 
 typedef struct Tessellator {
   CagTessellation how; // tolerance > 0
   double size;         // diagonal of the bounds
-  double noise;        // points that are nearer to each other are one but for rounding
-  bool is_point;       // all of it is: it may have no triangles
+  double noise;        // points closer than this are equal up to rounding
+  bool is_point;       // the whole surface is one point: the mesh may be empty
   Face *faces;
   size_t face_count;
   Leaf *leaves;
@@ -118,9 +120,9 @@ typedef struct Tessellator {
   double *uv;
   uint32_t *weld;
   size_t vertex_count, vertex_capacity;
-  uint32_t *own; // vertices of planar faces that no other face has given them
+  uint32_t *own; // vertices of planar faces that are not shared with another face
   size_t own_count, own_capacity;
-  bool needs_normals; // some vertex has a zero normal yet
+  bool needs_normals; // some vertex still has a zero normal
 } Tessellator;
 
 CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err);
@@ -131,19 +133,19 @@ CagStatus cag_tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
 // cag_tess_plan_face.
 CagStatus cag_tess_plan_strips(Tessellator *t, uint32_t face, CagError *err);
 CagStatus cag_tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
-// Lines as cag_tess_make_lines, with the counts of thin leaves raised to those beside them.
+// Like cag_tess_make_lines, but raises the counts of thin leaves to those of their neighbors.
 CagStatus cag_tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err);
-// Divides the atoms of a line until its chords keep the tolerance, where it is a border or a
-// crease.
+// Refines the atoms of a line that is a border or a crease until its chords are within the
+// tolerance.
 CagStatus cag_tess_refine_chords(Tessellator *t, Line *line, CagError *err);
-// Index of the line on a side of a face; NO_INDEX: the face is planar or the side is a pole or
+// Index of the line on a side of a face; NO_INDEX if the face is planar or the side is a pole or
 // seam.
 uint32_t cag_tess_side_line(const Tessellator *t, uint32_t face, int side);
 CagStatus cag_tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool reversed,
                               CagError *err);
 CagStatus cag_tess_make_nodes(Tessellator *t, CagError *err);
 CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagFaces *faces, CagError *err);
-// Makes one of the corners of planar faces of a solid that lie in one place.
+// Merges corners of planar faces of a solid that coincide.
 CagStatus cag_tess_unite_corners(Tessellator *t, CagError *err);
 CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err);
 // Flips edges of triangles that lean away from the surface.
@@ -153,7 +155,7 @@ CagStatus cag_tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, 
                               uint32_t *out, CagError *err);
 uint32_t cag_tess_find(Tessellator *t, uint32_t vertex);
 void cag_tess_unite(Tessellator *t, uint32_t a, uint32_t b);
-// The vertex by which the leaves of its own face after (or before) the line see a node.
+// The vertex that the leaves of the line's own face after (or before) it use for a node.
 uint32_t cag_tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
                               bool node_is_end);
 static inline bool tess_is_strip(const Leaf *leaf) { return leaf->slants.step > 0; }
@@ -162,10 +164,12 @@ static inline double tess_mix(double a, double b, size_t k, size_t n) {
   return k == 0 ? a : k == n ? b : a + (b - a) * ((double)k / (double)n);
 }
 
-// Quadrilateral a b c d: is it cut from a to c (else from b to d)? By the shorter diagonal. What is
-// as long but for rounding is cut from a to c: moved copies of a shape are cut alike.
+// Whether the quadrilateral a b c d is cut from a to c (else from b to d), by the shorter diagonal.
+// Diagonals that are equal to rounding are cut from a to c, so that moved copies of a shape are cut
+// alike.
 static inline bool tess_cut_ac(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d) {
-  const double alike = 1e-6; // of the square: positions far from the origin are rounded to less
+  const double alike = 1e-6; // relative, of the squares; coordinates far from the origin are
+                             // rounded to less
   CagVec3 ac = cag_sub(c, a), bd = cag_sub(d, b);
   return cag_dot(ac, ac) <= cag_dot(bd, bd) * (1 + alike);
 }

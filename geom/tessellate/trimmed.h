@@ -5,8 +5,8 @@
 
 #include "geom/tessellate/tessellate.h"
 
-// The tolerance is positive. The outline's points depend on the outline alone, and no edge of it is
-// divided further, so that surfaces on both sides of it can share them.
+// The tolerance must be positive. The points of the outline depend only on the outline, and its
+// edges are not divided further, so that surfaces on both sides of it can share them.
 CagStatus cag_trimmed_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                                  CagError *err);
 
