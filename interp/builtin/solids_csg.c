@@ -220,8 +220,8 @@ static bool is_of_regions(CagCall *call) {
   return false;
 }
 
-static bool call_of_regions(CagCall *call, const char *name, CagValue *result) {
-  const size_t index = cag_builtin_find(name);
+static bool call_of_regions(CagCall *call, CagValue *result) {
+  const size_t index = cag_builtin_find(cag_builtin_signature_of(call->builtin)->name);
   size_t count;
   CagCall regions = *call;
   regions.builtin =
@@ -229,11 +229,11 @@ static bool call_of_regions(CagCall *call, const char *name, CagValue *result) {
   return regions.builtin->function(&regions, result);
 }
 
-static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValue *result) {
+static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
   CagValue *items, said = cag_unset(), unused;
   size_t n;
   CagSolid *made = NULL;
-  if (is_of_regions(call)) return call_of_regions(call, name, result);
+  if (is_of_regions(call)) return call_of_regions(call, result);
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
@@ -251,14 +251,12 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   return true;
 }
 
-bool cag_solids_union(CagCall *call, CagValue *result) {
-  return operate(call, "union", CAG_UNION, result);
-}
+bool cag_solids_union(CagCall *call, CagValue *result) { return operate(call, CAG_UNION, result); }
 bool cag_solids_difference(CagCall *call, CagValue *result) {
-  return operate(call, "difference", CAG_DIFFERENCE, result);
+  return operate(call, CAG_DIFFERENCE, result);
 }
 bool cag_solids_intersection(CagCall *call, CagValue *result) {
-  return operate(call, "intersection", CAG_INTERSECTION, result);
+  return operate(call, CAG_INTERSECTION, result);
 }
 
 // --- Sides ---

@@ -18,10 +18,6 @@ typedef struct Sampled {
   bool angles;  // the values are angles
 } Sampled;
 
-static CagStatus stopped(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
-}
-
 typedef struct Question {
   const Sampled *sampled;
   double t;
@@ -35,39 +31,35 @@ static bool call_sampled(CagVm *vm, void *question) {
   return cag_call(vm, s->call->values[s->argument], &at, 1, &q->answer) && cag_keep_going(vm);
 }
 
-// Running out of memory in the script must not leave the fit by a jump.
-static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
+// Calls the function, whose values are of the type `wanted`. Running out of memory in the script
+// must not leave the fit by a jump.
+static CagStatus call_at(const Sampled *s, double t, CagType wanted, const char *values,
+                         CagValue *out, CagError *err) {
   Question q = {s, t, cag_none()};
-  if (!cag_vm_call_back(s->call->vm, call_sampled, &q)) return stopped(err);
+  bool good = cag_vm_call_back(s->call->vm, call_sampled, &q);
+  if (good && q.answer.type != wanted)
+    good = cag_fail_call(s->call, s->argument, CAG_ERR_type,
+                         "expects a function that gives %s, it gave %s", values,
+                         cag_type_article(q.answer));
   *out = q.answer;
-  return CAG_OK;
+  return good ? CAG_OK
+              : cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1,
+                         "the function failed");
 }
 
 static CagStatus sample_number(void *context, double t, double *out, CagError *err) {
   const Sampled *s = context;
   CagValue v;
-  CagStatus status = call_at(s, t, &v, err);
-  if (status) return status;
-  if (v.type != (s->angles ? CAG_ANGLE : CAG_NUMBER)) {
-    cag_fail_call(s->call, s->argument, CAG_ERR_type,
-                  "expects a function that gives %s, it gave %s", s->angles ? "angles" : "numbers",
-                  cag_type_article(v));
-    return stopped(err);
-  }
-  *out = s->angles ? v.as.number * CAG_RADIANS_PER_DEGREE : v.as.number;
-  return CAG_OK;
+  CagStatus status = s->angles ? call_at(s, t, CAG_ANGLE, "angles", &v, err)
+                               : call_at(s, t, CAG_NUMBER, "numbers", &v, err);
+  if (!status) *out = s->angles ? v.as.number * CAG_RADIANS_PER_DEGREE : v.as.number;
+  return status;
 }
 
 static CagStatus sample_rows(void *context, double t, double *out, CagError *err) {
-  const Sampled *s = context;
   CagValue v;
-  CagStatus status = call_at(s, t, &v, err);
+  CagStatus status = call_at(context, t, CAG_TRANSFORM, "transforms", &v, err);
   if (status) return status;
-  if (v.type != CAG_TRANSFORM) {
-    cag_fail_call(s->call, s->argument, CAG_ERR_type,
-                  "expects a function that gives transforms, it gave %s", cag_type_article(v));
-    return stopped(err);
-  }
   const CagTransform *m = &CAG_AS_TRANSFORM(v)->t;
   if (!cag_transform_is_affine(m))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "map", -1,
