@@ -121,6 +121,8 @@ static void set_default(const CagParameterTypes *types, const CagParameterType *
     break;
   case CAG_BIND_RANGE: *(CagRangeEnds *)field = (CagRangeEnds){x[0], x[1], type->dimension}; break;
   case CAG_BIND_VALUE: *(CagValue *)field = cag_unset(); break;
+  case CAG_BIND_TRANSFORM: *(CagTransform *)field = cag_transform_identity(); break;
+  case CAG_BIND_TEXT: *(const char **)field = type->fallback_text; break;
   default: break;
   }
 }

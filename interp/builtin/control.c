@@ -14,7 +14,7 @@ bool cag_control_attempt(CagCall *call, const struct cag_control_attempt *a, Cag
 }
 
 bool cag_control_trace(CagCall *call, const struct cag_control_trace *a, CagValue *result) {
-  cag_vm_trace(call, a->x, a->label ? a->label : "");
+  cag_vm_trace(call, a->x, a->label);
   *result = a->x;
   return true;
 }

@@ -261,15 +261,14 @@ static CagStatus equations_eval(void *context, double s, int order, double *curv
 
 bool cag_functions_natural_curve(CagCall *call, const struct cag_functions_natural_curve *a,
                                  CagValue *result) {
-  const CagTransform frame = cag_given(call, 3) ? a->frame : cag_transform_identity();
   const bool twisted = cag_given(call, 2);
   CagCurve *c;
   Equations *e = cag_hold_array(call, 1, sizeof *e);
   e->curvature = formula_new(call, a->curvature, 1);
   if (twisted) e->torsion = formula_new(call, a->torsion, 1);
   const CagNaturalEquations equations = {equations_eval, equations_free, e};
-  CagStatus status = cag_curve_natural(&equations, a->length, &frame,
-                                       twisted || !frame.planar ? 3 : 2, &c, call->err);
+  CagStatus status = cag_curve_natural(&equations, a->length, &a->frame,
+                                       twisted || !a->frame.planar ? 3 : 2, &c, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_give_held(call, e->torsion);
   cag_give_held(call, e->curvature);

@@ -177,10 +177,10 @@ bool cag_robots_robot(CagCall *call, const struct cag_robots_robot *a, CagValue 
   CagRobotSpec spec = {.links = plain,
                        .link_count = CAG_AS_LIST(links)->length,
                        .convention = a->convention ? CAG_ROBOT_MODIFIED : CAG_ROBOT_CLASSIC,
-                       .base = cag_given(call, 3) ? a->base : cag_transform_identity(),
-                       .tool = cag_given(call, 4) ? a->tool : cag_transform_identity()};
+                       .base = a->base,
+                       .tool = a->tool};
   if (!read_coupling(call, a->coupling, &spec)) return false;
-  CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, a->name ? a->name : ""));
+  CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, a->name));
   if (!cag_geometry_ok(call, cag_robot_new(&spec, &robot, call->err))) return false;
   *result = cag_robot_value(call->vm, robot, name, links);
   return true;

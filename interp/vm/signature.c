@@ -225,6 +225,9 @@ static void parse_default(const CagSignature *s, const CagParameterTypes *types,
   case CAG_BIND_FINITE:
   case CAG_BIND_INTEGER: out->fallback[0] = parse_number(text, &end); break;
   case CAG_BIND_ANGLE: out->fallback[0] = parse_number(text, &end) * RADIANS_PER_DEGREE; break;
+  case CAG_BIND_TEXT:
+    if (strcmp(text, "\"\"") == 0) out->fallback_text = "";
+    break;
   case CAG_BIND_BOOL: out->fallback[0] = strcmp(text, "true") == 0; break;
   case CAG_BIND_CHOICE:
     for (size_t i = 0; out->choices[i]; i++)

@@ -40,8 +40,9 @@ typedef struct CagParameterType {
   // The value if no argument is given, from the text of the default: radians, the index of a text,
   // coordinates, or the ends of a range. It is 0 for defaults that the function itself supplies.
   double fallback[3];
-  int dimension;    // of a point
-  bool same_as_set; // the default is the value of an earlier parameter
+  const char *fallback_text; // of a text; NULL: the function supplies it
+  int dimension;             // of a point
+  bool same_as_set;          // the default is the value of an earlier parameter
   size_t same_as;
 } CagParameterType;
 
