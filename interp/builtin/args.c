@@ -149,12 +149,6 @@ bool cag_arg_angle(CagCall *call, int argument, double *radians) {
   return true;
 }
 
-bool cag_arg_angle_or(CagCall *call, int argument, double fallback, double *radians) {
-  if (cag_given(call, argument)) return cag_arg_angle(call, argument, radians);
-  *radians = fallback;
-  return true;
-}
-
 // --- Bools, texts, functions, records ---
 
 bool cag_arg_bool_or(CagCall *call, int argument, bool fallback, bool *out) {

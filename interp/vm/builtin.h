@@ -85,7 +85,6 @@ bool cag_arg_integer(CagCall *call, int argument, long low, long high, long *out
 bool cag_arg_integer_or(CagCall *call, int argument, long fallback, long low, long high, long *out);
 bool cag_arg_angle(CagCall *call, int argument,
                    double *radians); // exact special angles survive cag_sincos
-bool cag_arg_angle_or(CagCall *call, int argument, double fallback, double *radians);
 bool cag_arg_degrees(CagCall *call, int argument, double *degrees);
 bool cag_arg_bool_or(CagCall *call, int argument, bool fallback, bool *out);
 bool cag_arg_text(CagCall *call, int argument, const char **out);
