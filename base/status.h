@@ -51,8 +51,8 @@ CagStatus cag_fail_memory(CagError *err);
 // Both return an error, never CAG_OK. The macros let compilers and analyzers know, so that they see
 // that results are set where a status is CAG_OK.
 static inline CagStatus cag_never_ok(CagStatus status) {
-  CAG_ASSERT(status != CAG_OK);
-  if (status == CAG_OK) __builtin_unreachable();
+  CAG_ASSERT(status);
+  if (!status) __builtin_unreachable();
   return status;
 }
 #define cag_fail(...) cag_never_ok((cag_fail)(__VA_ARGS__))

@@ -87,7 +87,7 @@ static bool add_piece(BoolWork *w, BoolPiece piece) {
 
 // One group may be large. Steps return false if canceled, as if memory ran out.
 static bool goes_on(const Cutter *c, size_t i) {
-  return i % STOP_INTERVAL != 0 || cag_bool_stopped(c->w) == CAG_OK;
+  return i % STOP_INTERVAL != 0 || !cag_bool_stopped(c->w);
 }
 
 // --- Points, in an order that keeps walks short ---

@@ -48,8 +48,8 @@ CagStatus cag_curve_joint(const CagCurve *a, const CagCurve *b, double tolerance
   // line are 0 but for rounding.
   j.c2 = j.c1 && j.second_jump <= tolerance * fmax(larger(da[2], db[2]), larger(da[1], db[1]));
   CagError none;
-  if (cag_curve_tangent(a, a->end, CAG_SIDE_LEFT, &ta, &none) == CAG_OK &&
-      cag_curve_tangent(b, b->start, CAG_SIDE_RIGHT, &tb, &none) == CAG_OK) {
+  if (!cag_curve_tangent(a, a->end, CAG_SIDE_LEFT, &ta, &none) &&
+      !cag_curve_tangent(b, b->start, CAG_SIDE_RIGHT, &tb, &none)) {
     j.angle = angle_between(ta, tb);
     j.g1 = j.c0 && j.angle <= tolerance;
   }

@@ -295,13 +295,13 @@ static CagStatus rounded_rectangle(double w, double h, double r, CagCurve **out,
     CagVec3 q = {sx[i] * x + nx[i] * r, sy[i] * y + ny[i] * r, 0};
     if (p.x != q.x || p.y != q.y) {
       status = cag_curve_line(p, q, 2, &pieces[n], err);
-      n += status == CAG_OK;
+      n += !status;
     }
     CagTransform frame = cag_translate(cag_vec3(sx[i] * x, sy[i] * y, 0));
     frame.planar = true;
     if (!status) {
       status = cag_curve_arc(r, r, (i - 1) * M_PI / 2, i * M_PI / 2, &frame, &pieces[n], err);
-      n += status == CAG_OK;
+      n += !status;
     }
   }
   if (!status) status = cag_curve_join(pieces, n, out, err);

@@ -325,7 +325,7 @@ static CagStatus close_end(CagCurve **runs, size_t *count, CagError *err) {
   if (!status) status = cag_curve_point(runs[0], runs[0]->start, &q, err);
   if (status || joins(p, q)) return status;
   status = cag_curve_line(p, q, 2, &runs[*count], err);
-  *count += status == CAG_OK;
+  *count += !status;
   return status;
 }
 
@@ -348,7 +348,7 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
   for (size_t i = 0, k; !status && i < n; i += k) {
     k = run_length(c, turned, i, n);
     status = run_curve(c, turned + i, k, &runs[count], err);
-    count += status == CAG_OK;
+    count += !status;
     if (!status && i > 0) status = close_gap(runs, &count, err);
   }
   if (!status) status = close_end(runs, &count, err);
@@ -480,7 +480,7 @@ static CagStatus emit(const Chain *c, Loop *loops, size_t n, CagRegion **out, Ca
       if (k > 0 && (loops[which].area > 0 || loops[which].around != i)) continue;
       status = loop_curve(c, loops[which].edges, loops[which].n, &curves[used], err);
       outer[used] = first;
-      used += status == CAG_OK;
+      used += !status;
     }
   }
   if (!status) status = cag_region_take(curves, outer, used, out, err);

@@ -50,7 +50,7 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
       while (next + 1 < n && stop[next]) next++;
       const double to = next + 1 < n ? cuts[last + 1] : c->end;
       status = stretched(c, cuts[i], cuts[last + 1], from, to, &parts[runs], err);
-      runs += status == CAG_OK;
+      runs += !status;
       from = to;
       i = last;
     }

@@ -41,7 +41,7 @@ static void find_turn(const CagTransform *t, CagTransformClass *out) {
   }
   CagError ignored;
   bool singular;
-  out->has_rotation = cag_axis_angle_of(t, &out->axis, &out->angle, &singular, &ignored) == CAG_OK;
+  out->has_rotation = !cag_axis_angle_of(t, &out->axis, &out->angle, &singular, &ignored);
 }
 
 // --- Fixed points: eigenvectors of the homogeneous matrix that are finite points ---

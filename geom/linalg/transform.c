@@ -204,7 +204,7 @@ CagStatus cag_transform_inverse(const CagTransform *t, CagTransform *out, CagErr
   CagTransform r = {.planar = t->planar};
   CagStatus status =
       cag_transform_is_affine(t) ? invert_affine(t, &r, err) : invert_general(t, &r, err);
-  if (status == CAG_OK) *out = r;
+  if (!status) *out = r;
   return status;
 }
 

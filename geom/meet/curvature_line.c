@@ -380,7 +380,7 @@ CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bo
   CagPrincipal p;
   bool found;
   CagStatus status = cag_surface_bounds(s, &box, err);
-  if (status == CAG_OK) status = cag_surface_principal(s, u, v, &found, &p, err);
+  if (!status) status = cag_surface_principal(s, u, v, &found, &p, err);
   if (status) return status;
   Walk w = {.s = s, .which = larger ? 1 : 0, .err = err};
   w.size = cag_norm(cag_sub(box.max, box.min));

@@ -97,9 +97,7 @@ static End end_of(const CagCurve *c, size_t curve, bool last) {
   if (!cag_curve_eval(c, t, 1, last ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &ignored)) {
     out.at = d[0];
     out.way = cag_scaled(cag_unit(d[1]), last ? -1 : 1);
-  } else
-    out.met =
-        cag_curve_point(c, t, &out.at, &ignored) != CAG_OK; // an end without a point meets nothing
+  } else out.met = cag_curve_point(c, t, &out.at, &ignored); // an end without a point meets nothing
   return out;
 }
 
@@ -244,7 +242,7 @@ static CagStatus join_run(const Joints *j, CagCurveList *list, size_t first, siz
   CagStatus status = take_run(j, list, first, start, parts, &n, err);
   const bool closed = n > 1 && j->ends[start].mate != start;
   // Ends that the joint does not take for one stay apart.
-  const bool joins = !status && n > 1 && join_parts(parts, n, closed, &joined, &ignored) == CAG_OK;
+  const bool joins = !status && n > 1 && !join_parts(parts, n, closed, &joined, &ignored);
   for (size_t k = 0; k < n; k++) {
     if (joins) cag_curve_release(parts[k]);
     else if (status) cag_curve_release(parts[k]);

@@ -22,7 +22,7 @@ bool cag_march_partials(CagMarch *m, int k, const CagMarchNode *node, int order,
       on_edge && cag_surface_is_formula(s)
           ? cag_surface_eval_beside(s, lo, hi, at, order, out, m->err)
           : cag_surface_eval(s, at[0], at[1], order, side[0], side[1], out, m->err);
-  return status == CAG_OK || cag_march_fail(m, status);
+  return !status || cag_march_fail(m, status);
 }
 
 bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out) {
@@ -33,8 +33,7 @@ bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangen
   // At poles the normal is a limit.
   if (cag_norm(out->normal) == 0) {
     CagError ignored;
-    if (cag_surface_normal(m->side[k].s, node->at[k][0], node->at[k][1], &out->normal, &ignored) !=
-        CAG_OK)
+    if (cag_surface_normal(m->side[k].s, node->at[k][0], node->at[k][1], &out->normal, &ignored))
       out->normal = cag_vec3(0, 0, 0);
   }
   return true;
@@ -124,7 +123,7 @@ bool cag_march_belongs_to(CagMarch *m, int k, const CagMarchNode *node, bool *ou
   *out = true;
   if (!m->side[k].region) return true;
   CagStatus status = cag_region_contains(m->side[k].region, p, out, m->err);
-  return status == CAG_OK || cag_march_fail(m, status);
+  return !status || cag_march_fail(m, status);
 }
 
 bool cag_march_belongs(CagMarch *m, const CagMarchNode *node) {

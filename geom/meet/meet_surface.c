@@ -177,7 +177,7 @@ static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
     for (int i = 0; i < 4; i++) {
       CagVec3 p;
       CagError ignored;
-      if (pole[i] && cag_surface_point(s, u[i], v[i], &p, &ignored) == CAG_OK &&
+      if (pole[i] && !cag_surface_point(s, u[i], v[i], &p, &ignored) &&
           cag_norm(cag_sub(p, x)) <= reach)
         return true;
     }
@@ -269,7 +269,7 @@ static bool go_on(CagMarch *m, Run *run) {
       }
       bool open = step == ENDED && !is_near_pole(m, a.x, 4 * h);
       if (open || !leap_over(m, &a, 64 * least, &b, &middle))
-        return m->status == CAG_OK &&
+        return !m->status &&
                (step != ENDED || (add_end(m, run, h) && settle_end(m, &run->nodes[run->n - 1])));
     }
     if (comes_home(m, run, &a, &b)) {
@@ -283,9 +283,9 @@ static bool go_on(CagMarch *m, Run *run) {
       }
       if (m->locate(m, guess, cag_unit(d), a.tangent, &between) == CAG_MARCH_FOUND)
         guess = between.x;
-      return m->status == CAG_OK && add_node(m, run, &home, guess);
+      return !m->status && add_node(m, run, &home, guess);
     }
-    if (!add_node(m, run, &b, middle)) return m->status == CAG_OK;
+    if (!add_node(m, run, &b, middle)) return !m->status;
     h = fmin(1.4 * h, m->step_most);
   }
   return true;
@@ -306,7 +306,7 @@ static void turn_round(Run *run) {
 }
 
 static bool trace(CagMarch *m, const CagMarchNode *seed, Run *run) {
-  if (!add_node(m, run, seed, seed->x) || !go_on(m, run)) return m->status == CAG_OK;
+  if (!add_node(m, run, seed, seed->x) || !go_on(m, run)) return !m->status;
   if (run->closed) return true;
   turn_round(run);
   return go_on(m, run);
@@ -401,7 +401,7 @@ static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bo
   cag_free(t.points);
   cag_free(t.tangents);
   cag_free(t.checks);
-  return ok && (status == CAG_OK || cag_march_fail(m, status));
+  return ok && (!status || cag_march_fail(m, status));
 }
 
 // The place between two nodes at which the run leaves an outline; `inside` belongs.
@@ -419,7 +419,7 @@ static bool find_border(CagMarch *m, CagMarchNode inside, CagMarchNode outside, 
     if (m->status) return false;
   }
   *out = inside;
-  return m->status == CAG_OK;
+  return !m->status;
 }
 
 // The parts of a run that lie within the outlines.
@@ -468,7 +468,7 @@ static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
   *known = false;
   for (int d = 0; d < 2; d++)
     if (!(at[d] >= low[d] && at[d] <= high[d])) return true;
-  if (!cag_march_belongs_to(m, 0, &place, &inside) || !inside) return m->status == CAG_OK;
+  if (!cag_march_belongs_to(m, 0, &place, &inside) || !inside) return !m->status;
   CagVec3 p;
   CagSurfaceNearest nearest;
   CagStatus status = cag_surface_point(a, at[0], at[1], &p, m->err);
@@ -554,7 +554,7 @@ static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
     kept = cag_march_fail(m, cag_fail_memory(m->err));
   if (!kept) {
     free_run(run);
-    return m->status == CAG_OK;
+    return !m->status;
   }
   runs->items[runs->n++] = *run;
   if (m->locate == cag_march_locate_crossing && !add_seeds_of_twins(m, run)) return false;
@@ -568,7 +568,7 @@ static bool add_seeds_around(CagMarch *m, const CagMarchNode *touch) {
   const size_t n = cag_march_find_round(m, touch, TWIN_REACH * m->step_most, seeds);
   for (size_t i = 0; i < n; i++)
     if (!cag_march_add_seed(m, &m->crossings, &seeds[i])) return false;
-  return m->status == CAG_OK;
+  return !m->status;
 }
 
 static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {

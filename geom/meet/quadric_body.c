@@ -187,7 +187,7 @@ static CagStatus add_outward(Boundary *b, const CagSurface *piece, const CagQuad
 static bool do_close(const Boundary *b) {
   CagSolid *shell = NULL;
   CagError err;
-  const bool closed = cag_solid_shell(b->faces, b->n, &shell, &err) == CAG_OK;
+  const bool closed = !cag_solid_shell(b->faces, b->n, &shell, &err);
   cag_solid_release(shell);
   return closed;
 }

@@ -231,11 +231,11 @@ static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const S
     if (status || !found) return status;
   }
   if (!fits(t, &chart, &conic, size)) return CAG_OK;
-  if (cag_conic_classify(&conic, &k, err) != CAG_OK || !(k.a > 0)) return CAG_OK;
+  if (cag_conic_classify(&conic, &k, err) || !(k.a > 0)) return CAG_OK;
   if (!is_near(&chart, &k, size)) {
     flatten(t, &chart, &conic);
-    if (!fits(t, &chart, &conic, size) || cag_conic_classify(&conic, &k, err) != CAG_OK ||
-        !(k.a > 0) || !is_near(&chart, &k, size))
+    if (!fits(t, &chart, &conic, size) || cag_conic_classify(&conic, &k, err) || !(k.a > 0) ||
+        !is_near(&chart, &k, size))
       return CAG_OK;
   }
   if (k.eccentricity < 1) return ellipse_arc(t, &chart, &k, out, err);

@@ -123,7 +123,7 @@ bool cag_tracer_fill(CagTracer *t) {
   for (size_t j = 0; j < t->n[1] && !t->status; j++)
     for (size_t i = 0; i < t->n[0] && !t->status; i++)
       *value_of(t, i, j) = cag_tracer_settled(t, t->lines[0][i], t->lines[1][j]);
-  return t->status == CAG_OK;
+  return !t->status;
 }
 
 // A contour's values have no unit of their own: their largest tells what is rounding.
@@ -174,7 +174,7 @@ bool cag_tracer_make_grid(CagTracer *t, size_t finer) {
   const Extra none = {.n = {0, 0}};
   for (t->finer = finer;; t->finer *= 2) {
     if (!make_all_lines(t, &none)) return false;
-    if (t->finer >> CAG_TRACER_HALVINGS || roughness(t) <= smooth) return t->status == CAG_OK;
+    if (t->finer >> CAG_TRACER_HALVINGS || roughness(t) <= smooth) return !t->status;
   }
 }
 
@@ -296,7 +296,7 @@ static bool add_lines(CagTracer *t) {
   Extra e = {.n = {0, 0}};
   find_small_loops(t, &e);
   find_dips(t, &e);
-  if (e.n[0] + e.n[1] == 0) return t->status == CAG_OK;
+  if (e.n[0] + e.n[1] == 0) return !t->status;
   return !t->status && make_all_lines(t, &e);
 }
 
@@ -413,7 +413,7 @@ static bool find_crossings(CagTracer *t) {
     for (size_t j = 0; j + 1 < nv; j++) cross_edge(t, edge_along_v(t, i, j), i, j, i, j + 1);
   for (size_t j = 0; j + 1 < nv; j++)
     for (size_t i = 0; i + 1 < nu; i++) link_cell(t, i, j);
-  return t->status == CAG_OK;
+  return !t->status;
 }
 
 bool cag_tracer_link(CagTracer *t) { return add_lines(t) && find_crossings(t); }

@@ -398,7 +398,7 @@ static bool walk_all(CagTracer *t, CagTraces *out) {
         ok = walk(t, e, seen, path, out);
   cag_free(seen);
   cag_free(path);
-  return ok && t->status == CAG_OK;
+  return ok && !t->status;
 }
 
 static void tracer_free(CagTracer *t) {

@@ -35,7 +35,7 @@ static CagStatus value_at(const CagSurface *s, CagSurfaceValue kind, double u, d
   *out = 0;
   if (kind == CAG_VALUE_SLOPE) {
     CagVec3 n;
-    if (cag_surface_normal(s, u, v, &n, err) != CAG_OK) return CAG_OK;
+    if (cag_surface_normal(s, u, v, &n, err)) return CAG_OK;
     *out = DEGREES * atan2(hypot(n.x, n.y), fabs(n.z));
     *found = true;
     return CAG_OK;

@@ -54,8 +54,8 @@ static bool point_at(const CagSurface *s, int direction, double along, double ac
                      CagVec3 *out) {
   CagError ignored;
   const double u = direction ? across : along, v = direction ? along : across;
-  return cag_surface_point(s, s->u0 + u * (s->u1 - s->u0), s->v0 + v * (s->v1 - s->v0), out,
-                           &ignored) == CAG_OK;
+  return !cag_surface_point(s, s->u0 + u * (s->u1 - s->u0), s->v0 + v * (s->v1 - s->v0), out,
+                            &ignored);
 }
 
 // Finds the circle through three points of a parameter line.

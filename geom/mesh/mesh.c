@@ -118,7 +118,7 @@ static CagStatus check_faces(const uint32_t *indices, const uint32_t *counts, si
   if (!seen) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   *triangles = 0;
-  for (size_t f = 0, at = 0; f < faces && status == CAG_OK; at += counts[f++]) {
+  for (size_t f = 0, at = 0; f < faces && !status; at += counts[f++]) {
     status = check_face(indices + at, counts[f], f, n, seen, err);
     *triangles += counts[f] - 2;
   }
@@ -129,19 +129,19 @@ static CagStatus check_faces(const uint32_t *indices, const uint32_t *counts, si
 CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t *indices,
                               const uint32_t *counts, size_t faces, CagMesh **out, CagError *err) {
   CagStatus status = check_vertices(vertices, n, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t at = 0, triangles = 0;
   status = check_faces(indices, counts, faces, n, &triangles, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   CagMesh *m = NULL;
   status = cag_mesh_new(n, triangles, false, false, false, &m, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   memcpy(m->positions, vertices, n * sizeof *vertices);
   at = triangles = 0;
   for (size_t f = 0; f < faces; at += counts[f++]) {
     status = cag_polygon_triangulate(vertices, indices + at, counts[f], f,
                                      m->triangles + 3 * triangles, err);
-    if (status != CAG_OK) {
+    if (status) {
       cag_mesh_release(m);
       return status;
     }
@@ -165,7 +165,7 @@ static CagStatus copy_mesh(const CagMesh *m, CagMesh **out, CagError *err) {
   CagMesh *c = NULL;
   CagStatus status = cag_mesh_new(m->vertex_count, m->triangle_count, m->normals != NULL,
                                   m->uv != NULL, m->weld != NULL, &c, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t n = m->vertex_count;
   memcpy(c->positions, m->positions, n * sizeof *m->positions);
   memcpy(c->triangles, m->triangles, m->triangle_count * 3 * sizeof *m->triangles);
@@ -191,7 +191,7 @@ static void turn_triangles(CagMesh *m) {
 
 CagStatus cag_mesh_flip(const CagMesh *m, CagMesh **out, CagError *err) {
   CagStatus status = copy_mesh(m, out, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   turn_triangles(*out);
   if (m->normals)
     for (size_t i = 0; i < m->vertex_count; i++)
@@ -219,7 +219,7 @@ CagStatus cag_mesh_transform(const CagMesh *m, const CagTransform *t, CagMesh **
                              CagError *err) {
   CagMesh *c = NULL;
   CagStatus status = copy_mesh(m, &c, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   bool mirrors = cag_transform_mirrors(t);
   for (size_t i = 0; i < c->vertex_count; i++) {
     CagVec3 p = m->positions[i], image = cag_transform_point(t, p);
@@ -279,7 +279,7 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
   }
   CagMesh *m = NULL;
   CagStatus status = cag_mesh_new(vertices, triangles, normals, uv, weld, &m, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t v = 0, t = 0;
   bool labeled = true;
   if (uv) m->scale = common_scale(meshes, n);

@@ -101,7 +101,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
   find_agreement(m, first, &normals, &uv);
   CagMesh *w = NULL;
   CagStatus status = cag_mesh_new(vertices, m->triangle_count, normals, uv, false, &w, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (m->labels) w->labels = cag_malloc((m->triangle_count + 1) * sizeof *w->labels);
   if (m->labels && !w->labels) {
     cag_mesh_release(w);

@@ -51,7 +51,7 @@ static CagStatus triangulate_concave(const CagVec3 *vertices, const uint32_t *fa
   size_t n;
   CagStatus status = cag_triangulate(xy, &count, 1, &local, &n, err);
   cag_free(xy);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   for (size_t k = 0; k < 3 * n && n == count - 2; k++) triangles[k] = face[local[k]];
   cag_free(local);
   return CAG_OK;

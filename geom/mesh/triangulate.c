@@ -139,7 +139,7 @@ static CagStatus sweep_points(const double *xy, const size_t *counts, size_t loo
     else status = cag_stop_fail(err);
   }
   cag_account_drop(points * GLU_BYTES);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   memcpy(s->triangles, p->sweep.triangles, p->sweep.corners * sizeof *s->triangles);
   uint32_t *triangles = s->triangles;
   *s = p->sweep;
@@ -308,7 +308,7 @@ static CagStatus crosses(const double *xy, size_t point, CagError *err) {
 static CagStatus sweep_and_check(const double *xy, const size_t *counts, size_t loops,
                                  size_t points, Sweep *s, size_t *across, CagError *err) {
   CagStatus status = sweep_points(xy, counts, loops, points, s, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (s->crossing || s->no_memory || s->error) return crosses(xy, s->near_crossing, err);
   size_t bad = 0;
   bool no_memory;
@@ -322,14 +322,14 @@ CagStatus cag_triangulate(const double *xy, const size_t *counts, size_t loops, 
                           size_t *n, CagError *err) {
   size_t points;
   CagStatus status = check_loops(xy, counts, loops, &points, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   // A triangulation has points + 2 (holes - outers) triangles: at most points + 2 loops.
   Sweep s = {.xy = xy, .capacity = 3 * (points + 2 * loops)};
   s.triangles = cag_malloc(s.capacity * sizeof *s.triangles);
   size_t *across = cag_malloc(s.capacity * sizeof *across);
   if (s.triangles && across) status = sweep_and_check(xy, counts, loops, points, &s, across, err);
   else status = cag_fail_memory(err);
-  if (status == CAG_OK) {
+  if (!status) {
     Flips f = {.xy = xy, .triangles = s.triangles, .across = across};
     flip_to_delaunay(&f, s.corners);
     cag_free(f.stack);

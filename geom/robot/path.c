@@ -98,7 +98,7 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
   *found = (CagRobotFound){0};
   cag_robot_home(r, home);
   CagStatus status = check_branches(r, goal, closed, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (closed && solve_closed(r, target, goal, goal->near ? goal->near : home, q)) {
     CagTransform pose;
     *found = (CagRobotFound){.solved = true};

@@ -404,7 +404,7 @@ static CagVec3 normal_at(const Work *w, uint32_t i, CagVec3 fallback) {
   CagError err;
   CagVec3 n;
   const CagSurface *s = w->surface;
-  if (s && cag_surface_normal(s, w->uv[2 * i], w->uv[2 * i + 1], &n, &err) == CAG_OK) return n;
+  if (s && !cag_surface_normal(s, w->uv[2 * i], w->uv[2 * i + 1], &n, &err)) return n;
   return fallback;
 }
 

@@ -80,7 +80,7 @@ bool cag_solid_form(const CagSolid *s, CagQuadric *out) {
   CagQuadric own;
   if (s->kind != CAG_SOLID_HALF_SPACE && s->kind != CAG_SOLID_QUADRIC) return false;
   memcpy(own.c, s->core->form, sizeof own.c);
-  return cag_quadric_transform(&own, &s->placement, out, &err) == CAG_OK;
+  return !cag_quadric_transform(&own, &s->placement, out, &err);
 }
 
 // --- Bodies within meshes ---

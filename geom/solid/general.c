@@ -96,7 +96,7 @@ static bool add_faces(Search *s, const CagSolid *leaf) {
 static bool add_mesh(Search *s, const CagSolid *leaf) {
   CagMesh *mesh;
   CagError err;
-  return cag_mesh_transform(leaf->core->mesh, &leaf->placement, &mesh, &err) == CAG_OK &&
+  return !cag_mesh_transform(leaf->core->mesh, &leaf->placement, &mesh, &err) &&
          add_piece(s, NULL, mesh, 0);
 }
 
@@ -161,8 +161,8 @@ static bool exact_point(const Facet *f, const double weight[3], CagVec3 *p, CagV
   if (!s) return true;
   const CagVec3 chord = *p;
   parameters(f, weight, uv);
-  return cag_surface_point(s, uv[0], uv[1], p, &err) == CAG_OK &&
-         cag_surface_normal(s, uv[0], uv[1], normal, &err) == CAG_OK &&
+  return !cag_surface_point(s, uv[0], uv[1], p, &err) &&
+         !cag_surface_normal(s, uv[0], uv[1], normal, &err) &&
          cag_norm(cag_sub(*p, chord)) <= 4 * f->piece->tolerance;
 }
 
@@ -190,8 +190,8 @@ static bool project(const Facet *f, const double weight[3], CagVec3 p, CagVec3 *
     uv[0] = clamped(uv[0] + (x * vv - y * mixed) / det, s->u0, s->u1);
     uv[1] = clamped(uv[1] + (y * uu - x * mixed) / det, s->v0, s->v1);
   }
-  return cag_surface_point(s, uv[0], uv[1], foot, &err) == CAG_OK &&
-         cag_surface_normal(s, uv[0], uv[1], normal, &err) == CAG_OK;
+  return !cag_surface_point(s, uv[0], uv[1], foot, &err) &&
+         !cag_surface_normal(s, uv[0], uv[1], normal, &err);
 }
 
 static bool is_parallel(CagVec3 m, CagVec3 n) { return cag_norm(cag_cross(m, n)) <= PARALLEL; }

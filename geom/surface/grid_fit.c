@@ -253,8 +253,7 @@ static CagStatus improve(CagGridFit *f, CagSurface **s, CagGridReport *report, C
     CagSurface *better;
     CagError ignored;
     for (int k = 0; k < 2; k++) memcpy(kept[k], f->parameters[k], f->rows * sizeof(double));
-    bool good = move_parameters(f, *s, &ignored) == CAG_OK &&
-                cag_grid_surface(f, &better, &ignored) == CAG_OK;
+    bool good = !move_parameters(f, *s, &ignored) && !cag_grid_surface(f, &better, &ignored);
     if (good) status = deviations(f, better, &next, err);
     if (!good || status || !(next.rms < report->rms * (1 - LEAST_GAIN))) {
       if (good) cag_surface_release(better);

@@ -185,7 +185,7 @@ static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagErr
   if (!status)
     status =
         cag_curve_reparametrize(turned ? turned : part, curve->start, curve->end, &made, &ignored);
-  bool good = status == CAG_OK && agrees(curve, made);
+  bool good = !status && agrees(curve, made);
   cag_surface_release(exact);
   cag_curve_release(whole);
   cag_curve_release(part);
@@ -260,8 +260,8 @@ static bool of_revolution(const CagSurface *s, int direction, double at, CagCurv
   CagError ignored;
   if (!cag_surface_revolution_view(s, &profile, &axis, &through, NULL, NULL)) return false;
   if (direction == 1)
-    return cag_rotate(axis, at, through, &turn, &ignored) == CAG_OK &&
-           cag_curve_transform(profile, &turn, out, &ignored) == CAG_OK;
+    return !cag_rotate(axis, at, through, &turn, &ignored) &&
+           !cag_curve_transform(profile, &turn, out, &ignored);
   if (cag_curve_point(profile, at, &p, &ignored)) return false;
   CagVec3 from = cag_sub(p, through), along = cag_scaled(axis, cag_dot(axis, from));
   CagVec3 x = cag_sub(from, along), center = cag_add(through, along);
@@ -275,7 +275,7 @@ static bool of_revolution(const CagSurface *s, int direction, double at, CagCurv
     turn.m[2][j] = columns[j].z;
   }
   turn.planar = false;
-  return cag_curve_arc(radius, radius, s->v0, s->v1, &turn, out, &ignored) == CAG_OK;
+  return !cag_curve_arc(radius, radius, s->v0, s->v1, &turn, out, &ignored);
 }
 
 CagStatus cag_surface_isocurve(const CagSurface *s, int direction, double at, CagCurve **out,

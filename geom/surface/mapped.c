@@ -43,11 +43,11 @@ static bool map_vertex(Mapping *m, CagVec3 p, Vertex *out) {
   out->from = p;
   out->normal = cag_vec3(0, 0, 0);
   m->status = cag_surface_point(m->s, p.x, p.y, &out->to, m->err);
-  if (m->status == CAG_OK) m->status = cag_surface_normal(m->s, p.x, p.y, &out->normal, m->err);
+  if (!m->status) m->status = cag_surface_normal(m->s, p.x, p.y, &out->normal, m->err);
   // Without a normal a point of the surface itself has its place all the same.
   if (m->status == CAG_E_DEGENERATE && p.z == 0) m->status = CAG_OK;
   out->to = cag_madd(out->to, p.z, out->normal);
-  return m->status == CAG_OK;
+  return !m->status;
 }
 
 static uint32_t add_vertex(Mapping *m, const Vertex *v) {
@@ -74,7 +74,7 @@ static bool load(Mapping *m, const CagMesh *mesh) {
   for (size_t i = 0; i < 3 * mesh->triangle_count && !m->status; i++)
     m->triangles[i] = place[mesh->triangles[i]];
   cag_free(place);
-  return m->status == CAG_OK;
+  return !m->status;
 }
 
 // --- Edges of a round ---
@@ -89,7 +89,7 @@ static bool make_table(Mapping *m) {
   m->middles = cag_malloc(slots * sizeof *m->middles);
   if (m->keys && m->middles) memset(m->keys, 0xff, slots * sizeof *m->keys);
   else m->status = cag_fail_memory(m->err);
-  return m->status == CAG_OK;
+  return !m->status;
 }
 
 static size_t slot_of(const Mapping *m, uint64_t key) {

@@ -32,7 +32,7 @@ static CagStatus chord_distance(const Tessellator *t, const Line *line, double f
                                                  points, NULL, NULL, err)
                          : cag_surface_eval_grid(s, at, count * PLACES, &line->coordinate, 1,
                                                  points, NULL, NULL, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *distance = 0;
   for (size_t k = 0; k < count; k++) {
     const CagVec3 *q = points + k * PLACES;
@@ -65,8 +65,8 @@ static CagStatus is_crease(const Tessellator *t, const Line *line, const Atom *a
     CagVec3 before, after;
     const CagSurface *s = t->faces[line->face].surface;
     CagStatus status = normal_on(s, line, at, false, &before, err);
-    if (status == CAG_OK) status = normal_on(s, line, at, true, &after, err);
-    if (status != CAG_OK) return status;
+    if (!status) status = normal_on(s, line, at, true, &after, err);
+    if (status) return status;
     *out = cag_norm(cag_sub(after, before)) > jump;
   }
   return CAG_OK;
@@ -79,11 +79,11 @@ CagStatus cag_tess_refine_chords(Tessellator *t, Line *line, CagError *err) {
     bool counts = line->border;
     if (!counts) {
       CagStatus status = is_crease(t, line, atom, &counts, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
     while (counts) {
       CagStatus status = chord_distance(t, line, atom->from, atom->to, n, &distance, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
       double use = distance / t->how.tolerance;
       if (use <= highest_use) break;
       n = ceil(n * fmin(16, fmax(1.05, sqrt(use / aimed_use))));

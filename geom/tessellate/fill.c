@@ -146,7 +146,7 @@ static void limit_normals(Fill *f, const CagSurface *s, size_t first, size_t n) 
     if (cag_dot(m->normals[v], m->normals[v]) > 0) continue;
     CagError ignored;
     CagVec3 *normal = &m->normals[v];
-    if (cag_surface_normal(s, m->uv[2 * v], m->uv[2 * v + 1], normal, &ignored) == CAG_OK) continue;
+    if (!cag_surface_normal(s, m->uv[2 * v], m->uv[2 * v + 1], normal, &ignored)) continue;
     *normal = cag_vec3(0, 0, 0);
     f->t->needs_normals = true;
   }
@@ -169,8 +169,8 @@ static CagStatus inner_vertices(Fill *f, const Leaf *leaf, uint32_t *first, CagE
     CagVec3 *points = m->positions + f->vertices;
     CagStatus status = cag_surface_eval_frames(s, f->us + done, rows, f->vs, nv, points, NULL, NULL,
                                                m->normals + f->vertices, err);
-    if (status == CAG_OK) status = cag_tess_interrupted(f->t, err);
-    if (status != CAG_OK) return status;
+    if (!status) status = cag_tess_interrupted(f->t, err);
+    if (status) return status;
     for (size_t i = 0, k = 0; i < rows; i++)
       for (size_t j = 0; j < nv; j++, k++) {
         size_t v = f->vertices + k;
@@ -338,7 +338,7 @@ static CagStatus fill_strip(Fill *f, const Leaf *leaf, CagError *err) {
   uint32_t *vertices = cag_malloc(2 * room * sizeof *vertices);
   double *slants = cag_malloc(2 * room * sizeof *slants);
   const CagStatus status = vertices && slants ? CAG_OK : cag_fail_memory(err);
-  if (status == CAG_OK) {
+  if (!status) {
     Rail low = {vertices, slants, 0}, high = {vertices + room, slants + room, 0};
     const bool rising = leaf->slants.slope > 0;
     // The corner with the least slant is the start of both sides or the end of one.
@@ -372,7 +372,7 @@ static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {
   }
   uint32_t first;
   CagStatus status = inner_vertices(f, leaf, &first, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (leaf->regular) fill_regular(f, leaf, first);
   else fill_stitched(f, leaf, first);
   return CAG_OK;
@@ -505,7 +505,7 @@ static CagStatus begin_fill(Fill *f, CagError *err) {
   for (size_t k = 0; k < t->face_count; k++) triangles += t->faces[k].triangle_count;
   if (triangles > t->how.max_triangles) return cag_tess_limit(t, (double)triangles, err);
   CagStatus status = cag_mesh_new(vertices, triangles, true, true, true, &f->mesh, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   f->grid_room = longest > CHUNK ? longest : CHUNK;
   f->us = cag_malloc(longest * sizeof *f->us);
   f->vs = cag_malloc(longest * sizeof *f->vs);
@@ -522,21 +522,21 @@ CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   finish_weld(t);
   Fill f = {.t = t};
   CagStatus status = begin_fill(&f, err);
-  for (size_t k = 0; status == CAG_OK && k < t->leaf_count; k++) {
+  for (size_t k = 0; !status && k < t->leaf_count; k++) {
     const size_t first = f.triangles;
     status = fill_leaf(&f, &t->leaves[k], err);
-    if (status == CAG_OK)
+    if (!status)
       status = cag_mesh_split_sides(f.mesh, first, f.triangles, t->faces[t->leaves[k].face].surface,
                                     t->how.angle, t->noise, err);
   }
-  for (size_t k = 0; status == CAG_OK && k < t->face_count; k++)
+  for (size_t k = 0; !status && k < t->face_count; k++)
     for (size_t j = 0; j < t->faces[k].triangle_count; j++) {
       const uint32_t *corner = t->faces[k].triangles + 3 * j;
       add_triangle(&f, corner[0], corner[1], corner[2]);
     }
   cag_free(f.us);
   cag_free(f.vs);
-  if (status != CAG_OK) {
+  if (status) {
     cag_mesh_release(f.mesh);
     return status;
   }
@@ -544,7 +544,7 @@ CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   drop_shrunk(f.mesh, t->noise);
   if (t->needs_normals) complete_normals(f.mesh);
   status = cag_tess_turn_edges(t, f.mesh, err);
-  if (status == CAG_OK) *out = f.mesh;
+  if (!status) *out = f.mesh;
   else cag_mesh_release(f.mesh);
   return status;
 }

@@ -115,7 +115,7 @@ static CagStatus mark_slants(Marks *m, const LeafSide *side, CagError *err) {
   const double nearest = 0.05; // fraction of the distance between slants
   CagStatus status = CAG_OK;
   if (!(side->spacing > 0)) return CAG_OK;
-  for (double k = ceil((side->from - side->slant) / side->spacing); status == CAG_OK; k++) {
+  for (double k = ceil((side->from - side->slant) / side->spacing); !status; k++) {
     const double at = side->slant + k * side->spacing;
     if (at >= side->to) break;
     status = add_mark(m, (Mark){at, nearest * side->spacing, false}, err);
@@ -129,17 +129,17 @@ static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagEr
   CagStatus status = CAG_OK;
   const LeafSide *last = NULL; // the side whose slants were marked last
   m->count = 0;
-  for (size_t k = 0; status == CAG_OK && k < count; k++) {
+  for (size_t k = 0; !status && k < count; k++) {
     status = add_mark(m, (Mark){sides[k].from, 0, true}, err);
-    if (status == CAG_OK) status = add_mark(m, (Mark){sides[k].to, 0, true}, err);
-    if (status != CAG_OK || !(sides[k].spacing > 0)) continue;
+    if (!status) status = add_mark(m, (Mark){sides[k].to, 0, true}, err);
+    if (status || !(sides[k].spacing > 0)) continue;
     if (last && last->from == sides[k].from && last->to == sides[k].to) continue;
     status = mark_slants(m, &sides[k], err);
     last = &sides[k];
   }
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = cag_sort(m->all, m->count, sizeof *m->all, by_place, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t kept = 0;
   for (size_t k = 0; k < m->count; k++) {
     const Mark mark = m->all[k];
@@ -182,11 +182,11 @@ static CagStatus cut_line(Tessellator *t, Line *line, const LeafSide *sides, siz
                           Marks *marks, CagError *err) {
   CagStatus status = find_marks(marks, sides, count, err);
   line->atom = t->atom_count;
-  for (size_t k = 0; status == CAG_OK && k + 1 < marks->count; k++) {
+  for (size_t k = 0; !status && k + 1 < marks->count; k++) {
     status = push_atom(t, marks->all[k].at, marks->all[k + 1].at, err);
-    if (status == CAG_OK) t->atoms[t->atom_count - 1].corner = marks->all[k].corner;
+    if (!status) t->atoms[t->atom_count - 1].corner = marks->all[k].corner;
   }
-  if (status != CAG_OK) return status;
+  if (status) return status;
   line->atom_count = t->atom_count - line->atom;
   for (size_t k = 0; k < count; k++) {
     double per_length = sides[k].n / (sides[k].to - sides[k].from);
@@ -235,18 +235,17 @@ CagStatus cag_tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
   Marks marks = {0};
   CagStatus status = sides ? CAG_OK : cag_fail_memory(err);
   f->line = t->line_count;
-  for (size_t k = 0, next; status == CAG_OK && k < count; k = next) {
+  for (size_t k = 0, next; !status && k < count; k = next) {
     for (next = k + 1; next < count && sides[next].fixed == sides[k].fixed &&
                        sides[next].coordinate == sides[k].coordinate;)
       next++;
     status =
         CAG_RESERVE(t->lines, t->line_capacity, t->line_count + 1) ? CAG_OK : cag_fail_memory(err);
-    if (status != CAG_OK) break;
+    if (status) break;
     Line *line = &t->lines[t->line_count++];
     *line = new_line(f, face, &sides[k]);
     status = cut_line(t, line, sides + k, next - k, &marks, err);
-    if (status == CAG_OK && (line->border || line->is_break))
-      status = cag_tess_refine_chords(t, line, err);
+    if (!status && (line->border || line->is_break)) status = cag_tess_refine_chords(t, line, err);
     for (size_t j = k; j < next; j++)
       t->leaves[sides[j].leaf].line[sides[j].side] = (uint32_t)(t->line_count - 1);
   }
@@ -301,7 +300,7 @@ static CagStatus nearest_image(const Match *m, int of, double t, double *out, Ca
   int other = 1 - of;
   CagVec3 p, q;
   CagStatus status = point_on(m, of, t, &p, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t best = 0;
   double least = INFINITY;
   for (size_t k = 0; k < MATCH_SAMPLES; k++) {
@@ -316,8 +315,8 @@ static CagStatus nearest_image(const Match *m, int of, double t, double *out, Ca
     double x = b - golden * (b - a), y = a + golden * (b - a);
     status = point_on(m, other, x, &q, err);
     double dx = cag_norm(cag_sub(q, p));
-    if (status == CAG_OK) status = point_on(m, other, y, &q, err);
-    if (status != CAG_OK) return status;
+    if (!status) status = point_on(m, other, y, &q, err);
+    if (status) return status;
     if (dx < cag_norm(cag_sub(q, p))) b = y;
     else a = x;
   }
@@ -339,8 +338,8 @@ static CagStatus begin_match(Match *m, CagError *err) {
     double t = tess_mix(m->from[0], m->to[0], k, TRIALS);
     CagVec3 p, q;
     CagStatus status = point_on(m, 0, t, &p, err);
-    if (status == CAG_OK) status = point_on(m, 1, affine_image(m, 0, t), &q, err);
-    if (status != CAG_OK) return status;
+    if (!status) status = point_on(m, 1, affine_image(m, 0, t), &q, err);
+    if (status) return status;
     m->affine = cag_norm(cag_sub(p, q)) <= same * m->t->size;
   }
   for (int w = 0; w < 2 && !m->affine; w++) {
@@ -349,7 +348,7 @@ static CagStatus begin_match(Match *m, CagError *err) {
     for (size_t k = 0; k < MATCH_SAMPLES; k++) {
       double t = tess_mix(m->from[w], m->to[w], k, MATCH_SAMPLES - 1);
       CagStatus status = point_on(m, w, t, &m->samples[w][k], err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
   }
   return CAG_OK;
@@ -378,7 +377,7 @@ static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError 
       cut->corner[of] = atom->corner;
       cut->corner[1 - of] = a == 0; // where one line begins the other begins or ends
       CagStatus status = image(m, of, atom->from, &cut->t[1 - of], err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
   // Of lines that run against each other, first atoms begin at both ends.
   if (!m->reversed) cuts[n++] = (Cut){{m->to[0], m->to[1]}, {true, true}};
@@ -416,7 +415,7 @@ static CagStatus write_atoms(Tessellator *t, const Match *m, const Cut *cuts, si
       bool backwards = w == 1 && m->reversed;
       size_t from = backwards ? atoms - k : k, to = backwards ? from - 1 : from + 1;
       CagStatus status = push_atom(t, cuts[from].t[w], cuts[to].t[w], err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
       Atom *atom = &t->atoms[t->atom_count - 1];
       atom->corner = cuts[from].corner[w];
       atom->needed = fmax(needed_between(t, m->lines[0], cuts[from].t[0], cuts[to].t[0]),
@@ -447,7 +446,7 @@ static CagStatus write_own_parameters(Tessellator *t, const Match *m, uint32_t s
       double s = tess_mix(of->from, of->to, m->reversed ? atom->n - k : k, atom->n);
       line->own_parameters[at] = atom->from;
       CagStatus status = k == 0 ? CAG_OK : image(m, 0, s, &line->own_parameters[at], err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
     line->own_parameters[at] = atom->to;
   }
@@ -465,9 +464,9 @@ CagStatus cag_tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, b
   size_t count;
   Cut *cuts = cag_malloc((before[0].atom_count + before[1].atom_count + 1) * sizeof *cuts);
   CagStatus status = cuts ? begin_match(&m, err) : cag_fail_memory(err);
-  if (status == CAG_OK) status = common_cuts(&m, cuts, &count, err);
-  if (status == CAG_OK) status = write_atoms(t, &m, cuts, count, (uint32_t[2]){master, slave}, err);
-  if (status == CAG_OK) {
+  if (!status) status = common_cuts(&m, cuts, &count, err);
+  if (!status) status = write_atoms(t, &m, cuts, count, (uint32_t[2]){master, slave}, err);
+  if (!status) {
     t->lines[slave].joined = master;
     t->lines[slave].joined_reversed = reversed;
     m.lines[0] = &t->lines[master];

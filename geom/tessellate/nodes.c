@@ -31,7 +31,7 @@ static CagStatus reserve_vertices(Tessellator *t, CagError *err) {
 CagStatus cag_tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
                               uint32_t *out, CagError *err) {
   CagStatus status = reserve_vertices(t, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   uint32_t k = (uint32_t)t->vertex_count++;
   t->positions[k] = position;
   t->normals[k] = normal;
@@ -78,16 +78,16 @@ static CagVec3 limit_normal(const CagSurface *s, double u, double v, bool after_
   CagError ignored;
   CagVec3 n, d[4];
   if ((before_u || before_v) &&
-      cag_surface_eval(s, before_u ? u - beside * (s->u1 - s->u0) : u,
-                       before_v ? v - beside * (s->v1 - s->v0) : v, 1, CAG_SIDE_RIGHT,
-                       CAG_SIDE_RIGHT, d, &ignored) == CAG_OK &&
+      !cag_surface_eval(s, before_u ? u - beside * (s->u1 - s->u0) : u,
+                        before_v ? v - beside * (s->v1 - s->v0) : v, 1, CAG_SIDE_RIGHT,
+                        CAG_SIDE_RIGHT, d, &ignored) &&
       cross_normal(s, d, &n))
     return n;
-  if (cag_surface_normal(s, u, v, &n, &ignored) == CAG_OK) return n;
+  if (!cag_surface_normal(s, u, v, &n, &ignored)) return n;
   u += inside * ((s->u0 + s->u1) / 2 - u);
   v += inside * ((s->v0 + s->v1) / 2 - v);
   CagStatus status = cag_surface_eval(s, u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &ignored);
-  if (status == CAG_OK && cross_normal(s, d, &n)) return n;
+  if (!status && cross_normal(s, d, &n)) return n;
   return cag_vec3(0, 0, 0);
 }
 
@@ -96,7 +96,7 @@ static CagStatus sided_vertex(const CagSurface *s, double u, double v, bool afte
   CagVec3 d[4];
   CagStatus status = cag_surface_eval(s, u, v, 1, after_u ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT,
                                       after_v ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *point = d[0];
   if (!cross_normal(s, d, normal)) *normal = limit_normal(s, u, v, after_u, after_v);
   return CAG_OK;
@@ -151,7 +151,7 @@ static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
     double u = seam_u && !after_u ? s->u1 : c->u, v = seam_v && !after_v ? s->v1 : c->v;
     CagVec3 point, normal;
     CagStatus status = sided_vertex(s, u, v, after_u, after_v, &point, &normal, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     c->quadrant[q] = NO_INDEX;
     for (int k = 3; k > q; k--) {
       uint32_t other = c->quadrant[k];
@@ -161,7 +161,7 @@ static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
     }
     if (c->quadrant[q] != NO_INDEX) continue;
     status = cag_tess_new_vertex(t, point, normal, u, v, &c->quadrant[q], err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     cag_tess_unite(t, c->quadrant[3], c->quadrant[q]);
   }
   return CAG_OK;
@@ -183,7 +183,7 @@ static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, ui
     return cag_fail_memory(err);
   Corner c = {u + 0.0, v + 0.0, face, {vertex, vertex, vertex, vertex}};
   const CagStatus status = vertex == NO_INDEX ? fill_corner(t, &c, err) : CAG_OK;
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *out = t->corner_hash[slot] = (uint32_t)t->corner_count;
   t->corners[t->corner_count++] = c;
   return CAG_OK;
@@ -237,13 +237,13 @@ static CagStatus pole_nodes(Tessellator *t, Line *line, CagError *err) {
   for (size_t k = 0; k < TRIALS && has_limit; k++) {
     node_parameters(line, tess_mix(nodes[0].t, nodes[last].t, 2 * k + 1, 2 * TRIALS), true, &u, &v);
     CagError ignored;
-    has_limit = cag_surface_normal(s, u, v, &other, &ignored) == CAG_OK &&
+    has_limit = !cag_surface_normal(s, u, v, &other, &ignored) &&
                 (k == 0 || cag_norm(cag_sub(other, normal)) <= same_limit);
     if (k == 0) normal = other;
   }
   CagStatus status = cag_surface_point(s, u, v, &point, err);
   uint32_t first = NO_INDEX;
-  for (size_t k = 0; status == CAG_OK && k <= last; k++) {
+  for (size_t k = 0; !status && k <= last; k++) {
     size_t next = k < last ? k + 1 : k;
     double middle = (nodes[k].t + nodes[next].t) / 2;
     if (has_limit) middle = (nodes[0].t + nodes[last].t) / 2;
@@ -253,10 +253,10 @@ static CagStatus pole_nodes(Tessellator *t, Line *line, CagError *err) {
              in_v = line->fixed == 1 ? v + (low ? beside : -beside) * across : v;
       status = sided_vertex(s, in_u, in_v, true, true, &other, &normal, err);
     }
-    if (status == CAG_OK && (first == NO_INDEX || !has_limit))
+    if (!status && (first == NO_INDEX || !has_limit))
       status = cag_tess_new_vertex(t, point, normal, u, v, &nodes[k].vertex[0], err);
     else nodes[k].vertex[0] = first;
-    if (status != CAG_OK) return status;
+    if (status) return status;
     if (first == NO_INDEX) first = nodes[k].vertex[0];
     cag_tess_unite(t, first, nodes[k].vertex[0]);
     nodes[k].vertex[1] = nodes[k].vertex[0];
@@ -276,7 +276,7 @@ static CagStatus corner_nodes(Tessellator *t, Line *line, CagError *err) {
     double u, v;
     node_parameters(line, nodes[k].t, true, &u, &v);
     CagStatus status = corner_at(t, line->face, u, v, NO_INDEX, &nodes[k].corner, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   return CAG_OK;
 }
@@ -298,7 +298,7 @@ static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row 
       line->fixed == 0
           ? cag_surface_eval_grid(s, &at, 1, row->t, n, row->points, row->du, row->dv, err)
           : cag_surface_eval_grid(s, row->t, n, &at, 1, row->points, row->du, row->dv, err);
-  for (size_t k = 0; status == CAG_OK && k < n; k++) {
+  for (size_t k = 0; !status && k < n; k++) {
     Node *node = &nodes[k];
     if (node->corner != NO_INDEX) continue;
     CagVec3 normal;
@@ -332,12 +332,12 @@ static CagStatus crease_nodes(Tessellator *t, Line *line, bool only_look, bool *
     node_parameters(line, node->t, true, &u, &v);
     CagStatus status =
         sided_vertex(s, u, v, line->fixed != 0, line->fixed == 0, &point, &normal, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     if (alike(normal, t->normals[node->vertex[1]])) continue;
     *found = true;
     if (only_look) return CAG_OK;
     status = cag_tess_new_vertex(t, point, normal, u, v, &node->vertex[0], err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     cag_tess_unite(t, node->vertex[1], node->vertex[0]);
   }
   return CAG_OK;
@@ -345,15 +345,15 @@ static CagStatus crease_nodes(Tessellator *t, Line *line, bool only_look, bool *
 
 static CagStatus line_nodes(Tessellator *t, Line *line, const Row *row, CagError *err) {
   CagStatus status = corner_nodes(t, line, err);
-  if (status == CAG_OK) status = row_of_nodes(t, line, true, row, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = row_of_nodes(t, line, true, row, err);
+  if (status) return status;
   if (line->seam) return row_of_nodes(t, line, false, row, err);
   Node *nodes = t->nodes + line->node;
   for (size_t k = 0; k < line->node_count; k++)
     if (nodes[k].corner == NO_INDEX) nodes[k].vertex[0] = nodes[k].vertex[1];
   bool crease = false;
   if (line->is_break) status = crease_nodes(t, line, true, &crease, err);
-  return status == CAG_OK && crease ? crease_nodes(t, line, false, &crease, err) : status;
+  return !status && crease ? crease_nodes(t, line, false, &crease, err) : status;
 }
 
 // Any vertex of the node: all are one point.
@@ -402,11 +402,11 @@ CagStatus cag_tess_make_nodes(Tessellator *t, CagError *err) {
   CagStatus status = begin_nodes(t, &row, err);
   // Poles first: lines that end there take the pole's vertex for their corner.
   for (int poles = 1; poles >= 0; poles--)
-    for (size_t k = 0; status == CAG_OK && k < t->line_count; k++) {
+    for (size_t k = 0; !status && k < t->line_count; k++) {
       if (t->lines[k].pole != (poles == 1)) continue;
       status = poles ? pole_nodes(t, &t->lines[k], err) : line_nodes(t, &t->lines[k], &row, err);
     }
-  for (size_t k = 0; status == CAG_OK && k < t->line_count; k++)
+  for (size_t k = 0; !status && k < t->line_count; k++)
     if (t->lines[k].joined != NO_INDEX) unite_joined(t, &t->lines[k]);
   cag_free(row.t);
   cag_free(row.points);

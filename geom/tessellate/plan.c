@@ -142,7 +142,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   }
   CagStatus status =
       cag_surface_eval_grid(surface, ts[0], SIDE, ts[1], SIDE, s->points, s->du, s->dv, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   for (int k = 0; k < SAMPLES; k++) {
     s->du[k] = cag_scaled(s->du[k], length[0]);
     s->dv[k] = cag_scaled(s->dv[k], length[1]);
@@ -364,11 +364,11 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
       return CAG_OK;
     }
     CagStatus status = try_distance(trial, &needs, &distance, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     double use = distance / tolerance;
     if (use <= highest_use) {
       status = cag_tess_try_middles(trial, &distance, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
       use = tess_larger(use, distance / tolerance);
     }
     if (tess_smaller(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
@@ -399,7 +399,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     n[1] *= 2;
     if (n[0] * n[1] > limit) return cag_tess_limit(t, 2 * n[0] * n[1], err);
     CagStatus status = try_distance(trial, &needs, &distance, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   return CAG_OK;
 }
@@ -425,7 +425,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
     TessExcess found;
     CagStatus status =
         cag_tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     double worst = tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1]));
     if (worst <= 1) return CAG_OK;
     bool grown = false;
@@ -455,12 +455,11 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
   memcpy(trial.from, s->from, sizeof trial.from);
   memcpy(trial.to, s->to, sizeof trial.to);
   CagStatus status = settle_distance(t, &trial, needs, halved, err);
-  if (status == CAG_OK && !(halved && *halved >= 0))
-    status = settle_edges(t, &trial, &needs, halved, err);
-  if (status == CAG_OK && halved && *halved < 0 && cag_tess_is_known_by_points(surface)) {
+  if (!status && !(halved && *halved >= 0)) status = settle_edges(t, &trial, &needs, halved, err);
+  if (!status && halved && *halved < 0 && cag_tess_is_known_by_points(surface)) {
     bool missed;
     status = cag_tess_try_scattered(&trial, t->how.tolerance, &missed, err);
-    if (status == CAG_OK && missed) {
+    if (!status && missed) {
       *halved = longer_way(&needs);
       *suspect = true;
     }
@@ -560,13 +559,13 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
 static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], const double to[2],
                            int depth, bool suspect, CagError *err) {
   CagStatus status = cag_tess_interrupted(t, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   const CagSurface *surface = t->faces[face].surface;
   Sampled s;
   memcpy(s.from, from, sizeof s.from);
   memcpy(s.to, to, sizeof s.to);
   status = sample_leaf(surface, &s, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   int d = halving(&t->how, surface, &s, depth);
   double middle = d < 0 ? 0 : from[d] + (to[d] - from[d]) / 2;
   if (d < 0 || !(middle > from[d] && middle < to[d])) {
@@ -574,7 +573,7 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
     int halved = -1;
     status = settle_counts(t, surface, &s, &suspect, n, depth < MAX_DEPTH && d < 0 ? &halved : NULL,
                            err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     if (halved < 0) return add_leaf(t, face, &s, n, err);
     d = halved;
     middle = from[d] + (to[d] - from[d]) / 2;
@@ -582,7 +581,7 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
   double lower_to[2] = {to[0], to[1]}, upper_from[2] = {from[0], from[1]};
   lower_to[d] = upper_from[d] = middle;
   status = plan_leaf(t, face, from, lower_to, depth + 1, suspect, err);
-  return status == CAG_OK ? plan_leaf(t, face, upper_from, to, depth + 1, suspect, err) : status;
+  return !status ? plan_leaf(t, face, upper_from, to, depth + 1, suspect, err) : status;
 }
 
 static CagStatus find_breaks(Face *f, int direction, CagError *err) {
@@ -607,14 +606,14 @@ CagStatus cag_tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
   f->leaf = t->leaf_count;
   for (int d = 0; d < 2; d++) {
     CagStatus status = find_breaks(f, d, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   for (size_t i = 0; i + 1 < f->break_count[0]; i++)
     for (size_t j = 0; j + 1 < f->break_count[1]; j++) {
       double from[2] = {f->breaks[0][i], f->breaks[1][j]},
              to[2] = {f->breaks[0][i + 1], f->breaks[1][j + 1]};
       CagStatus status = plan_leaf(t, face, from, to, 0, false, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
   f->leaf_count = t->leaf_count - f->leaf;
   return CAG_OK;

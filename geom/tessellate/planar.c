@@ -78,7 +78,7 @@ static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Li
     const uint32_t v = cag_tess_find(t, node_vertex(t, at));
     if (o->count > first && is_same(t, o->vertices[o->count - 1], v)) continue;
     CagStatus status = add_point(o, t->positions[v], v, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   // The loop closes on its first point.
   while (o->count > first + 1 && is_same(t, o->vertices[o->count - 1], o->vertices[first]))
@@ -94,7 +94,7 @@ static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, si
   size_t first = o->count;
   CagStatus status = append_piece(t, o, first, pieces[0].line, false, err);
   uint32_t end = node_root(t, pieces[0].line, true);
-  for (size_t done = 1; status == CAG_OK && done < n; done++) {
+  for (size_t done = 1; !status && done < n; done++) {
     size_t best = 0;
     bool backwards = false;
     double least = INFINITY;
@@ -271,9 +271,9 @@ static CagStatus append_edge(const Tessellator *t, Outline *o, size_t first, Cag
   const size_t n = steps_between(t, p, q);
   const bool there = o->count > first && cag_norm(cag_sub(o->points[o->count - 1], p)) <= slack;
   CagStatus status = CAG_OK;
-  for (size_t k = there; status == CAG_OK && k < n; k++) {
+  for (size_t k = there; !status && k < n; k++) {
     status = add_point(o, cag_lerp(p, q, (double)k / (double)n), NO_INDEX, err);
-    if (status == CAG_OK) status = check_count(t, o, err);
+    if (!status) status = check_count(t, o, err);
   }
   return status;
 }
@@ -323,19 +323,19 @@ static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCur
   size_t n;
   double scale = largest_scale(frame), angle = t->how.angle > 0 ? t->how.angle : M_PI / 2;
   CagStatus status = cag_curve_discretize(curve, t->how.tolerance / scale, angle, &at, &n, err);
-  if (status != CAG_OK) return status;
-  for (size_t k = 0; status == CAG_OK && k + 1 < n; k++) {
+  if (status) return status;
+  for (size_t k = 0; !status && k + 1 < n; k++) {
     CagVec3 p, q;
     status = cag_curve_point(curve, at[k], &p, err);
-    if (status == CAG_OK) status = cag_curve_point(curve, at[k + 1], &q, err);
-    if (status != CAG_OK) break;
+    if (!status) status = cag_curve_point(curve, at[k + 1], &q, err);
+    if (status) break;
     const size_t parts =
         steps_between(t, cag_transform_point(frame, p), cag_transform_point(frame, q));
-    for (size_t j = 0; status == CAG_OK && j < parts; j++) {
+    for (size_t j = 0; !status && j < parts; j++) {
       if (j > 0) status = cag_curve_point(curve, tess_mix(at[k], at[k + 1], j, parts), &p, err);
-      if (status == CAG_OK) status = add_point(o, cag_transform_point(frame, p), NO_INDEX, err);
+      if (!status) status = add_point(o, cag_transform_point(frame, p), NO_INDEX, err);
     }
-    if (status == CAG_OK) status = check_count(t, o, err);
+    if (!status) status = check_count(t, o, err);
   }
   cag_free(at);
   return status;
@@ -351,10 +351,10 @@ static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size
   CagStatus status = CAG_OK;
   if (faces) status = find_pieces(t, faces, face, (int)loop + 4, &pieces, &n, err);
   const double rounding = 4e-6; // of the size: edges of shells gape by 1e-6 at most
-  if (status == CAG_OK && n == 0) status = outline_of_curve(t, o, curve, frame, err);
-  else if (status == CAG_OK && !do_chain(t, pieces, n, rounding * t->size) && curve->kind->breaks)
+  if (!status && n == 0) status = outline_of_curve(t, o, curve, frame, err);
+  else if (!status && !do_chain(t, pieces, n, rounding * t->size) && curve->kind->breaks)
     status = outline_between(t, o, curve, frame, pieces, n, rounding * t->size, err);
-  else if (status == CAG_OK) status = outline_of_pieces(t, o, pieces, n, err);
+  else if (!status) status = outline_of_pieces(t, o, pieces, n, err);
   cag_free(pieces);
   return status;
 }
@@ -368,16 +368,16 @@ static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransfo
   CagVec3 x = cag_vec3(frame->m[0][0], frame->m[1][0], frame->m[2][0]),
           y = cag_vec3(frame->m[0][1], frame->m[1][1], frame->m[2][1]);
   CagVec3 normal = cag_unit(cag_cross(x, y));
-  for (size_t k = 0; status == CAG_OK && k < o->count; k++) {
+  for (size_t k = 0; !status && k < o->count; k++) {
     CagVec3 flat = cag_transform_point(&back, o->points[k]);
     xy[2 * k] = flat.x;
     xy[2 * k + 1] = flat.y;
     status = cag_tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
-    if (status == CAG_OK) cag_tess_unite(t, o->vertices[k], vertices[k]);
-    if (status == CAG_OK && o->vertices[k] == NO_INDEX)
+    if (!status) cag_tess_unite(t, o->vertices[k], vertices[k]);
+    if (!status && o->vertices[k] == NO_INDEX)
       status =
           CAG_RESERVE(t->own, t->own_capacity, t->own_count + 1) ? CAG_OK : cag_fail_memory(err);
-    if (status == CAG_OK && o->vertices[k] == NO_INDEX) t->own[t->own_count++] = vertices[k];
+    if (!status && o->vertices[k] == NO_INDEX) t->own[t->own_count++] = vertices[k];
   }
   return status;
 }
@@ -389,9 +389,8 @@ static CagStatus triangulate_outline(Tessellator *t, Face *f, const Outline *o,
   uint32_t *vertices = cag_malloc((o->count + 1) * sizeof *vertices);
   CagStatus status =
       xy && vertices ? own_vertices(t, o, frame, xy, vertices, err) : cag_fail_memory(err);
-  if (status == CAG_OK)
-    status = cag_triangulate(xy, counts, loops, &f->triangles, &f->triangle_count, err);
-  for (size_t k = 0; status == CAG_OK && k < 3 * f->triangle_count; k++)
+  if (!status) status = cag_triangulate(xy, counts, loops, &f->triangles, &f->triangle_count, err);
+  for (size_t k = 0; !status && k < 3 * f->triangle_count; k++)
     f->triangles[k] = vertices[f->triangles[k]];
   cag_free(xy);
   cag_free(vertices);
@@ -407,7 +406,7 @@ CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagFaces *fa
   Outline o = {0};
   size_t *counts = cag_malloc((region->count + 1) * sizeof *counts), loops = 0;
   CagStatus status = counts ? CAG_OK : cag_fail_memory(err);
-  for (size_t l = 0; status == CAG_OK && l < region->count; l++) {
+  for (size_t l = 0; !status && l < region->count; l++) {
     size_t before = o.count;
     status = outline_of_loop(t, &o, face, l, faces, region->loops[l], &frame, err);
     // Between the two pieces of a loop that is smaller than the tolerance there is nothing: they
@@ -415,8 +414,7 @@ CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagFaces *fa
     if (o.count - before < 3) o.count = before;
     else counts[loops++] = o.count - before;
   }
-  if (status == CAG_OK && loops > 0)
-    status = triangulate_outline(t, f, &o, counts, loops, &frame, err);
+  if (!status && loops > 0) status = triangulate_outline(t, f, &o, counts, loops, &frame, err);
   cag_free(counts);
   cag_free(o.points);
   cag_free(o.vertices);

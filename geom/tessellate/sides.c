@@ -45,8 +45,8 @@ static bool normal_towards(const Sides *s, size_t t, uint32_t j, const double to
                            CagVec3 *out) {
   const double *from = s->m->uv + 2 * (size_t)s->m->triangles[3 * t + j];
   CagError ignored;
-  return cag_surface_normal(s->surface, from[0] + part * (to[0] - from[0]),
-                            from[1] + part * (to[1] - from[1]), out, &ignored) == CAG_OK;
+  return !cag_surface_normal(s->surface, from[0] + part * (to[0] - from[0]),
+                             from[1] + part * (to[1] - from[1]), out, &ignored);
 }
 
 // Tests whether the normal is reversed at once between corners j and i. At a narrow rim it turns.

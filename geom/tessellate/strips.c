@@ -95,7 +95,7 @@ static bool bend_at(const CagSurface *s, int along, double across, double at, Be
   const CagStatus status =
       along == 1 ? cag_surface_eval(s, across, at, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &ignored)
                  : cag_surface_eval(s, at, across, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &ignored);
-  if (status != CAG_OK) return false;
+  if (status) return false;
   const bool by_v = along == 1;
   const CagVec3 a = d[cag_partial(2, by_v, !by_v)], l = d[cag_partial(2, !by_v, by_v)],
                 aa = d[cag_partial(2, 2 * by_v, 2 * !by_v)], al = d[cag_partial(2, 1, 1)],
@@ -230,7 +230,7 @@ static CagStatus cut_run(Run *r, double most, bool *possible, CagError *err) {
   CagStatus status = CAG_OK;
   *possible = true;
   r->strip_count = 0;
-  for (size_t k = 0; status == CAG_OK && *possible && k < r->cell_count; k++)
+  for (size_t k = 0; !status && *possible && k < r->cell_count; k++)
     status = cut_cell(r, &r->cells[k], most, possible, err);
   return status;
 }
@@ -277,14 +277,14 @@ static CagStatus plan_run(Run *r, double most_quads, bool *possible, CagError *e
   double best = most_quads, steps = 0;
   CagStatus status = CAG_OK;
   *possible = false;
-  for (int k = 0; status == CAG_OK && k < TRIES; k++) {
+  for (int k = 0; !status && k < TRIES; k++) {
     bool found;
     r->steps = least * pow(finer, k);
     if ((double)r->cell_count * r->steps >= best) break; // each cell has at least one strip
     status = cut_run(r, best / r->steps, &found, err);
-    if (status == CAG_OK && found) best = (double)r->strip_count * r->steps, steps = r->steps;
+    if (!status && found) best = (double)r->strip_count * r->steps, steps = r->steps;
   }
-  if (status != CAG_OK || steps == 0) return status;
+  if (status || steps == 0) return status;
   r->steps = steps;
   status = cut_run(r, INFINITY, possible, err);
   close_run(r);
@@ -321,13 +321,13 @@ static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double
   TessExcess found;
   bool missed = false;
   CagStatus status = cag_tess_try_distance(&trial, sine, &distance[0], err);
-  if (status == CAG_OK) status = cag_tess_try_middles(&trial, &distance[1], err);
-  if (status == CAG_OK)
+  if (!status) status = cag_tess_try_middles(&trial, &distance[1], err);
+  if (!status)
     status = cag_tess_try_edges(&trial, closely * how->angle, shortest_edge * how->tolerance,
                                 how->max_edge, &found, err);
-  if (status == CAG_OK && cag_tess_is_known_by_points(r->surface))
+  if (!status && cag_tess_is_known_by_points(r->surface))
     status = cag_tess_try_scattered(&trial, how->tolerance, &missed, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *use = missed ? INFINITY : fmax(distance[0], distance[1]) / how->tolerance;
   *excess = fmax(found.diagonal, fmax(found.along[0], found.along[1]));
   return CAG_OK;
@@ -336,12 +336,12 @@ static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double
 static CagStatus try_run(const Run *r, double *use, double *excess, CagError *err) {
   CagStatus status = CAG_OK;
   *use = *excess = 0;
-  for (size_t k = 0; status == CAG_OK && k < r->strip_count; k++) {
+  for (size_t k = 0; !status && k < r->strip_count; k++) {
     double u, e;
     status = try_strip(r, &r->strips[k], &u, &e, err);
-    if (status == CAG_OK) *use = fmax(*use, u), *excess = fmax(*excess, e);
+    if (!status) *use = fmax(*use, u), *excess = fmax(*excess, e);
   }
-  return status == CAG_OK ? cag_tess_interrupted(r->t, err) : status;
+  return !status ? cag_tess_interrupted(r->t, err) : status;
 }
 
 // Finds strips that keep the tolerance and the limits of edges without being much finer than
@@ -355,8 +355,8 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     bool possible;
     double use, excess;
     CagStatus status = plan_run(r, most_quads, &possible, err);
-    if (status == CAG_OK && possible) status = try_run(r, &use, &excess, err);
-    if (status != CAG_OK) {
+    if (!status && possible) status = try_run(r, &use, &excess, err);
+    if (status) {
       cag_free(best.strips);
       return status;
     }
@@ -449,12 +449,12 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   r->low = r->cells[0].from;
   r->high = r->cells[r->cell_count - 1].to;
   CagStatus status = cag_tess_interrupted(r->t, err);
-  if (status == CAG_OK && possible) status = settle_run(r, gain * quads, &settled, err);
+  if (!status && possible) status = settle_run(r, gain * quads, &settled, err);
   cag_free(bends);
-  if (status == CAG_OK && settled)
+  if (!status && settled)
     status =
         CAG_RESERVE(plan->runs, plan->capacity, plan->count + 1) ? CAG_OK : cag_fail_memory(err);
-  if (status == CAG_OK && settled) {
+  if (!status && settled) {
     plan->saved += quads - (double)r->strip_count * r->steps;
     plan->runs[plan->count++] = *r;
   } else {
@@ -476,7 +476,7 @@ static CagStatus plan_row(const Tessellator *t, const Face *f, Run run, const do
   if (has_pole(s, run.along, run.from, run.to)) return CAG_OK;
   run.tolerance = aimed_use * t->how.tolerance;
   run.angle = closely * t->how.angle;
-  for (size_t k = 0; status == CAG_OK && k <= count; k++) {
+  for (size_t k = 0; !status && k <= count; k++) {
     bool usable = false, saves = false;
     if (k < count) {
       const Cell cell = {.from = breaks[k], .to = breaks[k + 1], .quads = quads[k]};
@@ -504,13 +504,13 @@ static CagStatus plan_direction(const Tessellator *t, const Face *f, int along, 
   double *quads = cag_calloc(rows * cells, sizeof *quads);
   Cell *room = cag_malloc(cells * sizeof *room);
   CagStatus status = quads && room ? CAG_OK : cag_fail_memory(err);
-  for (size_t k = f->leaf; status == CAG_OK && k < f->leaf + f->leaf_count; k++) {
+  for (size_t k = f->leaf; !status && k < f->leaf + f->leaf_count; k++) {
     const Leaf *leaf = &t->leaves[k];
     const size_t row = cell_of(f, along, leaf->from[along]),
                  cell = cell_of(f, across, leaf->from[across]);
     quads[row * cells + cell] += (double)leaf->n[0] * leaf->n[1];
   }
-  for (size_t k = 0; status == CAG_OK && k < rows; k++) {
+  for (size_t k = 0; !status && k < rows; k++) {
     const Run run = {.t = t,
                      .surface = f->surface,
                      .along = along,
@@ -530,10 +530,10 @@ CagStatus cag_tess_plan_strips(Tessellator *t, uint32_t face, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t k = f->leaf; k < f->leaf + f->leaf_count; k++)
     quads += (double)t->leaves[k].n[0] * t->leaves[k].n[1];
-  for (int along = 0; status == CAG_OK && along < 2 && quads >= WORTH_STRIPS; along++)
+  for (int along = 0; !status && along < 2 && quads >= WORTH_STRIPS; along++)
     status = plan_direction(t, f, along, &plans[along], err);
   const Plan *best = &plans[plans[1].saved >= plans[0].saved];
-  for (size_t k = 0; status == CAG_OK && k < best->count; k++)
+  for (size_t k = 0; !status && k < best->count; k++)
     status = replace_leaves(t, face, &best->runs[k], err);
   for (int along = 0; along < 2; along++) {
     for (size_t k = 0; k < plans[along].count; k++) cag_free(plans[along].runs[k].strips);

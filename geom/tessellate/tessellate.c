@@ -84,26 +84,26 @@ static CagStatus join_edges(Tessellator *t, const CagFaces *faces, CagError *err
     if (a == NO_INDEX || b == NO_INDEX || a == b) continue;
     if (t->lines[a].joined != NO_INDEX || t->lines[b].joined != NO_INDEX) continue;
     CagStatus status = cag_tess_join_lines(t, a, b, edge->reversed, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   return CAG_OK;
 }
 
 static CagStatus run(Tessellator *t, const CagFaces *faces, CagMesh **out, CagError *err) {
   CagStatus status = CAG_OK;
-  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+  for (uint32_t k = 0; !status && k < t->face_count; k++)
     if (!t->faces[k].planar) {
       status = cag_tess_plan_face(t, k, err);
-      if (status == CAG_OK) status = cag_tess_plan_strips(t, k, err);
+      if (!status) status = cag_tess_plan_strips(t, k, err);
     }
-  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+  for (uint32_t k = 0; !status && k < t->face_count; k++)
     if (!t->faces[k].planar) status = cag_tess_make_even_lines(t, k, err);
-  if (status == CAG_OK && faces) status = join_edges(t, faces, err);
-  if (status == CAG_OK) status = cag_tess_make_nodes(t, err);
-  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+  if (!status && faces) status = join_edges(t, faces, err);
+  if (!status) status = cag_tess_make_nodes(t, err);
+  for (uint32_t k = 0; !status && k < t->face_count; k++)
     if (t->faces[k].planar) status = cag_tess_planar_face(t, k, faces, err);
-  if (status == CAG_OK && faces) status = cag_tess_unite_corners(t, err);
-  return status == CAG_OK ? cag_tess_fill(t, out, err) : status;
+  if (!status && faces) status = cag_tess_unite_corners(t, err);
+  return !status ? cag_tess_fill(t, out, err) : status;
 }
 
 CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
@@ -111,10 +111,10 @@ CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how
   CagBounds bounds;
   CagSurface *face = (CagSurface *)s;
   CagStatus status = cag_surface_bounds(s, &bounds, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   Tessellator t;
   status = begin(&t, how, &bounds, &face, 1, err);
-  if (status == CAG_OK)
+  if (!status)
     status = cag_surface_trimmed_view(s, NULL, NULL) ? cag_trimmed_tessellate(s, &t.how, out, err)
                                                      : run(&t, NULL, out, err);
   release(&t);
@@ -125,7 +125,7 @@ CagStatus cag_faces_tessellate(const CagFaces *faces, const CagBounds *bounds,
                                const CagTessellation *how, CagMesh **out, CagError *err) {
   Tessellator t;
   CagStatus status = begin(&t, how, bounds, faces->items, faces->count, err);
-  if (status == CAG_OK) status = run(&t, faces, out, err);
+  if (!status) status = run(&t, faces, out, err);
   release(&t);
   return status;
 }

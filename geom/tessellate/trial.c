@@ -38,13 +38,13 @@ static CagStatus evaluate_sheared(const TessTrial *t, const double *us, size_t n
   CagVec3 *line = cag_malloc((2 * n + 1) * sizeof *line),
           *line_normals = line && normals ? line + n : NULL;
   CagStatus status = shifted && line ? CAG_OK : cag_fail_memory(err);
-  for (size_t k = 0; status == CAG_OK && k < lines; k++) {
+  for (size_t k = 0; !status && k < lines; k++) {
     const double *across = along_v ? us + k : vs + k, *along = along_v ? vs : us;
     const double shift = t->slope * (*across - t->from[1 - t->along]);
     for (size_t i = 0; i < n; i++) shifted[i] = along[i] + shift;
     status = along_v ? evaluate_line(t, across, 1, shifted, n, line, line_normals, err)
                      : evaluate_line(t, shifted, n, across, 1, line, line_normals, err);
-    for (size_t i = 0; status == CAG_OK && i < n; i++) {
+    for (size_t i = 0; !status && i < n; i++) {
       const size_t at = along_v ? k * nv + i : i * nv + k;
       points[at] = line[i];
       if (normals) normals[at] = line_normals[i];
@@ -150,7 +150,7 @@ CagStatus cag_tess_try_distance(const TessTrial *trial, const double sine[2], do
                                 CagError *err) {
   Grid grid;
   CagStatus status = evaluate_places(trial, TRIED, place, PLACES, &grid, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *distance = 0;
   for (int i = 0; i < grid.count[0]; i++)
     for (int j = 0; j < grid.count[1]; j++) {
@@ -167,7 +167,7 @@ CagStatus cag_tess_try_middles(const TessTrial *trial, double *distance, CagErro
   *distance = 0;
   if (tess_larger(trial->n[0], trial->n[1]) <= TRIED_WELL) return CAG_OK;
   CagStatus status = evaluate_places(trial, TRIED_LAST, ends_and_middle, 3, &grid, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   for (int i = 0; i < grid.count[0]; i++)
     for (int j = 0; j < grid.count[1]; j++) {
       const CagVec3 *at = grid.points + (i * grid.rows + j) * 3, *far = at + 2 * grid.rows;
@@ -231,7 +231,7 @@ CagStatus cag_tess_try_edges(const TessTrial *trial, double angle, double free, 
   size_t n[2], step[2];
   for (int d = 0; d < 2; d++) n[d] = corners_along(trial, d, ts[d], &step[d]);
   CagStatus status = evaluate(trial, ts[0], n[0], ts[1], n[1], p, q, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *out = (TessExcess){{0, 0}, 0};
   for (size_t i = 0; i + 1 < n[0]; i += step[0])
     for (size_t j = 0; j + 1 < n[1]; j += step[1]) {
@@ -326,7 +326,7 @@ static CagStatus try_row(const Scatter *s, double u, double shift, double tolera
   }
   if (n == 0) return CAG_OK;
   CagStatus status = cag_surface_eval_grid(t->surface, &u, 1, vs, n, p, NULL, NULL, err);
-  for (size_t k = 0; status == CAG_OK && !*missed && k < n; k++)
+  for (size_t k = 0; !status && !*missed && k < n; k++)
     *missed = distance_to_cells(s, cell[k][0], cell[k][1], p[k], tolerance) > tolerance;
   return status;
 }
@@ -346,7 +346,7 @@ CagStatus cag_tess_try_scattered(const TessTrial *trial, double tolerance, bool 
   if (!s.corners) return cag_fail_memory(err);
   CagStatus status = evaluate_corners(&s, err);
   for (int k = 0; k < sets; k++)
-    for (int i = 0; status == CAG_OK && !*missed && i < SCATTERED; i++) {
+    for (int i = 0; !status && !*missed && i < SCATTERED; i++) {
       double u = f->u0 + (f->u1 - f->u0) * (i + beside[k]) / SCATTERED;
       double shift = (i + beside[k] - beside[0]) * golden;
       status = try_row(&s, u, shift - floor(shift), tolerance, missed, err);

@@ -79,8 +79,7 @@ static CagStatus add_vertex(Plane *p, double u, double v, uint32_t *out, CagErro
   CagError ignored;
   CagStatus status = cag_surface_point(s, u, v, &p->positions[k], err);
   if (status) return status;
-  if (cag_surface_normal(s, u, v, &p->normals[k], &ignored) != CAG_OK)
-    p->normals[k] = cag_vec3(0, 0, 0);
+  if (cag_surface_normal(s, u, v, &p->normals[k], &ignored)) p->normals[k] = cag_vec3(0, 0, 0);
   p->xy[2 * k] = u * p->scale[0];
   p->xy[2 * k + 1] = v * p->scale[1];
   p->vertex_count++;

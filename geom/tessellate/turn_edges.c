@@ -150,7 +150,7 @@ static bool leans(const Turner *t, uint32_t triangle) {
 
 static CagStatus turn_all(Turner *t, CagError *err) {
   CagStatus status = find_neighbors(t, err);
-  bool turned = status == CAG_OK;
+  bool turned = !status;
   for (int pass = 0; turned && pass < MAX_PASSES; pass++) {
     turned = false;
     for (uint32_t k = 0; k < t->m->triangle_count; k++) {

@@ -241,7 +241,7 @@ static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError
     CagFrenet f;
     CagStatus status = cag_stop_check(err);
     if (!status) status = cag_curve_frenet(c, t, &f, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     comb->feet[i] = f.point;
     comb->teeth[i] = cag_scaled(f.normal, -f.curvature);
     *most = fmax(*most, f.curvature);

@@ -29,7 +29,7 @@ static bool read_degree(CagCall *call, CagNumbers knots, int degree_at, int orde
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                       "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
                       count);
-  for (size_t i = 0; status == CAG_OK && i < count; i++) {
+  for (size_t i = 0; !status && i < count; i++) {
     if (!isfinite(x[i]))
       status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
                         "knots[%zu] is not a finite number", i);
@@ -38,7 +38,7 @@ static bool read_degree(CagCall *call, CagNumbers knots, int degree_at, int orde
                         "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s",
                         i, cag_number_text(x[i], a), i - 1, cag_number_text(x[i - 1], b));
   }
-  if (status == CAG_OK && !(x[0] < x[count - 1]))
+  if (!status && !(x[0] < x[count - 1]))
     status =
         cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", 0, "all knots are equal");
   return cag_geometry_ok(call, status);
@@ -125,11 +125,11 @@ static CagStatus make_rational(const Basis *b, double t, CagError *err) {
 static CagStatus basis_at(const Basis *b, double t, double *out, CagError *err) {
   size_t at;
   CagStatus status = cag_basis_interval(b->knots, b->count, b->degree, t, b->left, &at, err);
-  for (int d = b->weights ? 0 : b->derivative; status == CAG_OK && d <= b->derivative; d++)
+  for (int d = b->weights ? 0 : b->derivative; !status && d <= b->derivative; d++)
     cag_basis_derivative(b->knots, b->count, b->degree, at, t, d, b->work,
                          b->rows + (size_t)d * b->n);
-  if (status == CAG_OK && b->weights) status = make_rational(b, t, err);
-  if (status == CAG_OK) memcpy(out, b->rows + (size_t)b->derivative * b->n, b->n * sizeof *out);
+  if (!status && b->weights) status = make_rational(b, t, err);
+  if (!status) memcpy(out, b->rows + (size_t)b->derivative * b->n, b->n * sizeof *out);
   return status;
 }
 
@@ -140,7 +140,7 @@ static bool check_basis_weights(CagCall *call, CagNumbers weights, size_t n) {
     status =
         cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
                  "expects one of `weights` for each of %zu functions, found %zu", n, weights.count);
-  for (size_t i = 0; status == CAG_OK && i < n; i++)
+  for (size_t i = 0; !status && i < n; i++)
     if (!(weights.items[i] >= 0))
       status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                         "weights must not be negative: weights[%zu] = %s", i,
@@ -381,7 +381,7 @@ bool cag_bsplines_phantom_points(CagCall *call, const struct cag_bsplines_phanto
   double *work = cag_hold_array(call, 4 * (size_t)p + 8, sizeof *work);
   memcpy(all + 1, points, sizeof *all * n);
   CagStatus status = phantom(&start, points, n, p, false, work, &all[0], call->err);
-  if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], call->err);
+  if (!status) status = phantom(&end, points, n, p, true, work, &all[n + 1], call->err);
   if (!cag_geometry_ok(call, status)) return false;
   *result = cag_points_value(call->vm, all, n + 2, dimension);
   return true;

@@ -87,7 +87,7 @@ bool cag_curves_polygonize(CagCall *call, const struct cag_curves_polygonize *a,
   cag_hold(call, t);
   CagVec3 *points = cag_hold(call, cag_malloc(n * sizeof *points));
   CagStatus status = cag_curve_eval_many(a->C, t, n, 0, points, call->err);
-  if (status == CAG_OK)
+  if (!status)
     status = cag_curve_polyline(points, a->C->closed ? n - 1 : n, a->C->closed, a->C->dimension,
                                 &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);

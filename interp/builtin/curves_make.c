@@ -39,7 +39,7 @@ bool cag_circle_frame(CagCall *call, CagPoint center, CagPoint normal, CagTransf
 
 bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
                              CagValue *result) {
-  if (status != CAG_OK || !backwards) return cag_curve_result(call, status, made, result);
+  if (status || !backwards) return cag_curve_result(call, status, made, result);
   CagCurve *reversed = NULL;
   status = cag_curve_reverse(*made, &reversed, call->err);
   cag_curve_release(*made);
@@ -109,7 +109,7 @@ bool cag_curves_circle_through(CagCall *call, const struct cag_curves_circle_thr
   frame = cag_translate(center);
   if (dimension == 3) status = level_frame(center, normal, &frame, call->err);
   frame.planar = dimension == 2;
-  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
+  if (!status) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 
@@ -128,7 +128,7 @@ bool cag_curves_arc_through(CagCall *call, const struct cag_curves_arc_through *
   if (sweep <= 0) sweep += FULL_TURN;
   CagStatus status = cag_axes(center, x, y, &frame, call->err);
   frame.planar = dimension == 2;
-  if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, call->err);
+  if (!status) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, call->err);
   return cag_curve_result(call, status, &c, result);
 }
 

@@ -70,7 +70,7 @@ bool cag_curves_sample(CagCall *call, const struct cag_curves_sample *a, CagValu
 static CagStatus divide_by_length(const CagCurve *c, size_t n, double *t, CagError *err) {
   double length;
   CagStatus status = cag_curve_length(c, c->start, c->end, &length, err);
-  for (size_t i = 1; status == CAG_OK && i < n; i++)
+  for (size_t i = 1; !status && i < n; i++)
     status = cag_curve_parameter_at_length(c, length * (double)i / (double)n, &t[i], err);
   return status;
 }
@@ -88,13 +88,13 @@ static CagStatus next_chord(const CagCurve *c, double from, double chord, double
   CagStatus status = cag_curve_point(c, from, &p, err);
   double low = from, high = from;
   *found = false;
-  while (status == CAG_OK && !*found && high < c->end) {
+  while (!status && !*found && high < c->end) {
     low = high;
     high = fmin(c->end, high + stride);
     status = cag_curve_point(c, high, &q, err);
-    *found = status == CAG_OK && cag_norm(cag_sub(q, p)) >= chord;
+    *found = !status && cag_norm(cag_sub(q, p)) >= chord;
   }
-  for (int i = 0; status == CAG_OK && *found && i < HALVINGS; i++) {
+  for (int i = 0; !status && *found && i < HALVINGS; i++) {
     double middle = low + (high - low) / 2;
     status = cag_curve_point(c, middle, &q, err);
     if (cag_norm(cag_sub(q, p)) >= chord) high = middle;
@@ -114,11 +114,11 @@ static CagStatus walk_chords(const CagCurve *c, size_t n, double chord, double *
   for (size_t i = 1; i < n; i++) {
     bool found;
     CagStatus status = next_chord(c, t[i - 1], chord, stride, &found, &t[i], err);
-    if (status != CAG_OK || !found) return status;
+    if (status || !found) return status;
   }
   CagStatus status = cag_curve_point(c, t[n - 1], &last, err);
-  if (status == CAG_OK) status = cag_curve_point(c, c->end, &end, err);
-  if (status == CAG_OK) *rest = cag_norm(cag_sub(end, last)) - chord;
+  if (!status) status = cag_curve_point(c, c->end, &end, err);
+  if (!status) *rest = cag_norm(cag_sub(end, last)) - chord;
   return status;
 }
 
@@ -230,13 +230,13 @@ static CagStatus divide_by_chord(CagCall *call, const CagCurve *c, size_t n, dou
   double length, low = 0, rest;
   CagStatus status = cag_curve_length(c, c->start, c->end, &length, err);
   double high = length / (double)n; // no chord is longer than its arc
-  for (int i = 0; status == CAG_OK && n > 1 && i < HALVINGS; i++) {
+  for (int i = 0; !status && n > 1 && i < HALVINGS; i++) {
     double middle = low + (high - low) / 2;
     status = walk_chords(c, n, middle, t, &rest, err);
     if (rest >= 0) low = middle;
     else high = middle;
   }
-  if (status == CAG_OK && n > 1) status = walk_chords(c, n, low, t, &rest, err);
+  if (!status && n > 1) status = walk_chords(c, n, low, t, &rest, err);
   if (status || n < 2 || fabs(rest) <= EQUAL_CHORDS * length) return status;
   status = divide_by_length(c, n, t, err);
   t[0] = c->start;

@@ -47,7 +47,7 @@ bool cag_figures_surface_normals(CagCall *call, const struct cag_figures_surface
     CagStatus status = cag_surface_eval(s, u, v, 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, &p, call->err);
     if (!cag_geometry_ok(call, status)) return false;
     // Where there is no normal (the tip of a cone) no line stands.
-    if (cag_surface_normal(s, u, v, &normal, call->err) != CAG_OK) continue;
+    if (cag_surface_normal(s, u, v, &normal, call->err)) continue;
     status = cag_curve_line(p, cag_madd(p, length, normal), 3, &c, call->err);
     if (!cag_curve_result(call, status, &c, &line) || !cag_builder_add(call->vm, list, line))
       return false;

@@ -158,7 +158,7 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
     if (cag_region_is_empty(shape->as.region))
       return cag_mesh_new(0, 0, false, false, false, out, err);
     CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
-    if (status == CAG_OK) status = cag_surface_tessellate(flat, &own, out, err);
+    if (!status) status = cag_surface_tessellate(flat, &own, out, err);
     cag_surface_release(flat);
     return status;
   }

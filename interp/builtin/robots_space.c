@@ -59,7 +59,7 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
   double size = cag_norm(cag_sub(b->max, b->min));
   if (b->max.z - b->min.z > FLAT * size) {
     CagStatus status = cag_hull_space(points, n, &m, call->err);
-    if (status == CAG_OK) *out = cag_mesh_value(call->vm, m);
+    if (!status) *out = cag_mesh_value(call->vm, m);
     return status != CAG_E_MEMORY || cag_fail_geometry(call, call->err);
   }
   CagStatus status = cag_hull_plane(points, n, &ring, &count, call->err);

@@ -252,9 +252,9 @@ static bool read_chain(Import *m) {
   cag_hold(call, bytes);
   CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, call->err);
   cag_release_held(call, bytes);
-  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, call->err);
+  if (!status) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, call->err);
   cag_hold_for(call, cag_free, chain);
-  if (status == CAG_OK)
+  if (!status)
     status = cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows,
                            call->err);
   return cag_geometry_ok(call, status);

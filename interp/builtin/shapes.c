@@ -260,9 +260,9 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
     CagCurve *moved = NULL;
     CagBounds loop;
     CagStatus status = cag_curve_transform(shape->as.region->loops[i], place, &moved, err);
-    if (status == CAG_OK) status = cag_curve_bounds(moved, &loop, err);
+    if (!status) status = cag_curve_bounds(moved, &loop, err);
     cag_curve_release(moved);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     bounds_join(out, &loop);
   }
   return CAG_OK;

@@ -17,7 +17,7 @@
 
 // True when the core succeeded; else what it wrote to call->err becomes the machine's error.
 static inline bool cag_geometry_ok(CagCall *call, CagStatus status) {
-  return status == CAG_OK || cag_fail_geometry(call, call->err);
+  return !status || cag_fail_geometry(call, call->err);
 }
 
 // The result of a call of the core that makes a shape: its value, or the machine's error. They take

@@ -122,7 +122,7 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
 
 // The place of an operand in an error: "the second operand" would need words for all numbers.
 static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t index) {
-  if (status == CAG_OK) return true;
+  if (!status) return true;
   if (err->index < 0 && strcmp(err->argument, "surfaces") != 0) {
     char text[sizeof err->message];
     snprintf(text, sizeof text, "operand %zu: %.360s", index + 1, err->message);
@@ -314,8 +314,7 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
   // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
-  bool outside =
-      cag_solid_reach(made, &reach, c->call->err) == CAG_OK && !(reach.min.x <= reach.max.x);
+  bool outside = !cag_solid_reach(made, &reach, c->call->err) && !(reach.min.x <= reach.max.x);
   return outside || cag_builder_add(c->call->vm, into, value);
 }
 

@@ -32,7 +32,7 @@ static bool upright_result(CagCall *call, double height, double radius, double t
                            CagValue *result) {
   CagSolid *s = NULL, *moved = NULL;
   CagStatus status = cag_solid_cylinder(height, radius, top, &s, call->err);
-  if (status != CAG_OK || !centered) return cag_solid_result(call, status, &s, result);
+  if (status || !centered) return cag_solid_result(call, status, &s, result);
   const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
   status = cag_solid_transform(s, &down, &moved, call->err);
   cag_solid_release(s);
@@ -69,8 +69,8 @@ CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSoli
   CagTransform frame;
   CagSolid *standing = NULL;
   CagStatus status = cag_axes(p, side, cag_cross(along, side), &frame, err);
-  if (status == CAG_OK) status = cag_solid_cylinder(height, radius, top, &standing, err);
-  if (status == CAG_OK) status = cag_solid_transform(standing, &frame, out, err);
+  if (!status) status = cag_solid_cylinder(height, radius, top, &standing, err);
+  if (!status) status = cag_solid_transform(standing, &frame, out, err);
   cag_solid_release(standing);
   return status;
 }
@@ -110,7 +110,7 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
 static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSolid **out,
                              CagError *err) {
   CagStatus status = cag_solid_shell(faces, n, out, err);
-  if (status == CAG_OK || !cag_solid_has_quadric_body(faces, n)) return status;
+  if (!status || !cag_solid_has_quadric_body(faces, n)) return status;
   return cag_solid_quadric_body(faces, n, cag_vm_stop(call->vm), out, err);
 }
 

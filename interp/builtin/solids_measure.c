@@ -14,7 +14,7 @@ typedef struct Body {
 static CagStatus solid_body(const CagSolid *s, double tolerance, Body *out, CagError *err) {
   CagMassProperties mass;
   CagStatus status = cag_solid_mass_within(s, tolerance, &mass, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   const CagVec3 c = mass.volume_centroid;
   *out = (Body){.area = mass.area, .volume = mass.volume, .center = {c.x, c.y, c.z}};
   for (int i = 0; i < 3; i++) {
@@ -59,7 +59,7 @@ static CagStatus mesh_body(const CagMesh *m, bool volume, Body *out, CagError *e
   const CagBounds box = cag_mesh_bounds(m);
   const CagTransform shift = to_middle(&box, &middle);
   CagStatus status = cag_mesh_transform(m, &shift, &near, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   cag_mesh_volume_terms(near, terms);
   cag_mesh_release(near);
   set_body(terms, middle, out);
@@ -72,15 +72,15 @@ static CagStatus surface_body(const CagSurface *s, bool volume, Body *out, CagEr
   CagSurface *near;
   double terms[10] = {0};
   CagStatus status = cag_surface_area(s, &out->area, &centroid, err);
-  if (status != CAG_OK || !volume) return status;
+  if (status || !volume) return status;
   if (!cag_surface_is_closed(s))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
                     "the surface has a boundary, so it holds no volume");
   status = cag_surface_bounds(s, &box, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   const CagTransform shift = to_middle(&box, &middle);
   status = cag_surface_transform(s, &shift, &near, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = cag_surface_volume_terms(near, terms, err);
   cag_surface_release(near);
   // A surface that is inside out is the same body.

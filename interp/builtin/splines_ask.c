@@ -329,7 +329,7 @@ static size_t polygon_crossings(const CagCurve *curve, CagVec3 normal, double of
   CagCurve *exact;
   CagNurbsView view;
   CagError err;
-  if (cag_curve_to_nurbs(curve, &exact, &err) != CAG_OK) return 0;
+  if (cag_curve_to_nurbs(curve, &exact, &err)) return 0;
   size_t n = 0;
   if (cag_curve_nurbs_view(exact, &view)) {
     int last = 0;

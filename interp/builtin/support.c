@@ -205,8 +205,7 @@ double cag_mix_numbers(double a, double b, double t) {
 static bool mix_transforms(CagCall *call, CagValue a, CagValue b, double t, CagValue *out) {
   CagTransform mixed;
   CagError err = {0};
-  if (cag_transform_mix(&CAG_AS_TRANSFORM(a)->t, &CAG_AS_TRANSFORM(b)->t, t, &mixed, &err) !=
-      CAG_OK)
+  if (cag_transform_mix(&CAG_AS_TRANSFORM(a)->t, &CAG_AS_TRANSFORM(b)->t, t, &mixed, &err))
     return cag_fail_geometry(call, &err);
   *out = cag_transform_value(call->vm, &mixed);
   return true;

@@ -62,11 +62,11 @@ bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransf
   CagRegion *half = NULL;
   CagSolid *turned = NULL, *placed = NULL;
   CagStatus status = cag_region_transform(region, &flat, &half, call->err);
-  if (status == CAG_OK)
+  if (!status)
     status =
         cag_solid_revolve(half, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), from, to, &turned, call->err);
-  if (status == CAG_OK) status = cag_axes(through, radial, cag_cross(a, radial), &frame, call->err);
-  if (status == CAG_OK) status = cag_solid_transform(turned, &frame, &placed, call->err);
+  if (!status) status = cag_axes(through, radial, cag_cross(a, radial), &frame, call->err);
+  if (!status) status = cag_solid_transform(turned, &frame, &placed, call->err);
   cag_region_release(half);
   cag_solid_release(turned);
   return cag_solid_result(call, status, &placed, result);
@@ -92,7 +92,7 @@ static CagStatus revolve_curve(const CagCurve *c, bool stand, CagVec3 axis, CagV
   CagCurve *profile = NULL;
   CagStatus status =
       stand ? cag_curve_transform(c, &up, &profile, err) : cag_curve_to_space(c, &profile, err);
-  if (status == CAG_OK) status = cag_surface_revolve(profile, axis, through, from, to, out, err);
+  if (!status) status = cag_surface_revolve(profile, axis, through, from, to, out, err);
   cag_curve_release(profile);
   return status;
 }
@@ -146,7 +146,7 @@ static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
     CagValue side;
     CagStatus status =
         cag_surface_extrude(region->loops[i], way, a->twist, a->scale, &s, call->err);
-    if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, call->err);
+    if (!status) status = cag_surface_transform(s, place, &placed, call->err);
     cag_surface_release(s);
     if (!cag_surface_result(call, status, &placed, &side) ||
         !cag_builder_add(call->vm, sides, side))
@@ -162,7 +162,7 @@ static bool extrude_region(CagCall *call, const struct cag_surfaces_extrude *a,
   CagSolid *s = NULL, *placed = NULL;
   if (!a->caps) return extrude_sides(call, a, region, way, place, result);
   CagStatus status = cag_solid_extrude(region, way, a->twist, a->scale, &s, call->err);
-  if (status == CAG_OK) status = cag_solid_transform(s, place, &placed, call->err);
+  if (!status) status = cag_solid_transform(s, place, &placed, call->err);
   cag_solid_release(s);
   return cag_solid_result(call, status, &placed, result);
 }
@@ -225,7 +225,7 @@ bool cag_surfaces_sphere_surface(CagCall *call, const struct cag_surfaces_sphere
   CagTransform from_pole = {{{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
   CagStatus status =
       cag_curve_arc(a->radius, a->radius, 0, FULL_TURN / 2, &from_pole, &meridian, call->err);
-  if (status == CAG_OK)
+  if (!status)
     status = revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s,
                            call->err);
   cag_curve_release(meridian);

@@ -119,7 +119,7 @@ static CagStatus body_mesh(CagValue v, const CagTessellation *how, CagMesh **out
   }
   if (v.type == CAG_SOLID) return cag_solid_tessellate(shape->as.solid, how, out, err);
   CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
-  if (status == CAG_OK) status = cag_surface_tessellate(flat, how, out, err);
+  if (!status) status = cag_surface_tessellate(flat, how, out, err);
   cag_surface_release(flat);
   return status;
 }
@@ -138,7 +138,7 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *flat = NULL, *image = NULL;
   CagStatus status = body_mesh(g, &how, &flat, call->err);
-  if (status == CAG_OK && g.type != CAG_MESH && tolerance > 0) {
+  if (!status && g.type != CAG_MESH && tolerance > 0) {
     // The surface stretches what is drawn in its parameters: by how much, the domain tells.
     CagBounds box;
     status = cag_surface_bounds(s, &box, call->err);
@@ -151,7 +151,7 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
       status = body_mesh(g, &how, &flat, call->err);
     }
   }
-  if (status == CAG_OK)
+  if (!status)
     status = cag_mesh_onto_surface(flat, s, tolerance, lies_flat(flat), how.max_triangles, &image,
                                    call->err);
   cag_mesh_release(flat);

@@ -310,8 +310,8 @@ bool cag_sections_path_frame(CagCall *call, const struct cag_sections_path_frame
   CagMotion *motion = NULL;
   CagTransform frame;
   CagStatus status = cag_curve_to_space(a->C, &space, call->err);
-  if (status == CAG_OK) status = cag_motion_along(space, &how, &motion, call->err);
-  if (status == CAG_OK) status = cag_motion_frame(motion, t, &frame, call->err);
+  if (!status) status = cag_motion_along(space, &how, &motion, call->err);
+  if (!status) status = cag_motion_frame(motion, t, &frame, call->err);
   cag_curve_release(space);
   cag_motion_release(motion);
   if (!cag_geometry_ok(call, status)) return false;

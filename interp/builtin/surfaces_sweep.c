@@ -254,7 +254,7 @@ bool cag_surfaces_loft(CagCall *call, const struct cag_surfaces_loft *a, CagValu
   CagSolid *solid = NULL;
   CagStatus status =
       cag_surface_loft(curves, list->length, (int)a->degree, a->closed, &side, call->err);
-  if (a->caps && all_closed && status == CAG_OK) {
+  if (a->caps && all_closed && !status) {
     status = cag_solid_loft(side, &solid, call->err);
     cag_surface_release(side);
     if (!cag_solid_result(call, status, &solid, result)) return false;

@@ -29,9 +29,9 @@ CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   CagGltfPlan plan;
   CagGltfText json;
   CagStatus status = cag_gltf_plan(parts, n, &plan, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = cag_gltf_text(&plan, NULL, &json, err);
-  if (status == CAG_OK) {
+  if (!status) {
     status = write_file(&plan, &json, file, err);
     cag_gltf_text_free(&json);
   }

@@ -138,7 +138,7 @@ static void add_place(Text *t, const CagTransform *place) {
   if (cag_norm(v) > 0) add(t, ",\"translation\":[%.17g,%.17g,%.17g]", v.x, v.y, v.z);
   CagTransform turn = *place;
   for (int i = 0; i < 3; i++) turn.m[i][3] = 0;
-  if (turned && cag_quaternion_of(&turn, q, &err) == CAG_OK)
+  if (turned && !cag_quaternion_of(&turn, q, &err))
     add(t, ",\"rotation\":[%.17g,%.17g,%.17g,%.17g]", q[1], q[2], q[3], q[0]);
 }
 
@@ -300,7 +300,7 @@ static CagStatus plan_part(Plan *p, size_t i, size_t *views, size_t *meshes, Cag
   const CagMesh *m = p->meshes[i].mesh;
   if (p->copies[i].original == i) {
     CagStatus status = cag_mesh_floats(&p->meshes[i], &g->positions, g->least, g->most, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     g->triangles = cag_mesh_kept_triangles(m, g->positions);
     if (g->triangles > 0) {
       g->first_view = *views;
@@ -321,8 +321,8 @@ CagStatus cag_gltf_plan(const CagMeshPart *parts, size_t n, CagGltfPlan *p, CagE
   p->parts = cag_calloc(n + 1, sizeof *p->parts);
   CagStatus status =
       p->parts ? cag_mesh_find_copies(parts, n, false, &p->copies, err) : cag_fail_memory(err);
-  for (size_t i = 0; status == CAG_OK && i < n; i++) status = plan_part(p, i, &views, &meshes, err);
-  if (status != CAG_OK) cag_gltf_plan_free(p);
+  for (size_t i = 0; !status && i < n; i++) status = plan_part(p, i, &views, &meshes, err);
+  if (status) cag_gltf_plan_free(p);
   return status;
 }
 
@@ -451,12 +451,12 @@ CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *stem, 
   Text t = {0};
   *data = (CagGltfData){0};
   CagStatus status = cag_gltf_plan(parts, n, &p, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = make_data(&p, stem, data, err);
-  if (status == CAG_OK) status = cag_gltf_text(&p, data->name, &t, err);
-  if (status == CAG_OK && !stem && data->bytes) write_embedded(&t, data, file);
-  else if (status == CAG_OK) cag_atomic_file_write(file, t.at, t.length);
-  if (status != CAG_OK || !stem) {
+  if (!status) status = cag_gltf_text(&p, data->name, &t, err);
+  if (!status && !stem && data->bytes) write_embedded(&t, data, file);
+  else if (!status) cag_atomic_file_write(file, t.at, t.length);
+  if (status || !stem) {
     cag_free(data->name);
     cag_free(data->bytes);
     *data = (CagGltfData){0};

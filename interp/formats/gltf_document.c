@@ -75,8 +75,8 @@ static void free_parsing(void *data) {
 static CagStatus run_parser(CagGltf *g, const char *text, size_t n, size_t *end, CagError *err) {
   const bool large = n >= LARGE_JSON;
   CagStatus status = large ? cag_draft_take(g->draft, n, 1, err) : CAG_OK;
-  Parsing *p = status == CAG_OK ? malloc(sizeof *p + (large ? n : 0)) : NULL;
-  if (!p) return status == CAG_OK ? cag_fail_memory(err) : status;
+  Parsing *p = !status ? malloc(sizeof *p + (large ? n : 0)) : NULL;
+  if (!p) return !status ? cag_fail_memory(err) : status;
   *p = (Parsing){.text = text, .n = n};
   if (large) p->text = memcpy(p + 1, text, n);
   if (!large) parse(p);
@@ -103,10 +103,10 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
     }
   }
   CagStatus status = cag_draft_take(g->draft, values, JSON_VALUE_BYTES, err);
-  if (status == CAG_OK) status = cag_draft_take(g->draft, n, 1, err);
+  if (!status) status = cag_draft_take(g->draft, n, 1, err);
   size_t at = 0;
-  if (status == CAG_OK) status = run_parser(g, text, n, &at, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = run_parser(g, text, n, &at, err);
+  if (status) return status;
   if (g->json && cJSON_IsObject(g->json)) return CAG_OK;
   bool ended = quoted || depth > 0;
   return cag_mesh_file_fail_line(g->draft->file, err,
@@ -123,7 +123,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   size_t n = 0;
   cJSON_ArrayForEach(item, array) n++;
   CagStatus status = cag_draft_take(g->draft, n + 1, sizeof *out->items, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   out->items = cag_malloc((n + 1) * sizeof *out->items);
   if (!out->items) return cag_fail_memory(err);
   cJSON_ArrayForEach(item, array) {
@@ -184,7 +184,7 @@ static int base64_digit(char c) {
 static CagStatus decode_base64(CagGltf *g, const char *text, CagGltfBuffer *b, CagError *err) {
   size_t n = strlen(text);
   CagStatus status = cag_draft_take(g->draft, n / 4 + 1, 3, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   b->bytes = cag_malloc(n / 4 * 3 + 4);
   b->owned = true;
   if (!b->bytes) return cag_fail_memory(err);
@@ -241,25 +241,25 @@ static CagStatus open_buffer(CagGltf *g, const char *uri, CagGltfBuffer *b, CagE
   if (!path) return cag_fail_memory(err);
   CagStatus status = f->open(f->context, path, &b->bytes, &b->size, err);
   cag_free(path);
-  b->owned = status == CAG_OK;
-  if (status == CAG_OK) status = cag_draft_take(g->draft, b->size, 1, err);
+  b->owned = !status;
+  if (!status) status = cag_draft_take(g->draft, b->size, 1, err);
   return status;
 }
 
 static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError *err) {
   CagGltfArray list = {0};
   CagStatus status = read_array(g, "buffers", &list, err);
-  if (status == CAG_OK) {
+  if (!status) {
     g->buffers = cag_calloc(list.count + 1, sizeof *g->buffers);
     if (!g->buffers) status = cag_fail_memory(err);
   }
-  for (size_t i = 0; status == CAG_OK && i < list.count; i++) {
+  for (size_t i = 0; !status && i < list.count; i++) {
     const cJSON *uri = cJSON_GetObjectItemCaseSensitive(list.items[i], "uri");
     size_t size;
     CagGltfBuffer *b = &g->buffers[g->buffer_count++];
     if (cJSON_IsString(uri)) status = open_buffer(g, uri->valuestring, b, err);
     else if (i == 0) *b = *binary;
-    if (status != CAG_OK) break;
+    if (status) break;
     if (!cag_gltf_whole(list.items[i], "byteLength", 0, &size))
       status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "buffers[%zu] has no byteLength", i);
     else if (size > b->size)
@@ -298,8 +298,8 @@ CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err) {
   size_t size;
   CagGltfBuffer binary = {0};
   CagStatus status = find_chunks(g, &json, &size, &binary, err);
-  if (status == CAG_OK) status = parse_json(g, json, size, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = parse_json(g, json, size, err);
+  if (status) return status;
   const cJSON *asset = cJSON_GetObjectItemCaseSensitive(g->json, "asset");
   const cJSON *version = cJSON_GetObjectItemCaseSensitive(asset, "version");
   if (!cJSON_IsString(version))
@@ -309,11 +309,11 @@ CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err) {
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is glTF of version %.20s; write it as glTF 2.0", version->valuestring);
   status = check_extensions(g, err);
-  if (status == CAG_OK) status = read_array(g, "nodes", &g->nodes, err);
-  if (status == CAG_OK) status = read_array(g, "meshes", &g->meshes, err);
-  if (status == CAG_OK) status = read_array(g, "accessors", &g->accessors, err);
-  if (status == CAG_OK) status = read_array(g, "bufferViews", &g->views, err);
-  return status == CAG_OK ? read_buffers(g, &binary, err) : status;
+  if (!status) status = read_array(g, "nodes", &g->nodes, err);
+  if (!status) status = read_array(g, "meshes", &g->meshes, err);
+  if (!status) status = read_array(g, "accessors", &g->accessors, err);
+  if (!status) status = read_array(g, "bufferViews", &g->views, err);
+  return !status ? read_buffers(g, &binary, err) : status;
 }
 
 void cag_gltf_close(CagGltf *g) {
@@ -401,11 +401,11 @@ static CagStatus read_sparse(const CagGltf *g, const cJSON *sparse, size_t numbe
   size = component_size(a->sparse_component);
   CagStatus status =
       look_into_view(g, indices, number, a->sparse_count, size, &a->sparse_index, &stride, err);
-  if (status == CAG_OK)
+  if (!status)
     status = look_into_view(g, values, number, a->sparse_count,
                             component_size(a->component) * (size_t)a->width, &a->sparse_data,
                             &stride, err);
-  for (size_t i = 0; status == CAG_OK && i < a->sparse_count; i++)
+  for (size_t i = 0; !status && i < a->sparse_count; i++)
     if (cag_gltf_index(a->sparse_index, a->sparse_component, i) >= a->count)
       status =
           cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
@@ -438,7 +438,7 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
   if (cJSON_GetObjectItemCaseSensitive(a, "bufferView"))
     status = look_into_view(g, a, number, out->count, size, &out->data, &out->stride, err);
   const cJSON *sparse = cJSON_GetObjectItemCaseSensitive(a, "sparse");
-  if (status == CAG_OK && sparse) status = read_sparse(g, sparse, number, out, err);
+  if (!status && sparse) status = read_sparse(g, sparse, number, out, err);
   return status;
 }
 

@@ -94,8 +94,8 @@ static CagStatus push(Walk *w, const cJSON *node, size_t mesh, const CagTransfor
   if (w->depth == w->room) {
     size_t room = w->room ? 2 * w->room : 64;
     CagStatus status = cag_draft_take(w->g->draft, room - w->room, sizeof *w->stack, err);
-    if (status == CAG_OK && !CAG_RESIZE(w->stack, room)) status = cag_fail_memory(err);
-    if (status != CAG_OK) return status;
+    if (!status && !CAG_RESIZE(w->stack, room)) status = cag_fail_memory(err);
+    if (status) return status;
     w->room = room;
   }
   w->stack[w->depth++] = (Visit){node, mesh, *place};
@@ -140,11 +140,11 @@ static CagStatus push_roots(Walk *w, CagError *err) {
     const cJSON *scene = cJSON_GetArrayItem(scenes, (int)which);
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(scene, "nodes")) {
       status = push_node(w, item, &place, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
     return CAG_OK;
   }
-  for (size_t i = 0; g->nodes.count == 0 && status == CAG_OK && i < g->meshes.count; i++)
+  for (size_t i = 0; g->nodes.count == 0 && !status && i < g->meshes.count; i++)
     status = push(w, NULL, i, &place, err);
   if (g->nodes.count == 0) return status;
   bool *child = cag_calloc(g->nodes.count, sizeof *child);
@@ -154,7 +154,7 @@ static CagStatus push_roots(Walk *w, CagError *err) {
       double k = cJSON_IsNumber(item) ? item->valuedouble : -1;
       if (k >= 0 && k < (double)g->nodes.count) child[(size_t)k] = true;
     }
-  for (size_t i = 0; status == CAG_OK && i < g->nodes.count; i++) {
+  for (size_t i = 0; !status && i < g->nodes.count; i++) {
     const cJSON number = {.type = cJSON_Number, .valuedouble = (double)i};
     if (!child[i]) status = push_node(w, &number, &place, err);
   }
@@ -167,15 +167,15 @@ typedef CagStatus VisitMesh(CagGltf *g, size_t mesh, const CagTransform *place, 
 
 static CagStatus walk_nodes(Walk *w, VisitMesh *visit, void *context, CagError *err) {
   CagStatus status = push_roots(w, err);
-  while (status == CAG_OK && w->depth > 0) {
+  while (!status && w->depth > 0) {
     Visit v = w->stack[--w->depth];
     const cJSON *item;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(v.node, "children")) {
       status = push_node(w, item, &v.place, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
     }
     if (v.mesh != SIZE_MAX) status = visit(w->g, v.mesh, &v.place, context, err);
-    if (status == CAG_OK) status = cag_draft_check(w->g->draft, err);
+    if (!status) status = cag_draft_check(w->g->draft, err);
   }
   return status;
 }
@@ -206,11 +206,11 @@ static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *ou
                          "an attribute is not the number of an accessor");
   if (position == SIZE_MAX) return CAG_OK; // nothing to see
   CagStatus status = cag_gltf_accessor(g, position, 3, &out->positions, err);
-  out->has_normals = status == CAG_OK && normal != SIZE_MAX;
+  out->has_normals = !status && normal != SIZE_MAX;
   if (out->has_normals) status = cag_gltf_accessor(g, normal, 3, &out->normals, err);
-  out->has_uv = status == CAG_OK && uv != SIZE_MAX;
+  out->has_uv = !status && uv != SIZE_MAX;
   if (out->has_uv) status = cag_gltf_accessor(g, uv, 2, &out->uv, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t n = out->positions.count;
   if ((out->has_normals && out->normals.count != n) || (out->has_uv && out->uv.count != n))
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
@@ -234,15 +234,15 @@ static CagStatus read_primitive(const CagGltf *g, const cJSON *p, Primitive *out
                          "a primitive has a mode or indices that are none");
   if (out->mode < TRIANGLES) return CAG_OK;
   CagStatus status = read_attributes(g, p, out, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   out->corners = out->positions.count;
   if (indices != SIZE_MAX) {
     status = cag_gltf_accessor(g, indices, 1, &out->indices, err);
     int type = out->indices.component;
-    if (status == CAG_OK && (type != UBYTE_TYPE && type != USHORT_TYPE && type != UINT_TYPE))
+    if (!status && (type != UBYTE_TYPE && type != USHORT_TYPE && type != UINT_TYPE))
       status =
           cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] has no indices", indices);
-    if (status == CAG_OK && (!out->indices.data || out->indices.sparse_count > 0))
+    if (!status && (!out->indices.data || out->indices.sparse_count > 0))
       status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                              "accessors[%zu] has sparse indices; write them in full", indices);
     out->has_indices = true;
@@ -260,7 +260,7 @@ static CagStatus count_mesh(CagGltf *g, size_t mesh, const CagTransform *place, 
   cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(g->meshes.items[mesh], "primitives")) {
     Primitive p;
     CagStatus status = read_primitive(g, item, &p, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     if (p.triangles == 0) continue;
     // Data without a view are zeros that the file's size does not bound.
     if (p.positions.count > UINT32_MAX || t->vertices > UINT32_MAX)
@@ -348,8 +348,7 @@ static CagStatus fill_triangles(CagGltf *g, const Primitive *p, bool mirrored, s
     size_t b = mirrored ? k[2] : k[1], c = mirrored ? k[1] : k[2];
     cag_draft_triangle(g->draft, (uint32_t)(first + k[0]), (uint32_t)(first + b),
                        (uint32_t)(first + c));
-    if (t % CAG_DRAFT_CHECK_STEP == 0 && cag_draft_check(g->draft, err) != CAG_OK)
-      return CAG_E_CALLBACK;
+    if (t % CAG_DRAFT_CHECK_STEP == 0 && cag_draft_check(g->draft, err)) return CAG_E_CALLBACK;
   }
   return CAG_OK;
 }
@@ -361,13 +360,13 @@ static CagStatus fill_mesh(CagGltf *g, size_t mesh, const CagTransform *place, v
   cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(g->meshes.items[mesh], "primitives")) {
     Primitive p;
     CagStatus status = read_primitive(g, item, &p, err);
-    if (status == CAG_OK && p.triangles == 0) continue;
+    if (!status && p.triangles == 0) continue;
     size_t first = g->draft->vertex_count;
-    if (status == CAG_OK) status = fill_vertices(g, &p, place, first, err);
-    if (status != CAG_OK) return status;
+    if (!status) status = fill_vertices(g, &p, place, first, err);
+    if (status) return status;
     g->draft->vertex_count += p.positions.count;
     status = fill_triangles(g, &p, cag_transform_mirrors(place), first, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   return CAG_OK;
 }
@@ -376,11 +375,10 @@ CagStatus cag_read_gltf(CagMeshDraft *d, CagError *err) {
   CagGltf g;
   Total total = {0};
   CagStatus status = cag_gltf_open(&g, d, err);
-  if (status == CAG_OK) status = walk(&g, count_mesh, &total, err);
-  if (status == CAG_OK) status = cag_draft_triangles(d, total.triangles, err);
-  if (status == CAG_OK)
-    status = cag_draft_vertices(d, total.vertices, total.normals, total.uv, err);
-  if (status == CAG_OK) status = walk(&g, fill_mesh, NULL, err);
+  if (!status) status = walk(&g, count_mesh, &total, err);
+  if (!status) status = cag_draft_triangles(d, total.triangles, err);
+  if (!status) status = cag_draft_vertices(d, total.vertices, total.normals, total.uv, err);
+  if (!status) status = walk(&g, fill_mesh, NULL, err);
   cag_gltf_close(&g);
   return status;
 }

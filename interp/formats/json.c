@@ -320,7 +320,7 @@ static CagStatus put_other_surface(Writer *w, const CagSurface *s, CagError *err
   CagMesh *mesh;
   CagStatus status = cag_surface_to_nurbs(s, &nurbs, err);
   if (status == CAG_E_MEMORY) return status;
-  if (status == CAG_OK) {
+  if (!status) {
     key(w, "nurbs");
     status = put_surface(w, nurbs, err);
     cag_surface_release(nurbs);

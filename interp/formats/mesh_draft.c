@@ -90,7 +90,7 @@ CagStatus cag_draft_vertices(CagMeshDraft *d, size_t n, bool normals, bool uv, C
   size_t each = sizeof *d->positions + (normals || d->normals ? sizeof *d->normals : 0) +
                 (uv || d->uv ? 2 * sizeof *d->uv : 0);
   CagStatus status = cag_draft_take(d, room - d->vertex_room, each, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   bool done = room == d->vertex_room ||
               grow((void **)&d->positions, d->vertex_room, room, sizeof *d->positions);
   if (done && (d->normals ? room > d->vertex_room : normals))
@@ -112,7 +112,7 @@ CagStatus cag_draft_triangles(CagMeshDraft *d, size_t n, CagError *err) {
   size_t room = d->triangle_room + d->triangle_room / 2;
   if (room < wanted) room = wanted;
   CagStatus status = cag_draft_take(d, room - d->triangle_room, 3 * sizeof *d->triangles, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (!CAG_RESIZE(d->triangles, (room + 1) * 3)) return cag_fail_memory(err);
   d->triangle_room = room;
   return CAG_OK;
@@ -121,13 +121,13 @@ CagStatus cag_draft_triangles(CagMeshDraft *d, size_t n, CagError *err) {
 CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, CagError *err) {
   if (n < 3) return CAG_OK;
   CagStatus status = cag_draft_triangles(d, n - 2, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (n == 3) {
     cag_draft_triangle(d, corners[0], corners[1], corners[2]);
     return CAG_OK;
   }
   status = cag_draft_check(d, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   CagTangle tangle = cag_tangle_of(d->positions, corners, n);
   if (tangle == CAG_TANGLE_MEMORY) return cag_fail_memory(err);
   if (tangle == CAG_TANGLE_UNKNOWN)
@@ -139,7 +139,7 @@ CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, 
   if (tangle == CAG_TANGLE_NONE) {
     status = cag_polygon_triangulate(d->positions, corners, n, 0, to, &poor);
     if (status == CAG_E_MEMORY) return cag_fail_memory(err);
-    if (status == CAG_OK) {
+    if (!status) {
       d->triangle_count += n - 2;
       return CAG_OK;
     }
@@ -172,7 +172,7 @@ static CagStatus find_points(CagMeshDraft *d, uint32_t *first, CagError *err) {
   size_t size = 1024;
   while (size < d->vertex_count + d->vertex_count / 2) size *= 2;
   CagStatus status = cag_draft_take(d, size, sizeof(uint32_t), err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   uint32_t *slots = cag_malloc(size * sizeof *slots);
   if (!slots) return cag_fail_memory(err);
   memset(slots, 0xff, size * sizeof *slots);
@@ -208,7 +208,7 @@ static void drop_shrunk(CagMeshDraft *d, const uint32_t *first) {
 static CagStatus complete_normals(CagMeshDraft *d, CagError *err) {
   const double least = 1e-6; // length below which a normal is none; files have unit ones
   CagStatus status = cag_draft_take(d, d->vertex_count + 1, sizeof(bool), err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   bool *said = cag_malloc(d->vertex_count + 1), all = true;
   if (!said) return cag_fail_memory(err);
   for (size_t v = 0; v < d->vertex_count; v++) {
@@ -271,7 +271,7 @@ static CagStatus fail_empty(const CagMeshDraft *d, CagError *err) {
 static CagStatus tidy(CagMeshDraft *d, uint32_t *first, uint32_t *number, uint32_t **weld,
                       CagError *err) {
   CagStatus status = find_points(d, first, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   drop_shrunk(d, first);
   if (d->triangle_count == 0) return fail_empty(d, err);
   bool points = !d->normals && !d->uv;
@@ -287,15 +287,15 @@ CagStatus cag_draft_finish(CagMeshDraft *d, CagMesh **out, CagError *err) {
   if (d->triangle_count == 0) return fail_empty(d, err);
   const size_t arrays = 3;
   CagStatus status = cag_draft_take(d, d->vertex_count + 1, arrays * sizeof(uint32_t), err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   uint32_t *first = cag_malloc((d->vertex_count + 1) * sizeof *first), *weld = NULL;
   uint32_t *number = cag_malloc((d->vertex_count + 1) * sizeof *number);
   status = first && number ? tidy(d, first, number, &weld, err) : cag_fail_memory(err);
   cag_free(first);
   cag_free(number);
   CagMesh *m = NULL;
-  if (status == CAG_OK) status = cag_mesh_new(0, 0, false, false, false, &m, err);
-  if (status != CAG_OK) {
+  if (!status) status = cag_mesh_new(0, 0, false, false, false, &m, err);
+  if (status) {
     cag_free(weld);
     return status;
   }

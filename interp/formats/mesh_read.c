@@ -64,7 +64,7 @@ CagStatus cag_mesh_read(const CagMeshFile *f, CagMesh **out, CagError *err) {
                                            : "the file is empty");
   CagMeshDraft draft = {.file = f};
   CagStatus status = read(&draft, err);
-  if (status == CAG_OK) status = cag_draft_finish(&draft, out, err);
+  if (!status) status = cag_draft_finish(&draft, out, err);
   cag_draft_free(&draft);
   return status;
 }

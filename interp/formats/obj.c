@@ -192,7 +192,7 @@ CagStatus cag_export_obj(const CagMeshPart *parts, size_t n, const char *materia
   ObjCounts counts = {0};
   ObjMaterials materials = {0};
   CagStatus status = material_file ? find_materials(parts, n, &materials, err) : CAG_OK;
-  for (size_t i = 0; status == CAG_OK && i < n; i++)
+  for (size_t i = 0; !status && i < n; i++)
     status = write_part(parts, i, material_file ? &materials : NULL, &counts, file, err);
   free_materials(&materials);
   return status;
@@ -236,7 +236,7 @@ static void write_material(const CagMaterial *m, CagAtomicFile *file) {
 CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
   ObjMaterials materials;
   CagStatus status = find_materials(parts, n, &materials, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   cag_atomic_file_text(file, "# written by cag\n");
   for (size_t i = 0; i < materials.list.count; i++) {
     cag_atomic_file_text(file, "\nnewmtl ");

@@ -57,9 +57,9 @@ static CagStatus make_room(Obj *o, CagError *err) {
     return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_unsupported, NULL,
                                    "it has more than 4294967294 vertices; divide it");
   CagStatus status = cag_draft_take(o->draft, n->points + n->normals, sizeof(CagVec3), err);
-  if (status == CAG_OK) status = cag_draft_take(o->draft, n->parameters, 2 * sizeof(double), err);
-  if (status == CAG_OK) status = cag_draft_triangles(o->draft, n->faces, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = cag_draft_take(o->draft, n->parameters, 2 * sizeof(double), err);
+  if (!status) status = cag_draft_triangles(o->draft, n->faces, err);
+  if (status) return status;
   o->points = cag_calloc(n->points + 1, sizeof *o->points);
   o->normals = cag_calloc(n->normals + 1, sizeof *o->normals);
   o->parameters = cag_calloc(n->parameters + 1, 2 * sizeof *o->parameters);
@@ -85,20 +85,20 @@ static CagStatus read_numbers(Obj *o, double *x, int least, int most, CagError *
 static CagStatus read_point(Obj *o, CagError *err) {
   double x[3];
   CagStatus status = read_numbers(o, x, 3, 3, err);
-  if (status == CAG_OK) o->points[o->read.points++] = cag_vec3(x[0], x[1], x[2]);
+  if (!status) o->points[o->read.points++] = cag_vec3(x[0], x[1], x[2]);
   return status;
 }
 
 static CagStatus read_parameters(Obj *o, CagError *err) {
   CagStatus status = read_numbers(o, o->parameters + 2 * o->read.parameters, 1, 2, err);
-  o->read.parameters += status == CAG_OK;
+  o->read.parameters += !status;
   return status;
 }
 
 static CagStatus read_normal(Obj *o, CagError *err) {
   double x[3];
   CagStatus status = read_numbers(o, x, 3, 3, err);
-  if (status == CAG_OK) o->normals[o->read.normals++] = cag_vec3(x[0], x[1], x[2]);
+  if (!status) o->normals[o->read.normals++] = cag_vec3(x[0], x[1], x[2]);
   return status;
 }
 
@@ -136,10 +136,10 @@ static bool at_number(const Obj *o) {
 static CagStatus read_corner(Obj *o, Corner *c, CagError *err) {
   *c = (Corner){0};
   CagStatus status = read_index(o, o->all.points, o->read.points, "point", &c->point, err);
-  if (status != CAG_OK || !take_slash(o)) return status;
+  if (status || !take_slash(o)) return status;
   if (at_number(o))
     status = read_index(o, o->all.parameters, o->read.parameters, "vt", &c->parameters, err);
-  if (status != CAG_OK || !take_slash(o)) return status;
+  if (status || !take_slash(o)) return status;
   if (at_number(o)) status = read_index(o, o->all.normals, o->read.normals, "vn", &c->normal, err);
   return status;
 }
@@ -167,9 +167,8 @@ static CagStatus grow(Obj *o, CagError *err) {
   CagMeshDraft *d = o->draft;
   size_t room = d->vertex_room ? 2 * d->vertex_room : 1024, slots = 2 * room;
   CagStatus status = cag_draft_take(d, room - d->vertex_room, sizeof(Corner) + 2 * 4, err);
-  if (status == CAG_OK)
-    status = cag_draft_vertices(d, room, o->all.normals > 0, o->all.parameters > 0, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = cag_draft_vertices(d, room, o->all.normals > 0, o->all.parameters > 0, err);
+  if (status) return status;
   const bool roomy = CAG_RESIZE(o->corners, room);
   uint32_t *larger = cag_calloc(slots, sizeof *larger);
   if (!roomy || !larger) {
@@ -187,7 +186,7 @@ static CagStatus vertex_of(Obj *o, Corner c, uint32_t *out, CagError *err) {
   CagMeshDraft *d = o->draft;
   if (d->vertex_count == d->vertex_room) {
     CagStatus status = grow(o, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   uint32_t *slot = find_slot(o, c);
   if (!*slot) {
@@ -204,23 +203,23 @@ static CagStatus vertex_of(Obj *o, Corner c, uint32_t *out, CagError *err) {
 static CagStatus read_face(Obj *o, CagError *err) {
   CagStatus status = CAG_OK;
   size_t n = 0;
-  while (status == CAG_OK && !cag_scan_at_line_end(&o->scan)) {
+  while (!status && !cag_scan_at_line_end(&o->scan)) {
     Corner c;
     status = read_corner(o, &c, err);
-    if (status == CAG_OK && n == o->face_room) {
+    if (!status && n == o->face_room) {
       size_t room = n ? 2 * n : 64;
       status = cag_draft_take(o->draft, room - n, sizeof *o->face, err);
-      if (status == CAG_OK && !CAG_RESIZE(o->face, room)) status = cag_fail_memory(err);
-      if (status != CAG_OK) return status;
+      if (!status && !CAG_RESIZE(o->face, room)) status = cag_fail_memory(err);
+      if (status) return status;
       o->face_room = room;
     }
-    if (status == CAG_OK) status = vertex_of(o, c, &o->face[n], err);
-    if (status != CAG_OK) break;
+    if (!status) status = vertex_of(o, c, &o->face[n], err);
+    if (status) break;
     // The triangulation looks at the positions.
     if (c.point <= o->read.points) o->draft->positions[o->face[n]] = o->points[c.point - 1];
     n++;
   }
-  return status == CAG_OK ? cag_draft_polygon(o->draft, o->face, n, err) : status;
+  return !status ? cag_draft_polygon(o->draft, o->face, n, err) : status;
 }
 
 // --- The file ---
@@ -235,7 +234,7 @@ static CagStatus read_line(Obj *o, const char *word, size_t n, CagError *err) {
 
 static CagStatus read_lines(Obj *o, CagError *err) {
   CagStatus status = CAG_OK;
-  for (size_t line = 1; status == CAG_OK && cag_scan_to_word(&o->scan); line++) {
+  for (size_t line = 1; !status && cag_scan_to_word(&o->scan); line++) {
     const char *word;
     size_t n = cag_scan_word(&o->scan, &word);
     if (*word != '#') {
@@ -243,8 +242,7 @@ static CagStatus read_lines(Obj *o, CagError *err) {
       while (!cag_scan_at_line_end(&o->scan)) cag_scan_word(&o->scan, &word);
     }
     cag_scan_next_line(&o->scan);
-    if (status == CAG_OK && line % CAG_DRAFT_CHECK_STEP == 0)
-      status = cag_draft_check(o->draft, err);
+    if (!status && line % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(o->draft, err);
   }
   return status;
 }
@@ -264,8 +262,8 @@ CagStatus cag_read_obj(CagMeshDraft *d, CagError *err) {
   Obj o = {.draft = d, .scan = {d->file->bytes, d->file->bytes + d->file->size}};
   count(&o);
   CagStatus status = make_room(&o, err);
-  if (status == CAG_OK) status = read_lines(&o, err);
-  if (status == CAG_OK) fill_vertices(&o);
+  if (!status) status = read_lines(&o, err);
+  if (!status) fill_vertices(&o);
   cag_free(o.points);
   cag_free(o.normals);
   cag_free(o.parameters);

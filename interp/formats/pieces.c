@@ -121,7 +121,7 @@ bool cag_pieces_of_curve(const CagCurve *c, CagPieces *out) {
   } else { // joined curves and others that have an exact form
     CagError err;
     CagCurve *nurbs;
-    ok = cag_curve_to_nurbs(c, &nurbs, &err) == CAG_OK;
+    ok = !cag_curve_to_nurbs(c, &nurbs, &err);
     if (ok) {
       ok = cag_curve_nurbs_view(nurbs, &view) && nurbs_pieces(&view, &p);
       cag_curve_release(nurbs);

@@ -156,18 +156,18 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   PlyPart *p = cag_calloc(n + 1, sizeof *p);
   size_t vertices = 0, triangles = 0;
   CagStatus status = p ? CAG_OK : cag_fail_memory(err);
-  for (size_t i = 0; status == CAG_OK && i < n; i++) {
+  for (size_t i = 0; !status && i < n; i++) {
     status = cag_mesh_floats(&parts[i], &p[i].positions, NULL, NULL, err);
-    if (status != CAG_OK) break;
+    if (status) break;
     if (!begin_part(&p[i], parts[i].mesh, vertices)) status = cag_fail_memory(err);
     vertices += p[i].vertices;
     triangles += p[i].triangles;
-    if (status == CAG_OK && vertices > UINT32_MAX)
+    if (!status && vertices > UINT32_MAX)
       status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
                         "a PLY file holds at most %lu vertices: use a larger tolerance",
                         (unsigned long)UINT32_MAX);
   }
-  if (status == CAG_OK) {
+  if (!status) {
     const uint64_t header = 512; // about
     cag_atomic_file_expect(file, header + (uint64_t)vertices * VERTEX_BYTES +
                                      (uint64_t)triangles * FACE_BYTES);

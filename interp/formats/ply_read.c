@@ -161,7 +161,7 @@ static CagStatus read_header(Ply *p, CagError *err) {
     else if (!cag_scan_is(word, n, "comment") && !cag_scan_is(word, n, "obj_info"))
       return fail_line(p, CAG_ERR_mesh_file_syntax, "expected element, property or end_header",
                        word, n, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     cag_scan_next_line(&p->scan);
   }
   return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, p->scan.at,
@@ -250,7 +250,7 @@ static CagStatus skip_list(Ply *p, const Property *q, size_t i, CagError *err) {
   size_t count = 0;
   CagStatus status = read_count(p, q, i, &count, err);
   double x;
-  for (size_t k = 0; status == CAG_OK && k < count; k++)
+  for (size_t k = 0; !status && k < count; k++)
     if (!next_number(p, q->type, &x)) status = fail_number(p, i, err);
   return status;
 }
@@ -262,7 +262,7 @@ static CagStatus read_vertex(Ply *p, const Element *e, size_t i, CagError *err) 
     const Property *q = &p->properties[e->first_property + k];
     if (q->count_type != NO_TYPE) {
       CagStatus status = skip_list(p, q, i, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
       continue;
     }
     if (!next_number(p, q->type, &x)) return fail_number(p, i, err);
@@ -283,7 +283,7 @@ static CagStatus add_strips(Ply *p, size_t n, CagError *err) {
   size_t in_strip = 0;
   if (n < 3) return CAG_OK;
   CagStatus status = cag_draft_triangles(d, n - 2, err);
-  for (size_t k = 0; status == CAG_OK && k < n; k++) {
+  for (size_t k = 0; !status && k < n; k++) {
     const uint32_t *c = p->corners + k;
     in_strip = *c == UINT32_MAX ? 0 : in_strip + 1;
     if (in_strip < 3) continue;
@@ -298,11 +298,11 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
   CagMeshDraft *d = p->draft;
   size_t count = 0;
   CagStatus status = read_count(p, q, i, &count, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (count > p->corner_room) {
     status = cag_draft_take(d, count - p->corner_room, sizeof *p->corners, err);
-    if (status == CAG_OK && !CAG_RESIZE(p->corners, count)) status = cag_fail_memory(err);
-    if (status != CAG_OK) return status;
+    if (!status && !CAG_RESIZE(p->corners, count)) status = cag_fail_memory(err);
+    if (status) return status;
     p->corner_room = count;
   }
   for (size_t k = 0; k < count; k++) {
@@ -322,7 +322,7 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
 
 static CagStatus read_other(Ply *p, const Element *e, size_t i, CagError *err) {
   CagStatus status = CAG_OK;
-  for (size_t k = 0; status == CAG_OK && k < e->property_count; k++) {
+  for (size_t k = 0; !status && k < e->property_count; k++) {
     const Property *q = &p->properties[e->first_property + k];
     double x;
     if (q->role == CORNERS) status = read_corners(p, e, q, i, err);
@@ -356,7 +356,7 @@ static CagStatus begin_vertices(Ply *p, const Element *e, CagError *err) {
                                    "it has two lists of vertices");
   CagStatus status =
       cag_draft_vertices(p->draft, e->count, has[NX] && has[NY] && has[NZ], has[U] && has[V], err);
-  if (status == CAG_OK) p->draft->vertex_count = e->count;
+  if (!status) p->draft->vertex_count = e->count;
   return status;
 }
 
@@ -371,10 +371,10 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
                                    e->count, least, rest - 1);
   CagStatus status = e->kind == VERTICES ? begin_vertices(p, e, err) : CAG_OK;
   // Most faces are triangles: their room at once, as far as the file can hold so many.
-  if (status == CAG_OK && e->kind == FACES) status = cag_draft_triangles(p->draft, e->count, err);
-  for (size_t i = 0; status == CAG_OK && i < e->count; i++) {
+  if (!status && e->kind == FACES) status = cag_draft_triangles(p->draft, e->count, err);
+  for (size_t i = 0; !status && i < e->count; i++) {
     status = e->kind == VERTICES ? read_vertex(p, e, i, err) : read_other(p, e, i, err);
-    if (status == CAG_OK && i % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(p->draft, err);
+    if (!status && i % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(p->draft, err);
   }
   return status;
 }
@@ -385,7 +385,7 @@ CagStatus cag_read_ply(CagMeshDraft *d, CagError *err) {
   p->draft = d;
   p->scan = (CagTextScan){d->file->bytes, d->file->bytes + d->file->size};
   CagStatus status = read_header(p, err);
-  for (size_t i = 0; status == CAG_OK && i < p->element_count; i++)
+  for (size_t i = 0; !status && i < p->element_count; i++)
     status = read_elements(p, &p->elements[i], err);
   cag_free(p->corners);
   cag_free(p);

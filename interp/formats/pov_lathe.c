@@ -80,8 +80,8 @@ static bool add_profile(CagPovOutline *o, Turn *t, const CagSurface *s) {
   CagPovOutline part = CAG_POV_OUTLINE_EMPTY;
   CagCurve *space = NULL;
   CagError err;
-  bool ok = cag_curve_to_space(profile, &space, &err) == CAG_OK &&
-            cag_pov_outline_add(&part, space) && to_half_plane(t, &part.all);
+  bool ok = !cag_curve_to_space(profile, &space, &err) && cag_pov_outline_add(&part, space) &&
+            to_half_plane(t, &part.all);
   cag_curve_release(space);
   ok = ok && cag_pov_outline_append(o, &part);
   cag_pov_outline_free(&part);

@@ -32,8 +32,8 @@ static bool near_pieces(const CagCurve *c, CagPieces *out) {
   size_t n;
   if (cag_curve_bounds(c, &box, &err) || cag_curve_cuts(c, &cuts, &n, &err)) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
-  bool ok = size > 0 && cag_curve_fit_sampler(sample, (void *)c, cuts, n, NEAR * size, c->dimension,
-                                              &cubic, &err) == CAG_OK;
+  bool ok = size > 0 && !cag_curve_fit_sampler(sample, (void *)c, cuts, n, NEAR * size,
+                                               c->dimension, &cubic, &err);
   cag_free(cuts);
   ok = ok && cag_pieces_of_curve(cubic, out);
   cag_curve_release(cubic);

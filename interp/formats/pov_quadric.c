@@ -64,7 +64,7 @@ static bool bounds_in_frame(const CagSurface *s, const CagTransform *inverse, Ca
   CagError err;
   CagSurface *moved;
   if (cag_surface_transform(s, inverse, &moved, &err)) return false;
-  bool ok = cag_surface_bounds(moved, out, &err) == CAG_OK;
+  bool ok = !cag_surface_bounds(moved, out, &err);
   cag_surface_release(moved);
   return ok;
 }

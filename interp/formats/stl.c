@@ -99,18 +99,18 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
   float **positions = cag_calloc(n + 1, sizeof *positions);
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
   size_t triangles = 0, shown = 0;
-  for (size_t i = 0; status == CAG_OK && i < n; i++) {
+  for (size_t i = 0; !status && i < n; i++) {
     status = cag_mesh_floats(&parts[i], &positions[i], NULL, NULL, err);
-    if (status != CAG_OK) break;
+    if (status) break;
     triangles += cag_mesh_kept_triangles(parts[i].mesh, positions[i]);
     shown += parts[i].mesh->triangle_count;
   }
-  if (status == CAG_OK && triangles > UINT32_MAX)
+  if (!status && triangles > UINT32_MAX)
     status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
                       "an STL file holds at most %lu triangles, the scene has %zu: use a larger "
                       "tolerance",
                       (unsigned long)UINT32_MAX, triangles);
-  if (status == CAG_OK) {
+  if (!status) {
     // Readers take a file that begins with "solid" for the text form.
     char header[HEADER + 4] = {0};
     strcpy(header, "cag: ");
@@ -120,8 +120,8 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
     cag_atomic_file_write(file, header, sizeof header);
   }
   for (size_t i = 0; positions && i < n; i++) {
-    if (status == CAG_OK && triangles == shown) write_all(parts[i].mesh, positions[i], file);
-    else if (status == CAG_OK) write_kept(parts[i].mesh, positions[i], file);
+    if (!status && triangles == shown) write_all(parts[i].mesh, positions[i], file);
+    else if (!status) write_kept(parts[i].mesh, positions[i], file);
     cag_free(positions[i]);
   }
   cag_free(positions);

@@ -64,14 +64,13 @@ static CagStatus read_binary(CagMeshDraft *d, CagError *err) {
                                    "write or fetch it again",
                                    (unsigned long long)count, f->size, (unsigned long long)there);
   CagStatus status = cag_draft_triangles(d, count, err);
-  if (status == CAG_OK) status = cag_draft_vertices(d, 3 * count, false, false, err);
+  if (!status) status = cag_draft_vertices(d, 3 * count, false, false, err);
   const char *at = f->bytes + HEADER + 4;
-  for (size_t t = 0; status == CAG_OK && t < count; t++, at += RECORD) {
+  for (size_t t = 0; !status && t < count; t++, at += RECORD) {
     uint32_t first = (uint32_t)(3 * t);
-    for (int k = 0; k < 3 && status == CAG_OK; k++)
-      status = read_corner(d, at + 12 * (k + 1), t, err);
+    for (int k = 0; k < 3 && !status; k++) status = read_corner(d, at + 12 * (k + 1), t, err);
     cag_draft_triangle(d, first, first + 1, first + 2);
-    if (status == CAG_OK && t % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(d, err);
+    if (!status && t % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(d, err);
   }
   return status;
 }
@@ -120,9 +119,9 @@ static CagStatus read_vertex(CagMeshDraft *d, CagTextScan *s, CagError *err) {
 static CagStatus read_facet(CagMeshDraft *d, CagTextScan *s, CagError *err) {
   // What a facet is written with takes 60 bytes at least: room grows with what was read.
   CagStatus status = cag_draft_triangles(d, 1, err);
-  if (status == CAG_OK && d->vertex_count + 3 > d->vertex_room)
+  if (!status && d->vertex_count + 3 > d->vertex_room)
     status = cag_draft_vertices(d, 2 * d->vertex_count + 3 * 64, false, false, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   // `normal` and its numbers, which may be nan or left out.
   const int most_words = 4;
   const char *word;
@@ -136,8 +135,8 @@ static CagStatus read_facet(CagMeshDraft *d, CagTextScan *s, CagError *err) {
   }
   if (!expect(s, "outer")) return fail_word(d, s, "outer", err);
   if (!expect(s, "loop")) return fail_word(d, s, "loop", err);
-  for (int k = 0; k < 3 && status == CAG_OK; k++) status = read_vertex(d, s, err);
-  if (status != CAG_OK) return status;
+  for (int k = 0; k < 3 && !status; k++) status = read_vertex(d, s, err);
+  if (status) return status;
   if (!expect(s, "endloop")) return fail_word(d, s, "endloop", err);
   if (!expect(s, "endfacet")) return fail_word(d, s, "endfacet", err);
   cag_draft_triangle(d, first, first + 1, first + 2);
@@ -148,15 +147,15 @@ static CagStatus read_text(CagMeshDraft *d, CagError *err) {
   CagTextScan s = {d->file->bytes, d->file->bytes + d->file->size};
   CagStatus status = CAG_OK;
   // Files may hold several solids, one after the other.
-  while (status == CAG_OK && cag_scan_to_word(&s)) {
+  while (!status && cag_scan_to_word(&s)) {
     if (!expect(&s, "solid")) return fail_word(d, &s, "solid", err);
     cag_scan_next_line(&s);
-    while (status == CAG_OK && expect(&s, "facet")) {
+    while (!status && expect(&s, "facet")) {
       status = read_facet(d, &s, err);
-      if (status == CAG_OK && d->triangle_count % CAG_DRAFT_CHECK_STEP == 0)
+      if (!status && d->triangle_count % CAG_DRAFT_CHECK_STEP == 0)
         status = cag_draft_check(d, err);
     }
-    if (status == CAG_OK && !expect(&s, "endsolid")) return fail_word(d, &s, "endsolid", err);
+    if (!status && !expect(&s, "endsolid")) return fail_word(d, &s, "endsolid", err);
     cag_scan_next_line(&s);
   }
   return status;

@@ -142,7 +142,7 @@ static CagStatus write_vertices(Model *m, const CagMesh *mesh, const float *p, u
                                 CagError *err) {
   uint32_t n = 0;
   CagStatus status = CAG_OK;
-  for (size_t v = 0; status == CAG_OK && v < mesh->vertex_count && !cag_stopped();) {
+  for (size_t v = 0; !status && v < mesh->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * VERTEX_BYTES);
     for (size_t end = v + BATCH; v < mesh->vertex_count && v < end; v++) {
       if (mesh->weld && mesh->weld[v] != v) {
@@ -168,7 +168,7 @@ static CagStatus write_triangles(Model *m, size_t part, const float *p, const ui
                                  CagError *err) {
   const CagMesh *mesh = m->parts[part].mesh;
   CagStatus status = CAG_OK;
-  for (size_t t = 0; status == CAG_OK && t < mesh->triangle_count && !cag_stopped();) {
+  for (size_t t = 0; !status && t < mesh->triangle_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * TRIANGLE_BYTES);
     for (size_t end = t + BATCH; t < mesh->triangle_count && t < end; t++) {
       const uint32_t *k = mesh->triangles + 3 * t;
@@ -195,7 +195,7 @@ static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
   cag_atomic_file_text(m->xml, "   <mesh>\n    <vertices>\n");
   CagStatus status = write_vertices(m, mesh, p, number, err);
   cag_atomic_file_text(m->xml, "    </vertices>\n    <triangles>\n");
-  if (status == CAG_OK) status = write_triangles(m, i, p, number, err);
+  if (!status) status = write_triangles(m, i, p, number, err);
   cag_atomic_file_text(m->xml, "    </triangles>\n   </mesh>\n");
   cag_free(number);
   return status;
@@ -247,16 +247,16 @@ static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
     // Before the positions are made: the check takes as much memory as the mesh.
     bool closed;
     CagStatus status = cag_mesh_watertight(m->parts[i].mesh, &closed, edge, err);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     if (is_component(m, i)) shown[i] = shown[m->copies[i].original];
     else {
       status = cag_mesh_floats(&m->parts[i], &p, NULL, NULL, err);
-      if (status != CAG_OK) return status;
+      if (status) return status;
       shown[i] = cag_mesh_kept_triangles(m->parts[i].mesh, p) > 0;
     }
     if (shown[i]) status = write_object(m, i, closed, p, err);
     cag_free(p);
-    if (status != CAG_OK) return status;
+    if (status) return status;
   }
   return CAG_OK;
 }
@@ -270,7 +270,7 @@ static CagStatus write_model(Model *m, bool *shown, CagError *err) {
               " <metadata name=\"Application\">cag " CAG_VERSION "</metadata>\n <resources>\n");
   write_materials(m);
   CagStatus status = write_objects(m, shown, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   cag_atomic_file_text(m->xml, " </resources>\n <build>\n");
   for (size_t i = 0; i < m->count; i++)
     if (shown[i]) cag_atomic_file_printf(m->xml, "  <item objectid=\"%zu\"/>\n", i + FIRST_OBJECT);
@@ -305,10 +305,8 @@ static CagStatus begin(Model *m, CagError *err) {
   m->xml = cag_atomic_file_open_memory(&io);
   if (!m->xml) return cag_fail_memory(err);
   CagStatus status = cag_mesh_find_copies(m->parts, m->count, true, &m->copies, err);
-  if (status == CAG_OK)
-    status = cag_zip_add(&m->zip, "[Content_Types].xml", types, sizeof types - 1, err);
-  if (status == CAG_OK)
-    status = cag_zip_add(&m->zip, "_rels/.rels", relations, sizeof relations - 1, err);
+  if (!status) status = cag_zip_add(&m->zip, "[Content_Types].xml", types, sizeof types - 1, err);
+  if (!status) status = cag_zip_add(&m->zip, "_rels/.rels", relations, sizeof relations - 1, err);
   return status;
 }
 
@@ -316,11 +314,11 @@ CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   Model m = {.parts = parts, .count = n, .zip.file = file};
   bool *shown = cag_calloc(n + 1, sizeof *shown);
   CagStatus status = shown ? begin(&m, err) : cag_fail_memory(err);
-  if (status == CAG_OK) status = cag_zip_open(&m.zip, "3D/3dmodel.model", err);
-  if (status == CAG_OK) status = write_model(&m, shown, err);
-  if (status == CAG_OK) status = pack_xml(&m, true, err);
-  if (status == CAG_OK) status = cag_zip_close(&m.zip, err);
-  if (status == CAG_OK) cag_zip_end(&m.zip);
+  if (!status) status = cag_zip_open(&m.zip, "3D/3dmodel.model", err);
+  if (!status) status = write_model(&m, shown, err);
+  if (!status) status = pack_xml(&m, true, err);
+  if (!status) status = cag_zip_close(&m.zip, err);
+  if (!status) cag_zip_end(&m.zip);
   cag_zip_free(&m.zip);
   cag_atomic_file_abort(m.xml);
   cag_free(shown);

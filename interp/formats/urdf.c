@@ -221,8 +221,8 @@ CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagEr
   CagTransform meters;
   CagMesh *m = NULL;
   CagStatus status = cag_scale(cag_vec3(METERS, METERS, METERS), cag_vec3(0, 0, 0), &meters, err);
-  if (status == CAG_OK) status = cag_mesh_transform(s->mesh, &meters, &m, err);
-  if (status != CAG_OK) return status;
+  if (!status) status = cag_mesh_transform(s->mesh, &meters, &m, err);
+  if (status) return status;
   status = cag_export_stl(&(CagMeshPart){.name = s->file, .mesh = m}, 1, "binary STL, meters", file,
                           err);
   cag_mesh_release(m);

@@ -110,9 +110,9 @@ CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip
   CagStatus status = CAG_OK;
   if (base) status = find(t, base, "base", &first, err);
   else if (!tip) status = find_root(t, &first, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = tip ? find(t, tip, "tip", &last, err) : find_tip(t, first, &last, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   // Without a base the chain begins at the root above the tip.
   size_t at = last;
   bool anywhere = tip && !base;

@@ -30,7 +30,7 @@ static CagStatus solid_mass(const CagSolid *s, double tolerance, double density,
                             CagError *err) {
   CagMassProperties p;
   CagStatus status = cag_solid_mass_within(s, tolerance, &p, err);
-  if (status != CAG_OK || !(p.volume > 0)) return status;
+  if (status || !(p.volume > 0)) return status;
   out->mass = p.volume * density * CUBIC_METERS;
   out->center = p.volume_centroid;
   for (int i = 0; i < 3; i++)
@@ -42,14 +42,14 @@ static CagStatus solid_mass(const CagSolid *s, double tolerance, double density,
 static CagStatus mesh_mass(const CagMesh *m, double density, CagUrdfMass *out, CagError *err) {
   bool closed;
   CagStatus status = cag_mesh_watertight(m, &closed, NULL, err);
-  if (status != CAG_OK || !closed) return status;
+  if (status || !closed) return status;
   CagBounds box = cag_mesh_bounds(m);
   CagVec3 middle = cag_lerp(box.min, box.max, 0.5);
   CagTransform shift = cag_translate(cag_scaled(middle, -1));
   CagMesh *near;
   double terms[10] = {0};
   status = cag_mesh_transform(m, &shift, &near, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   cag_mesh_volume_terms(near, terms);
   cag_mesh_release(near);
   *out = mass_of_terms(terms, middle, density);
@@ -63,14 +63,14 @@ static CagStatus surface_mass(const CagSurface *s, double density, CagUrdfMass *
   double terms[10] = {0};
   if (!cag_surface_is_closed(s)) return CAG_OK;
   CagStatus status = cag_surface_bounds(s, &box, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   CagVec3 middle = cag_lerp(box.min, box.max, 0.5);
   CagTransform shift = cag_translate(cag_scaled(middle, -1));
   status = cag_surface_transform(s, &shift, &near, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   status = cag_surface_volume_terms(near, terms, err);
   cag_surface_release(near);
-  if (status == CAG_OK) *out = mass_of_terms(terms, middle, density);
+  if (!status) *out = mass_of_terms(terms, middle, density);
   return status;
 }
 

@@ -50,7 +50,7 @@ static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format
 static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format, ...) {
   char message[300];
   va_list args;
-  if (r->status != CAG_OK) return r->status; // the first is told
+  if (r->status) return r->status; // the first is told
   va_start(args, format);
   vsnprintf(message, sizeof message, format, args);
   va_end(args);
@@ -124,7 +124,7 @@ static bool lengths(Reader *r, const xmlNode *node, const char *name, double *ou
     if (fabs(out[i]) > LENGTH_MOST)
       fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is out of range: %g", name,
               (const char *)node->name, out[i]);
-  return r->status == CAG_OK;
+  return !r->status;
 }
 
 // --- Elements that several have ---
@@ -233,7 +233,7 @@ static void read_link(Reader *r, const xmlNode *n) {
       fail_at(r, CAG_ERR_urdf_chain, link.line,
               "a second link is named \"%.60s\"; the first is of line %ld", link.name,
               t->nodes[i].line);
-  for (const xmlNode *c = n->children; c && r->status == CAG_OK; c = c->next) {
+  for (const xmlNode *c = n->children; c && !r->status; c = c->next) {
     bool seen = is_element(c, "visual");
     if (!seen && !is_element(c, "collision")) continue;
     CagUrdfBody ***last = seen ? &visual : &collision;
@@ -330,7 +330,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
     read_limits(r, n, &e);
     read_mimic(r, n, &e);
   }
-  if (r->status != CAG_OK) return;
+  if (r->status) return;
   CagUrdfNode *below = &t->nodes[e.child];
   if (below->above != CAG_URDF_NONE) {
     fail_at(r, CAG_ERR_urdf_chain, e.line,
@@ -359,7 +359,7 @@ static void find_colors(Reader *r) {
 
 static void each(Reader *r, const xmlNode *root, const char *name,
                  void (*read)(Reader *r, const xmlNode *n)) {
-  for (const xmlNode *n = root->children; n && r->status == CAG_OK; n = n->next)
+  for (const xmlNode *n = root->children; n && !r->status; n = n->next)
     if (is_element(n, name)) read(r, n);
 }
 
@@ -416,9 +416,8 @@ static void parse_document(Reader *r, const char *bytes, size_t size) {
                                       XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
   const xmlError *fault = xmlCtxtGetLastError(r->context);
   r->document = doc;
-  if (doc && r->status == CAG_OK && !cag_memory_guard(read_tree, r))
-    r->status = cag_fail_memory(r->err);
-  if (!doc && r->status == CAG_OK) {
+  if (doc && !r->status && !cag_memory_guard(read_tree, r)) r->status = cag_fail_memory(r->err);
+  if (!doc && !r->status) {
     const char *told = fault && fault->message ? fault->message : "no XML";
     fail_at(r, SYNTAX, fault ? fault->line : 1, "%.*s", (int)strcspn(told, "\n"), told);
   }

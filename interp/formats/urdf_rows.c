@@ -263,7 +263,7 @@ CagStatus cag_urdf_rows(const CagUrdfTree *t, const char *base, const size_t *ch
   Walk w = {.tree = t, .out = out, .at = cag_transform_identity(), .bodies = bodies};
   if (first != CAG_URDF_NONE) add_bodies(&w, first);
   CagStatus status = add_edges(&w, chain, n, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (out->row_count == 0) { // no joint at all
     go_to(&w, w.at);
     if (out->row_count == 0) add_row(&w, CAG_JOINT_FIXED);

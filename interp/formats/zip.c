@@ -99,8 +99,8 @@ CagStatus cag_zip_close(CagZip *z, CagError *err) {
   struct CagZipMember *m = &z->members[z->count];
   CagStatus status = pack(p, Z_FINISH, err);
   uint64_t size = p->stream.total_out, offset = cag_atomic_file_size(z->file);
-  if (status == CAG_OK && offset + size > UINT32_MAX) status = fail_size(p->size, err);
-  if (status == CAG_OK) {
+  if (!status && offset + size > UINT32_MAX) status = fail_size(p->size, err);
+  if (!status) {
     m->packed = (uint32_t)size;
     m->size = (uint32_t)p->size;
     z->count++;
@@ -123,8 +123,8 @@ void cag_zip_free(CagZip *z) {
 
 CagStatus cag_zip_add(CagZip *z, const char *name, const char *bytes, size_t n, CagError *err) {
   CagStatus status = cag_zip_open(z, name, err);
-  if (status == CAG_OK) status = cag_zip_feed(z, bytes, n, err);
-  if (status == CAG_OK) status = cag_zip_close(z, err);
+  if (!status) status = cag_zip_feed(z, bytes, n, err);
+  if (!status) status = cag_zip_close(z, err);
   return status;
 }
 

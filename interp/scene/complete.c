@@ -180,7 +180,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   s->light_count = STUDIO_COUNT;
   CagStatus status = s->has_background ? CAG_OK : set_sky(s, STUDIO_SKY, SKY_COUNT, err);
   bool floor = !s->has_background && !has_ground(s) && s->cameras[0].eye.z > whole.min.z;
-  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z - floor_gap(radius), err);
+  if (!status && floor) status = add_floor(s, whole.min.z - floor_gap(radius), err);
   return status;
 }
 
@@ -193,15 +193,15 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
   size_t kept = 0;
   for (size_t i = 0; i < s->item_count; i++) {
     CagBounds one = CAG_BOUNDS_EMPTY;
-    if (status == CAG_OK) status = cag_stop_check(err);
-    if (status == CAG_OK) status = cag_item_bounds(&s->items[i], NULL, &one, err);
-    const bool empty = status != CAG_OK && cag_is_empty_shape(err);
+    if (!status) status = cag_stop_check(err);
+    if (!status) status = cag_item_bounds(&s->items[i], NULL, &one, err);
+    const bool empty = status && cag_is_empty_shape(err);
     if (empty) {
       s->empties[s->empty_count++] = s->items[i];
       status = CAG_OK;
       continue;
     }
-    if (status == CAG_OK) join(&s->bounds, &one);
+    if (!status) join(&s->bounds, &one);
     s->items[kept++] = s->items[i];
   }
   s->item_count = kept;
@@ -229,9 +229,9 @@ static CagStatus check_finite(const CagScene *s, CagError *err) {
 
 CagStatus cag_scene_complete(CagScene *s, CagError *err) {
   CagStatus status = find_bounds(s, err);
-  if (status == CAG_OK && s->item_count + s->label_count == 0) return CAG_OK;
-  if (status == CAG_OK && s->camera_count == 0) status = add_camera(s, err);
+  if (!status && s->item_count + s->label_count == 0) return CAG_OK;
+  if (!status && s->camera_count == 0) status = add_camera(s, err);
   bool lit = s->light_count > 0 || s->sky.color_count > 0 || s->sky.image;
-  if (status == CAG_OK && !lit) status = add_studio(s, err);
-  return status == CAG_OK ? check_finite(s, err) : status;
+  if (!status && !lit) status = add_studio(s, err);
+  return !status ? check_finite(s, err) : status;
 }

@@ -33,7 +33,7 @@ static CagStatus region_mesh(const CagItem *item, const CagTessellation *how, Ca
                              CagError *err) {
   CagSurface *flat = NULL;
   CagStatus status = cag_surface_planar(item->as.region, &item->placement, &flat, err);
-  if (status == CAG_OK) status = cag_surface_tessellate(flat, how, out, err);
+  if (!status) status = cag_surface_tessellate(flat, how, out, err);
   cag_surface_release(flat);
   return status;
 }

@@ -68,7 +68,7 @@ bool cag_camera_has_lens(const CagCamera *c) { return c->aperture > 0 && !c->ort
 CagTransform cag_camera_frame(const CagCamera *c) {
   CagTransform frame;
   CagError err;
-  if (cag_look_at(c->eye, c->target, c->up, &frame, &err) == CAG_OK) {
+  if (!cag_look_at(c->eye, c->target, c->up, &frame, &err)) {
     for (int i = 0; i < 3 && c->mirrored; i++) frame.m[i][0] = 0.0 - frame.m[i][0];
     return frame;
   }

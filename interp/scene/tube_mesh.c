@@ -183,7 +183,7 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
   const double rounding = 1e-9; // a quarter turn has SIDES / 4 steps
   const size_t steps = (size_t)ceil(turn * SIDES / (2 * PI) - rounding);
   CagStatus status = reserve(b, (steps + 2) * SIDES, steps * (SIDES - 2), err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   CagVec3 o = cag_unit(cag_madd(cag_scaled(u, -1), cag_dot(t, u), t)), a = cag_cross(t, o);
   *out = (Joint){.outward = {o, cag_madd(cag_scaled(o, cos(turn)), sin(turn), t)}, .axis = a};
   size_t *const firsts[] = {&out->ends, &out->begins};
@@ -241,7 +241,7 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, Run
   if (n < 2) return CAG_OK;
   const size_t caps = (from.joint ? 0u : 1u) + (to.joint ? 0u : 1u);
   CagStatus status = reserve(b, (n + 2) * SIDES + 2, (2 * (n - 1) + caps) * SIDES, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   CagVec3 t = tangent_at(p, n, false, 0);
   CagVec3 r = from.joint ? from.joint->outward[1] : perpendicular(t);
   size_t shift = 0, ring = from.joint ? from.joint->begins : b->vertices;
@@ -271,7 +271,7 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, Run
 static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, CagError *err) {
   if (n < 2) return CAG_OK;
   CagStatus status = reserve(b, n * SIDES, 2 * SIDES * (n - 1), err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   const CagVec3 begin = tangent_at(p, n, true, 0), first = perpendicular(begin);
   CagVec3 t = begin, r = first;
   // The frame comes back turned: each ring takes its share of the difference.
@@ -305,7 +305,7 @@ static CagVec3 askew(CagVec3 n) {
 
 static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
   CagStatus status = reserve(b, BALL_RINGS * SIDES + 2, 2 * SIDES * (size_t)BALL_RINGS, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   size_t start = b->vertices;
   for (int i = 1; i <= BALL_RINGS; i++) {
     double a = PI * i / (BALL_RINGS + 1);
@@ -407,19 +407,18 @@ static CagStatus add_corners(Buffer *b, const Path *h, CagError *err) {
   Joint start = {0}, from, to;
   bool starts, joined;
   CagStatus status = try_joint(b, h, 0, &start, &starts, err);
-  if (status == CAG_OK && h->closed && !starts) status = add_ball(b, p[0], h->radius, err);
+  if (!status && h->closed && !starts) status = add_ball(b, p[0], h->radius, err);
   bool begins = starts;
   from = start;
   size_t at = 0;
-  for (size_t i = 1; status == CAG_OK && i < n; i++) {
+  for (size_t i = 1; !status && i < n; i++) {
     const bool last = i + 1 == n;
     if (!last && !is_sharp(p[i - 1], p[i], p[i + 1])) continue;
     to = start;
     joined = starts;
     if (!last) status = try_joint(b, h, i, &to, &joined, err);
-    if (status == CAG_OK && !last && !joined) status = add_ball(b, p[i], h->radius, err);
-    if (status == CAG_OK)
-      status = add_part(b, h, at, i, begins ? &from : NULL, joined ? &to : NULL, err);
+    if (!status && !last && !joined) status = add_ball(b, p[i], h->radius, err);
+    if (!status) status = add_part(b, h, at, i, begins ? &from : NULL, joined ? &to : NULL, err);
     from = to;
     begins = joined;
     at = i;
@@ -472,9 +471,9 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   bool drawn = true;
   size_t m = 0;
   run[m++] = p[0];
-  for (size_t i = 1; status == CAG_OK && i < n; i++) {
+  for (size_t i = 1; !status && i < n; i++) {
     double part = cag_norm(cag_sub(p[i], p[i - 1]));
-    while (status == CAG_OK && part > 0 && next < at + part - sliver) {
+    while (!status && part > 0 && next < at + part - sliver) {
       CagVec3 q = cag_lerp(p[i - 1], p[i], (next - at) / part);
       run[m++] = q;
       if (drawn) status = add_path(b, run, m, false, radius, err);
@@ -485,7 +484,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
     }
     at += part;
     run[m++] = p[i];
-    if (status != CAG_OK || i + 1 == n || next > at + sliver) continue;
+    if (status || i + 1 == n || next > at + sliver) continue;
     if (drawn) status = add_path(b, run, m, false, radius, err);
     drawn = !drawn;
     m = 0;
@@ -493,8 +492,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
     next += step;
   }
   // Rounding may leave a sliver behind the last gap.
-  if (status == CAG_OK && drawn && next - at < step / 2)
-    status = add_path(b, run, m, false, radius, err);
+  if (!status && drawn && next - at < step / 2) status = add_path(b, run, m, false, radius, err);
   cag_free(run);
   return status;
 }
@@ -512,11 +510,11 @@ static CagStatus curve_points(const CagCurve *c, double radius, const CagTessell
   double *t = NULL, tolerance = CHORD_PART * radius;
   if (how->tolerance > 0) tolerance = fmin(tolerance, how->tolerance);
   CagStatus status = cag_curve_discretize(c, tolerance, how->angle, &t, n, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   *out = cag_malloc(*n * sizeof **out);
   status = *out ? cag_curve_eval_many(c, t, *n, 0, *out, err) : cag_fail_memory(err);
   cag_free(t);
-  if (status != CAG_OK) {
+  if (status) {
     cag_free(*out);
     return status;
   }
@@ -527,7 +525,7 @@ static CagStatus curve_points(const CagCurve *c, double radius, const CagTessell
 static CagStatus take_mesh(const Buffer *b, CagMesh **out, CagError *err) {
   CagMesh *m = NULL;
   CagStatus status = cag_mesh_new(b->vertices, b->count, true, false, false, &m, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (b->vertices > 0) {
     memcpy(m->positions, b->positions, b->vertices * sizeof *m->positions);
     memcpy(m->normals, b->normals, b->vertices * sizeof *m->normals);
@@ -543,11 +541,11 @@ CagStatus cag_curve_tube_mesh(const CagCurve *c, double radius, double dash,
   size_t n = 0;
   Buffer b = {.max_triangles = how->max_triangles};
   CagStatus status = curve_points(c, radius, how, &points, &n, err);
-  if (status != CAG_OK) return status;
+  if (status) return status;
   if (c->closed && n > 1) points[n - 1] = points[0];
   status = dash > 0 ? add_dashes(&b, points, n, c->closed, dash, radius, err)
                     : add_path(&b, points, n, c->closed, radius, err);
-  if (status == CAG_OK) status = take_mesh(&b, out, err);
+  if (!status) status = take_mesh(&b, out, err);
   cag_free(points);
   cag_free(b.positions);
   cag_free(b.normals);

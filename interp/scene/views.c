@@ -40,9 +40,9 @@ static CagStatus region_bounds(const CagItem *item, const CagTransform *t, CagBo
     CagCurve *placed = NULL;
     CagBounds loop;
     CagStatus status = cag_curve_transform(item->as.region->loops[i], &place, &placed, err);
-    if (status == CAG_OK) status = cag_curve_bounds(placed, &loop, err);
+    if (!status) status = cag_curve_bounds(placed, &loop, err);
     cag_curve_release(placed);
-    if (status != CAG_OK) return status;
+    if (status) return status;
     join(out, &loop);
   }
   return CAG_OK;
@@ -52,7 +52,7 @@ static CagStatus curve_bounds(const CagCurve *c, const CagTransform *t, CagBound
                               CagError *err) {
   CagCurve *placed = NULL;
   CagStatus status = cag_curve_transform(c, t, &placed, err);
-  if (status == CAG_OK) status = cag_curve_bounds(placed, out, err);
+  if (!status) status = cag_curve_bounds(placed, out, err);
   cag_curve_release(placed);
   return status;
 }
@@ -61,7 +61,7 @@ static CagStatus surface_bounds(const CagSurface *s, const CagTransform *t, CagB
                                 CagError *err) {
   CagSurface *placed = NULL;
   CagStatus status = cag_surface_transform(s, t, &placed, err);
-  if (status == CAG_OK) status = cag_surface_bounds(placed, out, err);
+  if (!status) status = cag_surface_bounds(placed, out, err);
   cag_surface_release(placed);
   return status;
 }
@@ -70,7 +70,7 @@ static CagStatus solid_bounds(const CagSolid *s, const CagTransform *t, CagBound
                               CagError *err) {
   CagSolid *placed = NULL;
   CagStatus status = cag_solid_transform(s, t, &placed, err);
-  if (status == CAG_OK) status = cag_solid_bounds(placed, out, err);
+  if (!status) status = cag_solid_bounds(placed, out, err);
   cag_solid_release(placed);
   return status;
 }
@@ -79,7 +79,7 @@ static CagStatus mesh_bounds(const CagMesh *m, const CagTransform *t, CagBounds 
                              CagError *err) {
   CagMesh *placed = NULL;
   CagStatus status = cag_mesh_transform(m, t, &placed, err);
-  if (status == CAG_OK) *out = cag_mesh_bounds(placed);
+  if (!status) *out = cag_mesh_bounds(placed);
   cag_mesh_release(placed);
   return status;
 }
@@ -171,14 +171,14 @@ static void add_item(const Framing *f, const CagItem *item, Reach r[2]) {
   CagError err = {0};
   CagStatus status = cag_item_bounds(item, NULL, &box, &err);
   if (status == CAG_E_MEMORY) cag_memory_leave();
-  if (status != CAG_OK || box.min.x > box.max.x) return;
+  if (status || box.min.x > box.max.x) return;
   for (int a = 0; a < 2; a++) {
     Reach one = reach_of_box(f, a, &box);
     const CagTransform t = reach_transform(f, a);
     CagBounds seen;
     status = cag_item_bounds(item, &t, &seen, &err);
     if (status == CAG_E_MEMORY) cag_memory_leave();
-    if (status == CAG_OK && seen.min.x <= seen.max.x) {
+    if (!status && seen.min.x <= seen.max.x) {
       one.high = fmin(one.high, seen.max.x);
       one.low = fmax(one.low, f->k[a] == 0 ? seen.min.x : seen.min.y);
     }

@@ -113,17 +113,17 @@ static int make_parts(CagSession *s, unsigned use, Parts *out) {
     CagError err = {0};
     CagMesh *mesh;
     CagStatus status = cag_item_mesh(scene, item, &mesh, &err);
-    if (status == CAG_OK) {
+    if (!status) {
       triangles += mesh->triangle_count;
       if (use & FOR_PRINTING) status = warn_open(s, item, mesh, &err);
-      if (status != CAG_OK) cag_mesh_release(mesh);
+      if (status) cag_mesh_release(mesh);
       else status = add_parts(out, scene, item, mesh, use & ONE_MATERIAL, &err);
-      if (status == CAG_OK && triangles > scene->max_triangles)
+      if (!status && triangles > scene->max_triangles)
         status = cag_fail(&err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
                           "the meshes have more than the %zu triangles allowed (--max-triangles)",
                           scene->max_triangles);
     }
-    if (status == CAG_OK) continue;
+    if (!status) continue;
     free_parts(out);
     return cag_session_fail_geometry(s, &err);
   }
@@ -170,8 +170,7 @@ typedef CagStatus (*MeshWriter)(const MeshOutput *m, CagError *err);
 
 static CagStatus write_obj(const MeshOutput *m, CagError *err) {
   CagStatus status = cag_export_obj(m->parts, m->count, m->beside_name, m->file, err);
-  return status == CAG_OK && m->beside ? cag_export_mtl(m->parts, m->count, m->beside, err)
-                                       : status;
+  return !status && m->beside ? cag_export_mtl(m->parts, m->count, m->beside, err) : status;
 }
 static CagStatus write_stl(const MeshOutput *m, CagError *err) {
   return cag_export_stl(m->parts, m->count, NULL, m->file, err);
@@ -219,7 +218,7 @@ static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const ch
     cag_atomic_file_abort(m->file);
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }
-  if (cag_session_checked(s, write(m, &err), &err) == CAG_OK) return commit_both(s, m);
+  if (!cag_session_checked(s, write(m, &err), &err)) return commit_both(s, m);
   cag_atomic_file_abort(m->file);
   cag_atomic_file_abort(m->beside);
   return cag_session_fail_geometry(s, &err);
@@ -287,7 +286,7 @@ static int write_gltf_files(CagSession *s, const Parts *parts, const char *path,
   const char *name = stem ? stem + strlen(folder) : NULL;
   int status = CAG_STATUS_OK;
   CagStatus made = cag_export_gltf(parts->items, parts->count, name, f, &data, &err);
-  if (cag_session_checked(s, made, &err) != CAG_OK) {
+  if (cag_session_checked(s, made, &err)) {
     cag_atomic_file_abort(f);
     status = cag_session_fail_geometry(s, &err);
   } else {
@@ -372,7 +371,7 @@ static int export_text(CagSession *s, const char *path,
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  if (cag_session_checked(s, write(s, f, &err), &err) != CAG_OK) {
+  if (cag_session_checked(s, write(s, f, &err), &err)) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }
@@ -420,7 +419,7 @@ static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWri
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   const char *script = s->scene.script ? s->scene.script : "", *slash = strrchr(script, '/');
-  if (write(b, slash ? slash + 1 : script, f, &err) != CAG_OK) {
+  if (write(b, slash ? slash + 1 : script, f, &err)) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }
@@ -433,7 +432,7 @@ static int export_brep(CagSession *s, const char *path, BrepWriter write) {
   CagBrep b;
   CagError err = {0};
   CagStatus made = cag_session_checked(s, cag_brep_of_scene(&s->scene, &b, &err), &err);
-  int status = made == CAG_OK ? write_brep(s, &b, path, write) : cag_session_fail_geometry(s, &err);
+  int status = !made ? write_brep(s, &b, path, write) : cag_session_fail_geometry(s, &err);
   cag_brep_free(&b);
   return status;
 }
@@ -495,7 +494,7 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
       CagAtomicFile *f = cag_atomic_file_open(path, &io);
       cag_free(path);
       if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-      if (cag_export_urdf_mesh(m, f, &err) == CAG_OK) {
+      if (!cag_export_urdf_mesh(m, f, &err)) {
         status = commit(s, f);
         continue;
       }

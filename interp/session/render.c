@@ -42,7 +42,7 @@ static bool find_quality(const char *name, CagPovQuality *pov, CagPovrayQuality 
 static int add_view(CagSession *s, void *name) {
   CagError err = {0};
   const CagStatus status = cag_session_checked(s, cag_scene_add_view(&s->scene, name, &err), &err);
-  return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+  return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
 int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
@@ -109,7 +109,7 @@ static bool make_metadata(const CagSession *s, const CagCamera *camera, const ch
   if (!ok) return false;
   if (camera->orthographic) ok = cag_exr_metadata_number(m, "cag.cameraWidth", camera->width, err);
   else ok = cag_exr_metadata_number(m, "cag.cameraFov", camera->fov * 180 / M_PI, err);
-  if (ok && cag_transform_inverse(&frame, &inverse, &ignored) == CAG_OK)
+  if (ok && !cag_transform_inverse(&frame, &inverse, &ignored))
     ok = add_matrix(m, "worldToCamera", &inverse, err);
   return ok;
 }
@@ -147,7 +147,7 @@ static int write_source(CagSession *s, void *context) {
                            .csg = j->csg};
   CagStatus written = cag_session_checked(s, cag_export_pov(scene, &options, f, &err), &err);
   scene->sky.image = image;
-  if (written != CAG_OK) {
+  if (written) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }

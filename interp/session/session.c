@@ -253,7 +253,7 @@ int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context
 }
 
 CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err) {
-  if (status != CAG_OK || !s->vm || !s->vm->failed) return status;
+  if (status || !s->vm || !s->vm->failed) return status;
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "a function failed");
 }
 
@@ -446,7 +446,7 @@ static int complete_scene(CagSession *s, void *context) {
   (void)context;
   CagError err = {0};
   CagStatus status = cag_session_checked(s, cag_scene_complete(&s->scene, &err), &err);
-  return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+  return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
 // The list of diagnostics keeps room for the error that may follow.

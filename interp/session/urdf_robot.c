@@ -176,7 +176,7 @@ static bool mesh_of(Walk *w, CagScene *scene, const CagItem *item, CagMesh **out
   scene->interrupt = w->how->interrupt;
   scene->bounds = w->how->bounds;
   CagStatus status = cag_item_mesh(scene, item, out, err);
-  if (status != CAG_OK) return cag_geometry_ok(&w->call, status);
+  if (status) return cag_geometry_ok(&w->call, status);
   w->triangles += (*out)->triangle_count;
   if (w->triangles <= w->how->max_triangles) return !w->call.vm->failed;
   cag_mesh_release(*out);
@@ -277,7 +277,7 @@ static void add_cylinder(Walk *w, CagVec3 p, CagVec3 q, double radius, const dou
   CagVec3 side = fabs(z.x) < 0.9 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   CagUrdfShape *s = add_shape(w->u, w->link, CAG_URDF_CYLINDER);
   CagVec3 x = cag_cross(z, side);
-  if (cag_axes(cag_lerp(p, q, 0.5), x, cag_cross(z, x), &s->place, &err) != CAG_OK) return;
+  if (cag_axes(cag_lerp(p, q, 0.5), x, cag_cross(z, x), &s->place, &err)) return;
   s->size[0] = radius;
   s->size[1] = length;
   add_plain(w, s, color);
