@@ -1,7 +1,7 @@
-// Whether points lie within a solid.
+// Tests whether points lie within a solid.
 //
-// Meshes of what has no equation are made once, each with its bounds, beyond which no point is
-// asked further.
+// Solids without an equation are meshed once; points outside of a mesh's bounds are decided without
+// it.
 
 #include "geom/solid/inside.h"
 #include "geom/solid/tessellate.h"
@@ -14,12 +14,12 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
 
-// A point is on a boundary when it is nearer than this part of the size: rounding of transforms.
+// A point is on a boundary if it is closer than this fraction of the size: rounding of transforms.
 #define ON_BOUNDARY CAG_ROUNDING
 
 typedef struct LeafMesh {
   const CagSolid *leaf;
-  CagMesh *mesh; // in the coordinates of the point asked
+  CagMesh *mesh; // in the coordinates of the queried point
   CagBounds box;
 } LeafMesh;
 
@@ -27,7 +27,7 @@ struct CagInside {
   const CagSolid *solid;
   CagTessellation how;
   double slack;
-  LeafMesh *leaves; // filled as they are asked
+  LeafMesh *leaves; // filled on demand
   size_t count;
 };
 
@@ -51,7 +51,8 @@ void cag_inside_free(CagInside *inside) {
   cag_free(inside);
 }
 
-// --- Equations: how far p is outside of a primitive in its own coordinates; negative inside ---
+// --- Equations: signed distance measure of p outside of a primitive in its own coordinates;
+// negative inside ---
 
 static double beyond_box(const CagSolid *s, CagVec3 p) {
   CagVec3 half = cag_vec3(s->a / 2, s->b / 2, s->c / 2);
@@ -103,7 +104,7 @@ static CagStatus side_of_leaf(void *context, const CagSolid *leaf, CagVec3 p, in
                               CagError *err) {
   CagInside *inside = context;
   double distance;
-  if (beyond(leaf, p, &distance)) { // no mesh: only to choose by the kind
+  if (beyond(leaf, p, &distance)) { // no mesh needed: called only to dispatch by the kind
     CagTransform back;
     CagStatus status = cag_transform_inverse(&leaf->placement, &back, err);
     if (status) return status;
