@@ -1,8 +1,8 @@
-// Cubic B-splines near curves, by Hermite pieces that are halved until they fit.
+// Cubic B-spline approximations of curves, by Hermite pieces that are halved until they fit.
 //
 // The error of a cubic Hermite piece of length h is about h^4 / 384 times the fourth derivative and
-// is largest in the middle, so it is measured at a few places of the piece. Joints of pieces are
-// double knots (continuous first derivative), breaks whose sides differ are triple ones.
+// is largest in the middle, so it is measured at a few points of the piece. Joints of pieces are
+// double knots (continuous first derivative); breaks whose sides differ are triple knots.
 
 #include "geom/curve/approximate.h"
 
@@ -14,12 +14,13 @@
 #include "geom/curve/nurbs.h"
 #include "geom/linalg/tolerance.h"
 
-// Halvings of a smooth piece, and pieces, at which a curve counts as one that cannot be fitted.
+// Maximum depth of halvings of a smooth piece, and maximum number of pieces; beyond, the fit fails.
 #define DEPTH 40
 #define MOST_PIECES 2000000
-// The measured error may be this part of the tolerance: the largest lies between the samples.
+// The measured error may be this fraction of the tolerance, since the largest lies between the
+// samples.
 #define SAFETY 0.9
-// Derivatives of both sides that differ by less than this part are one.
+// Derivatives of both sides that differ by less than this fraction are equal.
 #define SMOOTH CAG_COINCIDENT
 
 typedef struct Node {
@@ -166,7 +167,7 @@ CagStatus cag_curve_approximate(const CagCurve *c, double tolerance, CagCurve **
   return status;
 }
 
-// --- How far two curves are apart ---
+// --- Distance of two curves ---
 
 typedef struct Gap {
   const CagCurve *a, *b;
@@ -182,7 +183,7 @@ static CagStatus gap_at(const Gap *g, double t, CagSide side, double *out, CagEr
   return status;
 }
 
-// The largest gap over [a, b] by samples, and golden sections about the largest of them.
+// The largest gap over [a, b] from samples, refined by golden section around the largest.
 static CagStatus largest_gap(const Gap *g, double a, double b, double *most, CagError *err) {
   enum { SAMPLES = 16, SECTIONS = 40 };
   const double golden = 0.6180339887498949; // (sqrt 5 - 1) / 2
@@ -224,7 +225,7 @@ CagStatus cag_curve_deviation(const CagCurve *a, const CagCurve *b, double *out,
   }
   double from = a->start;
   for (size_t i = 1, k = 1; !status && i < na;) {
-    // The next break of either.
+    // The next break of either curve.
     double next = ca[i];
     if (k + 1 < nb) next = fmin(next, cag_curve_remap(b, cb[k], a->start, a->end));
     if (next >= ca[i]) i++;

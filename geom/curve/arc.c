@@ -1,6 +1,6 @@
 // Arcs of circles and ellipses: center + cos(angle) x + sin(angle) y with any two vectors x, y.
 //
-// Every affine image of an arc is one again: x and y need not stay at right angles. The angle is
+// Every affine image of an arc is an arc again: x and y need not be perpendicular. The angle is
 // phase + rate * t, which is t itself until the curve is reparametrized. A closed arc ends in its
 // first point bit for bit.
 
@@ -11,8 +11,8 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Axes count as equal and perpendicular to this part of their length: circles keep their name
-// through rounding.
+// Axes are equal and perpendicular within this fraction of their length, so that circles stay
+// circles despite rounding.
 #define ROUND CAG_ROUNDING
 
 typedef struct Arc {
@@ -177,7 +177,7 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
   const Arc *c = (const Arc *)curve;
   const double from = c->phase + c->rate * curve->start,
                sweep = c->rate * (curve->end - curve->start);
-  // A sweep that is a quarter turn but for rounding is one piece.
+  // A sweep that is a quarter turn up to rounding is one piece.
   const double slack = CAG_PARALLEL;
   const size_t m = (size_t)fmax(1, ceil(fabs(sweep) / (M_PI / 2) - slack)), n = 2 * m + 1;
   CagVec3 *points = cag_malloc(sizeof *points * n);
@@ -213,7 +213,7 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
               cag_curve_image_dimension(curve, t), out, err);
 }
 
-// Run backwards, the angle is sum - angle: x and y are turned and mirrored, the domain stays.
+// In reverse the angle is sum - angle: x and y are rotated and reflected, and the domain stays.
 static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Arc *c = (const Arc *)curve;
   double s, d;
@@ -242,7 +242,7 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
   return make(c->a, c->b, &c->frame, a, b, phase, rate, curve->dimension, out, err);
 }
 
-// Exact: ends, and each coordinate's extremes where they are passed.
+// Exact: the ends, and the extrema of each coordinate inside the range.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
   const Arc *c = (const Arc *)curve;
   CagBounds box = CAG_BOUNDS_EMPTY;

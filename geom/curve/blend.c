@@ -1,7 +1,7 @@
 // Parabolic blends: cubic segments between the parabolas through three neighboring points.
 //
 // The parabola through points i - 1, i, i + 1 passes them at r = 0, a, 1. A segment's end tangents
-// are those of the parabolas there: it is a Hermite segment, and what is stored are Bezier points.
+// are those of the parabolas there, so it is a Hermite segment; it is stored by its Bezier points.
 
 #include "base/memory.h"
 #include "base/stop.h"
@@ -11,16 +11,16 @@
 typedef struct Blend {
   const CagVec3 *points;
   size_t n;
-  const double *ratios, *lengths; // one of both is NULL
+  const double *ratios, *lengths; // one of them is NULL
   CagBlendEnds ends;
 } Blend;
 
 static const CagVec3 *point(const Blend *b, size_t i) { return &b->points[i % b->n]; }
 
-// Of the span from point i to the next.
+// Length of the span from point i to the next.
 static double length(const Blend *b, size_t i) { return b->lengths ? b->lengths[i % b->n] : 1; }
 
-// Where the parabola about point i passes it.
+// The parameter r at which the parabola about point i passes it.
 static double ratio(const Blend *b, size_t i) {
   i %= b->n;
   if (b->ratios) return b->ratios[b->ends == CAG_BLEND_CLOSED ? i : i - 1];
@@ -28,7 +28,7 @@ static double ratio(const Blend *b, size_t i) {
   return h / (h + g);
 }
 
-// Derivative by r of the parabola about point i where it passes point i - 1, i or i + 1 (which is
+// Derivative with respect to r of the parabola about point i at point i - 1, i, or i + 1 (which is
 // -1, 0, 1).
 static CagVec3 parabola_slope(const Blend *b, size_t i, int which) {
   const double a = ratio(b, i);
@@ -40,10 +40,11 @@ static CagVec3 parabola_slope(const Blend *b, size_t i, int which) {
   return cag_madd(s1, a, bend);
 }
 
-// The two inner Bezier points of the span from point i to the next; `first`, `last`: arc of the
-// only parabola there.
+// The two inner Bezier points of the span from point i to the next; `first`, `last`: the span is an
+// arc of the only parabola there.
 static void inner_points(const Blend *b, size_t i, bool first, bool last, CagVec3 *out) {
-  const double share = first ? ratio(b, i + 1) : 1 - ratio(b, i); // of r that the span takes
+  const double share = first ? ratio(b, i + 1) : 1 - ratio(b, i); // fraction of r covered by the
+                                                                  // span
   const double share2 = last ? 1 - ratio(b, i) : ratio(b, i + 1);
   const CagVec3 d0 = first ? parabola_slope(b, i + 1, -1) : parabola_slope(b, i, 0);
   const CagVec3 d1 = last ? parabola_slope(b, i, 1) : parabola_slope(b, i + 1, 0);
@@ -55,7 +56,7 @@ static CagStatus build(const Blend *b, int dimension, CagCurve **out, CagError *
   const bool arcs = b->ends == CAG_BLEND_PARABOLA, closed = b->ends == CAG_BLEND_CLOSED;
   const size_t from = b->ends == CAG_BLEND_OPEN ? 1 : 0;
   const size_t spans = closed ? b->n : arcs ? b->n - 1 : b->n - 3;
-  // Equal speed on both sides of a joint, unless given ratios other than 1/2 make it differ.
+  // Equal speed on both sides of a joint, unless given ratios other than 1/2 prevent it.
   bool smooth = true;
   for (size_t i = 0; b->ratios && i < (closed ? b->n : b->n - 2); i++)
     smooth = smooth && b->ratios[i] == 0.5;
@@ -98,7 +99,7 @@ static CagStatus check_ratios(const double *ratios, size_t n, CagError *err) {
   return CAG_OK;
 }
 
-// Chords to this power, of all spans (and from the last point to the first).
+// Chords to this power for all spans (including the one from the last point to the first).
 static CagStatus chord_lengths(const CagVec3 *points, size_t n, double power, bool closed,
                                double *out, CagError *err) {
   for (size_t i = 0; i < n; i++) {

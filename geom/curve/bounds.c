@@ -1,9 +1,10 @@
-// The box of a curve.
+// The bounding box of a curve.
 //
-// Parts whose hull is in the box of the points found so far add nothing; the others are halved. Of
-// NURBS that goes on to the bottom, for their hulls are certain. Where samples are all that is
-// known of a curve, a part is done as soon as each coordinate that may leave the box has one
-// summit there: this is climbed, which takes a few points where halves would take hundreds.
+// Parts whose hull is inside the box of the points found so far add nothing; other parts are
+// halved. For NURBS this continues to the limit, since their hulls are rigorous. For curves known
+// only by samples, a part is finished as soon as each coordinate that may leave the box has a
+// single maximum there. The maximum is then located by root finding, which takes a few evaluations
+// instead of hundreds for bisection.
 
 #include <math.h>
 
@@ -11,16 +12,17 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// Part of the size of a curve that its box may be off by.
+// Accepted error of the box, as a fraction of the size of the curve.
 #define BOX 1e-11
-// Halves of halves, at most: a parameter has no more bits.
+// Maximum depth of halvings: a parameter has no more bits.
 #define DEEPEST 60
-// A summit is believed in parts that are at most 2^-3 of a smooth piece ...
+// A maximum is accepted in parts that are at most 2^-3 of a smooth piece ...
 #define SETTLED_DEPTH 3
-// ... and of which the hull exceeds the points by at most this part of what it does for the whole
-// of the parent. Smooth curves halve it twice, and corners once.
+// ... and whose hull exceeds the points by at most this fraction of the excess of the parent. For
+// smooth curves the excess falls to a quarter, at corners to a half.
 #define SETTLED_SHRINK 0.6
-// Samples of a part that show its summits; those of a hull, so that they are known.
+// Number of samples of a part for finding maxima; the same as for a hull, so that the points are
+// known already.
 #define STEPS 8
 
 static bool inside(const CagBounds *outer, const CagBounds *inner, double slack) {
@@ -29,7 +31,7 @@ static bool inside(const CagBounds *outer, const CagBounds *inner, double slack)
          inner->max.y <= outer->max.y + slack && inner->max.z <= outer->max.z + slack;
 }
 
-// --- Hulls that are certain ---
+// --- Rigorous hulls ---
 
 static CagStatus grow(const CagCurve *c, double a, double b, double slack, int depth,
                       CagBounds *box, CagError *err) {
@@ -51,7 +53,7 @@ typedef struct Samples {
   CagVec3 p[STEPS + 1];
 } Samples;
 
-// How high a point is in the direction 0..5: -x, +x, -y, +y, -z, +z.
+// The support of a point in the direction 0..5: -x, +x, -y, +y, -z, +z.
 static double height(CagVec3 p, int direction) {
   const double x[3] = {p.x, p.y, p.z};
   return direction % 2 ? x[direction / 2] : -x[direction / 2];
@@ -61,14 +63,14 @@ static double box_height(const CagBounds *box, int direction) {
   return height(direction % 2 ? box->max : box->min, direction);
 }
 
-// By how much the hull exceeds the box, in the direction where that is most.
+// How far the hull exceeds the box, in the direction in which that is largest.
 static double excess(const CagBounds *hull, const CagBounds *box) {
   double most = 0;
   for (int k = 0; k < 6; k++) most = fmax(most, box_height(hull, k) - box_height(box, k));
   return most;
 }
 
-// Index of the only summit of the samples in a direction; -1: there are several.
+// Index of the only maximum of the samples in a direction; -1: there are several.
 static int summit(const Samples *s, int direction) {
   int top = 0;
   for (int i = 1; i <= STEPS; i++)
@@ -80,7 +82,7 @@ static int summit(const Samples *s, int direction) {
   return top;
 }
 
-// The slope in a direction; false: there is none.
+// The slope in a direction; false: undefined.
 static bool slope(const CagCurve *c, double t, CagSide side, int direction, CagVec3 *p,
                   double *out) {
   CagVec3 d[2];
@@ -91,8 +93,8 @@ static bool slope(const CagCurve *c, double t, CagSide side, int direction, CagV
   return true;
 }
 
-// Adds the summit about sample `top` to the box: the root of the slope between its neighbors, by
-// false position (the Illinois variant). False: the slopes do not show one.
+// Adds the maximum near sample `top` to the box: the root of the slope between its neighbors, by
+// false position (the Illinois variant). Returns false if the slopes do not bracket one.
 static bool climb(const CagCurve *c, const Samples *s, int top, int direction, double slack,
                   CagBounds *box) {
   enum { ROUNDS = 60 };
@@ -102,10 +104,10 @@ static bool climb(const CagCurve *c, const Samples *s, int top, int direction, d
   if (!slope(c, a, CAG_SIDE_RIGHT, direction, &p, &up) ||
       !slope(c, b, CAG_SIDE_LEFT, direction, &p, &down))
     return false;
-  if ((first && up <= 0) || (last && down >= 0)) return true; // the sample is the summit
+  if ((first && up <= 0) || (last && down >= 0)) return true; // the sample is the maximum
   if (!(up > 0 && down < 0)) return false;
   double before = a;
-  int kept = 0; // which end stood still in the last round: -1 or 1
+  int kept = 0; // the end that was kept in the last round: -1 or 1
   for (int round = 0; round < ROUNDS; round++) {
     double t = a + (b - a) * (up / (up - down)), at;
     if (!(a < t && t < b)) return true;
@@ -126,8 +128,8 @@ static bool climb(const CagCurve *c, const Samples *s, int top, int direction, d
   return false;
 }
 
-// Whether the part has, in each direction in which its hull leaves the box, one summit; these are
-// then in the box.
+// Whether the part has a single maximum in each direction in which its hull leaves the box; these
+// are then added to the box.
 static CagStatus bound_by_summits(const CagCurve *c, double a, double b, const CagBounds *hull,
                                   double slack, CagBounds *box, bool *settled, CagError *err) {
   Samples s;
@@ -147,7 +149,7 @@ static CagStatus bound_by_summits(const CagCurve *c, double a, double b, const C
   return CAG_OK;
 }
 
-// `before` is by how much the hull of the parent exceeds the box.
+// `before` is the amount by which the hull of the parent exceeds the box.
 static CagStatus grow_sampled(const CagCurve *c, double a, double b, double slack, int depth,
                               double before, CagBounds *box, CagError *err) {
   const CagBounds hull = c->kind->hull(c, a, b);
@@ -168,7 +170,7 @@ static CagStatus grow_sampled(const CagCurve *c, double a, double b, double slac
 
 // --- All kinds ---
 
-// Adds the smooth piece over [a, b], whose ends are in the box.
+// Adds the smooth piece over [a, b], whose ends are in the box already.
 static CagStatus add_piece(const CagCurve *c, double a, double b, double slack, CagBounds *box,
                            CagError *err) {
   CagVec3 center, x, y;

@@ -1,9 +1,9 @@
-// Circles that touch two lines or circles, and lines that touch curves.
+// Circles tangent to two lines or circles, and tangent lines of curves.
 //
-// A circle of radius R touches a line when its center lies on one of the line's two parallels at
-// distance R, and a circle of radius r when its center is r + R from the other's (touching from
-// outside) or |r - R| (one within the other). So each center is a meeting of lines and circles, and
-// the words of the choice say which.
+// A circle of radius R is tangent to a line if its center lies on one of the two parallels at
+// distance R, and to a circle of radius r if the distance of the centers is r + R (touching from
+// outside) or |r - R| (one inside the other). So each center is an intersection of lines and
+// circles, and the choice selects one of them.
 
 #include "geom/curve/circles.h"
 
@@ -14,7 +14,7 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Directions whose sine is less are parallel; lengths are one to this share.
+// Directions whose sine is below this are parallel; also the relative tolerance of lengths.
 #define PARALLEL CAG_ROUNDING
 #define SAME_LENGTH CAG_ROUNDING
 
@@ -48,7 +48,7 @@ static CagStatus touch_lines(const CagTouched *a, const CagTouched *b, double ra
   return CAG_OK;
 }
 
-// Distance of the centers of two circles that touch.
+// Distance of the centers of two tangent circles.
 static double reach(double r, double radius, bool inside) {
   return inside ? fabs(r - radius) : r + radius;
 }
@@ -120,13 +120,13 @@ CagStatus cag_tangent_circle(const CagTouched *a, const CagTouched *b, double ra
 
 // --- Tangent lines ---
 
-// Samples of a smooth piece between which a tangent is looked for. A piece of degree p has at most
-// 2 p - 2 tangents through a point.
+// Number of samples of a smooth piece in the search for tangents. A piece of degree p has at most 2
+// p - 2 tangents through a point.
 #define SAMPLES 64
 #define HALVINGS 100
 #define NEWTON_STEPS 30
-// Parts of the size of the data: rounding of a distance from a tangent; a point on a curve; a
-// tangent found twice.
+// Fractions of the size of the data: rounding of the distance from a tangent; a point is on a
+// curve; two tangents are identical.
 #define ROUNDING 1e-14
 #define ON_CURVE 1e-10
 #define TWICE 1e-7
@@ -175,7 +175,7 @@ static CagStatus check_plane_curve(const CagCurve *c, CagError *err) {
                   "expects a curve of the plane, with points [x, y]");
 }
 
-// C' x (C - p): zero where the tangent goes through p. Divided by the sizes.
+// C' x (C - p), normalized by the sizes: zero if the tangent at t passes through p.
 static CagStatus aside(const CagCurve *c, CagVec3 p, double t, CagSide side, double *out,
                        CagError *err) {
   CagVec3 d[2];
@@ -189,9 +189,9 @@ static CagStatus tangents_in_cell(const CagCurve *c, CagVec3 p, double a, double
   double fa = 0, fb = 0, fm = 0;
   CagStatus status = aside(c, p, a, CAG_SIDE_RIGHT, &fa, err);
   if (!status) status = aside(c, p, b, CAG_SIDE_LEFT, &fb, err);
-  // A tangent at the end of a cell is found in both, and kept once.
+  // A tangent at the end of a cell is found in both cells and stored once.
   const bool from_start = fabs(fa) <= ROUNDING * f->size, from_end = fabs(fb) <= ROUNDING * f->size;
-  if (status || (from_start && from_end)) return status; // straight, and p on its line
+  if (status || (from_start && from_end)) return status; // straight, with p on its line
   if (from_start) b = a;
   else if (from_end) a = b;
   else if ((fa < 0) == (fb < 0)) return CAG_OK;
@@ -222,7 +222,7 @@ CagStatus cag_tangents_from_point(const CagCurve *c, CagVec3 p, CagTangentLine *
       const double a = cuts[i] + step * k, b = k + 1 == SAMPLES ? cuts[i + 1] : a + step;
       status = tangents_in_cell(c, p, a, b, &f, err);
     }
-  // The tangent in p itself, where the sign does not change.
+  // The tangent at p itself, where the sign does not change.
   if (!status) status = cag_curve_closest(c, p, &on.t, &on.p, &distance, err);
   if (!status && distance <= ON_CURVE * f.size) {
     CagVec3 tangent;
@@ -243,7 +243,7 @@ static bool round_arc(const CagCurve *c, CagVec3 *center, double *radius) {
          fabs(cag_dot(x, y)) <= SAME_LENGTH * *radius * *radius;
 }
 
-// A line that touches both in these points, where they belong to the arcs.
+// Adds the line that touches both curves at these points, if the points are on the arcs.
 static CagStatus keep_on_arcs(const CagCurve *a, const CagCurve *b, CagVec3 p, CagVec3 q, Found *f,
                               CagError *err) {
   CagTangentLine line;
@@ -290,7 +290,7 @@ static CagStatus read_pair(const CagCurve *a, const CagCurve *b, double t, doubl
   return status ? status : cag_curve_eval(b, u, 2, CAG_SIDE_RIGHT, out->b, err);
 }
 
-// Newton's method for a' x (b - a) = 0, b' x (b - a) = 0, from (t, u); *end: where it ends.
+// Newton's method for a' x (b - a) = 0, b' x (b - a) = 0 from (t, u); *end: the result.
 static CagStatus polish(const CagCurve *a, const CagCurve *b, double t, double u, Found *f,
                         double end[2], CagError *err) {
   Pair p;
@@ -319,7 +319,7 @@ static CagStatus polish(const CagCurve *a, const CagCurve *b, double t, double u
   if (status) return status;
   const CagVec3 d = cag_sub(p.b[0], p.a[0]);
   const double off = fabs(cross2(cag_unit(p.a[1]), d)) + fabs(cross2(cag_unit(p.b[1]), d));
-  // Where the curves meet both vanish, too, without a common tangent.
+  // Both equations also vanish at an intersection of the curves, without a common tangent.
   if (off > ON_CURVE * f->size || cag_norm(d) <= TWICE * f->size) return CAG_OK;
   return keep(f, (CagTangentLine){t, u, p.a[0], p.b[0]}, err);
 }
@@ -351,7 +351,7 @@ static bool changes(double a, double b, double c, double d) {
   return fmin(fmin(a, b), fmin(c, d)) <= 0 && fmax(fmax(a, b), fmax(c, d)) >= 0;
 }
 
-// From the cell's middle and, where the search leaves the cell from there, from its quarters.
+// Starts from the middle of the cell and, if the search leaves the cell, from its quarters.
 static CagStatus search_cell(const CagCurve *a, const CagCurve *b, const double t[2],
                              const double u[2], Found *f, CagError *err) {
   const double wide = t[1] - t[0], high = u[1] - u[0];

@@ -1,10 +1,9 @@
-// The closest point of a curve, the global one.
+// The globally closest point of a curve.
 //
-// Parts of the curve are kept while their chord, less the bound of the distance from it, is nearer
-// than the best point found; Newton's method takes that point to the local minimum. The bound
-// shrinks with the square of the step, so only the parts about the minima live on. There the
-// distance changes with the square of the parameter, and is flat but for rounding: the last steps
-// go by its slope.
+// A part of the curve is kept while its distance bound (that of the chord minus the sag) is below
+// the best distance found; Newton's method refines the best point to a local minimum. The sag
+// shrinks with the square of the step, so only parts near the minima survive. There the distance is
+// quadratic in the parameter and flat up to rounding, so the last steps use its derivative.
 
 #include <float.h>
 #include <math.h>
@@ -14,9 +13,9 @@
 #include "base/stop.h"
 #include "geom/curve/family.h"
 
-// Two places whose distances differ by less than this part of the size count as equally near.
+// Two points whose distances differ by less than this fraction of the size are equally close.
 #define EQUALLY_NEAR 1e-10
-// Parts kept at one time, at which the search goes on with the nearest ones alone.
+// Maximum number of parts; beyond, the search continues with only the closest ones.
 #define MOST_PARTS 400000
 
 typedef struct Part {
@@ -53,7 +52,7 @@ static void offer(Search *s, double t, CagVec3 p) {
   s->point = p;
 }
 
-// Newton on (C - P) . C' = 0 within [a, b], from t.
+// Newton's method for (C - P) . C' = 0 within [a, b], from t.
 static CagStatus polish(Search *s, double a, double b, double t, CagError *err) {
   const int rounds = 40;
   for (int i = 0; i < rounds; i++) {
@@ -63,7 +62,7 @@ static CagStatus polish(Search *s, double a, double b, double t, CagError *err) 
     offer(s, t, d[0]);
     CagVec3 r = cag_sub(d[0], s->target);
     double f = cag_dot(r, d[1]), vv = cag_dot(d[1], d[1]), slope = vv + cag_dot(r, d[2]);
-    // Near a maximum the full step would climb: the step of a straight curve goes down.
+    // Near a maximum the full Newton step would go uphill; use that of a straight curve.
     if (!(slope > 0)) slope = vv;
     if (!(slope > 0)) return CAG_OK;
     double next = fmin(b, fmax(a, t - f / slope));
@@ -79,7 +78,7 @@ static double chord_parameter(const Part *part, CagVec3 target) {
   return fmin(1, fmax(0, u));
 }
 
-// Looks at one part: dropped, finished, or halved onto the list.
+// Processes one part: drops it, finishes it, or adds its halves to the list.
 static CagStatus step(Search *s, const Part *part, Parts *next, CagError *err) {
   if (cag_stop_check(err)) return err->status;
   double u = chord_parameter(part, s->target);
@@ -98,7 +97,7 @@ static CagStatus step(Search *s, const Part *part, Parts *next, CagError *err) {
   return status ? status : push(next, (Part){middle, part->b, p, part->q}, err);
 }
 
-// The smooth pieces, halved a few times so that round ones have chords worth the name.
+// The smooth pieces, halved a few times so that chords of closed pieces are meaningful.
 static CagStatus first_parts(Search *s, Parts *list, CagError *err) {
   enum { HALVES = 4 };
   CagStatus status = cag_curve_cuts(s->c, &s->cuts, &s->cut_count, err);
@@ -123,7 +122,7 @@ static CagStatus first_parts(Search *s, Parts *list, CagError *err) {
   return status;
 }
 
-// How far the line from the target leans along the curve, and the step to where it does not.
+// The component of the direction to the target along the curve, and the Newton step to its zero.
 static CagStatus lean(const Search *s, double t, CagSide side, CagVec3 *point, double *off,
                       double *step, CagError *err) {
   CagVec3 d[3];
@@ -137,8 +136,8 @@ static CagStatus lean(const Search *s, double t, CagSide side, CagVec3 *point, d
   return CAG_OK;
 }
 
-// From the best place to where the line to the target is perpendicular, on one side of it. Only
-// steps that change the distance by no more than rounding are taken: others were taken before.
+// Refines the best parameter on one side to where the line to the target is perpendicular. Only
+// steps that change the distance by no more than rounding are accepted; others were taken before.
 static CagStatus square_up(Search *s, double low, double high, double rounding, CagError *err) {
   enum { ROUNDS = 8 };
   CagVec3 point;
@@ -189,7 +188,7 @@ CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *po
     now = next;
     next = swap;
   }
-  // Of the coordinates, which the distance inherits.
+  // Rounding of the coordinates, which the distance inherits.
   const double rounding = 4 * DBL_EPSILON * (s.distance + cag_norm(s.point));
   if (!status) status = finish(&s, rounding, err);
   cag_free(now.items);

@@ -1,9 +1,9 @@
-// Curves joined end to end: each piece keeps its kind and runs over its part of the domain.
+// Curves joined end to end: each piece keeps its kind and covers its part of the domain.
 //
-// Piece i covers cuts[i]..cuts[i + 1] and its own domain at constant rate; its ends are hit
-// exactly. Pieces are never composites themselves. A joint belongs to the piece that starts there,
-// except for limits from the left. Breaks within the pieces, such as corners, are hit exactly, too:
-// at a place next to one, both limits would be the same.
+// Piece i covers cuts[i]..cuts[i + 1], mapped to its own domain at a constant rate and exactly at
+// the ends. Pieces are never composites themselves. A joint belongs to the piece that starts there,
+// except for limits from the left. Breaks within the pieces, such as corners, are mapped exactly,
+// too: at a parameter next to one, both limits would be the same.
 
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "geom/curve/nurbs_ops.h"
 #include "geom/linalg/tolerance.h"
 
-// Ends meet when their gap is this part of the size of the curves or less.
+// Ends meet if their gap is at most this fraction of the size of the curves.
 #define MEET CAG_COINCIDENT
 
 typedef struct Composite {
@@ -22,7 +22,7 @@ typedef struct Composite {
   size_t n;
   CagCurve **pieces;
   double *cuts; // n + 1
-  // Breaks within pieces, ascending: as parameters of the whole, and of their pieces.
+  // Breaks within pieces, ascending: as parameters of the whole curve, and of the pieces.
   size_t inner_count;
   double *inner, *own;
 } Composite;
@@ -131,7 +131,8 @@ const CagCurve *cag_curve_composite_piece(const CagCurve *curve, double a, doubl
 
 // --- Joining ---
 
-// Pieces of all curves one after the other, composites taken apart; lengths of their domains.
+// The pieces of all curves in sequence, with composites flattened, and the lengths of their
+// domains.
 static size_t flatten(CagCurve *const *curves, size_t n, CagCurve **pieces, double *lengths) {
   size_t count = 0;
   for (size_t i = 0; i < n; i++) {
@@ -171,7 +172,7 @@ static CagStatus check_joints(CagCurve *const *curves, size_t n, CagError *err) 
   return CAG_OK;
 }
 
-// Straight pieces alone make a polyline whose vertices have whole parameters.
+// If all pieces are straight, they form a polyline whose vertices have integer parameters.
 static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension, bool *done,
                                CagCurve **out, CagError *err) {
   const CagVec3 *points;
@@ -201,7 +202,7 @@ static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension,
   return status;
 }
 
-// Joins curves that meet and of which none is a point.
+// Joins curves that meet; none of them may be a point.
 static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, CagCurve **out,
                              CagError *err) {
   if (n == 1 && curves[0]->dimension < dimension) return cag_curve_to_space(curves[0], out, err);
@@ -222,7 +223,7 @@ static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, C
     return cag_fail_memory(err);
   }
   flatten(curves, n, pieces, cuts + 1);
-  // The domains go on from one another as they are, or are laid end to end from 0.
+  // Domains are kept if they are contiguous, else they are laid end to end from 0.
   bool natural = true, angular = true;
   for (size_t i = 0; i < n; i++) {
     natural = natural && (i == 0 || curves[i]->start == curves[i - 1]->end);
@@ -252,7 +253,7 @@ CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagE
                     "expected at least 1 curve, found none");
   CagStatus status = check_joints(curves, n, err);
   if (status) return status;
-  // A point adds nothing to what it meets.
+  // Points are dropped, since they add nothing to the curves that they touch.
   CagCurve **moving = cag_malloc(n * sizeof *moving);
   if (!moving) return cag_fail_memory(err);
   int dimension = 2;
@@ -267,7 +268,7 @@ CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagE
   return status;
 }
 
-// --- Questions ---
+// --- Functions of the kind ---
 
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
                       CagError *err) {
@@ -283,9 +284,8 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
   return status;
 }
 
-// Bezier pieces of all pieces, raised to one degree, with p-fold knots between them.
-// The pieces as clamped curves of one degree; gives their number of points and whether one is
-// rational.
+// The pieces as clamped NURBS curves of one degree; returns their number of points and whether one
+// is rational.
 static CagStatus alike_pieces(const Composite *c, CagCurve **exact, size_t *points, bool *rational,
                               int *degree, CagError *err) {
   *degree = 1;
@@ -310,8 +310,8 @@ static CagStatus alike_pieces(const Composite *c, CagCurve **exact, size_t *poin
   return CAG_OK;
 }
 
-// The joint of two pieces is one homogeneous point, to which the weights of the second are scaled,
-// and a knot as often as the degree. Inside the pieces their knots stay.
+// The joint of two pieces is a single homogeneous point, to which the weights of the second piece
+// are scaled, and a knot of multiplicity equal to the degree. Knots inside the pieces are kept.
 static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Composite *c = (const Composite *)curve;
   CagCurve **exact = cag_calloc(c->n, sizeof *exact);
@@ -349,8 +349,7 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
 typedef CagStatus (*PieceMap)(const CagCurve *piece, const void *context, CagCurve **out,
                               CagError *err);
 
-// A composite of the images of all pieces over the given cuts, in the opposite order if
-// `backwards`.
+// A composite of the images of all pieces over the given cuts, in reverse order if `backwards`.
 static CagStatus mapped(const Composite *c, PieceMap map, const void *context, bool backwards,
                         const double *cuts, CagCurve **out, CagError *err) {
   CagCurve **pieces = cag_calloc(c->n, sizeof *pieces);

@@ -1,9 +1,9 @@
 // Arcs of parabolas and hyperbolas, in the parameters of the classical forms.
 //
-// Both are kept as center + f(s) x + g(s) y with any two vectors x, y, so every affine image is one
-// again; s is phase + rate * t, and a negative rate runs backwards. For boxes and the rational form
-// the angular forms are read in the parameter of the other form of their curve: tan s of a
-// parabola, asinh(tan s) of a hyperbola's branch. The exact rational form is quadratic.
+// Both are stored as center + f(s) x + g(s) y with any two vectors x, y, so every affine image is
+// of the same form; s is phase + rate * t, and a negative rate reverses the curve. For boxes and
+// the rational form, the angular forms are converted to the parameter of the other form: tan s for
+// a parabola, asinh(tan s) for a branch of a hyperbola. The exact rational form is quadratic.
 
 #include <stdio.h>
 
@@ -18,13 +18,13 @@ typedef struct Open {
 
 static const CagCurveKind parabola_kind, hyperbola_kind;
 
-// Angles nearer than this to a pole of tan and sec count as the pole: beyond it a coordinate is
-// more than 1e9 times the size of the conic.
+// Angles closer than this to a pole of tan and sec are rejected as the pole: there a coordinate
+// would exceed 1e9 times the size of the conic.
 #define POLE 1e-9
 // A hyperbola's rational pieces span at most this much of the hyperbolic parameter, which keeps
 // their weights below 1.6.
 #define PIECE 2.0
-// Forms keep their points apart up to here; cosh is 1e100 by then.
+// Largest parameter at which points are still distinct; cosh is 1e100 there.
 #define FARTHEST 230.0
 
 static bool is_open(const CagCurve *c) {
@@ -62,7 +62,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
                   "`%s` must be positive; this is %s", name, cag_number_text(r, text));
 }
 
-// Which interval between two poles an angle lies in.
+// The index of the interval between two poles that contains the angle.
 static double strip(double angle) { return floor(angle / M_PI + 0.5); }
 static double off_pole(double angle) { return angle - (strip(angle) - 0.5) * M_PI; }
 
@@ -216,9 +216,9 @@ static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int
   return CAG_OK;
 }
 
-// --- The canonical parameter: quadratic of a parabola, hyperbolic of a hyperbola ---
+// --- The canonical parameter: quadratic for a parabola, hyperbolic for a hyperbola ---
 
-// *branch is -1 on the left branch of a secant form, where x counts negative.
+// *branch is -1 on the left branch of a secant form, where x is negated.
 static double canonical(const Open *c, double t, double *branch) {
   const double p = c->d.phase + c->d.rate * t;
   double sine, cosine;
@@ -279,7 +279,7 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
                                 : hyperbola_nurbs(c, from, to, branch, out, err);
 }
 
-// --- Other curves of it ---
+// --- Derived curves ---
 
 static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
                            CagError *err) {
@@ -315,7 +315,7 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
 
 static double coordinate(CagVec3 v, int i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
 
-// Where coordinate i of the curve turns, in the canonical parameter; false: nowhere.
+// The canonical parameter at which coordinate i of the curve has an extremum; false: none.
 static bool turning(const Open *c, int i, double branch, double *u) {
   const double x = branch * coordinate(c->d.x, i), y = coordinate(c->d.y, i);
   if (is_parabola(c->d.form)) {
@@ -326,7 +326,7 @@ static bool turning(const Open *c, int i, double branch, double *u) {
   return fabs(y) < fabs(x);
 }
 
-// Exact: the ends, and each coordinate's turn where it is passed.
+// Exact: the ends, and each coordinate's extremum if it is inside.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
   const Open *c = (const Open *)curve;
   double branch, u;

@@ -1,8 +1,9 @@
 // Conics from points and tangents.
 //
-// Each condition is one linear equation for the coefficients, so the conic is the null vector of
-// their matrix. It is found by singular values with the data about their mean and of unit size;
-// singular values tell as well when the conditions depend on each other or contradict.
+// Each condition is a linear equation for the coefficients, so the conic is the null vector of
+// their matrix. It is computed by a singular value decomposition, with the data centered and scaled
+// to unit size; the singular values also show whether the conditions are dependent or
+// contradictory.
 
 #include <lapacke.h>
 
@@ -11,13 +12,13 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Singular values are 0 below this share of the largest: conditions that follow from the others.
+// Singular values below this fraction of the largest are 0: conditions that follow from the others.
 #define DEPENDENT CAG_ROUNDING
-// More conditions than needed may disagree by this share.
+// Relative disagreement allowed for redundant conditions.
 #define DISAGREE CAG_COINCIDENT
-// Coefficients below this share of the largest, data of unit size, are rounding.
+// Coefficients below this fraction of the largest, for data of unit size, are rounding errors.
 #define NOISE 1e-13
-// A coefficient is a unit to normalize by above this share of the largest.
+// A coefficient can be normalized to 1 if it is above this fraction of the largest.
 #define UNIT CAG_COINCIDENT
 #define MOST 6
 
@@ -30,8 +31,8 @@ static CagVec3 into(const Frame *f, CagVec3 p) {
   return cag_scaled(cag_sub(p, f->center), 1 / f->size);
 }
 
-// Columns of the unknowns of each shape, out of x^2, 2xy, y^2, 2x, 2y, 1; a circle's x^2 + y^2 is
-// one.
+// Columns of the unknowns of each shape, out of x^2, 2xy, y^2, 2x, 2y, 1; for a circle x^2 + y^2 is
+// one column.
 static int columns_of(CagConicShape shape) {
   static const int count[] = {6, 5, 4, 3};
   return count[shape];
@@ -95,7 +96,7 @@ static void clean(double *c, const double unit[6]) {
     if (fabs(c[i]) * unit[i] <= NOISE * most) c[i] = 0;
 }
 
-// Back from the frame of unit size.
+// Transforms back from the frame of unit size.
 static CagConic from_unit_frame(const Frame *f, const double c[6]) {
   const double s = f->size, m = f->center.x, n = f->center.y;
   const double a = c[0] / (s * s), b = c[1] / (s * s), d = c[2] / (s * s), e = c[3] / s,
@@ -114,7 +115,7 @@ static void normalize(CagConic *k) {
   for (int i = 0; i < 6; i++) k->c[i] = k->c[i] / divisor + 0.0;
 }
 
-// Null vector of the m x k matrix (destroyed), which must have just one.
+// Null vector of the m x k matrix (destroyed), whose null space must be one-dimensional.
 static CagStatus null_vector(double *matrix, size_t m, int k, double *v, CagError *err) {
   double values[MOST], vt[MOST * MOST], unused[1], work[MOST];
   const lapack_int rows = (lapack_int)m;
@@ -139,11 +140,11 @@ static Frame frame_of(const CagVec3 *points, size_t n) {
   Frame f = {{0, 0, 0}, 0};
   for (size_t i = 0; i < n; i++) f.center = cag_madd(f.center, 1 / (double)n, points[i]);
   for (size_t i = 0; i < n; i++) f.size = fmax(f.size, cag_norm(cag_sub(points[i], f.center)));
-  if (n == 1) f.size = 1; // the only point of a tangent
+  if (n == 1) f.size = 1; // a single point, that of a tangent
   return f;
 }
 
-// The points, and those of tangents that are not among them.
+// The points, and those points of tangents that are not among them.
 static size_t gather(const CagVec3 *points, size_t n, const CagConicTangent *tangents, size_t m,
                      CagVec3 *out) {
   for (size_t i = 0; i < n; i++) out[i] = points[i];
@@ -206,7 +207,7 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
   return status;
 }
 
-// --- Arcs by their triangle ---
+// --- Arcs from their triangle ---
 
 static CagStatus check_triangle(CagVec3 p, CagVec3 apex, CagVec3 q, CagError *err) {
   const CagVec3 a = cag_sub(apex, p), b = cag_sub(q, apex);
@@ -225,7 +226,7 @@ CagStatus cag_conic_arc(CagVec3 p, CagVec3 apex, CagVec3 q, double weight, int d
                     "the weight of the apex must be finite and 0 or more; this is %s",
                     cag_number_text(weight, text));
   CagStatus status = check_triangle(p, apex, q, err);
-  // Without weight the apex has no pull: the arc is its chord.
+  // With weight 0 the apex has no effect: the arc is its chord.
   if (!status && weight == 0) return cag_curve_line(p, q, dimension, out, err);
   const CagVec3 points[3] = {p, apex, q};
   const double weights[3] = {1, weight, 1};
@@ -244,7 +245,7 @@ CagStatus cag_conic_shoulder_weight(CagVec3 p, CagVec3 apex, CagVec3 q, CagVec3 
   const double v = cag_dot(cag_cross(s, b), normal) / area;
   const double w = cag_dot(cag_cross(a, s), normal) / area, u = 1 - v - w;
   const double off = fabs(cag_dot(s, normal)) / sqrt(area);
-  const double off_plane = CAG_COINCIDENT; // of the triangle's size
+  const double off_plane = CAG_COINCIDENT; // relative to the triangle's size
   if (!(u > 0 && v > 0 && w > 0) || off > off_plane * (cag_norm(a) + cag_norm(b)))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_shoulder_outside, "shoulder", -1,
                     "`shoulder` must lie inside the triangle of the two ends and the apex");

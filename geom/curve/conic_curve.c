@@ -1,21 +1,21 @@
-// A conic as one curve value: its equation, and its branch where it has exactly one.
+// A conic as a curve: its equation, and its branch if there is exactly one.
 //
-// Every question goes to the branch, and what is made of the branch is a curve of the branch's
-// kind; an image under a planar transform is a conic again, by its equation. A conic of two
-// branches, or without a real one, answers no question of curves ("no-single-curve").
+// Every query is delegated to the branch, and curves derived from the branch have the branch's
+// kind; only an image under a planar transform is again a conic, by its equation. A conic with two
+// branches, or without a real one, fails all queries ("no-single-curve").
 
 #include <stdio.h>
 
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 
-// Parameters of a parabola's branch and of a line's.
+// Parameter range of the branch of a parabola or line.
 #define REACH 2.0
 
 typedef struct Conic {
   CagCurve base;
   CagConic conic;
-  CagCurve *branch; // NULL: none, or two
+  CagCurve *branch; // NULL: no branch, or two
   CagBounds box;    // of all branches
   const char *name;
 } Conic;

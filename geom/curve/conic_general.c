@@ -1,7 +1,7 @@
 // The general conic: classification, standard form, images, branches, segments, lines.
 //
-// The form is kept as given, not scaled. Sizes are judged relative to the terms that they are the
-// difference of, so that neither a factor of the equation nor the unit of length matters.
+// The form is stored as given, not scaled. Differences are compared with their terms, so that
+// neither a factor of the equation nor the unit of length matters.
 
 #include <float.h>
 #include <stdlib.h>
@@ -11,13 +11,13 @@
 #include "geom/curve/nurbs.h"
 #include "geom/linalg/tolerance.h"
 
-// The smaller eigenvalue of the quadratic part is 0 below this share of the larger: coefficients
-// that were turned and rounded still make a parabola, and ellipses may be 3e5 times as long as
-// wide.
+// The smaller eigenvalue of the quadratic part is 0 below this fraction of the larger: rotated and
+// rounded coefficients must still be recognized as a parabola, and ellipses may be 3e5 times as
+// long as wide.
 #define FLAT 1e-11
-// A sum is 0 below this share of its terms.
+// A sum is 0 below this fraction of its terms.
 #define NOTHING CAG_ROUNDING
-// Eigenvalues are equal, the conic a circle, to this share of their sum.
+// Eigenvalues are equal (the conic is a circle) within this fraction of their sum.
 #define ROUND CAG_COINCIDENT
 
 static void matrix_of(const CagConic *k, double s[3][3]) {
@@ -49,7 +49,7 @@ void cag_conic_polar(const CagConic *k, CagVec3 p, double line[3]) {
 
 // --- Images ---
 
-// The form s0 of points u becomes m^-T s0 m^-1 of points m u. False: m is singular.
+// Transforms the form s0 of points u to the form m^-T s0 m^-1 of points m u. False: m is singular.
 static bool carry(const double s0[3][3], const double m[3][3], CagConic *out) {
   double inverse[3][3], s[3][3] = {{0}}, size = 1;
   for (int i = 0; i < 3; i++)
@@ -86,12 +86,12 @@ CagStatus cag_conic_transform(const CagConic *c, const CagTransform *t, CagConic
 
 // --- Classification ---
 
-// An axis is a line: its angle in (-pi/2, pi/2].
+// Normalizes the angle of an axis, which has no direction, to (-pi/2, pi/2].
 static double axis_angle(double angle) {
   const double half = M_PI / 2;
   while (angle > half) angle -= M_PI;
   while (angle <= -half) angle += M_PI;
-  // What is -90deg but for rounding is 90deg.
+  // -90deg up to rounding is 90deg.
   return angle < -half * (1 - NOTHING) ? half : angle;
 }
 
@@ -115,7 +115,7 @@ static void classify_linear(const double *c, CagConicClass *out) {
   out->name = c[5] == 0 ? "plane" : "empty";
 }
 
-// The values of the text: the angle that removes the xy term and the coefficients in those axes.
+// Values as in textbooks: the angle that removes the xy term, and the coefficients in those axes.
 static void turn_axes(const double *c, CagConicClass *out) {
   double sine, cosine, angle = 0;
   if (c[1] != 0) angle = c[0] == c[2] ? copysign(M_PI / 4, c[1]) : atan(c[1] / (c[0] - c[2])) / 2;
@@ -139,7 +139,7 @@ typedef struct Eigen {
 static Eigen eigen_of(const double *c) {
   const double spread = hypot(c[0] - c[2], c[1]), sum = c[0] + c[2];
   Eigen e = {(sum + spread) / 2, (sum - spread) / 2, 0};
-  // The smaller is the determinant over the larger: their difference would cancel.
+  // The smaller eigenvalue is the determinant over the larger, since the difference would cancel.
   const double det = c[0] * c[2] - c[1] * c[1] / 4;
   if (sum > 0) e.l2 = det / e.l1;
   else if (sum < 0) e.l1 = det / e.l2;
@@ -211,7 +211,7 @@ static void classify_central(const double *c, Eigen e, CagConicClass *out) {
   set_foci(out);
 }
 
-// l y^2 + d1 x + d2 y + F = 0 along the axes e1, e2, where e2 is that of the eigenvalue l.
+// l y^2 + d1 x + d2 y + F = 0 along the axes e1, e2, where e2 is the eigenvector of l.
 static void classify_flat(const double *c, Eigen e, CagConicClass *out) {
   const bool first = fabs(e.l1) > fabs(e.l2);
   const double l = first ? e.l1 : e.l2;
@@ -264,9 +264,9 @@ CagStatus cag_conic_classify(const CagConic *conic, CagConicClass *out, CagError
   return CAG_OK;
 }
 
-// --- Curves of it ---
+// --- Its curves ---
 
-// From the standard position to the place of the conic.
+// From the standard position to the position of the conic.
 static CagTransform place_of(const CagConicClass *k) {
   double sine, cosine;
   CagTransform t = cag_translate(k->center);
@@ -351,15 +351,15 @@ static bool conic_of_bezier(const double *h, CagConic *out) {
   return carry(s0, m, out);
 }
 
-// Sum of the sizes of the terms at p: what the value there is small relative to.
+// Sum of the magnitudes of the terms at p, to which the value there is compared.
 static double terms_at(const CagConic *k, CagVec3 p) {
   const double *c = k->c;
   return fabs(c[0] * p.x * p.x) + fabs(c[1] * p.x * p.y) + fabs(c[2] * p.y * p.y) +
          fabs(c[3] * p.x) + fabs(c[4] * p.y) + fabs(c[5]);
 }
 
-// Whether the other pieces of a quadratic NURBS curve belong to the conic of its first: five points
-// of each do.
+// Whether the other pieces of a quadratic NURBS curve are on the conic of the first, tested at five
+// points of each.
 static bool all_on(const CagNurbs *c, const CagConic *k) {
   enum { POINTS = 5 };
   for (size_t i = 0; i < c->pieces; i++)
@@ -405,13 +405,13 @@ CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err) {
   return not_a_conic(err);
 }
 
-// Axes of the plane: those of z = 0 where it is parallel to that, else x is level. The origin is
-// the point of the plane nearest to that of space.
+// Axes of the plane: those of z = 0 if it is parallel to that, else with a horizontal x axis. The
+// origin is the point of the plane nearest to the origin of space.
 static CagStatus plane_frame(CagPlane plane, CagTransform *out, CagError *err) {
   CagVec3 n = plane.normal;
   if (n.z < 0 || (n.z == 0 && (n.y < 0 || (n.y == 0 && n.x < 0)))) n = cag_scaled(n, -1);
   CagVec3 x = {-n.y, n.x, 0};
-  const double level = CAG_ROUNDING; // the sine of an angle that rounding makes
+  const double level = CAG_ROUNDING; // sine of an angle caused by rounding
   if (cag_norm(x) <= level) x = cag_vec3(1, 0, 0);
   return cag_axes(cag_scaled(n, cag_dot(plane.point, n)), x, cag_cross(n, x), out, err);
 }
@@ -463,7 +463,7 @@ CagStatus cag_conic_point_at(const CagConic *conic, double x, bool upper, CagVec
   return CAG_OK;
 }
 
-// A point in the standard position.
+// A point in standard position.
 static CagVec3 local_of(const CagConicClass *k, CagVec3 p) {
   double sine, cosine;
   cag_sincos(k->angle, &sine, &cosine);
@@ -542,8 +542,8 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
   const double dd = cag_dot(d, d);
   if (!(dd > 0))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", -1, "the line has no direction");
-  // About the center, and from the line's point next to it, the numbers stay small; what the way
-  // there costs is the rounding of its terms.
+  // Relative to the center, and from the line's point nearest to it, the numbers stay small; the
+  // shift adds only the rounding of its terms.
   const CagVec3 m = k.center;
   const double *g = conic->c;
   const double c[6] = {g[0],

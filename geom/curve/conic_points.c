@@ -1,9 +1,9 @@
 // Points of conics at equal steps of the parameter, by the classical recurrences.
 //
-// With p the position from the center and q the derivative by the parameter, one step of d is the
-// addition theorem of the form: two products for each coordinate, and no trigonometry but that of
-// the step. The recurrence drifts by a rounding a step, and hyperbolic ones grow with the curve, so
-// that p and q are evaluated anew every ANCHOR steps.
+// With p the position from the center and q the derivative with respect to the parameter, a step of
+// d is the addition theorem of the form: two products for each coordinate, and no trigonometric
+// functions except those of the step. The recurrence accumulates rounding errors, and hyperbolic
+// ones grow with the curve, so p and q are recomputed every ANCHOR steps.
 
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
@@ -16,7 +16,7 @@ typedef struct Walk {
   Form form;
   const CagCurve *c;
   CagVec3 center, x, y;
-  double rate, phase; // d(angle) / dt; phase: of open conics
+  double rate, phase; // d(angle) / dt; phase: for open conics
 } Walk;
 
 static bool read_walk(const CagCurve *c, Walk *w) {
@@ -36,7 +36,7 @@ static bool read_walk(const CagCurve *c, Walk *w) {
   return true;
 }
 
-// Position from the center and derivative by the angle at parameter t.
+// Position from the center, and derivative with respect to the angle, at parameter t.
 static CagStatus anchor(const Walk *w, double t, CagVec3 *p, CagVec3 *q, CagError *err) {
   CagVec3 out[2];
   CagStatus status = cag_curve_eval(w->c, t, 1, CAG_SIDE_RIGHT, out, err);
@@ -46,7 +46,7 @@ static CagStatus anchor(const Walk *w, double t, CagVec3 *p, CagVec3 *q, CagErro
   return CAG_OK;
 }
 
-// Steps of circle, ellipse, parabola and hyperbolic form.
+// Steps of the circular, elliptic, parabolic, and hyperbolic forms.
 static void step(const Walk *w, double d, double c, double s, CagVec3 *p, CagVec3 *q) {
   CagVec3 a = *p, b = *q;
   switch (w->form) {
@@ -62,7 +62,7 @@ static void step(const Walk *w, double d, double c, double s, CagVec3 *p, CagVec
   }
 }
 
-// Secant and tangent form: tan and sec of the sum of two angles.
+// Secant and tangent forms: tan and sec of the sum of two angles.
 static void angular_points(const Walk *w, size_t n, double d, CagVec3 *out) {
   double s, c, sine, cosine, secant = 0, tangent = 0;
   cag_sincos(d, &s, &c);

@@ -1,12 +1,12 @@
 // The negative side of a conic within a rectangle.
 //
 // The crossings of the conic with the sides of the rectangle are roots of quadratic equations.
-// Between crossings, the equation of the conic has one sign along the sides. The class of the conic
-// determines in which order its branches pass the crossings, and so which two of them are the ends
-// of an arc within the rectangle. The boundary of a part alternates between pieces of the sides and
-// arcs. The arcs are rational quadratic Bezier curves: the apex is the intersection of the
-// tangents, and the weight has a closed form that does not lose digits if the conic is far larger
-// than the rectangle.
+// Between crossings, the equation of the conic has a constant sign along the sides. The class of
+// the conic determines in which order its branches pass the crossings, and so which two of them are
+// the ends of an arc within the rectangle. The boundary of a part alternates between pieces of the
+// sides and arcs. The arcs are rational quadratic Bezier curves: the apex is the intersection of
+// the tangents, and the weight has a closed form that does not lose digits if the conic is far
+// larger than the rectangle.
 
 #include "geom/curve/conic_side.h"
 
@@ -18,11 +18,11 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Crossings are one if their distance is below this fraction of the rectangle's perimeter.
+// Crossings coincide if their distance is below this fraction of the rectangle's perimeter.
 #define ONE_CROSSING 1e-10
 // A value of the equation below this fraction of its terms is rounding.
 #define ROUNDING (64 * DBL_EPSILON)
-// Tangents with a smaller sine than this between them are one: the arc is straight to rounding.
+// If the sine between two tangents is below this, the arc is straight to rounding.
 #define STRAIGHT 1e-14
 // An arc whose tangent turns by more than this is halved, which keeps the weights near 1.
 #define MOST_TURN (M_PI / 3)
@@ -57,11 +57,11 @@ typedef struct Branches {
 typedef struct Crossing {
   double s; // along the perimeter
   CagVec3 p;
-  bool enters; // the perimeter runs into the negative side here
+  bool enters; // the perimeter enters the negative side here
   int branch;
   double t; // along the branch
   size_t partner;
-  double span; // of t to the partner, within the rectangle
+  double span; // of t up to the partner, within the rectangle
   bool used;
 } Crossing;
 
@@ -71,7 +71,7 @@ typedef struct Work {
   Branches b;
   Crossing at[GAPS_MOST];
   size_t n;
-  int sign; // on all of the perimeter where there is no crossing
+  int sign; // sign on the whole perimeter if there are no crossings
 } Work;
 
 // --- The perimeter ---
@@ -112,7 +112,7 @@ static double size_of_terms(const CagConic *conic, CagVec3 p) {
          fabs(c[3] * p.x) + fabs(c[4] * p.y) + fabs(c[5]);
 }
 
-// Adds the places of side k at which the equation is 0.
+// Adds the parameters on side k at which the equation is 0.
 static void add_roots(const Work *w, int k, double *s, size_t *n) {
   const CagVec3 p = w->r.corner[k], d = cag_sub(w->r.corner[(k + 1) % 4], p);
   const double slack = ONE_CROSSING;
@@ -150,7 +150,7 @@ typedef struct Gap {
   int sign;
 } Gap;
 
-// A crossing between two stretches of the perimeter: the corner if one is there.
+// A crossing between two intervals of the perimeter: the corner if there is one.
 static double place_between(const Rectangle *r, double from, double to) {
   const double slack = ONE_CROSSING * r->at[4];
   for (int turn = 0; turn < 2; turn++)
@@ -168,7 +168,7 @@ static void add_crossing(Work *w, double from, double to, bool enters) {
   w->at[w->n++] = (Crossing){.s = s, .p = p, .enters = enters, .partner = SIZE_MAX};
 }
 
-// Finds the places of the perimeter at which the sign changes, in their order.
+// Finds the parameters on the perimeter at which the sign changes, in order.
 static void find_crossings(Work *w) {
   double s[CANDIDATES_MOST];
   Gap gaps[GAPS_MOST];
@@ -244,7 +244,7 @@ static double off_line(const double line[3], CagVec3 p) {
   return fabs(line[0] * p.x + line[1] * p.y + line[2]);
 }
 
-// Which branch a point of the conic is on, and where.
+// The branch that a point of the conic is on, and its parameter there.
 static void find_branch(const Branches *b, CagVec3 p, int *branch, double *t) {
   const CagConicClass *k = &b->k;
   const CagVec3 d = cag_sub(p, k->center);
@@ -300,8 +300,8 @@ CagVec3 cag_conic_onto(const CagConic *conic, CagVec3 p) {
   return p;
 }
 
-// The point of the branch, without what the size of a conic that is far larger than the rectangle
-// adds to its rounding.
+// The point of the branch, with the additional rounding removed that results if the conic is far
+// larger than the rectangle.
 static CagVec3 precise_point(const Work *w, int branch, double t) {
   const CagVec3 p = branch_point(&w->b, branch, t);
   return w->b.kind == BRANCH_WEDGES || w->b.kind == BRANCH_LINES ? p : cag_conic_onto(w->conic, p);
@@ -474,8 +474,8 @@ static CagStatus add_rectangle(const Work *w, CagRegion **out, size_t *n, CagErr
   return status ? status : take_region(outline, out, n, err);
 }
 
-// Without crossings the conic is outside, or an ellipse within the rectangle: the equation then has
-// another sign at its center than on the sides.
+// Without crossings the rectangle's boundary is entirely on one side. The conic is then outside, or
+// an ellipse inside the rectangle if the equation has the opposite sign at its center.
 static CagStatus add_uncrossed(const Work *w, CagRegion **out, size_t *n, CagError *err) {
   const CagVec3 low = w->r.corner[0], high = w->r.corner[2], c = w->b.k.center;
   const bool hole = w->sign < 0;

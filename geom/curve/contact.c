@@ -1,4 +1,4 @@
-// Contacts of a curve: groups, their best place, and its order (see contact.h).
+// Merging of contacts: groups, their best point, and its order (see contact.h).
 
 #include "geom/curve/contact.h"
 
@@ -9,20 +9,20 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Parts of a domain: of a seam; contacts nearer than the second, and nearer in space than that part
-// of the size, are one; contacts farther apart than the last never are.
+// Fractions of a domain: of a seam; contacts closer than the second, and closer in space than that
+// fraction of the size, are identical; contacts farther apart than the last are always distinct.
 #define SEAM CAG_COINCIDENT
 #define SAME_PLACE 1e-4
 #define SAME_POINT 1e-7
 #define LINKED_MOST 0.25
-// Contacts of one group that are farther apart than the first part of the size are an overlap if
-// the curve is within the second of the other everywhere between.
+// Contacts of a group that are farther apart than the first fraction of the size are an overlap if
+// the curve stays within the second fraction of the object in between.
 #define OVERLAP 1e-3
 #define COINCIDENT CAG_ROUNDING
-// Sine of the angle below which a contact may be a touch, and below which it is one.
+// Sine of the angle below which a contact may be a tangency, and below which it is one.
 #define SHALLOW 1e-2
 #define TANGENTIAL 1e-6
-// Order of contact up to which it is told.
+// Maximum order of contact that is reported.
 #define ORDER_MOST 6
 
 static int by_t(const void *a, const void *b) {
@@ -32,7 +32,7 @@ static int by_t(const void *a, const void *b) {
   return (x->at[1] > y->at[1]) - (x->at[1] < y->at[1]);
 }
 
-// Into the domain, round a closed one.
+// Clamps to the domain, or wraps around a closed one.
 static double around(double x, double low, double high, bool closed) {
   const double range = high - low;
   if (closed && x < low) x += range;
@@ -56,7 +56,7 @@ static double way_on(const CagContactTask *k, int i, double a, double b) {
   return shorter_step(a, b, k->low[i], k->high[i], k->closed[i]);
 }
 
-// Whether two contacts are one place, found twice.
+// Whether two contacts are the same point, found twice.
 static bool is_same(const CagContactTask *k, const CagContact *a, const CagContact *b) {
   bool same = fabs(way_along(k->c, a->t, b->t)) <= SAME_PLACE * (k->c->end - k->c->start);
   for (int i = 0; i < k->places; i++)
@@ -64,10 +64,11 @@ static bool is_same(const CagContactTask *k, const CagContact *a, const CagConta
   return same && cag_norm(cag_sub(a->point, b->point)) <= SAME_POINT * k->size + k->noise;
 }
 
-// Whether the curve stays near the other on the way from m to o.
+// Whether the curve stays near the object between m and o.
 static CagStatus stays_near(const CagContactTask *k, const CagContact *m, const CagContact *o,
                             bool *out, CagError *err) {
-  // At no simple fraction, where a wave could come back; feet may be beside by the last part.
+  // Not simple fractions, at which a periodic curve might touch again; foot points may be off by
+  // the last fraction.
   static const double fractions[] = {0.382, 0.549, 0.819};
   const double beside = 0.3, range = k->c->end - k->c->start, dt = way_along(k->c, m->t, o->t);
   double d[2] = {0, 0};
@@ -95,7 +96,7 @@ static CagStatus stays_near(const CagContactTask *k, const CagContact *m, const 
   return CAG_OK;
 }
 
-// A group while contacts are added: its first, its last, and the one at the smallest angle.
+// A group while contacts are added: its first and last contact, and the one at the smallest angle.
 typedef struct Group {
   CagContact first, last, best;
   double sine, last_sine;
@@ -117,7 +118,7 @@ static CagStatus group_all(const CagContactTask *k, const CagContact *items, siz
     CagStatus status = k->measure(k->context, m->t, place, &gap, &sine, err);
     bool known = false;
     size_t at = *count;
-    // The latest groups are the likely ones.
+    // The latest groups are the most likely.
     while (!status && !known && at > 0) {
       status = are_linked(k, &groups[at - 1], m, sine, &known, err);
       at--;
@@ -135,7 +136,7 @@ static CagStatus group_all(const CagContactTask *k, const CagContact *items, siz
   return CAG_OK;
 }
 
-// Across a seam the last groups may go on in the first.
+// Across a seam the last groups may continue in the first.
 static CagStatus close_groups(const CagContactTask *k, Group *groups, size_t *count,
                               CagError *err) {
   if (!k->c->closed) return CAG_OK;
@@ -173,9 +174,9 @@ static CagStatus is_overlap(const CagContactTask *k, const Group *g, bool *out, 
   return CAG_OK;
 }
 
-// --- The place of a touch ---
+// --- The point of tangency ---
 
-// The smooth stretch about t, which goes on over a smooth seam.
+// The smooth interval around t, which continues across a smooth seam.
 static CagStatus stretch_about(const CagCurve *c, double t, double *low, double *high,
                                CagError *err) {
   double *cuts;
@@ -204,8 +205,8 @@ static CagStatus measure_at(const CagContactTask *k, double t, double at[2], dou
                     err);
 }
 
-// Where the angle is smallest between low and high, by the golden section: it comes to 0 with a
-// corner there, so that this is as exact as the angle.
+// The minimum of the angle between low and high, by golden section: the angle reaches 0 in a
+// corner, so the result is as accurate as the angle.
 static CagStatus flattest(const CagContactTask *k, double low, double high, double at[2], double *t,
                           double *gap, double *sine, CagError *err) {
   enum { ROUNDS = 80 };
@@ -232,7 +233,7 @@ static CagStatus flattest(const CagContactTask *k, double low, double high, doub
   return status ? status : measure_at(k, *t, at, gap, sine, err);
 }
 
-// The order of contact at t: how the distance grows from there.
+// The order of contact at t, from the growth of the distance.
 static CagStatus order_at(const CagContactTask *k, double t, const double place[2], double low,
                           double high, int *out, CagError *err) {
   const double first = 1e-4, enough = 64;
@@ -278,7 +279,7 @@ static CagStatus contact_of_group(const CagContactTask *k, const Group *g, CagCo
   return status ? status : cag_curve_point(k->c, out->t, &out->point, err);
 }
 
-// A seam is met at its start.
+// A contact at a seam is reported at its start.
 static void open_seams(const CagContactTask *k, CagContact *m) {
   const CagCurve *c = k->c;
   if (c->closed && c->end - m->t <= SEAM * (c->end - c->start)) m->t = c->start;
@@ -305,7 +306,7 @@ CagStatus cag_contacts_merge(const CagContactTask *k, CagContact *items, size_t 
     status = contact_of_group(k, &groups[i], &found, err);
     if (status) break;
     open_seams(k, &found);
-    // Two groups that settled in one place.
+    // Merges two groups that converged to the same point.
     bool known = false;
     for (size_t j = 0; j < kept && !known; j++) known = is_same(k, &items[j], &found);
     if (!known) items[kept++] = found;

@@ -1,4 +1,5 @@
-// Cubic splines and Hermite curves: spacing of the parameter, the tangents' system, the B-spline.
+// Cubic splines and Hermite curves: parameter spacing, the system for the tangents, and the
+// B-spline.
 
 #include "geom/curve/cubic.h"
 
@@ -31,7 +32,7 @@ CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spa
     if (!isfinite(out[i]))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "points", (long)i,
                       "the points are so far apart that their distances overflow");
-    // A step lost in the rounding of the sum is none.
+    // A step lost in the rounding of the sum counts as zero.
     if (!(out[i] > out[i - 1]))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)i,
                       "points[%zu] and points[%zu] coincide, so the parameter cannot grow by their "
@@ -108,7 +109,7 @@ static CagVec3 slope(const Spline *s, size_t i) {
 }
 
 // Weights of the tangents before and after inner point i (their sum is 1), the diagonal, and the
-// right side: the equation of the spline divided by the sum of the two lengths.
+// right-hand side: the spline equation divided by the sum of the two lengths.
 static void inner_row(const Spline *s, size_t i, double *before, double *diagonal, double *after,
                       CagVec3 *right) {
   const double h = s->u[i] - s->u[i - 1], g = s->u[i + 1] - s->u[i], sum = h + g;
@@ -144,20 +145,20 @@ static CagStatus solve_open(const Spline *s, const CagCubicEnds *ends, CagVec3 *
   return status;
 }
 
-// Two unknowns of a closed spline: both corners fall on the neighbors.
+// Two unknowns of a closed spline: both corner entries coincide with the neighbors.
 static void solve_two(const double m[2][2], const CagVec3 r[2], CagVec3 *out) {
   const double d = m[0][0] * m[1][1] - m[0][1] * m[1][0];
   out[0] = cag_scaled(cag_madd(cag_scaled(r[0], m[1][1]), -m[0][1], r[1]), 1 / d);
   out[1] = cag_scaled(cag_madd(cag_scaled(r[1], m[0][0]), -m[1][0], r[0]), 1 / d);
 }
 
-// Unknown are the first n - 1 tangents; the last is `sign` times the first. The corners of the
-// matrix make it T + u v^T with T tridiagonal: two solutions with T give that of the whole
-// (Sherman and Morrison).
+// The unknowns are the first n - 1 tangents; the last is `sign` times the first. The corners of the
+// matrix make it T + u v^T with T tridiagonal, so two solutions with T give the solution (Sherman
+// and Morrison).
 static CagStatus solve_closed(const Spline *s, double sign, CagVec3 *out, CagError *err) {
   const size_t n = s->n, m = n - 1;
   if (m == 1) {
-    // The conditions say P' = (P2 - P1) / t2 of a cyclic one, 0 of an anticyclic one.
+    // The conditions give P' = (P2 - P1) / t2 for a cyclic spline, 0 for an anticyclic one.
     out[0] = out[1] = sign > 0 ? slope(s, 0) : cag_vec3(0, 0, 0);
     return CAG_OK;
   }
@@ -289,8 +290,9 @@ CagStatus cag_curve_hermite(const CagVec3 *points, const CagVec3 *tangents, size
   return draft_finish(&d, dimension, out, err);
 }
 
-// With simple knots there is one control point to each inner one, on the line of the two Bezier
-// points before it as well as of those behind it. The longer of the two segments gives it.
+// With simple knots there is one control point for each inner point, on the line through the two
+// Bezier points before it and on that through the two after it. It is computed from the longer of
+// the two segments.
 static CagVec3 control_point(const CagVec3 *p, const CagVec3 *d, const double *u, size_t i) {
   const double h = u[i] - u[i - 1], g = u[i + 1] - u[i];
   if (h > g) {

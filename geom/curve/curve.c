@@ -1,5 +1,5 @@
-// What every curve answers, written against CagCurveKind: checked parameters, reference counts, and
-// the fallbacks of kinds that do not specialize.
+// Operations on all kinds of curves through CagCurveKind: parameter checks, reference counts, and
+// fallbacks for optional functions.
 
 #include "geom/curve/curve.h"
 
@@ -12,7 +12,7 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// A parameter this many ulps outside the domain is the end: it was computed.
+// A parameter this many ulps outside the domain is snapped to the end: it is a rounding error.
 #define SNAP_ULPS 16
 
 CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, double start,
@@ -48,7 +48,7 @@ bool cag_check_curve(const CagCurve *c) {
 
 // --- Checks ---
 
-// Points between two looks at the stop flag.
+// Points between checks of the stop flag.
 #define BLOCK ((size_t)4096)
 
 // Lengths up to this size can be squared and multiplied by each other without overflow.
@@ -84,14 +84,14 @@ double cag_curve_size(const CagVec3 *points, size_t n) {
 }
 
 double cag_curve_noise(const CagBounds *box) {
-  const double ulps = 32; // of a few dozen operations
+  const double ulps = 32; // rounding of a few dozen operations
   const CagVec3 corners[2] = {box->min, box->max};
   return ulps * DBL_EPSILON * cag_curve_size(corners, 2);
 }
 
 static const char *parameter_text(const CagCurve *c, double t, char *buffer) {
   if (!c->angular) return cag_number_text(t, buffer);
-  // Degrees are shown without the rounding of their way through radians.
+  // Degrees are printed without the rounding from the conversion to radians.
   snprintf(buffer, 32, "%.12gdeg", t * (180 / M_PI));
   return buffer;
 }
@@ -165,7 +165,7 @@ CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
                   c->kind->name);
 }
 
-// A planar transform that maps all of space to the plane: see cag_curve_flatten.
+// Whether a planar transform maps all of space to the plane: see cag_curve_flatten.
 static bool flattens(const CagTransform *t) {
   return t->planar && t->m[2][0] == 0 && t->m[2][1] == 0 && t->m[2][2] == 0 && t->m[2][3] == 0;
 }
@@ -184,8 +184,8 @@ CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, Ca
   return status;
 }
 
-// A parameter that was an angle stays one: kinds tell angles by their own rate of turning, which
-// another range of the parameter changes. An image as a NURBS has a parameter of its own.
+// Keeps the unit of the parameter. Kinds recognize angles by their rate of turning, which a change
+// of the range alters. An image as a NURBS has its own parameter.
 static CagStatus keep_unit(const CagCurve *c, CagStatus status, CagCurve **made) {
   if (status || (*made)->references > 1 || (*made)->angular == c->angular) return status;
   if (!cag_nurbs_data(*made) || cag_nurbs_data(c)) (*made)->angular = c->angular;

@@ -1,21 +1,21 @@
-// Tangent, curvature, torsion and the moving frame, with their limits where the speed vanishes.
+// Tangent, curvature, torsion, and the moving frame, with their limits where the speed vanishes.
 //
-// At a regular point the classical formulas serve. Where C' = 0 (coincident control points) the
-// curve is C0 + d_m s^m / m! + ..: the first derivative that is not 0 gives the direction, the
-// first one off that line the normal, and the leading powers give curvature and torsion or show
-// that they are infinite.
+// Regular points use the classical formulas. Where C' = 0 (coincident control points) the curve is
+// C0 + d_m s^m / m! + ..: the first nonzero derivative gives the direction, the first one off that
+// line gives the normal, and the leading powers give curvature and torsion or show that they are
+// infinite.
 
 #include <string.h>
 
 #include "geom/curve/curve.h"
 #include "geom/linalg/tolerance.h"
 
-// A derivative counts as 0 when its Taylor term over the whole domain is this part of the size of
+// A derivative is 0 if its Taylor term over the whole domain is below this fraction of the size of
 // the curve.
 #define VANISHES CAG_ROUNDING
-// Speeds this small beside the acceleration are looked at closely.
+// Speeds below this fraction of the acceleration need a closer check.
 #define SUSPECT 1e-6
-// Sine of the angle between derivatives that rounding makes of parallel ones.
+// Sine of the angle between derivatives that are parallel up to rounding.
 #define PARALLEL 1e-10
 
 static double factorial(int n) {
@@ -24,13 +24,13 @@ static double factorial(int n) {
   return f;
 }
 
-// Largest coordinate of the curve in size, of its box.
+// Magnitude of the largest coordinate of the curve's box.
 static double size_of(const CagCurve *c) {
   CagBounds b = c->kind->hull(c, c->start, c->end);
   CagVec3 e = cag_sub(b.max, b.min);
   double extent = cag_norm(e);
   double far = fmax(cag_norm(b.min), cag_norm(b.max));
-  // Rounding is that of the coordinates; what is small is small beside the extent.
+  // Rounding is relative to the coordinates; otherwise smallness is relative to the extent.
   return fmax(extent, VANISHES * far);
 }
 
@@ -46,7 +46,7 @@ static CagStatus fail_tangent(CagError *err, double t) {
                   cag_number_text(t, text));
 }
 
-// Order of the first derivative that does not vanish, 0: none. d[0..CAG_MAX_DERIVATIVE].
+// Order of the first derivative that does not vanish, 0 if there is none. d[0..CAG_MAX_DERIVATIVE].
 static int first_direction(const CagCurve *c, const CagVec3 *d) {
   double size = size_of(c);
   for (int k = 1; k <= CAG_MAX_DERIVATIVE; k++)
@@ -75,13 +75,13 @@ CagStatus cag_curve_tangent(const CagCurve *c, double t, CagSide side, CagVec3 *
   int m = first_direction(c, d);
   if (m == 0) return fail_tangent(err, t);
   side_of(c, t, &side, err);
-  // Coming from the left s is negative, and so is the derivative of an even power.
+  // From the left s is negative, and so is the derivative of an even power.
   double sign = side == CAG_SIDE_LEFT && m % 2 == 0 ? -1 : 1;
   *out = cag_scaled(cag_unit(d[m]), sign);
   return CAG_OK;
 }
 
-// Part of v at right angles to the unit vector u; the zero vector where rounding made it.
+// The component of v perpendicular to the unit vector u; zero if it is only rounding.
 static CagVec3 across(CagVec3 v, CagVec3 u) {
   CagVec3 w = cag_madd(v, -cag_dot(v, u), u);
   return cag_norm(w) <= PARALLEL * cag_norm(v) ? cag_vec3(0, 0, 0) : w;
@@ -94,7 +94,7 @@ static CagStatus regular_frame(const CagCurve *c, double t, const CagVec3 *d, Ca
   const double area = cag_norm(cross), bend = cag_norm(d[2]);
   out->tangent = cag_scaled(d[1], 1 / speed);
   out->curvature = area / (speed * speed * speed);
-  // Straight: the acceleration is along the curve, or so small that it is rounding.
+  // Straight: the acceleration is along the curve, or negligible.
   const double reach = speed * (c->end - c->start) + cag_norm(d[0]);
   if (area <= PARALLEL * speed * bend || out->curvature * reach <= PARALLEL * 1e-2) {
     out->curvature = 0;
@@ -107,7 +107,7 @@ static CagStatus regular_frame(const CagCurve *c, double t, const CagVec3 *d, Ca
   return CAG_OK;
 }
 
-// Frame from the leading powers: along s^m, to the side s^n, out of the plane s^q.
+// Frame from the leading powers: along s^m, sideways s^n, out of the plane s^q.
 static CagStatus singular_frame(const CagCurve *c, double t, CagFrenet *out, CagError *err) {
   CagVec3 d[CAG_MAX_DERIVATIVE + 1];
   CagSide side = CAG_SIDE_RIGHT;

@@ -1,7 +1,7 @@
-// Parameters at which a polyline through a curve stays within a chord tolerance and an angle.
+// Parameters of a polyline that approximates a curve within a chord tolerance and an angle.
 //
-// The smooth pieces are halved until the bound of cag_curve_sag and the turning of the tangent are
-// within the limits; circles are cut into equal steps. Ends and breaks are always in.
+// Smooth pieces are halved until the bound of cag_curve_sag and the turn of the tangent are within
+// the limits; circles are divided into equal steps. Ends and breaks are always included.
 
 #include <math.h>
 #include <string.h>
@@ -12,13 +12,13 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// More points than any picture or part needs: a tolerance that asks for more was mistyped.
+// Limit on the number of points; a tolerance that needs more is probably a mistake.
 #define MOST_POINTS 5000000
-// A piece shorter than these parts of the tolerance and of the curve's size is not halved for its
-// turning: it holds a cusp.
+// A piece shorter than these fractions of the tolerance and of the curve's size is not halved
+// because of its turn: it contains a cusp.
 #define CUSP_TOLERANCE 0.25
 #define CUSP_SIZE 1e-4
-// An arc is at least a polygon of this step, whatever the tolerance.
+// Maximum step of an arc, for any tolerance.
 #define WIDEST (M_PI / 2)
 
 typedef struct Limits {
@@ -48,7 +48,7 @@ static double angle_between(CagVec3 a, CagVec3 b) {
   return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
 }
 
-// Turning of a polygon: a Bezier curve turns no more than its control polygon does.
+// Turn of a polygon: a Bezier curve turns no more than its control polygon.
 static double bezier_turn(const double *b, int p, double *length) {
   double turn = 0;
   CagVec3 before = {0, 0, 0}, from = cag_project(b);
@@ -66,7 +66,7 @@ static double bezier_turn(const double *b, int p, double *length) {
   return turn;
 }
 
-// The same of the control points of a cubic.
+// The same for the control points of a cubic.
 static double polygon_turn(const CagVec3 *q, double *length) {
   double homogeneous[16];
   for (int i = 0; i < 4; i++) {
@@ -76,7 +76,7 @@ static double polygon_turn(const CagVec3 *q, double *length) {
   return bezier_turn(homogeneous, 3, length);
 }
 
-// Turning of the tangent over [a, b], and about the length.
+// Turn of the tangent over [a, b], and the approximate length.
 static double turn_of(const CagCurve *c, double a, double b, double *length) {
   enum { SAMPLES = 4 };
   double rate;
@@ -116,7 +116,7 @@ static CagStatus halve(const CagCurve *c, double a, double b, const Limits *limi
   double middle = a + (b - a) / 2, length;
   const double sag = cag_curve_sag(c, a, b);
   bool fine = sag <= limits->tolerance;
-  if (isinf(sag)) { // what cannot be evaluated gets no better in halves
+  if (isinf(sag)) { // halving does not help if evaluation fails
     CagVec3 ignored;
     CagStatus status = cag_curve_point(c, middle, &ignored, err);
     if (status) return status;
@@ -128,7 +128,7 @@ static CagStatus halve(const CagCurve *c, double a, double b, const Limits *limi
   return status ? status : halve(c, middle, b, limits, out, err);
 }
 
-// Equal steps over a circle's arc. Gives false where the piece is no arc of a circle.
+// Equal steps for an arc of a circle. Returns false if the piece is not one.
 static bool circle_steps(const CagCurve *c, double a, double b, const Limits *limits, size_t *n) {
   const double round = 1e-9, slack = 1e-9;
   CagVec3 center, x, y;
@@ -170,7 +170,7 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   if (status) return status;
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double size = cag_norm(cag_sub(box.max, box.min));
-  // Below the rounding of the coordinates neither distances nor directions mean anything.
+  // Distances and directions below the rounding of the coordinates are meaningless.
   const double noise = cag_curve_noise(&box);
   const double cusp = fmin(CUSP_TOLERANCE * tolerance, CUSP_SIZE * size);
   const Limits limits = {fmax(tolerance, noise), angle, fmax(cusp, 2 * noise / fmin(angle, 1))};

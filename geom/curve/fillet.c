@@ -1,9 +1,10 @@
 // Fillets: the arc that leads from one curve to another, and curves with rounded corners.
 //
-// In the corner the path turns left or right; on that side both curves have a parallel at the
-// radius' distance, and where these meet nearest to the corner is the center. Two lines have it in
-// closed form; else Newton's method starts from the lines tangent in the corner, and where that
-// leaves the curves the parallels are searched as polylines.
+// At the corner the path turns left or right. On that side each curve has a parallel at the
+// distance of the radius; the intersection of the parallels nearest to the corner is the center.
+// For two lines it has a closed form. Otherwise Newton's method starts from the solution for the
+// tangent lines at the corner, and if it leaves the curves, the parallels are intersected as
+// polylines first.
 
 #include "base/memory.h"
 #include "geom/curve/circles.h"
@@ -11,10 +12,10 @@
 #include "geom/curve/intersect.h"
 #include "geom/linalg/tolerance.h"
 
-// Parts of the size of the data: ends that meet; a center found.
+// Fractions of the size of the data: tolerance for ends that meet; convergence of a center.
 #define MEETS CAG_COINCIDENT
 #define FOUND CAG_ROUNDING
-// Turns of less than this are no corner (radians).
+// Turns below this are not corners (radians).
 #define SMOOTH CAG_PARALLEL
 #define NEWTON_STEPS 60
 #define SAMPLES 256
@@ -37,7 +38,7 @@ static CagStatus check_radius(double radius, CagError *err) {
                   "`radius` must be positive; this is %s", cag_number_text(radius, text));
 }
 
-// A parallel of a curve: its point, derivative by t, and the foot's.
+// A parallel of a curve: its point, its derivative, and the foot point on the curve.
 typedef struct Parallel {
   CagVec3 foot, tangent, point, derivative;
 } Parallel;
@@ -58,7 +59,7 @@ static CagStatus parallel_at(const CagCurve *c, double t, CagSide side, double d
 
 typedef struct Corner {
   const CagCurve *a, *b;
-  double ta, tb; // where they meet
+  double ta, tb; // parameters of the corner
   double side;   // 1: the path turns left
   double turn;
   double size;
@@ -68,7 +69,8 @@ static bool inside(const Corner *k, double s, double u) {
   return s >= k->a->start && s <= k->ta && u >= k->tb && u <= k->b->end;
 }
 
-// True when (s, u) led to a center; they stay on the parts before and after the corner.
+// *found is true if (s, u) converged to a center; they stay on the parts before and after the
+// corner.
 static CagStatus newton(const Corner *k, double radius, double *s, double *u, bool *found,
                         CagError *err) {
   Parallel p, q;
@@ -87,13 +89,13 @@ static CagStatus newton(const Corner *k, double radius, double *s, double *u, bo
     const double s1 = *s + cross2(d, q.derivative) / det, u1 = *u + cross2(d, p.derivative) / det;
     *s = fmin(k->ta, fmax(k->a->start, s1));
     *u = fmin(k->b->end, fmax(k->tb, u1));
-    // Pressed against an end twice: there is nothing inside.
+    // Clamped to an end twice: there is no solution inside.
     if (i > NEWTON_STEPS / 2 && !inside(k, s1, u1)) return CAG_OK;
   }
   return CAG_OK;
 }
 
-// Where the chords p0-p1 and q0-q1 cross, as shares of them.
+// The intersection of the chords p0-p1 and q0-q1, as fractions of them.
 static bool chords_cross(CagVec3 p0, CagVec3 p1, CagVec3 q0, CagVec3 q1, double *s, double *u) {
   const CagVec3 a = cag_sub(p1, p0), b = cag_sub(q1, q0), d = cag_sub(q0, p0);
   const double det = cross2(a, b);
@@ -103,7 +105,7 @@ static bool chords_cross(CagVec3 p0, CagVec3 p1, CagVec3 q0, CagVec3 q1, double 
   return *s >= 0 && *s <= 1 && *u >= 0 && *u <= 1;
 }
 
-// The crossing of the parallels nearest to the corner along both, refined.
+// The intersection of the parallels nearest to the corner along both curves, refined.
 static CagStatus search(const Corner *k, double radius, double *s, double *u, bool *found,
                         CagError *err) {
   CagVec3 *points = cag_malloc(sizeof *points * 2 * (SAMPLES + 1));
@@ -112,7 +114,7 @@ static CagStatus search(const Corner *k, double radius, double *s, double *u, bo
   const double step_a = (k->ta - k->a->start) / SAMPLES, step_b = (k->b->end - k->tb) / SAMPLES;
   CagVec3 *p = points, *q = points + SAMPLES + 1;
   Parallel x;
-  // Both lists begin in the corner.
+  // Both lists start at the corner.
   for (int i = 0; !status && i <= SAMPLES; i++) {
     status = parallel_at(k->a, fmax(k->a->start, k->ta - step_a * i), CAG_SIDE_LEFT,
                          k->side * radius, &x, err);
@@ -193,7 +195,7 @@ CagStatus cag_fillet(const CagCurve *a, const CagCurve *b, double radius, CagCur
   if (!status) status = parallel_at(a, k.ta, CAG_SIDE_LEFT, 0, &at_a, err);
   if (!status) status = parallel_at(b, k.tb, CAG_SIDE_RIGHT, 0, &at_b, err);
   if (status) return status;
-  // Where the tangents' fillet would touch.
+  // Distance of the points of contact for the tangent lines.
   const double back = radius * tan(k.turn / 2);
   double s = k.ta, u = k.tb;
   if (cag_norm(at_a.derivative) > 0) s -= back / cag_norm(at_a.derivative);
@@ -233,7 +235,7 @@ static CagStatus add_line(Pieces *pieces, CagVec3 p, CagVec3 q, double size, int
   return status;
 }
 
-// The two points where the arc of a corner begins and ends; both the vertex where it is straight.
+// The two end points of the arc of a corner; both are the vertex if the path is straight there.
 typedef struct Cut {
   CagVec3 in, out, center, normal;
   double turn, back;
@@ -339,8 +341,8 @@ static CagStatus add_trimmed(Pieces *pieces, const CagCurve *c, double a, double
   return status;
 }
 
-// Fillets between the neighbors of `parts`; of a closed curve with a corner at its seam also
-// between the last and the first.
+// Fillets between neighboring `parts`; for a closed curve with a corner at its seam also between
+// the last and the first.
 static CagStatus round_parts(CagCurve *const *parts, size_t n, bool around, double radius,
                              CagCurve **arcs, Pieces *pieces, CagError *err) {
   double *from = cag_malloc(sizeof *from * n), *to = cag_malloc(sizeof *to * n);

@@ -11,11 +11,11 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/dense.h"
 
-// Evenly spaced knots suit interpolation where each basis function has at least this part of its
-// largest value at its own data point; further off, the curve swings between the points.
+// Uniform knots suit interpolation if each basis function has at least this fraction of its maximum
+// at its own data point; otherwise the curve oscillates between the points.
 #define WELL_PLACED 0.5
-// A diagonal entry of a triangle below this part of the largest is rounding: basis functions are
-// all of size 1.
+// A diagonal entry of a triangle below this fraction of the largest is rounding: basis functions
+// are all of size 1.
 #define RANK_LOST 1e-13
 
 void cag_fit_report_free(CagFitReport *r) {
@@ -26,7 +26,8 @@ void cag_fit_report_free(CagFitReport *r) {
 
 // --- Parameters ---
 
-// Of the data over [from, to]: by spacing, each step that much of the whole, repeats allowed.
+// Parameters of the data over [from, to], with steps in proportion to the spacing; repeated points
+// are allowed.
 static CagStatus spaced(const CagFitData *d, double from, double to, double *out, CagError *err) {
   double sum = 0;
   out[0] = 0;
@@ -66,7 +67,7 @@ static CagStatus check_given(const CagFitData *d, double from, double to, CagErr
 
 // --- Knots ---
 
-// Even knots over [from, to], clamped.
+// Uniform knots over [from, to], clamped.
 static void even_knots(size_t count, int p, double from, double to, double *out) {
   cag_knots_open(count, p, out);
   const double spans = (double)(count - (size_t)p);
@@ -74,9 +75,9 @@ static void even_knots(size_t count, int p, double from, double to, double *out)
     out[i] = out[i] == spans ? to : from + (to - from) * (out[i] / spans);
 }
 
-// Each inner knot is the mean of p parameters following one another: every parameter then lies
-// inside of the support of its basis function. u: as many as control points.
-// Ends early if the work is to end, with knots that are 0.
+// Each inner knot is the mean of p consecutive parameters; every parameter then lies inside the
+// support of its basis function. u: as many as control points. Ends early if the work is canceled,
+// with knots that are 0.
 static void averaged_knots(const double *u, size_t count, int p, double *out) {
   memset(out, 0, (count + (size_t)p + 1) * sizeof *out);
   for (int i = 0; i <= p; i++) {
@@ -90,7 +91,8 @@ static void averaged_knots(const double *u, size_t count, int p, double *out) {
   }
 }
 
-// Inner knots such that every span holds about equally many of the n data (Piegl and Tiller 9.69).
+// Inner knots such that every span contains about equally many of the n data (Piegl and Tiller
+// 9.69).
 static void spread_knots(const double *u, size_t n, size_t count, int p, double *out) {
   for (int i = 0; i <= p; i++) {
     out[i] = u[0];
@@ -104,7 +106,7 @@ static void spread_knots(const double *u, size_t n, size_t count, int p, double 
   }
 }
 
-// --- A design: the rows of basis functions ---
+// --- The design matrix: rows of basis functions ---
 
 typedef struct Design {
   size_t rows, count; // conditions, control points
@@ -114,7 +116,7 @@ typedef struct Design {
   CagVec3 *value; // rows
   double *knots;
   double *basis; // rows x (p + 1)
-  size_t *first; // rows: the control point of the first of them
+  size_t *first; // for each row: the control point of the first basis value
 } Design;
 
 static void design_free(Design *a) {
@@ -184,8 +186,8 @@ static CagStatus check_data(const CagFitData *d, size_t count, CagError *err) {
   return CAG_OK;
 }
 
-// The range of the parameter: of given knots their usable range, of given parameters theirs, else
-// 0..spans as of a clamped B-spline with whole knots.
+// The range of the parameter: the usable range of given knots, the range of given parameters, else
+// 0..spans as for a clamped B-spline with integer knots.
 static void range_of(const CagFitData *d, size_t count, double *from, double *to) {
   *from = 0;
   *to = (double)(count - (size_t)d->degree);
@@ -213,8 +215,8 @@ static CagStatus find_parameters(const CagFitData *d, size_t count, double *out,
 
 // --- Interpolation ---
 
-// Rows in the order of their parameters: at each point its value, then its tangent where there is
-// one; at the last point the tangent first, so that the ends of the band stay narrow.
+// Rows sorted by parameter: at each point its value, then its tangent if there is one; at the last
+// point the tangent first, so that the ends of the band stay narrow.
 static void fill_conditions(const CagFitData *d, const double *u, const CagVec3 *tangents,
                             size_t tangent_count, Design *a) {
   const bool everywhere = tangent_count == d->n;
@@ -229,7 +231,8 @@ static void fill_conditions(const CagFitData *d, const double *u, const CagVec3 
   }
 }
 
-// Schoenberg and Whitney: the i-th parameter lies inside of the support of the i-th basis function.
+// Schoenberg-Whitney condition: the i-th parameter lies inside the support of the i-th basis
+// function.
 static CagStatus check_support(const Design *a, CagError *err) {
   if (cag_stop_check(err)) return err->status; // the knots may be unfinished
   const double start = a->knots[a->p], end = a->knots[a->count];
@@ -239,7 +242,7 @@ static CagStatus check_support(const Design *a, CagError *err) {
     if ((u > lo && u < hi) || (u == lo && u == start && lo == a->knots[i + (size_t)a->p]) ||
         (u == hi && u == end && hi == a->knots[i + 1]))
       continue;
-    // Double ends (a tangent beside the point) take the second place of a clamped end.
+    // Repeated ends (a tangent with the point) use the second control point of a clamped end.
     if ((u == start && i > 0 && a->u[i - 1] == u && a->order[i] > 0 && lo == start && u < hi) ||
         (u == end && i + 1 < a->count && a->u[i + 1] == u && hi == end && u > lo))
       continue;
@@ -252,7 +255,7 @@ static CagStatus check_support(const Design *a, CagError *err) {
   return CAG_OK;
 }
 
-// Whether even knots let each basis function be large enough at its own parameter.
+// Whether with uniform knots each basis function is large enough at its own parameter.
 static bool even_knots_suit(Design *a, CagError *scratch) {
   if (check_support(a, scratch)) return false;
   double best[CAG_MAX_DEGREE + 1];
@@ -267,8 +270,10 @@ static bool even_knots_suit(Design *a, CagError *scratch) {
     span = cag_knots_span(a->knots, a->count, a->p, a->u[i], false, (size_t)a->p);
     cag_bspline_basis(a->knots, a->p, span, a->u[i], best);
     const size_t first = span - (size_t)a->p;
-    if (best[i - first] < WELL_PLACED * largest) return false; // i is among them: check_support
-    if (cag_stopped()) return false;                           // fill_basis tells
+    if (best[i - first] < WELL_PLACED * largest)
+      return false;                  // i is one of them: see
+                                     // check_support
+    if (cag_stopped()) return false; // fill_basis reports it
   }
   return true;
 }
@@ -365,7 +370,7 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
 
 // --- Least squares ---
 
-// A banded upper triangle: row i holds columns i .. i + p; right sides beside it.
+// A banded upper triangle: row i holds columns i .. i + p; right-hand sides are stored separately.
 typedef struct Triangle {
   size_t n;
   size_t width;
@@ -412,7 +417,7 @@ static CagStatus back_substitute(const Triangle *t, size_t offset, CagVec3 *out,
 }
 
 // Control points of the least squares curve. With `keep_ends` the first and last are given, and
-// their part is taken off the data.
+// their contribution is subtracted from the data.
 static CagStatus solve_least(const Design *a, bool keep_ends, CagVec3 *control, CagError *err) {
   const size_t skip = keep_ends ? 1 : 0, width = (size_t)a->p + 1, n = a->count - 2 * skip;
   if (keep_ends) {
@@ -446,8 +451,8 @@ static CagStatus solve_least(const Design *a, bool keep_ends, CagVec3 *control, 
   return status;
 }
 
-// Whether every span of even knots holds a parameter: least squares then has one solution, and no
-// stretch of the curve hangs free.
+// Whether every span of uniform knots contains a parameter: least squares then has a unique
+// solution, and no part of the curve is undetermined.
 static bool spans_filled(const Design *a) {
   size_t i = 0;
   for (size_t k = (size_t)a->p; k < a->count; k++) {
@@ -480,7 +485,7 @@ static CagStatus choose_least_knots(const CagFitData *d, Design *a, bool keep_en
 static double coordinate(CagVec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 // One Newton step of every inner parameter towards its point's coordinate. *worst: the largest
-// error before it.
+// error before the step.
 static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double slack,
                                  double *worst, CagError *err) {
   *worst = 0;
@@ -508,7 +513,7 @@ static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double 
   return CAG_OK;
 }
 
-// Refits with moved parameters until the coordinate agrees everywhere.
+// Refits with moved parameters until the coordinate matches everywhere.
 static CagStatus hold_coordinate(Design *a, int axis, double slack, int dimension, CagVec3 *control,
                                  CagCurve **curve, int *rounds, CagError *err) {
   double worst = INFINITY;

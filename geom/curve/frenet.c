@@ -1,5 +1,5 @@
-// Frames from derivatives, changes of the parameter, the derivative of a moving triad, and contact
-// of a curve with a plane.
+// Frames from derivatives, changes of parameter, the derivative of a moving triad, and contact of a
+// curve with a plane.
 
 #include <string.h>
 
@@ -8,11 +8,11 @@
 #include "geom/curve/frenet.h"
 #include "geom/linalg/tolerance.h"
 
-// Sine of the angle between derivatives that rounding makes of parallel ones.
+// Sine of the angle between derivatives that are parallel up to rounding.
 #define PARALLEL 1e-10
-// Unit vectors at right angles are so to this.
+// Tolerance for orthonormal vectors.
 #define ORTHONORMAL CAG_PARALLEL
-// A Taylor term over the whole domain counts as 0 when it is this part of the curve's size.
+// A Taylor term over the whole domain is 0 below this fraction of the curve's size.
 #define VANISHES CAG_ROUNDING
 
 CagStatus cag_frenet_of(const CagVec3 d[3], double *speed, CagFrenet *out, CagError *err) {
@@ -88,7 +88,7 @@ typedef struct Leading {
   double value;
 } Leading;
 
-// The first term of the distance that is not 0, of derivatives d[0..order].
+// The first nonzero term of the distance, from the derivatives d[0..order].
 static Leading leading_term(const CagCurve *c, const CagVec3 *d, CagVec3 normal, int order) {
   const CagBounds box = c->kind->hull(c, c->start, c->end);
   const double size = cag_norm(cag_sub(box.max, box.min)), length = c->end - c->start;
@@ -125,7 +125,7 @@ CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagCont
   if (status) return status;
   for (int k = 1; k <= 3; k++) out->c[k] = cag_dot(n, right[k]) / factorial(k);
   out->c[0] = 0;
-  // At a knot the looser of the two contacts is that of the curve.
+  // At a knot the curve has the lower of the two orders of contact.
   const int power = before.power == 0                                ? after.power
                     : after.power == 0 || before.power < after.power ? before.power
                                                                      : after.power;

@@ -1,9 +1,9 @@
-// Curves by a function of the caller.
+// Curves defined by a function of the caller.
 //
-// Images, parts and other parametrizations share the function and put maps around it: the parameter
-// of the function runs from `from` to `to` while the curve's runs over its domain, and points go
-// through `map`, which may be projective. Nothing but points is known of the curve, so its hull is
-// that of samples, widened by how far samples lie from the chords of their neighbors.
+// Images, parts, and reparametrizations share the function and wrap it in maps: the parameter of
+// the function runs from `from` to `to` while the curve's runs over its domain, and points are
+// mapped by `map`, which may be projective. The curve is known only by points, so its hull is that
+// of samples, enlarged by the distance of samples from the chords of their neighbors.
 
 #include "geom/curve/function.h"
 
@@ -15,21 +15,22 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 
-// Highest derivative that is kept; higher ones are asked for rarely, and far apart.
+// Highest cached derivative; higher ones are needed rarely, and at few parameters.
 #define KNOWN_ORDER 2
-// Slots at first and at most: the parameters of a fine mesh, in less than 100 kB.
+// Initial and maximum number of cache slots: the parameters of a fine mesh, in less than 100 kB.
 #define FIRST_SLOTS 64
 #define MOST_SLOTS 1024
 
-// What the function gave for one parameter, up to the derivative `order`; -1: nothing yet.
+// A cached result for one parameter, up to the derivative `order`; -1: empty.
 typedef struct Known {
   double t;
   int order;
   CagVec3 d[KNOWN_ORDER + 1];
 } Known;
 
-// The function and its latest values, which bounds, chords and meshes ask for again and again, of
-// the curve and of its images. A value is kept in the one slot that its parameter hashes to.
+// The function and a cache of its latest values, which bounds, chords, and meshes request
+// repeatedly, for the curve and its images. A value can only be in the slot that its parameter
+// hashes to.
 typedef struct Source {
   CagCurveFunction function;
   int references;
@@ -44,8 +45,8 @@ typedef struct Function {
   double from, to; // parameters of the function at the ends of the domain
   CagTransform map;
   bool mapped;
-  CagBounds box; // hull of the whole, which is asked for often
-  bool boxed;    // it is known
+  CagBounds box; // cached hull of the whole curve
+  bool boxed;    // box is valid
 } Function;
 
 static const CagCurveKind function_kind;
@@ -69,7 +70,7 @@ static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *e
                   "derivative %d of the function at t = %s is not finite", k, text);
 }
 
-// --- Known values ---
+// --- Cache ---
 
 static Known *known_slot(Known *known, size_t slots, double t) {
   uint64_t bits;
@@ -78,7 +79,7 @@ static Known *known_slot(Known *known, size_t slots, double t) {
   return &known[(bits * UINT64_C(0x9e3779b97f4a7c15) >> 32) & (slots - 1)];
 }
 
-// Room for about twice the values used so far. Without memory, values are computed anew.
+// Grows to about twice the values used so far. If memory runs out, values are recomputed.
 static void known_grow(Source *s) {
   const size_t slots = s->slots ? 2 * s->slots : FIRST_SLOTS;
   Known *grown = cag_malloc(slots * sizeof *grown);
@@ -139,11 +140,11 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
   return status;
 }
 
-// Samples of a hull: a wave between two of them would have to be shorter than what a fair picture
-// of the curve needs.
+// Number of samples for a hull: an oscillation between two of them would be too short for a good
+// picture of the curve anyway.
 #define HULL_SAMPLES 33
 // In each coordinate, the distance from the chord of the neighbors is four times that from the
-// chord between samples; waves that samples meet badly stay within.
+// chord between samples, which leaves a margin for oscillations that are sampled badly.
 static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samples, CagBounds *out,
                              CagError *err) {
   CagVec3 before[2] = {{0, 0, 0}, {0, 0, 0}};
@@ -168,7 +169,7 @@ static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samp
   return CAG_OK;
 }
 
-// The hull of the whole, found when it is first asked for.
+// The hull of the whole curve, computed on first use.
 static CagStatus whole_box(const CagCurve *curve, CagBounds *out, CagError *err) {
   Function *c = (Function *)curve;
   if (!c->boxed) {
@@ -180,9 +181,9 @@ static CagStatus whole_box(const CagCurve *curve, CagBounds *out, CagError *err)
   return CAG_OK;
 }
 
-// Without points, nothing is known: the box is then infinite.
+// If evaluation fails, the box is infinite.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
-  const int samples = 9; // of a part, which is asked for in halves of halves
+  const int samples = 9; // for a part, whose halves will be requested, too
   CagBounds box;
   CagError ignored;
   if (a > curve->start || b < curve->end)
@@ -210,7 +211,7 @@ static CagStatus make(const Function *like, double start, double end, double fro
   return CAG_OK;
 }
 
-// Judges whether the ends meet; releases the curve where that fails.
+// Determines whether the ends meet; releases the curve on failure.
 static CagStatus finish(CagCurve *curve, CagCurve **out, CagError *err) {
   CagVec3 ends[2];
   CagBounds box;
@@ -241,7 +242,7 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
                     cag_number_text(angular ? end * (180 / M_PI) : end, b));
   Source *source = cag_malloc(sizeof *source);
   if (!source) return cag_fail_memory(err);
-  // The context is the caller's until all is well.
+  // The caller owns the context until everything has succeeded.
   *source = (Source){.function = *f, .references = 0, .angular = angular};
   source->function.release = NULL;
   Function like = {.source = source, .map = cag_transform_identity()};

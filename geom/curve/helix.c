@@ -1,9 +1,9 @@
-// Helices about the z axis of a frame: [r cos, r sin, pitch turn], r growing by the taper each
+// Helices about the z axis of a frame: [r cos, r sin, pitch turn], with r growing by the taper each
 // turn.
 //
-// The frame may be any affine map, so that every affine image of a helix is one of this kind. The
-// angle turned is phase + rate * t (rate < 0: run backwards); a left-handed helix turns the other
-// way while it climbs.
+// The frame may be any affine map, so that the affine image of a helix is a helix. The angle is
+// phase + rate * t (rate < 0: reversed); a left-handed helix rotates in the other direction as it
+// climbs.
 
 #include <stdio.h>
 
@@ -24,7 +24,7 @@ static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
 }
 
-// Another helix with the same numbers; frame affine.
+// Another helix with the same parameters; frame must be affine.
 static CagStatus make(const Helix *like, const CagTransform *frame, double start, double end,
                       double phase, double rate, CagCurve **out, CagError *err) {
   CagCurve *base;
@@ -121,7 +121,7 @@ bool cag_curve_coil(const CagCurve *curve, CagCoil *out) {
   return true;
 }
 
-// C'' = r e'' + 2 growth e' by the angle, with two vectors at right angles.
+// C'' = r e'' + 2 growth e' with respect to the angle, a sum of two perpendicular vectors.
 bool cag_curve_helix_bend(const CagCurve *curve, double a, double b, double *out) {
   if (curve->kind != &helix_kind) return false;
   const Helix *c = (const Helix *)curve;
@@ -177,8 +177,7 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
   return make(c, &c->frame, a, b, c->phase + c->rate * curve->start - rate * a, rate, out, err);
 }
 
-// The chord's box, wider by the bound of the distance from the chord. Ends early if the work is to
-// end.
+// The chord's box, enlarged by the bound of the sag. Ends early if the work is canceled.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   const Helix *c = (const Helix *)curve;

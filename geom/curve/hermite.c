@@ -1,4 +1,4 @@
-// Single cubic segments: their polynomial, their shape, their end curvatures, how they go on.
+// Single cubic segments: polynomial form, shape, end curvatures, and continuation.
 
 #include <string.h>
 
@@ -79,7 +79,7 @@ CagStatus cag_curve_coefficients(const CagCurve *curve, CagVec3 **out, size_t *p
   return status;
 }
 
-// --- Tangents that are not too long ---
+// --- Limiting tangents ---
 
 void cag_hermite_limit(const CagVec3 *points, CagVec3 *tangents, size_t n, const double *parameters,
                        double limit) {
@@ -97,9 +97,9 @@ void cag_hermite_limit(const CagVec3 *points, CagVec3 *tangents, size_t n, const
 
 static double flat_cross(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
-// Cross products below this part of the factors' sizes are rounding of parallel vectors.
+// Cross products below this fraction of the factors' magnitudes are rounding of parallel vectors.
 #define PARALLEL 1e-13
-// A discriminant below this part of its terms is rounding of a double root.
+// A discriminant below this fraction of its terms is rounding of a double root.
 #define DOUBLE_ROOT CAG_ROUNDING
 
 static double cross_or_zero(CagVec3 a, CagVec3 b) {
@@ -179,7 +179,7 @@ static double bisect(const double *a, int degree, double lo, double hi) {
   }
 }
 
-// Roots in (0, most], ascending: one between each two of the derivative's at most.
+// Roots in (0, most], ascending: at most one between two neighboring roots of the derivative.
 static size_t positive_roots(const double *a, int degree, double most, double *out) {
   while (degree > 0 && a[degree] == 0) degree--;
   if (degree == 0) return 0;
@@ -205,14 +205,14 @@ size_t cag_hermite_by_curvature(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, co
   const double a = 6 * flat_cross(dp, d), b = -6 * flat_cross(dq, d), c = flat_cross(dp, dq);
   size_t n = 0;
   if (fabs(c) <= PARALLEL) {
-    // Each length on its own.
+    // The equations are decoupled.
     const double x = sqrt(a / k[0]), y = sqrt(b / k[1]);
     if (!(x > 0 && y > 0 && isfinite(x) && isfinite(y))) return 0;
     out[0][0] = x;
     out[0][1] = y;
     return 1;
   }
-  // y put into the second equation
+  // y substituted into the second equation
   const double u = a / (2 * c), v = k[0] / (2 * c);
   const double quartic[QUARTIC + 1] = {k[1] * u * u - b, 2 * c, -2 * k[1] * u * v, 0, k[1] * v * v};
   int degree = QUARTIC;
@@ -229,7 +229,7 @@ size_t cag_hermite_by_curvature(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, co
   return n;
 }
 
-// --- Going on ---
+// --- Continuation ---
 
 CagStatus cag_bezier_join(const CagCurve *c, int m, int order, double ratio, CagVec3 *out,
                           CagError *err) {

@@ -1,18 +1,19 @@
-// Convex hulls of two sets of points: the point nearest to the origin of their difference.
+// Distance of two convex hulls, as the point of their difference nearest to the origin.
 //
-// The hull of all differences a - b is never built: a simplex of at most four differences moves
-// towards the origin until no difference lies nearer along its direction.
+// The hull of all differences a - b is never constructed: a simplex of at most four differences
+// moves towards the origin until no difference is closer in its direction.
 
 #include "geom/curve/hulls.h"
 #include "geom/linalg/tolerance.h"
 
 #include <string.h>
 
-// Gaps below this part of the size of the points are contact.
+// Gaps below this fraction of the size of the points are contact.
 #define CONTACT CAG_ROUNDING
-// The simplex has found the nearest point when no difference is nearer by more than this part.
+// The simplex has converged when no difference is closer by more than this fraction.
 #define NEARER 1e-14
-// Each round takes a new difference; far more than any hull needs before rounding stops it.
+// Limit on the rounds, each of which adds a difference; far more than any hull needs before
+// rounding stops it.
 #define ROUNDS 1000
 
 static CagVec3 farthest(const CagVec3 *p, size_t n, CagVec3 direction) {
@@ -28,8 +29,8 @@ static CagVec3 farthest(const CagVec3 *p, size_t n, CagVec3 direction) {
   return p[best];
 }
 
-// Weights of the point nearest to the origin of the plane through k points: the normal equations,
-// by elimination. False where the points are dependent.
+// Weights of the point nearest to the origin in the plane through k points, by the normal
+// equations. Returns false if the points are dependent.
 static bool affine_nearest(const CagVec3 *p, int k, double *weights) {
   double m[3][4] = {0};
   for (int i = 1; i < k; i++) {
@@ -61,7 +62,8 @@ static bool affine_nearest(const CagVec3 *p, int k, double *weights) {
   return true;
 }
 
-// Reduces the simplex to the face that holds its point nearest to the origin; gives that point.
+// Reduces the simplex to the face that contains its point nearest to the origin; returns that
+// point.
 static CagVec3 reduce(CagVec3 *simplex, int *k) {
   CagVec3 best = simplex[0], kept[4] = {simplex[0]};
   int kept_count = 1;

@@ -1,8 +1,9 @@
-// Intersections by subdivision: parts that the bound of their distance from the chord keeps apart
-// are dropped, parts in which at most one crossing fits are finished by Newton's method, the rest
-// is clipped to where its control points let it be near the other, and halved where that helps
-// little. A place that Newton's method does not find is halved as well: only the bounds tell that
-// there is none. What is left at the smallest size are touches, found many times (contact.h).
+// Intersections by subdivision. Parts whose distance exceeds the bounds of their sag are dropped.
+// Parts with at most one crossing are finished by Newton's method. The rest is clipped to the
+// parameters at which its control points allow it to be near the other curve, and halved if that
+// helps little. Parts on which Newton's method fails are halved as well: only the bounds prove that
+// there is no intersection. Parts that remain at the smallest size are tangencies, found many times
+// (contact.h).
 
 #include "geom/curve/intersect.h"
 
@@ -17,15 +18,18 @@
 #include "geom/curve/intersect_clip.h"
 #include "geom/linalg/tolerance.h"
 
-// Parts of the size of the data: where a curve counts as a chord, where two points are one.
+// Fractions of the size of the data: deviation below which a curve is a chord; distance below which
+// two points are identical.
 #define CHORD 1e-11
 #define MEET CAG_COINCIDENT
 #define ZERO CAG_ROUNDING
-// A part longer than this part of the domain that lies in the other wholly is an overlap.
+// A part longer than this fraction of the domain that lies entirely in the other curve is an
+// overlap.
 #define OVERLAP 1e-3
-// So many places found are looked through for an overlap, and again when there are twice as many.
+// When this many intersections have been found, they are checked for an overlap, and again whenever
+// the number doubles.
 #define FOUND_MANY 256
-// Pairs looked at before the curves are taken to run along each other.
+// Number of pairs after which the curves are assumed to coincide.
 #define MOST_PAIRS 1000000
 #define DEPTH 60
 
@@ -37,7 +41,7 @@ typedef struct Found {
 
 typedef struct Part {
   double a, b;
-  double low, high; // of the smooth stretch that it belongs to
+  double low, high; // of its smooth interval
   CagVec3 p, q;
 } Part;
 
@@ -84,7 +88,7 @@ static CagStatus merged_meetings(Found *found, CagStatus status, CagMeeting **ou
 }
 
 static CagStatus first_parts(const CagCurve *c, Part **out, size_t *n, CagError *err) {
-  // A smooth piece may be a whole turn: its chord says something only after some halvings.
+  // A smooth piece may be a full turn, so its chord is meaningful only after some halvings.
   enum { HALVES = 4 };
   double *cuts;
   size_t count;
@@ -126,7 +130,7 @@ static CagStatus halves(const CagCurve *c, const Part *part, Part out[2], CagErr
   return CAG_OK;
 }
 
-// Size of a curve, and what rounding makes of its coordinates.
+// Size of a curve, and the rounding error of its coordinates.
 static double extent_of(const CagCurve *c, double *noise) {
   CagBounds b = c->kind->hull(c, c->start, c->end);
   *noise = fmax(*noise, cag_curve_noise(&b));
@@ -146,7 +150,8 @@ static double height(const PlaneSearch *s, CagVec3 p) {
   return cag_dot(cag_sub(p, s->plane->point), s->plane->normal);
 }
 
-// The root between a and b, where the heights have different signs: Newton kept in its bracket.
+// The root between a and b, where the heights have different signs: Newton's method within a
+// bracket.
 static CagStatus solve(PlaneSearch *s, double a, double b, double fa, CagError *err) {
   double t = a + (b - a) / 2;
   CagVec3 d[2] = {{0, 0, 0}};
@@ -165,7 +170,7 @@ static CagStatus solve(PlaneSearch *s, double a, double b, double fa, CagError *
   return add(&s->found, t, 0, d[0], err);
 }
 
-// A part that is straight but for rounding: a touch where its middle is near enough.
+// A part that is straight up to rounding: a tangency if its middle is close enough.
 static CagStatus touch(PlaneSearch *s, const Part *part, CagError *err) {
   const double t = part->a + (part->b - part->a) / 2;
   CagVec3 p;
@@ -175,7 +180,7 @@ static CagStatus touch(PlaneSearch *s, const Part *part, CagError *err) {
 }
 
 static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagError *err) {
-  // Slope of the chord beside the bound of its change that leaves room for one root only.
+  // Ratio of the slope of the chord to the bound of its change above which there is only one root.
   const double steep = 16;
   const double zero = (ZERO * s->size + s->noise);
   double fa = height(s, part->p), fb = height(s, part->q);
@@ -190,7 +195,7 @@ static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagErro
   }
   const bool wide = part->b - part->a > OVERLAP * (s->c->end - s->c->start);
   if (wide && fa == 0 && fb == 0) {
-    // At no simple fraction, where a wave could come back.
+    // Not simple fractions, at which a periodic curve might be close again.
     static const double fractions[] = {0.236, 0.382, 0.618, 0.854};
     bool lies = true;
     for (size_t i = 0; lies && i < sizeof fractions / sizeof *fractions; i++) {
@@ -257,8 +262,8 @@ static double nearest_on(const Part *a, CagVec3 x) {
   return dd > 0 ? fmin(1, fmax(0, cag_dot(cag_sub(x, a->p), d) / dd)) : 0;
 }
 
-// Steps u and v after which r + u d meets, or is nearest to, v e. By cross products, which lose far
-// fewer digits than a determinant of scalar products where d and e are all but parallel.
+// Steps u and v for which r + u d intersects v e, or is nearest to it. Uses cross products, which
+// lose far fewer digits than a determinant of scalar products if d and e are nearly parallel.
 static void nearest_steps(CagVec3 r, CagVec3 d, CagVec3 e, double *u, double *v) {
   const CagVec3 n = cag_cross(d, e);
   const double nn = cag_dot(n, n);
@@ -266,9 +271,9 @@ static void nearest_steps(CagVec3 r, CagVec3 d, CagVec3 e, double *u, double *v)
   *v = -cag_dot(cag_cross(r, d), n) / nn;
 }
 
-// Nearest points p + u (q - p) and r + v (s - r) of two segments; gives their distance. Beside each
-// end of one the nearest of the other is tried, since what the directions give is rounding where
-// they are all but parallel.
+// Nearest points p + u (q - p) and r + v (s - r) of two segments; returns their distance. Also
+// tries the nearest point to each end, since the result of the directions is rounding if they are
+// nearly parallel.
 static double segments(const Part *a, const Part *b, double *u, double *v) {
   const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
   double x, across;
@@ -296,7 +301,7 @@ static CagSide side_in(const Part *part, double t) {
   return t >= part->high ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
 }
 
-// Within a width of the part and its smooth stretch.
+// Clamps to the smooth interval of the part, and to its width around the part.
 static double step_within(const Part *part, double t) {
   const double reach = part->b - part->a;
   return fmin(fmin(part->high, part->b + reach), fmax(fmax(part->low, part->a - reach), t));
@@ -307,8 +312,8 @@ static bool lies_in(const Part *part, double t) {
   return t >= part->a - slack && t <= part->b + slack;
 }
 
-// Gauss-Newton on the distance of the two points, from (t, u); adds the meeting when it is one.
-// *inside: it is one of these parts, not of others near by.
+// Gauss-Newton on the distance of the two points, from (t, u); adds an intersection if it converges
+// to one. *inside: the intersection is in these parts, not in neighboring ones.
 static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, double u, bool *met,
                       bool *inside, CagError *err) {
   CagVec3 p[2], q[2];
@@ -329,7 +334,7 @@ static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, do
     double pp = cag_dot(p[1], p[1]), qq = cag_dot(q[1], q[1]), dt, du;
     if (cag_norm(cag_cross(p[1], q[1])) > MEET * sqrt(pp * qq)) {
       nearest_steps(r, p[1], q[1], &dt, &du);
-    } else { // parallel: each its own way
+    } else { // parallel: separate steps
       dt = pp > 0 ? -cag_dot(r, p[1]) / (2 * pp) : 0;
       du = qq > 0 ? cag_dot(r, q[1]) / (2 * qq) : 0;
     }
@@ -343,7 +348,7 @@ static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, do
   return *met ? add(&s->found, best_t, best_u, point, err) : CAG_OK;
 }
 
-// The point of the other curve nearest to the first one's at t, from at[0] on.
+// The point of the other curve nearest to the first curve's point at t, starting from at[0].
 static CagStatus measure_curve(void *context, double t, double at[2], double *gap, double *sine,
                                CagError *err) {
   enum { STEPS = 16 };
@@ -370,7 +375,7 @@ static CagStatus measure_curve(void *context, double t, double at[2], double *ga
   return status;
 }
 
-// Collinear chords share a stretch, or an end point at most.
+// Whether collinear chords overlap, rather than share at most an end point.
 static bool run_along(const CurveSearch *s, const Part *a, const Part *b) {
   CagVec3 d = cag_sub(a->q, a->p);
   double length = cag_norm(d);
@@ -382,11 +387,12 @@ static bool run_along(const CurveSearch *s, const Part *a, const Part *b) {
   return parallel && common > OVERLAP * fmin(length, fabs(y - x)) && common > OVERLAP * s->size;
 }
 
-// Clips the longer-bent of the two parts by the other, then the other by what is left of it;
-// *apart: nothing is left, *smaller: enough has gone that the pair is looked at again.
+// Clips the part with the larger sag by the other one, then the other by the remainder. *apart:
+// nothing is left; *smaller: enough was removed to process the pair again.
 static CagStatus clip(const CurveSearch *s, Part *a, Part *b, bool *apart, bool *smaller,
                       CagError *err) {
-  const double enough = 0.7; // of the interval that may be left: more means several meetings
+  const double enough = 0.7; // fraction of the interval that may be left; if more is left, there
+                             // are several intersections
   const double slack = CHORD * s->size + s->noise;
   const Part old_a = *a, old_b = *b;
   *apart = !cag_curve_clip_parameters(s->a, a->a, a->b, s->b, slack, &b->a, &b->b);
@@ -406,8 +412,8 @@ static CagStatus clip(const CurveSearch *s, Part *a, Part *b, bool *apart, bool 
 }
 
 static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, CagError *err) {
-  // A tangent leaves the chord's direction by about 4 sag / length; beyond a few times that, chords
-  // at an angle mean curves that cross once at most.
+  // A tangent deviates from the chord's direction by about 4 sag / length. Curves whose chords
+  // cross at an angle a few times larger than that intersect at most once.
   const double bend = 16;
   double u = 0, v = 0;
   double sag_a = cag_curve_sag(s->a, a->a, a->b), sag_b = cag_curve_sag(s->b, b->a, b->b);
@@ -429,8 +435,8 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
   if ((sag_a <= small && sag_b <= small) || depth == 0) {
     if (run_along(s, a, b)) return fail_overlap(err);
     CagStatus status = meet(s, a, b, t, w, &met, &inside, err);
-    // Chords at an angle come nearer to each other than their bends let them: the parameter runs
-    // too unevenly for Newton's method.
+    // The chords get closer than their sag allows for curves that do not meet, but Newton's method
+    // failed: the parametrization is too uneven.
     const bool uneven = !met && sine > MEET && fmax(da, db) > MEET * s->size;
     if (status || depth == 0 || !uneven) return status;
   }

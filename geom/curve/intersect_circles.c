@@ -5,11 +5,11 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Axes of an arc count as those of a circle to this part of their length.
+// Axes of an arc are those of a circle within this fraction of their length.
 #define ROUND CAG_ROUNDING
-// Circles that are so near to each other, as a part of their size, nearly coincide.
+// Circles closer to each other than this fraction of their size nearly coincide.
 #define NEARLY 1e-3
-// The largest error of a direction, in radians, at which a touch is told in closed form.
+// The largest error of a direction, in radians, for which a tangency is decided in closed form.
 #define UNSURE 1e-6
 
 typedef struct Circle {
@@ -29,7 +29,7 @@ static bool circle_of(const CagCurve *c, Circle *out) {
   return true;
 }
 
-// Adds a place of both circles if it is on both parts.
+// Adds an intersection of both circles if it is on both parts.
 static CagStatus add_place(const CagCurve *const c[2], CagVec3 p, int multiplicity, double same,
                            CagContact *out, size_t *n, CagError *err) {
   double t[2];
@@ -56,7 +56,7 @@ CagStatus cag_circles_intersect(const CagCurve *a, const CagCurve *b, double sam
   const double tilt = cag_norm(cag_cross(k.normal, m.normal)) * fmax(k.radius, m.radius);
   if (tilt > noise || fabs(cag_dot(way, k.normal)) > noise) return CAG_OK;
 
-  // One circle is apart from the other, or within it, by this much; negative where they cross.
+  // The gap between the circles, apart or one inside the other; negative if they cross.
   const double d = cag_norm(way), growth = k.radius - m.radius;
   const double gap = fmax(d - (k.radius + m.radius), fabs(growth) - d);
   *decided = true;
@@ -66,8 +66,7 @@ CagStatus cag_circles_intersect(const CagCurve *a, const CagCurve *b, double sam
     *decided = false;
     return CAG_OK;
   }
-  // In the triangle of the centers and a place of both, cos is that of the angle at the center of
-  // a.
+  // Angle at the center of a in the triangle of the centers and an intersection.
   const CagVec3 u = cag_scaled(way, 1 / d), v = cag_cross(k.normal, u);
   double cosine = (d * d + growth * (k.radius + m.radius)) / (2 * d * k.radius);
   if (touch) cosine = cosine < 0 ? -1 : 1;

@@ -1,10 +1,11 @@
 // Bezier clipping (Sederberg and Nishita 1990).
 //
-// A Bezier piece lies in its fat line: the strip along its chord that holds its control points. The
-// other piece's signed distance from either side of the strip is a polynomial in Bernstein form, so
-// it is where the hull of its coefficients, spread evenly over the parameter, is on the right side
-// of zero. Rational pieces are taken in homogeneous coordinates, where the same holds times the
-// weight. In space two strips at right angles stand for one.
+// A Bezier piece lies in its fat line: the strip along its chord that contains its control points.
+// The other piece's signed distance from either side of the strip is a polynomial in Bernstein
+// form, so the piece can be in the strip only where the hull of the coefficients, spaced evenly
+// over the parameter, is on the right side of zero. Rational pieces use homogeneous coordinates, in
+// which the same holds for the distance times the weight. In space two perpendicular strips are
+// used.
 
 #include "geom/curve/intersect_clip.h"
 
@@ -55,7 +56,7 @@ static bool segment_of(const CagCurve *c, double a, double b, Segment *out) {
   return true;
 }
 
-// Where the hull of the points (i / n, e[i]) reaches down to 0: narrows [*low, *high].
+// The range in which the hull of the points (i / n, e[i]) reaches down to 0: narrows [*low, *high].
 static bool narrow(const double *e, int n, double *low, double *high) {
   double first = INFINITY, last = -INFINITY;
   for (int i = 0; i <= n; i++) {
@@ -98,12 +99,13 @@ static bool clip_across(const Segment *a, const Segment *b, CagVec3 n, double sl
 
 bool cag_curve_clip_parameters(const CagCurve *a, double a0, double a1, const CagCurve *b,
                                double slack, double *from, double *to) {
-  // What the parameters are widened by, as a part of the interval: the rounding of the crossings.
+  // Amount by which the range is enlarged, as a fraction of the interval: rounding of the
+  // crossings.
   const double rounding = CAG_ROUNDING;
   Segment s, t;
   if (!segment_of(a, a0, a1, &s) || !segment_of(b, *from, *to, &t)) return true;
   const CagVec3 chord = cag_sub(cag_project(s.points + 4 * s.degree), cag_project(s.points));
-  const CagVec3 unit = cag_unit(chord); // 0 of a ring: all distances are 0
+  const CagVec3 unit = cag_unit(chord); // 0 for a closed piece: all distances are 0
   double low = 0, high = 1;
   if (a->dimension == 2 && b->dimension == 2) {
     if (!clip_across(&s, &t, cag_vec3(-unit.y, unit.x, 0), slack, &low, &high)) return false;

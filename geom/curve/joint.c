@@ -1,4 +1,4 @@
-// How smoothly one curve goes on where another ends.
+// The continuity between the end of one curve and the start of another.
 
 #include "geom/curve/joint.h"
 
@@ -14,7 +14,7 @@ static bool same(CagVec3 a, CagVec3 b, double tolerance) {
   return cag_norm(cag_sub(a, b)) <= tolerance * larger(a, b);
 }
 
-// The angle between unit vectors, without the loss that acos has near 0.
+// The angle between unit vectors, without the loss of accuracy of acos near 0.
 static double angle_between(CagVec3 a, CagVec3 b) {
   return 2 * atan2(cag_norm(cag_sub(a, b)), cag_norm(cag_add(a, b)));
 }
@@ -26,7 +26,7 @@ CagStatus cag_curve_joint(const CagCurve *a, const CagCurve *b, double tolerance
   CagStatus status = cag_curve_eval(a, a->end, 2, CAG_SIDE_LEFT, da, err);
   if (!status) status = cag_curve_eval(b, b->start, 2, CAG_SIDE_RIGHT, db, err);
   if (status) return status;
-  // The gap is judged by the size of the curves: a joint in the origin has none of its own.
+  // The gap is relative to the size of the curves, since the joint may be at the origin.
   const CagCurve *both[2] = {a, b};
   for (int i = 0; i < 2; i++) {
     CagBounds hull = both[i]->kind->hull(both[i], both[i]->start, both[i]->end);
@@ -44,8 +44,8 @@ CagStatus cag_curve_joint(const CagCurve *a, const CagCurve *b, double tolerance
   if (speed_a > 0) j.ratio = speed_b / speed_a;
   j.c0 = j.gap <= tolerance * size;
   j.c1 = j.c0 && same(da[1], db[1], tolerance);
-  // Second derivatives are compared with what the first would make of them as well: those of a
-  // line are 0 but for rounding.
+  // Second derivatives are compared with the first ones as well, because those of a line are 0 up
+  // to rounding.
   j.c2 = j.c1 && j.second_jump <= tolerance * fmax(larger(da[2], db[2]), larger(da[1], db[1]));
   CagError none;
   if (!cag_curve_tangent(a, a->end, CAG_SIDE_LEFT, &ta, &none) &&

@@ -12,9 +12,9 @@
 #include "geom/curve/nurbs.h"
 #include "geom/linalg/tolerance.h"
 
-// Relative error asked of integrals; the promise is 1e-10.
+// Relative tolerance of integrals; 1e-10 is documented.
 #define INTEGRAL 1e-13
-// Part of its size that a curve may leave its plane or line by.
+// Fraction of its size that a curve may deviate from its plane or line.
 #define FLAT CAG_COINCIDENT
 
 static void store(double *out, CagVec3 v) {
@@ -23,7 +23,7 @@ static void store(double *out, CagVec3 v) {
   out[2] = v.z;
 }
 
-// The cuts within [a, b], with both; malloc'd.
+// The cuts within [a, b], including a and b; malloc'd.
 static CagStatus cuts_within(const CagCurve *c, double a, double b, double **out, size_t *n,
                              CagError *err) {
   CagStatus status = cag_curve_cuts(c, out, n, err);
@@ -32,7 +32,7 @@ static CagStatus cuts_within(const CagCurve *c, double a, double b, double **out
   size_t kept = 1;
   for (size_t i = 0; i < *n; i++)
     if (cuts[i] > a && cuts[i] < b) cuts[kept++] = cuts[i];
-  // Room for both ends is there: the domain's own are never strictly inside.
+  // There is room for both ends, since those of the domain are never strictly inside.
   cuts[0] = a;
   cuts[kept++] = b;
   *n = kept;
@@ -47,7 +47,7 @@ static void speed(void *context, CagVec3 p, CagVec3 d, double *out) {
   out[0] = cag_norm(d);
 }
 
-// Length of curves of constant speed, and false for others.
+// Length of curves with constant speed; false for others.
 static bool constant_speed(const CagCurve *c, double *out) {
   CagVec3 center, x, y, d[2];
   double rate, radius, pitch, turns, taper;
@@ -124,7 +124,7 @@ CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, C
   return status;
 }
 
-// Newton's method on the length from a, kept in its bracket.
+// Newton's method on the length from a, within a bracket.
 static CagStatus solve_length(const CagCurve *c, double a, double b, double total, double s,
                               double *out, CagError *err) {
   const double close = 4 * DBL_EPSILON;
@@ -151,7 +151,7 @@ static CagStatus solve_length(const CagCurve *c, double a, double b, double tota
 }
 
 CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out, CagError *err) {
-  const double slack = CAG_ROUNDING; // of the length: s was computed as well
+  const double slack = CAG_ROUNDING; // relative to the length, since s was computed as well
   CagStatus status = cag_curve_check_number(s, "s", err);
   if (status) return status;
   double *cuts, walked = 0, part = 0;
@@ -221,7 +221,7 @@ CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError
   return status;
 }
 
-// The two points that lie farthest apart as seen from the first, and their distance.
+// The point farthest from the first one, the point farthest from that, and their distance.
 static double longest(const CagVec3 *p, size_t n, CagVec3 *a, CagVec3 *b) {
   size_t i = 0, j = 0;
   for (int round = 0; round < 2; round++) {
@@ -251,7 +251,7 @@ CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err) {
   return CAG_OK;
 }
 
-// A straight curve lies in many planes: one of them is given.
+// A straight curve lies in many planes; one of them is returned.
 CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagError *err) {
   if (c->dimension == 2) {
     *is = true;
@@ -271,7 +271,7 @@ CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagE
     }
   CagVec3 normal = cag_unit(cag_cross(unit, cag_sub(off, a)));
   if (farthest <= FLAT * size) {
-    // Any direction across the line, the one nearest to Z.
+    // The direction perpendicular to the line that is closest to Z.
     CagVec3 other = fabs(unit.z) < 0.9 ? cag_vec3(0, 0, 1) : cag_vec3(1, 0, 0);
     normal = cag_unit(cag_madd(other, -cag_dot(other, unit), unit));
   }
@@ -353,7 +353,7 @@ CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, Cag
     x = sum[1] / 2 / value;
     y = -sum[2] / 2 / value;
   }
-  // In space neither side of the plane is the upper one: the area is counted positive.
+  // In space the orientation of the plane is arbitrary, so the area is counted positive.
   if (area) *area = c->dimension == 3 ? fabs(value) : value;
   if (centroid) *centroid = cag_madd(cag_madd(a.origin, x, a.x), y, a.y);
   return CAG_OK;

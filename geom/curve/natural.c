@@ -1,10 +1,10 @@
 // Curves from their natural equations, by Taylor's method.
 //
-// The formulas of Serret and Frenet, T' = k N, N' = -k T + w B, B' = -w N, give the Taylor
-// coefficients of the frame one after the other from those of k and w. A step is as long as the
-// series holds to rounding, and as k and w are what their series say (they may be made of pieces);
-// the frame is made orthonormal again at each step. What is kept are the steps: between them points
-// come from the series, so that an evaluation solves nothing again.
+// The Frenet-Serret formulas T' = k N, N' = -k T + w B, B' = -w N give the Taylor coefficients of
+// the frame recursively from those of k and w. A step extends as far as the series is accurate to
+// rounding and agrees with k and w (which may be piecewise); the frame is orthonormalized at each
+// step. The steps are stored, and points between them are evaluated from the series without solving
+// again.
 
 #include "geom/curve/natural.h"
 
@@ -18,13 +18,13 @@
 
 // Terms of the series of the frame; the points have one more.
 #define TERMS 15
-// The last terms of a step beside 1, the length of the frame's vectors.
+// Bound of the last terms of a step, relative to the unit vectors of the frame.
 #define TAIL 1e-16
-// How well k and w must agree with their series on the way, in radians turned by the step.
+// Tolerance for the agreement of k and w with their series, in radians turned over the step.
 #define AGREES 1e-13
-// Steps are not halved below this part of the length: a jump is stepped over.
+// Steps are not halved below this fraction of the length; a jump is then stepped over.
 #define STEP_LEAST 1e-14
-// A frame turns by so much a step at most (radians).
+// Maximum turn of the frame in a step (radians).
 #define TURN_MOST 2.0
 #define STEPS_MOST 100000
 // Derivatives up to this order come from the series of the step, higher ones from the equations.
@@ -51,7 +51,8 @@ typedef struct Expansion {
   CagVec3 t[CAG_MAX_DERIVATIVE + 1], n[CAG_MAX_DERIVATIVE + 1], b[CAG_MAX_DERIVATIVE + 1];
 } Expansion;
 
-// Taylor coefficients of the frame up to `terms`, from the frame at s and those of the equations.
+// Taylor coefficients of the frame up to `terms`, from the frame at s and the coefficients of the
+// equations.
 static void expand(const Frame *f, const double *k, const double *w, int terms, Expansion *out) {
   out->t[0] = f->t;
   out->n[0] = f->n;
@@ -69,7 +70,7 @@ static void expand(const Frame *f, const double *k, const double *w, int terms, 
   }
 }
 
-// Those of the points: C' is the tangent.
+// Taylor coefficients of the points: C' is the tangent.
 static void integrate(CagVec3 point, const Expansion *e, int terms, CagVec3 *points) {
   points[0] = point;
   for (int i = 0; i <= terms; i++) points[i + 1] = cag_scaled(e->t[i], 1.0 / (i + 1));
@@ -81,7 +82,7 @@ static double value(const double *series, int terms, double h) {
   return sum;
 }
 
-// Whether the equations are what their series at s say over the step h.
+// Whether the equations agree with their series at s over the step h.
 static CagStatus agree(const Natural *c, double s, double h, const double *k, const double *w,
                        bool *out, CagError *err) {
   static const double shares[] = {1, 0.381966, 0.763932};
@@ -96,7 +97,7 @@ static CagStatus agree(const Natural *c, double s, double h, const double *k, co
   return CAG_OK;
 }
 
-// Longest step for which the tail of the series is rounding.
+// Longest step for which the tail of the series is below rounding.
 static double step_length(const Expansion *e, double turning, double rest) {
   double h = rest;
   for (int i = TERMS - 1; i <= TERMS; i++) {
@@ -122,7 +123,7 @@ static CagVec3 sum_series(const CagVec3 *terms, double h) {
   return sum;
 }
 
-// The frame at h behind a step's start.
+// The frame at distance h from a step's start.
 static Frame frame_after(const Step *step, const Expansion *e, double h) {
   Frame f;
   CagVec3 normal = sum_series(e->n, h);
@@ -249,7 +250,7 @@ CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
   const CagCurveFunction function = {eval, release, c};
   if (!status) status = cag_curve_function(&function, dimension, 0, length, false, out, err);
   if (status) {
-    c->equations.release = NULL; // the context stays the caller's
+    c->equations.release = NULL; // the caller keeps the context
     release(c);
   }
   return status;

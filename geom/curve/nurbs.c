@@ -1,4 +1,4 @@
-// Bezier, B-spline and NURBS curves: construction, evaluation, and what a kind answers.
+// Bezier, B-spline, and NURBS curves: construction, evaluation, and the functions of the kind.
 
 #include "geom/curve/nurbs.h"
 
@@ -42,8 +42,8 @@ static void taylor_about(const double *b, int p, double h, bool right, double *o
   }
 }
 
-// A piece is narrow where differences of its Bezier points, over powers of its length, lose digits
-// that those of the control points, over the knots around it, keep.
+// A piece is narrow if the differences of its Bezier points, over powers of its length, lose digits
+// that the differences of the control points, over the surrounding knots, keep.
 static bool is_narrow(const CagNurbs *c, size_t span) {
   const double part = 0.01;
   const size_t p = (size_t)c->degree;
@@ -57,7 +57,7 @@ static void narrow_taylor(const CagNurbs *c, size_t span, double *out) {
     double *at = out + right * 4 * (p + 1), d[4 * (CAG_NURBS_TAYLOR + 1)], factor = 1;
     cag_bspline_piece_derivatives(c->homogeneous, c->knots, p, span, c->knots[span + (size_t)right],
                                   p, d);
-    // The ends stay those of the Bezier points, which neighbors share.
+    // The ends keep the values of the Bezier points, which neighbors share.
     for (int k = 1; k <= p; k++) {
       factor /= k;
       for (int i = 0; i < 4; i++)
@@ -111,8 +111,8 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     }
     piece++;
   }
-  // Equally spaced cuts are found without a search. If rounding leads to the
-  // wrong cut, it is a neighbor of the right one.
+  // Equally spaced cuts are found without a search. If rounding leads to the wrong cut, it is a
+  // neighbor of the right one.
   double step = (c->base.end - c->base.start) / (double)n;
   bool even = true;
   for (size_t i = 0; i < n; i++)
@@ -164,7 +164,7 @@ CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const d
 
 #define LIFTS_BETWEEN_LOOKS ((size_t)4096)
 
-// Control points as homogeneous ones, from `stored` >= n of them with wrapping indices; malloc'd.
+// Homogeneous control points, with indices that wrap around up to `stored` >= n; malloc'd.
 static CagStatus lift(const CagVec3 *points, const double *weights, size_t n, size_t stored,
                       double **out, CagError *err) {
   CagStatus status = cag_curve_check_points(points, n, "points", err);
@@ -215,7 +215,7 @@ CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n
   return status;
 }
 
-// Degree 0. The weight cancels, but must be one.
+// Degree 0. The weight cancels, but must be valid.
 static CagStatus single_point(const CagVec3 *point, const double *weight, int dimension,
                               CagCurve **out, CagError *err) {
   if (weight && *weight == 0)
@@ -318,7 +318,8 @@ static inline void taylor_point(const double *a, int p, double s, double out[4])
     for (int c = 0; c < 4; c++) out[c] = out[c] * s + a[4 * k + c];
 }
 
-// Inlined with a constant degree and order, the loops below unroll and the factors are constants.
+// When inlined with a constant degree and order, the loops below unroll and the factors are
+// constants.
 static inline void taylor_derivatives(const double *a, int p, double s, int order, double *out) {
   static const double falling[CAG_NURBS_TAYLOR + 1][CAG_NURBS_TAYLOR + 1] = {
       {1, 1, 1, 1}, {0, 1, 2, 3}, {0, 0, 2, 6}, {0, 0, 0, 6}}; // k (k - 1) .. (k - d + 1)
@@ -362,7 +363,7 @@ static void homogeneous_derivatives(const CagNurbs *c, size_t piece, double t, i
     if (is_narrow(c, span)) {
       cag_bspline_piece_derivatives(c->homogeneous, c->knots, c->degree, span, t, order, out);
       for (int k = 1; k <= order && !c->rational; k++) out[4 * k + 3] = 0;
-      // The point is that of order 0, to the last bit.
+      // The point must equal that of order 0 to the last bit.
       cag_bezier_derivatives(cag_nurbs_bezier(c, piece), c->degree, u, 0, out);
       return;
     }
@@ -420,7 +421,7 @@ static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int
   return CAG_OK;
 }
 
-// --- The other questions of a kind ---
+// --- Other functions of the kind ---
 
 static CagNurbsKind kind_of(const CagNurbs *c) { return (CagNurbsKind)(c->base.kind - kinds); }
 
@@ -439,12 +440,12 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   if (!h) return cag_fail_memory(err);
   const bool affine = cag_transform_is_affine(t);
   const bool rational = c->rational || !affine;
-  // The weights of an affine image are those of the curve.
+  // An affine map does not change the weights.
   CagTransform m = *t;
   if (affine)
     for (int i = 0; i < 4; i++)
       for (int j = 0; j < 4; j++) m.m[i][j] /= t->m[3][3];
-  // A plane's z stays 0 under maps made of plane data.
+  // z stays 0 for a plane curve under planar maps.
   const int dimension = cag_curve_image_dimension(curve, t);
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < c->count; i++) {

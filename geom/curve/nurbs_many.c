@@ -1,9 +1,9 @@
-// Many points of a NURBS curve of low degree at once.
+// Evaluates many points of a NURBS curve of low degree at once.
 //
-// The four homogeneous coordinates are one vector of the processor, and results are stored whole,
-// each overlapping the next. The operations and their order are those of the evaluation of a
-// single point (nurbs.c), and no product is fused with a sum, so the bits are the same, with wide
-// registers or without.
+// The four homogeneous coordinates form a vector register, and results are stored as whole vectors,
+// each overlapping the next. The operations and their order are the same as for a single point
+// (nurbs.c), and multiplications are not fused with additions, so the results are identical to the
+// last bit, with or without wide registers.
 
 #include <string.h>
 
@@ -12,11 +12,12 @@
 
 typedef double Quad __attribute__((vector_size(32), aligned(8)));
 
-// Functions of vectors are inlined, so how these are passed without wide registers is no matter.
+// Functions with vector arguments are inlined, so the calling convention without wide registers
+// does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-// The piece of t, as cag_nurbs_piece has it; equally spaced cuts need no search and so no branch
-// that depends on where t was before.
+// The piece of t, like cag_nurbs_piece. Equally spaced cuts need no search, and so no branch that
+// depends on the previous t.
 INLINE size_t piece_of(const CagNurbs *c, double t, size_t last) {
   if (c->per_unit <= 0) return cag_nurbs_piece(c, t, CAG_SIDE_RIGHT, last);
   double guess = (t - c->base.start) * c->per_unit;
@@ -27,7 +28,7 @@ INLINE size_t piece_of(const CagNurbs *c, double t, size_t last) {
   return i;
 }
 
-// Value, first and second derivative, as named values so that they stay in registers.
+// Value, first, and second derivative, as separate variables so that they stay in registers.
 typedef struct Jet {
   Quad p, d, dd;
 } Jet;
@@ -38,8 +39,8 @@ INLINE Quad load(const double *from) {
   return q;
 }
 
-// The Taylor polynomial of degree p at s. What the order does not ask for costs nothing: it is
-// dropped by the compiler.
+// The Taylor polynomial of degree p at s. The compiler removes derivatives that the order does not
+// need.
 INLINE Jet taylor(const double *a, int p, double s) {
   const Quad none = {0, 0, 0, 0}, a0 = load(a), a1 = load(a + 4);
   if (p == 1) return (Jet){a1 * s + a0, a1, none};
@@ -62,17 +63,17 @@ INLINE Jet project(Jet h) {
   return c;
 }
 
-// The point and its derivatives at t; *piece: where the last one was, and this one is.
+// The point and its derivatives at t; *piece: the last piece on input, the current one on output.
 INLINE Jet evaluate(const CagNurbs *c, int p, bool rational, double t, size_t *piece) {
   *piece = piece_of(c, t, *piece);
-  // About the nearer end.
+  // Use the coefficients about the nearer end.
   const double l = t - c->cuts[*piece], r = t - c->cuts[*piece + 1];
   const bool right = l > -r;
   Jet h = taylor(c->taylor + (2 * *piece + right) * 4 * (size_t)(p + 1), p, right ? r : l);
   return rational ? project(h) : h;
 }
 
-// Writes one number more than the 3 of each vector.
+// Writes four numbers, one more than each vector has.
 INLINE void store(const Jet *h, int order, double *to) {
   memcpy(to, &h->p, sizeof h->p);
   if (order > 0) memcpy(to + 3, &h->d, sizeof h->d);
@@ -85,7 +86,7 @@ INLINE void evaluate_all(const CagNurbs *c, int p, bool rational, const double *
   double *to = (double *)out;
   size_t piece = 0;
   if (n == 0) return;
-  // The fourth number of each vector is overwritten by what follows; nothing follows the last.
+  // The fourth number of each vector is overwritten by the next; the last vector has no successor.
   for (size_t i = 0; i + 1 < n; i++, to += stride) {
     const Jet h = evaluate(c, p, rational, t[i], &piece);
     store(&h, order, to);

@@ -1,4 +1,4 @@
-// Splitting, Bezier pieces, degree elevation and knot insertion of NURBS curves.
+// Splitting, Bezier pieces, degree elevation, and knot insertion of NURBS curves.
 
 #include "geom/curve/nurbs_ops.h"
 
@@ -55,7 +55,7 @@ CagStatus cag_curve_to_bezier(const CagCurve *c, CagCurve ***out, size_t *n, Cag
   return status;
 }
 
-// The curve as an open NURBS, both ends in p + 1 knots.
+// The curve as an open NURBS with both ends clamped.
 static CagStatus clamped(const CagCurve *c, CagCurve **out, CagError *err) {
   CagCurve *exact;
   CagStatus status = cag_curve_to_nurbs(c, &exact, err);
@@ -160,7 +160,7 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
   return status;
 }
 
-// Blossom at p arguments of the polynomial over the span.
+// Blossom of the polynomial on the span, at p arguments.
 static void span_blossom(const CagNurbs *c, size_t span, const double *args, double *d,
                          double out[4]) {
   const int p = c->degree;
@@ -175,8 +175,8 @@ static void span_blossom(const CagNurbs *c, size_t span, const double *args, dou
   memcpy(out, d + 4 * p, sizeof(double) * 4);
 }
 
-// Points over the knots `y` of n points, which refine those of the curve: point j is the blossom at
-// y[j + 1] .. y[j + p], of a span of the usable range within the point's support.
+// Control points over the refined knots `y` for n points: point j is the blossom at y[j + 1] .. y[j
+// + p], on a span of the usable range within the point's support.
 static CagStatus refined_points(const CagNurbs *c, const double *y, size_t n, double *h,
                                 CagError *err) {
   const size_t p = (size_t)c->degree;

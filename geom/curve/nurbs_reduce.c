@@ -1,13 +1,13 @@
-// Knot removal and degree reduction of NURBS curves, with bounds of what they change.
+// Knot removal and degree reduction of NURBS curves, with bounds of the change.
 //
-// Both undo an averaging of neighbors: b_k = a_k g_k + (1 - a_k) g_{k-1} for k = 1..E, where g_0
-// and g_E stay and E - 1 points between are looked for. With one equation more than unknowns, the
-// least change of the b_k that leaves a solution is a multiple of one vector.
+// Both invert an averaging of neighbors: b_k = a_k g_k + (1 - a_k) g_{k-1} for k = 1..E, where g_0
+// and g_E are fixed and the E - 1 points between are unknown. There is one equation more than
+// unknowns, so the least change of the b_k that makes it solvable is a multiple of one vector.
 //
 // The bound: let h and g be homogeneous points over the same knots, S the points of h and w the
-// weights of g. A point of g less S is sum N_i (g_i.xyz - h_i.xyz - S (g_i.w - h_i.w)) / w, hence
-// no longer than the largest |g_i.xyz - h_i.xyz| + M |g_i.w - h_i.w| over the least weight; M is
-// the greatest distance of S from the origin, which is put into the middle of the points.
+// weights of g. A point of g minus S is sum N_i (g_i.xyz - h_i.xyz - S (g_i.w - h_i.w)) / w, hence
+// no longer than the largest |g_i.xyz - h_i.xyz| + M |g_i.w - h_i.w| over the smallest weight; M is
+// the greatest distance of S from the origin, which is moved to the middle of the points.
 
 #include <string.h>
 
@@ -16,7 +16,7 @@
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
 
-// h: what was, g: what it becomes, n points; `around`: all points that act where these do.
+// h: the old points, g: the new ones, n each; `around`: all points that influence the same range.
 static double bound(const double *h, const double *g, size_t n, const double *around,
                     size_t count) {
   CagBounds box = CAG_BOUNDS_EMPTY;
@@ -36,7 +36,7 @@ static double bound(const double *h, const double *g, size_t n, const double *ar
                  a[2] - b[2] - weight * middle.z};
     most = fmax(most, cag_norm(d) + reach * fabs(weight));
   }
-  // With a weight of 0 there is a bound only for curves that do not change.
+  // If a weight is 0, there is a bound only for curves that do not change.
   return most == 0 ? 0 : most / least;
 }
 
@@ -62,10 +62,10 @@ static CagStatus spline_make(Spline *s, int p, size_t n, bool rational, CagError
 
 // --- Removal ---
 
-// b: E points; a: E numbers within (0, 1); g[0] and g[E] are given, those between are found, and b
-// becomes what they give.
+// b: E points; a: E numbers within (0, 1). g[0] and g[E] are given; computes the points between and
+// replaces b by their averages.
 static void solve_chain(double *b, const double *a, size_t e, double *g) {
-  // z is at right angles to the columns of the equations.
+  // z is orthogonal to the columns of the equations.
   double z = 1, zz = 0, sum[4] = {0};
   for (int round = 0; round < 2; round++) {
     z = 1;
@@ -108,8 +108,8 @@ static CagStatus chain_make(Chain *c, int p, CagError *err) {
   return CAG_OK;
 }
 
-// Without the occurrence of t at knots[r], the last of m <= p, unless the deviation is above
-// `most`; gives the deviation.
+// Removes the occurrence of t at knots[r], the last of m <= p, unless the deviation exceeds `most`;
+// returns the deviation.
 static double remove_once(Spline *s, size_t r, int m, double most, Chain *chain) {
   const size_t p = (size_t)s->p, e = (size_t)(s->p - m + 1), first = r - 1 - p;
   const double t = s->knots[r], *x = s->knots;
@@ -196,8 +196,8 @@ CagStatus cag_curve_remove_knot(const CagCurve *c, double t, int times, double t
 
 // --- Reduction ---
 
-// The pieces of n, each one degree lower, with inner knots as often as the new degree; *deviation
-// bounds the change.
+// Reduces the degree of the pieces of n by one, with inner knots of multiplicity equal to the new
+// degree; *deviation bounds the change.
 static CagStatus reduce_pieces(const CagNurbs *n, Chain *chain, Spline *s, double *deviation,
                                CagError *err) {
   const size_t p = (size_t)n->degree, q = p - 1, e = p - 1;
@@ -243,7 +243,7 @@ CagStatus cag_curve_reduce_degree(const CagCurve *c, double tolerance, CagCurve 
   if (!status) status = reduce_pieces(n, &chain, &s, &moved, err);
   if (!status && !(moved <= tolerance))
     status = fail_tolerance(moved, tolerance, "lowering the degree", err);
-  // Knots that the smoothness of the curve does not want, as far as the tolerance goes.
+  // Removes knots that the smoothness of the curve does not need, within the tolerance.
   const double limit = isfinite(tolerance) ? tolerance : moved;
   for (size_t i = n->pieces; !status && i-- > 1;) {
     int m = s.p, want = cag_knots_multiplicity(n->knots, n->count, n->degree, n->cuts[i]) - 1;

@@ -1,8 +1,8 @@
 // Offsets of plane curves.
 //
-// A curve is cut at its corners, and a composite at its pieces too, so that its lines and arcs stay
-// what they are. The offsets of the parts are joined again: at an outer corner by an arc about it,
-// at an inner one both are cut where they meet.
+// A curve is cut at its corners, and a composite also at its pieces, so that its lines and arcs
+// keep their kinds. The offsets of the parts are joined again: at an outer corner by an arc about
+// it, at an inner one both are cut at their intersection.
 
 #include <string.h>
 
@@ -13,9 +13,10 @@
 #include "geom/curve/intersect.h"
 #include "geom/linalg/tolerance.h"
 
-// Turns by less than this (sine) are no corner.
+// Turns below this (sine) are not corners.
 #define TURN CAG_PARALLEL
-// Sides of a polyline that run straight back have no corner to go to.
+// If a polyline reverses its direction to within this sine, its sides have no intersection to
+// extend to.
 #define STRAIGHT_BACK CAG_PARALLEL
 
 static CagVec3 left_of(CagVec3 v) { return cag_vec3(-v.y, v.x, 0); }
@@ -50,7 +51,7 @@ static CagStatus shift_line(CagVec3 p, CagVec3 q, double d, CagCurve **out, CagE
 
 // A circle's arc, or false.
 static bool circle_axes(const CagCurve *c, CagVec3 *center, CagVec3 *x, CagVec3 *y, double *rate) {
-  const double round = CAG_ROUNDING; // part of the radius by which axes may differ
+  const double round = CAG_ROUNDING; // relative difference allowed between the axes
   if (!cag_curve_arc_axes(c, center, x, y, rate)) return false;
   const double a = cag_norm(*x), b = cag_norm(*y);
   return fabs(a - b) <= round * a && fabs(cag_dot(*x, *y)) <= round * a * b;
@@ -105,13 +106,13 @@ static CagStatus shift_polyline(const CagVec3 *v, size_t n, bool closed, double 
   CagStatus status = CAG_OK;
   size_t m = 0;
   for (size_t i = 0; !status && i < n; i++) {
-    // Directions into and out of the corner; at ends both are the one there is.
+    // Directions into and out of the corner; at ends both are the only one.
     const bool first = !closed && i == 0, last = !closed && i + 1 == n;
     CagVec3 in = cag_unit(cag_sub(v[i], v[(i + n - 1) % n]));
     CagVec3 to = cag_unit(cag_sub(v[(i + 1) % n], v[i]));
     if (first) in = to;
     if (last) to = in;
-    // The corner of the two shifted lines: d (n1 + n2) / (1 + n1 . n2).
+    // The intersection of the two shifted lines: d (n1 + n2) / (1 + n1 . n2).
     const double cosine = cag_dot(in, to);
     if (1 + cosine <= STRAIGHT_BACK) {
       status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "C", (long)i,
@@ -146,7 +147,7 @@ static void release(Parts *p) {
   cag_free(p->items);
 }
 
-// Parameters at which the curve is to be cut: corners, and joints of a composite; ends in.
+// Parameters at which the curve is cut: corners, joints of a composite, and both ends.
 static CagStatus part_cuts(const CagCurve *c, double *cuts, size_t *n, CagError *err) {
   double local_a, local_b, rate;
   size_t kept = 1;
@@ -167,7 +168,7 @@ static CagStatus part_cuts(const CagCurve *c, double *cuts, size_t *n, CagError 
   return CAG_OK;
 }
 
-// The part over [a, b] with its own kind.
+// The part over [a, b], in its own kind.
 static CagStatus take_part(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
   double local_a, local_b, rate;
   const CagCurve *piece = cag_curve_composite_piece(c, a, b, &local_a, &local_b, &rate);
@@ -191,13 +192,13 @@ static CagStatus corner_arc(CagVec3 corner, CagVec3 from, CagVec3 to, double d, 
   return cag_curve_arc(fabs(d), fabs(d), 0, fabs(turn), &frame, out, err);
 }
 
-// Cuts the end of *a and the start of *b where they meet.
+// Cuts the end of *a and the start of *b at their intersection.
 static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError *err) {
   CagMeeting *found;
   size_t n;
   CagStatus status = cag_curve_intersect(*a, *b, &found, &n, err);
   if (status) return status;
-  // The meeting that leaves most of both: least cut away.
+  // Choose the intersection that removes the least of both.
   size_t best = n;
   double least = INFINITY;
   for (size_t i = 0; i < n; i++) {
@@ -233,8 +234,8 @@ static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError
   return CAG_OK;
 }
 
-// What lies between part a and part b, which meet in the corner before they are shifted; *arc: what
-// is to be put between, or NULL.
+// Joins part a and part b, which meet in the corner before they are shifted; *arc: an arc to insert
+// between them, or NULL.
 static CagStatus join_corner(CagCurve **a, CagCurve **b, CagVec3 corner, double d, CagCurve **arc,
                              CagError *err) {
   CagVec3 end, start;
@@ -245,7 +246,7 @@ static CagStatus join_corner(CagCurve **a, CagCurve **b, CagVec3 corner, double 
   const CagVec3 from = cag_sub(end, corner), to = cag_sub(start, corner);
   const double sine = cag_cross(from, to).z / (d * d);
   if (fabs(sine) <= TURN && cag_dot(from, to) > 0) return CAG_OK;
-  // To the left an offset goes around where the curve turns right.
+  // An offset to the left goes around a corner if the curve turns right.
   if ((d > 0) == (sine < 0) || fabs(sine) <= TURN)
     return corner_arc(corner, end, start, d, arc, err);
   return cut_corner(a, b, corner, err);
@@ -263,7 +264,7 @@ static CagStatus shift_parts(const CagCurve *c, const double *cuts, size_t n, do
     cag_curve_release(part);
     if (!status) status = add(&shifted, moved, err);
   }
-  // Corner i lies before part i; that of a closed curve's seam before part 0.
+  // Corner i precedes part i; the corner at the seam of a closed curve precedes part 0.
   CagCurve **arcs = status ? NULL : cag_calloc(shifted.n + 1, sizeof *arcs);
   if (!status && !arcs) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < shifted.n; i++) {

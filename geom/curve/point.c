@@ -1,4 +1,4 @@
-// Curves that stay in one point: the degenerate half of a split, a Bezier curve of degree 0.
+// Curves that rest in one point: the degenerate half of a split, or a Bezier curve of degree 0.
 //
 // The domain may be a single parameter. All derivatives are zero, and the tangent is undefined.
 
@@ -41,7 +41,7 @@ static CagStatus eval(const CagCurve *c, double t, int order, CagSide side, CagV
   return CAG_OK;
 }
 
-// Of degree 1 with both control points in one place; a single parameter becomes a unit range.
+// Degree 1 with two identical control points; a single parameter becomes a unit range.
 static CagStatus to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
   const CagVec3 p = ((const Point *)c)->p, points[2] = {p, p};
   const double end = c->start < c->end ? c->end : c->start + 1;

@@ -1,8 +1,8 @@
-// Lines and polylines: straight pieces between vertices, each with its parameter.
+// Lines and polylines: straight pieces between vertices with given parameters.
 //
-// Vertex i is met at params[i], strictly ascending; a closed polyline keeps its first vertex once
-// more at the end. A line is a polyline of two vertices under another name. Vertices are hit
-// exactly from both sides.
+// Vertex i has the parameter params[i], strictly ascending; a closed polyline stores its first
+// vertex again at the end. A line is a polyline of two vertices with another name. Vertices are
+// exact from both sides.
 
 #include <stdio.h>
 #include <string.h>
@@ -13,8 +13,8 @@
 
 typedef struct Polyline {
   CagCurve base;
-  size_t n;  // vertices, the repeated first of a closed one counted
-  bool ring; // made closed: the last vertex is the first
+  size_t n;  // number of vertices, including the repeated first of a closed polyline
+  bool ring; // constructed as closed: the last vertex is the first
   CagVec3 *points;
   double *params;
 } Polyline;
@@ -66,7 +66,7 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
                              CagCurve **out, CagError *err) {
   CagStatus status = cag_curve_check_points(points, n, "points", err);
   if (status) return status;
-  // A closed list that repeats its first point means the same ring.
+  // A closed list may repeat its first point.
   while (closed && n > 1 && memcmp(&points[n - 1], &points[0], sizeof *points) == 0) n--;
   const size_t least = closed ? 3 : 2;
   if (n < least)

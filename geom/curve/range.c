@@ -1,4 +1,4 @@
-// Ranges of the derivatives of a curve over an interval.
+// Bounds of the derivatives of a curve over an interval.
 
 #include "geom/curve/range.h"
 
@@ -9,7 +9,7 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// Highest degree of a piece, and longest series.
+// Highest degree of a piece, and maximum length of a series.
 #define MOST_DEGREE 24
 #define MOST 16
 
@@ -44,7 +44,7 @@ static bool nurbs_ranges(const CagNurbs *c, double a, double b, int n, CagInterv
   double part[4 * (MOST_DEGREE + 1)];
   CagInterval h[MOST][4], line[4][MOST], quotient[MOST];
   if (c->degree > MOST_DEGREE || n >= MOST) return false;
-  // By the middle: the ends may miss a knot by rounding.
+  // Find the piece by the midpoint: the ends may miss a knot by rounding.
   const size_t i = cag_nurbs_piece(c, a + (b - a) / 2, CAG_SIDE_RIGHT, c->pieces);
   const double length = c->cuts[i + 1] - c->cuts[i];
   const double u = fmax(0, (a - c->cuts[i]) / length), v = fmin(1, (b - c->cuts[i]) / length);

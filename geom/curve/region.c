@@ -1,6 +1,6 @@
-// Regions: making them from loops, their measures, and whether a point is inside.
+// Regions: construction from loops, measures, and point tests.
 //
-// Every question about a loop is asked of the exact curve.
+// All queries use the exact curves.
 
 #include "geom/curve/region.h"
 
@@ -12,7 +12,7 @@
 #include "geom/curve/region_check.h"
 #include "geom/linalg/tolerance.h"
 
-// Points this near to a loop, as a part of its size, lie on it.
+// Points this close to a loop, as a fraction of its size, lie on it.
 #define ON_BOUNDARY 1e-10
 
 CagRegion *cag_region_retain(const CagRegion *r) {
@@ -29,7 +29,7 @@ void cag_region_release(CagRegion *r) {
   cag_free(r);
 }
 
-// An empty frame for n loops.
+// Allocates an empty region for n loops.
 static CagRegion *allocate(size_t n) {
   CagRegion *r = cag_calloc(1, sizeof *r);
   if (!r) return NULL;
@@ -74,14 +74,14 @@ static double loop_size(const CagCurve *c) {
   return cag_norm(cag_sub(b.max, b.min));
 }
 
-// How often the ray from p along +x is crossed upwards less downwards by the part [a, b] of the
-// curve, whose ends have the heights ya, yb above p. A part to the right of p counts by its ends
-// alone; a part about p is halved, which ends because p is not on the curve.
+// Number of upward crossings minus downward crossings of the ray from p along +x with the part [a,
+// b] of the curve, whose ends have the heights ya, yb above p. A part to the right of p is decided
+// by its ends; a part around p is halved, which terminates because p is not on the curve.
 static int crossings(const CagCurve *c, double a, double b, double ya, double yb, CagVec3 p) {
   CagBounds box = c->kind->hull(c, a, b);
   if (box.max.x < p.x || box.min.y > p.y || box.max.y < p.y) {
-    // Where the hull says that no crossing is possible, rounding of an end must not make one; the
-    // heights decide only whether the ends lie on different sides, and then p's height is touched.
+    // If the hull excludes a crossing, rounding of an end must not create one; the heights only
+    // decide whether the ends are on different sides, and then the hull includes p's height.
     if (box.max.x < p.x || (ya >= 0) == (yb >= 0)) return 0;
   }
   double middle = a + (b - a) / 2;
@@ -132,8 +132,8 @@ static CagStatus place_of(const CagCurve *c, CagVec3 p, Place *out, CagError *er
   return status;
 }
 
-// Whether `inner` lies within `outer`, for loops that do not cross: judged by a point of the inner
-// one that is not on the other. Loops that coincide count as outside.
+// Whether `inner` lies within `outer`, for loops that do not cross, decided by a point of the inner
+// loop that is not on the other. Identical loops count as outside.
 static CagStatus loop_within(const CagCurve *inner, const CagCurve *outer, bool *out,
                              CagError *err) {
   enum { SAMPLES = 16 };
@@ -172,9 +172,9 @@ static CagStatus check_loop(const CagCurve *c, const char *argument, long index,
                   p.x, p.y, q.x, q.y, cag_norm(cag_sub(p, q)));
 }
 
-// The loop run counter-clockwise (or clockwise); fails where it bounds nothing.
+// The loop, oriented counter-clockwise (or clockwise); fails if it encloses no area.
 static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, CagError *err) {
-  // Part of the square of the size under which an area is rounding.
+  // An area below this fraction of the squared size is rounding.
   const double nothing = CAG_ROUNDING;
   double area;
   CagStatus status = cag_curve_area(c, &area, NULL, err);
@@ -223,7 +223,8 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
   return status;
 }
 
-// Nesting depth of every loop, and the loops in the order: an outer one, then its holes.
+// Determines the nesting depth of every loop, and orders the loops: each outer one is followed by
+// its holes.
 CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **out, CagError *err) {
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_curves, "C", -1,
@@ -288,7 +289,7 @@ static CagStatus rounded_rectangle(double w, double h, double r, CagCurve **out,
   CagStatus status = CAG_OK;
   const double x = w / 2 - r, y = h / 2 - r; // center of the corner arcs
   for (int i = 0; !status && i < 4; i++) {
-    // Side i runs from corner i - 1 to corner i, outwards of both centers by r.
+    // Side i runs from corner i - 1 to corner i, at distance r outside of both centers.
     const int k = (i + 3) % 4;
     static const double nx[4] = {0, 1, 0, -1}, ny[4] = {-1, 0, 1, 0};
     CagVec3 p = {sx[k] * x + nx[i] * r, sy[k] * y + ny[i] * r, 0};

@@ -1,17 +1,17 @@
-// Curves of the plane cut where they meet, and the region that winding numbers choose.
+// Arrangements of plane curves, from which winding numbers select a region.
 //
-// The steps: pieces that run one way (region_pieces.c); their meetings (region_meet.c); corners,
-// where ends and meetings nearer than the tolerance are one; edges between corners, those that run
-// along each other made one with the sum of their counts; the winding numbers to both sides of each
-// edge, by a ray from its middle; the edges whose two sides differ by the rule, chained to loops
-// with the region to their left (region_chain.c).
+// The steps: monotone pieces (region_pieces.c); their intersections (region_meet.c); corners, which
+// merge ends and intersections closer than the tolerance; edges between corners, where coincident
+// edges are merged and their counts added; winding numbers on both sides of each edge, by a ray
+// from its middle; the edges whose two sides differ by the rule, chained to loops with the region
+// to their left (region_chain.c).
 //
-// Edges run from corner to corner, so where ends were moved together they may meet what their
-// pieces did not. They are cut there in turn, until nothing meets but at corners (as in snap
-// rounding, Hobby 1999); only then do rays tell on which side of an edge another one lies.
+// Edges run from corner to corner, so moving the ends may cause new intersections. These are cut in
+// turn until edges meet only at corners (as in snap rounding, Hobby 1999); only then do rays
+// determine on which side of an edge another one lies.
 //
 // Every walk is a chain from corner to corner, so counts balance at each corner however points were
-// moved together: winding numbers stay those of closed curves.
+// moved: winding numbers remain those of closed curves.
 
 #include "geom/curve/region_arrange.h"
 
@@ -26,11 +26,11 @@
 #include "geom/curve/region_chain.h"
 #include "geom/linalg/tolerance.h"
 
-// Points nearer than this part of the size of all are one: what touches count as in intersections.
+// Points closer than this fraction of the total size are identified, as for intersections.
 #define SAME CAG_COINCIDENT
-// Edges whose ends were moved are cut again where they then meet, so many times at most.
+// Maximum number of times that edges are cut again after their ends were moved.
 #define ROUNDS 16
-// Where rounding left loops open the tolerance grows by a factor, so many times.
+// If rounding left loops open, the tolerance grows by a factor, up to a number of times.
 #define GROWTH 8
 #define ATTEMPTS 4
 
@@ -38,7 +38,7 @@
 
 typedef struct Corners {
   CagVec3 *points;
-  size_t *next; // of the same cell of the grid
+  size_t *next; // the next corner in the same cell of the grid
   size_t n, capacity;
   size_t *heads, buckets;
   double cell;
@@ -47,8 +47,8 @@ typedef struct Corners {
 static const size_t none = (size_t)-1;
 
 static size_t bucket(const Corners *c, double x, double y) {
-  // Cells beyond what an integer counts come from coordinates whose neighbors are farther apart
-  // than cells anyway.
+  // Cells beyond the range of integers belong to coordinates whose spacing exceeds the cell size
+  // anyway.
   const uint64_t i = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, x)),
                  k = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, y));
   uint64_t h = i * 0x9E3779B97F4A7C15u ^ (k + 0x7F4A7C15u) * 0xC2B2AE3D27D4EB4Fu;
@@ -56,7 +56,7 @@ static size_t bucket(const Corners *c, double x, double y) {
   return (size_t)(h % c->buckets);
 }
 
-// The number of the corner at the point, a new one where there is none.
+// Index of the corner at the point, added if there is none.
 static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out, CagError *err) {
   const double x = floor(p.x / c->cell), y = floor(p.y / c->cell);
   double best = tolerance;
@@ -107,8 +107,8 @@ typedef struct Edges {
   size_t n;
 } Edges;
 
-// Corners at the ends of the pieces. They come before meetings, so that meetings are moved to them
-// and not they to meetings.
+// Makes corners at the ends of the pieces. They come before intersections, so that intersections
+// are moved to them and not vice versa.
 static CagStatus make_corners(CagRegionPieces *s, Corners *corners, CagError *err) {
   CagStatus status = corners_new(corners, 2 * s->n, s->tolerance, err);
   for (size_t i = 0; !status && i < s->n; i++) {
@@ -119,7 +119,7 @@ static CagStatus make_corners(CagRegionPieces *s, Corners *corners, CagError *er
   return status;
 }
 
-// Cuts the pieces at their meetings; what shrank to a corner is dropped.
+// Cuts the pieces at their intersections; parts that shrink to a corner are dropped.
 static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, size_t cut_count,
                             Corners *corners, Edges *out, CagError *err) {
   out->items = cag_malloc(sizeof *out->items * (s->n + cut_count + 1));
@@ -136,7 +136,7 @@ static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, 
       const double b = last ? piece->b : cuts[k].t;
       if (last) to = piece->to;
       else status = corner_at(corners, cuts[k++].point, s->tolerance, &to, err);
-      // What is left at the end of a piece belongs to the edge before it.
+      // A remainder at the end of a piece belongs to the edge before it.
       if (!status && last && from == to && a > piece->a) out->items[out->n - 1].b = b;
       if (status || from == to || (!(b > a) && !last)) continue;
       out->items[out->n++] =
@@ -162,12 +162,13 @@ static bool same_corners(const CagRegionEdge *e, const CagRegionEdge *f) {
   return (e->from == f->from && e->to == f->to) || (e->from == f->to && e->to == f->from);
 }
 
-// Whether two edges between the same corners run along each other: three points of one that lie on
-// the other, looked for across the way from corner to corner.
+// Whether two edges between the same corners coincide: three points of one are on the other,
+// searched perpendicular to the line between the corners.
 static CagStatus coincide(const CagRegionPieces *s, const CagRegionEdge *e, const CagRegionEdge *f,
                           bool *out, CagError *err) {
   const CagRegionPiece *p = &s->items[e->piece], *q = &s->items[f->piece];
-  const double near = 8; // tolerances: both ends of both were moved by up to one, and bend on
+  const double near = 8; // tolerances: both ends of both were moved by up to one, which may be
+                         // amplified between them
   *out = true;
   if (p->straight && q->straight) return CAG_OK;
   for (int i = 1; *out && i < 4; i++) {
@@ -184,7 +185,7 @@ static CagStatus coincide(const CagRegionPieces *s, const CagRegionEdge *e, cons
   return CAG_OK;
 }
 
-// Edges that run along each other become the first of them; those whose counts cancel go.
+// Merges coincident edges into the first of them; edges whose counts cancel are dropped.
 static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *err) {
   CagStatus status = cag_sort(edges->items, edges->n, sizeof *edges->items, by_corners, err);
   size_t kept = 0;
@@ -216,13 +217,13 @@ static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *er
   return CAG_OK;
 }
 
-// --- Until nothing meets ---
+// --- Iterated cutting ---
 
-// Edges no longer than this, in tolerances, are straight: their ends were moved by one each, and
-// there may be no room for their parameters.
+// Edges no longer than this, in tolerances, are replaced by segments: their ends were moved by one
+// tolerance each, and there may be no room for their parameters.
 #define SPECK 4
 
-// The edges as the pieces, which run from corner to corner.
+// Converts edges to pieces, which run from corner to corner.
 static CagStatus pieces_of_edges(CagRegionPieces *s, Edges *edges, const Corners *corners,
                                  CagError *err) {
   CagRegionPiece *items = cag_malloc(sizeof *items * (edges->n + 1));
@@ -248,8 +249,8 @@ static CagStatus pieces_of_edges(CagRegionPieces *s, Edges *edges, const Corners
   return CAG_OK;
 }
 
-// Cuts pieces where they meet, moves what is near together to corners, and cuts what that made meet
-// again, until nothing does.
+// Cuts pieces at intersections, moves close points to corners, and cuts new intersections caused by
+// that, until there are none.
 static CagStatus cut_pieces(CagRegionPieces *s, Corners *corners, Edges *edges, CagError *err) {
   CagStatus status = make_corners(s, corners, err);
   for (int round = 0; !status && round < ROUNDS; round++) {
@@ -271,8 +272,8 @@ static CagStatus cut_pieces(CagRegionPieces *s, Corners *corners, Edges *edges, 
 
 // --- Winding numbers ---
 
-// The edges by strips across the axis: axis 1 holds strips of y, for rays along +x; axis 0 strips
-// of x, for rays along +y.
+// The edges sorted into strips: axis 1 has strips in y, for rays along +x; axis 0 strips in x, for
+// rays along +y.
 typedef struct Strips {
   size_t n, *starts, *edges;
   double low, high;
@@ -283,8 +284,8 @@ typedef struct Strips {
 
 static double across(int axis, CagVec3 p) { return axis ? p.y : p.x; }
 
-// Coordinate along the ray, turned so that the plane keeps its sense: x for axis 1; for axis 0 y,
-// with strips of -x, which only turns the sign of what is counted.
+// Coordinate along the ray, in axes with the orientation of the plane: x for axis 1; y for axis 0,
+// with strips in -x, which only reverses the sign of the count.
 static double ahead(int axis, CagVec3 p) { return axis ? p.x : p.y; }
 
 static size_t strip_of(const Strips *s, double value) {
@@ -303,7 +304,7 @@ static CagStatus strips_new(const Edges *edges, const Corners *corners, int axis
   }
   s->starts = cag_calloc(s->n + 2, sizeof *s->starts);
   if (!s->starts) return cag_fail_memory(err);
-  // Twice over the edges: numbers, then places.
+  // Two passes over the edges: counts, then indices.
   for (int fill = 0; fill < 2; fill++) {
     for (size_t i = 0; i < edges->n; i++) {
       const double y0 = across(axis, corners->points[edges->items[i].from]),
@@ -322,8 +323,8 @@ static CagStatus strips_new(const Edges *edges, const Corners *corners, int axis
   return CAG_OK;
 }
 
-// The winding numbers just beside edge `self`, at a part of its way, ahead of it along the ray.
-// *clear: no other edge comes so near to the edge there that rounding may have changed their order.
+// The winding numbers next to edge `self` at the given fraction of it, on the side ahead along the
+// ray. *clear: no other edge is so close there that rounding may have changed their order.
 static CagStatus cast(const CagRegionPieces *s, const Edges *edges, const Corners *corners,
                       const Strips *strips, int axis, size_t self, double part, int winding[2],
                       bool *clear, CagError *err) {
@@ -354,14 +355,14 @@ static CagStatus cast(const CagRegionPieces *s, const Edges *edges, const Corner
       *clear = *clear && fabs(gap) > near;
       if (gap <= 0) continue;
     }
-    // Strips of x are strips of -x turned round: there what looks upwards falls.
+    // Strips in x are strips in -x reversed: upward is downward there.
     const int sense = up == (axis == 1) ? 1 : -1;
     for (int o = 0; o < 2; o++) winding[o] += sense * f->count[o];
   }
   return CAG_OK;
 }
 
-// The same at the first of some places where it is clear, or at the middle.
+// The same at the first of some positions that is clear, else at the middle.
 static CagStatus cast_clearly(const CagRegionPieces *s, const Edges *edges, const Corners *corners,
                               const Strips *strips, int axis, size_t self, int winding[2],
                               CagError *err) {
@@ -375,7 +376,7 @@ static CagStatus cast_clearly(const CagRegionPieces *s, const Edges *edges, cons
 }
 
 // Sets `keep` of every edge: 1, the region is to the left; -1, to the right; 0, on both sides or
-// none.
+// neither.
 static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners *corners,
                           CagFaceRule rule, int parameter, CagError *err) {
   Strips strips[2] = {{0}, {0}};
@@ -388,8 +389,8 @@ static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners 
     int ray[2] = {0, 0}, left[2], right[2];
     status = cag_stop_check(err);
     if (!status) status = cast_clearly(s, edges, corners, &strips[axis], axis, i, ray, err);
-    // Along +x an edge that goes up has its right side ahead; along +y one that goes to +x its
-    // left.
+    // For rays along +x the right side of an upward edge is ahead; for rays along +y the left side
+    // of an edge towards +x.
     const bool right_ahead = axis ? q.y > p.y : q.x < p.x;
     for (int o = 0; o < 2; o++) {
       right[o] = right_ahead ? ray[o] : ray[o] - e->count[o];

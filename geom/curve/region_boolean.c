@@ -1,7 +1,7 @@
-// Set operations of regions: which faces between their boundaries belong to the result.
+// Set operations of regions: which faces of their arrangement belong to the result.
 //
-// A point lies in as many of the regions as the sum of its winding numbers about them says. The
-// first region is operand 0, all others are operand 1.
+// The sum of the winding numbers about a set of regions is the number of regions that contain a
+// point. The first region is operand 0, all others are operand 1.
 
 #include "base/memory.h"
 #include "geom/curve/region_arrange.h"

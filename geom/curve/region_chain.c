@@ -1,8 +1,8 @@
-// The edges of an arrangement that bound a region, chained to loops with the region to the left.
+// Chains the boundary edges of an arrangement to loops with the region to the left.
 //
-// Where several loops pass one corner, each goes on with the first edge clockwise from the way it
-// came: the region lies between the two. A chain that comes back to a corner is cut off there as a
-// loop of its own, so no loop passes a corner twice, and loops touch but never cross.
+// If several loops pass through one corner, each continues with the first edge clockwise from its
+// incoming edge: the region lies between the two. A chain that returns to a corner is split off
+// there as a separate loop, so no loop passes a corner twice, and loops touch but never cross.
 
 #include "geom/curve/region_chain.h"
 
@@ -20,13 +20,14 @@ typedef struct Chain {
   const CagRegionEdge *edges;
   const CagVec3 *corners;
   size_t n;                // kept edges
-  size_t *kept;            // their numbers, by the corner where they start
+  size_t *kept;            // their indices, sorted by the corner where they start
   size_t *starts;          // corner v: kept[starts[v] .. starts[v + 1] - 1]
-  bool *used;              // by place in `kept`
-  size_t *path, path_size; // places in `kept`
-  size_t *position;        // corner: where in the path it is left; none
-  size_t *loops;           // places in `kept`, loop after loop
-  size_t *loop_ends;       // where each loop ends in `loops`
+  bool *used;              // indexed like `kept`
+  size_t *path, path_size; // indices into `kept`
+  size_t *position;        // for each corner: position in the path of the edge that leaves it; or
+                           // none
+  size_t *loops;           // indices into `kept`, loop by loop
+  size_t *loop_ends;       // end of each loop in `loops`
   size_t loop_count, loop_size;
 } Chain;
 
@@ -43,9 +44,9 @@ static CagStatus undecided(const Chain *c, size_t corner, CagError *err) {
                   cag_number_text(c->corners[corner].y, y));
 }
 
-// --- The way on at a corner ---
+// --- The next edge at a corner ---
 
-// The point of the edge at the distance from its start (or its end).
+// The point of the edge at the given distance from its start (or its end).
 static CagStatus point_near(const Chain *c, const CagRegionEdge *e, bool at_end, double distance,
                             CagVec3 *out, CagError *err) {
   return cag_region_piece_at_distance(c->s, &c->s->items[e->piece], e->a, e->b,
@@ -57,9 +58,9 @@ static double chord(const Chain *c, const CagRegionEdge *e) {
   return hypot(q.x - p.x, q.y - p.y);
 }
 
-// The unused edge that starts where `in` ends, first clockwise from it. Edges leave a corner
-// steadily and do not meet within the shortest of them, so their order is that on any smaller
-// circle about it.
+// The unused edge that starts where `in` ends, first clockwise from it. Edges move away from a
+// corner monotonically and do not intersect within the length of the shortest of them, so their
+// order is the same on any smaller circle about it.
 static CagStatus successor(const Chain *c, const CagRegionEdge *in, size_t *out, CagError *err) {
   const double part = 0.5; // of the shortest edge
   const size_t v = edge_end(in);
@@ -92,7 +93,7 @@ static CagStatus successor(const Chain *c, const CagRegionEdge *in, size_t *out,
   return CAG_OK;
 }
 
-// Cuts the loop off that starts at place i of the path.
+// Splits off the loop that starts at position i of the path.
 static void cut_off(Chain *c, size_t i) {
   for (size_t k = i; k < c->path_size; k++) {
     c->position[edge_start(&c->edges[c->kept[c->path[k]]])] = none;
@@ -139,7 +140,7 @@ static CagStatus chain_new(Chain *c, const CagRegionEdge *edges, size_t n, size_
   return CAG_OK;
 }
 
-// As many kept edges end at each corner as start there: winding numbers judged alike.
+// At each corner as many kept edges end as start, if the winding numbers are consistent.
 static CagStatus check_balance(const Chain *c, size_t corners, CagError *err) {
   long *balance = cag_calloc(corners + 1, sizeof *balance);
   if (!balance) return cag_fail_memory(err);
@@ -174,7 +175,7 @@ static const CagCurve *walk_curve(const Chain *c, const CagRegionEdge *e) {
   return c->s->walks[c->s->items[e->piece].walk].curve;
 }
 
-// Whether edge f goes on along the curve of edge e where that ends; `seam`: also from the end of a
+// Whether edge f continues along the curve of edge e at its end; `seam`: also from the end of a
 // closed curve to its start.
 static bool goes_on(const Chain *c, const CagRegionEdge *e, const CagRegionEdge *f, bool seam) {
   const CagRegionPiece *p = &c->s->items[e->piece], *q = &c->s->items[f->piece];
@@ -185,7 +186,7 @@ static bool goes_on(const Chain *c, const CagRegionEdge *e, const CagRegionEdge 
   return seam && curve->closed && fmin(from, to) == curve->start && fmax(from, to) == curve->end;
 }
 
-// Ends this near, as a part of the size of their coordinates, are joined as they are.
+// Ends this close, as a fraction of the size of their coordinates, are joined without moving them.
 #define JOINS 1e-10
 
 static bool joins(CagVec3 p, CagVec3 q) {
@@ -193,12 +194,12 @@ static bool joins(CagVec3 p, CagVec3 q) {
   return cag_norm(cag_sub(p, q)) <= JOINS * cag_curve_size(both, 2);
 }
 
-// The curve with its ends moved to the points, by a similarity: lines, arcs and the rest stay what
-// they are. Ends that are near enough to be joined stay where they are, and those of curves that
-// would move farther elsewhere, as where one comes back to near its start.
+// The curve with its ends moved to the given points by a similarity, so lines, arcs, and others
+// keep their kinds. Ends that are close enough to be joined are not moved, nor are the ends of
+// curves that would then move farther elsewhere, such as one that returns to near its start.
 static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, double tolerance,
                           CagError *err) {
-  const double most = 4; // tolerances: the ends move by one each
+  const double most = 4; // tolerances: each end moves by at most one
   CagVec3 p, q;
   CagStatus status = cag_curve_point(*curve, (*curve)->start, &p, err);
   if (!status) status = cag_curve_point(*curve, (*curve)->end, &q, err);
@@ -226,8 +227,8 @@ static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, double tol
   return CAG_OK;
 }
 
-// Whether edge f goes on straight from e, which starts at p or on the way from p: they are of one
-// segment, and the corner between them, if others met it there, was not moved off it.
+// Whether edge f continues straight from e, which starts at p or on the way from p: both belong to
+// one segment, and the corner between them, if others met there, was not moved off it.
 static bool runs_on(const Chain *c, CagVec3 p, const CagRegionEdge *e, const CagRegionEdge *f) {
   const double moved = 1e-3; // tolerances
   if (c->s->items[e->piece].source != c->s->items[f->piece].source) return false;
@@ -237,7 +238,7 @@ static bool runs_on(const Chain *c, CagVec3 p, const CagRegionEdge *e, const Cag
          cag_dot(d, between) > 0;
 }
 
-// A run of segments, without the corners at which others met them.
+// A sequence of segments, without the corners at which others met them.
 static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagCurve **out,
                               CagError *err) {
   CagVec3 *p = cag_malloc(sizeof *p * (n + 1));
@@ -255,7 +256,7 @@ static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagC
   return status;
 }
 
-// Edges first .. first + n - 1 of a loop, which lie on one curve one after the other.
+// Edges first .. first + n - 1 of a loop, which follow each other on one curve.
 static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurve **out,
                            CagError *err) {
   const CagRegionEdge *e = loop_edge(c, loop, 0), *f = loop_edge(c, loop, n - 1);
@@ -267,7 +268,7 @@ static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurv
     return straight_run(c, loop, n, out, err);
   const bool forward = e->keep > 0;
   const double a = forward ? e->a : f->a, b = forward ? f->b : e->b;
-  // A speck of a bent piece, or what rounding left of one.
+  // A tiny bent piece, or the remainder of one.
   if ((n == 1 && c->s->items[e->piece].straight) ||
       !(b - a > DBL_EPSILON * 8 * fmax(fabs(a), fabs(b))))
     return cag_curve_line(c->corners[edge_start(e)], c->corners[edge_end(f)], 2, out, err);
@@ -297,7 +298,7 @@ static CagStatus whole_curve(const Chain *c, const CagRegionEdge *e, CagCurve **
   return CAG_OK;
 }
 
-// A loop of one run is given in two parts, so that it closes like any other.
+// A loop that is a single run is split in two parts, so that it is closed like any other.
 static size_t run_length(const Chain *c, const size_t *loop, size_t i, size_t n) {
   size_t k = 1;
   while (i + k < n && goes_on(c, loop_edge(c, loop, i + k - 1), loop_edge(c, loop, i + k), false))
@@ -305,7 +306,7 @@ static size_t run_length(const Chain *c, const size_t *loop, size_t i, size_t n)
   return i == 0 && k == n ? n / 2 : k;
 }
 
-// Puts a line before the last run where it does not start at the end of the one before.
+// Inserts a line before the last run if it does not start at the end of the previous one.
 static CagStatus close_gap(CagCurve **runs, size_t *count, CagError *err) {
   CagCurve *last = runs[*count - 1], *before = runs[*count - 2];
   CagVec3 p, q;
@@ -318,7 +319,7 @@ static CagStatus close_gap(CagCurve **runs, size_t *count, CagError *err) {
   return status;
 }
 
-// The same from the last run to the first.
+// The same between the last run and the first.
 static CagStatus close_end(CagCurve **runs, size_t *count, CagError *err) {
   CagVec3 p, q;
   CagStatus status = cag_curve_point(runs[*count - 1], runs[*count - 1]->end, &p, err);
@@ -330,7 +331,7 @@ static CagStatus close_end(CagCurve **runs, size_t *count, CagError *err) {
 }
 
 static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **out, CagError *err) {
-  // The loop turned so that it starts with a run.
+  // Rotates the loop so that it starts with a run.
   size_t first = n;
   bool whole = true;
   for (size_t i = 0; i < n; i++) {
@@ -359,9 +360,9 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
   return status;
 }
 
-// --- Which hole lies where ---
+// --- Nesting of holes ---
 
-// Area and perimeter of the polygon of the loop's corners and the middles of its edges.
+// Area and perimeter of the polygon of the loop's corners and the midpoints of its edges.
 static CagStatus loop_measure(const Chain *c, const size_t *loop, size_t n, double *area,
                               double *perimeter, CagError *err) {
   *area = *perimeter = 0;
@@ -388,7 +389,7 @@ typedef struct Loop {
   size_t around; // for a hole: the loop around it
 } Loop;
 
-// Whether the loop runs around the point, which is not on it.
+// Whether the loop contains the point, which is not on it.
 static CagStatus runs_around(const Chain *c, const Loop *loop, CagVec3 p, bool *out,
                              CagError *err) {
   *out = false;
@@ -410,7 +411,7 @@ static CagStatus runs_around(const Chain *c, const Loop *loop, CagVec3 p, bool *
   return CAG_OK;
 }
 
-// A point on the loop that a ray along +x meets well: the middle in y of its tallest edge.
+// A point on the loop well suited for a ray along +x: the middle in y of its tallest edge.
 static CagStatus probe(const Chain *c, const Loop *loop, CagVec3 *out, CagError *err) {
   const CagRegionEdge *tallest = NULL;
   double height = -1;

@@ -1,8 +1,8 @@
 // Crossings and overlaps of the loops of a region.
 //
-// Crossings are looked for on polygons far finer than any drawing. Loops that cross or touch there
-// may do neither (circles that touch), or share an edge and lie on both sides of it (loops that
-// coincide): their insides are compared by set operations, which decide.
+// Crossings are searched on polygons far finer than any drawing. Loops whose polygons cross or
+// touch may do neither (circles that touch), or may share an edge and lie on both sides of it
+// (identical loops). Set operations of their insides decide these cases.
 
 #include "geom/curve/region_check.h"
 
@@ -16,10 +16,10 @@
 #include "geom/curve/region.h"
 #include "geom/linalg/tolerance.h"
 
-// Chord tolerance of the polygons, as a part of the size.
+// Chord tolerance of the polygons, as a fraction of the size.
 #define CROSSING_TOLERANCE 1e-5
 #define CROSSING_ANGLE (M_PI / 18)
-// Edges nearer than this part of the size of all touch.
+// Edges closer than this fraction of the total size touch.
 #define TOUCH CAG_COINCIDENT
 
 static double loop_size(const CagCurve *c) {
@@ -66,7 +66,7 @@ static double side(CagVec3 a, CagVec3 b, CagVec3 p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-// Edges that cross in their interiors; those that touch do not.
+// Whether edges cross in their interiors; touching is not crossing.
 static bool cross(const Edge *e, const Edge *f) {
   if (fmax(e->p.y, e->q.y) < fmin(f->p.y, f->q.y) || fmax(f->p.y, f->q.y) < fmin(e->p.y, e->q.y))
     return false;
@@ -78,7 +78,7 @@ static bool cross(const Edge *e, const Edge *f) {
          side(f->p, f->q, e->p) * side(f->p, f->q, e->q) < 0;
 }
 
-// Where the edges, which cross, do.
+// The intersection of two edges that cross.
 static CagVec3 crossing_of(const Edge *e, const Edge *f) {
   const double s = side(f->p, f->q, e->p), t = side(f->p, f->q, e->q);
   return cag_lerp(e->p, e->q, s / (s - t));
@@ -100,7 +100,7 @@ static bool touch(const Edge *e, const Edge *f, double slack) {
 
 // --- Pairs of loops ---
 
-// How loops are named: holes[i] are the loops after the outer boundary, curves[i] all of them.
+// How messages name loops: holes[i] are the loops after the outer boundary, curves[i] all of them.
 typedef struct Loops {
   CagCurve *const *items;
   size_t n;
@@ -159,10 +159,10 @@ static CagStatus fail_crossing(const Loops *l, const Pair *p, CagError *err) {
                   name, p->a - l->holes, name, p->b - l->holes, p->at.x, p->at.y);
 }
 
-// Edges compared with one between two looks at the stop flag.
+// Edges compared with an edge between checks of the stop flag.
 #define EDGES_BETWEEN_LOOKS ((size_t)1 << 12)
 
-// Fails where a loop crosses itself; pairs of loops that cross or touch are collected.
+// Fails if a loop crosses itself; collects pairs of loops that cross or touch.
 static CagStatus search_edges(const Loops *l, Edges *edges, Pairs *pairs, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < edges->n; i++) cag_bounds_add(&box, edges->items[i].p);
@@ -186,7 +186,7 @@ static CagStatus search_edges(const Loops *l, Edges *edges, Pairs *pairs, CagErr
 
 // --- Insides of loops that touch ---
 
-// Whether something is left of a set operation of the insides of two loops.
+// Whether the result of a set operation of the insides of two loops is not empty.
 static CagStatus leaves(CagRegionOp op, const CagCurve *a, const CagCurve *b, bool *out,
                         CagError *err) {
   CagRegion *r[2] = {NULL}, *left = NULL;
@@ -233,7 +233,7 @@ static CagStatus check_pair(const Loops *l, const Pair *p, CagError *err) {
   if (!of_a && !of_b) return fail_overlap(l, p, "are one curve; leave one of them out", err);
   if (of_a && of_b && p->cross) return fail_crossing(l, p, err);
   if (l->holes) return fail_overlap(l, p, "overlap; holes must be apart: unite them first", err);
-  if (!of_a || !of_b) return CAG_OK; // one lies in the other
+  if (!of_a || !of_b) return CAG_OK; // one lies inside the other
   return fail_overlap(l, p, "overlap; one must lie within the other, or apart from it", err);
 }
 

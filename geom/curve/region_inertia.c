@@ -3,7 +3,7 @@
 #include "geom/curve/line_integral.h"
 #include "geom/curve/region.h"
 
-// Error of an integral over a smooth piece, as a part of it.
+// Relative tolerance of an integral over a smooth piece.
 #define INTEGRAL 1e-11
 
 // d(x^3 / 3) dy, x^2 y / 2 dy, and -y^3 / 3 dx about the center.

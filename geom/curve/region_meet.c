@@ -1,8 +1,8 @@
-// Where the pieces of an arrangement meet each other.
+// Intersections of the pieces of an arrangement.
 //
-// Two pieces are cut where they cross or touch, and where an end of one lies on the other. That is
-// enough where they run along each other, too: curves of our kinds that share a stretch share it
-// from an end to an end.
+// Two pieces are cut where they cross or touch, and where an end of one lies on the other. That
+// also suffices if they overlap: overlapping curves of our kinds share an interval that begins and
+// ends at ends of them.
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@
 typedef struct Meetings {
   CagRegionPieces *pieces;
   bool again;
-  double tolerance; // an end this near to a piece lies on it
+  double tolerance; // an end this close to a piece lies on it
   CagRegionCut *items;
   size_t n, capacity;
 } Meetings;
@@ -63,7 +63,7 @@ static double along(const CagRegionPiece *piece, double u) {
   return u == 1 ? piece->b : piece->a + (piece->b - piece->a) * u;
 }
 
-// Cuts the segment where an end of another lies on it; *found: it does.
+// Cuts the segment if an end of another lies on it; *found: it does.
 static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, bool *found,
                                 CagError *err) {
   const CagRegionPiece *piece = &m->pieces->items[segment];
@@ -74,7 +74,7 @@ static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, bool *
   return cut(m, segment, along(piece, u), end, err);
 }
 
-// How far the point lies to the left of the segment's line, times the segment's length.
+// Signed distance of the point to the left of the segment's line, times the segment's length.
 static double beside(const CagRegionPiece *piece, CagVec3 p) {
   const CagVec3 d = cag_sub(piece->q, piece->p), r = cag_sub(p, piece->p);
   return d.x * r.y - d.y * r.x;
@@ -82,9 +82,9 @@ static double beside(const CagRegionPiece *piece, CagVec3 p) {
 
 static bool on_two_sides(double g, double h) { return (g < 0 && h > 0) || (g > 0 && h < 0); }
 
-// Segments with an end of one on the other do not cross besides: that end becomes a corner of both.
-// Others cross where each has its ends on two sides of the other's line. What rounding does to the
-// place of a crossing at a small angle is along both of them.
+// If an end of one segment lies on the other, they do not cross elsewhere: that end becomes a
+// corner of both. Other segments cross if each has its ends on different sides of the other's line.
+// At a small angle, rounding moves the intersection along both of them.
 static CagStatus meet_segments(Meetings *m, size_t i, size_t k, bool ends_only, CagError *err) {
   const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
   bool touch = false;
@@ -102,7 +102,7 @@ static CagStatus meet_segments(Meetings *m, size_t i, size_t k, bool ends_only, 
 
 // --- Circles ---
 
-// A point near both pieces cuts them; that of a circle whose ends it lies between.
+// Cuts both pieces at a point near them; a circle is cut if the point is between its ends.
 static CagStatus cut_at(Meetings *m, size_t i, size_t k, CagVec3 p, CagError *err) {
   const size_t which[2] = {i, k};
   const CagRegionPiece *pieces = m->pieces->items;
@@ -124,8 +124,9 @@ static CagStatus cut_at(Meetings *m, size_t i, size_t k, CagVec3 p, CagError *er
   return CAG_OK;
 }
 
-// The two points at the distances `forward` and +-`aside` from `from` along the unit vector; one
-// where they are so near to each other that what lies between is no wider than the tolerance.
+// Cuts at the two points at the distances `forward` and +-`aside` from `from` along the unit
+// vector; at one point if they are so close that the lens between them is no wider than the
+// tolerance.
 static CagStatus cut_pair(Meetings *m, size_t i, size_t k, CagVec3 from, CagVec3 unit,
                           double forward, double square, bool touch, CagError *err) {
   const CagVec3 middle = cag_madd(from, forward, unit), side = cag_vec3(-unit.y, unit.x, 0);
@@ -151,7 +152,7 @@ static CagStatus meet_circle(Meetings *m, size_t i, size_t k, CagError *err) {
   }
   const CagVec3 d = cag_sub(b->center, a->center);
   const double distance = cag_norm(d), s = b->radius;
-  if (distance <= tolerance) return CAG_OK; // about one center: the same, or apart
+  if (distance <= tolerance) return CAG_OK; // concentric: identical, or disjoint
   const bool touch =
       fabs(distance - (r + s)) <= tolerance || fabs(distance - fabs(r - s)) <= tolerance;
   const double forward = (distance + (r - s) * (r + s) / distance) / 2;
@@ -188,7 +189,7 @@ static CagStatus part_of(Meetings *m, size_t i, CagCurve **out, CagError *err) {
   return status;
 }
 
-// Whether the point lies on piece i, and where.
+// Whether the point lies on piece i, and its parameter.
 static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t, CagError *err) {
   const CagRegionPiece *piece = &m->pieces->items[i];
   *out = false;
@@ -222,8 +223,8 @@ static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t,
   return status;
 }
 
-// Whether the two run along each other somewhere: between two common places next to each other on
-// piece i, whose parameters are t, lies a third one.
+// Whether the two overlap somewhere: between two neighboring common points on piece i, whose
+// parameters are t, there is a third one.
 static CagStatus run_along(Meetings *m, size_t i, size_t k, double *t, size_t n, bool *out,
                            CagError *err) {
   *out = false;
@@ -249,7 +250,7 @@ static CagStatus run_along(Meetings *m, size_t i, size_t k, double *t, size_t n,
 
 static CagStatus meet_curves(Meetings *m, size_t i, size_t k, bool ends_only, CagError *err) {
   const size_t which[2] = {i, k};
-  double shared[4]; // parameters on piece i of ends of either on the other
+  double shared[4]; // parameters on piece i of ends that lie on the other piece
   size_t n = 0;
   CagStatus status = CAG_OK;
   for (int side = 0; side < 2; side++) {
@@ -279,7 +280,7 @@ static CagStatus meet_curves(Meetings *m, size_t i, size_t k, bool ends_only, Ca
   CagMeeting *found = NULL;
   size_t count = 0;
   status = cag_curve_intersect(a, b, &found, &count, err);
-  if (status == CAG_E_DEGENERATE) return CAG_OK; // along each other: cut at their ends already
+  if (status == CAG_E_DEGENERATE) return CAG_OK; // overlapping: cut at their ends already
   if (status) return status;
   for (size_t f = 0; !status && f < count; f++)
     status = cut_both(m, i, found[f].t, k, found[f].t2, found[f].point, err);
@@ -308,9 +309,10 @@ static int by_place(const void *a, const void *b) {
 
 typedef enum Meet { NEVER, AT_ENDS, ANYWHERE } Meet;
 
-// Pieces of one group do not cross, but an end of one may touch another. Neighbors of one curve
-// that is bent do not meet at all: they were parted where one coordinate turns, the other keeps
-// them apart. Pieces that were cut where they meet are met again where their ends were moved to.
+// Pieces of one group do not cross, but an end of one may touch another. Neighbors on one bent
+// curve never meet: they were split where one coordinate has an extremum, and the other coordinate
+// separates them. Pieces that have been cut are tested again at the locations to which their ends
+// were moved.
 static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b,
                      bool again) {
   const int group = s->walks[a->walk].group;
@@ -322,9 +324,9 @@ static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const Ca
 
 CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **out, size_t *n,
                                  CagError *err) {
-  // Corners are farther apart than the tolerance. So where one is less than half of that from a
-  // segment between two others, the angle there is greater than 120 degrees, both parts are shorter
-  // than the segment by a part of the tolerance, and cutting again and again comes to an end.
+  // Corners are farther apart than the tolerance. So if one is closer than half of that to a
+  // segment between two others, the angle there exceeds 120 degrees, and both parts are shorter
+  // than the segment by a fraction of the tolerance; therefore repeated cutting terminates.
   Meetings m = {.pieces = s, .again = again, .tolerance = again ? s->tolerance / 2 : s->tolerance};
   Box *boxes = cag_malloc(sizeof *boxes * (s->n + 1));
   if (!boxes) return cag_fail_memory(err);

@@ -1,19 +1,20 @@
-// Regions grown and shrunk: the points within a distance of a region, or of its inside.
+// Offsets of regions: the points within a distance of a region, or of its inside.
 //
-// A strip of the width |d| lies along each smooth part of the boundary, on the side it moves to,
-// and a sector about each corner that bends away from that side. The curve around region and strips
-// (grown), or around the region with the strips taken away (shrunk), runs along the shifted parts,
-// by arcs about such corners, and through all other corners; each point's winding number about it
-// is that of the region plus (less) the number of strips and sectors over the point. What is wanted
-// are the points with a positive one, so no crossing need be judged by itself.
+// A strip of the width |d| lies along each smooth part of the boundary, on the side to which it
+// moves, and a sector at each corner that bends away from that side. The curve around region and
+// strips (grown), or around the region without the strips (shrunk), runs along the shifted parts,
+// by arcs about such corners, and through all other corners. The winding number of the curve about
+// a point is that of the region plus (minus) the number of strips and sectors that contain the
+// point. The result consists of the points with a positive winding number, so crossings need no
+// separate treatment.
 //
-// Strips count by their sense: where a part bends to its strip's side with a radius less than |d|,
-// the strip folds over and what lies beyond the fold would count against it. Such parts are left as
-// they are, and the whole neighborhood of the part is added (taken away) instead: the curve around
-// it, both sides and half a circle at each end, runs around each point as often as the part has
-// stretches within |d| of the point (the sublevel sets of a function on an interval), so at least
-// once where it is within |d| and else not at all. Such a part reaches a little beyond the places
-// where the strip begins to fold, so that its ends are no cusps of the shifted curve.
+// Strips are oriented: where a part bends towards its strip with a radius below |d|, the strip
+// folds over, and the area beyond the fold would count negatively. Such parts are not moved;
+// instead the whole neighborhood of the part is added (removed). The curve around it, with both
+// sides and a half circle at each end, runs around each point as often as the part has intervals
+// within |d| of the point (the sublevel sets of a function on an interval), so at least once if the
+// point is within |d| and never otherwise. Such a part extends a little beyond the point where the
+// strip begins to fold, so that its ends are not cusps of the shifted curve.
 
 #include <math.h>
 
@@ -24,26 +25,27 @@
 #include "geom/curve/region_arrange.h"
 #include "geom/linalg/tolerance.h"
 
-// Turns by less than this (sine) are no corner.
+// Turns below this (sine) are not corners.
 #define TURN CAG_PARALLEL
-// A strip whose far side runs at less than this part of the near side's speed counts as folding.
+// A strip folds if its far side moves at less than this fraction of the near side's speed.
 #define FOLD 0.05
-// Samples of a smooth part between which the radius of curvature passes |d| once at most.
+// Samples of a smooth part, dense enough that the radius of curvature passes |d| at most once
+// between two of them.
 #define SAMPLES 32
-// Halvings that take an interval to neighboring doubles.
+// Enough bisections to reduce an interval to neighboring doubles.
 #define BISECTIONS 80
-// Axes of a circle differ by this part at most; a circle shrunk to this part of it is a point.
+// Maximum relative difference of the axes of a circle; a circle shrunk to this fraction is a point.
 #define ROUND CAG_ROUNDING
 
 typedef struct Raw {
   CagCurve **curves; // owned
   CagWalk *walks;
   size_t n, capacity;
-  double left, tolerance; // how far the boundary moves to its left
-  bool near;              // some of the curves are within the tolerance only
+  double left, tolerance; // distance by which the boundary moves to its left
+  bool near;              // some of the curves are accurate only to the tolerance
 } Raw;
 
-// Takes the curve over.
+// Takes ownership of the curve.
 static CagStatus put(Raw *raw, CagCurve *c, int sign, CagError *err) {
   if (raw->n == raw->capacity) {
     size_t capacity = raw->capacity ? 2 * raw->capacity : 32;
@@ -90,7 +92,7 @@ static CagStatus put_arc(Raw *raw, CagVec3 center, CagVec3 from, CagVec3 to, boo
 
 typedef struct Part {
   CagCurve *curve;
-  bool folds; // bends to the side it moves to with a radius less than the distance
+  bool folds; // bends towards the side it moves to, with a radius below the distance
   CagVec3 ends[2], tangents[2];
 } Part;
 
@@ -111,7 +113,7 @@ static bool is_line(const CagCurve *c) {
   return cag_curve_vertices(c, &v, &n, &closed);
 }
 
-// Center, radius and sense of a circle's arc, or false.
+// Center, radius, and orientation of an arc of a circle; false for other curves.
 static bool circle_of(const CagCurve *c, CagVec3 *center, double *radius, double *sense) {
   CagVec3 x, y;
   double rate;
@@ -122,8 +124,8 @@ static bool circle_of(const CagCurve *c, CagVec3 *center, double *radius, double
   return fabs(a - b) <= ROUND * a && fabs(cag_dot(x, y)) <= ROUND * a * b;
 }
 
-// Positive where the far side of a strip of the width `left` runs faster than at `least` times the
-// speed of the near side: |C'|^3 (1 - left k - least).
+// Positive if the far side of a strip of the width `left` moves faster than `least` times the speed
+// of the near side: |C'|^3 (1 - left k - least).
 static CagStatus room(const CagCurve *c, double left, double least, double t, double *out,
                       CagError *err) {
   CagVec3 d[3];
@@ -134,7 +136,7 @@ static CagStatus room(const CagCurve *c, double left, double least, double t, do
   return CAG_OK;
 }
 
-// Takes the curve over.
+// Takes ownership of the curve.
 static CagStatus add_part(Parts *parts, CagCurve *c, bool folds, CagError *err) {
   CagStatus status = CAG_OK;
   if (!CAG_RESERVE(parts->items, parts->capacity, parts->n + 1)) status = cag_fail_memory(err);
@@ -156,7 +158,7 @@ static CagStatus add_over(Parts *parts, const CagCurve *c, double a, double b, b
   return status ? status : add_part(parts, part, folds, err);
 }
 
-// Cuts the part where the room passes 0.
+// Cuts the part where the room changes sign.
 static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double least,
                           CagError *err) {
   double *cuts;
@@ -192,8 +194,8 @@ static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double l
   return status ? status : add_over(parts, c, from, c->end, folds, err);
 }
 
-// A smooth part of the boundary, cut further where it has to be; whole circles that fold in two, as
-// a neighborhood has ends.
+// Adds a smooth part of the boundary, cut further if necessary; whole circles that fold are cut in
+// two, because a neighborhood has ends.
 static CagStatus add_smooth(Parts *parts, const CagCurve *c, double left, CagError *err) {
   CagVec3 center;
   double radius, sense;
@@ -214,7 +216,7 @@ static CagStatus add_smooth(Parts *parts, const CagCurve *c, double left, CagErr
   return status ? status : add_over(parts, c, middle, c->end, true, err);
 }
 
-// Whether the curve goes on smoothly over the parameter, one of its breaks.
+// Whether the curve is smooth at one of its breaks.
 static CagStatus is_smooth(const CagCurve *c, double t, bool *out, CagError *err) {
   CagVec3 left, right;
   CagStatus status = cag_curve_tangent(c, t, CAG_SIDE_LEFT, &left, err);
@@ -223,7 +225,7 @@ static CagStatus is_smooth(const CagCurve *c, double t, bool *out, CagError *err
   return status;
 }
 
-// The part over [a, b] of the boundary, of one kind.
+// The part over [a, b] of the boundary, which is of one kind.
 static CagStatus take_part(const CagCurve *c, double a, double b, bool straight, CagCurve **out,
                            CagError *err) {
   double local_a, local_b, rate;
@@ -238,10 +240,10 @@ static CagStatus take_part(const CagCurve *c, double a, double b, bool straight,
                : cag_curve_trim(c, a, b, out, err);
 }
 
-// Whether [a, b] is so short that it is rounding, in the parameter and in the plane.
+// Whether [a, b] is as short as rounding, in the parameter and in the plane.
 static CagStatus is_nothing(const CagCurve *c, double a, double b, double size, bool *out,
                             CagError *err) {
-  const double nothing = CAG_ROUNDING; // part of the whole
+  const double nothing = CAG_ROUNDING; // fraction of the whole
   CagVec3 p, q;
   *out = !(a < b);
   if (*out) return CAG_OK;
@@ -265,7 +267,7 @@ static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError
         cag_curve_composite_piece(c, cuts[i - 1], cuts[i], &local_a, &local_b, &rate);
     const bool straight = is_line(piece ? piece : c);
     bool smooth = false, nothing = false;
-    // The joint of two pieces is always a cut: each has a kind of its own.
+    // The joint of two pieces is always a cut, since each has its own kind.
     if (i + 1 < n && !straight && !(piece && local_b == piece->end))
       status = is_smooth(c, cuts[i], &smooth, err);
     if (status || smooth) continue;
@@ -280,11 +282,11 @@ static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError
   return status;
 }
 
-// --- The curve around ---
+// --- The surrounding curve ---
 
 static CagVec3 left_of(CagVec3 v) { return cag_vec3(-v.y, v.x, 0); }
 
-// The part moved to its left; *out is NULL where it shrinks to a point.
+// The part shifted to its left; *out is NULL if it shrinks to a point.
 static CagStatus shifted(const Part *p, double left, double tolerance, CagCurve **out,
                          CagError *err) {
   CagVec3 center;
@@ -295,7 +297,7 @@ static CagStatus shifted(const Part *p, double left, double tolerance, CagCurve 
   const double factor = 1 - sense * left / radius;
   if (fabs(factor) <= ROUND) return CAG_OK;
   CagTransform t = cag_translate(cag_scaled(center, 1 - factor));
-  t.m[0][0] = t.m[1][1] = factor; // negative: turned by half a turn, the sense stays
+  t.m[0][0] = t.m[1][1] = factor; // negative: rotated by half a turn, with the same orientation
   t.planar = true;
   return cag_curve_transform(p->curve, &t, out, err);
 }
@@ -304,8 +306,9 @@ static CagVec3 moved_end(const Part *p, int end, double left) {
   return cag_madd(p->ends[end], left, left_of(p->tangents[end]));
 }
 
-// Whether both strips of two segments at an inner corner cover the triangle of the corner and the
-// strips' ends: counted once less it still counts, and the way to the corner and back is spared.
+// Whether the strips of two segments at an inner corner both cover the triangle of the corner and
+// the strips' ends. Counted once less, it is still covered, and the detour to the corner is
+// unnecessary.
 static bool overlaps(const Part *a, const Part *b, double left) {
   if (a->folds || b->folds || !is_line(a->curve) || !is_line(b->curve)) return false;
   const double reach = fabs(left * cag_cross(a->tangents[1], b->tangents[0]).z);
@@ -345,7 +348,7 @@ static CagStatus put_shifted(Raw *raw, const Part *p, double left, bool backward
   return status ? status : put(raw, turned, sign, err);
 }
 
-// One side of a part; where that has cusps each of the curves between them.
+// One side of a part; if it has cusps, each of the curves between them.
 static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, int sign,
                           CagError *err) {
   CagVec3 center;
@@ -360,7 +363,7 @@ static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, 
   return status;
 }
 
-// The curve around all points within the distance of the part, counter-clockwise.
+// The counter-clockwise curve around all points within the distance of the part.
 static CagStatus put_neighborhood(Raw *raw, const Part *p, CagError *err) {
   const double d = fabs(raw->left);
   const int sign = raw->left < 0 ? 1 : -1;
@@ -410,26 +413,26 @@ static CagStatus largest_disc(const CagRegion *r, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// Parts of the region's size: a distance below the first is rounding, one above the second leaves
-// the region itself below rounding.
+// Relative to the region's size: a distance below the first is rounding; for one above the second
+// the region itself is below rounding.
 #define NO_DISTANCE CAG_ROUNDING
 #define FAR 1e9
 
-// --- Convex polygons that shrink ---
+// --- Shrinking convex polygons ---
 //
-// What is left is bounded by the moved lines of the edges alone, which come sorted by direction:
-// each cuts off the ends of the chain of those before it. Linear time, where an arrangement of all
-// strips near the middle would have each cross each.
+// The result is bounded only by the shifted lines of the edges, which are sorted by direction: each
+// cuts off the ends of the chain of the previous ones. This takes linear time, while an arrangement
+// would intersect all strips near the middle with each other.
 
-// A line with what lies to its left.
+// The half plane to the left of a line.
 typedef struct Half {
   CagVec3 at, along; // along: unit
 } Half;
 
 typedef struct Chain {
   Half *halves;
-  size_t first, end; // those that are left: first .. end - 1
-  double slack;      // lengths below are rounding
+  size_t first, end; // the remaining ones: first .. end - 1
+  double slack;      // lengths below this are rounding
 } Chain;
 
 static CagVec3 meeting(const Half *a, const Half *b) {
@@ -453,7 +456,7 @@ static bool cut_chain(Chain *c, Half h) {
   return true;
 }
 
-// The loop's edges moved to the left by `left`; false: it is no convex polygon that runs
+// The loop's edges shifted to the left by `left`; false if it is not a convex polygon that runs
 // counter-clockwise once.
 static bool move_edges(const CagVec3 *v, size_t n, double left, Half *out, size_t *count) {
   double turned = 0;
@@ -465,7 +468,7 @@ static bool move_edges(const CagVec3 *v, size_t n, double left, Half *out, size_
     if (*count > 0) {
       const CagVec3 before = out[*count - 1].along;
       const double sine = cag_cross(before, u).z, cosine = cag_dot(before, u);
-      if (fabs(sine) <= TURN && cosine > 0) continue; // straight on: the same line
+      if (fabs(sine) <= TURN && cosine > 0) continue; // collinear with the previous edge
       if (sine < 0) return false;
       turned += atan2(sine, cosine);
     }
@@ -502,7 +505,7 @@ static CagStatus polygon_of(const Chain *c, CagRegion **out, CagError *err) {
   return status;
 }
 
-// *taken false: the region is no convex polygon. *out NULL: nothing is left.
+// *taken is false if the region is not a convex polygon. *out is NULL if nothing is left.
 static CagStatus shrink_convex(const CagRegion *r, double d, double size, bool *taken,
                                CagRegion **out, CagError *err) {
   const CagVec3 *v;

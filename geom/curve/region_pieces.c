@@ -1,8 +1,8 @@
-// Pieces of curves that run one way in x and one way in y.
+// Pieces of curves that are monotone in x and in y.
 //
-// Such a piece lies in the box of its ends, takes each coordinate once, and leaves each of its ends
-// steadily: boxes, rays and small circles about a corner meet it in at most one place, which
-// bisection finds.
+// Such a piece lies in the box of its ends, takes each coordinate value once, and moves away from
+// its ends monotonically. Boxes, rays, and small circles about a corner therefore intersect it at
+// most once, and bisection finds the intersection.
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,14 +13,14 @@
 #include "geom/curve/region_arrange.h"
 #include "geom/linalg/tolerance.h"
 
-// Velocities under this part of the largest count as none: a straight line keeps its direction.
+// Velocities below this fraction of the largest are zero: a straight line keeps its direction.
 #define STILL 1e-11
-// Axes of a circle differ by this part at most.
+// Maximum relative difference of the axes of a circle.
 #define ROUND CAG_ROUNDING
-// Samples of a smooth part in which turns of its direction are looked for, and more by degree.
+// Samples of a smooth part in the search for extrema; more for higher degrees.
 #define SAMPLES 24
 #define SAMPLES_PER_DEGREE 4
-// Halvings that take an interval to neighboring doubles.
+// Enough bisections to reduce an interval to neighboring doubles.
 #define BISECTIONS 100
 
 static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
@@ -35,7 +35,7 @@ void cag_region_pieces_free(CagRegionPieces *s) {
   cag_free(s->items);
 }
 
-// Sets what is known of a piece of a circle.
+// Sets the circle of a piece of a circle.
 static void find_circle(const CagCurve *c, CagRegionPiece *piece) {
   double local_a, local_b, rate;
   const CagCurve *inner =
@@ -69,7 +69,7 @@ static bool is_straight(const CagCurve *c, double a, double b) {
   return cag_curve_vertices(piece ? piece : c, &points, &n, &ring);
 }
 
-// --- Turns of the direction ---
+// --- Extrema of the coordinates ---
 
 typedef struct Sample {
   double t;
@@ -83,7 +83,7 @@ static CagStatus sample(const CagCurve *c, double t, CagSide side, Sample *out, 
   return status;
 }
 
-// Between a and b the velocity (order 0) or its change (1) in the coordinate has a zero.
+// The zero of the velocity (order 0) or its derivative (1) in the coordinate between a and b.
 static CagStatus bisect(const CagCurve *c, const Sample *a, const Sample *b, int order, int axis,
                         Sample *out, CagError *err) {
   double lo = a->t, hi = b->t;
@@ -117,8 +117,8 @@ static bool opposite(double x, double y, double still) {
   return (x > still && y < -still) || (x < -still && y > still);
 }
 
-// Turns between two neighboring samples: one where the velocity changes its sign; two where it
-// comes to its own smallest value in between, with the other sign.
+// Extrema between two neighboring samples: one if the velocity changes sign; two if its minimum in
+// between has the other sign.
 static CagStatus turns_between(const CagCurve *c, const Sample *a, const Sample *b, int axis,
                                double still, Turns *turns, CagError *err) {
   Sample m;
@@ -160,7 +160,7 @@ static CagStatus turns_of(const CagCurve *c, double a, double b, Turns *turns, C
   for (size_t i = 0; !status && i < n; i++)
     for (int axis = 0; !status && axis < 2; axis++)
       status = turns_between(c, &samples[i], &samples[i + 1], axis, STILL * fastest, turns, err);
-  // A sample that falls on a turn hides it from its two neighbors.
+  // An extremum at a sample is missed by both of its intervals.
   for (size_t i = 1; !status && i < n; i++)
     for (int axis = 0; !status && axis < 2; axis++)
       if (fabs(samples[i].v[axis]) <= STILL * fastest &&
@@ -201,7 +201,7 @@ CagStatus cag_region_pieces_add(CagRegionPieces *s, size_t walk, CagError *err) 
   return status;
 }
 
-// --- Places on a piece ---
+// --- Points on a piece ---
 
 CagStatus cag_region_piece_point(const CagRegionPieces *s, const CagRegionPiece *piece, double t,
                                  CagVec3 *out, CagError *err) {
@@ -216,8 +216,7 @@ CagStatus cag_region_piece_point(const CagRegionPieces *s, const CagRegionPiece 
   return cag_curve_eval(s->walks[piece->walk].curve, t, 0, CAG_SIDE_RIGHT, out, err);
 }
 
-// What is known of a place: its coordinate, or its distance from a point; falls or climbs along the
-// piece.
+// The quantity to solve for, monotone along the piece: a coordinate, or the distance from a point.
 typedef struct Measure {
   int axis; // 2: distance
   CagVec3 from;
@@ -229,7 +228,7 @@ static double measure(const Measure *m, CagVec3 p) {
   return (m->axis ? p.y : p.x) - m->value;
 }
 
-// Regula falsi (Illinois), halving where that is slow.
+// Regula falsi (Illinois variant), with bisection where that is slow.
 static CagStatus find(const CagRegionPieces *s, const CagRegionPiece *piece, double a, double b,
                       const Measure *m, double *out, CagVec3 *point, CagError *err) {
   CagVec3 p, q;

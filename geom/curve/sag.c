@@ -1,4 +1,4 @@
-// How far a curve can be from a chord: the bound that discretizing, boxes and searches rest on.
+// Bounds of the distance of a curve from its chord, used for discretization, boxes, and searches.
 
 #include <math.h>
 
@@ -26,7 +26,8 @@ static double bezier_sag(const double *b, int p, bool rational) {
 }
 
 static double nurbs_sag(const CagNurbs *c, double a, double b) {
-  // By the middle: the ends may miss a knot by the rounding of a composite's parameters.
+  // Find the piece by the midpoint: the ends may miss a knot by the rounding of a composite's
+  // parameters.
   const size_t i = cag_nurbs_piece(c, a + (b - a) / 2, CAG_SIDE_RIGHT, c->pieces);
   const double length = c->cuts[i + 1] - c->cuts[i];
   double u = fmax(0, (a - c->cuts[i]) / length), v = fmin(1, (b - c->cuts[i]) / length);
@@ -35,9 +36,8 @@ static double nurbs_sag(const CagNurbs *c, double a, double b) {
   return bezier_sag(part, c->degree, c->rational);
 }
 
-// A kind of which nothing is known but its points: the largest distance found, and half as much
-// again. The samples stand at multiples of the golden ratio, so that no wave meets them all at one
-// phase.
+// For a kind known only by points: the largest distance found, plus half. The samples are at
+// multiples of the golden ratio, so that no periodic curve meets them all at the same phase.
 #define GOLDEN 0.6180339887498949
 static double sampled_sag(const CagCurve *c, double a, double b) {
   enum { SAMPLES = 9 };
@@ -57,7 +57,7 @@ static double sampled_sag(const CagCurve *c, double a, double b) {
 }
 
 bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q) {
-  // Part of the bend by which points of the curve may be off the cubic.
+  // Fraction of the bend by which points of the curve may be off the cubic.
   const double like = 1.0 / 8;
   const double h = b - a;
   CagVec3 d[4];
@@ -82,8 +82,8 @@ bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q) {
   return true;
 }
 
-// Where two points agree with the cubic through both ends along the tangents there, the curve is
-// taken for that cubic, which stays within 3/4 of the largest distance of its control points.
+// If two points agree with the cubic Hermite interpolant of both ends, the curve is treated as that
+// cubic, which stays within 3/4 of the largest distance of its control points.
 static double smooth_sag(const CagCurve *c, double a, double b) {
   const double cubic = 0.75, safety = 1.25; // the curve may be off by 1/8 of the bend
   CagVec3 q[4];
@@ -98,7 +98,7 @@ double cag_curve_sag(const CagCurve *c, double a, double b) {
   CagVec3 center, x, y;
   double rate, bend;
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate)) {
-    // The chord of a unit circle, stretched by the axes at most.
+    // The chord of a unit circle, stretched at most by the axes.
     double half = fabs(rate) * (b - a) / 2, quarter = sin(fmin(half, M_PI) / 2);
     return cag_curve_stretch(x, y) * 2 * quarter * quarter;
   }

@@ -1,4 +1,4 @@
-// Parts of closed curves that run over the seam, where the end meets the start again.
+// Parts of closed curves across the seam, where the end meets the start.
 
 #include <float.h>
 
@@ -6,8 +6,8 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// Vertices of both polylines one after the other; the second starts in the last vertex of the
-// first, at the parameter `shift` later than its own.
+// The vertices of both polylines; the second starts in the last vertex of the first, with its
+// parameters increased by `shift`.
 static CagStatus join_polylines(const CagCurve *first, const CagCurve *second, double shift,
                                 CagCurve **out, CagError *err) {
   const CagVec3 *p, *q;
@@ -37,7 +37,7 @@ static CagStatus join_polylines(const CagCurve *first, const CagCurve *second, d
   return status;
 }
 
-// The part from a in the domain over the seam to b - period in it.
+// The part from a in the domain across the seam to b - period.
 static CagStatus two_parts(const CagCurve *c, double a, double b, double period, CagCurve **out,
                            CagError *err) {
   CagCurve *parts[2] = {NULL, NULL}, *joined = NULL;
@@ -50,7 +50,7 @@ static CagStatus two_parts(const CagCurve *c, double a, double b, double period,
     status = join_polylines(parts[0], parts[1], period, out, err);
   } else {
     if (!status) status = cag_curve_join(parts, 2, &joined, err);
-    // A NURBS stays one, with a full knot at the seam.
+    // A NURBS stays a NURBS, with a knot of full multiplicity at the seam.
     if (!status && cag_nurbs_data(c)) status = cag_curve_to_nurbs(joined, out, err);
     else if (!status) *out = cag_curve_retain(joined);
   }
@@ -66,7 +66,7 @@ CagStatus cag_curve_trim_over_seam(const CagCurve *c, double a, double b, CagCur
   CagVec3 center, x, y;
   double rate;
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate)) return c->kind->trim(c, a, b, out, err);
-  // Whole turns are taken off, so that the part begins within the domain.
+  // Removes whole turns, so that the part begins within the domain.
   const double turns = floor((a - c->start + slack) / period) * period;
   const double from = fmax(a - turns, c->start), to = b - turns;
   CagCurve *part;

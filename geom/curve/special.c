@@ -1,8 +1,9 @@
-// Where a curve stands still, is straight or is flat for a moment.
+// Points at which the speed, the curvature, or the torsion of a curve vanishes.
 //
 // Each is a zero of a function of the derivatives that is smooth on each piece: w = C', C' x C'',
-// (C' C'' C'''). Its square has a minimum there, so that w . w' rises through 0. That is bracketed
-// on steps so small that a cubic through the ends of each follows w, and the bracket is halved.
+// (C' C'' C'''). Its square has a minimum there, so w . w' changes sign upward. That is bracketed
+// on steps so small that a cubic through the ends of each approximates w, and the bracket is
+// bisected.
 
 #include <stdlib.h>
 
@@ -11,19 +12,19 @@
 #include "geom/curve/family.h"
 #include "geom/curve/frenet.h"
 
-// A function counts as 0 along a piece when it is this part of its natural size, and in a point
-// when it is this part of its largest value on the piece.
+// A function vanishes along a piece if it is below this fraction of its natural size, and at a
+// point if it is below this fraction of its maximum on the piece.
 #define NOTHING 1e-10
 #define NOTHING_HERE 1e-8
-// Points nearer than this part of the piece are one: the accuracy of zeros of high order.
+// Points closer than this fraction of the piece are identical: the accuracy of zeros of high order.
 #define SAME 1e-5
-// Steps that each piece is cut into at least, halvings of these at most, what the cubic may miss,
-// and the parts of a step that are searched.
+// Minimum number of steps per piece, maximum number of halvings of a step, tolerance of the cubic,
+// and subdivisions of a step that are searched.
 #define STEPS 32
 #define HALVINGS 8
 #define MISSES 1e-3
 #define PARTS 8
-// Halvings that exhaust the digits of a double.
+// Enough bisections for all digits of a double.
 #define BISECTIONS 80
 
 typedef struct Search {
@@ -98,14 +99,14 @@ static CagStatus bisect(const Search *s, Sample low, Sample high) {
   return judge(s, cag_norm(low.w) < cag_norm(high.w) ? &low : &high);
 }
 
-// All parts of a step that the cubic follows.
+// Searches all subdivisions of a step on which the cubic is accurate.
 static CagStatus search_parts(const Search *s, Sample low, const Sample *end) {
   const double start = low.t;
   for (int i = 1; i <= PARTS; i++) {
     Sample high = *end;
     CagStatus status = CAG_OK;
     if (i < PARTS) status = sample(s, start + (end->t - start) * i / PARTS, &high);
-    // A zero met exactly has a rise of 0 and ends the part before it.
+    // At an exact zero the rise is 0; it ends the part before it.
     if (!status && rise(&low) < 0 && rise(&high) >= 0) status = bisect(s, low, high);
     if (status) return status;
     low = high;
@@ -125,7 +126,7 @@ static CagStatus search_step(const Search *s, const Sample *a, const Sample *b, 
   Sample middle;
   CagStatus status = sample(s, a->t + (b->t - a->t) / 2, &middle);
   if (status) return status;
-  // Zeros at both ends of a small step leave nothing that the cubic could follow.
+  // With zeros at both ends of a small step, the cubic cannot be verified.
   if (halvings == 0 || followed(a, b, &middle)) return search_parts(s, *a, b);
   status = search_step(s, a, &middle, halvings - 1);
   return status ? status : search_step(s, &middle, b, halvings - 1);
@@ -137,7 +138,7 @@ static double step_at(const Search *s, int i) {
   return i == STEPS ? s->end : s->start + (s->end - s->start) * i / STEPS;
 }
 
-// Natural size of w, where the derivatives do not all but vanish.
+// Natural size of w, for derivatives that do not nearly vanish.
 static double natural_size(const Search *s) {
   const double length = s->curve->end - s->curve->start;
   const double second = fmax(s->maxima[1], s->maxima[0] / length);

@@ -1,19 +1,19 @@
-// Paths without stops: stretches of the parameter over which a curve stays where it is.
+// Removes intervals of the parameter on which a curve rests in one point.
 //
-// A polyline with a repeated vertex, or a joined curve with a piece of no length, has no direction
-// there. What is carried along it needs none: it goes on from the moving part before to the one
-// after, whose parameters take in those of the stop.
+// A polyline with a repeated vertex, or a joined curve with a piece of zero length, has no
+// direction there. A sweep does not need one: it continues from the moving part before to the one
+// after, whose parameter ranges are extended over the stop.
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
 
-// Whether the curve stays in one point over [a, b].
+// Whether the curve rests in one point over [a, b].
 static bool rests(const CagCurve *c, double a, double b, double size) {
   const CagBounds box = c->kind->hull(c, a, b);
   return cag_norm(cag_sub(box.max, box.min)) <= CAG_CURVE_SAME * size;
 }
 
-// The part over [a, b] as a curve over [from, to].
+// The part over [a, b], reparametrized to [from, to].
 static CagStatus stretched(const CagCurve *c, double a, double b, double from, double to,
                            CagCurve **out, CagError *err) {
   CagCurve *part;
@@ -38,10 +38,10 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
     stop[i] = rests(c, cuts[i], cuts[i + 1], size);
     moving += !stop[i];
   }
-  if (!status && moving == 0) { // no path
+  if (!status && moving == 0) { // not a path
     *out = cag_curve_retain(c);
   } else if (!status) {
-    double from = c->start; // where the part begins with the stop before it
+    double from = c->start; // start of the part, including the stop before it
     for (size_t i = 0; !status && i + 1 < n; i++) {
       if (stop[i]) continue;
       size_t last = i;

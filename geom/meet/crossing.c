@@ -1,6 +1,6 @@
-// Surfaces that cross themselves: profiles by the crossings of their edges, sweeps by the curvature
-// of the path against the reach of the section (the surface folds where the section passes the
-// center of curvature), and tubes by the distance between parts of their path.
+// Surfaces that intersect themselves: profiles by the crossings of their edges, sweeps by comparing
+// the section's extent with the radius of curvature of the path (the surface folds where the
+// section passes the center of curvature), and tubes by the distance between parts of their path.
 
 #include "geom/meet/crossing.h"
 
@@ -15,10 +15,10 @@
 #define PROFILE_SAMPLES 400
 #define PATH_SAMPLES 200
 #define SECTION_SAMPLES 64
-// Disks of a tube, by its length and thickness.
+// Number of disks for a tube, depending on its length and thickness.
 #define TUBE_FEW 400
 #define TUBE_MANY 4000
-// Beyond the center of curvature by more than this part.
+// Margin beyond the center of curvature, as a fraction.
 #define BEYOND 1e-6
 
 typedef struct Flat {
@@ -57,7 +57,7 @@ static bool profile_crosses(const CagCurve *profile, CagVec3 axis, CagVec3 throu
   return false;
 }
 
-// How far the section reaches towards the center of curvature at parameter t, times the curvature.
+// The section's extent towards the center of curvature at parameter t, times the curvature.
 static bool folds_at(const CagCurve *section, const CagMotion *motion, const CagCurve *path,
                      double t, double *measure) {
   CagMotionSeries m;
@@ -98,7 +98,7 @@ static bool sweep_folds(const CagCurve *section, const CagMotion *motion, char *
   return false;
 }
 
-// --- Tubes that come near to themselves ---
+// --- Tubes that intersect themselves ---
 
 // The disk of a tube at a parameter of its path.
 typedef struct Disk {
@@ -126,7 +126,7 @@ static bool disk_at(const CagMotion *motion, double radius, Disk *d) {
   return true;
 }
 
-// n + 1 disks in even steps of the parameter; false where something fails.
+// n + 1 disks at equal steps of the parameter; false if an evaluation fails.
 static bool sample_disks(const CagMotion *motion, double radius, Disk *out, int n) {
   const CagCurve *path = cag_motion_path(motion);
   for (int i = 0; i <= n; i++) {
@@ -136,7 +136,7 @@ static bool sample_disks(const CagMotion *motion, double radius, Disk *out, int 
   return true;
 }
 
-// Steps that are about a quarter of the smallest radius long, within limits.
+// Steps about a quarter of the smallest radius long, within limits.
 static int steps_for(const Disk *disks) {
   double length = 0, least = INFINITY;
   for (int i = 0; i < TUBE_FEW; i++) {
@@ -146,18 +146,18 @@ static int steps_for(const Disk *disks) {
   return (int)fmin(TUBE_MANY, fmax(TUBE_FEW, 4 * length / least));
 }
 
-// Whether no pair of neighbors of i and k is nearer: the line between them is then perpendicular to
-// the path at both ends, and their disks lie in one plane. Of neighbors on a path the nearer pair
-// is between them.
+// Whether no pair of neighbors of i and k is closer: the line between them is then perpendicular to
+// the path at both ends, and their disks are coplanar. For neighbors on the path the closer pair is
+// between them.
 static bool is_least_distance(const Disk *disks, int i, int k, double d) {
-  const double alike = CAG_COINCIDENT; // of the distance: along a helix all are the same
+  const double alike = CAG_COINCIDENT; // relative to the distance: along a helix all are equal
   for (int a = -1; a <= 1; a++)
     for (int b = -1; b <= 1; b++)
       if (cag_norm(cag_sub(disks[i + a].p, disks[k + b].p)) < d * (1 - alike)) return false;
   return true;
 }
 
-// The first pair of parts of the path that are nearer to each other than the tube is thick.
+// The first pair of parts of the path that are closer to each other than the tube is thick.
 static bool find_meeting(const Disk *disks, int n, int *first, int *second) {
   for (int i = 1; i < n; i++)
     for (int k = i + 2; k < n; k++) {

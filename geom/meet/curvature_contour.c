@@ -1,9 +1,9 @@
 // Contour lines of curvature as zero curves of f = x / sqrt(x^2 + unit^2), x = curvature - level.
 //
-// The square root bounds f where the curvature has a pole (the tip of a cone, a cuspidal edge), and
-// makes it a number without unit: `unit` is what the curvature of this surface is like. Curvatures
-// are written in terms of both fundamental forms, and these with their derivatives by u and v, so
-// that the gradient of f comes along (third partials of the surface).
+// The square root bounds f where the curvature has a pole (the tip of a cone, a cuspidal edge) and
+// makes it dimensionless: `unit` is a typical curvature of the surface. Curvatures are expressed by
+// both fundamental forms, and these with their derivatives with respect to u and v, so that the
+// gradient of f is computed along with it (third partials of the surface).
 
 #include "geom/meet/curvature_contour.h"
 #include "geom/linalg/tolerance.h"
@@ -11,9 +11,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-// A normal shorter than this part of |S_u| |S_v| is none: rounding of a pole is near 1e-16.
+// A normal shorter than this fraction of |S_u| |S_v| is undefined: rounding at a pole is near
+// 1e-16.
 #define NO_NORMAL CAG_ROUNDING
-// Part of the inverse size (squared: Gaussian) below which curvature is none.
+// Fraction of the inverse size (squared: Gaussian) below which curvature is 0.
 #define STRAIGHT 1e-8
 
 // --- Numbers with their derivatives by u and v ---
@@ -33,7 +34,7 @@ static Jet over(Jet a, Jet b) {
   double q = a.x / b.x;
   return jet(q, (a.u - q * b.u) / b.x, (a.v - q * b.v) / b.x);
 }
-// At 0 the root has no derivative, and gets 0.
+// At 0 the root has no derivative; it is set to 0.
 static Jet root(Jet a) {
   double r = sqrt(fmax(a.x, 0)), k = r > 0 ? 0.5 / r : 0;
   return jet(r, k * a.u, k * a.v);
@@ -53,7 +54,7 @@ static JetVector cross(JetVector a, JetVector b) {
                      cag_add(cag_cross(a.v, b.x), cag_cross(a.x, b.v))};
 }
 
-// The partial (i, j), with its derivatives where the order n has them.
+// The partial (i, j), with its derivatives if the order n includes them.
 static JetVector partial(const CagVec3 *d, int n, int i, int j) {
   const CagVec3 zero = {0, 0, 0};
   bool more = i + j < n;
@@ -73,7 +74,7 @@ static bool shape_operator(const CagVec3 *d, int n, Jet *a, Jet *b, Jet *c) {
   Jet m = over(dot(partial(d, n, 1, 1), normal), w);
   Jet k = over(dot(partial(d, n, 0, 2), normal), w);
   Jet slant = over(f, e);
-  // S_v less its part along S_u is w / |S_u| long.
+  // The component of S_v perpendicular to S_u has the length w / |S_u|.
   Jet m2 = minus(m, times(slant, l));
   Jet k2 = sum(minus(k, scaled(times(slant, m), 2)), times(times(slant, slant), l));
   *a = over(l, e);
@@ -110,18 +111,17 @@ static double contour_value(const CagLevel *level, const CagVec3 *d, int n, doub
   return isinf(x) ? copysign(1, x) : x / length;
 }
 
-// --- What the curvature of a surface is like ---
+// --- Typical curvature ---
 
 static int by_size(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
-// How far it is from the level in the middle of all places; at least the level itself, and what is
-// not straight.
+// The median difference from the level; at least the level itself, and the limit for straightness.
 static CagStatus find_unit(const CagSurface *s, CagLevel *level, CagError *err) {
   enum { TRIED = 12 };
-  const double first = 0.31; // of a step: neither middle nor edge
+  const double first = 0.31; // fraction of a step: neither middle nor edge
   double found[TRIED * TRIED], size;
   size_t n = 0;
   CagBounds box;

@@ -1,13 +1,13 @@
 // Lines of curvature.
 //
-// The direction field is integrated by arc length with the method of Runge and Kutta of order 4,
-// each step once whole and once in halves: the difference settles the length of the step, and
-// improves the result to order 5. A principal direction has no sense of its own: it takes that of
-// the direction before it.
+// The direction field is integrated by arc length with a Runge-Kutta method of order 4. Each step
+// is taken once as a whole and once in halves: the difference controls the step length, and
+// improves the result to order 5. A principal direction has no orientation; it is oriented like the
+// previous one.
 //
-// Into a pole of the parameters no step leads, and often it is an umbilic, too (of surfaces of
-// revolution). A line that heads straight into one where the surface is smooth goes on straight
-// behind it, along the parameter line that leaves the pole in its direction.
+// Steps cannot reach a pole of the parametrization, which is often also an umbilic (on surfaces of
+// revolution). A line that heads straight into a pole at which the surface is smooth continues
+// straight on the other side, along the parameter line that leaves the pole in its direction.
 
 #include "geom/meet/curvature_line.h"
 
@@ -19,28 +19,28 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/meet/section.h"
 
-// Principal curvatures are one when they differ by this part of the larger, or by this part of the
-// inverse size: second derivatives are not known better.
+// Principal curvatures are equal if they differ by less than this fraction of the larger, or of the
+// inverse size: second derivatives are not more accurate.
 #define UMBILIC 1e-7
-// Error of a step, as a part of the size: lines that are circles have to be told as such.
+// Error of a step, as a fraction of the size: circles must be recognizable.
 #define STEP_ERROR 1e-13
-// Radians that the line may turn in a step, for the cubics that follow it.
+// Maximum turn of the line in a step (radians), for the cubics fitted to it.
 #define STEP_TURN 0.06
 #define STEPS_MOST 20000
 #define FIRST_STEP 1e-3
 #define SMALLEST_STEP 1e-12
-// The rounding of the directions grows towards a pole or an umbilic. A line ends where a step as
-// short as this is still not accurate enough.
+// Rounding of the directions grows towards a pole or an umbilic. A line ends if a step as short as
+// this is still not accurate enough.
 #define TIRED_STEP 1e-7
-// Part of the size within which a line that comes back to its start has closed.
+// A line is closed if it returns within this fraction of the size of its start.
 #define CLOSED 1e-6
-// A line passes over a pole that is nearer than AT_POLE of the size. Where the principal curvatures
-// differ by less than NEARLY_ROUND of the larger, rounding blurs their directions: there it passes
+// A line passes over a pole that is closer than AT_POLE of the size. If the principal curvatures
+// differ by less than NEARLY_ROUND of the larger, rounding blurs their directions, and it passes
 // from as far as AT_POLE_MOST.
 #define AT_POLE 1e-4
 #define AT_POLE_MOST 0.1
 #define NEARLY_ROUND 1e-3
-// Sine of the angle by which a line may miss a pole, and leave it off the parameter line beyond.
+// Sine of the angle by which a line may miss a pole, and deviate from the parameter line beyond it.
 #define AIM 1e-5
 // cos 0.8 degrees: a sharper bend at a pole is a tip.
 #define SMOOTH_COSINE 0.9999
@@ -99,7 +99,7 @@ static double wrapped(double x, double lo, double hi) {
   return x;
 }
 
-// The place within the domain; false outside.
+// Brings the parameters into the domain; false outside.
 static bool bring_in(const CagSurface *s, Place *p) {
   if (s->closed_u) p->u = wrapped(p->u, s->u0, s->u1);
   if (s->closed_v) p->v = wrapped(p->v, s->v0, s->v1);
@@ -114,7 +114,7 @@ static bool is_round(const Walk *w, const CagPrincipal *p, double part) {
 
 static bool is_umbilic(const Walk *w, const CagPrincipal *p) { return is_round(w, p, UMBILIC); }
 
-// The way at a place, with the sense of `sense`; false where there is none.
+// The direction at a point, oriented like `sense`; false if it is undefined.
 static bool way_at(Walk *w, Place at, CagVec3 sense, CagPrincipal *p, Place *way,
                    CagVec3 *tangent) {
   bool found;
@@ -127,7 +127,7 @@ static bool way_at(Walk *w, Place at, CagVec3 sense, CagPrincipal *p, Place *way
   return true;
 }
 
-// The length of a small step from a point.
+// The length of a small parameter step at a point.
 static double length_of(const CagPrincipal *p, double u, double v) {
   const double *a = p->step[0], *b = p->step[1], area = a[0] * b[1] - a[1] * b[0];
   return hypot((u * b[1] - v * b[0]) / area, (v * a[0] - u * a[1]) / area);
@@ -168,7 +168,7 @@ static bool add_point(Walk *w, CagVec3 p, CagVec3 t) {
 
 // --- Poles ---
 
-// Edge `end` of direction k, all of it one point.
+// Edge `end` of direction k, which is a single point.
 typedef struct Pole {
   int k, end;
   CagVec3 point;
@@ -193,7 +193,7 @@ static bool leaving(Walk *w, const Pole *pole, double off, double x, CagVec3 *po
   return cag_norm(*way) > 0;
 }
 
-// The pole that the line heads into from nearer than `near`.
+// The pole that the line heads into from a distance below `near`.
 static bool find_pole(Walk *w, CagVec3 at, CagVec3 tangent, double near, Pole *out) {
   const CagSurface *s = w->s;
   const bool is_pole[2][2] = {{s->pole_u0, s->pole_u1}, {s->pole_v0, s->pole_v1}};
@@ -212,7 +212,7 @@ static bool find_pole(Walk *w, CagVec3 at, CagVec3 tangent, double near, Pole *o
   return false;
 }
 
-// Where the parameter line begins that leaves the pole along a direction; false where none does.
+// The start of the parameter line that leaves the pole in a direction; false if there is none.
 static bool find_leaving(Walk *w, const Pole *pole, CagVec3 along, double *out) {
   enum { TRIED = 72 };
   const int halvings = 60;
@@ -241,8 +241,8 @@ static bool find_leaving(Walk *w, const Pole *pole, CagVec3 along, double *out) 
   return leaving(w, pole, 0, *out, &p, &way) && cag_dot(cag_unit(way), along) > SMOOTH_COSINE;
 }
 
-// Passes over a pole that is ahead, nearer than `near`: the place behind it, from which the line
-// goes on, and the pole as a point of the line.
+// Passes over a pole ahead that is closer than `near`: the point beyond it, at which the line
+// continues, and the pole as a point of the line.
 static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, CagVec3 *tangent, double near,
                       double *gone) {
   const double widest = 4, wider = 1.1;
@@ -251,8 +251,8 @@ static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, CagVec3 *tangent, dou
   if (!find_pole(w, p->point, *tangent, near, &pole)) return false;
   CagVec3 off = cag_sub(pole.point, p->point), back, beside;
   double d = cag_norm(off);
-  // It must come along a parameter line: then it leads into the pole, not past it, and on in the
-  // direction that this line has there, which must be that of an arc from here.
+  // The line must run along a parameter line, so that it leads into the pole and not past it, and
+  // continue in that line's direction there, which must be that of an arc from here.
   Place edge = place_by(w, &pole, 0, 0);
   double distance = fabs(pole.k ? at->v - edge.v : at->u - edge.u), line = pole.k ? at->u : at->v;
   if (!leaving(w, &pole, distance, line, &beside, &back)) return false;
@@ -288,7 +288,7 @@ static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, CagVec3 *tangent, dou
 
 // --- The line ---
 
-// Walks on from a place until the line ends. True where it has come back to the start.
+// Continues from a point until the line ends. Returns true if it has returned to the start.
 static bool walk(Walk *w, Place at, CagVec3 sense) {
   CagPrincipal p;
   Place next_way;
@@ -304,7 +304,7 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     double near = (is_round(w, &p, NEARLY_ROUND) ? AT_POLE_MOST : AT_POLE) * w->size;
     if (pass_pole(w, &at, &p, &tangent, near, &gone)) h = FIRST_STEP * w->size;
     else if (stopped || w->status) return false;
-    // Once it is near its start, the step is to end there.
+    // Near the start the step must end there.
     CagVec3 home = cag_sub(start, p.point);
     double left = cag_norm(home);
     bool returning = gone > 4 * h && left < 2 * h && cag_dot(home, tangent) > 0;
@@ -343,7 +343,7 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
   return false;
 }
 
-// The points so far run backwards.
+// Reverses the points so far.
 static void turn_back(CagTrace *t) {
   for (size_t i = 0, j = t->count; i < j--; i++) {
     CagVec3 p = t->points[i], d = t->tangents[i];
@@ -357,7 +357,7 @@ static void turn_back(CagTrace *t) {
 static void trace_line(Walk *w, double u, double v, const CagPrincipal *p) {
   Place at = {u, v};
   CagVec3 sense = p->direction[w->which];
-  // Backwards, turned, and on from the start.
+  // Backward first, then reversed, and on from the start.
   if (!add_point(w, p->point, cag_scaled(sense, -1))) return;
   if (walk(w, at, cag_scaled(sense, -1)) && !w->status) {
     CagTrace *t = &w->trace;

@@ -1,5 +1,5 @@
 // Isophotes as zero curves of n.d - c |n|, n = S_u x S_v: the factor |n| keeps the function smooth
-// where the normal is, and spares the division.
+// where the normal is, and avoids the division.
 
 #include "geom/meet/isophote.h"
 

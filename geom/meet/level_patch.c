@@ -1,9 +1,9 @@
-// Functions of a surface on a patch: values from inside of it, also where the surface has no
-// normal.
+// Functions on a patch of a surface: one-sided values from its inside, also where the surface has
+// no normal.
 //
-// Along a collapsed edge (a pole, the tip of a cone) curvature is 0/0, and beside it mostly
-// rounding. Nearer than a step to such an edge a sided function is continued by the polynomial
-// through its values at one to six steps, at the same place along the edge.
+// Along a collapsed edge (a pole, the tip of a cone) curvature is 0/0, and next to it mostly
+// rounding. Closer than a step to such an edge a sided function is extrapolated by the polynomial
+// through its values at one to six steps, at the same position along the edge.
 
 #include "geom/meet/level_patch.h"
 
@@ -13,14 +13,14 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/function.h"
 
-// The step, as a part of the patch, and the number of places: what the polynomial leaves out of a
+// The step, as a fraction of the patch, and the number of points: the error of the polynomial for a
 // smooth function, (2e-3)^6 of its sixth derivative, is as small as the rounding of 1e-16 / 2e-3^2
-// in the places themselves.
+// at the points themselves.
 #define STEP 2e-3
 #define PLACES 6
-// An edge is collapsed where S_u x S_v is everywhere below this part of its largest.
+// An edge is collapsed if S_u x S_v is everywhere below this fraction of its maximum.
 #define COLLAPSED CAG_COINCIDENT
-// Parts of the patch below which a place lies on its edge.
+// Distance, as a fraction of the patch, below which a point lies on its edge.
 #define ON_EDGE CAG_COINCIDENT
 
 static CagSide side_at(double x, double hi) { return x >= hi ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT; }
@@ -61,12 +61,12 @@ static CagStatus find_collapsed(CagLevelPatch *p, CagError *err) {
 CagStatus cag_patch_open(const CagSurface *s, const CagLevel *level, const double lo[2],
                          const double hi[2], CagLevelPatch *out, CagError *err) {
   *out = (CagLevelPatch){.s = s, .level = level, .lo = {lo[0], lo[1]}, .hi = {hi[0], hi[1]}};
-  // Sided functions are continued to such places by themselves.
+  // Sided functions handle such points by extrapolation.
   out->formula = !level->sided && cag_surface_is_formula(s);
   return level->sided ? find_collapsed(out, err) : CAG_OK;
 }
 
-// Distance from an edge in parts of the patch.
+// Distance from an edge, as a fraction of the patch.
 static double distance_of(const CagLevelPatch *p, const double at[2], int k, int end) {
   double off = end ? p->hi[k] - at[k] : at[k] - p->lo[k];
   return off / (p->hi[k] - p->lo[k]);
@@ -109,7 +109,8 @@ static CagStatus plain_value(const CagLevelPatch *p, const double at[2], double 
   return CAG_OK;
 }
 
-// Without a value at a lone place: one a step towards the middle of the patch has it; else 0.
+// If the value at an isolated point is undefined, uses that one step towards the middle of the
+// patch; else 0.
 static CagStatus finite_value(const CagLevelPatch *p, const double at[2], double *f,
                               double *gradient, CagVec3 *partials, CagError *err) {
   CagStatus status = plain_value(p, at, f, gradient, partials, err);
@@ -126,7 +127,7 @@ static CagStatus finite_value(const CagLevelPatch *p, const double at[2], double
   return CAG_OK;
 }
 
-// Weights of the values at 1 .. PLACES for the polynomial's value at x, and for its slope.
+// Weights of the values at 1 .. PLACES for the polynomial's value at x, and for its derivative.
 static void weigh(double x, double *values, double *slopes) {
   for (int i = 0; i < PLACES; i++) {
     double product = 1, sum = 0;
@@ -143,7 +144,7 @@ static void weigh(double x, double *values, double *slopes) {
   }
 }
 
-// Continued to the place from beside edge `end` of direction k.
+// The value extrapolated from next to edge `end` of direction k.
 static CagStatus continued_value(const CagLevelPatch *p, const double at[2], int k, int end,
                                  double *f, double *gradient, CagError *err) {
   double values[PLACES], slopes[PLACES], range = p->hi[k] - p->lo[k], sign = end ? -1 : 1;
@@ -153,7 +154,7 @@ static CagStatus continued_value(const CagLevelPatch *p, const double at[2], int
   for (int i = 0; i < PLACES; i++) {
     double beside[2] = {at[0], at[1]}, here, change[2];
     beside[k] = (end ? p->hi[k] : p->lo[k]) + sign * STEP * (i + 1) * range;
-    // Near the corner of two such edges the place is a step away from the other.
+    // Near the corner of two such edges, stay a step away from the other one.
     for (int other = 0; other < 2; other++)
       if (p->collapsed[1 - k][other] && distance_of(p, at, 1 - k, other) < STEP) {
         double step = STEP * (p->hi[1 - k] - p->lo[1 - k]);
@@ -183,7 +184,7 @@ CagStatus cag_patch_value(const CagLevelPatch *p, double u, double v, double *f,
 
 // --- Rounding ---
 
-// What f jumps over a short step about x, y in parts of the patch.
+// The jump of f over a short step at x, y in fractions of the patch.
 static CagStatus jump_at(const CagLevelPatch *p, double x, double y, double *out, CagError *err) {
   const double step = 1e-9;
   double f[3];
@@ -198,7 +199,7 @@ static CagStatus jump_at(const CagLevelPatch *p, double x, double y, double *out
 }
 
 CagStatus cag_patch_rounding(const CagLevelPatch *p, double *inner, double *most, CagError *err) {
-  // At no simple fractions; the first and last beside the edges.
+  // Not simple fractions; the first and last are next to the edges.
   static const double places[] = {0.0011, 0.1117, 0.2913, 0.5231, 0.6719, 0.8783, 0.9989};
   enum { TRIED = sizeof places / sizeof *places };
   const double least = 1e-13, safety = 4;

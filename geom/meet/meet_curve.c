@@ -1,11 +1,11 @@
-// A curve against a surface by subdivision of both.
+// Intersections of a curve with a surface, by subdivision of both.
 //
-// A part of the curve lies within its sag of its chord; a cell of the surface within its bow of the
-// plane through the middle of its corners. Pairs that these keep apart are dropped; where the chord
-// passes the plane steeply enough for one crossing only, Newton's method finishes; other pairs are
-// halved on the side that is bent more, and so are those where it finds none: only the bounds tell
-// that there is none. What is left at the smallest size are touches, found many times
-// (geom/curve/contact.h).
+// A part of the curve lies within its sag of its chord; a cell of the surface lies within its bow
+// of the plane through the middle of its corners. Pairs separated by these bounds are dropped. If
+// the chord crosses the plane steeply enough for a single crossing, Newton's method finishes the
+// pair. Other pairs, including those on which it fails, are halved on the side that is bent more:
+// only the bounds prove that there is no intersection. Pairs that remain at the smallest size are
+// tangencies, found many times (geom/curve/contact.h).
 
 #include "geom/meet/meet_curve.h"
 #include "geom/surface/trimmed.h"
@@ -19,37 +19,38 @@
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
-// Parts of the size of the data: where two points are one, where things count as flat, where
-// meetings at a pole are the same.
+// Fractions of the size of the data: tolerance for identical points, for flatness, and for
+// identical intersections at a pole.
 #define MEET CAG_COINCIDENT
 #define FLAT 1e-10
 #define SAME_POINT 1e-7
-// Parts of a domain within which parameters are one place.
+// Fraction of a domain within which parameters are identical.
 #define SAME_PLACE 1e-4
-// Pairs looked at before the curve is taken to run within the surface.
+// Number of pairs after which the curve is assumed to lie in the surface.
 #define MOST_PAIRS 400000
 #define DEPTH 100
-// A stretch in common that is longer than this part of the size is an overlap.
+// A common part longer than this fraction of the size is an overlap.
 #define COMMON 1e-3
-// How far from a pair a touch is looked for, in its widths.
+// Search range for a tangency around a pair, in multiples of its width.
 #define TOUCH_REACH 128
-// So many meetings found are looked through for an overlap, and again when there are twice as many.
+// When this many intersections have been found, they are checked for an overlap, and again whenever
+// the number doubles.
 #define FOUND_MANY 256
-// Cells of a smooth patch, and parts of a smooth piece, to begin with, in each direction.
+// Initial number of cells of a smooth patch in each direction, and of parts of a smooth piece.
 #define FIRST 4
 
 typedef struct Part {
   double a, b, sag;
-  double low, high; // of the smooth stretch that it belongs to
+  double low, high; // of its smooth interval
   CagVec3 p, q;
 } Part;
 
 typedef struct Cell {
   double u[2], v[2], bow;
-  double low[2], high[2];  // of the smooth patch that it belongs to
+  double low[2], high[2];  // of its smooth patch
   double along_u, along_v; // the longer of two opposite edges
   CagVec3 middle, normal;  // of the plane; normal: unit
-  CagBounds box, corners;  // holds the cell; holds its corners
+  CagBounds box, corners;  // of the cell; of its corners
 } Cell;
 
 typedef struct Search {
@@ -76,7 +77,7 @@ static CagStatus make_part(const Search *s, Part *part, CagError *err) {
   return status;
 }
 
-// The bow is the largest distance of samples from the plane, and half as much again.
+// The bow is the largest distance of samples from the plane, plus half.
 static CagStatus make_cell(const Search *s, Cell *cell, CagError *err) {
   enum { SIDE = 4 };
   const double safety = 1.5;
@@ -106,7 +107,7 @@ static CagStatus make_cell(const Search *s, Cell *cell, CagError *err) {
   cell->along_v = fmax(cag_norm(cag_sub(grid[SIDE - 1], grid[0])),
                        cag_norm(cag_sub(grid[SIDE * SIDE - 1], grid[SIDE * (SIDE - 1)])));
   cell->corners = cell->box;
-  // Between samples of a grid of SIDE the surface may reach out of their box by its bend, too.
+  // Between the samples of a SIDE x SIDE grid the surface may also leave their box by its bend.
   const double out = fmax(cell->bow, cag_norm(cag_sub(cell->box.max, cell->box.min)) / 8);
   cell->box.min = cag_sub(cell->box.min, cag_vec3(out, out, out));
   cell->box.max = cag_add(cell->box.max, cag_vec3(out, out, out));
@@ -151,7 +152,7 @@ static bool solve3(double m[3][3], const double r[3], double out[3]) {
 
 static double dot_of(const CagVec3 *a, const CagVec3 *b) { return cag_dot(*a, *b); }
 
-// The step of Gauss and Newton; where directions are dependent, damped.
+// The Gauss-Newton step; damped if directions are dependent.
 static bool step_to(const CagVec3 columns[3], CagVec3 residual, double out[3]) {
   double m[3][3] = {{columns[0].x, columns[1].x, columns[2].x},
                     {columns[0].y, columns[1].y, columns[2].y},
@@ -171,7 +172,7 @@ static bool step_to(const CagVec3 columns[3], CagVec3 residual, double out[3]) {
   return solve3(normal, rhs, out);
 }
 
-// --- Meetings ---
+// --- Intersections ---
 
 static double within(double x, double low, double high) { return fmin(high, fmax(low, x)); }
 
@@ -192,8 +193,8 @@ static bool lies_in(double x, double low, double high) {
   return x >= low - slack && x <= high + slack;
 }
 
-// Within `reach` widths of part and cell about them, and the smooth stretch and patch of these.
-// *inside: what was met is in the part and the cell, not in others near by.
+// Searches within `reach` widths of part and cell around them, and within their smooth interval and
+// patch. *inside: the intersection is in the part and the cell, not in neighboring ones.
 static CagStatus meet(Search *s, const Part *part, const Cell *cell, double reach, bool *met,
                       bool *inside, CagError *err) {
   const double width_t = part->b - part->a, width_u = cell->u[1] - cell->u[0],
@@ -248,7 +249,7 @@ static CagStatus halve_part(const Search *s, const Part *part, Part out[2], CagE
   return status ? status : make_part(s, &out[1], err);
 }
 
-// Across the longer side of the cell.
+// Halves the longer side of the cell.
 static CagStatus halve_cell(const Search *s, const Cell *cell, Cell out[2], CagError *err) {
   out[0] = out[1] = *cell;
   if (cell->along_u >= cell->along_v)
@@ -258,9 +259,9 @@ static CagStatus halve_cell(const Search *s, const Cell *cell, Cell out[2], CagE
   return status ? status : make_cell(s, &out[1], err);
 }
 
-// A chord along a flat cell: overlap where its middle lies in the cell, else a touch at most.
+// A chord along a flat cell: an overlap if its middle is in the cell, else at most a tangency.
 static CagStatus along(Search *s, const Part *part, const Cell *cell, CagError *err) {
-  Search looks = *s; // what it finds is not kept
+  Search looks = *s; // its results are discarded
   looks.items = NULL;
   looks.n = looks.capacity = 0;
   Part middle = *part;
@@ -277,12 +278,12 @@ static CagStatus along(Search *s, const Part *part, const Cell *cell, CagError *
   return meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
 }
 
-// Whether a chord passes the plane of a flat cell beside it.
+// Whether a chord crosses the plane of a flat cell outside of the cell.
 static bool passes_beside(const Search *s, const Part *part, const Cell *cell) {
   const double h = cag_dot(cag_sub(part->p, cell->middle), cell->normal);
   const double k = cag_dot(cag_sub(part->q, cell->middle), cell->normal);
   const CagVec3 x = cag_lerp(part->p, part->q, fmin(1, fmax(0, h / (h - k))));
-  // How far along the chord what both bend may move the place.
+  // How far along the chord the bends of both may move the intersection.
   const double slack =
       2 * MEET * s->size * cag_norm(cag_sub(part->q, part->p)) / fmax(fabs(h - k), DBL_MIN);
   const CagBounds *b = &cell->corners;
@@ -292,7 +293,7 @@ static bool passes_beside(const Search *s, const Part *part, const Cell *cell) {
 }
 
 static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, CagError *err) {
-  // Slope of the chord against the plane beside what both bend, that leaves room for one crossing.
+  // Ratio of the chord's slope to the bends of both above which there is only one crossing.
   const double steep = 8;
   if (apart(s, part, cell)) return CAG_OK;
   if (++s->pairs > MOST_PAIRS) return fail_overlap(err);
@@ -307,10 +308,11 @@ static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, 
   bool met = false, inside = false;
   CagStatus status = one ? meet(s, part, cell, 1, &met, &inside, err) : CAG_OK;
   if (status || inside || (met && flats)) return status;
-  // Both as good as flat and along each other: a touch, whose crossings Newton's method finds from
-  // all pairs about it, or a stretch in common.
+  // Both flat and parallel: a tangency, whose crossings Newton's method finds from all pairs around
+  // it, or a common part.
   if (flats && rise <= MEET * s->size && chord > COMMON * s->size) return along(s, part, cell, err);
-  // Parameters that run too unevenly for Newton's method: on to where chord and cell are points.
+  // The parametrization is too uneven for Newton's method: continue until chord and cell are
+  // points.
   const bool uneven = flats && rise > flat;
   if (depth == 0 || (flats && !uneven)) return meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
   if (flats && !one) status = meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
@@ -329,7 +331,7 @@ static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, 
   return status;
 }
 
-// --- What was found ---
+// --- Results ---
 
 static bool same(double a, double b, double low, double high, bool closed) {
   const double gap = fabs(a - b), range = high - low;
@@ -344,8 +346,8 @@ static bool at_pole(const CagSurface *s, const CagContact *m, bool of_u) {
          (s->pole_v1 && same(m->at[1], s->v1, s->v0, s->v1, false));
 }
 
-// Drops what was found twice at a pole, where one parameter may be anything, or lies outside of a
-// trimmed surface.
+// Drops duplicates at a pole, where one parameter is arbitrary, and points outside of a trimmed
+// surface.
 static CagStatus tidy(Search *f, CagError *err) {
   const CagSurface *s = f->s;
   const CagCurve *c = f->c;
@@ -373,17 +375,17 @@ static CagStatus tidy(Search *f, CagError *err) {
   return CAG_OK;
 }
 
-// --- Feet ---
+// --- Foot points ---
 
-// Beyond a seam, too.
+// Wraps around a seam.
 static double around(double x, double low, double high, bool closed) {
   if (closed && x < low) x += high - low;
   if (closed && x > high) x -= high - low;
   return within(x, low, high);
 }
 
-// The foot on the surface of the curve's point at t, from u, v on: its distance, and the sine of
-// the angle of the curve with the tangent plane.
+// The foot point on the surface of the curve's point at t, starting from u, v: its distance, and
+// the sine of the angle of the curve with the tangent plane.
 static CagStatus foot(void *context, double t, double at[2], double *gap, double *sine,
                       CagError *err) {
   enum { STEPS = 12 };
@@ -410,7 +412,7 @@ static CagStatus foot(void *context, double t, double at[2], double *gap, double
   return status;
 }
 
-// --- The whole ---
+// --- Complete search ---
 
 static CagStatus search_all(Search *s, const double *tc, size_t nt, const double *uc, size_t nu,
                             const double *vc, size_t nv, CagError *err) {

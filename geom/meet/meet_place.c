@@ -46,8 +46,8 @@ static double stepped(double x, double d, double low, double high, bool closed) 
   return fmin(fmax(y, low), high);
 }
 
-// A step of u (or v) that would pass a pole goes on beyond it, where the other parameter is half
-// its range further.
+// A step of u (or v) that would pass a pole continues beyond it, where the other parameter is
+// shifted by half its range.
 static bool pass_pole(CagMarch *m, int k, int d, double step, CagMarchNode *node) {
   const CagSurface *s = m->side[k].s;
   const double *own = cag_march_range(m, k, node, d), *other = cag_march_range(m, k, node, 1 - d);
@@ -99,13 +99,14 @@ CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVe
     if (i > 8 && gap + off > last / 2 && gap + off > CAG_MARCH_SAME * m->size)
       return CAG_MARCH_NONE;
     last = fmin(last, gap + off);
-    // The point of three planes: both tangent planes and the given one, or the one across.
+    // The intersection of three planes: both tangent planes and the given one, or the one
+    // perpendicular to both.
     CagVec3 third = planar ? n : cag_unit(cross), through = planar ? q : middle;
     CagVec3 c0 = cag_cross(t[1].normal, third), c1 = cag_cross(third, t[0].normal);
     double det = cag_dot(t[0].normal, c0);
     CagVec3 x;
     if (fabs(det) < CAG_MARCH_TOUCH * CAG_MARCH_TOUCH) {
-      // Parallel planes: the middle, in the given plane.
+      // Parallel planes: the midpoint, projected to the given plane.
       x = planar ? cag_madd(middle, cag_dot(n, cag_sub(q, middle)), n) : middle;
     } else {
       x = cag_scaled(c0, cag_dot(t[0].normal, cag_sub(t[0].p, middle)));

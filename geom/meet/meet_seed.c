@@ -1,5 +1,5 @@
-// Seeds of the curves in which two surfaces meet. The seeds are found from all pairs of triangles
-// of the two meshes whose boxes meet, by a sweep along an axis.
+// Seeds of intersection curves of two surfaces, from all pairs of triangles of the two meshes whose
+// boxes overlap, found by a sweep along an axis.
 
 #include "geom/meet/meet_seed.h"
 
@@ -22,7 +22,7 @@ const double *cag_march_range(const CagMarch *m, int k, const CagMarchNode *node
 
 // --- Facets ---
 
-// Parameters of a triangle's corners, brought together where they lie at both sides of a seam.
+// Parameters of a triangle's corners, made contiguous if they are on both sides of a seam.
 static void corner_parameters(const CagMarchSide *side, const uint32_t *corner, double out[3][2]) {
   const CagSurface *s = side->s;
   const double range[2] = {s->u1 - s->u0, s->v1 - s->v0};
@@ -84,7 +84,7 @@ static int pierce(const Facet *f, const Facet *g, int which, CagMarchNode *sum) 
   return count;
 }
 
-// The corners of f that lie on g, for facets of one plane: of a piece in common.
+// The corners of f that lie on g, for coplanar facets: they may belong to a common part.
 static int rest(const Facet *f, const Facet *g, int which, CagMarchNode *sum) {
   CagVec3 e1 = cag_sub(g->p[1], g->p[0]), e2 = cag_sub(g->p[2], g->p[0]), n = cag_cross(e1, e2);
   double nn = cag_dot(n, n), flat = 1e-9 * sqrt(sqrt(nn));

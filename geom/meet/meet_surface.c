@@ -28,15 +28,15 @@
 #include "geom/surface/trimmed.h"
 #include "geom/tessellate/tessellate.h"
 
-// Parts of the size of the smaller surface: of the seeds' meshes, of the longest step.
+// Fractions of the size of the smaller surface: tolerance of the seeds' meshes, longest step.
 #define SEED_MESH (1.0 / 400)
 #define SEED_EDGE (1.0 / 25)
 #define STEP_MOST (1.0 / 12)
 #define STEP_FIRST (1.0 / 100)
-// Parts of the size of both: the shortest step, ends that are joined.
+// Fractions of the size of both: shortest step, distance of ends that are joined.
 #define STEP_LEAST 1e-9
 #define JOINED 1e-7
-// Part of a patch's width up to which the end of a run lies on its edge.
+// Fraction of a patch's width within which the end of a run lies on its edge.
 #define BESIDE 1e-7
 // How to tell a shared piece from a touch: sample points around the place where the surfaces touch,
 // at distances of up to COMMON_REACH times the longest step. The surfaces share a piece if they are
@@ -49,11 +49,10 @@
 // shorter than this fraction of the size is a single point of contact.
 #define TOUCH_MARGIN 3
 #define TOUCH_LEAST 1e-3
-// cos 12 degrees: a tangent turns by no more in one step.
+// cos 12 degrees: maximum turn of a tangent in one step.
 #define TURN_MOST 0.978
 #define DEFAULT_TOLERANCE 1e-6
-// Where one surface is so much larger, the meshes that seeds come from would take millions of
-// triangles.
+// Ratio of sizes above which the meshes for seeds would need millions of triangles.
 #define APART_MOST 1000
 #define NODES_MOST 200000
 #define SEED_TRIANGLES 4000000
@@ -90,7 +89,7 @@ static CagVec3 hermite(const CagMarchNode *a, const CagMarchNode *b, double t) {
 
 typedef enum Step { STEPPED, TOO_LONG, ENDED, BROKEN } Step;
 
-// From a by h along its tangent to b, with the place in the middle.
+// A step from a of length h along its tangent to b, with the point at the middle.
 static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, CagMarchNode *b,
                      CagVec3 *middle) {
   *b = *a;
@@ -100,7 +99,7 @@ static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, Ca
   if (found == CAG_MARCH_TANGENT) return TOO_LONG;
   CagVec3 d = cag_sub(b->x, a->x);
   if (cag_dot(a->tangent, b->tangent) < TURN_MOST || cag_norm(d) > 1.1 * h) return TOO_LONG;
-  // The cubic's chord length is its parameter: the speed of arcs, to their third order.
+  // The cubic is parametrized by chord length: the speed of arcs, to third order.
   CagVec3 guess = hermite(a, b, 0.5);
   CagMarchNode between = *a;
   *middle = guess;
@@ -110,7 +109,8 @@ static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, Ca
   if (found != CAG_MARCH_FOUND) return TOO_LONG;
   *middle = between.x;
   if (cag_norm(cag_sub(guess, between.x)) > m->tolerance / 2) return TOO_LONG;
-  // Where the curve bends both ways the cubic may pass its middle, but not the quarters.
+  // If the curve has an inflection the cubic may pass through its middle, but not through the
+  // quarters.
   for (int i = 1; i < 4; i += 2) {
     CagMarchNode quarter = between;
     guess = hermite(a, b, i / 4.0);
@@ -122,7 +122,7 @@ static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, Ca
   return STEPPED;
 }
 
-// Whether the run, going from a to b, passes its start.
+// Whether the run passes its start on the way from a to b.
 static bool comes_home(const CagMarch *m, const Run *run, const CagMarchNode *a,
                        const CagMarchNode *b) {
   if (run->n < 4) return false;
@@ -154,7 +154,7 @@ static bool is_on_both(CagMarch *m, const CagMarchNode *node, CagVec3 x) {
   return true;
 }
 
-// Beyond a place without a direction, straight on, where the way there lies on both surfaces.
+// Continues straight beyond a point without a direction, if the line segment lies on both surfaces.
 static bool leap_over(CagMarch *m, const CagMarchNode *a, double h, CagMarchNode *b,
                       CagVec3 *middle) {
   for (double far = h; far < m->step_most; far *= 2) {
@@ -167,7 +167,7 @@ static bool leap_over(CagMarch *m, const CagMarchNode *a, double h, CagMarchNode
   return false;
 }
 
-// Newton's method may fail beside a pole, where parameters turn fast, though nothing ends there.
+// Newton's method may fail near a pole, where parameters change fast, although nothing ends there.
 static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
   for (int k = 0; k < 2; k++) {
     const CagSurface *s = m->side[k].s;
@@ -185,8 +185,8 @@ static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
   return false;
 }
 
-// A surface ends before h, which is as near as none: the last place is found by halving and takes
-// the place of the last node.
+// A surface ends before h, which is negligibly short: the last point is found by bisection and
+// replaces the last node.
 static bool add_end(CagMarch *m, Run *run, double h) {
   CagMarchNode *end = &run->nodes[run->n - 1];
   const CagMarchNode a = *end;
@@ -203,8 +203,8 @@ static bool add_end(CagMarch *m, Run *run, double h) {
   return true;
 }
 
-// Moves the end of a run onto the edge of the patch that it is next to, to rounding: to where the
-// edge passes the other surface.
+// Moves the end of a run exactly onto the edge of the patch that it is next to: to the intersection
+// of the edge with the other surface.
 static bool move_to_edge(CagMarch *m, int k, int d, double edge, CagMarchNode *end) {
   enum { STEPS = 6 };
   CagMarchNode node = *end;
@@ -250,7 +250,7 @@ static bool settle_end(CagMarch *m, CagMarchNode *end) {
   return true;
 }
 
-// Goes on from the last node until the run ends or is closed.
+// Continues from the last node until the run ends or is closed.
 static bool go_on(CagMarch *m, Run *run) {
   double h = m->step_first, least = STEP_LEAST * m->size;
   while (run->n < NODES_MOST) {
@@ -273,7 +273,7 @@ static bool go_on(CagMarch *m, Run *run) {
                (step != ENDED || (add_end(m, run, h) && settle_end(m, &run->nodes[run->n - 1])));
     }
     if (comes_home(m, run, &a, &b)) {
-      // The last piece ends in the start itself.
+      // The last piece ends exactly in the start.
       CagMarchNode home = run->nodes[0], between = a;
       CagVec3 d = cag_sub(home.x, a.x), guess = hermite(&a, &home, 0.5);
       run->closed = true;
@@ -312,9 +312,9 @@ static bool trace(CagMarch *m, const CagMarchNode *seed, Run *run) {
   return go_on(m, run);
 }
 
-// --- Seeds beside ---
+// --- Seeds in adjacent patches ---
 
-// The end of a run in the other patches that have it.
+// Adds the end of a run as a seed in the other patches that contain it.
 static bool add_seeds_beside(CagMarch *m, const CagMarchNode *end) {
   CagPatchPlace places[2][9];
   size_t n[2];
@@ -337,7 +337,7 @@ static bool add_seeds_beside(CagMarch *m, const CagMarchNode *end) {
   return true;
 }
 
-// Whether the place lies on the run, or so near.
+// Whether the point lies within `near` of the run.
 static bool lies_on(const Run *run, CagVec3 x, double near) {
   for (size_t i = 0; i + 1 < run->n; i++) {
     const CagMarchNode *a = &run->nodes[i], *b = &run->nodes[i + 1];
@@ -368,7 +368,7 @@ static double reach_of(const Run *run, size_t first, size_t last) {
   return reach;
 }
 
-// Whether a run is found already: along a crease, from the patch on its other side.
+// Whether a run has been found already: along a crease, from the patch on its other side.
 static bool is_twin(const CagMarch *m, const Run *run, const Run *other) {
   const double reach = reach_of(run, 0, run->n - 1);
   const double near = reach > 16 * m->tolerance ? m->tolerance : JOINED * m->size;
@@ -382,7 +382,7 @@ static bool is_twin(const CagMarch *m, const Run *run, const Run *other) {
 static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bool closed,
                       CagCurveList *out) {
   size_t n = last - first + 1;
-  // What a seed at a pole or at a corner of an outline leaves.
+  // The remainder of a seed at a pole or at a corner of an outline.
   if (n < 2 || reach_of(run, first, last) <= JOINED * m->size) return true;
   CagTrace t = {.count = n, .check_count = n - 1, .closed = closed};
   t.points = cag_malloc(n * sizeof *t.points);
@@ -404,7 +404,7 @@ static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bo
   return ok && (!status || cag_march_fail(m, status));
 }
 
-// The place between two nodes at which the run leaves an outline; `inside` belongs.
+// The point between two nodes at which the run leaves an outline; `inside` is inside of it.
 static bool find_border(CagMarch *m, CagMarchNode inside, CagMarchNode outside, CagMarchNode *out) {
   const int halvings = 48;
   for (int i = 0; i < halvings; i++) {
@@ -456,10 +456,10 @@ static bool add_parts(CagMarch *m, const Run *run, CagCurveList *out) {
   return ok;
 }
 
-// --- The whole ---
+// --- Complete search ---
 
-// Whether a place of the first surface, beside one where they touch, lies on the second; `known`:
-// whether there is such a place.
+// Whether a point of the first surface next to a contact lies on the second; `known`: whether there
+// is such a point.
 static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
   const CagSurface *a = m->side[0].s;
   const CagMarchNode place = {.at = {{at[0], at[1]}}};
@@ -479,9 +479,9 @@ static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
   return true;
 }
 
-// Whether the surfaces are one all about a place where they touch, not along lines only. Two lines
-// along which surfaces touch or cross may meet there: so it is tried in many directions, and as far
-// away as surfaces part that touch to the third order.
+// Whether the surfaces coincide around a contact, rather than only along lines. Two lines of
+// contact or intersection may cross there, so many directions are tested, as far away as surfaces
+// with third-order contact separate.
 static bool is_common(CagMarch *m, const CagMarchNode *node, bool *out) {
   enum { DIRECTIONS = 10, RINGS = 2 };
   CagMarchTangent t;
@@ -502,7 +502,7 @@ static bool is_common(CagMarch *m, const CagMarchNode *node, bool *out) {
   return true;
 }
 
-// The places that touch are looked at, up to some hundred of them.
+// Examines the contacts, up to some hundred of them.
 static bool find_common(CagMarch *m, bool *out) {
   const size_t looks = 100;
   size_t found = 0, every = m->touching / looks + 1;
@@ -546,7 +546,8 @@ static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
   return true;
 }
 
-// Takes the run over, unless it is a point or found already, and looks for what goes on from it.
+// Takes ownership of the run, unless it is a point or has been found already, and adds the seeds of
+// its continuations.
 static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
   bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > m->least_run;
   for (size_t k = 0; kept && k < runs->n; k++) kept = !is_twin(m, run, &runs->items[k]);
@@ -650,7 +651,7 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
   for (int k = 0; !status && k < 2; k++) {
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
     how.tolerance = m->mesh_tolerance;
-    // Where it is the larger one, as fine as it would be alone.
+    // For the larger surface, as fine as by default.
     how.max_edge = fmax(SEED_EDGE * smaller, size[k] / 200);
     how.max_triangles = SEED_TRIANGLES;
     how.interrupt = m->interrupt;

@@ -18,7 +18,7 @@
 #define NEWTON_STEPS 40
 // Curvatures whose difference is below this fraction of their size count as equal.
 #define SAME_CURVATURE 1e-6
-// Where no direction is given, the smaller curvature is damped by this fraction of the larger one.
+// If no direction is given, the smaller curvature is damped by this fraction of the larger one.
 #define DAMPING 1e-3
 // A difference along a touch that is below this fraction of the curvatures may be rounding.
 #define ALONG 2e-8

@@ -1,9 +1,9 @@
-// Exact outlines of quadrics that a box or a range of z cut.
+// Exact outlines of quadrics trimmed by a box or a range of z.
 //
-// The loops of the trimmed pieces are splines near the exact outline. In space the outline is made
-// of the conics in which the sides of the box meet the quadric. Their equations and the ends of a
-// stretch define the arcs; the loop only tells where to halve an arc that turns too much for one
-// rational quadratic piece.
+// The loops of the trimmed pieces are splines near the exact outline. In space the outline consists
+// of the conics in which the sides of the box intersect the quadric. Their equations and the ends
+// of a stretch define the arcs; the loop only determines where to halve an arc that turns too much
+// for one rational quadratic piece.
 
 #include "geom/meet/quadric_arc.h"
 
@@ -14,12 +14,12 @@
 #include "geom/meet/section.h"
 #include "geom/surface/trimmed.h"
 
-// A stretch lies on a side if its points do to this part of the size of the box: splines keep to
-// 1e-11 of it.
+// A stretch lies on a side if its points do to this fraction of the size of the box; splines are
+// accurate to 1e-11 of it.
 #define ON_SIDE CAG_COINCIDENT
-// The tangent of one arc turns by no more than this.
+// Maximum turn of the tangent of one arc.
 #define MOST_TURN (M_PI / 3)
-// Equal steps of a stretch at which it is looked at.
+// Number of equal steps of a stretch that are tested.
 #define STEPS 6
 #define MOST_HALVINGS 12
 
@@ -47,7 +47,7 @@ typedef struct Side {
   CagConic conic;           // in the plane
 } Side;
 
-// The point of the conic next to that of the loop.
+// The point of the conic nearest to that of the loop.
 static CagStatus point_at(const Side *s, double t, CagVec3 *out, CagError *err) {
   CagVec3 p;
   CagStatus status = cag_curve_point(s->loop, t, &p, err);

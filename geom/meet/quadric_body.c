@@ -62,7 +62,7 @@ bool cag_solid_has_quadric_body(CagSurface *const *pieces, size_t n) {
   for (size_t i = 0; i < n; i++) {
     const CagSurface *whole = all ? whole_of(pieces[i]) : pieces[i];
     if (!cag_surface_quadric_view(whole, i == 0 ? &first : &other)) return false;
-    // A strip of a turn is no body's side: what lies beside it is not known.
+    // A strip of a partial turn does not bound a solid: what lies next to it is unknown.
     if (!all && whole->angular_u && whole->u1 - whole->u0 < WHOLE_TURN) return false;
     if (i > 0 && !same_equation(&first, &other)) return false;
   }
@@ -192,7 +192,7 @@ static bool do_close(const Boundary *b) {
   return closed;
 }
 
-// Gives the body its faces. Without these it has its mesh alone.
+// Gives the solid its faces. Without these it has only its mesh.
 static CagStatus set_faces(CagSolid *body, CagSurface *const *pieces, size_t n, const CagQuadric *q,
                            const CagBounds *box, const CagTransform *frame, CagError *err) {
   Boundary b = {cag_calloc(n + FACES_MOST, sizeof *b.faces), 0, true};

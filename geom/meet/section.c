@@ -1,7 +1,7 @@
-// Plane sections of surfaces and solids, and outlines, as lists of curves.
+// Plane sections of surfaces and solids, and contours, as lists of curves.
 //
-// Flat faces are cut by their loops, all others are traced. Curves that meet end to end are joined,
-// so that a body gives closed curves.
+// Flat faces are cut along their loops, all others are traced. Curves are joined end to end, so
+// that a solid gives closed curves.
 
 #include "geom/meet/section.h"
 
@@ -16,9 +16,10 @@
 #include "geom/surface/family.h"
 #include "geom/surface/function.h"
 
-// Curves meet whose ends are nearer than this part of the size: traced ends are far better.
+// Curves meet if their ends are closer than this fraction of the size; traced ends are far more
+// accurate.
 #define MEET 1e-7
-// A face within this part of the size of the plane lies in it and is not cut.
+// A face within this fraction of the size of the plane lies in it and is not cut.
 #define WITHIN CAG_COINCIDENT
 #define DEFAULT_TOLERANCE 1e-6
 // A traced curve runs along an exact one within this many tolerances.
@@ -31,7 +32,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// Where the line p + s d of the region's plane meets its loops: s in order.
+// Intersections of the line p + s d in the region's plane with its loops: s, ascending.
 static CagStatus cut_loops(const CagRegion *region, CagVec3 p, CagVec3 d, double **out, size_t *n,
                            CagError *err) {
   CagPlane upright = {p, cag_vec3(-d.y, d.x, 0)};
@@ -59,8 +60,8 @@ static CagStatus cut_loops(const CagRegion *region, CagVec3 p, CagVec3 d, double
   return CAG_OK;
 }
 
-// A line of the region's plane, where it is looked for and where it is: the two differ where an
-// edge of the region lies on it.
+// A line in the region's plane, where it is searched and where it is: the two differ if an edge of
+// the region lies on it.
 typedef struct FlatLine {
   CagVec3 searched, shown, along;
 } FlatLine;
@@ -74,7 +75,7 @@ static CagStatus add_piece(const CagTransform *frame, const FlatLine *l, double 
   return status ? status : cag_curve_list_add(out, piece, err);
 }
 
-// The pieces of the line that lie in the region, neighbors made one.
+// The pieces of the line inside the region, with neighbors merged.
 static CagStatus add_pieces(const CagRegion *region, const CagTransform *frame, const FlatLine *l,
                             const double *cuts, size_t n, double same, CagCurveList *out,
                             CagError *err) {
@@ -112,8 +113,8 @@ static CagStatus section_flat(const CagRegion *region, const CagTransform *frame
   size_t count;
   CagStatus status = cut_loops(region, p, l.along, &cuts, &count, err);
   if (status && !cag_is_final(status)) {
-    // An edge lies in the plane. It belongs to the face on the negative side, so that of two faces
-    // that meet there one has it.
+    // An edge lies in the plane. It belongs to the face on the negative side, so that only one of
+    // two adjacent faces has it.
     l.searched = cag_madd(p, -WITHIN * size, across);
     status = cut_loops(region, l.searched, l.along, &cuts, &count, err);
   }
@@ -127,7 +128,7 @@ static CagStatus section_flat(const CagRegion *region, const CagTransform *frame
 
 static double size_of(const CagBounds *b) { return cag_norm(cag_sub(b->max, b->min)); }
 
-// All of the box lies on one side of the plane.
+// Whether the whole box lies on one side of the plane.
 static bool is_beside(const CagBounds *b, const CagPlane *plane) {
   bool above = false, below = false;
   for (int k = 0; k < 8; k++) {
@@ -142,7 +143,7 @@ static bool is_beside(const CagBounds *b, const CagPlane *plane) {
 
 // --- Tracing ---
 
-// Trimmed surfaces are traced whole, and the runs end on their loops.
+// Trimmed surfaces are traced as a whole, and the runs are cut at their loops.
 static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const CagQuadric *quadric,
                            double tolerance, double size, CagCurveList *out, bool *everywhere,
                            CagError *err) {
@@ -175,8 +176,8 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   bool quadric = cag_surface_quadric_view(s, &q);
   size_t first = out->count;
   status = trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, NULL, err);
-  // A surface that touches the plane along a line of cells lies to the same side of it in the cells
-  // on both sides, and each has a run.
+  // A surface that touches the plane along a line of cells is on the same side of it in the cells
+  // on both sides, so each of them has a run.
   return status ? status : cag_curve_list_drop_covered(out, first, MEET * size, err);
 }
 
@@ -201,7 +202,7 @@ CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double
   double size = size_of(&box);
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
-  // The most exact curves come first, because the first of two equal curves is kept.
+  // The most accurate curves come first, because the first of two equal curves is kept.
   status = add_edges_and_touches(s, plane, &box, tolerance, out, err);
   if (!status) status = section_face(s, plane, tolerance, size, out, err);
   if (!status)
@@ -218,7 +219,7 @@ CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tol
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
   if (s->face_count == 0) {
-    // Known as a mesh only.
+    // The solid is known only as a mesh.
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
     CagMesh *mesh = NULL;
     status = cag_solid_tessellate(s, &how, &mesh, err);
@@ -235,7 +236,7 @@ CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 ey
                               double tolerance, CagCurveList *out, CagError *err) {
   const CagRegion *region;
   CagTransform frame;
-  // A flat face is seen from one side or from its edge.
+  // A flat face has no contour.
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
   CagLevel level = cag_level_contour(direction, eye, central);
   return cag_surface_level_curves(s, &level, tolerance, out, NULL, err);

@@ -7,14 +7,14 @@
 #include "geom/curve/cubic.h"
 #include "geom/meet/section.h"
 
-// Points lie on a line, a plane or a conic when they are nearer to it than this part of the
-// surface's size: that is what the points themselves are worth.
+// Points lie on a line, a plane, or a conic if they are closer to it than this fraction of the
+// surface's size, which is their accuracy.
 #define EXACT 1e-10
 static const double FULL_TURN = 6.283185307179586;
 
 // --- Lines and planes ---
 
-// The two points of the run that are farthest apart, roughly, and the third farthest from their
+// The two points of the run that are roughly farthest apart, and the point farthest from their
 // line.
 typedef struct Spread {
   CagVec3 from, to, beside;
@@ -46,7 +46,7 @@ static CagVec3 point_of(const CagTrace *t, size_t k) {
   return k < t->count ? t->points[k] : t->checks[k - t->count];
 }
 
-// A frame of the run's plane; false where it leaves one.
+// A frame of the run's plane; false if it is not planar.
 static bool plane_of(const CagTrace *t, const Spread *s, double size, CagTransform *frame) {
   CagVec3 x = cag_unit(cag_sub(s->to, s->from));
   CagVec3 n = cag_unit(cag_cross(x, cag_sub(s->beside, s->from)));
@@ -59,7 +59,7 @@ static bool plane_of(const CagTrace *t, const Spread *s, double size, CagTransfo
 
 // --- Conics ---
 
-// Coordinates in the plane about a point of it, in units of `unit`.
+// Coordinates in the plane relative to one of its points, in units of `unit`.
 typedef struct Chart {
   CagTransform frame;
   double unit;
@@ -72,7 +72,7 @@ static CagVec3 in_chart(const Chart *c, CagVec3 p) {
                   (d.x * f->m[0][1] + d.y * f->m[1][1] + d.z * f->m[2][1]) / c->unit, 0);
 }
 
-// Where the equation has no slope, infinite or not a number.
+// If the gradient vanishes, infinite or not a number.
 static double distance_from(const CagConic *k, CagVec3 p) {
   const double *c = k->c;
   double gx = 2 * c[0] * p.x + c[1] * p.y + c[3], gy = c[1] * p.x + 2 * c[2] * p.y + c[4];
@@ -88,14 +88,14 @@ static bool fits(const CagTrace *t, const Chart *chart, const CagConic *k, doubl
 
 enum { NEEDED = 5 };
 
-// As many of the run's points, spread over its length.
+// The same number of the run's points, spread over its length.
 static void spread_points(const CagTrace *t, size_t distinct, CagVec3 *out) {
   const size_t parts = t->closed ? NEEDED : NEEDED - 1;
   double whole = 0, length = 0;
   for (size_t i = 1; i < t->count; i++) whole += cag_norm(cag_sub(t->points[i], t->points[i - 1]));
   size_t at = 0;
   for (size_t k = 0; k < NEEDED; k++) {
-    // One more than the one before, and so many that the rest has points of its own.
+    // After the previous one, and leaving enough points for the rest.
     const size_t least = k == 0 ? 0 : at + 1, most = distinct - (NEEDED - k);
     for (; at < least || (at < most && length * (double)parts < (double)k * whole); at++)
       length += cag_norm(cag_sub(t->points[at + 1], t->points[at]));
@@ -103,7 +103,7 @@ static void spread_points(const CagTrace *t, size_t distinct, CagVec3 *out) {
   }
 }
 
-// The conic through five of the points. Fewer than two more to try it by would prove nothing.
+// The conic through five of the points. At least two more are needed to verify it.
 static CagStatus guess(const CagTrace *t, const Chart *chart, CagConic *out, bool *found,
                        CagError *err) {
   enum { TRIED = 2 };
@@ -122,13 +122,13 @@ static CagStatus guess(const CagTrace *t, const Chart *chart, CagConic *out, boo
   return cag_is_final(status) ? status : CAG_OK;
 }
 
-// Whether the rounding of coordinates about the conic's center is less than the points are worth.
+// Whether the rounding of coordinates about the conic's center is below the accuracy of the points.
 static bool is_near(const Chart *chart, const CagConicClass *k, double size) {
   return (cag_norm(k->center) + k->a) * chart->unit * 2 * DBL_EPSILON <= EXACT * size;
 }
 
-// The parabola nearest to the points whose axis is that of the conic's smaller eigenvalue, by least
-// squares: h = k0 + k1 s + k2 s^2 along the axis.
+// The least-squares parabola through the points whose axis is that of the conic's smaller
+// eigenvalue: h = k0 + k1 s + k2 s^2 along the axis.
 static void flatten(const CagTrace *t, const Chart *chart, CagConic *conic) {
   double *c = conic->c;
   const double w = atan2(c[1], c[0] - c[2]) / 2 + (c[0] + c[2] < 0 ? FULL_TURN / 4 : 0);
@@ -167,7 +167,7 @@ static void flatten(const CagTrace *t, const Chart *chart, CagConic *conic) {
   c[5] = k[0] - k[1] * p + k[2] * (p * q - r);
 }
 
-// The frame of the conic's own axes in the world: x, y turned by the angle about its center.
+// The frame of the conic's axes in the world: x, y rotated by the angle about its center.
 static CagTransform own_frame(const Chart *chart, const CagConicClass *k, bool other_branch) {
   double turn = k->angle + (other_branch ? FULL_TURN / 2 : 0), c = cos(turn), s = sin(turn);
   CagTransform in_plane = {{{c, -s, 0, k->center.x * chart->unit},
@@ -212,7 +212,7 @@ static CagStatus open_arc(const CagTrace *t, const Chart *chart, const CagConicC
   return cag_curve_hyperbola(a, b, CAG_FORM_HYPERBOLIC, asinh(low), asinh(high), &frame, out, err);
 }
 
-// NULL in *out where the run is no arc of a conic.
+// *out is NULL if the run is not an arc of a conic.
 static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const Spread *s,
                            double size, CagCurve **out, CagError *err) {
   Chart chart = {.unit = s->length / 2};

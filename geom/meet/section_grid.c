@@ -1,4 +1,4 @@
-// The grid of a patch, its crossings and their links (see section_grid.h).
+// The grid of a patch, its crossings, and their links (see section_grid.h).
 
 #include "geom/meet/section_grid.h"
 
@@ -10,13 +10,13 @@
 #include "base/memory.h"
 #include "geom/linalg/tolerance.h"
 
-// Cells between two breaks at least, and along a direction at most.
+// Minimum number of cells between two breaks, and maximum number along a direction.
 #define CELLS_BETWEEN_BREAKS 4
 #define CELLS_MOST 400
-// Grid lines added for loops smaller than a cell.
+// Maximum number of grid lines added for loops smaller than a cell.
 #define FOLLOWED_MOST 32
-// A place has no tangent where its two parts cancel to this part, or the function changes by less
-// than so many roundings over the whole surface.
+// The tangent is undefined at a point if its two terms cancel to this fraction, or if the function
+// changes by less than a number of rounding errors over the whole surface.
 #define FLAT CAG_COINCIDENT
 #define FLAT_ROUNDINGS 1e4
 #define ROOT_ROUNDS 80
@@ -27,18 +27,18 @@ static double value_at(CagTracer *t, double u, double v) {
   return f;
 }
 
-// What is rounding at this place.
+// The bound of rounding at this point.
 double cag_tracer_zero(const CagTracer *t, double u, double v) {
   return t->level->sided && cag_patch_is_beside(&t->patch, u, v) ? t->zero_beside : t->level->zero;
 }
 
-// The value, 0 where it is rounding.
+// The value, or 0 if it is within rounding.
 double cag_tracer_settled(CagTracer *t, double u, double v) {
   double f = value_at(t, u, v);
   return fabs(f) <= cag_tracer_zero(t, u, v) ? 0 : f;
 }
 
-// Point and tangent at the node's parameters; gives the value and its gradient.
+// Sets point and tangent at the node's parameters; returns the value and its gradient.
 double cag_tracer_inspect(CagTracer *t, CagTraceNode *node, double gradient[2]) {
   CagVec3 d[4] = {0};
   double f = 0;
@@ -66,7 +66,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// The ends of the smooth stretches of the patch along a direction; n is their number.
+// The ends of the smooth intervals of the patch along a direction; n is their number.
 static double *stretch_ends(const CagTracer *t, int direction, size_t *n) {
   const CagSurface *s = t->s;
   double lo = t->patch.lo[direction], hi = t->patch.hi[direction];
@@ -99,7 +99,7 @@ static bool make_lines(CagTracer *t, int direction, size_t cells, const double *
     lines[n++] = hi;
     for (size_t i = 0; i < extra_count; i++) lines[n++] = extra[i];
     qsort(lines, n, sizeof *lines, by_size);
-    // Lines that are all but one are one.
+    // Merge nearly equal lines.
     size_t kept = 1;
     for (size_t i = 1; i < n; i++)
       if (lines[i] - lines[kept - 1] > 1e-9 * (hi - lo)) lines[kept++] = lines[i];
@@ -126,16 +126,16 @@ bool cag_tracer_fill(CagTracer *t) {
   return !t->status;
 }
 
-// A contour's values have no unit of their own: their largest tells what is rounding.
+// A contour's values have no natural unit: rounding is relative to the largest.
 double cag_tracer_largest(const CagTracer *t) {
   double largest = 0;
   for (size_t k = 0; k < t->n[0] * t->n[1]; k++) largest = fmax(largest, fabs(t->values[k]));
   return largest;
 }
 
-// How far the function is within some cells from what the corners promise, as a part of its largest
-// value: near 1 where it goes up and down within a cell. The places are at no simple fraction of
-// the cells, where a wave could hide.
+// The largest deviation of the function inside some cells from the interpolation of the corners, as
+// a fraction of its largest value: near 1 if it oscillates within a cell. The points are not at
+// simple fractions of the cells, where a wave could hide.
 static double roughness(CagTracer *t) {
   const size_t tried = 8;
   const double x = 0.3719, y = 0.6173;
@@ -153,7 +153,7 @@ static double roughness(CagTracer *t) {
   return largest > 0 ? worst / largest : 0;
 }
 
-// Lines that are added to the even ones, by direction.
+// Lines added to the uniform ones, by direction.
 typedef struct Extra {
   double at[2][FOLLOWED_MOST];
   size_t n[2];
@@ -168,7 +168,7 @@ static bool make_all_lines(CagTracer *t, const Extra *e) {
          make_lines(t, 1, t->cells[1] * t->finer, e->at[1], e->n[1]) && cag_tracer_fill(t);
 }
 
-// Twice as fine until the function is smooth from one line to the next.
+// Refines by halving until the function is smooth from one line to the next.
 bool cag_tracer_make_grid(CagTracer *t, size_t finer) {
   const double smooth = 0.1;
   const Extra none = {.n = {0, 0}};
@@ -180,8 +180,8 @@ bool cag_tracer_make_grid(CagTracer *t, size_t finer) {
 
 static double inside(double x, double lo, double hi) { return fmin(fmax(x, lo), hi); }
 
-// Goes from the node by Newton's method, within hu and hv of it, to where the gradient vanishes.
-// The determinant of the second derivatives is told: negative at a saddle.
+// Finds a critical point of the function by Newton's method from the node, within hu and hv of it.
+// Returns the determinant of the second derivatives, which is negative at a saddle.
 bool cag_tracer_critical(CagTracer *t, CagTraceNode *node, double hu, double hv, double *bend,
                          double *determinant) {
   const double part = 1e-3;
@@ -210,15 +210,15 @@ bool cag_tracer_critical(CagTracer *t, CagTraceNode *node, double hu, double hv,
   return true;
 }
 
-// The distance from a line to the nearer one beside it.
+// The distance from a line to its nearer neighbor.
 static double width_at(const CagTracer *t, int direction, size_t i) {
   const double *x = t->lines[direction] + i;
   const double before = i > 0 ? x[0] - x[-1] : INFINITY;
   return i + 1 < t->n[direction] ? fmin(before, x[1] - x[0]) : before;
 }
 
-// Follows the function from a node where it is nearest to 0 among its neighbors; true where it
-// has the other sign at its extremum.
+// Minimizes the function's magnitude from a node that is nearest to 0 among its neighbors; returns
+// true if it has the other sign at its extremum.
 static bool follow(CagTracer *t, size_t i, size_t j, double *u, double *v) {
   double sign = *value_of(t, i, j) < 0 ? -1 : 1, bend, determinant;
   CagTraceNode here = {.u = t->lines[0][i], .v = t->lines[1][j]};
@@ -248,13 +248,13 @@ static void find_small_loops(CagTracer *t, Extra *e) {
       }
 }
 
-// Between two ends along direction k where the function has one sign: a place with the other one,
-// looked for where it comes nearest to 0. A curve leaves the rectangle there and comes back.
+// Between two ends along direction k at which the function has the same sign: a point with the
+// other sign, searched where it is nearest to 0. A curve leaves the rectangle there and returns.
 static bool find_dip(CagTracer *t, int k, double fixed, double lo, double hi, double *out) {
   const int rounds = 30;
   double sign = 0, slopes[2] = {0, 0};
   for (int round = 0; round < rounds && !t->status; round++) {
-    // The ends first, then places between: secant and bisection of the slope by turns.
+    // The ends first, then points between them: secant and bisection of the slope alternately.
     double way = slopes[1] - slopes[0];
     double x = round == 0                  ? lo
                : round == 1                ? hi
@@ -309,7 +309,7 @@ static size_t edge_along_v(const CagTracer *t, size_t i, size_t j) {
 
 static bool negative(double f) { return f < 0; }
 
-// The zero between two nodes, of which one is negative: false position with halved weights (the
+// The zero between two nodes, one of which is negative: false position with halved weights (the
 // Illinois variant), which keeps it bracketed.
 void cag_tracer_crossing(CagTracer *t, double u0, double v0, double f0, double u1, double v1,
                          double f1, CagTraceNode *out) {
@@ -329,7 +329,7 @@ void cag_tracer_crossing(CagTracer *t, double u0, double v0, double f0, double u
       fb = f;
       fa /= 2;
     }
-    // Every third round halves the bracket, whatever the function looks like.
+    // Every third round bisects the bracket, whatever the function looks like.
     if (round % 3 == 2) {
       double m = (a + b) / 2, fm = value_at(t, u0 + m * (u1 - u0), v0 + m * (v1 - v0));
       if (negative(fm) == negative(f0)) {
@@ -347,9 +347,10 @@ void cag_tracer_crossing(CagTracer *t, double u0, double v0, double f0, double u
   cag_tracer_inspect(t, out, gradient);
 }
 
-// Whether two branches cross at a node without tangent: the gradient vanishes there as at a saddle.
+// Whether two branches cross at a node without a tangent: the gradient vanishes there as at a
+// saddle.
 static bool is_saddle(CagTracer *t, const CagTraceNode *node) {
-  const double same = 1e-6; // parts of a cell
+  const double same = 1e-6; // fraction of a cell
   double bend, determinant;
   double hu = (t->patch.hi[0] - t->patch.lo[0]) / (double)t->n[0];
   double hv = (t->patch.hi[1] - t->patch.lo[1]) / (double)t->n[1];
@@ -374,7 +375,7 @@ static void link_pair(CagTracer *t, size_t a, size_t b) {
   t->links[b][t->links[b][0] >= 0] = (int32_t)a;
 }
 
-// The value at the saddle of a cell whose edges are all crossed; in its middle where none is found.
+// The value at the saddle of a cell all of whose edges are crossed; at its middle if none is found.
 static double saddle_value(CagTracer *t, size_t i, size_t j) {
   const double *u = &t->lines[0][i], *v = &t->lines[1][j];
   double hu = (u[1] - u[0]) / 2, hv = (v[1] - v[0]) / 2, bend, determinant;
@@ -395,7 +396,7 @@ static void link_cell(CagTracer *t, size_t i, size_t j) {
     if (corner[k] != corner[(k + 1) % 4]) crossed[n++] = edge[k];
   if (n == 2) link_pair(t, crossed[0], crossed[1]);
   if (n != 4) return;
-  // The saddle between joins the two corners of its sign; the others are cut off.
+  // The saddle connects the two corners of its sign; the others are cut off.
   bool with_first = negative(saddle_value(t, i, j)) == corner[0];
   link_pair(t, edge[0], edge[with_first ? 1 : 3]);
   link_pair(t, edge[2], edge[with_first ? 3 : 1]);

@@ -1,5 +1,5 @@
-// Runs of traced points: those that go on across a seam or a break become one, and points without a
-// tangent of their own get one from their neighbors.
+// Runs of traced points: runs that continue across a seam or a break are joined, and points without
+// a tangent get one from their neighbors.
 
 #include "geom/meet/section_join.h"
 
@@ -10,10 +10,10 @@
 #include "base/memory.h"
 #include "base/stop.h"
 
-// Runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
-// tangent for both then stay within a millionth.
+// Runs that meet are joined if their tangents agree up to this (1 - cosine): cubics with a common
+// tangent are then accurate to a millionth.
 #define KINK 1e-8
-// Part of the size below which an open run is next to nothing.
+// Fraction of the size below which an open run is negligible.
 #define SPECK 1e-8
 
 void cag_trace_free(CagTrace *t) {
@@ -84,8 +84,8 @@ static bool join_pair(CagTraces *t, size_t i, size_t j, const CagTraceJoint *how
   return true;
 }
 
-// What is smaller than the tolerance and by itself only touches the level; open runs that are next
-// to nothing (by a pole, where values are rounding): their neighbors meet without them.
+// Drops single runs smaller than the tolerance, which only touch the level, and negligible open
+// runs (at a pole, where values are rounding), whose neighbors meet without them.
 static void drop_specks(CagTraces *t, const CagTraceJoint *how) {
   size_t kept = 0;
   for (size_t i = 0; i < t->count; i++) {
@@ -102,7 +102,7 @@ static void drop_specks(CagTraces *t, const CagTraceJoint *how) {
   t->count = kept;
 }
 
-// Ends early if the work is to end.
+// Ends early if the work is canceled.
 static bool join_traces(CagTraces *t, const CagTraceJoint *how) {
   for (size_t i = 0; i < t->count; i++) {
     bool joined = true;
@@ -115,7 +115,7 @@ static bool join_traces(CagTraces *t, const CagTraceJoint *how) {
   return true;
 }
 
-// The tangent of an end of an open run that has none: that of its neighbor, mirrored.
+// Sets a missing tangent at an end of an open run by reflecting its neighbor's.
 static void complete_ends(CagTrace *t) {
   size_t n = t->count;
   const size_t ends[2][2] = {{0, 1}, {n - 1, n - 2}};
@@ -129,13 +129,13 @@ static void complete_ends(CagTrace *t) {
   }
 }
 
-// Tangents where the function gave none, by the parabola through the neighbors.
+// Sets missing tangents from the parabola through the neighbors.
 static void complete_tangents(CagTrace *t, const CagTraceJoint *how) {
   size_t n = t->count;
   bool comes_back = n > 3 && cag_norm(cag_sub(t->points[0], t->points[n - 1])) <= how->same;
   t->closed = false;
   if (comes_back) {
-    // Closed only where it goes on smoothly.
+    // Closed only if it continues smoothly.
     CagVec3 before = cag_unit(cag_sub(t->points[n - 1], t->points[n - 2]));
     CagVec3 after = cag_unit(cag_sub(t->points[1], t->points[0]));
     t->points[n - 1] = t->points[0];

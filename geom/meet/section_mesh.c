@@ -1,7 +1,7 @@
-// Plane sections of meshes: polylines.
+// Plane sections of meshes, as polylines.
 //
-// A vertex on the plane counts as above it, as in the sections of surfaces: each triangle then has
-// none or two crossed edges, and every crossed edge of a closed mesh is that of two triangles, so
+// A vertex in the plane counts as above it, as for sections of surfaces. Each triangle then has
+// zero or two crossed edges, and every crossed edge of a closed mesh belongs to two triangles, so
 // that the polylines close.
 
 #include <math.h>
@@ -12,10 +12,10 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/meet/section.h"
 
-// Vertices within this part of the size of the plane lie in it.
+// Vertices closer to the plane than this fraction of the size lie in it.
 #define ON_PLANE 1e-13
-// Points of a polyline nearer than this part of the size are one, and those this near to the line
-// of their neighbors are left out.
+// Points of a polyline closer than this fraction of the size are merged, and points this close to
+// the line of their neighbors are dropped.
 #define SAME CAG_ROUNDING
 
 // One end of a segment: the edge that it crosses, lower vertex first.
@@ -32,7 +32,7 @@ typedef struct Cut {
   End *ends;
   size_t count; // of ends, two to a segment
   CagVec3 *points;
-  size_t (*next)[2]; // the end that a segment's end meets
+  size_t (*next)[2]; // the end that each end of a segment meets
 } Cut;
 
 #define NO_END SIZE_MAX
@@ -44,7 +44,7 @@ static double height(const Cut *c, uint32_t v) {
   return fabs(d) <= c->zero ? 0 : d;
 }
 
-// From the lower vertex, whichever triangle asks.
+// From the lower vertex, for all triangles alike.
 static CagVec3 crossing(const Cut *c, const End *e) {
   double a = height(c, e->low), b = height(c, e->high);
   CagVec3 p = c->m->positions[e->low], q = c->m->positions[e->high];
@@ -77,7 +77,7 @@ static void find_segments(Cut *c) {
   }
 }
 
-// Ends on one edge meet in pairs; where more than two triangles share it, in order.
+// Ends on one edge meet in pairs; if more than two triangles share it, in order.
 static void link_ends(Cut *c) {
   for (size_t i = 0; i < c->count / 2; i++) c->next[i][0] = c->next[i][1] = NO_END;
   qsort(c->ends, c->count, sizeof *c->ends, by_edge);
@@ -90,7 +90,8 @@ static void link_ends(Cut *c) {
   }
 }
 
-// Adds a point unless it is the last one; a last one on the line to it gives way.
+// Adds a point unless it equals the last one; the last one is dropped if it is on the line to the
+// new one.
 static void add_point(const Cut *c, CagVec3 *out, size_t *n, CagVec3 p) {
   double same = SAME * c->size;
   if (*n > 0 && cag_norm(cag_sub(p, out[*n - 1])) <= same) return;
@@ -120,7 +121,7 @@ static CagStatus add_polyline(const Cut *c, CagVec3 *points, size_t n, bool clos
   return status ? status : cag_curve_list_add(out, line, err);
 }
 
-// Walks from one end of a segment on; gives the number of points.
+// Follows a polyline from one end of a segment; returns the number of points.
 static size_t walk(const Cut *c, size_t segment, int from, bool *seen, CagVec3 *points) {
   size_t n = 0;
   add_point(c, points, &n, c->points[2 * segment + (size_t)from]);

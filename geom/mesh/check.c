@@ -1,5 +1,5 @@
-// Checks of faces as a boundary: uses of edges are sorted so that those of one edge stand together;
-// union-find forests over the faces and over their corners tell shells and fans.
+// Checks whether faces form a boundary: uses of edges are sorted so that those of one edge are
+// adjacent; union-find forests over the faces and over their corners determine shells and fans.
 
 #include "geom/mesh/check.h"
 
@@ -8,10 +8,11 @@
 #include "base/memory.h"
 #include "base/sort.h"
 
-// An edge of a face. A corner is a place in the list of indices; low < high are vertices.
+// A use of an edge by a face. Corners are positions in the list of indices; low < high are
+// vertices.
 typedef struct Use {
   uint32_t low, high, face;
-  bool forward;                   // the face runs it from low to high
+  bool forward;                   // the face runs along it from low to high
   size_t low_corner, high_corner; // of the face
 } Use;
 
@@ -20,7 +21,7 @@ typedef struct Work {
   const uint32_t *indices, *counts;
   size_t n, faces, corners;
   Use *uses;                   // one for each corner
-  size_t *of_face, *of_corner; // forests: an element's parent, roots their own
+  size_t *of_face, *of_corner; // union-find forests: each element's parent; roots are their own
   size_t *around;              // per vertex, for marks and counts
 } Work;
 
@@ -88,7 +89,7 @@ static CagStatus read_faces(Work *w, CagError *err) {
 
 // --- Counting ---
 
-// The edge whose uses are u[0 .. n).
+// Counts the edge whose uses are u[0 .. n).
 static void count_edge(Work *w, const Use *u, size_t n, CagMeshCheck *out) {
   size_t forward = 0;
   for (size_t i = 0; i < n; i++) {
@@ -103,7 +104,7 @@ static void count_edge(Work *w, const Use *u, size_t n, CagMeshCheck *out) {
   if (forward > 1 || n - forward > 1) out->oriented = false;
 }
 
-// Gives the number of fans that there are more than vertices.
+// Returns the number of fans in excess of the number of vertices.
 static size_t count_vertices(Work *w, CagMeshCheck *out) {
   size_t fans = 0;
   for (size_t i = 0; i < w->n; i++) w->around[i] = 0;
@@ -118,8 +119,8 @@ static size_t count_vertices(Work *w, CagMeshCheck *out) {
   return fans - out->vertices;
 }
 
-// Any point serves as the tip of the tetrahedra of a closed surface; one of its own keeps the terms
-// small.
+// Any point can be the apex of the tetrahedra of a closed surface; one of its own vertices keeps
+// the terms small.
 static double volume_of(const Work *w) {
   double six = 0;
   size_t first = 0;

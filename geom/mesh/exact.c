@@ -1,5 +1,5 @@
-// Numbers without rounding: schoolbook arithmetic on limbs of 64 bits. The numbers of geometric
-// decisions have 1 to 20 limbs, for which nothing cleverer is faster.
+// Exact arithmetic by schoolbook methods on 64-bit limbs. The numbers in geometric predicates have
+// 1 to 20 limbs, for which no other method is faster.
 
 #include "geom/mesh/exact.h"
 
@@ -38,7 +38,7 @@ CagExact cag_exact(CagExactSpace *s, double x) {
   return (CagExact){limb, 1, exponent - MANTISSA_BITS + zeros, x > 0 ? 1 : -1};
 }
 
-// Writes a, moved up by `shift` bits, into n limbs.
+// Writes a, shifted left by `shift` bits, to n limbs.
 static void write_shifted(const CagExact *a, int shift, uint64_t *to, int n) {
   const int limbs = shift / LIMB_BITS, bits = shift % LIMB_BITS;
   memset(to, 0, (size_t)n * sizeof *to);
@@ -115,7 +115,7 @@ CagExact cag_exact_minor(CagExactSpace *s, CagExact a, CagExact b, CagExact c, C
   return cag_exact_difference(s, cag_exact_product(s, a, d), cag_exact_product(s, b, c));
 }
 
-// a = result * 2^exponent, to a relative 2^-52.
+// a = result * 2^exponent, with a relative error of 2^-52.
 static double approximate(const CagExact *a, int *exponent) {
   if (a->n == 0) {
     *exponent = 0;
@@ -140,7 +140,7 @@ static int compare(CagExactSpace *s, CagExact x, CagExact w, CagExact q) {
 }
 
 double cag_exact_quotient(CagExactSpace *s, CagExact x, CagExact w) {
-  const double tiny = 0x1p-960; // below, doubles lose bits
+  const double tiny = 0x1p-960; // below this, doubles lose bits
   if (x.sign == 0) return 0;
   const double q = near_quotient(&x, &w);
   if (fabs(q) < 2 * tiny) {
@@ -148,12 +148,12 @@ double cag_exact_quotient(CagExactSpace *s, CagExact x, CagExact w) {
     size.sign = 1;
     if (compare(s, size, w, cag_exact(s, tiny)) < 0) return 0;
   }
-  // q is some units in the last place off; one step with the exact rest mends that.
+  // q is off by some units in the last place; one correction with the exact remainder fixes that.
   const CagExact rest = cag_exact_difference(s, x, cag_exact_product(s, cag_exact(s, q), w));
   if (rest.sign == 0) return q;
   const double more = near_quotient(&rest, &w), sum = q + more, left = more - (sum - q);
   const double other = nextafter(sum, left > 0 ? INFINITY : -INFINITY), half = (other - sum) / 2;
-  // `left` is known to 2^-50 of `more`, far better than this part of half a unit.
+  // The relative error of `left` is 2^-50 of `more`, far below this margin of half a unit.
   const double sure = 0.999;
   if (left == 0 || fabs(left) < sure * fabs(half)) return sum;
   const CagExact middle = cag_exact_sum(s, cag_exact(s, sum), cag_exact(s, half));

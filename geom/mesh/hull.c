@@ -1,11 +1,11 @@
 // Convex hulls.
 //
-// In the plane the points are sorted and scanned (Andrew 1979); in space they are taken in one
-// after the other, from the farthest beyond each face (Barber, Dobkin, Huhdanpaa 1996). All sides
-// are decided exactly (predicates.h), so that the triangles always close, however the points lie: a
-// point sees a face only from strictly outside, by which no triangle without area can arise.
-// Triangles that are one flat face to rounding are then joined, and vertices that are left in the
-// middle of a face or an edge go.
+// In the plane the points are sorted and scanned (Andrew 1979). In space they are added one by one,
+// starting with the farthest beyond each face (Barber, Dobkin, Huhdanpaa 1996). All sides are
+// decided exactly (predicates.h), so the triangles always form a closed surface for any input: a
+// point sees a face only from strictly outside, so no triangle without area can arise. Triangles
+// that are coplanar to rounding are then merged, and vertices that remain in the interior of a face
+// or an edge are removed.
 
 #include "geom/mesh/hull.h"
 
@@ -19,8 +19,8 @@
 #include "geom/curve/family.h"
 #include "geom/mesh/predicates.h"
 
-// What rounding of turned points may be, in parts of their largest coordinate: points that near a
-// line or plane are in it.
+// Rounding of transformed points, relative to their largest coordinate: points this close to a line
+// or plane are on it.
 #define IN_LINE (8 * DBL_EPSILON)
 #define IN_PLANE (16 * DBL_EPSILON)
 
@@ -65,7 +65,7 @@ static double from_line(CagVec3 p, CagVec3 a, CagVec3 b) {
   return length > 0 ? cag_norm(cag_cross(d, cag_sub(p, a))) / length : cag_norm(cag_sub(p, a));
 }
 
-// Strictly convex chain over sorted points, onto `chain`; gives its length.
+// Builds a strictly convex chain over sorted points in `chain`; returns its length.
 static size_t scan(const Indexed *points, size_t n, bool backwards, size_t *chain) {
   size_t m = 0;
   for (size_t k = 0; k < n; k++) {
@@ -78,7 +78,7 @@ static size_t scan(const Indexed *points, size_t n, bool backwards, size_t *chai
   return m;
 }
 
-// Drops corners that are straight to rounding.
+// Removes corners that are straight to rounding.
 static size_t straighten(const Indexed *points, size_t *ring, size_t m, double slack) {
   size_t kept = 0;
   for (size_t i = 0; i < m; i++) {
@@ -123,10 +123,10 @@ CagStatus cag_hull_plane(const CagVec3 *points, size_t n, size_t **out, size_t *
 
 typedef struct Face {
   uint32_t v[3], next[3]; // next[i]: beyond the edge from v[i] to v[i + 1]
-  uint32_t outside;       // first of the points seen from, chained; NONE: none
+  uint32_t outside;       // first of the points outside of this face, chained; NONE: none
   uint32_t farthest;
   double height; // of the farthest
-  uint32_t mark; // of the round that saw it
+  uint32_t mark; // of the round in which it was visible
   bool dead;
 } Face;
 
@@ -138,7 +138,7 @@ typedef struct Hull {
   Face *faces;
   size_t count, capacity;
   uint32_t *seen;   // faces
-  uint32_t *rim_of; // per point: new face that starts there on the horizon
+  uint32_t *rim_of; // for each point: the new face that starts there on the horizon
   size_t seen_n, seen_capacity;
   uint32_t round;
 } Hull;
@@ -167,7 +167,7 @@ static CagStatus new_face(Hull *h, uint32_t a, uint32_t b, uint32_t c, uint32_t 
   return CAG_OK;
 }
 
-// Gives the point to the face when the face sees it.
+// Assigns the point to the face if the face is visible from it.
 static bool offer(Hull *h, uint32_t face, uint32_t p) {
   Face *f = &h->faces[face];
   if (!sees(h, f, p)) return false;
@@ -211,7 +211,7 @@ static double measure_plane(const Hull *h, const uint32_t *base, CagVec3 p) {
   return fabs(cag_dot(n, cag_sub(p, a)));
 }
 
-// Four points that span space, b[3] below the plane of the others.
+// Four points that are not coplanar, b[3] below the plane of the others.
 static CagStatus first_points(const Hull *h, uint32_t b[4], CagError *err) {
   double most;
   b[0] = 0;
@@ -254,7 +254,7 @@ static CagStatus first_faces(Hull *h, CagError *err) {
   return status;
 }
 
-// All faces that see p, from one that does, in h->seen.
+// Collects all faces visible from p in h->seen, starting with one.
 static void flood(Hull *h, uint32_t from, uint32_t p) {
   h->round++;
   h->seen_n = 0;
@@ -271,7 +271,7 @@ static void flood(Hull *h, uint32_t from, uint32_t p) {
 
 static int edge_from(const Face *f, uint32_t v) { return f->v[0] == v ? 0 : f->v[1] == v ? 1 : 2; }
 
-// A fan from p over the horizon of the faces in h->seen; the new faces are the last ones.
+// Adds a fan from p over the horizon of the faces in h->seen; the new faces are the last ones.
 static CagStatus cone(Hull *h, uint32_t p, CagError *err) {
   const size_t first = h->count;
   for (size_t i = 0; i < h->seen_n; i++)
@@ -294,7 +294,7 @@ static CagStatus cone(Hull *h, uint32_t p, CagError *err) {
   return CAG_OK;
 }
 
-// Takes the farthest point beyond the face into the hull.
+// Adds the farthest point beyond the face to the hull.
 static CagStatus take_in(Hull *h, uint32_t face, CagError *err) {
   const uint32_t p = h->faces[face].farthest;
   flood(h, face, p);
@@ -327,8 +327,8 @@ static int larger_first(const void *a, const void *b) {
   return (f->face > g->face) - (f->face < g->face);
 }
 
-// Of a body as thin as rounding the other side is as near as a triangle of this one, but looks the
-// other way. Triangles as thin as rounding look anywhere.
+// In a solid as thin as rounding the opposite side is within the tolerance too, but faces the other
+// way. Triangles as thin as rounding may face anywhere.
 static bool looks_away(const Hull *h, const Face *f, CagVec3 normal) {
   const CagVec3 cross = face_cross(h, f);
   double longest = 0;
@@ -337,8 +337,8 @@ static bool looks_away(const Hull *h, const Face *f, CagVec3 normal) {
   return cag_dot(cross, normal) < 0 && cag_norm(cross) > 2 * h->slack * longest;
 }
 
-// Numbers the flat faces of which triangles are parts, into `flat` (per triangle); the largest
-// triangle of each gives its plane.
+// Assigns the number of its flat face to each triangle in `flat`; the largest triangle of each
+// determines its plane.
 static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *err) {
   Flat *order = cag_malloc(h->count * sizeof *order);
   if (!order) return cag_fail_memory(err);
@@ -374,7 +374,7 @@ static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *er
   return status;
 }
 
-// Counts for each point the flat faces that have it on their rim, by the rim edges that leave it.
+// For each point, counts the flat faces that have it on their rim, by the rim edges that leave it.
 static void count_rims(const Hull *h, const uint32_t *flat, uint32_t *rims) {
   memset(rims, 0, h->n * sizeof *rims);
   for (size_t i = 0; i < h->count; i++)
@@ -382,15 +382,15 @@ static void count_rims(const Hull *h, const uint32_t *flat, uint32_t *rims) {
       if (flat[h->faces[i].next[e]] != flat[i]) rims[h->faces[i].v[e]]++;
 }
 
-// All vertices of the rim of the flat face that the edge e of a triangle is on, into `ring`; gives
-// their number. Marks the edges.
+// Collects all vertices of the rim of a flat face, starting at edge e of a triangle, in `ring`;
+// returns their number. Marks the edges.
 static size_t walk_rim(const Hull *h, const uint32_t *flat, uint8_t *walked, uint32_t face, int e,
                        uint32_t *ring) {
   size_t n = 0;
   while (!(walked[face] & 1 << e)) {
     walked[face] |= (uint8_t)(1 << e);
     ring[n++] = h->faces[face].v[e];
-    // The next rim edge about the end of this one.
+    // The next rim edge around the end of this one.
     const uint32_t end = h->faces[face].v[(e + 1) % 3];
     e = (e + 1) % 3;
     while (flat[h->faces[face].next[e]] == flat[face]) {
@@ -407,8 +407,9 @@ static double from_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
   return cag_norm(cag_sub(p, cag_lerp(a, b, fmax(0, fmin(1, along)))));
 }
 
-// Keeps the vertices of a rim that lie in three or more flat faces, and gives their number. In a
-// body as thin as rounding, two flat faces may share an edge that is not straight; then it gives 0.
+// Keeps the vertices of a rim that belong to three or more flat faces, and returns their number. In
+// a solid as thin as rounding, two flat faces may share an edge that is not straight; then it
+// returns 0.
 static size_t keep_corners(const Hull *h, const uint32_t *rims, uint32_t *ring, size_t n) {
   size_t first = 0, kept = 0;
   while (first < n && rims[ring[first]] < 3) first++;
@@ -428,7 +429,7 @@ typedef struct Rings {
   size_t rings, total;
 } Rings;
 
-// False: the flat faces are no polyhedron (a body as thin as rounding).
+// Returns false if the flat faces do not form a polyhedron (a solid as thin as rounding).
 static bool collect_rings(const Hull *h, const uint32_t *flat, size_t flats, const uint32_t *rims,
                           uint8_t *walked, Rings *out) {
   size_t corners = 0;
@@ -469,7 +470,7 @@ static CagStatus mesh_of_rings(const Hull *h, const Rings *r, uint32_t *number, 
   return CAG_OK;
 }
 
-// Each triangle becomes a face of its own; this hull is always closed.
+// Uses each triangle as a separate face; this hull is always closed.
 static void collect_triangles(const Hull *h, Rings *out) {
   out->rings = out->total = 0;
   for (size_t i = 0; i < h->count; i++) {
@@ -480,7 +481,7 @@ static void collect_triangles(const Hull *h, Rings *out) {
   }
 }
 
-// The mesh is NULL if it is not closed: in a body as thin as rounding, two flat faces may share
+// The mesh is NULL if it is not closed: in a solid as thin as rounding, two flat faces may share
 // more than one edge.
 static CagStatus mesh_of_flats(const Hull *h, const Rings *r, uint32_t *number, CagMesh **out,
                                CagError *err) {

@@ -1,6 +1,6 @@
-// Triangle meshes: making, copying, moving, joining, turning inside out.
+// Triangle meshes: construction, copying, transforms, joining, and reversal.
 //
-// A mesh is immutable once handed out; everything here makes a new one. Measures and checks are in
+// A mesh is immutable once returned; all functions here make a new one. Measures and checks are in
 // mesh_measure.c, welding in mesh_weld.c.
 
 #include "geom/mesh/mesh.h"
@@ -26,7 +26,7 @@ CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv,
   m->references = 1;
   m->vertex_count = vertices;
   m->triangle_count = triangles;
-  // One more than needed, so that an empty array is not a NULL that means "none".
+  // Allocate one more than needed, so that an empty array is not NULL, which means "none".
   m->positions = cag_malloc((vertices + 1) * sizeof *m->positions);
   m->triangles = cag_malloc((triangles + 1) * 3 * sizeof *m->triangles);
   if (normals) m->normals = cag_malloc((vertices + 1) * sizeof *m->normals);
@@ -91,8 +91,8 @@ static CagStatus check_vertices(const CagVec3 *vertices, size_t n, CagError *err
   return CAG_OK;
 }
 
-// seen[v] is 1 + the last face that named v: a repeated corner is found without comparing all
-// pairs.
+// seen[v] is 1 + the last face that used v, so that a repeated corner is found without comparing
+// all pairs.
 static CagStatus check_face(const uint32_t *face, size_t count, size_t f, size_t n, size_t *seen,
                             CagError *err) {
   if (count < 3)
@@ -153,7 +153,7 @@ CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t 
 
 // --- Copies ---
 
-// Those of m become those of `to` from triangle `first` on.
+// Copies the labels of m to `to`, starting at triangle `first`.
 static bool copy_labels(const CagMesh *m, CagMesh *to, size_t first) {
   if (!m->labels) return true;
   if (!to->labels) to->labels = cag_calloc(to->triangle_count + 1, sizeof *to->labels);
@@ -199,9 +199,9 @@ CagStatus cag_mesh_flip(const CagMesh *m, CagMesh **out, CagError *err) {
   return CAG_OK;
 }
 
-// Normal at p under t: the cofactors of the map's derivative at p carry normals to normals. For a
-// projective map x -> A x / w the derivative is (A - image w')/w, which differs from point to
-// point. Under a mirror the result points inward.
+// Normal at p under t: the cofactors of the map's derivative at p transform normals. For a
+// projective map x -> A x / w the derivative is (A - image w')/w, which varies from point to point.
+// Under a reflection the result points inward.
 static CagVec3 transform_normal(const CagTransform *t, CagVec3 p, CagVec3 image, CagVec3 normal) {
   double w = t->m[3][0] * p.x + t->m[3][1] * p.y + t->m[3][2] * p.z + t->m[3][3];
   CagVec3 c[3];
@@ -240,8 +240,8 @@ CagStatus cag_mesh_transform(const CagMesh *m, const CagTransform *t, CagMesh **
   return CAG_OK;
 }
 
-// Normals of the triangles, area-weighted at shared vertices: for the parts of a joined mesh that
-// came without normals beside parts that have them.
+// Area-weighted normals at shared vertices, for parts of a joined mesh that have no normals when
+// other parts do.
 static void smooth_normals(CagMesh *m, size_t first_vertex, size_t vertices, size_t first_triangle,
                            size_t triangles) {
   for (size_t i = 0; i < vertices; i++) m->normals[first_vertex + i] = cag_vec3(0, 0, 0);
@@ -255,7 +255,7 @@ static void smooth_normals(CagMesh *m, size_t first_vertex, size_t vertices, siz
     m->normals[first_vertex + i] = cag_unit(m->normals[first_vertex + i]);
 }
 
-// Values of one scale stay values; where another part has parameters they lose their colors.
+// Values with a common scale are kept; if another part has parameters, the colors are dropped.
 static CagColorScale common_scale(CagMesh *const *meshes, size_t n) {
   CagColorScale first = n > 0 ? meshes[0]->scale : (CagColorScale){0};
   for (size_t i = 1; i < n; i++) {

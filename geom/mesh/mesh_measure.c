@@ -23,9 +23,9 @@ double cag_mesh_area(const CagMesh *m) {
   return twice / 2;
 }
 
-// Each triangle spans a signed tetrahedron with the origin. Over a tetrahedron of volume V with a
-// corner in the origin and the others a, b, c: the integral of x is V/4 (ax + bx + cx), and of x y
-// it is V/20 (sx sy + ax ay + bx by + cx cy) with s = a + b + c.
+// Each triangle spans a signed tetrahedron with the origin. Over a tetrahedron of volume V with one
+// corner at the origin and the others a, b, c: the integral of x is V/4 (ax + bx + cx), and that of
+// x y is V/20 (sx sy + ax ay + bx by + cx cy) with s = a + b + c.
 void cag_mesh_volume_terms(const CagMesh *m, double terms[10]) {
   double sum[10] = {0};
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -52,7 +52,7 @@ static int by_number(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// Sorts the few uses of edges with one lower vertex.
+// Sorts the few uses of edges with the same lower vertex.
 static void sort_uses(uint32_t *use, size_t n) {
   enum { INSERTION_LIMIT = 24 };
   if (n > INSERTION_LIMIT) {
@@ -67,9 +67,9 @@ static void sort_uses(uint32_t *use, size_t n) {
   }
 }
 
-// Uses of edges as higher vertex * 2 + (1: it runs from the lower one), those of one lower vertex
-// side by side from start[lower] on: a fourth of the room of cag_mesh_edges, where a whole mesh of
-// millions is looked at while it is written.
+// Uses of edges as higher vertex * 2 + (1: it runs from the lower one), grouped by lower vertex
+// from start[lower] on. This takes a quarter of the memory of cag_mesh_edges, for checking meshes
+// of millions of triangles while they are written.
 typedef struct Uses {
   size_t *start;
   uint32_t *use;
@@ -80,7 +80,7 @@ static bool collect_uses(const CagMesh *m, Uses *out) {
   uint32_t *use = cag_malloc((m->triangle_count * 3 + 1) * sizeof *use);
   *out = (Uses){start, use};
   if (!start || !use) return false;
-  // Two passes over the triangles: count the edges of each lower vertex, then put them there.
+  // Two passes over the triangles: count the edges of each lower vertex, then store them.
   for (int pass = 0; pass < 2; pass++) {
     for (size_t t = 0; t < m->triangle_count; t++)
       for (size_t k = 0; k < 3; k++) {
@@ -109,7 +109,7 @@ CagStatus cag_mesh_watertight(const CagMesh *m, bool *watertight, CagVec3 edge[2
   for (size_t v = 0; closed && v < m->vertex_count; v++)
     for (size_t k = uses.start[v]; k < uses.start[v + 1] && closed; k += 2) {
       const uint32_t *use = uses.use + k;
-      // Twice, once in each sense: 2 high and 2 high + 1, and no third.
+      // Exactly twice, once in each direction: 2 high and 2 high + 1, and no third.
       size_t left = uses.start[v + 1] - k;
       closed =
           left >= 2 && use[0] % 2 == 0 && use[1] == use[0] + 1 && (left == 2 || use[2] > use[1]);
@@ -130,7 +130,7 @@ bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]) {
   return closed;
 }
 
-// How often the edge whose uses begin at e[0] is used.
+// The number of uses of the edge whose uses begin at e[0].
 static size_t uses_of(const CagMeshEdge *e, size_t left) {
   size_t n = 1;
   while (n < left && e[n].low == e[0].low && e[n].high == e[0].high) n++;

@@ -1,8 +1,8 @@
-// Welding: vertices nearer than a tolerance become one point.
+// Welding: merges vertices closer than a tolerance.
 //
-// The vertices are taken in their order. Each joins the nearest point found so far within the
-// tolerance, or becomes a new point. Points are kept in a hash of cubes with the tolerance as side,
-// so that only the 27 cubes around a vertex are asked.
+// The vertices are processed in order. Each joins the nearest existing point within the tolerance,
+// or becomes a new point. Points are kept in a hash table of cubes with the tolerance as side, so
+// that only the 27 cubes around a vertex are searched.
 
 #include <string.h>
 
@@ -16,8 +16,8 @@ typedef struct Welder {
   const CagMesh *mesh;
   double tolerance;
   size_t mask;
-  uint32_t *heads; // hash of the cube -> the last point put there
-  uint32_t *next;  // of a point: the one put before it
+  uint32_t *heads; // hash of the cube -> the last point in it
+  uint32_t *next;  // for each point: the previous one in its cube
 } Welder;
 
 static uint64_t mix(uint64_t h) {
@@ -28,7 +28,7 @@ static uint64_t mix(uint64_t h) {
   return h ^ h >> 33;
 }
 
-// The cube's coordinate along an axis; with tolerance 0 the number itself (both zeros alike).
+// The cube's coordinate along an axis; with tolerance 0 the number itself (both zeros are equal).
 static uint64_t cube(const Welder *w, double x, int step) {
   double c = w->tolerance > 0 ? floor(x / w->tolerance) + step : x + 0.0;
   uint64_t bits;
@@ -58,7 +58,7 @@ static uint32_t nearest_point(const Welder *w, CagVec3 p) {
   return best;
 }
 
-// first[v]: the vertex that is v's point.
+// first[v]: the vertex that v is merged into.
 static CagStatus find_points(const CagMesh *m, double tolerance, uint32_t *first, CagError *err) {
   size_t size = 1024;
   while (size < m->vertex_count) size *= 2;
@@ -80,7 +80,8 @@ static CagStatus find_points(const CagMesh *m, double tolerance, uint32_t *first
   return status;
 }
 
-// Do joined vertices agree on the normal (within what no shading shows)? On the parameters?
+// Whether merged vertices agree in their normals (within a difference that shading does not show),
+// and in their parameters.
 static void find_agreement(const CagMesh *m, const uint32_t *first, bool *normals, bool *uv) {
   const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees
   *normals = m->normals != NULL;
@@ -117,7 +118,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
   for (size_t t = 0; t < m->triangle_count; t++) {
     uint32_t k[3];
     for (int j = 0; j < 3; j++) k[j] = number[first[m->triangles[3 * t + j]]];
-    if (k[0] == k[1] || k[1] == k[2] || k[2] == k[0]) continue; // shrunk to an edge or a point
+    if (k[0] == k[1] || k[1] == k[2] || k[2] == k[0]) continue; // collapsed to an edge or a point
     if (m->labels) w->labels[triangles] = m->labels[t];
     memcpy(w->triangles + 3 * triangles++, k, sizeof k);
   }
@@ -127,9 +128,9 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
   return CAG_OK;
 }
 
-// A point is one vertex in the result, also at sharp edges and seams. Normals and parameters belong
-// to vertices: they stay where those that were joined agree on them everywhere, else the mesh has
-// none (it is then shaded by its faces).
+// Each point is one vertex of the result, even at sharp edges and seams. Normals and parameters are
+// kept only if merged vertices agree everywhere; otherwise the result has none (and is shaded
+// flat).
 CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagError *err) {
   if (!(tolerance >= 0) || !isfinite(tolerance))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_weld_tolerance, "tolerance", -1,

@@ -1,5 +1,4 @@
-// Triangulation of a single polygon in space: seen along its own normal it is a polygon of the
-// plane.
+// Triangulation of a single polygon in space, as a plane polygon seen along its normal.
 
 #include "geom/mesh/polygon.h"
 
@@ -17,7 +16,8 @@ static CagVec3 vector_area(const CagVec3 *vertices, const uint32_t *face, size_t
 }
 
 static bool is_convex(const CagVec3 *vertices, const uint32_t *face, size_t count, CagVec3 normal) {
-  // All fan triangles and all corners turn left: a star about the first corner that is convex.
+  // All fan triangles and all corners turn left: the polygon is convex or star-shaped about the
+  // first corner.
   for (size_t k = 0; k < count; k++) {
     CagVec3 a = vertices[face[k]], b = vertices[face[(k + 1) % count]],
             c = vertices[face[(k + 2) % count]];
@@ -31,8 +31,8 @@ static bool is_convex(const CagVec3 *vertices, const uint32_t *face, size_t coun
   return true;
 }
 
-// A concave polygon: dropped along the axis nearest to its normal, which keeps corners that lie on
-// a line on a line.
+// A concave polygon: projected along the axis nearest to its normal, which keeps collinear corners
+// collinear.
 static CagStatus triangulate_concave(const CagVec3 *vertices, const uint32_t *face, size_t count,
                                      CagVec3 normal, uint32_t *triangles, CagError *err) {
   double *xy = cag_malloc(2 * count * sizeof *xy);

@@ -1,7 +1,7 @@
-// Signs of determinants in floating point, made exact where rounding could turn them.
+// Signs of determinants in floating point, computed exactly if rounding could change them.
 //
-// A determinant is computed in doubles together with a bound of its rounding (after Shewchuk 1997).
-// Where the bound does not settle the sign it is computed again without rounding.
+// A determinant is computed in doubles together with a bound of its rounding error (after Shewchuk
+// 1997). If the bound does not determine the sign, it is recomputed exactly.
 
 #include "geom/mesh/predicates.h"
 
@@ -10,13 +10,13 @@
 #include "geom/mesh/exact.h"
 
 // A product of three differences of doubles has at most 3 * 2100 bits, 99 limbs; about 40 numbers
-// of that size and their steps are made.
+// of that size and their intermediate results are made.
 #define SPACE_LIMBS 8192
 
 static int sign(double x) { return (x > 0) - (x < 0); }
 
 static int exact_side_of_line(CagVec3 a, CagVec3 b, CagVec3 c) {
-  uint64_t limbs[SPACE_LIMBS / 8]; // products of two differences: few and short
+  uint64_t limbs[SPACE_LIMBS / 8]; // products of two differences are few and short
   CagExactSpace s = {limbs, 0, sizeof limbs / sizeof *limbs, false};
   return cag_exact_minor(&s, cag_exact_step(&s, a.x, c.x), cag_exact_step(&s, a.y, c.y),
                          cag_exact_step(&s, b.x, c.x), cag_exact_step(&s, b.y, c.y))

@@ -1,7 +1,7 @@
-// Triangulation of polygons with holes: the GLU tessellator cuts them into triangles, edge flips
-// then make these Delaunay within the boundary.
+// Triangulation of polygons with holes: the GLU tessellator triangulates them, then edge flips make
+// the result constrained Delaunay.
 //
-// GLU sweeps the plane and may leave triangles without area where boundary points lie on a line;
+// GLU is a sweep algorithm and may produce triangles without area if boundary points are collinear;
 // the flips remove them, so that caps keep every boundary point and have no slivers. All state is
 // in the tessellator object of the call.
 
@@ -23,7 +23,7 @@ typedef struct Sweep {
   size_t corners, capacity; // of triangles, in corners
   GLenum error;
   bool crossing, no_memory;
-  size_t near_crossing; // a point at an end of one of the edges that cross
+  size_t near_crossing; // a point at an end of one of the crossing edges
 } Sweep;
 
 static void on_vertex(void *data, void *polygon) {
@@ -35,12 +35,12 @@ static void on_vertex(void *data, void *polygon) {
   s->triangles[s->corners++] = (uint32_t)((uintptr_t)data - 1);
 }
 
-// Given, it makes GLU send separate triangles.
+// Setting this callback makes GLU output separate triangles.
 static void on_edge_flag(GLboolean flag, void *polygon) { (void)flag, (void)polygon; }
 
 static void on_error(GLenum error, void *polygon) { ((Sweep *)polygon)->error = error; }
 
-// Called where boundaries cross, and where two given points are the same.
+// Called where boundaries cross, and where two given points coincide.
 static void on_combine(GLdouble at[3], void *data[4], GLfloat weights[4], void **out,
                        void *polygon) {
   (void)weights;
@@ -53,8 +53,8 @@ static void on_combine(GLdouble at[3], void *data[4], GLfloat weights[4], void *
 
 typedef void (*GluCallback)(void);
 
-// GLU sweeps along x and searches the edges under the sweep line one by one: whether a quarter turn
-// leaves fewer there (mean number: the edges' extents in x, by the width).
+// GLU sweeps along x and searches the edges at the sweep line linearly. Returns whether a quarter
+// turn reduces their number (on average: the sum of the edges' extents in x over the width).
 static bool is_faster_turned(const double *xy, const size_t *counts, size_t loops) {
   double run[2] = {0, 0}, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
   for (size_t l = 0; l < loops; xy += 2 * counts[l++])
@@ -68,18 +68,18 @@ static bool is_faster_turned(const double *xy, const size_t *counts, size_t loop
   return run[0] * (most[1] - least[1]) > run[1] * (most[0] - least[0]);
 }
 
-// Bytes that GLU takes for each point of a polygon: a vertex, a pair of half edges, its part of
-// faces, of the queue of events, and of the regions under the sweep line.
+// Bytes that GLU needs for each point of a polygon: a vertex, a pair of half edges, and a fraction
+// of faces, of the event queue, and of the regions at the sweep line.
 #define GLU_BYTES ((size_t)512)
 
-// From so many points on, GLU works long enough for a stop to wait for it.
+// From this number of points on, GLU takes so long that a stop must not wait for it.
 #define MANY_POINTS ((size_t)20000)
 
-// The polygon, on its way through GLU. All of it is in one block of memory, because a stop may
-// leave it to a thread that goes on alone.
+// The polygon for GLU, in a single block of memory, because a canceled call may leave it to a
+// thread that continues.
 typedef struct Polygon {
   Sweep sweep;
-  bool failed; // GLU could not begin
+  bool failed; // GLU could not start
   size_t loops;
   size_t *counts;
   GLdouble (*coordinates)[3];
@@ -126,7 +126,7 @@ static Polygon *new_polygon(const double *xy, const size_t *counts, size_t loops
   return p;
 }
 
-// Sweeps a polygon of many points aside, so that the work can be stopped.
+// Sweeps a polygon with many points in another thread, so that the work can be canceled.
 static CagStatus sweep_points(const double *xy, const size_t *counts, size_t loops, size_t points,
                               Sweep *s, CagError *err) {
   if (!cag_account_hold(points * GLU_BYTES)) return cag_fail_memory(err);
@@ -157,8 +157,8 @@ static double turn(const double *a, const double *b, const double *c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// Is d clearly within the circle through a b c (counter-clockwise)? Clearly: by more than the
-// rounding of the determinant, so that four points of a circle do not flip for ever.
+// Whether d is clearly inside the circle through a b c (counter-clockwise): by more than the
+// rounding of the determinant, so that four cocircular points do not flip endlessly.
 static bool in_circle(const double *a, const double *b, const double *c, const double *d) {
   const double rounding = CAG_ROUNDING;
   double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
@@ -170,14 +170,14 @@ static bool in_circle(const double *a, const double *b, const double *c, const d
   return p - q + r > rounding * size;
 }
 
-// Triangles with their neighbors: across[3 t + k] is the place 3 t' + k' at which the neighbor's
+// Triangles with their neighbors: across[3 t + k] is the index 3 t' + k' at which the neighbor's
 // copy of the edge from corner k of t starts; NO_PLACE on the boundary.
 #define NO_PLACE SIZE_MAX
 typedef struct Flips {
   const double *xy;
   uint32_t *triangles;
   size_t *across;
-  size_t *stack, depth, capacity; // places whose edges are to be looked at
+  size_t *stack, depth, capacity; // indices whose edges must be tested
 } Flips;
 
 // If memory runs out, the edge is not tested again: the triangulation stays valid but is not
@@ -194,9 +194,11 @@ static void link_places(Flips *f, size_t p, size_t q) {
   if (q != NO_PLACE) f->across[q] = p;
 }
 
-// The edge from a to b lies in triangles a b c and b a d; it becomes c d where that is better.
+// The edge from a to b belongs to the triangles a b c and b a d; replaces it by c d if that is
+// better.
 static bool flip_edge(Flips *f, size_t p) {
-  const double no_area = CAG_ROUNDING; // of the quadrilateral's area: a triangle of rounding errors
+  const double no_area = CAG_ROUNDING; // of the quadrilateral's area: a triangle that is only
+                                       // rounding
   size_t q = f->across[p];
   if (q == NO_PLACE) return false;
   size_t pb = next_place(p), pc = next_place(pb), qa = next_place(q), qd = next_place(qa);
@@ -223,8 +225,8 @@ static bool flip_edge(Flips *f, size_t p) {
 }
 
 static void flip_to_delaunay(Flips *f, size_t corners) {
-  // Lawson's flips are at most some n^2, and a few n on sensible input. The limit only guards
-  // against a circle of flips by rounding.
+  // Lawson's algorithm needs at most about n^2 flips, and a few n on usual input. The limit only
+  // guards against cycles caused by rounding.
   size_t flips_left = 64 * corners + 1024;
   for (size_t p = 0; p < corners; p++) {
     push(f, p);
@@ -235,8 +237,8 @@ static void flip_to_delaunay(Flips *f, size_t corners) {
 
 // --- Checks ---
 
-// Fills `across`, and checks that the triangles are a triangulation of what was given: each edge of
-// a loop lies in one triangle, every other edge in two. *bad: a point at fault.
+// Fills `across`, and checks that the triangles triangulate the given polygon: each edge of a loop
+// belongs to one triangle, every other edge to two. *bad: a point at fault.
 static bool link_triangles(const uint32_t *triangles, size_t n, const size_t *counts, size_t loops,
                            size_t points, size_t *across, size_t *bad, bool *no_memory) {
   size_t used;
@@ -248,7 +250,7 @@ static bool link_triangles(const uint32_t *triangles, size_t n, const size_t *co
     for (size_t first = k, end = k + counts[l]; k < end; k++)
       follows[k] = (uint32_t)(k + 1 < end ? k + 1 : first);
   unsigned char *met =
-      cag_calloc(points + 1, 1); // the loop's edge that starts at the point was met
+      cag_calloc(points + 1, 1); // the loop's edge that starts at the point was found
   *no_memory |= !met;
   good &= met != NULL;
   for (size_t i = 0; good && i < used;) {

@@ -1,4 +1,4 @@
-// Serial chains: making and checking a robot, its uniform stages, and where its frames are.
+// Serial chains: construction and validation of a robot, its uniform stages, and its frames.
 
 #include <string.h>
 
@@ -7,13 +7,14 @@
 #include "geom/robot/kernel.h"
 #include "geom/robot/robot.h"
 
-// Deviation of a rotation's columns from orthonormal ones that is still rounding of given data.
+// Accepted deviation of a rotation's columns from orthonormal ones: rounding of given data.
 #define RIGID CAG_PARALLEL
-// A coupling whose determinant is this small beside the product of its rows' lengths is singular.
+// A coupling is singular if its determinant is below this fraction of the product of its rows'
+// lengths.
 #define COUPLING_SINGULAR CAG_ROUNDING
-// Lengths whose squares and products are still numbers.
+// Largest length whose squares and products do not overflow.
 #define REACH_MAX 1e100
-// Joint values beyond a limit by less than this (radians, or parts of the reach) are on it.
+// Joint values beyond a limit by less than this (radians, or fractions of the reach) are on it.
 #define ON_LIMIT CAG_ROUNDING
 
 // --- Checks ---
@@ -44,7 +45,7 @@ CagStatus cag_robot_pose_check(const CagTransform *t, const char *argument, CagE
   return check_rigid(t, argument, -1, err);
 }
 
-// joint -1: a link by itself.
+// joint -1: a single link.
 static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) {
   char low[32], high[32], home[32], of[32] = "the joint";
   if (joint >= 0) snprintf(of, sizeof of, "joint %ld", joint + 1);
@@ -84,7 +85,7 @@ CagStatus cag_robot_link_check(const CagRobotLink *link, CagError *err) {
   return check_link(link, -1, -1, err);
 }
 
-// --- Making ---
+// --- Construction ---
 
 CagRobotLink cag_robot_link(CagJointKind kind) {
   CagRobotLink l = {.kind = kind, .fixed = cag_transform_identity()};
@@ -141,8 +142,8 @@ static bool is_identity(const CagTransform *t) {
   return true;
 }
 
-// Translation along x and turn about x: the part of a row that does not move. It goes into the
-// stage's own numbers where nothing stands between.
+// Translation along x and rotation about x: the constant part of a row. It is stored in the stage
+// itself if no transform is in between.
 static void put_crank(CagRobotStage *s, CagTransform *before, double a, double alpha) {
   if (s && !s->has_fixed && s->a == 0 && s->alpha == 0) {
     s->a = a;
@@ -180,7 +181,7 @@ static void fill_stages(CagRobot *r) {
     cag_sincos(r->stages[i].alpha, &r->stages[i].sine, &r->stages[i].cosine);
 }
 
-// The sum of all lengths of the chain at their longest.
+// The sum of the maximum lengths of all links.
 static double reach_of(const CagRobot *r) {
   double sum = 0;
   for (size_t i = 0; i < r->joint_count; i++) {
@@ -196,8 +197,8 @@ static double reach_of(const CagRobot *r) {
 
 // --- Couplings ---
 
-// Gauss-Jordan elimination with row pivots of an n x n matrix, which becomes the identity. False:
-// it is singular.
+// Inverts an n x n matrix, which becomes the identity, by Gauss-Jordan elimination with row pivots.
+// False: it is singular.
 static bool invert(double *m, size_t n, double *out) {
   double largest = 0;
   for (size_t i = 0; i < n * n; i++) largest = fmax(largest, fabs(m[i]));
@@ -324,7 +325,7 @@ void cag_robot_forward(const CagRobot *r, const double *q, CagTransform *tool) {
   cag_robot_frame_to(&f, tool);
 }
 
-// One link's own transform.
+// The transform of a single link.
 static CagTransform link_transform(const CagRobot *r, const CagRobotLink *l, double q) {
   if (l->kind == CAG_JOINT_FIXED) return l->fixed;
   bool turns = l->kind == CAG_JOINT_REVOLUTE;
@@ -441,7 +442,7 @@ size_t cag_robot_outside(const CagRobot *r, const double *q, double *by) {
   return r->joint_count;
 }
 
-// Of q and the values whole turns away from it the one within the limits that is nearest to
+// Among q and the values whole turns away from it, the one within the limits that is nearest to
 // `wanted`.
 static bool turn_into(const CagRobotLink *l, double slack, double wanted, double *q) {
   const double turn = 2 * M_PI;
@@ -457,7 +458,7 @@ bool cag_robot_into_limits(const CagRobot *r, const double *near, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     double slack = limit_slack(r, l);
-    // A screw's turns are not alike: each is a lead further.
+    // Turns of a screw joint are not equivalent: each advances by the lead.
     bool turns = l->kind == CAG_JOINT_REVOLUTE && l->screw == 0;
     if (turns) {
       if (!turn_into(l, slack, near ? near[i] : q[i], &q[i])) return false;

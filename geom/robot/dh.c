@@ -7,7 +7,7 @@
 
 // Sine of the angle between axes below which they are parallel.
 #define PARALLEL CAG_PARALLEL
-// Distances below this part of the size of the chain are none.
+// Distances below this fraction of the size of the chain are 0.
 #define MEETING CAG_COINCIDENT
 
 typedef struct Frame {
@@ -22,7 +22,7 @@ static CagTransform matrix_of(const Frame *f) {
   return t;
 }
 
-// The feet of the common normal of two lines that are not parallel.
+// The feet of the common normal of two nonparallel lines.
 static void common_normal(CagVec3 p, CagVec3 u, CagVec3 q, CagVec3 v, CagVec3 *f, CagVec3 *g) {
   CagVec3 w = cag_sub(q, p);
   double uv = cag_dot(u, v), uw = cag_dot(u, w), vw = cag_dot(v, w), d = 1 - uv * uv;
@@ -30,7 +30,8 @@ static void common_normal(CagVec3 p, CagVec3 u, CagVec3 q, CagVec3 v, CagVec3 *f
   *g = cag_madd(q, (uv * uw - vw) / d, v);
 }
 
-// The frame on the next axis (point c, unit direction z), and the foot of the normal on this one.
+// The frame on the next axis (point c, unit direction z), and the foot of the common normal on the
+// current one.
 static Frame next_frame(const Frame *f, CagVec3 c, CagVec3 z, bool last, double size,
                         CagVec3 *foot) {
   CagVec3 across = cag_cross(f->z, z);
@@ -40,7 +41,7 @@ static Frame next_frame(const Frame *f, CagVec3 c, CagVec3 z, bool last, double 
     CagVec3 normal = cag_sub(next.o, *foot);
     bool skew = cag_norm(normal) > MEETING * size;
     next.x = cag_unit(skew ? normal : across);
-    // Exactly at right angles to both axes, whatever the rounding of the feet.
+    // Exactly perpendicular to both axes, despite rounding of the feet.
     next.x = cag_unit(cag_madd(next.x, -cag_dot(next.x, z), z));
     return next;
   }
@@ -57,7 +58,7 @@ static Frame next_frame(const Frame *f, CagVec3 c, CagVec3 z, bool last, double 
   return next;
 }
 
-// The row that leads from one frame to the next.
+// The row from one frame to the next.
 static CagRobotLink row_between(const Frame *f, const Frame *next, CagVec3 foot,
                                 CagJointKind kind) {
   CagRobotLink l = cag_robot_link(kind);
@@ -77,7 +78,7 @@ static CagStatus unit_direction(const CagJointAxis *axis, long index, CagVec3 *o
                   index);
 }
 
-// Size of what is given, for comparing distances.
+// Size of the given data, to which distances are compared.
 static double size_of(CagVec3 o, const CagJointAxis *axes, size_t n, const CagJointAxis *end) {
   double size = cag_norm(cag_sub(end->point, o));
   for (size_t i = 0; i < n; i++) size = fmax(size, cag_norm(cag_sub(axes[i].point, o)));

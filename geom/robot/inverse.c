@@ -1,6 +1,7 @@
-// Closed-form inverse kinematics: chains as rows, their recognition, and the parts put together.
-// inverse_arm.c solves for three joints that place a point, inverse_parallel.c chains with
-// parallel axes; here are wrists, and chains that the orientation alone gives away.
+// Closed-form inverse kinematics: chains as rows, their recognition, and the combination of partial
+// solvers. inverse_arm.c solves for three joints that position a point, inverse_parallel.c for
+// chains with parallel axes; this file handles wrists, and chains determined by the orientation
+// alone.
 
 #include "geom/robot/inverse_parts.h"
 
@@ -8,21 +9,22 @@
 
 #include "geom/robot/numeric.h"
 
-// A pose that a solution must reproduce, as parts of the reach and radians.
+// Largest error of the pose of a solution, as a fraction of the reach and in radians.
 #define POSE_ERROR 1e-6
-// A solution by rounded steps this near is made better.
+// A solution with an error up to this, from inexact steps, is refined.
 #define ROUGH_ERROR 1e-2
 #define FINE_ERROR 1e-12
 #define DAMPING 1e-14
-// Gauss-Newton steps. Where two solutions nearly coincide, a step only halves the error.
+// Maximum number of Gauss-Newton steps. Near a double solution a step only halves the error.
 #define MOST_STEPS 40
-// Solutions nearer than this are one: stretched arms are known to the root of the rounding only.
+// Solutions closer than this are equal: for stretched arms they are known only to the square root
+// of the rounding.
 #define SAME_SOLUTION 1e-7
 
 // --- Rows ---
 
-// Writes Trans(a, 0, 0) Rot(x, alpha) fixed as Rot(z, turn) Trans(0, 0, rise) Trans(a, 0, 0)
-// Rot(x, alpha) Rot(z, next_turn) Trans(0, 0, next_rise): the common normal of the two z axes.
+// Writes Trans(a, 0, 0) Rot(x, alpha) fixed as Rot(z, turn) Trans(0, 0, rise) Trans(a, 0, 0) Rot(x,
+// alpha) Rot(z, next_turn) Trans(0, 0, next_rise), by the common normal of the two z axes.
 static void common_normal(const CagRobotFrame *m, double *turn, double *rise, InverseRow *row,
                           double *next_turn, double *next_rise) {
   const double sine = inverse_length(m->z.x, m->z.y);
@@ -47,13 +49,13 @@ static void common_normal(const CagRobotFrame *m, double *turn, double *rise, In
 
 static const CagRobotFrame unit_frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
 
-// The rows of a robot: fixed transforms between joints become part of them. False: too long, or a
-// joint is a screw.
+// The rows of a robot: fixed transforms between joints are absorbed. Returns false if the chain is
+// too long, or has a screw joint.
 static bool chain_of(const CagRobot *r, InverseChain *c) {
   if (r->joint_count == 0 || r->joint_count > CAG_INVERSE_JOINTS_MAX) return false;
   *c = (InverseChain){.n = r->joint_count, .before = r->before, .reach = r->reach};
   c->after = cag_transform_identity();
-  double turn_in = 0, rise_in = 0; // from the row before
+  double turn_in = 0, rise_in = 0; // from the previous row
   for (size_t i = 0; i < c->n; i++) {
     const CagRobotStage *s = &r->stages[i];
     InverseRow *row = &c->row[i];
@@ -125,7 +127,7 @@ int cag_inverse_trigonometric(double a, double b, double c, double scale, double
   return half > 0 && half < M_PI ? 2 : 1;
 }
 
-// --- What a chain is ---
+// --- Recognition ---
 
 static bool axes_meet(const InverseChain *c, size_t first, size_t count) {
   const double nothing = INVERSE_NOTHING * c->reach;
@@ -138,7 +140,8 @@ static bool axes_meet(const InverseChain *c, size_t first, size_t count) {
   return true;
 }
 
-// The point that the first three joints place: where the axes behind them meet, or the tool.
+// The point positioned by the first three joints: the intersection of the following axes, or the
+// tool.
 static CagVec3 placed_point(const InverseChain *c) {
   const double(*m)[4] = c->after.m;
   return c->n == 3 ? cag_vec3(m[0][3], m[1][3], m[2][3]) : cag_vec3(0, 0, c->row[3].shift);
@@ -178,7 +181,8 @@ static void forward(const InverseChain *c, const double *q, CagRobotFrame *f) {
   }
 }
 
-// From the pose at q to the target: the way, and the turn as a vector (small turns).
+// The difference from the pose at q to the target: displacement and rotation vector (for small
+// rotations).
 static void pose_error(const InverseTask *t, const CagRobotFrame *f, double e[6]) {
   const CagRobotFrame *g = &t->target;
   const CagVec3 way = cag_sub(g->p, f->p);
@@ -198,7 +202,7 @@ static bool reproduces(const InverseTask *t, const double *q, double within) {
   return place <= within * t->chain->reach && turn <= within;
 }
 
-// Solves the n equations of a positive definite matrix (with its right side as column n).
+// Solves n equations with a positive definite matrix (right-hand side in column n).
 static bool solve_normal(double m[][CAG_INVERSE_JOINTS_MAX + 1], size_t n) {
   for (size_t k = 0; k < n; k++) {
     if (!(m[k][k] > 0)) return false;
@@ -211,7 +215,7 @@ static bool solve_normal(double m[][CAG_INVERSE_JOINTS_MAX + 1], size_t n) {
   return true;
 }
 
-// One Gauss-Newton step towards the target, lengths measured by the reach.
+// One Gauss-Newton step towards the target, with lengths relative to the reach.
 static void improve(const InverseTask *t, double *q) {
   const InverseChain *c = t->chain;
   CagVec3 axis[CAG_INVERSE_JOINTS_MAX], origin[CAG_INVERSE_JOINTS_MAX];
@@ -293,25 +297,26 @@ void cag_inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const doub
 
 // --- Wrists ---
 
-// Joints 4, 5 and 6 for the pose of the tool seen from frame 3.
+// Joints 4, 5, and 6 for the pose of the tool in frame 3.
 static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const InverseArm *arm) {
   const InverseRow *r4 = &t->chain->row[3], *r5 = &t->chain->row[4], *r6 = &t->chain->row[5];
   CagRobotFrame f = *seen;
   double q[6] = {arm->q[0], arm->q[1], arm->q[2]};
   CagConfiguration label = {arm->shoulder, arm->elbow, 0};
   cag_inverse_strip_crank(r6, &f);
-  // The last axis against axis 4: cos(alpha4) cos(alpha5) - sin(alpha4) sin(alpha5) cos(theta5).
+  // Cosine between the last axis and axis 4: cos(alpha4) cos(alpha5) - sin(alpha4) sin(alpha5)
+  // cos(theta5).
   const double cosine = (r4->cosine * r5->cosine - f.z.z) / (r4->sine * r5->sine);
   if (fabs(cosine) > 1 + POSE_ERROR) return;
   const double clamped = fmax(-1, fmin(1, cosine));
   const bool square = fabs(r4->cosine) < INVERSE_PARALLEL && fabs(r5->cosine) < INVERSE_PARALLEL;
   const double sine = square ? inverse_length(f.z.x, f.z.y) : sqrt(1 - clamped * clamped);
-  const bool aligned = inverse_length(f.z.x, f.z.y) < INVERSE_NOTHING; // axes 4 and 6 are one
-  const bool folded = sine < INVERSE_NOTHING;                          // both branches are one
+  const bool aligned = inverse_length(f.z.x, f.z.y) < INVERSE_NOTHING; // axes 4 and 6 coincide
+  const bool folded = sine < INVERSE_NOTHING;                          // both branches coincide
   for (int sign = 1; sign >= (aligned || folded ? 1 : -1); sign -= 2) {
     const unsigned free = arm->free | (aligned ? 8u : 0);
     label.wrist = aligned || folded ? 0 : sign;
-    if (sign < 0 && square) { // the same turn the other way round
+    if (sign < 0 && square) { // the same rotation with the opposite signs
       q[3] = inverse_wrapped(q[3] + M_PI);
       q[4] = inverse_value(r5, -inverse_theta(r5, q[4]));
       q[5] = inverse_wrapped(q[5] + M_PI);
@@ -324,7 +329,7 @@ static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const Inverse
                        r4->sine, r4->cosine);
     q[3] = aligned ? t->near[3] : inverse_value(r4, atan2(f.z.y, f.z.x) - atan2(v.y, v.x));
     q[4] = inverse_value(r5, theta5);
-    CagRobotFrame g = f; // joint 6 takes what is left, so that errors near to `aligned` cancel
+    CagRobotFrame g = f; // joint 6 takes the remainder, so that errors near `aligned` cancel
     cag_inverse_strip_left(r4, q[3], &g);
     cag_inverse_strip_left(r5, q[4], &g);
     q[5] = inverse_value(r6, atan2(g.x.y, g.x.x));
@@ -332,7 +337,7 @@ static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const Inverse
   }
 }
 
-// Joints 4 and 5: they turn axis 5 to a cone, on which the target must lie.
+// Joints 4 and 5: axis 5 sweeps a cone, on which the target must lie.
 static void solve_pair(InverseTask *t, const CagRobotFrame *seen, const InverseArm *arm) {
   const InverseRow *r4 = &t->chain->row[3], *r5 = &t->chain->row[4];
   CagRobotFrame f = *seen;
@@ -375,10 +380,10 @@ static void solve_arm(InverseTask *t, InverseKind kind) {
   }
 }
 
-// --- Slides ---
+// --- Prismatic joints ---
 
-// The way of the tool when joint k slides by 1, and the tool at zero slides, for values of the
-// joints that turn.
+// The displacement of the tool when prismatic joint k moves by 1, and the position of the tool at
+// zero displacements, for given revolute joint values.
 static void slide_system(const InverseTask *t, const double *q, CagVec3 *ways, CagVec3 *rest) {
   const InverseChain *c = t->chain;
   CagRobotFrame f = unit_frame;
@@ -392,7 +397,7 @@ static void slide_system(const InverseTask *t, const double *q, CagVec3 *ways, C
   *rest = cag_sub(t->target.p, f.p);
 }
 
-// Slides by least squares: one, two or three ways.
+// Displacements by least squares, in one, two, or three directions.
 static void solve_slides(InverseTask *t, double *q, unsigned free) {
   const InverseChain *c = t->chain;
   CagVec3 ways[CAG_INVERSE_JOINTS_MAX], rest;
@@ -405,7 +410,7 @@ static void solve_slides(InverseTask *t, double *q, unsigned free) {
     for (size_t j = 0; j < n; j++) matrix[i][j] = cag_dot(ways[joint[i]], ways[joint[j]]);
     matrix[i][n] = cag_dot(ways[joint[i]], rest);
   }
-  for (size_t k = 0; k < n; k++) { // the matrix is positive definite unless ways are parallel
+  for (size_t k = 0; k < n; k++) { // the matrix is positive definite unless directions are parallel
     if (fabs(matrix[k][k]) < INVERSE_PARALLEL) return;
     for (size_t i = 0; i < n; i++) {
       if (i == k) continue;
@@ -417,7 +422,7 @@ static void solve_slides(InverseTask *t, double *q, unsigned free) {
   cag_inverse_keep(t, q, (CagConfiguration){0}, free);
 }
 
-// The constant turns of rows from..to, as a frame.
+// The constant rotations of rows from..to, as a frame.
 static CagRobotFrame turns_of(const InverseChain *c, size_t from, const double *q) {
   CagRobotFrame f = unit_frame;
   for (size_t i = from; i < c->n; i++) {
@@ -429,11 +434,11 @@ static CagRobotFrame turns_of(const InverseChain *c, size_t from, const double *
   return f;
 }
 
-// One turn and slides: the orientation gives the turn.
+// One revolute and two prismatic joints: the orientation determines the revolute joint.
 static void solve_rpp(InverseTask *t) {
   double q[CAG_INVERSE_JOINTS_MAX] = {-t->chain->row[0].angle};
   const CagRobotFrame c = turns_of(t->chain, 0, q), *g = &t->target;
-  // target = Rot(z, theta) c: the turn that brings c's columns nearest to the target's.
+  // target = Rot(z, theta) c: the rotation that brings c's columns closest to the target's.
   const double sine = c.x.x * g->x.y - c.x.y * g->x.x + c.y.x * g->y.y - c.y.y * g->y.x +
                       c.z.x * g->z.y - c.z.y * g->z.x;
   const double cosine = c.x.x * g->x.x + c.x.y * g->x.y + c.y.x * g->y.x + c.y.y * g->y.y +
@@ -442,12 +447,12 @@ static void solve_rpp(InverseTask *t) {
   solve_slides(t, q, 0);
 }
 
-// Two turns and a slide: the orientation gives both turns.
+// Two revolute joints and a prismatic one: the orientation determines both revolute joints.
 static void solve_rrp(InverseTask *t) {
   const InverseRow *r1 = &t->chain->row[0], *r2 = &t->chain->row[1];
   double q[CAG_INVERSE_JOINTS_MAX] = {0};
   CagRobotFrame f = t->target;
-  // target = Rot(z, theta1) Rot(x, alpha1) Rot(z, theta2) c, with c what stands behind.
+  // target = Rot(z, theta1) Rot(x, alpha1) Rot(z, theta2) c, where c is the rest of the chain.
   const double none[CAG_INVERSE_JOINTS_MAX] = {0};
   CagRobotFrame c = turns_of(t->chain, 2, none);
   const CagRobotStage twist = {.sine = r2->sine, .cosine = r2->cosine};
@@ -475,14 +480,14 @@ static void solve_rrp(InverseTask *t) {
   solve_slides(t, q, 0);
 }
 
-// --- The whole ---
+// --- Complete inverse ---
 
 static int rank_of(const CagInverseSolution *s) {
   const CagConfiguration *c = &s->configuration;
   return 9 * c->shoulder + 3 * c->elbow + c->wrist;
 }
 
-// Branches of +1 first.
+// Sorts branches of +1 first.
 static void sort_solutions(CagInverse *out) {
   for (size_t i = 1; i < out->count; i++)
     for (size_t j = i; j > 0 && rank_of(&out->solutions[j]) > rank_of(&out->solutions[j - 1]);

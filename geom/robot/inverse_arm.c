@@ -1,23 +1,24 @@
-// Three joints that place a point.
+// Three joints that position a point.
 //
-// With f the point seen from frame 2, k = Trans(a2, 0, d2) Rot(x, alpha2) f and g = Rot(z, theta2)
-// k the point seen from frame 1, its distance from the first frame and its height over it do not
-// depend on theta1:
+// With f the point in frame 2, k = Trans(a2, 0, d2) Rot(x, alpha2) f, and g = Rot(z, theta2) k the
+// point in frame 1, its distance from the first frame and its height above it do not depend on
+// theta1:
 //
 //     |w|^2 = |k|^2 + 2 a1 g.x + a1^2        w.z = sin(alpha1) g.y + cos(alpha1) k.z
 //
-// (w from the foot of link 1). What g.x and g.y must be is an equation for joint 3 alone, a quartic
-// in the tangent of its half angle that falls apart into quadratics where axes meet or are parallel
-// (Pieper 1968). theta2 then turns k's part in the plane to g, theta1 the result to w.
+// (w from the foot of link 1). The required g.x and g.y give an equation for joint 3 alone, a
+// quartic in the tangent of its half angle that decomposes into quadratics if axes intersect or are
+// parallel (Pieper 1968). theta2 then rotates k's component in the plane to g, and theta1 rotates
+// the result to w.
 
 #include "geom/robot/inverse_parts.h"
 
-// Points of a turn at which the general equation is looked at for changes of sign.
+// Number of points in a turn at which the general equation is tested for sign changes.
 #define SAMPLES 1024
 
 typedef struct Arm {
   const InverseChain *chain;
-  CagVec3 w, e; // the target from the foot of link 1; the point behind joint 3
+  CagVec3 w, e; // the target from the foot of link 1; the point after joint 3
   const double *near;
   InverseArm *arms;
   size_t count;
@@ -30,7 +31,7 @@ static CagVec3 behind_joint3(const InverseChain *c, CagVec3 point) {
   return e;
 }
 
-// The point seen from frame 2, and from frame 1 before joint 2 turns, at the value q3.
+// The point in frame 2, and in frame 1 before joint 2 turns, at the value q3.
 static CagVec3 seen_from2(const Arm *a, double q3) {
   const InverseRow *r = &a->chain->row[2];
   const double theta = inverse_theta(r, q3);
@@ -48,8 +49,8 @@ static CagVec3 before_joint2(const Arm *a, CagVec3 f) {
 
 static int sign_of(double x) { return x < 0 ? -1 : 1; }
 
-// Elbow: the side of the upper arm on which the forearm lies. Of arms whose forearm runs along axis
-// 4 the sign is the other one.
+// Elbow: the side of the upper arm on which the forearm lies. The sign is reversed for arms whose
+// forearm is along axis 4.
 static int elbow_of(const InverseChain *c, CagVec3 point, CagVec3 f) {
   const InverseRow *r = &c->row[1];
   if (!c->row[2].turns) return 0;
@@ -58,7 +59,7 @@ static int elbow_of(const InverseChain *c, CagVec3 point, CagVec3 f) {
   return along ? -sign_of(side) : sign_of(side);
 }
 
-// Finishes a branch: g.x = u and g.y = v are known.
+// Completes a branch from g.x = u and g.y = v.
 static void add_branch(Arm *a, CagVec3 point, double q3, CagVec3 f, CagVec3 k, double u, double v) {
   if (a->count == INVERSE_ARMS_MAX) return;
   const InverseRow *r1 = &a->chain->row[0], *r2 = &a->chain->row[1];
@@ -81,14 +82,14 @@ static void add_branch(Arm *a, CagVec3 point, double q3, CagVec3 f, CagVec3 k, d
   }
 }
 
-// sqrt of x, clamped; false where it is negative beyond rounding of `scale`.
+// sqrt of x, clamped to 0; false if x is negative beyond rounding relative to `scale`.
 static bool root_of(double x, double scale, double *root) {
   if (x < -INVERSE_CLAMP * scale) return false;
   *root = x > 0 ? sqrt(x) : 0;
   return true;
 }
 
-// Both signs of u, once where it is zero.
+// Both signs of u, or one if it is zero.
 static void both_sides(Arm *a, CagVec3 point, double q3, double center, double root, double v) {
   const CagVec3 f = seen_from2(a, q3), k = before_joint2(a, f);
   const double nothing = INVERSE_NOTHING * a->chain->reach;
@@ -96,7 +97,7 @@ static void both_sides(Arm *a, CagVec3 point, double q3, double center, double r
   if (root > nothing) add_branch(a, point, q3, f, k, center - root, v);
 }
 
-// Axes 2 and 3 parallel: the height gives v, the distance then u, and u and v the length of k.
+// Axes 2 and 3 parallel: the height determines v, the distance u, and u and v the length of k.
 static void parallel23(Arm *a, CagVec3 point) {
   const InverseRow *r1 = &a->chain->row[0], *r2 = &a->chain->row[1], *r3 = &a->chain->row[2];
   const double kz = before_joint2(a, seen_from2(a, 0)).z;
@@ -117,7 +118,7 @@ static void parallel23(Arm *a, CagVec3 point) {
   }
 }
 
-// Joint 2 at a value of joint 3 where axes 1 and 2 meet (a1 = 0) and are not parallel.
+// Joint 2 at a value of joint 3 if axes 1 and 2 intersect (a1 = 0) and are not parallel.
 static void meet12_at(Arm *a, CagVec3 point, double q3) {
   const InverseRow *r1 = &a->chain->row[0];
   const CagVec3 k = before_joint2(a, seen_from2(a, q3));
@@ -127,7 +128,7 @@ static void meet12_at(Arm *a, CagVec3 point, double q3) {
     both_sides(a, point, q3, 0, root, v);
 }
 
-// Axes 1 and 2 meet: the distance gives joint 3.
+// Axes 1 and 2 intersect: the distance determines joint 3.
 static void meet12(Arm *a, CagVec3 point) {
   const InverseRow *r2 = &a->chain->row[1], *r3 = &a->chain->row[2];
   const double w2 = cag_dot(a->w, a->w), scale = a->chain->reach * a->chain->reach;
@@ -142,7 +143,7 @@ static void meet12(Arm *a, CagVec3 point) {
     for (int i = 0; i < n; i++) meet12_at(a, point, x[i] - r3->angle);
     return;
   }
-  // A slide along axis 3: f.z = e.z + d, |k|^2 = f.z^2 + 2 d2 cos(alpha2) f.z + rest.
+  // A prismatic joint along axis 3: f.z = e.z + d, |k|^2 = f.z^2 + 2 d2 cos(alpha2) f.z + rest.
   const CagVec3 f = seen_from2(a, 0);
   const double half = r2->shift * r2->cosine;
   const double rest = f.x * f.x + f.y * f.y + r2->a * r2->a + r2->shift * r2->shift +
@@ -150,13 +151,13 @@ static void meet12(Arm *a, CagVec3 point) {
   double root;
   if (!root_of(half * half - rest, scale, &root)) return;
   meet12_at(a, point, root - half - f.z);
-  // The other end of the slide is the same place with joint 2 turned; it counts only where it is
-  // no mirror image.
+  // The other root is the same position with joint 2 rotated; it counts only if it is not a mirror
+  // image.
   if (fabs(half) > INVERSE_NOTHING * a->chain->reach && -root - half > 0)
     meet12_at(a, point, -root - half - f.z);
 }
 
-// Axes 1 and 2 parallel, axis 3 not: the height gives joint 3, the distance joint 2.
+// Axes 1 and 2 parallel, axis 3 not: the height determines joint 3, the distance joint 2.
 static void parallel12(Arm *a, CagVec3 point) {
   const InverseRow *r1 = &a->chain->row[0], *r2 = &a->chain->row[1], *r3 = &a->chain->row[2];
   const double fz = a->e.z + r3->shift, w2 = cag_dot(a->w, a->w);
@@ -168,7 +169,7 @@ static void parallel12(Arm *a, CagVec3 point) {
   for (int i = 0; i < n; i++) {
     const double q3 = x[i] - r3->angle;
     const CagVec3 f = seen_from2(a, q3), k = before_joint2(a, f);
-    if (fabs(r1->a) < INVERSE_NOTHING * a->chain->reach) continue; // axes 1 and 2 are one
+    if (fabs(r1->a) < INVERSE_NOTHING * a->chain->reach) continue; // axes 1 and 2 coincide
     const double u = (w2 - cag_dot(k, k) - r1->a * r1->a) / (2 * r1->a);
     if (!root_of(k.x * k.x + k.y * k.y - u * u, scale, &root)) continue;
     add_branch(a, point, q3, f, k, u, root);
@@ -176,7 +177,7 @@ static void parallel12(Arm *a, CagVec3 point) {
   }
 }
 
-// u and v at q3, and how far they are from fitting k.
+// u and v at q3, and the error of their fit to k.
 static double misfit(const Arm *a, double q3, double *u, double *v) {
   const InverseRow *r1 = &a->chain->row[0];
   const CagVec3 k = before_joint2(a, seen_from2(a, q3));
@@ -185,7 +186,7 @@ static double misfit(const Arm *a, double q3, double *u, double *v) {
   return *u * *u + *v * *v - k.x * k.x - k.y * k.y;
 }
 
-// The misfit as a trigonometric polynomial of the second degree in q3.
+// The misfit as a trigonometric polynomial of degree 2 in q3.
 typedef struct Waves {
   double mean, cos1, sin1, cos2, sin2;
 } Waves;
@@ -211,7 +212,7 @@ static Waves waves_of(const Arm *a) {
   return w;
 }
 
-// A root between low and high, where the polynomial has different signs.
+// A root between low and high, at which the polynomial has different signs.
 static double bisect(const Waves *w, double low, double high) {
   const double at_low = wave(w, low);
   for (int i = 0; i < 60 && high - low > 1e-16; i++) {
@@ -222,7 +223,7 @@ static double bisect(const Waves *w, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Where direction times the polynomial is smallest, by golden sections.
+// The minimum of direction times the polynomial, by golden section.
 static double lowest(const Waves *w, double low, double high, double direction) {
   const double share = 0.5 * (sqrt(5.0) - 1);
   for (int i = 0; i < 60; i++) {
@@ -240,8 +241,8 @@ static void keep_general(Arm *a, CagVec3 point, double q3) {
   add_branch(a, point, q3, f, before_joint2(a, f), u, v);
 }
 
-// No two axes meet or are parallel: a trigonometric polynomial of the second degree in joint 3,
-// which has at most four roots a turn; two that nearly meet are found at the extremum between.
+// No two axes intersect or are parallel: a trigonometric polynomial of degree 2 in joint 3 with at
+// most four roots per turn; two that nearly coincide are found at the extremum between them.
 static void general(Arm *a, CagVec3 point) {
   const double step = 2 * M_PI / SAMPLES, scale = a->chain->reach * a->chain->reach;
   const Waves w = waves_of(a);
@@ -280,7 +281,9 @@ static bool is_nothing(const InverseChain *c, double length) {
 bool cag_inverse_arm_is_solvable(const InverseChain *c, CagVec3 point) {
   const InverseRow *r = c->row;
   const CagVec3 e = behind_joint3(c, point);
-  if (r[2].turns && is_nothing(c, inverse_length(e.x, e.y))) return false; // joint 3 moves nothing
+  if (r[2].turns && is_nothing(c, inverse_length(e.x, e.y)))
+    return false; // joint 3 does not move
+                  // the point
   if (!r[0].turns || !r[1].turns) return false;
   const bool parallel12 = fabs(r[0].sine) < INVERSE_PARALLEL;
   const bool parallel23 = fabs(r[1].sine) < INVERSE_PARALLEL;

@@ -1,9 +1,9 @@
-// Chains with parallel axes: the motion in the plane perpendicular to them is solved apart.
+// Chains with parallel axes: the motion in the plane perpendicular to them is solved separately.
 //
-// Axes 2, 3, 4 parallel, and axis 5 perpendicular to them: how far the point where link 5 begins
-// lies along their direction depends on joint 1 alone; the direction of the last axis against
-// theirs gives joint 5, the turn about it joint 6, and what is left is a motion in the plane, two
-// links and a turn. All axes parallel: the same motion in the plane, and the slide.
+// Axes 2, 3, 4 parallel, and axis 5 perpendicular to them: the offset of the origin of link 5 along
+// their direction depends only on joint 1. The angle of the last axis to theirs determines joint 5,
+// the rotation about it joint 6; the rest is a planar motion, two links and a rotation. All axes
+// parallel: the same planar motion, and the prismatic joint.
 
 #include "geom/robot/inverse_parts.h"
 
@@ -23,8 +23,8 @@ bool cag_inverse_is_parallel(const InverseChain *c) {
 
 // --- Two links in the plane ---
 
-// The angles p1 and p2 of two links with a (cos p1, sin p1) + b (cos p2, sin p2) = (x, y); their
-// number, 0 to 2.
+// The angles p1 and p2 of two links with a (cos p1, sin p1) + b (cos p2, sin p2) = (x, y); returns
+// the number of solutions, 0 to 2.
 static int two_links(double a, double b, double x, double y, double scale, double p1[2],
                      double p2[2]) {
   const double cosine = (x * x + y * y - a * a - b * b) / (2 * a * b);
@@ -42,13 +42,13 @@ static int two_links(double a, double b, double x, double y, double scale, doubl
 
 // --- Axes 2, 3 and 4 parallel ---
 
-// The senses of axes 3 and 4 against axis 2.
+// The orientations of axes 3 and 4 relative to axis 2.
 static void senses(const InverseChain *c, double s[2]) {
   s[0] = c->row[1].cosine < 0 ? -1 : 1;
   s[1] = c->row[2].cosine < 0 ? -s[0] : s[0];
 }
 
-// Joints 2, 3, 4 for the pose of frame 4 seen from frame 1.
+// Joints 2, 3, 4 for the pose of frame 4 in frame 1.
 static void solve_plane(InverseTask *t, const CagRobotFrame *f, double *q, CagConfiguration base,
                         unsigned free) {
   const InverseChain *c = t->chain;
@@ -69,20 +69,20 @@ static void solve_plane(InverseTask *t, const CagRobotFrame *f, double *q, CagCo
   t->placed = t->placed || n > 0;
 }
 
-// Joint 5 and the rest, for a value of joint 1. `f` is the pose behind joint 5 seen from frame 1,
-// with all of link 5 but its turn stripped.
+// Joint 5 and the rest, for a value of joint 1. `f` is the pose after joint 5 in frame 1, with all
+// of link 5 stripped except its rotation.
 static void solve5(InverseTask *t, CagRobotFrame f, double *q, CagConfiguration base,
                    unsigned free) {
   const InverseRow *r = t->chain->row;
   double s[2];
   senses(t->chain, s);
-  // Axis 2 is the z axis of frame 1; seen from frame 4 it is (0, s sin(alpha4), 0).
+  // Axis 2 is the z axis of frame 1; in frame 4 it is (0, s sin(alpha4), 0).
   const double sense = s[1] * r[3].sine;
   const double theta5 = atan2(sense * f.x.z, sense * f.y.z);
   q[4] = inverse_value(&r[4], theta5);
   InverseRow turn = {.turns = true, .angle = r[4].angle, .cosine = 1};
   cag_inverse_strip_right(&turn, q[4], &f);
-  // Of frame 4 before its twist x is in the plane.
+  // x of frame 4 before its twist lies in the plane.
   const double x = f.x.x, y = f.x.y;
   CagRobotFrame g = f;
   g.x = cag_vec3(x, y, 0);
@@ -111,13 +111,13 @@ static void with_joint5(InverseTask *t, CagRobotFrame f, double *q, double theta
   double s[2];
   senses(c, s);
   q[4] = inverse_value(&r[4], theta5);
-  CagRobotFrame g = f; // frame 6 before its twist, seen from frame 1
+  CagRobotFrame g = f; // frame 6 before its twist, in frame 1
   if (singular) {
-    // Joints 2 to 4 turn against joint 6; how far is told by `near`.
+    // Joints 2 to 4 can turn against joint 6; `near` determines how far.
     const double p4 = inverse_theta(&r[1], t->near[1]) + s[0] * inverse_theta(&r[2], t->near[2]) +
                       s[1] * inverse_theta(&r[3], t->near[3]);
     CagRobotFrame frame5 = {.x = cag_vec3(1, 0, 0), .y = cag_vec3(0, 1, 0), .z = cag_vec3(0, 0, 1)};
-    // Frame 5 by its links: Rot(z, p4) Rot(x, alpha4) Rot(z, theta5) Rot(x, alpha5).
+    // Frame 5 from its links: Rot(z, p4) Rot(x, alpha4) Rot(z, theta5) Rot(x, alpha5).
     cag_robot_advance(&frame5,
                       &(CagRobotStage){.turn = 1, .sine = s[1] * r[3].sine, .cosine = r[3].cosine},
                       sin(p4), cos(p4), 0);
@@ -127,7 +127,7 @@ static void with_joint5(InverseTask *t, CagRobotFrame f, double *q, double theta
     const double theta6 = atan2(cag_dot(g.x, frame5.y), cag_dot(g.x, frame5.x));
     q[5] = inverse_value(&r[5], theta6);
   } else {
-    // Axis 2 seen from frame 5 is (sense sin(theta5), 0, ...).
+    // Axis 2 in frame 5 is (sense sin(theta5), 0, ...).
     const double sense = s[1] * r[3].sine * sin(theta5);
     q[5] = inverse_value(&r[5], atan2(-sense * g.y.z, sense * g.x.z));
   }
@@ -147,9 +147,9 @@ static void with_joint1_of6(InverseTask *t, double q1, unsigned free) {
   CagRobotFrame f = t->target;
   cag_inverse_strip_left(&r[0], q1, &f);
   cag_inverse_strip_crank(&r[5], &f);
-  // The last axis against axis 2: -s sin(alpha4) sin(alpha5) cos(theta5).
+  // Cosine between the last axis and axis 2: -s sin(alpha4) sin(alpha5) cos(theta5).
   const double cosine = -f.z.z * s[1] * r[3].sine * r[4].sine;
-  // sin(theta5) is the part of axis 2 across the last axis.
+  // sin(theta5) is the component of axis 2 perpendicular to the last axis.
   const double sine = inverse_length(f.x.z, f.y.z);
   CagConfiguration base = {.shoulder = sign_of(f.p.x + r[0].a)};
   if (sine < INVERSE_NOTHING) {
@@ -168,7 +168,7 @@ static int joint1(const InverseTask *t, CagVec3 p, double q1[2], unsigned *free)
   const InverseRow *r = c->row;
   double s[2], x[2];
   senses(c, s);
-  // Height over the plane: of links 2, 3 and 4.
+  // Offset from the plane: that of links 2, 3, and 4.
   const double height = r[1].shift + s[0] * r[2].shift + s[1] * r[3].shift;
   // Axis 2 is sin(alpha1) (sin theta1, -cos theta1, 0).
   const int n = cag_inverse_trigonometric(-r[0].sine * p.y, r[0].sine * p.x, height, c->reach, x);
@@ -198,7 +198,7 @@ void cag_inverse_parallel(InverseTask *t) {
   CagRobotFrame f = t->target;
   double q1[2];
   unsigned free;
-  // Where link 5 (or 6) begins, behind its turn.
+  // The origin of link 5 (or 6), after its rotation.
   cag_inverse_strip_crank(&c->row[c->n - 1], &f);
   const int n = joint1(t, f.p, q1, &free);
   for (int i = 0; i < n; i++) {
@@ -232,21 +232,21 @@ bool cag_inverse_is_plane(const InverseChain *c) {
   return turns >= 1 && turns <= 3 && slides <= 1;
 }
 
-// The links of the plane: the turning joints with the vectors behind them, slides and their twists
-// taken in.
+// The links in the plane: the revolute joints with the following vectors, which include prismatic
+// joints and their twists.
 typedef struct Plane {
   size_t n, joint[3];
   double sense[3], length[3], lead[3]; // lead: from the joint's angle to that of its vector
   double height;
-  size_t slide; // the joint that slides, and its sense
+  size_t slide; // the prismatic joint, and its orientation
   double slide_sense;
-  double foot[2], start; // what stands before the first turn: its end, its turn
-  double rest;           // angle behind the last turn
+  double foot[2], start; // before the first revolute joint: end point and angle
+  double rest;           // angle after the last revolute joint
   double last_sense;     // of the last row
 } Plane;
 
-// Sines this small are of a stretched or folded arm, whose branches coincide: joint values there
-// are known to the root of the rounding only.
+// Sine below which an arm is stretched or folded, so that its branches coincide: joint values there
+// are known only to the square root of the rounding.
 #define STRAIGHT 1e-7
 
 static int elbow_sign(double theta) {
@@ -255,7 +255,7 @@ static int elbow_sign(double theta) {
 
 static void plane_of(const InverseChain *c, Plane *p) {
   *p = (Plane){.slide = c->n};
-  double sense = 1, angle = 0, x = 0, y = 0; // since the last turn
+  double sense = 1, angle = 0, x = 0, y = 0; // since the last revolute joint
   for (size_t i = 0; i < c->n; i++) {
     const InverseRow *r = &c->row[i];
     if (r->turns) {
@@ -285,7 +285,7 @@ size_t cag_inverse_plane_turns(const InverseChain *c) {
   return p.n;
 }
 
-// The constant angle by which a slide between the turns k and k + 1 turns x.
+// The constant angle by which a prismatic joint between the revolute joints k and k + 1 rotates x.
 static double turn_between(const InverseChain *c, const Plane *p, size_t k) {
   double angle = 0;
   if (k + 1 < p->n)
@@ -294,7 +294,7 @@ static double turn_between(const InverseChain *c, const Plane *p, size_t k) {
   return angle;
 }
 
-// Joint values of the plane's turning joints, for the angles of x behind each turn.
+// Values of the plane's revolute joints, for the angles of x after each of them.
 static CagConfiguration plane_joints(const InverseChain *c, const Plane *p, const double *x_angle,
                                      double *q) {
   CagConfiguration label = {0};
@@ -328,12 +328,12 @@ void cag_inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   unsigned free = 0;
   int n = 1;
   p1[0] = p2[0] = atan2(to[1], to[0]);
-  if (p.n == 2 && p.length[1] < nothing) { // the second joint turns the tool about the point
+  if (p.n == 2 && p.length[1] < nothing) { // the second joint rotates the tool about the point
     p2[0] = p1[0] - p.lead[0] + turn_between(c, &p, 0) + p.lead[1] +
             p.sense[1] * inverse_theta(&c->row[p.joint[1]], t->near[p.joint[1]]);
     free = 1u << p.joint[1];
   } else if (p.n == 2 && inverse_length(to[0], to[1]) < nothing &&
-             fabs(p.length[0] - p.length[1]) < nothing) { // folded, and turned as one likes
+             fabs(p.length[0] - p.length[1]) < nothing) { // folded, so the rotation is arbitrary
     p1[0] =
         p.start + p.lead[0] + p.sense[0] * inverse_theta(&c->row[p.joint[0]], t->near[p.joint[0]]);
     p2[0] = p1[0] + M_PI;
@@ -348,7 +348,7 @@ void cag_inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   }
 }
 
-// Solves for the angles of the links; `turn` is the whole turn of the tool.
+// Solves for the angles of the links; `turn` is the total rotation of the tool.
 void cag_inverse_plane(InverseTask *t) {
   const InverseChain *c = t->chain;
   const CagRobotFrame f = t->target;
@@ -357,7 +357,7 @@ void cag_inverse_plane(InverseTask *t) {
   const size_t last = p.n - 1;
   double q[CAG_INVERSE_JOINTS_MAX] = {0};
   if (p.slide < c->n) q[p.slide] = p.slide_sense * (f.p.z - p.height);
-  // The angle of x behind the last turn, and what is left for the links before.
+  // The angle of x after the last revolute joint, and the remaining vector for the previous links.
   const double turn = atan2(f.x.y, f.x.x) - p.rest;
   const double tip[2] = {p.length[last] * cos(turn + p.lead[last]),
                          p.length[last] * sin(turn + p.lead[last])};
@@ -369,12 +369,12 @@ void cag_inverse_plane(InverseTask *t) {
   else if (p.n == 2)
     p1[0] = atan2(y, x), n = fabs(inverse_length(x, y) - p.length[0]) < 1e3 * nothing;
   else n = inverse_length(x, y) < 1e3 * nothing;
-  // The place alone may be within reach of what turns it otherwise.
+  // The position may be reachable with another orientation.
   const double away = inverse_length(f.p.x - p.foot[0], f.p.y - p.foot[1]);
   t->placed = n > 0 || (p.n < 3 && away <= p.length[0] + p.length[last] * (double)(p.n - 1) &&
                         away >= fabs(p.length[0] - p.length[last] * (double)(p.n - 1)));
   for (int i = 0; i < n; i++) {
-    double x_angle[3]; // of x behind each turn
+    double x_angle[3]; // of x after each revolute joint
     x_angle[last] = turn;
     unsigned free = 0;
     if (p.n >= 2) x_angle[0] = p1[i] - p.lead[0];

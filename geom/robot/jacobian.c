@@ -1,16 +1,17 @@
-// The geometric Jacobian: how the tool moves when the joints do, and where it cannot move.
+// The geometric Jacobian and its singularities.
 
 #include "geom/linalg/tolerance.h"
 #include "geom/robot/kernel.h"
 
-// Singular values below this part of the largest are 0.
+// Singular values below this fraction of the largest are 0.
 #define RANK_TOLERANCE CAG_COINCIDENT
 // Sweeps of the one-sided Jacobi iteration; it converges in well under ten.
 #define SWEEPS_MAX 60
-// Rows count as orthogonal when their cosine is this small.
+// Rows are orthogonal if their cosine is below this.
 #define ORTHOGONAL 1e-15
 
-// A turning joint moves the tool's origin by z x (p - o), and by its lead; a sliding one by z.
+// A revolute joint moves the tool's origin by z x (p - o) plus its lead along z, a prismatic one by
+// z.
 static void fill_column(const CagRobotStage *s, CagVec3 o, CagVec3 z, CagVec3 p, double out[6]) {
   CagVec3 v = cag_scaled(cag_cross(z, cag_sub(p, o)), s->turn);
   v = cag_madd(v, s->slide, z);
@@ -52,8 +53,8 @@ void cag_robot_jacobian_tool(const CagRobot *r, const double *q, double (*column
 
 // --- Singular values ---
 
-// Turns two rows of n numbers until they are orthogonal; true when they were, or when one of them
-// is nothing: its square is at most `nothing`.
+// Rotates two rows of n numbers until they are orthogonal. Returns true if they were already, or if
+// one of them is zero: its square is at most `nothing`.
 static bool orthogonalize(double *a, double *b, size_t n, double nothing) {
   double aa = 0, bb = 0, ab = 0;
   for (size_t i = 0; i < n; i++) {
@@ -117,7 +118,7 @@ CagStatus cag_robot_singular_values(const CagRobot *r, const double *q, double v
   return CAG_OK;
 }
 
-// The square root of the determinant of the m x m matrix of products, by Cholesky's factors.
+// The square root of the determinant of the m x m Gram matrix, by Cholesky factorization.
 static double root_determinant(double g[6][6], size_t m) {
   double product = 1;
   for (size_t k = 0; k < m; k++) {
@@ -159,7 +160,7 @@ double cag_robot_manipulability(const CagRobot *r, const double *q) {
   double columns[CAG_ROBOT_JOINTS_MAX][6], g[6][6] = {{0}};
   size_t n = r->joint_count;
   cag_robot_jacobian(r, q, columns, NULL);
-  if (n == 6) { // without the squares of J J^T
+  if (n == 6) { // avoids the squares in J J^T
     memcpy(g, columns, sizeof g);
     return absolute_determinant(g);
   }

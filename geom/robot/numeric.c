@@ -1,58 +1,59 @@
 // Numerical inverse kinematics.
 //
-// The error of a pose is six numbers without unit: the way to the target as a part of a length of
-// the chain, and the rotation vector that is left. One step solves the damped normal equations
+// The error of a pose is six dimensionless numbers: the displacement to the target divided by a
+// length of the chain, and the remaining rotation vector. A step solves the damped normal equations
 //
 //     (J J^T + damping I) y = e,   dq = J^T y
 //
-// of size 6 whatever the number of joints, by Cholesky's factors without roots. The damping is in
-// proportion to the squared error (Sugihara 2011): far from a solution steps are careful, near to
-// one they are Newton's. Joints that would leave their limits are put on them, and what is left of
-// the error is given to the others. An attempt that has stopped to come nearer is given up soon,
-// since a fresh start is the cheaper way on.
+// of size 6 for any number of joints, by an LDL^T factorization. The damping is proportional to the
+// squared error (Sugihara 2011): far from a solution steps are cautious, near one they are Newton
+// steps. Joints that would violate their limits are fixed at them, and the remaining error is
+// distributed over the others. An attempt that no longer makes progress is abandoned early, since a
+// fresh start is cheaper.
 
 #include "geom/robot/numeric.h"
 
 #include "geom/robot/kernel.h"
 
-// The usual bound of steps over all starts: a few milliseconds.
+// Default limit of steps over all starts: a few milliseconds.
 #define STEPS_DEFAULT 8000
-// Damping beside the squared error, and its least value.
+// Damping relative to the squared error, and its minimum.
 #define DAMPING 0.1
 #define DAMPING_LEAST 1e-12
-// Largest step of a turning joint, radians.
+// Largest step of a revolute joint, radians.
 #define STEP_MAX 1.0
-// An attempt is given up when in so many steps the squared error has not fallen to this part.
+// An attempt is abandoned if the squared error has not fallen to this fraction in this many steps.
 #define PATIENCE 6
 #define PROGRESS 0.7
-// Steps that make a solution as good as rounding lets.
+// Steps that refine a solution to rounding accuracy.
 #define POLISH_STEPS 6
-// Steps that bring the nearest place to a target out of reach to rest.
+// Steps for converging to the closest pose to an unreachable target.
 #define DESCENT_STEPS 400
 
 typedef struct Problem {
   const CagRobot *r;
   size_t n;
   double low[CAG_ROBOT_JOINTS_MAX], high[CAG_ROBOT_JOINTS_MAX];
-  double unit[CAG_ROBOT_JOINTS_MAX]; // a joint's value that counts as one: a radian, or the length
+  double unit[CAG_ROBOT_JOINTS_MAX]; // change of each joint that counts as one: a radian, or the
+                                     // length
   CagRobotFrame target;
-  double length; // that counts as a radian
+  double length; // equivalent of one radian
   double position, rotation;
   size_t rows; // 6, or 3 for positions alone
 } Problem;
 
-// The chain at one place.
+// The chain at given joint values.
 typedef struct State {
   double q[CAG_ROBOT_JOINTS_MAX];
-  double columns[CAG_ROBOT_JOINTS_MAX][6]; // of the Jacobian, in the units of the problem
+  double columns[CAG_ROBOT_JOINTS_MAX][6]; // of the Jacobian, in the problem's units
   double error[6];
-  double square; // of the error
+  double square; // squared norm of the error
   double position, rotation;
 } State;
 
 // --- Errors ---
 
-// Rotation vector of the turn that takes the axes of `from` to those of `to`.
+// Rotation vector from the axes of `from` to those of `to`.
 static CagVec3 turn_between(const CagRobotFrame *from, const CagRobotFrame *to) {
   // The sum of cross products is 2 sin(t) k, the sum of dot products 1 + 2 cos(t).
   CagVec3 s = cag_add(cag_add(cag_cross(from->x, to->x), cag_cross(from->y, to->y)),
@@ -63,7 +64,7 @@ static CagVec3 turn_between(const CagRobotFrame *from, const CagRobotFrame *to) 
   if (cosine > 0 && sine < nearly_none) return cag_scaled(s, 0.5);
   double angle = atan2(sine, cosine);
   if (sine > nearly_half) return cag_scaled(s, angle / sine);
-  // Almost half a turn: to + from of each axis lies along k; the longest is the most exact.
+  // Nearly a half turn: to + from of each axis is along k; use the longest sum.
   CagVec3 sums[3] = {cag_add(from->x, to->x), cag_add(from->y, to->y), cag_add(from->z, to->z)};
   CagVec3 k = sums[0];
   for (int i = 1; i < 3; i++)
@@ -136,7 +137,7 @@ static void solve_six(double m[6][6], double damping, const double e[6], double 
       scaled[j] = m[k][j] * m[j][j];
       d -= m[k][j] * scaled[j];
     }
-    // What rounding leaves of a singular matrix is not below the damping.
+    // The rounding of a singular matrix must not fall below the damping.
     d = d > damping ? d : damping;
     m[k][k] = d;
     inverse[k] = 1 / d;
@@ -171,9 +172,9 @@ static double dot_six(const double *a, const double *b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
 }
 
-// The step from s within the limits, into `step` (values of q). False where no joint can move.
+// The step from s within the limits, into `step` (values of q). Returns false if no joint can move.
 static bool find_step(const Problem *p, const State *s, double damping, double *step) {
-  const size_t rounds = 4; // of joints put on their limits
+  const size_t rounds = 4; // of fixing joints at their limits
   bool held[CAG_ROBOT_JOINTS_MAX] = {0};
   double rest[6], m[6][6], y[6], largest = 0;
   memcpy(rest, s->error, sizeof rest);
@@ -207,7 +208,7 @@ static void take_step(const Problem *p, const State *s, const double *step, Stat
 
 // --- Attempts ---
 
-// Iterates from s->q, which is evaluated; the best place met is left in s.
+// Iterates from s->q, which must be evaluated; the best state is left in s.
 static bool attempt(const Problem *p, State *s, size_t steps_max, size_t *steps) {
   State other, *at = s, *next = &other;
   double step[CAG_ROBOT_JOINTS_MAX], marked = s->square;
@@ -229,7 +230,7 @@ static bool attempt(const Problem *p, State *s, size_t steps_max, size_t *steps)
   return content(p, s);
 }
 
-// Newton's steps while they help.
+// Newton steps as long as they help.
 static void polish(const Problem *p, State *s) {
   State next;
   double step[CAG_ROBOT_JOINTS_MAX];
@@ -244,8 +245,8 @@ static void polish(const Problem *p, State *s) {
   }
 }
 
-// Walks down to the least error where no solution is: damping that is taken back when a step has
-// helped and raised when not (Levenberg-Marquardt), since there the error does not vanish.
+// Minimizes the error if there is no solution: the damping is reduced after a successful step and
+// raised otherwise (Levenberg-Marquardt), since the error does not vanish there.
 static void descend(const Problem *p, State *s, double damping_start, size_t steps_max) {
   const double raise = 4, lower = 0.3, most = 1e8, still = 1e-15;
   State next;
@@ -264,8 +265,8 @@ static void descend(const Problem *p, State *s, double damping_start, size_t ste
   }
 }
 
-// Solves the n equations of a symmetric matrix (its lower part is overwritten) by Cholesky's
-// factors. False: it is not positive definite.
+// Solves n equations with a symmetric matrix (the lower part is overwritten) by Cholesky
+// factorization. False: it is not positive definite.
 static bool solve_definite(double m[][CAG_ROBOT_JOINTS_MAX], size_t n, double *x) {
   for (size_t k = 0; k < n; k++) {
     for (size_t j = 0; j < k; j++) m[k][k] -= m[k][j] * m[k][j];
@@ -287,8 +288,8 @@ static bool solve_definite(double m[][CAG_ROBOT_JOINTS_MAX], size_t n, double *x
   return true;
 }
 
-// The gradient of half the squared error, in the problem's units: for the rotation vector this is
-// exact, since it lies along the axis of the turn that is left.
+// The gradient of half the squared error, in the problem's units. It is exact for the rotation
+// vector, which is along the axis of the remaining rotation.
 static double gradient(const State *s, size_t joint) {
   return -dot_six(s->columns[joint], s->error);
 }
@@ -297,7 +298,8 @@ static double gradient(const State *s, size_t joint) {
 // gradient; the lower part.
 static void second_derivatives(const Problem *p, const State *s, const size_t *free, size_t n,
                                double m[][CAG_ROBOT_JOINTS_MAX]) {
-  const double h = 1e-5; // the error, h squared, is below that of the rounding, 1e-16 / h
+  const double h = 1e-5; // the error of the differences, h squared, is below their rounding, 1e-16
+                         // / h
   State sides[2];
   for (size_t k = 0; k < n; k++) {
     for (int side = 0; side < 2; side++) {
@@ -310,9 +312,9 @@ static void second_derivatives(const Problem *p, const State *s, const size_t *f
   }
 }
 
-// Brings the nearest place to rest. Where a target is out of reach the error that stays bends the
-// way as much as the chain does, and the steps above, which leave that out, creep; these are
-// Newton's own, damped until they help, within the limits.
+// Converges to the closest pose. If a target is unreachable, the second derivatives of the
+// remaining error matter as much as the Jacobian, and the steps above, which neglect them, converge
+// slowly; these are full Newton steps, damped until they help, within the limits.
 static void rest_nearest(const Problem *p, State *s) {
   const int rounds = 100;
   const double raise = 8, lower = 0.1, most = 1e8, still = 1e-14;
@@ -348,10 +350,10 @@ static void rest_nearest(const Problem *p, State *s) {
   }
 }
 
-// --- Freedom to spare ---
+// --- Redundancy ---
 
-// The part of `rates` (in units of the problem) that leaves the tool where it is; joints that are
-// held do not move.
+// The part of `rates` (in the problem's units) that does not move the tool; held joints do not
+// move.
 static void project(const Problem *p, const State *s, const bool *held, const double *rates,
                     double *out) {
   double m[6][6], moved[6] = {0}, y[6];
@@ -372,7 +374,7 @@ static double apart(const Problem *p, const double *a, const double *b) {
   return sum;
 }
 
-// Moves a solution towards `near` along the motions that leave the tool alone.
+// Moves a solution towards `near` along motions that do not move the tool.
 static void approach_near(const Problem *p, State *s, const double *near) {
   const double widest = 0.3, gain_least = 1e-9, share_least = 1.0 / 64;
   const int rounds = 60;
@@ -500,11 +502,11 @@ void cag_robot_null_motion(const CagRobot *r, const double *q, const double *dq,
   const bool held[CAG_ROBOT_JOINTS_MAX] = {0};
   double rates[CAG_ROBOT_JOINTS_MAX] = {0};
   set_limits(&p);
-  cag_robot_frame_from(&r->before, &p.target); // the error is not asked
+  cag_robot_frame_from(&r->before, &p.target); // the error is not used
   memcpy(s.q, q, p.n * sizeof *q);
   evaluate(&p, &s);
   for (size_t i = 0; i < p.n; i++) rates[i] = dq[i] / p.unit[i];
-  // What the damping leaves of the other motions is squared by the second time.
+  // The second projection squares the residue that damping leaves.
   project(&p, &s, held, rates, out);
   project(&p, &s, held, out, rates);
   for (size_t i = 0; i < p.n; i++) out[i] = rates[i] * p.unit[i];

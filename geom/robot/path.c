@@ -1,5 +1,5 @@
-// Joint paths: a pose's solution is looked for from the one before, in steps so small that the
-// joints cannot slip into another branch unseen.
+// Joint paths: the solution for each pose is searched from the previous one, in steps so small that
+// a change of branch cannot go unnoticed.
 
 #include "geom/robot/path.h"
 
@@ -10,11 +10,11 @@
 #include "geom/robot/kernel.h"
 
 #define TOLERANCE_DEFAULT 1e-6
-// Further starts for solutions nearer to the wanted place.
+// Number of further starts for solutions nearer to the wanted joint values.
 #define ALTERNATIVES 24
-// Largest step of a joint that passes for continuous: radians, or the same part of the reach.
+// Largest step of a joint that counts as continuous: radians, or a fraction of the reach.
 #define CONTINUOUS 0.5
-// A part of the way this small over which the joints still jump is a jump.
+// If the joints still jump over this fraction of the motion, the jump is real.
 #define SHORTEST (1.0 / 4096)
 
 // --- One pose ---
@@ -30,7 +30,7 @@ static CagStatus fail_unreachable(const CagRobotFound *found, bool position_only
 
 static bool is_wanted(int wanted, int is) { return !wanted || !is || wanted == is; }
 
-// The square of the way of all joints from a to b, in radians and parts of the reach.
+// The squared distance of joint values a and b, in radians and fractions of the reach.
 static double joint_way(const CagRobot *r, const double *a, const double *b) {
   double sum = 0;
   for (size_t i = 0; i < r->joint_count; i++) {
@@ -41,8 +41,8 @@ static double joint_way(const CagRobot *r, const double *a, const double *b) {
   return sum;
 }
 
-// The closed form's solution of the wanted branch within the limits that is nearest to `near`;
-// false where there is none.
+// The closed-form solution of the wanted branch within the limits that is nearest to `near`; false
+// if there is none.
 static bool solve_closed(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
                          const double *near, double *q) {
   CagInverse all;
@@ -65,7 +65,7 @@ static bool solve_closed(const CagRobot *r, const CagTransform *target, const Ca
   return nearest < INFINITY;
 }
 
-// A branch that is asked for must be one that the arm tells apart.
+// A requested branch must be one that the arm distinguishes.
 static CagStatus check_branches(const CagRobot *r, const CagRobotGoal *goal, bool closed,
                                 CagError *err) {
   const CagConfiguration has = cag_robot_branches(r);
@@ -124,7 +124,7 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
 
 // --- Steps ---
 
-// How far the joint that moves most goes from a to b, in radians or parts of the reach.
+// The largest change of a joint from a to b, in radians or fractions of the reach.
 static double largest_move(const CagRobot *r, const double *a, const double *b) {
   double largest = 0;
   for (size_t i = 0; i < r->joint_count; i++) {
@@ -135,7 +135,7 @@ static double largest_move(const CagRobot *r, const double *a, const double *b) 
   return largest;
 }
 
-// The solution that Newton's steps from `from` lead to.
+// The solution that Newton's method converges to from `from`.
 static bool solve_near(const CagRobot *r, const CagTransform *target, bool position_only,
                        const double *from, double *q) {
   CagRobotSearch search = {.near = from,
@@ -149,8 +149,8 @@ static bool solve_near(const CagRobot *r, const CagTransform *target, bool posit
 
 typedef enum Tracked { ARRIVED, LEFT, JUMPED } Tracked;
 
-// Follows the way from pose a (reached at q) to b; q is moved along. `done` is the part of the way
-// that was gone.
+// Follows the motion from pose a (reached at q) to b, updating q. `done` is the fraction that was
+// completed.
 static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransform *b,
                      bool position_only, double *q, double *done, CagError *err) {
   double t = 0, h = 1, next[CAG_ROBOT_JOINTS_MAX];
@@ -178,8 +178,8 @@ static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransfor
 
 // --- Lines ---
 
-// Sign of the determinant of the Jacobian of six joints, 0 where it is singular; of other chains 1
-// where it has full rank.
+// Sign of the determinant of the Jacobian of six joints, 0 if it is singular; for other chains 1 if
+// it has full rank.
 static int jacobian_sign(const CagRobot *r, const double *q) {
   double values[6], m[CAG_ROBOT_JOINTS_MAX][6];
   size_t count, rank;
@@ -208,9 +208,10 @@ static int jacobian_sign(const CagRobot *r, const double *q) {
   return sign;
 }
 
-// The joint that stands at a limit, from 1; 0: none does.
+// The number, from 1, of a joint at a limit; 0: none.
 static size_t joint_at_limit(const CagRobot *r, const double *q) {
-  const double near = 1e-2; // radians, or parts of the reach: the last step ends this far before it
+  const double near = 1e-2; // radians, or fractions of the reach: the last step ends within this
+                            // distance of a limit
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     double room = fmin(q[i] - l->low, l->high - q[i]);
@@ -219,7 +220,7 @@ static size_t joint_at_limit(const CagRobot *r, const double *q) {
   return 0;
 }
 
-// q is the last place that was reached.
+// q is the last configuration that was reached.
 static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size_t step,
                            double part, const char *what, CagError *err) {
   char cause[80] = "a singular place stands";
@@ -298,7 +299,7 @@ CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t 
       if (how == ARRIVED) continue;
       if (how == JUMPED && !way->jumps) return fail_step(r, here, how, k, done, "pose", err);
     }
-    // The first pose, or one that is reached although the straight way to it is not.
+    // The first pose, or one that is reachable although the direct motion to it is not.
     CagRobotGoal goal = {.near = k > 0 ? before : way->near, .position_only = way->position_only};
     CagStatus status = cag_robot_solve(r, &poses[k], &goal, here, &found, err);
     if (status && k > 0)

@@ -1,5 +1,5 @@
-// Workspaces by structure: the axes of the joints in one pose tell which of the classical arms a
-// chain is, and the limits over which ranges its formulas run.
+// Workspaces from structure: the axes of the joints in one pose identify the classical arm types,
+// and the limits give the ranges for their formulas.
 
 #include "geom/robot/workspace.h"
 
@@ -8,13 +8,13 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/robot/numeric.h"
 
-// Axes whose sine of the angle between, or whose distance as a part of the reach, is below this are
-// parallel, or meet.
+// Axes are parallel if their sine, or intersect if their distance as a fraction of the reach, is
+// below this.
 #define ALIGNED CAG_PARALLEL
-// A range this near to a full turn is one.
+// A range this close to a full turn is a full turn.
 #define FULL (2 * M_PI * (1 - 1e-12))
 
-// The arm: its first joints, as far as they place the point.
+// The arm: the first joints, which position the point.
 typedef struct Arm {
   const CagRobot *r;
   size_t n;      // joints of the arm
@@ -37,7 +37,7 @@ static double span(const Arm *a, size_t i) { return link_of(a, i)->high - link_o
 static bool parallel(CagVec3 u, CagVec3 v) { return cag_norm(cag_cross(u, v)) <= ALIGNED; }
 static bool square(CagVec3 u, CagVec3 v) { return fabs(cag_dot(u, v)) <= ALIGNED; }
 
-// The part of b - a across the unit direction z.
+// The component of b - a perpendicular to the unit direction z.
 static CagVec3 across(CagVec3 a, CagVec3 b, CagVec3 z) {
   CagVec3 w = cag_sub(b, a);
   return cag_madd(w, -cag_dot(w, z), z);
@@ -49,7 +49,7 @@ static bool on_axis(const Arm *a, size_t i, CagVec3 p) {
   return from_axis(a, i, p) <= ALIGNED * a->r->reach;
 }
 
-// Where two axes meet.
+// The intersection of two axes.
 static bool meet(const Arm *a, size_t i, size_t j, CagVec3 *out) {
   CagVec3 u = a->z[i], v = a->z[j], w = cag_sub(a->o[j], a->o[i]);
   double uv = cag_dot(u, v), d = 1 - uv * uv;
@@ -60,13 +60,13 @@ static bool meet(const Arm *a, size_t i, size_t j, CagVec3 *out) {
 
 // --- The arm of a chain ---
 
-// The middle of the ranges, but no joint stretched or folded.
+// The middle of the ranges, with no joint stretched or folded.
 static void generic_place(Arm *a) {
   const double share = 0.41421356237309515;
   for (size_t i = 0; i < a->r->joint_count; i++) a->q[i] = link_of(a, i)->low + share * span(a, i);
 }
 
-// Sets the arm and its point; true when the point is the wrist's and not the tool's.
+// Sets the arm and its point; returns true if the point is the wrist's and not the tool's.
 static bool find_arm(const CagRobot *r, Arm *a) {
   CagTransform tool;
   *a = (Arm){.r = r, .n = r->joint_count};
@@ -114,7 +114,7 @@ static bool is_cartesian(const Arm *a, CagWorkspace *w) {
   return true;
 }
 
-// A slide of the joint i that goes straight away from `from`: the distances at its limits.
+// If joint i is a prismatic joint that moves radially from `from`: the distances at its limits.
 static bool radial(const Arm *a, size_t i, CagVec3 from, double *low, double *high) {
   CagVec3 way = cag_sub(a->point, from);
   if (cag_norm(cag_cross(way, a->z[i])) > ALIGNED * a->r->reach) return false;
@@ -125,7 +125,8 @@ static bool radial(const Arm *a, size_t i, CagVec3 from, double *low, double *hi
   return true;
 }
 
-// Bounds of the distances of a slide that goes from low to high, through its center or not.
+// Bounds of the distance for a prismatic joint that moves from low to high, possibly through its
+// center.
 static void bound_slide(CagWorkspace *w, double low, double high) {
   w->r_min = fmax(0, fmax(low, -high));
   w->r_max = fmax(-low, high);
@@ -141,7 +142,7 @@ static bool is_cylindrical(const Arm *a, CagWorkspace *w) {
   w->kind = CAG_WORKSPACE_CYLINDRICAL;
   w->center = a->o[0];
   bound_slide(w, low, high);
-  // Behind the axis the slide would cover a part twice.
+  // On the far side of the axis the joint would cover a part twice.
   w->exact = low >= 0;
   double angle = fmin(span(a, 0), 2 * M_PI);
   w->volume = angle / 2 * (high * high - low * low) * span(a, 1);
@@ -159,13 +160,13 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
     return false;
   double low, high;
   if (radial(a, 2, center, &low, &high) && square(a->z[1], a->z[2])) {
-    // The elevation of the slide over the plane perpendicular to the first axis; it falls as joint
-    // 2 turns.
+    // The elevation of the prismatic joint's direction over the plane perpendicular to the first
+    // axis; it decreases as joint 2 turns.
     CagVec3 level = cag_cross(a->z[1], a->z[0]);
     double f = atan2(cag_dot(a->z[2], a->z[0]), cag_dot(a->z[2], level));
     double f1 = remainder(f - (link_of(a, 1)->high - a->q[1]), 2 * M_PI), f2 = f1 + span(a, 1);
     const double rounding = CAG_ROUNDING;
-    // All beyond the pole: the same points, seen from the other side.
+    // Entirely beyond the pole: the same points, from the other side.
     if (f1 <= -M_PI / 2 - rounding) {
       f1 += 2 * M_PI;
       f2 += 2 * M_PI;
@@ -183,7 +184,8 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
                 (sin(f2) - sin(f1));
     return true;
   }
-  // An offset along the second axis: the point stays in a plane beside the first one's.
+  // An offset along the second axis: the point stays in a plane parallel to one through the first
+  // axis.
   CagVec3 way = cag_sub(a->point, center);
   double offset = cag_dot(way, a->z[1]);
   CagVec3 foot = cag_madd(center, offset, a->z[1]);
@@ -197,7 +199,7 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
   return true;
 }
 
-// Ring of links of these lengths that turn as they like.
+// Ring reached by links of these lengths with unlimited rotation.
 static void ring(const double *lengths, size_t n, double *r_min, double *r_max) {
   double sum = 0, largest = 0;
   for (size_t i = 0; i < n; i++) {
@@ -208,13 +210,13 @@ static void ring(const double *lengths, size_t n, double *r_min, double *r_max) 
   *r_min = fmax(0, 2 * largest - sum);
 }
 
-// The angle at joint i between the way to the joint before and the way on to p, at q.
+// The angle at joint i between the directions to the previous joint and to p, at q.
 static double bend_of(const Arm *a, size_t i, CagVec3 p) {
   CagVec3 back = across(a->o[i - 1], a->o[i], a->z[i]), on = across(a->o[i], p, a->z[i]);
   return atan2(cag_dot(cag_cross(back, on), a->z[i]), cag_dot(back, on));
 }
 
-// The least and the largest distance of p from joint i-1's axis over the range of joint i.
+// The smallest and the largest distance of p from joint i-1's axis over the range of joint i.
 static void two_links(const Arm *a, size_t i, CagVec3 p, double first, double second, double *r_min,
                       double *r_max) {
   double low = bend_of(a, i, p) + link_of(a, i)->low - a->q[i];
@@ -275,8 +277,8 @@ static bool is_articulated(const Arm *a, CagWorkspace *w) {
 
 // --- What is bounded ---
 
-// How far a shell with a hole goes in a direction whose cosine with the first axis is c: points at
-// the height h have the distance sqrt(R^2 - h^2) from the axis, where |h| <= r_max and
+// How far a shell with a hole extends in a direction whose cosine to the first axis is c: points at
+// height h have the distance sqrt(R^2 - h^2) from the axis, where |h| <= r_max and
 // R^2 = r_max^2 + hole^2.
 static double extent(const CagWorkspace *w, double c) {
   double whole = hypot(w->r_max, w->hole);

@@ -1,9 +1,9 @@
-// The parts of curves, surfaces and open meshes within a solid.
+// Clips curves, surfaces, and open meshes to a solid.
 //
 // A surface is clipped as its mesh. Triangles near the solid's boundary are split until their edges
-// are short against the curvature that a boundary of the solid's size has; an edge that one
-// triangle splits is split for its neighbor too, so that no gap opens. Then each edge with one end
-// inside is cut where it crosses, found by bisection, and each triangle keeps its inner part.
+// are short relative to the curvature of a boundary of the solid's size. An edge that is split for
+// one triangle is split for its neighbor too, so no gap opens. Then each edge with one end inside
+// is cut at its crossing, found by bisection, and each triangle keeps its inner part.
 
 #include "geom/solid/clip.h"
 
@@ -19,7 +19,7 @@
 // --- Curves ---
 
 #define SAMPLES 256
-#define BISECTIONS 60 // as many as a double has bits to halve
+#define BISECTIONS 60 // number of bits of a double
 
 typedef struct Pieces {
   CagCurve **at;
@@ -32,7 +32,7 @@ static CagStatus holds_at(CagInside *in, const CagCurve *c, double t, bool *out,
   return status ? status : cag_inside_holds(in, p, out, err);
 }
 
-// The parameter between a (inside as `first` says) and b where that changes; the inner end of it.
+// The inner end of the change between a (inside as given by `first`) and b.
 static CagStatus crossing(CagInside *in, const CagCurve *c, double a, double b, bool first,
                           double *out, CagError *err) {
   for (int i = 0; i < BISECTIONS; i++) {
@@ -57,7 +57,7 @@ static CagStatus add_piece(Pieces *p, const CagCurve *c, double from, double to,
   return status;
 }
 
-// Parameters that are looked at: evenly between the curve's breaks.
+// The parameters to test: equally spaced between the curve's breaks.
 static CagStatus looked_at(const CagCurve *c, double **out, size_t *n, CagError *err) {
   size_t breaks = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
   double *at = cag_malloc((breaks + 2) * sizeof *at);
@@ -126,16 +126,16 @@ CagStatus cag_curve_clip(const CagCurve *c, const CagSolid *by, const volatile i
 
 // --- Meshes being cut ---
 
-// Points with their parameters; triangles; and what edges were cut at in the present pass.
+// Points with their parameters; triangles; and the cuts of edges in the current pass.
 typedef struct Work {
-  const CagSurface *surface; // NULL: points on edges are those of the chords
+  const CagSurface *surface; // NULL: points on edges are on the chords
   CagInside *in;
   const CagTessellation *how;
   double chord; // edges near the boundary are split down to this length
   CagBounds reach;
   CagVec3 *p;
   double *uv;
-  signed char *inner; // 1, 0, -1: not asked yet
+  signed char *inner; // 1, 0, -1: unknown
   size_t n, capacity;
   uint32_t *t;
   size_t triangles, room;
@@ -209,7 +209,7 @@ static CagStatus clear_cuts(Work *w, size_t edges, CagError *err) {
   return CAG_OK;
 }
 
-// The slot of an edge, new ones without a cut.
+// The slot of an edge; a new one has no cut.
 static uint32_t *slot(Work *w, uint32_t a, uint32_t b) {
   uint32_t low = a < b ? a : b, high = a < b ? b : a;
   uint64_t key = ((uint64_t)low << 32 | high) + 1;
@@ -219,7 +219,7 @@ static uint32_t *slot(Work *w, uint32_t a, uint32_t b) {
   return &w->cut[i];
 }
 
-// The point at a fraction of an edge: of the surface where its parameters lead there, else of the
+// The point at a fraction of an edge: on the surface if its parameters lead there, else on the
 // chord.
 static void edge_point(const Work *w, uint32_t a, uint32_t b, double f, CagVec3 *p, double uv[2]) {
   CagError err;
@@ -249,8 +249,8 @@ static double edge_length(const Work *w, uint32_t a, uint32_t b) {
   return cag_norm(cag_sub(w->p[a], w->p[b]));
 }
 
-// Triangles are split where the boundary passes between their corners, and where they are so large
-// that all of the solid may lie between them.
+// Triangles are split if the boundary passes between their corners, or if they are so large that
+// the whole solid may be inside.
 static CagStatus wants_split(Work *w, const uint32_t *t, bool *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   int inner = 0;
@@ -283,7 +283,7 @@ static CagStatus split_edge(Work *w, uint32_t a, uint32_t b, CagError *err) {
   return status;
 }
 
-// A triangle as the cuts of its edges say.
+// Divides a triangle by the cuts of its edges.
 static CagStatus divide(Work *w, const uint32_t *t, CagError *err) {
   uint32_t m[3];
   int n = 0, whole = 0, only = 0;
@@ -299,7 +299,7 @@ static CagStatus divide(Work *w, const uint32_t *t, CagError *err) {
     status = add_triangle(w, a, m[only], c, err);
     return status ? status : add_triangle(w, m[only], b, c, err);
   }
-  if (n == 2) { // the edge a-b is whole
+  if (n == 2) { // the edge a-b is not cut
     uint32_t a = t[whole], b = t[(whole + 1) % 3], c = t[(whole + 2) % 3];
     uint32_t bc = m[(whole + 1) % 3], ca = m[(whole + 2) % 3];
     status = add_triangle(w, ca, bc, c, err);
@@ -340,14 +340,14 @@ static CagStatus split_pass(Work *w, bool *changed, CagError *err) {
 
 // --- Cutting ---
 
-// The point of an edge where the inside ends, made once for both triangles.
+// The point of an edge at which the inside ends, made once for both triangles.
 static CagStatus cut_edge(Work *w, uint32_t a, uint32_t b, uint32_t *out, CagError *err) {
   uint32_t *at = slot(w, a, b);
   *out = *at;
   if (*at != NOT_CUT) return CAG_OK;
   double in = 0, outside = 1, uv[2];
   CagVec3 p;
-  const int halvings = 48; // of an edge: to rounding
+  const int halvings = 48; // enough to reduce an edge to rounding
   for (int i = 0; i < halvings; i++) {
     bool inner;
     edge_point(w, a, b, (in + outside) / 2, &p, uv);
@@ -355,7 +355,7 @@ static CagStatus cut_edge(Work *w, uint32_t a, uint32_t b, uint32_t *out, CagErr
     if (status) return status;
     *(inner ? &in : &outside) = (in + outside) / 2;
   }
-  // A cut that rounds to the inner end is that end.
+  // A cut that rounds to the inner end is replaced by that end.
   if (in < 1e-9) *out = a;
   else {
     edge_point(w, a, b, in, &p, uv);
@@ -408,7 +408,7 @@ static CagVec3 normal_at(const Work *w, uint32_t i, CagVec3 fallback) {
   return fallback;
 }
 
-// Points that triangles name, in their order.
+// Collects the points used by triangles, in order.
 static CagStatus make_mesh(Work *w, CagMesh **out, CagError *err) {
   uint32_t *number = cag_malloc((w->n + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
@@ -473,7 +473,7 @@ static CagStatus clip(const CagSurface *s, const CagMesh *m, const CagSolid *by,
   double size = common_size(&box, &w.reach);
   if (m->triangle_count == 0 || !(size > 0))
     return cag_mesh_new(0, 0, false, false, false, out, err);
-  // An arc of a circle of the common size has this chord at the tolerance.
+  // The chord of an arc of a typical radius whose sag is the tolerance.
   double tolerance = how->tolerance > 0 ? how->tolerance : 1e-3 * size;
   w.chord = sqrt(2 * tolerance * size);
   status = cag_inside_new(by, how, &w.in, err);

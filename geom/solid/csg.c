@@ -1,5 +1,5 @@
-// Set operations and other solids without faces: making them, how far they reach, which side a
-// point is on. Their meshes and measures are in csg_mesh.c and csg_measure.c.
+// Set operations and other solids without faces: construction, bounds, and the side that a point is
+// on. Their meshes and measures are in csg_mesh.c and csg_measure.c.
 
 #include "geom/solid/csg.h"
 
@@ -46,7 +46,7 @@ CagStatus cag_solid_empty(CagSolid **out, CagError *err) {
   return CAG_OK;
 }
 
-// --- Sides ---
+// --- Half spaces and quadrics ---
 
 CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *err) {
   double row[4];
@@ -83,7 +83,7 @@ bool cag_solid_form(const CagSolid *s, CagQuadric *out) {
   return !cag_quadric_transform(&own, &s->placement, out, &err);
 }
 
-// --- Bodies within meshes ---
+// --- Solids bounded by meshes ---
 
 CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   CagVec3 edge[2];
@@ -119,13 +119,13 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   return CAG_OK;
 }
 
-// --- Reach ---
+// --- Bounds ---
 
 static const CagBounds EVERYWHERE = {{-INFINITY, -INFINITY, -INFINITY},
                                      {INFINITY, INFINITY, INFINITY}};
 
-// Bounds of the image of bounds, by each coordinate as a sum of intervals: infinite ones stay where
-// they are.
+// Bounds of the image of bounds, computing each coordinate as a sum of intervals; infinite bounds
+// remain infinite.
 static CagBounds moved(const CagBounds *b, const CagTransform *t) {
   const double lo[3] = {b->min.x, b->min.y, b->min.z}, hi[3] = {b->max.x, b->max.y, b->max.z};
   double low[3], high[3];
@@ -154,7 +154,7 @@ static void meet(CagBounds *a, const CagBounds *b) {
   a->max = cag_vec3(fmin(a->max.x, b->max.x), fmin(a->max.y, b->max.y), fmin(a->max.z, b->max.z));
 }
 
-// A half space perpendicular to an axis ends there.
+// A half space perpendicular to an axis is bounded along it.
 static CagBounds plane_reach(const CagQuadric *q) {
   const double *n = q->c + 6, k = q->c[9];
   CagBounds b = EVERYWHERE;
@@ -164,8 +164,8 @@ static CagBounds plane_reach(const CagQuadric *q) {
   return b;
 }
 
-// Of an ellipsoid, an elliptic cylinder or a slab: by each coordinate as far as the semi-axes go,
-// unless an endless direction of the frame has a part in it.
+// For an ellipsoid, an elliptic cylinder, or a slab: each coordinate extends as far as the
+// semi-axes, unless an infinite direction of the frame has a component in it.
 static CagBounds quadric_reach(const CagQuadric *q) {
   CagQuadricForm f;
   CagError err;
@@ -185,7 +185,7 @@ static CagBounds quadric_reach(const CagQuadric *q) {
     for (int j = 0; j < 3; j++) {
       double part = f.frame.m[i][j] * f.semi[j];
       if (j < ends) square += part * part;
-      else endless = endless || fabs(f.frame.m[i][j]) > 1e-12; // rounding of a turned frame
+      else endless = endless || fabs(f.frame.m[i][j]) > 1e-12; // rounding of a rotated frame
     }
     if (endless) continue;
     *lo[i] = at[i] - sqrt(square);
@@ -233,7 +233,7 @@ static bool is_identity(const CagTransform *t) {
   return memcmp(t->m, same.m, sizeof t->m) == 0;
 }
 
-// (a | b) | c is a | b | c, and so with &; (a - b) - c is a - b - c.
+// (a | b) | c is a | b | c, likewise for &; (a - b) - c is a - b - c.
 static bool dissolves(const CagSolid *operand, CagSetOperation op, size_t index) {
   return operand->kind == kind_of(op) && (op != CAG_DIFFERENCE || index == 0) &&
          is_identity(&operand->placement);
@@ -283,7 +283,7 @@ static int side_of_form(const CagQuadric *q, CagVec3 p, double slack) {
                            2 * c[1] * p.y + c[3] * p.x + c[4] * p.z + c[7],
                            2 * c[2] * p.z + c[4] * p.y + c[5] * p.x + c[8]);
   double value = cag_quadric_value(q, p);
-  // Where the slope vanishes too, the second derivatives say how fast the form grows.
+  // Where the gradient vanishes too, the second derivatives determine how fast the form grows.
   double bend = 0;
   for (int i = 0; i < 6; i++) bend = fmax(bend, fabs(c[i]));
   if (fabs(value) <= cag_norm(slope) * slack + bend * slack * slack) return 0;
@@ -309,7 +309,7 @@ CagStatus cag_csg_side(const CagSolid *s, CagVec3 p, double slack, CagSideOfLeaf
     if (status) return status;
     if (s->kind == CAG_SOLID_DIFFERENCE && i > 0) one = -one;
     if (s->kind == CAG_SOLID_UNION ? one < *side : one > *side) *side = one;
-    // Inside of one, or outside of one, decides.
+    // One operand (inside for a union, outside for an intersection) decides.
     if (*side == (s->kind == CAG_SOLID_UNION ? -1 : 1)) break;
   }
   return CAG_OK;
@@ -347,7 +347,7 @@ static CagStatus copy_solid(const CagSolid *s, CagSolid **out, CagError *err) {
   return status;
 }
 
-// The same operation, of other operands.
+// The same operation with other operands.
 static CagStatus relabel_operands(const CagSolid *s, CagRelabel *relabel, void *context,
                                   CagSolid **out, CagError *err) {
   CagSolid *c = NULL;

@@ -7,13 +7,13 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/tessellate.h"
 
-// Meshes for bounds and the first try of a mass: part of the size.
+// Tolerance of meshes for bounds and for a first estimate of a mass, as a fraction of the size.
 #define FINE_SHARE 1e-4
-// Masses are good to 2e-3: the mesh may leave out so much of the volume.
+// Masses are accurate to 2e-3: fraction of the volume that the mesh may miss.
 #define VOLUME_SLACK 1.5e-3
-// No finer mesh than this is made for a mass.
+// The finest mesh used for a mass, as a fraction of the size.
 #define FINEST_SHARE 1e-5
-// Unions of more bodies are not searched for pairs that overlap.
+// Unions of more solids are not searched for overlapping pairs.
 #define PAIRS_MOST 2000
 
 static bool apart(const CagBounds *a, const CagBounds *b) {
@@ -27,7 +27,7 @@ static CagStatus mesh_at(const CagSolid *s, double share, CagMesh **out, CagErro
   CagStatus status = cag_solid_reach(s, &reach, err);
   if (status) return status;
   double size = cag_norm(cag_sub(reach.max, reach.min));
-  // Where the reach is not known yet, the default tolerance finds it.
+  // If the bounds are not known yet, a mesh with the default tolerance determines them.
   if (!isfinite(size)) {
     status = cag_csg_mesh(s, &how, out, err);
     if (status) return status;
@@ -40,7 +40,7 @@ static CagStatus mesh_at(const CagSolid *s, double share, CagMesh **out, CagErro
   return cag_csg_mesh(s, &how, out, err);
 }
 
-// An operand where it stands.
+// An operand with its placement in the world.
 static CagStatus placed(const CagSolid *s, size_t index, CagSolid **out, CagError *err) {
   return cag_solid_transform(s->core->operands[index], &s->placement, out, err);
 }
@@ -69,8 +69,8 @@ static CagStatus fail_empty(const CagSolid *s, CagError *err) {
                   s->core->count > 2 ? " and others" : "");
 }
 
-// The body ends between its mesh and its reach: where these are no farther apart than the
-// tolerance, at the reach, which is exact more often.
+// Each bound of the solid is between those of its mesh and of its reach; if these differ by at most
+// the tolerance, use the reach, which is more often exact.
 static void snap(CagBounds *b, const CagBounds *reach, double tolerance) {
   double *at[6] = {&b->min.x, &b->min.y, &b->min.z, &b->max.x, &b->max.y, &b->max.z};
   const double to[6] = {reach->min.x, reach->min.y, reach->min.z,
@@ -115,8 +115,8 @@ static CagStatus union_bounds(const CagSolid *s, CagBounds *out, CagError *err) 
   return CAG_OK;
 }
 
-// Whether each side of the first operand's bounds has a point of it that nothing is near that is
-// taken away; then the difference has the same bounds.
+// Whether each side of the first operand's bounds has a point that is not near anything subtracted;
+// then the difference has the same bounds.
 static CagStatus keeps_sides(const CagMesh *first, const CagBounds *box, double slack,
                              const CagBounds *others, size_t n, bool *keeps) {
   bool kept[6] = {false};
@@ -204,7 +204,7 @@ CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err) {
   if (s->face_count > 0) return CAG_OK;
   const CagStatus status = cag_csg_bounds(s, &unused, err);
   *out = status && cag_is_empty_shape(err);
-  // What reaches to infinity is not empty.
+  // An unbounded solid is not empty.
   return *out || (status && err->id == CAG_ERR_solid_unbounded) ? CAG_OK : status;
 }
 
@@ -251,7 +251,7 @@ static CagStatus mass_of_mesh(const CagMesh *m, CagMassProperties *out, CagError
   return CAG_OK;
 }
 
-// Adds the part by Steiner's theorem.
+// Adds a part by the parallel axis theorem.
 static void add_mass(CagMassProperties *whole, const CagMassProperties *part) {
   double a = whole->volume, b = part->volume, area = whole->area + part->area;
   if (area > 0)
@@ -268,7 +268,7 @@ static void add_mass(CagMassProperties *whole, const CagMassProperties *part) {
   whole->volume = a + b;
 }
 
-// Bodies of a union that keep away from each other: exact. *done: they do.
+// Exact mass of a union of disjoint solids. *done: they are disjoint.
 static CagStatus mass_of_parts(const CagSolid *s, double tolerance, CagMassProperties *out,
                                bool *done, CagError *err) {
   size_t n = s->core->count;
@@ -303,8 +303,8 @@ CagStatus cag_solid_mass_within(const CagSolid *s, double tolerance, CagMassProp
   return s->face_count == 0 ? cag_csg_mass(s, tolerance, out, err) : cag_solid_mass(s, out, err);
 }
 
-// A mesh whose faces lie within the tolerance of the surface misses at most the tolerance times the
-// area: where none is given, that is made small against the volume.
+// A mesh whose faces are within the tolerance of the surface misses at most the tolerance times the
+// area; by default the tolerance is chosen so that this is small relative to the volume.
 CagStatus cag_csg_mass(const CagSolid *s, double tolerance, CagMassProperties *out, CagError *err) {
   CagMesh *m = NULL;
   CagMassProperties first;

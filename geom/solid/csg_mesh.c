@@ -1,10 +1,10 @@
 // Meshes of solids without faces.
 //
-// An operation whose reach is finite is meshed as a whole, in coordinates of its own, and keeps the
-// mesh: copies that were moved take it from there. One that is unbounded is meshed within the
-// window that the operation around it can need. The outermost must be bounded; where bounds of the
-// operands do not show that (a tetrahedron of four half spaces), a coarse mesh within a window far
-// greater than everything given does: it must stay away from the window's faces.
+// An operation with finite reach is meshed as a whole, in its local coordinates, and keeps the mesh
+// for transformed copies. An unbounded one is meshed within the window that matters to the
+// enclosing operation. The outermost operation must be bounded. If that does not follow from the
+// bounds of the operands (such as a tetrahedron of four half spaces), it is tested with a coarse
+// mesh within a window far larger than all given data: the mesh must not touch the window's faces.
 
 #include <math.h>
 #include <stdio.h>
@@ -14,11 +14,11 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/tessellate.h"
 
-// Largest distance from mesh to body by default, as part of the size (as tessellate.h says).
+// Default tolerance as a fraction of the size (as in tessellate.h).
 #define DEFAULT_SHARE 1e-3
-// The window that tries whether a body is bounded, in sizes of what is given.
+// Size of the window for testing whether a solid is bounded, relative to the given data.
 #define FAR 100.0
-// A body found so is held by its coarse bounds and this part of their size.
+// The reach of such a solid: its coarse bounds, enlarged by this fraction of their size.
 #define MARGIN 0.25
 
 static bool is_operation(const CagSolid *s) {
@@ -44,7 +44,7 @@ static CagStatus empty_mesh(CagMesh **out, CagError *err) {
   return cag_mesh_new(0, 0, false, false, false, out, err);
 }
 
-// How much a transform lengthens at most (never less than it does).
+// An upper bound of how much a transform lengthens.
 static double stretch(const CagTransform *t) {
   double scale, sum = 0;
   if (cag_transform_is_similarity(t, &scale)) return scale;
@@ -70,8 +70,8 @@ static CagSetOperation operation_of(const CagSolid *s) {
                                            : CAG_INTERSECTION;
 }
 
-// Meshes of the operands that matter within the window, and which operands these are. *nothing: one
-// that is missing leaves nothing.
+// Meshes of the operands that matter within the window, and the indices of these operands.
+// *nothing: an empty operand makes the result empty.
 static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
                                 const CagBounds *window, CagMesh **meshes, size_t *operands,
                                 size_t *n, bool *nothing, CagError *err) {
@@ -140,9 +140,9 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
   return status;
 }
 
-// Meshes of unbounded solids end outside of the window, each elsewhere: what is taken away from one
-// would leave some of it there. It is cut off beside the window, within all of them (see ROOM in
-// side.c).
+// Meshes of unbounded solids end at different locations outside of the window. A difference would
+// leave some of the first operand there, so it is cut off near the window, inside the others (see
+// ROOM in side.c).
 static CagStatus cut_first(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
                            CagMesh **first, CagError *err) {
   const double room = 0.03; // of the size of the window
@@ -163,7 +163,7 @@ static CagStatus cut_first(const CagSolid *s, const CagTessellation *how, const 
   return CAG_OK;
 }
 
-// In coordinates of the core.
+// The mesh in coordinates of the core.
 static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
                            CagMesh **out, CagError *err) {
   if (is_empty(window)) return empty_mesh(out, err);
@@ -183,13 +183,13 @@ static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const 
   return status;
 }
 
-// The mesh that the core keeps serves every tolerance that is not finer. It depends on the other
-// measures of `how` too: only meshes by the usual ones are kept.
+// The mesh stored in the core can be used for every tolerance that is not finer. It also depends on
+// the other settings of `how`, so only meshes with the default settings are stored.
 static bool is_usual(const CagTessellation *how) {
   return how->angle == CAG_TESSELLATION_DEFAULT.angle && !(how->max_edge > 0);
 }
 
-// A kept mesh that is so much finer than asked for is not given: triangles cost.
+// A stored mesh is not used if it is finer than requested by this factor: triangles are expensive.
 #define MUCH_FINER 0.25
 
 static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMesh **out,
@@ -208,7 +208,8 @@ static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMe
   return CAG_OK;
 }
 
-// A window that holds all that was given, and the mesh that lies in it, stand apart: bounded.
+// The solid is bounded if the mesh in a window around all given data stays away from the window's
+// faces.
 static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err) {
   CagQuadric q;
   CagStatus status = CAG_OK;
@@ -218,7 +219,7 @@ static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err
     if (status) return status;
     CagVec3 o = cag_vec3(f.frame.m[0][3], f.frame.m[1][3], f.frame.m[2][3]);
     double size = fmax(f.semi[0], fmax(f.semi[1], f.semi[2]));
-    if (s->kind == CAG_SOLID_HALF_SPACE) { // its frame may stand anywhere in the plane
+    if (s->kind == CAG_SOLID_HALF_SPACE) { // its frame may be anywhere in the plane
       CagVec3 n = cag_vec3(q.c[6], q.c[7], q.c[8]);
       o = cag_scaled(n, -q.c[9] / cag_dot(n, n));
     }
@@ -254,8 +255,8 @@ static CagStatus unbounded(const CagSolid *s, CagError *err) {
                   cag_solid_kind_name(s->kind), s->core->count);
 }
 
-// Finds where an operation ends whose operands' bounds do not tell: one of them is unbounded, so
-// there are landmarks.
+// Determines the bounds of an operation that do not follow from those of its operands: one of them
+// is unbounded, so there are landmarks.
 static CagStatus find_reach(const CagSolid *s, CagError *err) {
   CagSolid core = *s;
   CagBounds around = CAG_BOUNDS_EMPTY;
@@ -319,7 +320,7 @@ static CagStatus operation_mesh(const CagSolid *s, const CagTessellation *how,
   return status;
 }
 
-// Triangles without a label get that of the solid. The mesh is the caller's own.
+// Triangles without a label get that of the solid. The mesh must belong to the caller.
 static CagStatus paint(CagMesh *m, uint32_t label, CagError *err) {
   if (!label) return CAG_OK;
   if (!m->labels) m->labels = cag_calloc(m->triangle_count + 1, sizeof *m->labels);
@@ -364,6 +365,6 @@ CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **
   if (is_empty(&reach)) return empty_mesh(out, err);
   double size = cag_norm(cag_sub(reach.max, reach.min));
   if (!(own.tolerance > 0)) own.tolerance = DEFAULT_SHARE * size;
-  if (!(own.tolerance > 0)) return empty_mesh(out, err); // everything lies in one point
+  if (!(own.tolerance > 0)) return empty_mesh(out, err); // everything coincides in one point
   return solid_mesh(s, &own, &reach, out, err);
 }

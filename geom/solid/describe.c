@@ -1,8 +1,8 @@
-// Solids in words: what they are, with the sizes that they have, and where they were moved.
+// Descriptions of solids: their kind, their sizes, and their location.
 //
-// The linear part of a placement whose columns are at right angles is a scale along the solid's own
-// axes, then a turn. A scale that leaves a primitive one of its kind changes the sizes that are
-// told; what is left of the placement is told behind them, in the order in which it is applied.
+// If the columns of the linear part of a placement are orthogonal, it is a scale along the solid's
+// own axes followed by a rotation. A scale that preserves the kind of a primitive changes the
+// reported sizes; the rest of the placement follows, in the order in which it is applied.
 
 #include "geom/solid/kind.h"
 
@@ -15,8 +15,8 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
 
-// Placements are products of a few transforms: what is equal to this part is equal, and digits
-// behind it are rounding.
+// Values equal within this fraction are equal, and further digits are rounding: placements are
+// products of a few transforms.
 #define ALIKE CAG_ROUNDING
 #define DIGITS 12
 
@@ -40,7 +40,7 @@ static void add_number(Text *t, const char *before, double x) {
   add(t, "%s%s", before, cag_number_text(x, number));
 }
 
-// Without the digits that are rounding, beside numbers as large as `largest`.
+// Removes digits that are rounding relative to numbers as large as `largest`.
 static double tidy(double x, double largest) {
   char digits[40];
   if (!isfinite(x)) return x;
@@ -57,11 +57,11 @@ static void add_vector(Text *t, CagVec3 v) {
   add(t, "]");
 }
 
-// --- Placements taken apart ---
+// --- Decomposition of placements ---
 
 typedef struct Placed {
-  bool square;     // scale, then turn; else only `map` tells
-  double scale[3]; // along the solid's own axes, one of them negative in mirrors
+  bool square;     // scale, then rotation; otherwise only `map` is valid
+  double scale[3]; // along the solid's own axes, one of them negative for reflections
   CagTransform turn;
   CagTransform map;
 } Placed;
@@ -70,7 +70,7 @@ static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
 }
 
-// The axis that a mirror turns round: that which stands most against itself.
+// The axis that a reflection reverses: the one that points most opposite to itself.
 static int mirrored_axis(const Placed *p) {
   int axis = 0;
   double least = p->map.m[0][0] / p->scale[0];
@@ -104,7 +104,7 @@ static Placed take_apart(const CagSolid *s) {
 
 static bool alike(double a, double b) { return fabs(a - b) <= ALIKE * fmax(fabs(a), fabs(b)); }
 
-// Whether the scale leaves a primitive one of its kind, with sizes that are so many times as large.
+// Whether the scale preserves the kind of a primitive, and only multiplies its sizes.
 static bool scales_sizes(const CagSolid *s, const Placed *p) {
   const double *k = p->scale;
   bool round = alike(k[0], k[1]), uniform = round && alike(k[1], k[2]);
@@ -159,7 +159,7 @@ static void add_scale(Text *t, const double k[3]) {
   else add_vector(t, cag_vec3(k[0], k[1], k[2]));
 }
 
-// Not told where the solid looks the same afterwards.
+// Omitted if the solid looks the same after the rotation.
 static void add_turn(Text *t, const CagSolid *s, const CagTransform *turn, bool sized) {
   CagVec3 axis;
   double angle;

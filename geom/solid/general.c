@@ -1,9 +1,9 @@
-// Whether faces of different operands coincide.
+// Detects coincident faces of different operands.
 //
-// Each face of each operand becomes a coarse mesh. Where two triangles of different operands lie
-// over each other, closer than the meshes are to their surfaces, the middle of what they have in
-// common is put on the first surface and projected onto the second: exact points and normals
-// decide. Faces of meshes are exact as they are; half spaces and quadrics answer by their forms.
+// Each face of each operand is approximated by a coarse mesh. If two triangles of different
+// operands overlap, closer than the meshes are to their surfaces, the center of their intersection
+// is moved to the first surface and projected onto the second: exact points and normals decide.
+// Faces of meshes are exact already; half spaces and quadrics are compared by their forms.
 
 #include "geom/solid/general.h"
 
@@ -15,16 +15,16 @@
 #include "base/memory.h"
 #include "geom/linalg/tolerance.h"
 
-// Faces closer than this part of the size of all operands coincide. Renderers compute distances
-// along rays to about 1e-6 of the size, and operands that are taken away are enlarged by 4e-5.
+// Faces closer than this fraction of the size of all operands coincide. Renderers compute distances
+// along rays to about 1e-6 of the size, and subtracted operands are enlarged by 4e-5.
 #define COINCIDENT 1e-4
 // Sine of the largest angle between normals of faces that coincide.
 #define PARALLEL 1e-3
-// Tolerance of the coarse meshes, as part of the size of their operand.
+// Tolerance of the coarse meshes, as a fraction of the size of their operand.
 #define COARSE 5e-3
-// Cosine of the largest angle between triangles, of surfaces that coincide, on each other.
+// Minimum cosine of the angle between overlapping triangles of coincident surfaces.
 #define OVER 0.5
-// Common areas below this part of the squared size are edges.
+// Overlaps with an area below this fraction of the squared size are edges.
 #define AREA_LEAST CAG_COINCIDENT
 
 typedef struct Piece {
@@ -36,7 +36,7 @@ typedef struct Piece {
 } Piece;
 
 typedef struct Side {
-  CagQuadric form, centered; // the latter about the middle of all pieces
+  CagQuadric form, centered; // the latter relative to the middle of all pieces
   size_t leaf;
 } Side;
 
@@ -61,7 +61,7 @@ static void search_free(Search *s) {
 
 // --- Collecting ---
 
-// Takes the mesh and the surface.
+// Takes ownership of the mesh and the surface.
 static bool add_piece(Search *s, CagSurface *surface, CagMesh *mesh, double tolerance) {
   if (!CAG_RESERVE(s->pieces, s->room, s->count + 1)) {
     cag_surface_release(surface);
@@ -151,7 +151,8 @@ static void parameters(const Facet *f, const double weight[3], double uv[2]) {
 
 static double clamped(double x, double low, double high) { return fmin(fmax(x, low), high); }
 
-// The point of the face over a point of the triangle, and its normal. False: there is none near.
+// The point of the face that corresponds to a point of the triangle, and its normal. False: none
+// nearby.
 static bool exact_point(const Facet *f, const double weight[3], CagVec3 *p, CagVec3 *normal) {
   const CagSurface *s = f->piece->surface;
   CagError err;
@@ -166,7 +167,7 @@ static bool exact_point(const Facet *f, const double weight[3], CagVec3 *p, CagV
          cag_norm(cag_sub(*p, chord)) <= 4 * f->piece->tolerance;
 }
 
-// The foot on the face of a point that lies over the triangle, by Newton's method.
+// The foot point on the face of a point over the triangle, by Newton's method.
 static bool project(const Facet *f, const double weight[3], CagVec3 p, CagVec3 *foot,
                     CagVec3 *normal) {
   const int steps = 12; // quadratic from a start within the tolerance
@@ -206,7 +207,7 @@ static double turn(Flat a, Flat b, Flat c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// What is left of a polygon to the left of the line a, b (Sutherland and Hodgman 1974).
+// The part of a polygon to the left of the line a, b (Sutherland and Hodgman 1974).
 static int cut(const Flat *in, int n, Flat a, Flat b, Flat *out) {
   int count = 0;
   for (int i = 0; i < n; i++) {
@@ -291,7 +292,7 @@ static CagBounds box_of(const Facet *f, size_t n) {
   return box;
 }
 
-// Moves those that the box may meet to the front, and gives their number.
+// Moves the facets that may intersect the box to the front, and returns their number.
 static size_t keep_near(Facet *f, size_t n, const CagBounds *box, double slack) {
   size_t kept = 0;
   for (size_t i = 0; i < n; i++) {
@@ -319,7 +320,7 @@ static void sort_along(Facet *f, size_t n, const CagBounds *box) {
   qsort(f, n, sizeof *f, d.x >= d.y && d.x >= d.z ? by_x : d.y >= d.z ? by_y : by_z);
 }
 
-// Halves the greater list until the lists are short: depth is the logarithm of their lengths.
+// Halves the longer list until both are short; the depth is logarithmic in their lengths.
 static bool lists_coincide(const Search *s, Facet *a, size_t n, Facet *b, size_t m, double slack) {
   const size_t few = 8;
   if (n == 0 || m == 0 || (s->interrupt && *s->interrupt)) return false;
@@ -368,7 +369,7 @@ static bool pieces_coincide(const Search *s, const Piece *a, const Piece *b) {
   return found;
 }
 
-// --- Sides ---
+// --- Half spaces and quadrics ---
 
 static CagVec3 slope_of(const double c[10], CagVec3 p) {
   return cag_vec3(2 * c[0] * p.x + c[3] * p.y + c[5] * p.z + c[6],
@@ -395,7 +396,7 @@ static bool side_coincides(const Search *s, const Side *side, const Piece *piece
 // Whether the forms have the same zeros: one is a multiple of the other.
 static bool sides_coincide(const Search *s, const Side *a, const Side *b) {
   const double *p = a->centered.c, *q = b->centered.c;
-  // Coefficients compare as values at this distance from the middle.
+  // Coefficients are compared by their contributions at this distance from the middle.
   const double unit = fmax(s->size, 1e-300);
   double most[2] = {0, 0}, x[10], y[10];
   if (a->leaf == b->leaf) return false;
@@ -415,7 +416,7 @@ static bool sides_coincide(const Search *s, const Side *a, const Side *b) {
   return false;
 }
 
-// --- The whole ---
+// --- Complete search ---
 
 static bool any_coincide(const Search *s) {
   for (size_t i = 0; i < s->count; i++)

@@ -1,7 +1,7 @@
-// Whether points lie within a solid.
+// Tests whether points lie within a solid.
 //
-// Meshes of what has no equation are made once, each with its bounds, beyond which no point is
-// asked further.
+// Solids without an equation are meshed once; points outside of a mesh's bounds are decided without
+// it.
 
 #include "geom/solid/inside.h"
 #include "geom/solid/tessellate.h"
@@ -15,12 +15,12 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/kind.h"
 
-// A point is on a boundary when it is nearer than this part of the size: rounding of transforms.
+// A point is on a boundary if it is closer than this fraction of the size: rounding of transforms.
 #define ON_BOUNDARY CAG_ROUNDING
 
 typedef struct LeafMesh {
   const CagSolid *leaf;
-  CagMesh *mesh; // in the coordinates of the point asked
+  CagMesh *mesh; // in the coordinates of the queried point
   CagBounds box;
 } LeafMesh;
 
@@ -28,7 +28,7 @@ struct CagInside {
   const CagSolid *solid;
   CagTessellation how;
   double slack;
-  LeafMesh *leaves; // filled as they are asked
+  LeafMesh *leaves; // filled on demand
   size_t count;
 };
 

@@ -1,5 +1,4 @@
-// Which way the parts of a closed shell look: outward, and inward where a part is a cavity of
-// another.
+// Orientation of the parts of a closed shell: outward, or inward if a part is a cavity of another.
 
 #include <math.h>
 
@@ -10,7 +9,7 @@
 
 // A connected part of a shell.
 typedef struct Part {
-  double terms[10]; // of its volume, as its faces look
+  double terms[10]; // volume terms with the current orientation of its faces
   CagMesh *mesh;
   CagBounds box;
 } Part;
@@ -33,7 +32,7 @@ static bool holds(const CagBounds *a, const CagBounds *b) {
          a->max.x >= b->max.x && a->max.y >= b->max.y && a->max.z >= b->max.z;
 }
 
-// Parts touch at most, so one point tells; the middle of a triangle is on no edge.
+// Parts at most touch, so one point decides; the centroid of a triangle is not on an edge.
 static bool is_within(const Part *inner, const Part *outer) {
   const CagMesh *m = inner->mesh;
   if (m->triangle_count == 0 || !holds(&outer->box, &inner->box) ||

@@ -1,4 +1,5 @@
-// The primitives: box, sphere, cylinder with its cones, torus. Faces are exact quadrics and planes.
+// The primitives: box, sphere, cylinder (including cones), torus. Faces are exact quadrics and
+// planes.
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,13 +23,13 @@ static CagVec3 with_entries(int i, double a, int j, double b, int k, double c) {
   return cag_vec3(e[0], e[1], e[2]);
 }
 
-// Faces of a box: 2 * axis, and 1 more on the high side. u x v points out: the axes after the
-// face's own in turn, exchanged on the low side.
+// Faces of a box are numbered 2 * axis, plus 1 on the high side. u x v points outward: u and v are
+// the next two axes in cyclic order, exchanged on the low side.
 static int face_u(int f) { return (f / 2 + 1 + (f % 2 == 0)) % 3; }
 static int face_v(int f) { return (f / 2 + 1 + f % 2) % 3; }
 
 // A side of a face lies at an end of one axis; the face at that end has the same edge on its side
-// towards the first face. Both run up the third axis.
+// towards the first face. Both run in the direction of the third axis.
 static CagStatus box_edges(CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
   for (int f = 0; !status && f < 6; f++)
@@ -85,7 +86,7 @@ CagStatus cag_solid_sphere(double radius, CagSolid **out, CagError *err) {
   if (!status) status = cag_solid_block(CAG_SOLID_SPHERE, 1, &s, err);
   if (status) return status;
   s->a = radius;
-  // From the south pole up, so that the normals point outward.
+  // From the south pole upward, so that the normals point outward.
   CagTransform frame = diagonal(radius, radius, -radius, 0);
   CagSurface *face;
   status = cag_surface_quadric(CAG_SHAPE_ELLIPSOID, &frame, 0, 2 * M_PI, 0, M_PI, &face, err);
@@ -93,7 +94,7 @@ CagStatus cag_solid_sphere(double radius, CagSolid **out, CagError *err) {
   return finish(s, status, out, err);
 }
 
-// The side, v upwards: u around, and along a cone |v| is the radius.
+// The lateral face, v upward: u is the angle; on a cone |v| is the radius.
 static CagStatus side(double height, double radius, double top, CagSurface **out, CagError *err) {
   if (radius == top) {
     CagTransform frame = diagonal(radius, radius, 1, 0);

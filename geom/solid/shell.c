@@ -1,10 +1,10 @@
-// Solids from surfaces that are given: a closed shell, checked and turned outward.
+// Solids from given surfaces: a closed shell, checked and oriented outward.
 //
 // Each boundary edge of each face must lie on boundary edges of other faces (or of itself), to
-// SHELL_GAP of the size. Edges that correspond as a whole make the edge table and carry the
-// orientation from face to face; the volume then decides which side is out. Faces whose edges are
-// shared by several others are cut first (shell_split.c), and loops of planar faces meet several
-// faces (shell_loop.c), so that no edge is left.
+// SHELL_GAP of the size. Edges that match entirely form the edge table and propagate the
+// orientation from face to face; the sign of the volume then determines the outside. Faces whose
+// edges match several others are cut first (shell_split.c), and loops of planar faces may match
+// several faces (shell_loop.c), until no edge is left.
 
 #include <math.h>
 
@@ -12,11 +12,12 @@
 #include "geom/solid/shell.h"
 #include "geom/surface/trimmed.h"
 
-// How far edges may gape, as part of the size of the solid (geometry of files and of rounding
-// scripts).
+// Largest gap between edges, as a fraction of the size of the solid (geometry from files and
+// scripts with rounding).
 #define SHELL_GAP 1e-6
 #define PROBES CAG_SHELL_PROBES
-// Rounds of cuts, each of which may call for others on the opposite sides; and faces after them.
+// Maximum number of rounds of cuts, each of which may require others on the opposite sides, and of
+// faces after them.
 #define ROUNDS_MOST 12
 #define FACES_MOST 4000
 
@@ -80,7 +81,7 @@ static CagStatus collect(CagSurface *const *faces, size_t n, CagShellBoundaries 
   return status;
 }
 
-// Distance of the farthest probe of b from the other boundaries, stopping above `enough`.
+// Largest distance of a probe of b from the other boundaries; stops above `enough`.
 static CagStatus gap_of(const CagShellBoundaries *all, size_t index, double enough, double *gap,
                         CagVec3 *where, CagError *err) {
   const CagShellBoundary *b = &all->at[index];
@@ -108,8 +109,8 @@ static const char *side_name(int side) {
   return side < 4 ? NAMES[side] : "boundary";
 }
 
-// Says what is wrong with edges that have no partner: a gap, or neighbors with edges of their own
-// division. origin: the caller's numbers of faces.
+// Reports edges without a partner: a gap, or neighbors whose edges are divided differently. origin:
+// the caller's face numbers.
 static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origin, CagError *err) {
   char x[32], y[32], z[32], g[32];
   const CagShellBoundary *divided = NULL;
@@ -143,8 +144,8 @@ static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origi
                   cag_number_text(at.y, y), cag_number_text(at.z, z));
 }
 
-// How two boundaries run along each other: +1, -1, or 0 where they are different edges. Equal
-// parameters are not asked for: ends and every probe must lie on the other.
+// Whether two boundaries coincide: +1 in the same direction, -1 reversed, or 0 for different edges.
+// Parameters need not agree: ends and every probe must lie on the other boundary.
 static CagStatus relation(const CagShellBoundary *a, const CagShellBoundary *b, double slack,
                           int *out, CagError *err) {
   *out = 0;
@@ -190,8 +191,8 @@ static CagStatus pair_edges(CagSolid *s, CagShellBoundaries *all, CagShellLinks 
   return CAG_OK;
 }
 
-// Which faces must be turned so that neighbors agree; faces without links keep their side. part:
-// the number of each face's connected part, `none` before. Gives the number of parts.
+// Determines which faces to reverse so that neighbors agree; faces without links are not reversed.
+// part: the index of each face's connected part, `none` before. Returns the number of parts.
 static size_t orient(size_t faces, const CagShellLinks *links, bool *turn, size_t *part) {
   const size_t none = SIZE_MAX;
   size_t parts = 0;
@@ -214,7 +215,7 @@ static size_t orient(size_t faces, const CagShellLinks *links, bool *turn, size_
   return parts;
 }
 
-// Turns the faces that `turn` names, with their edges.
+// Reverses the faces marked in `turn`, with their edges.
 static CagStatus turn_faces(CagSolid *s, const bool *turn, CagError *err) {
   for (size_t i = 0; i < s->face_count; i++) {
     if (!turn[i]) continue;
@@ -247,7 +248,7 @@ static CagStatus face_outward(CagSolid *s, const CagShellLinks *links, CagError 
   return status;
 }
 
-// Edges as a whole, then loops. *left: some are shared otherwise.
+// Pairs whole edges, then loops. *left: some edges match only in part.
 static CagStatus pair_all(const CagShellFaces *faces, CagShellBoundaries *all, CagSolid **out,
                           CagShellLinks *links, bool *left, CagError *err) {
   CagSolid *s = NULL;

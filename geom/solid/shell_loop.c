@@ -1,8 +1,8 @@
-// Loops of planar faces of a shell, which meet several other faces.
+// Loops of planar faces of a shell that border several other faces.
 //
-// A loop is cut at its breaks. Where sides of other faces cover it, they are its edges. What they
-// leave is straight, for it lies in the planes of two faces: each piece must be one of another
-// loop, run the other way.
+// A loop is split at its breaks. Sides of other faces that cover parts of it become its edges. The
+// rest is straight, because it lies in the planes of two faces: each piece must be a reversed piece
+// of another loop.
 
 #include <math.h>
 
@@ -11,7 +11,7 @@
 #include "geom/solid/shell.h"
 
 typedef struct Piece {
-  size_t loop; // of the boundaries
+  size_t loop; // index among the boundaries
   CagVec3 from, middle, to;
   bool matched;
 } Piece;
@@ -29,8 +29,8 @@ CagStatus cag_shell_add_link(CagShellLinks *l, CagShellLink link, CagError *err)
 
 // --- Sides along loops ---
 
-// How a side runs along a loop: +1, -1, or 0 where it does not. Steps over the loop's start are
-// long, and do not count.
+// How a side runs along a loop: +1, -1, or 0 if it does not. Steps across the loop's start are long
+// and are ignored.
 static CagStatus side_on_loop(const CagShellBoundary *side, const CagShellBoundary *loop,
                               double slack, int *how, CagError *err) {
   const double period = loop->curve->end - loop->curve->start;
@@ -105,14 +105,14 @@ static CagStatus add_pieces(Pieces *p, const CagShellBoundaries *all, size_t loo
 
 static bool near(CagVec3 a, CagVec3 b, double slack) { return cag_norm(cag_sub(a, b)) <= slack; }
 
-// +1: the same way, -1: the other way, 0: other pieces.
+// +1: same direction, -1: reversed, 0: different pieces.
 static int compare_pieces(const Piece *a, const Piece *b, double slack) {
   if (!near(a->middle, b->middle, slack)) return 0;
   if (near(a->from, b->from, slack) && near(a->to, b->to, slack)) return 1;
   return near(a->from, b->to, slack) && near(a->to, b->from, slack) ? -1 : 0;
 }
 
-// Pieces that run along a side of another face, which is an edge of the loop.
+// Pieces covered by a side of another face, which is an edge of the loop.
 static CagStatus match_sides(const CagSolid *s, const CagShellBoundaries *all, Pieces *p,
                              CagError *err) {
   CagStatus status = CAG_OK;

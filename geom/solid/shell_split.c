@@ -1,9 +1,9 @@
-// Faces of a shell cut where the edges of their neighbors end.
+// Splits faces of a shell at the ends of the edges of their neighbors.
 //
-// The edge of a face may be shared by several others, such as a circle by two halves of a disk. The
-// face is cut there, along a line of its parameters, so that edges correspond as a whole. A cut
-// runs through to the opposite side, whose neighbors may want cuts for it in turn: the caller
-// repeats until nothing is cut any more.
+// The edge of a face may correspond to several others, such as a circle to the arcs of two half
+// disks. The face is split there along a parameter line, so that edges match entirely. A cut
+// extends to the opposite side, whose neighbors may then need cuts as well; the caller repeats
+// until nothing is split.
 
 #include <math.h>
 
@@ -12,7 +12,7 @@
 #include "geom/solid/shell.h"
 #include "geom/surface/reshape.h"
 
-// Cuts nearer to each other or to an end of the domain are one, as part of the domain.
+// Cuts closer to each other or to an end of the domain than this fraction of the domain coincide.
 #define CUT_SAME 1e-7
 
 typedef struct Cuts {
@@ -52,7 +52,7 @@ static CagStatus add_cut(Cuts *c, double t, double low, double high, CagError *e
   return CAG_OK;
 }
 
-// A point that lies within the edge b cuts its face.
+// Adds a cut if the point lies within the edge b of its face.
 static CagStatus cut_at(const CagShellBoundaries *all, const CagShellBoundary *b, CagVec3 p,
                         Cuts *cuts, CagError *err) {
   const CagVec3 *ends = b->p;
@@ -66,7 +66,7 @@ static CagStatus cut_at(const CagShellBoundaries *all, const CagShellBoundary *b
   return add_cut(cuts, t, b->curve->start, b->curve->end, err);
 }
 
-// Where loops of planar faces turn.
+// Adds cuts at the corners of loops of planar faces.
 static CagStatus cut_at_breaks(const CagShellBoundaries *all, const CagShellBoundary *b,
                                const CagCurve *loop, Cuts *cuts, CagError *err) {
   const size_t n = loop->kind->breaks ? loop->kind->breaks(loop, NULL, 0) : 0;
@@ -82,7 +82,7 @@ static CagStatus cut_at_breaks(const CagShellBoundaries *all, const CagShellBoun
   return status;
 }
 
-// Cuts across the sides of a face: of sides along v (0, 1) in v, else in u.
+// Cuts across the sides of a face: in v for sides along v (0, 1), else in u.
 static CagStatus find_cuts(const CagShellBoundaries *all, size_t face, Cuts cuts[2],
                            CagError *err) {
   CagStatus status = CAG_OK;

@@ -1,10 +1,10 @@
-// Half spaces and quadrics as closed meshes: the part of a form's negative side that a window can
+// Half spaces and quadrics as closed meshes: the part of a form's negative side that a window may
 // need.
 //
-// The body is built of exact surfaces in the form's canonical frame, over ranges that hold the
-// window with room to spare, so that its closing faces lie outside of the window. Each class has
-// one simple body (within the cylinder, between the planes ...). Where the form is positive there,
-// the body is what the window has beside it.
+// The solid is built from exact surfaces in the form's canonical frame, over ranges that contain
+// the window with a margin, so that its closing faces lie outside of the window. Each class has one
+// simple solid (inside the cylinder, between the planes, ...). If the form is positive there, the
+// result is the complement in the window.
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,10 +14,10 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/tessellate.h"
 
-// Closing faces stand off from the window by this part of its size.
+// Distance of the closing faces from the window, as a fraction of its size.
 #define ROOM 0.0625
 
-// Corners of a box by x, y, z as bits; each face counter-clockwise from outside.
+// Corners of a box are numbered with x, y, z as bits; faces are counter-clockwise from outside.
 static const uint32_t BOX_TRIANGLES[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                            2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 
@@ -37,15 +37,15 @@ static CagStatus empty_mesh(CagMesh **out, CagError *err) {
   return cag_mesh_new(0, 0, false, false, false, out, err);
 }
 
-// --- Bodies in the canonical frame ---
+// --- Solids in the canonical frame ---
 
-// What a body must reach: canonical coordinates, within which the window lies.
+// The extent of a solid: canonical coordinates that contain the window.
 typedef struct Range {
   CagVec3 lo, hi;
 } Range;
 
-// The window stands off from the ends of the range by twice this at least: what ends within it lies
-// outside of the window.
+// The distance of the window from the ends of the range is at least twice this: anything that ends
+// within it lies outside of the window.
 static double clearance(const Range *r) {
   return 0.5 * ROOM / (1 + 2 * ROOM) * (r->hi.x - r->lo.x);
 }
@@ -67,7 +67,7 @@ static CagTransform canonical(const CagQuadricForm *f, double a, double b, doubl
   return t;
 }
 
-// Takes the solid over.
+// Takes ownership of the solid.
 static CagStatus add_placed(Bodies *out, CagSolid *standing, const CagTransform *t, CagError *err) {
   CagStatus status = cag_solid_transform(standing, t, &out->s[out->n], err);
   cag_solid_release(standing);
@@ -75,7 +75,7 @@ static CagStatus add_placed(Bodies *out, CagSolid *standing, const CagTransform 
   return status;
 }
 
-// An ellipse of these semi-axes at a height of the canonical frame.
+// An ellipse with these semi-axes at a height in the canonical frame.
 static CagStatus elliptic_cap(const CagQuadricForm *f, double a, double b, double z,
                               CagSurface **out, CagError *err) {
   CagTransform plane = cag_transform_identity(), frame = canonical(f, 1, 1, 1, z);
@@ -89,8 +89,8 @@ static CagStatus elliptic_cap(const CagQuadricForm *f, double a, double b, doubl
   return status;
 }
 
-// A patch about the axis over [v0, v1] closed by flat caps; `half[i]`: semi-axes of the end's
-// ellipse as part of those of the form, 0 where the end is a point.
+// A patch about the axis over [v0, v1] closed by flat caps; `half[i]`: semi-axes of the ellipse at
+// each end relative to those of the form, 0 if the end is a point.
 static CagStatus add_turned(Bodies *out, const CagQuadricForm *f, CagQuadricShape shape,
                             const CagTransform *frame, const double v[2], const double half[2],
                             const double z[2], CagError *err) {
@@ -138,7 +138,7 @@ static CagStatus cones(Bodies *out, const CagQuadricForm *f, const Range *r, Cag
   for (int nappe = 0; !status && nappe < 2; nappe++) {
     double far = (nappe ? -r->lo.z : r->hi.z) / f->semi[2];
     if (!(far > 0)) continue;
-    // Upside down: the apex in the origin.
+    // Upside down: the apex at the origin.
     CagTransform t = canonical(f, f->semi[0], f->semi[1], nappe ? f->semi[2] : -f->semi[2],
                                (nappe ? -far : far) * f->semi[2]);
     CagSolid *cone;
@@ -169,7 +169,7 @@ static CagStatus ellipsoid(Bodies *out, const CagQuadricForm *f, CagError *err) 
   return status ? status : add_placed(out, s, &t, err);
 }
 
-// The piece of the plane within curves that join, carried along z over the range.
+// The part of the plane enclosed by connected curves, extruded along z over the range.
 static CagStatus add_column(Bodies *out, const CagQuadricForm *f, CagCurve *const *sides, size_t n,
                             const CagTransform *place, const Range *r, CagError *err) {
   CagCurve *edge = NULL;
@@ -187,7 +187,7 @@ static CagStatus add_column(Bodies *out, const CagQuadricForm *f, CagCurve *cons
 
 static double farther(double a, double b) { return fmax(fabs(a), fabs(b)); }
 
-// Within the parabola Y^2 = 4 a X: its arc as a Bezier curve, and the chord.
+// Inside the parabola Y^2 = 4 a X: its arc as a Bezier curve, and the chord.
 static CagStatus parabolic(Bodies *out, const CagQuadricForm *f, const Range *r, CagError *err) {
   if (!(r->hi.x > 0)) return CAG_OK;
   double x = r->hi.x, y = 2 * sqrt(f->semi[0] * x);
@@ -201,8 +201,8 @@ static CagStatus parabolic(Bodies *out, const CagQuadricForm *f, const Range *r,
   return status;
 }
 
-// Within the branches of X^2/a^2 - Y^2/b^2 = 1: an arc as a rational Bezier curve whose middle
-// point is where the tangents at the ends meet.
+// Inside the branches of X^2/a^2 - Y^2/b^2 = 1: an arc as a rational Bezier curve whose middle
+// control point is the intersection of the end tangents.
 static CagStatus hyperbolic(Bodies *out, const CagQuadricForm *f, const Range *r, CagError *err) {
   double a = f->semi[0], b = f->semi[1];
   CagStatus status = CAG_OK;
@@ -235,10 +235,10 @@ static CagStatus add_polygon(Bodies *out, const CagQuadricForm *f, const CagVec3
   return status;
 }
 
-// |X / a| < |Y / b|: two wedges that share an edge.
+// |X / a| < |Y / b|: two wedges with a common edge.
 static CagStatus wedges(Bodies *out, const CagQuadricForm *f, const Range *r, CagError *err) {
   double a = f->semi[0], b = f->semi[1];
-  // So far that the far side of each triangle is beyond the range.
+  // Large enough that the far side of each triangle is beyond the range.
   double k = 2 * farther(r->lo.y, r->hi.y) / b;
   CagStatus status = CAG_OK;
   for (int side = 0; !status && side < 2; side++) {
@@ -256,7 +256,7 @@ static CagStatus slab(Bodies *out, const CagQuadricForm *f, const Range *r, CagE
 }
 
 // A side of the saddle's column: between an edge of the saddle, which is a parabola in a vertical
-// plane, and the floor below it. Patches with four sides, so that they share whole edges.
+// plane, and the floor below it. The patches have four sides, so that they share whole edges.
 static CagStatus column_side(const CagTransform *frame, const CagVec3 arc[3], double floor,
                              CagSurface **out, CagError *err) {
   const CagVec3 foot[2] = {{arc[0].x, arc[0].y, floor}, {arc[2].x, arc[2].y, floor}};
@@ -272,7 +272,7 @@ static CagStatus column_side(const CagTransform *frame, const CagVec3 arc[3], do
   return status;
 }
 
-// The body below the saddle Z = X^2/a^2 - Y^2/b^2, where the form is positive.
+// The solid below the saddle Z = X^2/a^2 - Y^2/b^2, where the form is positive.
 static CagStatus saddle(Bodies *out, const CagQuadricForm *f, const Range *r, CagError *err) {
   double a = f->semi[0], b = f->semi[1];
   double x = farther(r->lo.x, r->hi.x), y = farther(r->lo.y, r->hi.y);
@@ -301,7 +301,7 @@ static CagStatus saddle(Bodies *out, const CagQuadricForm *f, const Range *r, Ca
   return status;
 }
 
-// The body of a class; `inside`: a canonical point in it.
+// The solid of a class; `inside`: a point in it, in canonical coordinates.
 static CagStatus body_of(const CagQuadricForm *f, const Range *r, Bodies *out, CagVec3 *inside,
                          CagError *err) {
   *inside = cag_vec3(0, 0, 0);
@@ -322,13 +322,13 @@ static CagStatus body_of(const CagQuadricForm *f, const Range *r, Bodies *out, C
   case CAG_QUADRIC_INTERSECTING_PLANES: inside->y = f->semi[1]; return wedges(out, f, r, err);
   case CAG_QUADRIC_PARALLEL_PLANES: return slab(out, f, r, err);
   default:
-    // No body: the sign beside the plane, line, or point, if there is one, is that of all of space.
+    // No solid: everywhere except on a plane, line, or point, the sign is the same.
     inside->x = 1;
     return CAG_OK;
   }
 }
 
-// True where the class has no surface that parts space, so that one point tells of all.
+// Whether the class has no surface that separates space, so that one point decides for all.
 static bool has_one_side(CagQuadricClass c) {
   switch (c) {
   case CAG_QUADRIC_IMAGINARY_ELLIPSOID:
@@ -361,7 +361,7 @@ static CagStatus mesh_bodies(const Bodies *b, const CagTessellation *how, CagMes
   return status;
 }
 
-// What the window has beside the mesh; takes the mesh over.
+// The complement of the mesh in the window; takes ownership of the mesh.
 static CagStatus complement(CagMesh *m, const CagBounds *box, const CagTessellation *how,
                             CagMesh **out, CagError *err) {
   CagMesh *all = NULL;
@@ -385,8 +385,8 @@ static CagStatus range_of(const CagQuadricForm *f, const CagBounds *window, Rang
   return CAG_OK;
 }
 
-// The side of a plane: a box whose roof lies in it, about the window's shadow on it. However far
-// away the plane stands, the corners are made once.
+// A half space: a box whose top face lies in the plane, above the projection of the window. The
+// corners are computed only once, however far away the plane is.
 static CagStatus plane_mesh(const CagQuadric *q, const CagBounds *window, CagMesh **out,
                             CagError *err) {
   double length = cag_norm(cag_vec3(q->c[6], q->c[7], q->c[8]));

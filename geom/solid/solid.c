@@ -1,4 +1,4 @@
-// Solids as bodies bounded by faces: reference counts, transforms, bounds, shared edges and mass.
+// Solids bounded by faces: reference counts, transforms, bounds, shared edges, and mass.
 
 #include "geom/solid/solid.h"
 
@@ -79,7 +79,8 @@ bool cag_check_solid(const CagSolid *s) {
   return true;
 }
 
-// Lengths whose fifth powers (moments) are numbers, with room for sums and transforms.
+// Largest length whose fifth power (in moments) does not overflow, with a margin for sums and
+// transforms.
 #define LENGTH_MOST 1e50
 #define LENGTH_LEAST 1e-50
 
@@ -156,11 +157,11 @@ CagStatus cag_solid_side_point(const CagSurface *f, int side, double fraction, C
   return cag_surface_point(f, u, side == 2 ? f->v0 : f->v1, out, err);
 }
 
-// Points compared along an edge; none is the middle of a symmetric one alone.
+// Points compared along an edge; not only the middle, which symmetric edges share.
 #define EDGE_POINTS 6
 static const double EDGE_FRACTION[EDGE_POINTS] = {0, 0.17, 0.36, 0.64, 0.83, 1};
 
-// Edges are the same when their points are, to this part of the size of the solid.
+// Edges coincide if their points do, within this fraction of the size of the solid.
 #define EDGE_SAME CAG_COINCIDENT
 
 typedef struct Side {
@@ -169,7 +170,7 @@ typedef struct Side {
   CagVec3 p[EDGE_POINTS];
 } Side;
 
-// +1: the same, -1: the same run backwards, 0: different.
+// +1: same edge, -1: same edge reversed, 0: different.
 static int compare(const Side *a, const Side *b, double slack) {
   bool same = true, backwards = true;
   for (int i = 0; i < EDGE_POINTS; i++) {
@@ -220,7 +221,7 @@ CagStatus cag_solid_match_edges(CagSolid *s, CagError *err) {
       if (how == 0) continue;
       status = cag_solid_add_edge(s, sides[i].face, sides[i].side, sides[j].face, sides[j].side,
                                   how < 0, err);
-      sides[j].face = SIZE_MAX; // has its partner
+      sides[j].face = SIZE_MAX; // already paired
       break;
     }
   cag_free(sides);
@@ -229,8 +230,8 @@ CagStatus cag_solid_match_edges(CagSolid *s, CagError *err) {
 
 // --- Transforms ---
 
-// A flipped face runs backwards by v: v0 and v1 change places, sides along v and the loops of a
-// planar face turn round.
+// Flipping a face reverses v: v0 and v1 are exchanged, and sides along v and the loops of a planar
+// face are reversed.
 static void flip_edge_end(int *side, bool *reversed) {
   if (*side == 2 || *side == 3) *side = 5 - *side;
   else *reversed = !*reversed;
@@ -287,8 +288,8 @@ CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
     cag_bounds_add(&box, face.min);
     cag_bounds_add(&box, face.max);
   }
-  // The bounds of a set operation whose faces are known lie within its reach, which is exact where
-  // the operation ends at the side of a box.
+  // The bounds of a set operation with faces lie within its reach, which is exact where the
+  // operation ends at the side of a box.
   CagStatus status = CAG_OK;
   CagBounds reach = box;
   if (cag_solid_is_compound(s)) status = cag_solid_reach(s, &reach, err);
@@ -301,8 +302,8 @@ CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
 
 // --- Mass ---
 
-// The tensor of inertia, trace(J) E - J, from second moments. The diagonal adds the other two
-// moments, so that nothing is lost to a difference.
+// The inertia tensor trace(J) E - J from second moments. The diagonal adds the other two moments,
+// which avoids cancellation.
 static void set_inertia(CagMassProperties *m, const double j[3][3]) {
   for (int i = 0; i < 3; i++) {
     int next = (i + 1) % 3, last = (i + 2) % 3;
@@ -351,8 +352,8 @@ static CagStatus area_of_faces(const CagSolid *s, CagMassProperties *m, CagError
   return CAG_OK;
 }
 
-// By the divergence theorem, in coordinates about the middle of the solid: moments about a far
-// origin would lose their digits.
+// By the divergence theorem, in coordinates relative to the middle of the solid: moments about a
+// distant origin would lose digits.
 static CagStatus volume_of_faces(const CagSolid *s, CagMassProperties *m, CagError *err) {
   CagBounds box;
   CagStatus status = cag_solid_bounds(s, &box, err);

@@ -1,8 +1,9 @@
-// Solids swept from regions: extrusions, revolutions; and tubes.
+// Solids swept from regions: extrusions, revolutions, and tubes.
 //
-// Each loop of the region sweeps one side face (a loop that lies partly on the axis of a
-// revolution: one per piece off it), and the region itself stands at the ends as flat caps. Loops
-// run counter-clockwise around the material, holes clockwise, so all sides face outward alike.
+// Each loop of the region sweeps one side face (a loop that lies partly on the axis of a revolution
+// sweeps one for each piece off the axis), and the region itself forms flat caps at the ends. Loops
+// run counter-clockwise around the material, holes clockwise, so all side faces are oriented
+// outward in the same way.
 
 #include <math.h>
 
@@ -11,7 +12,7 @@
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 
-// A point nearer to the axis than this part of the region's size lies on it.
+// A point closer to the axis than this fraction of the region's size lies on it.
 #define ON_AXIS CAG_COINCIDENT
 
 // --- Extrusion ---
@@ -49,8 +50,8 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
 
 // --- Revolution ---
 
-// How the plane of the region stands to the axis: columns of `plane` are the images of x and y, and
-// the radius of a region point p is sense * (cross . p - offset).
+// The position of the region's plane relative to the axis: columns of `plane` are the images of x
+// and y, and the radius of a region point p is sense * (cross . p - offset).
 typedef struct Setting {
   CagTransform plane;
   CagVec3 axis, through; // unit axis
@@ -97,7 +98,7 @@ static double height_over_axis(const Setting *g, CagVec3 p) {
   return cag_dot(g->cross, p) - g->offset;
 }
 
-// The region must lie on one side of the axis. Bounds in a frame turned to the axis are exact.
+// The region must lie on one side of the axis. Bounds in a frame aligned with the axis are exact.
 static CagStatus check_side(const CagRegion *r, Setting *g, CagError *err) {
   CagTransform turn = cag_transform_identity(); // x: over the axis, y: along it
   turn.m[0][0] = g->cross.x;
@@ -145,12 +146,14 @@ static CagStatus add_side(CagSolid *s, const Setting *g, const CagCurve *loop, d
   CagStatus status = CAG_OK;
   if (a == loop->start && b == loop->end) part = cag_curve_retain(loop);
   else status = cag_curve_trim(loop, a, b, &part, err);
-  // The curve is made one of space before it is placed: a planar map would keep it plane.
+  // Convert the curve to a space curve before placing it, because a planar map would keep it in the
+  // plane.
   CagTransform lift = cag_transform_identity();
   lift.planar = false;
   if (!status) status = cag_curve_transform(part, &lift, &space, err);
   if (!status) status = cag_curve_transform(space, &g->plane, &placed, err);
-  // S_u x S_v = T x (w x r): points out where w x (the way off the axis) is the region's normal.
+  // S_u x S_v = T x (w x r) points outward if w x (the direction away from the axis) is the
+  // region's normal.
   bool backwards = g->sense > 0;
   if (!status && backwards) status = cag_curve_reverse(placed, &run, err);
   if (!status)
@@ -164,7 +167,7 @@ static CagStatus add_side(CagSolid *s, const Setting *g, const CagCurve *loop, d
   return status;
 }
 
-// Where one loop's faces begin among the faces of the solid.
+// Range of one loop's faces among the faces of the solid.
 typedef struct Sides {
   size_t first, count;
   bool on_axis; // a part of the loop lies on the axis
@@ -180,7 +183,7 @@ static CagStatus add_loop(CagSolid *s, const Setting *g, const CagCurve *loop, d
   ends[inner + 1] = loop->end;
   *out = (Sides){s->face_count, 0, false};
   CagStatus status = CAG_OK;
-  // Runs of pieces between those on the axis.
+  // Groups of consecutive pieces between those on the axis.
   size_t start = 0;
   for (size_t i = 0; !status && i <= inner; i++) {
     bool lies;
@@ -197,7 +200,7 @@ static CagStatus add_loop(CagSolid *s, const Setting *g, const CagCurve *loop, d
   return status;
 }
 
-// A cap's frame: the region's plane turned by the angle.
+// The frame of a cap: the region's plane rotated by the angle.
 static CagStatus turned_plane(const Setting *g, double angle, CagTransform *out, CagError *err) {
   CagTransform turn;
   CagStatus status = cag_rotate(g->axis, angle, g->through, &turn, err);
@@ -214,10 +217,9 @@ static size_t most_faces(const CagRegion *r) {
   return n;
 }
 
-// Edges of partial turns: the sides v0 and v1 of each face lie along the loops of the caps, in
-// order; a part of a loop on the axis joins the caps to each other. Of the two, the cap that is
-// turned over (and so runs its loops backwards) is such that the first always runs against the
-// faces and the second with them.
+// Edges of partial revolutions: the sides v0 and v1 of each face lie along the loops of the caps,
+// in order; a part of a loop on the axis joins the two caps. One cap is flipped, which reverses its
+// loops, so that the first always runs against the faces and the second with them.
 static CagStatus cap_edges(CagSolid *s, const Sides *sides, size_t loops, size_t caps,
                            CagError *err) {
   CagStatus status = CAG_OK;
@@ -247,7 +249,7 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
     if (!sides) status = cag_fail_memory(err);
   }
   if (!status) status = cag_solid_block(CAG_SOLID_REVOLUTION, most_faces(r), &s, err);
-  // More than a full turn would cover itself.
+  // A revolution of more than a full turn would overlap itself.
   bool full = to - from >= 2 * M_PI * (1 - 1e-12);
   if (!status && to - from > 2 * M_PI * (1 + 1e-12)) {
     char text[32];
@@ -257,13 +259,13 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
   }
   for (size_t i = 0; !status && i < r->count; i++)
     status = add_loop(s, &g, r->loops[i], from, to, &sides[i], err);
-  // Faces of one loop meet in circles where a run ends in the middle of the loop.
+  // Faces of one loop meet in circles if a group ends in the middle of the loop.
   if (!status) status = cag_solid_match_edges(s, err);
   if (!status && !full) {
     size_t caps = s->face_count;
     CagTransform frame;
-    // The material moves along w x r: the first cap faces back, the second ahead.
-    bool ahead = g.sense < 0; // whether the region's normal is the way of the motion
+    // The material moves along w x r: the first cap faces backward, the second forward.
+    bool ahead = g.sense < 0; // whether the region's normal points in the direction of motion
     status = turned_plane(&g, from, &frame, err);
     if (!status) status = cag_solid_add_cap(s, r, &frame, ahead, err);
     if (!status) status = turned_plane(&g, to, &frame, err);

@@ -1,4 +1,4 @@
-// Solids swept by a motion and lofts: sides with flat caps at open ends.
+// Solids swept by a motion, and lofts: side faces with flat caps at open ends.
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static CagStatus finish(CagSolid *s, CagStatus status, CagSolid **out, CagError 
 
 // --- Sweeps ---
 
-// Whether the middle of the region moves against the normal of its plane.
+// Whether the centroid of the region moves against the normal of its plane.
 static CagStatus runs_back(const CagRegion *r, const CagMotion *m, bool *out, CagError *err) {
   double start, end, area;
   bool angular;
@@ -66,7 +66,7 @@ CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid 
   }
   if (!status) status = check_home(s, motion, &closed, err);
   for (int end = 0; !status && !closed && end < 2; end++) {
-    // A flip runs v backwards.
+    // A flip reverses v.
     const CagSurface *side = s->faces[0];
     if ((end == 0) != back ? side->pole_v0 : side->pole_v1) continue;
     double start, stop;
@@ -117,7 +117,7 @@ static CagStatus edge_frame(const CagSurface *side, const CagCurve *edge, double
   return cag_axes(own.point, x, cag_cross(n, x), frame, err);
 }
 
-// The edge at v as a plane curve of the frame, with the parameter of the side.
+// The edge at v as a plane curve in the frame, with the parameter of the side face.
 static CagStatus flat_edge(const CagSurface *side, double v, int which, CagRegion **out,
                            CagTransform *frame, CagError *err) {
   const CagCurve *end;
@@ -138,7 +138,8 @@ static CagStatus flat_edge(const CagSurface *side, double v, int which, CagRegio
   return status;
 }
 
-// The cap at an end, turned so that its normal goes with (or against) the way of the sections.
+// The cap at an end, oriented so that its normal points along (or against) the direction of the
+// sections.
 static CagStatus add_loft_cap(CagSolid *s, const CagSurface *side, bool first, CagVec3 way,
                               CagError *err) {
   CagRegion *region;
@@ -153,7 +154,7 @@ static CagStatus add_loft_cap(CagSolid *s, const CagSurface *side, bool first, C
   return status;
 }
 
-// Mean of the way the section's points go with v at an end.
+// Mean direction in which the section's points move with v at an end.
 static CagStatus way_at(const CagSurface *side, double v, CagVec3 *out, CagError *err) {
   CagVec3 sum = {0, 0, 0};
   enum { STEPS = 16 };
@@ -168,7 +169,7 @@ static CagStatus way_at(const CagSurface *side, double v, CagVec3 *out, CagError
   return CAG_OK;
 }
 
-// Whether S_u x S_v points outward: the sections run counter-clockwise about the way v goes.
+// Whether S_u x S_v points outward: the sections are counter-clockwise about the direction of v.
 static CagStatus faces_outward(const CagSurface *side, bool *out, CagError *err) {
   if (side->closed_v) {
     double terms[10] = {0};
@@ -275,7 +276,7 @@ CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagEr
   CagSolid *made = NULL;
   if (!status && n > 2) status = cag_solid_shell(faces, n, out, err);
   if (!status && n == 2) {
-    // Closed: a hollow body, whose two faces have no edges.
+    // Closed: a hollow solid whose two faces have no edges.
     status = cag_solid_block(CAG_SOLID_SHELL, 2, &made, err);
     for (int k = 0; !status && k < 2; k++) {
       CagSurface *face = cag_surface_retain(faces[k]);

@@ -1,7 +1,7 @@
-// Lofts of curves without an exact NURBS form: a spline across curves that are kept as they are.
+// Lofts of curves without an exact NURBS form: a spline across the original curves.
 //
-// The spline's value is linear in the curves: S(u, v) = sum w_k(v) C_k(u), where w_k is the spline
-// that is 1 on curve k and 0 on the others. u is the fraction of every curve's domain.
+// The spline is linear in the curves: S(u, v) = sum w_k(v) C_k(u), where w_k is the spline that is
+// 1 on curve k and 0 on the others. u is the fraction of every curve's domain.
 
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "geom/surface/family.h"
 #include "geom/surface/loft.h"
 
-// Highest degree of the spline.
+// Maximum degree of the spline.
 #define MOST_DEGREE 25
 
 typedef struct Across {

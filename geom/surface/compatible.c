@@ -1,5 +1,6 @@
-// Two NURBS curves with one knot vector (Piegl and Tiller 1997, section 8.4): both are clamped over
-// 0..1, the lower degree is raised, and each gets the knots it lacks. The shapes do not change.
+// Brings two NURBS curves to one knot vector (Piegl and Tiller 1997, section 8.4): both are clamped
+// over 0..1, the lower degree is elevated, and missing knots are inserted. The shapes do not
+// change.
 
 #include "geom/surface/compatible.h"
 

@@ -1,9 +1,9 @@
 // Pieces of conics and of low polynomials as exact rational quadratics.
 //
 // The control points of a quadratic piece over [a, b] are its blossom at (a, a), (a, b), (b, b):
-// for (cos, sin, 1) that is, up to the common factor that makes it rational, the tangents' meeting
-// point, [cos m, sin m, cos h] with m the middle and h half of the range; cosh and sinh alike. A
-// circle is cut into equal pieces of at most a right angle.
+// for (cos, sin, 1) that is, up to the common factor that makes it rational, the intersection of
+// the tangents, [cos m, sin m, cos h] with m the middle and h half of the range; cosh and sinh
+// alike. A circle is cut into equal pieces of at most a right angle.
 
 #include <math.h>
 
@@ -36,7 +36,7 @@ static void set_knots(CagConicNurbs *out, const double *at, size_t pieces) {
 }
 
 static void circle(double from, double to, CagConicNurbs *out) {
-  // The rounding of a full turn must not cost a fifth piece.
+  // Rounding of a full turn must not produce a fifth piece.
   size_t pieces = (size_t)ceil((to - from) / (M_PI / 2) - 1e-9);
   size_t most = (CAG_CONIC_ARC_POINTS - 1) / 2;
   if (pieces < 1) pieces = 1;

@@ -9,8 +9,8 @@
 #include "geom/surface/swept.h"
 #include "geom/surface/trimmed.h"
 
-// Lengths are equal, and directions parallel or perpendicular, if they differ by less than this
-// part: rounding of a few operations.
+// Lengths are equal, and directions parallel or perpendicular, within this fraction: rounding of a
+// few operations.
 #define SAME 1e-13
 
 static CagVec3 column(const CagTransform *t, int j) {
@@ -101,7 +101,7 @@ static bool core_of_revolution(const CagCurve *profile, double low, double high,
   return true;
 }
 
-// An arc that is carried perpendicular to its plane.
+// An arc extruded perpendicular to its plane.
 static bool core_of_extrusion(const CagCurve *section, double low, double high, CagVec3 along,
                               CagCore *out) {
   CagVec3 d[2];

@@ -1,5 +1,5 @@
-// Creases are looked for at the breaks only, by the normals at both sides of places of each stretch
-// between the breaks of the other direction.
+// Creases are searched only at the breaks, by comparing the normals on both sides at points of each
+// interval between the breaks of the other direction.
 
 #include "geom/surface/crease.h"
 
@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 
-// Unit normals on both sides of a break that are farther apart than this make it an edge.
+// A break is a crease if the unit normals on its sides differ by more than this.
 #define CREASE 1e-7
 #define PLACES 8
 
@@ -19,7 +19,8 @@ static CagStatus unit_normal(const CagSurface *s, const double at[2], CagSide si
   return status;
 }
 
-// Whether the normals jump from the line `before` to the line `after`, at the place w along them.
+// Whether the normals jump from the line `before` to the line `after`, at the parameter w along
+// them.
 static CagStatus jumps_at(const CagSurface *s, int direction, double before, double after, double w,
                           bool *out, CagError *err) {
   CagVec3 n[2];
@@ -30,18 +31,18 @@ static CagStatus jumps_at(const CagSurface *s, int direction, double before, dou
     status = unit_normal(s, at, direction ? CAG_SIDE_RIGHT : side,
                          direction ? side : CAG_SIDE_RIGHT, &n[k], err);
   }
-  // Where there is no normal nothing is known.
+  // Points without a normal are inconclusive.
   const bool known = !status && cag_norm(n[0]) > 0 && cag_norm(n[1]) > 0;
   *out = known && cag_norm(cag_sub(n[0], n[1])) > CREASE;
   return status;
 }
 
-// Whether the surface has an edge along a line of a direction: its normals jump somewhere from
-// `before` to `after`, which are one break, or both edges of a seam. `across` are the breaks of the
+// Whether the surface has a crease along a parameter line: its normals jump somewhere from `before`
+// to `after`, which are the same break, or both edges of a seam. `across` are the breaks of the
 // other direction.
 static CagStatus is_crease(const CagSurface *s, int direction, double before, double after,
                            const double *across, size_t n, bool *out, CagError *err) {
-  // At no simple fractions of the stretches; few of each where there are many.
+  // Not simple fractions of the intervals; only a few of each if there are many.
   static const double places[PLACES] = {0.2713, 0.7283, 0.0131, 0.9857,
                                         0.4231, 0.5819, 0.1417, 0.8611};
   const size_t each = n >= PLACES / 2 ? 2 : PLACES;
@@ -119,7 +120,7 @@ size_t cag_patches_find(const CagPatches *p, int direction, double x) {
   return low;
 }
 
-// The patches along a direction that have the parameter x of one of them, with what it is there.
+// The patches along a direction that contain the parameter x of one of them, and its value in each.
 static size_t beside(const CagPatches *p, int d, size_t patch, double x, double near,
                      size_t patches[3], double at[3]) {
   const double *ends = p->ends[d], reach = near * (ends[patch + 1] - ends[patch]);

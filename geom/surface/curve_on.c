@@ -1,10 +1,10 @@
 // Curves on surfaces.
 //
-// Derivatives are exact: the Taylor expansions of both coordinates are put into that of the
-// surface. Images go through `map`, which may be projective; reversed, trimmed and reparametrized
-// ones have another plane curve. The curve is as smooth as the plane curve and the surface: where
-// it crosses a break of the surface it has one too. Along closed directions parameters are brought
-// home by whole turns.
+// Derivatives are exact: the Taylor expansions of both coordinates are substituted into that of the
+// surface. Images use `map`, which may be projective; reversed, trimmed, and reparametrized curves
+// have another plane curve. The curve is as smooth as the plane curve and the surface: it has a
+// break where it crosses a break of the surface. Along closed directions parameters are reduced by
+// whole turns.
 
 #include "geom/surface/curve_on.h"
 
@@ -20,10 +20,10 @@
 
 #define MOST_ORDER CAG_MAX_PARTIAL
 #define PARTIALS ((MOST_ORDER + 1) * (MOST_ORDER + 1))
-// A plane curve may leave the domain by so much of its width, which rounding of its own is.
+// A plane curve may leave the domain by this fraction of its width, to allow for rounding.
 #define OUTSIDE CAG_COINCIDENT
-// Seams and breaks are crossed once a turn; a curve that goes round more often has no parameters
-// left to tell places apart.
+// Seams and breaks are crossed once per turn; a curve with more turns does not have enough distinct
+// parameters.
 #define MOST_TURNS 1000000.0
 
 typedef struct OnSurface {
@@ -40,14 +40,14 @@ static const CagCurveKind on_surface_kind;
 
 // --- Evaluation ---
 
-// One direction of the parameter plane at one place.
+// One coordinate of the parameter plane at a point.
 typedef struct Coordinate {
   double at;
   CagSide side;
   double step[MOST_ORDER + 1]; // Taylor coefficients without the constant
 } Coordinate;
 
-// The side from which the surface's parameter comes: that of t, turned where it falls.
+// The side from which the surface's parameter is approached: that of t, reversed if it decreases.
 static CagSide side_of(const double *step, int order, CagSide side) {
   for (int k = 1; k <= order; k++) {
     if (step[k] == 0) continue;
@@ -61,7 +61,7 @@ static void bring_home(Coordinate *x, double lo, double hi, bool closed) {
   const double period = hi - lo;
   if (closed && (x->at < lo || x->at > hi)) {
     x->at -= period * floor((x->at - lo) / period);
-    // Within rounding of the seam it is on it.
+    // Within rounding of the seam, it is on the seam.
     if (fmin(x->at - lo, hi - x->at) <= CAG_CURVE_SAME * period) x->at = lo;
   }
   x->at = fmin(fmax(x->at, lo), hi);
@@ -111,7 +111,7 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
                     "a curve on %s %s surface has derivatives up to order %d, not %d",
                     cag_article(s->kind->name), s->kind->name, MOST_ORDER, order);
   CagVec3 d[MOST_ORDER + 1], partials[PARTIALS];
-  // The first derivatives tell the sides even where only a point is asked for.
+  // First derivatives determine the sides, even if only a point is requested.
   const int known = order == 0 ? 1 : order;
   CagStatus status = cag_curve_eval(c->plane, t, known, side, d, err);
   if (status) return status;
@@ -153,14 +153,14 @@ static CagStatus cross(const CagCurve *plane, int direction, double at, Numbers 
   CagMeeting *meetings;
   size_t n;
   CagStatus status = cag_curve_intersect_plane(plane, &line, &meetings, &n, err);
-  // Along the line it runs on one side of the break, which does not show.
+  // A curve that runs along the break is on one side of it, so the break does not matter.
   if (status) return err->id == CAG_ERR_overlap ? CAG_OK : status;
   for (size_t i = 0; !status && i < n; i++) status = push(list, meetings[i].t, err);
   cag_free(meetings);
   return status;
 }
 
-// Crossings with one break or seam and its copies by whole turns, within the box of the curve.
+// Crossings with a break or seam and its copies at whole turns, within the box of the curve.
 static CagStatus cross_turns(const OnSurface *c, int direction, double at, double lo, double hi,
                              Numbers *list, CagError *err) {
   const CagSurface *s = c->surface;
@@ -286,7 +286,7 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return make(c->surface, c->plane, &map, out, err);
 }
 
-// The same on another plane curve; takes the reference to it.
+// The same with another plane curve; takes ownership of the reference.
 static CagStatus along(const OnSurface *c, CagCurve *plane, CagCurve **out, CagError *err) {
   CagStatus status = make(c->surface, plane, c->mapped ? &c->map : NULL, out, err);
   cag_curve_release(plane);

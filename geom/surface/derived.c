@@ -1,4 +1,4 @@
-// Surfaces that ask another one: parts, exchanged parameters, offsets.
+// Surfaces based on another one: parts, exchanged parameters, offsets.
 
 #include <math.h>
 #include <stdio.h>
@@ -74,10 +74,10 @@ static CagStatus part_grid(const CagSurface *s, const double *us, size_t nu, con
   return cag_surface_eval_grid(((const Derived *)s)->inner, us, nu, vs, nv, points, du, dv, err);
 }
 
-// The parameter of the exact form at which the inner surface has `at`. In every exact form the
-// lines of constant u and v are those of the surface, only their parameters may differ: the form of
-// an arc does not run by the angle. Two points of the line tell the same parameter, or there is
-// none.
+// The parameter of the exact form that corresponds to `at` on the inner surface. In every exact
+// form the lines of constant u and v are those of the surface, but their parameters may differ: the
+// form of an arc is not parametrized by the angle. Two points of the line must have the same
+// parameter; otherwise it does not exist.
 static CagStatus part_cut(const CagSurface *s, const CagSurface *exact, int direction, double at,
                           double *out, CagError *err) {
   const CagSurface *inner = ((const Derived *)s)->inner;
@@ -90,7 +90,7 @@ static CagStatus part_cut(const CagSurface *s, const CagSurface *exact, int dire
       *out = exact_ends[i];
       return CAG_OK;
     }
-  const double stations[2] = {0.4, 0.7}; // across, of the part
+  const double stations[2] = {0.4, 0.7}; // across, on the part
   double found[2];
   for (int i = 0; i < 2; i++) {
     CagVec3 p;
@@ -271,10 +271,11 @@ static CagStatus offset_point(const Derived *d, double u, double v, CagVec3 *out
   return status;
 }
 
-// Where the normal is a limit, derivatives are taken this share of the domain inside.
+// Where the normal is a limit, derivatives are evaluated this fraction of the domain inside.
 #define FROM_POLE 1e-7
 
-// Partials of order n. *has_normal: false where the surface has none, so that they are no numbers.
+// Partials of order n. *has_normal is false if the surface has no normal there; the partials are
+// then undefined.
 static CagStatus offset_partials(const Derived *d, double u, double v, int n, CagSide su,
                                  CagSide sv, CagVec3 *out, bool *has_normal, CagError *err) {
   CagVec3 all[SIDE * SIDE];
@@ -317,7 +318,7 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
   if (in->pole_v1 && v > in->v1 - hv) v = in->v1 - hv;
   bool has_normal;
   status = offset_partials(d, u, v, n, su, sv, out, &has_normal, err);
-  // A point within, as on the axis of a torus whose tube just reaches it.
+  // An interior point without normal, as on the axis of a horn torus.
   if (!status && !has_normal) {
     u += u + hu <= in->u1 && (su == CAG_SIDE_RIGHT || u - hu < in->u0) ? hu : -hu;
     v += v + hv <= in->v1 && (sv == CAG_SIDE_RIGHT || v - hv < in->v0) ? hv : -hv;
@@ -352,7 +353,7 @@ CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, Ca
   CagVec3 probe;
   CagStatus status = make(&offset_kind, s, s->u0, s->u1, s->v0, s->v1, d, out, err);
   if (status) return status;
-  // The normal must exist where no pole explains its absence.
+  // Away from poles the normal must exist.
   status = cag_surface_point(*out, (s->u0 + s->u1) / 2, (s->v0 + s->v1) / 2, &probe, err);
   if (status) cag_surface_release(*out);
   return status;

@@ -1,10 +1,10 @@
 // The developable surface between two curves (the tangent plane stays the same along each ruling).
 //
-// A ruling joins a(s) and b(t) where both tangents and the ruling lie in one plane:
-// F(s, t) = det(a'(s), b'(t), b(t) - a(s)) = 0. From a first such pair the matching t(s) is
-// followed by dt/ds = -F_s / F_t and Newton's method, and kept as a series; it must grow, or
-// rulings would cross. Where equal fractions of both domains match already, as between parallel
-// curves, the surface is a plain ruled one.
+// A ruling joins a(s) and b(t) if both tangents and the ruling are coplanar:
+// F(s, t) = det(a'(s), b'(t), b(t) - a(s)) = 0. From a first such pair the matching t(s) is traced
+// by dt/ds = -F_s / F_t and Newton's method, and stored as a series. It must increase, or rulings
+// would cross. If equal fractions of both domains match already, as for parallel curves, the
+// surface is a plain ruled one.
 
 #include <float.h>
 #include <math.h>
@@ -18,18 +18,18 @@
 
 // F of unit vectors below this is rounding.
 #define SAME_PLANE 1e-10
-// Places at which a first ruling is looked for, and steps of the way along the first curve.
+// Number of parameters tried for a first ruling, and of steps along the first curve.
 #define PLACES 512
 #define STEPS 512
 #define NEWTON_STEPS 60
-// Error of the series of t(s), as a part of the domain.
+// Tolerance of the series of t(s), as a fraction of the domain.
 #define SERIES 1e-13
-// A matching that covers less of a curve than this part is none.
+// A matching that covers less than this fraction of a curve is rejected.
 #define LEAST_PART 1e-3
 
 typedef struct Match {
   const CagCurve *a, *b; // of space
-  double t_low, t_high;  // where t may go; beyond the domain of a closed b
+  double t_low, t_high;  // range of t; beyond the domain if b is closed
   double s[STEPS + 1], t[STEPS + 1];
   size_t n; // pairs found
 } Match;
@@ -45,7 +45,7 @@ static const CagSurfaceKind developable_kind;
 
 // --- The condition ---
 
-// t within the domain of b, which a closed one may go round.
+// t reduced to the domain of b, if b is closed.
 static double home(const CagCurve *b, double t) {
   double period = b->end - b->start;
   if (b->closed && (t > b->end || t < b->start)) t -= period * floor((t - b->start) / period);
@@ -53,9 +53,9 @@ static double home(const CagCurve *b, double t) {
 }
 
 typedef struct Condition {
-  double f, by_s, by_t; // per parameter, of F divided by the sizes of its vectors
+  double f, by_s, by_t; // F divided by the magnitudes of its vectors, and its derivatives
   double sense;         // of the tangents: their cosine
-  double length;        // of the ruling
+  double length;        // length of the ruling
 } Condition;
 
 static CagStatus condition(const Match *m, double s, double t, Condition *out, CagError *err) {
@@ -74,7 +74,7 @@ static CagStatus condition(const Match *m, double s, double t, Condition *out, C
   return CAG_OK;
 }
 
-// The root of F by t between two values of opposite sign, or by s where `of_s`.
+// The root of F with respect to t, or to s if `of_s`, between two values of opposite sign.
 static CagStatus solve(const Match *m, bool of_s, double fixed, double lo, double hi, double *out,
                        CagError *err) {
   Condition c, at_lo;
@@ -98,8 +98,8 @@ static CagStatus solve(const Match *m, bool of_s, double fixed, double lo, doubl
 
 static double sample_parameter(double lo, double hi, int i) { return lo + (hi - lo) * i / PLACES; }
 
-// The root nearest to the start of one curve, the parameter of the other fixed at its own start.
-// Tangents must run the same way there.
+// The root nearest to the start of one curve, with the parameter of the other fixed at its start.
+// Tangents must have the same direction there.
 static CagStatus first_root(const Match *m, bool of_s, bool *found, double *out, CagError *err) {
   const CagCurve *free_ = of_s ? m->a : m->b;
   double fixed = of_s ? m->b->start : m->a->start, best = INFINITY;
@@ -132,10 +132,10 @@ static CagStatus no_ruling(CagError *err, const char *why) {
                   "there is no developable surface between the curves: %s", why);
 }
 
-// --- Following it ---
+// --- Tracing ---
 
-// The t of the ruling at s, near a guess. Beyond the end of b it is as far beyond as the slope
-// there tells.
+// The t of the ruling at s, near a guess. Beyond the end of b it is extrapolated by the slope
+// there.
 static CagStatus newton(const Match *m, double s, double guess, bool *good, double *out,
                         CagError *err) {
   double t = guess, range = m->t_high - m->t_low;
@@ -159,7 +159,7 @@ static CagStatus newton(const Match *m, double s, double guess, bool *good, doub
     *out = t;
     return CAG_OK;
   }
-  // As near as rounding lets it, or about a break of the slope without a root.
+  // Converged to rounding, or stuck at a break of the slope without a root.
   Condition c;
   CagStatus status = condition(m, s, t, &c, err);
   if (status) return status;
@@ -185,7 +185,7 @@ static CagStatus follow(Match *m, double s0, double t0, CagError *err) {
     if (!good || !(t > last) || t - last > range / 4)
       return no_ruling(err, "on the way the rulings would cross each other");
     if (t > m->t_high) {
-      // The last ruling ends in the end of b.
+      // The last ruling ends at the end of b.
       double root;
       status = solve(m, true, m->t_high, m->s[m->n - 1], s, &root, err);
       if (status) return status;
@@ -294,7 +294,7 @@ static const CagSurfaceKind developable_kind = {
     .destroy = developable_destroy,
 };
 
-// Whether equal fractions of the domains are matched by rulings.
+// Whether rulings match equal fractions of the domains.
 static CagStatus is_plain(const Match *m, bool *out, CagError *err) {
   double longest = 0;
   CagBounds box;

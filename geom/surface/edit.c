@@ -1,8 +1,8 @@
-// Corners and edges of surfaces changed by their control points.
+// Edits corners and edges of surfaces by their control points.
 //
-// All is done on homogeneous points. A join in homogeneous coordinates, with equal points and
+// Everything uses homogeneous points. A join in homogeneous coordinates, with equal points and
 // weights on the edge and N_across = ratio M_across + shear M_along of the homogeneous derivatives,
-// is one of the points as well, by the quotient rule.
+// is also a join of the points, by the quotient rule.
 
 #include "geom/surface/edit.h"
 
@@ -96,8 +96,8 @@ CagStatus cag_surface_set_point(const CagSurface *s, size_t i, size_t j, CagVec3
 // --- A corner's tangents and twist ---
 
 typedef struct End {
-  size_t at, next; // lines of the net: at the end, and the one beside it
-  double rate;     // derivative at the end by the difference of these lines, signed
+  size_t at, next; // rows of the net: at the end, and next to it
+  double rate;     // signed factor from the difference of these rows to the derivative at the end
 } End;
 
 static bool end_of(const double *knots, size_t n, int degree, int end, End *out) {
@@ -128,8 +128,8 @@ static CagVec3 wanted(const CagCornerEdit *e, int k, CagVec3 now) {
   return e->by_vector[k] ? e->vector[k] : cag_scaled(now, e->factor[k]);
 }
 
-// The points beside the corner give the tangents; then the diagonal one, on which the twist depends
-// linearly, gives the twist.
+// The points next to the corner set the tangents; then the diagonal one, on which the twist depends
+// linearly, sets the twist.
 static CagStatus move_corner(double *h, const CagSurfaceNurbsView *v, const CagCornerEdit *e,
                              const End *u, const End *w, CagSurface **out, CagError *err) {
   double *corner = h + 4 * (u->at * v->nv + w->at), *by_u = h + 4 * (u->next * v->nv + w->at);
@@ -193,7 +193,7 @@ CagStatus cag_surface_edit_corner(const CagSurface *s, const CagCornerEdit *edit
 
 #define EDGE_WIDTH 8 // homogeneous point, and its derivative outward across the edge
 
-// The edge on a side as a curve of these.
+// The edge on a side as a curve of these vectors.
 static CagStatus edge_of(const CagSurface *s, int side, CagNet *out, CagError *err) {
   CagNet net, along;
   CagStatus status = cag_net_of_surface(s, side < 2 ? 0 : 1, &net, &along, err);
@@ -221,7 +221,7 @@ static CagStatus edge_of(const CagSurface *s, int side, CagNet *out, CagError *e
   return status;
 }
 
-// Lines shorter than this part of the longest have no direction to go on in.
+// Rows shorter than this fraction of the longest have no direction to continue.
 #define SHORT_LINE CAG_ROUNDING
 
 static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagError *err) {
@@ -249,8 +249,9 @@ static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagErr
   return CAG_OK;
 }
 
-// Puts the neighbor's derivative inward in place of that of the edge. Shear needs an edge of one
-// piece: the product of the linear shear and the derivative along is then of the edge's degree.
+// Replaces the derivative of the edge by the neighbor's inward derivative. Shear requires an edge
+// of one piece: the product of the linear shear and the derivative along the edge then has the
+// edge's degree.
 static void continue_edge(CagNet *edge, const CagEdgeMatch *how) {
   double m = edge->degree, range = cag_net_end(edge) - cag_net_start(edge);
   for (size_t j = 0; j < edge->count; j++) {
@@ -266,8 +267,8 @@ static void continue_edge(CagNet *edge, const CagEdgeMatch *how) {
   }
 }
 
-// The neighbor's line beside the edge, whose derivative is the neighbor's: `rate` is the derivative
-// inward by the difference of the first two lines.
+// The neighbor's row next to the edge, from its derivative: `rate` is the factor from the
+// difference of the first two rows to the inward derivative.
 static CagStatus second_line(const CagNet *edge, double rate, double *out, CagError *err) {
   for (size_t j = 0; j < edge->count; j++) {
     const double *e = edge->data + EDGE_WIDTH * j;
@@ -315,7 +316,7 @@ static CagStatus clamped(const CagSurface *b, CagSurface **out, CagError *err) {
   return status;
 }
 
-// Puts the edge's line and the one beside it into b, whose net runs along the edge.
+// Sets the edge's row and the next one of b, whose net runs along the edge.
 static CagStatus put_lines(CagNet *b, const CagNet *across, int side, const CagNet *edge,
                            CagError *err) {
   size_t n = across->count, p = (size_t)across->degree;
@@ -325,7 +326,7 @@ static CagStatus put_lines(CagNet *b, const CagNet *across, int side, const CagN
   double *line = cag_malloc(4 * edge->count * sizeof *line);
   if (!line) return cag_fail_memory(err);
   CagStatus status = second_line(edge, (double)across->degree / span, line, err);
-  // All weights of a surface may have a factor: that of b holds.
+  // All weights of a surface may have a common factor: b's is used.
   double theirs = b->data[4 * (last ? n - 1 : 0) + 3], ours = edge->data[3];
   double factor = theirs > 0 && ours > 0 ? theirs / ours : 1;
   for (size_t j = 0; !status && j < b->count; j++) {
@@ -357,7 +358,7 @@ CagStatus cag_surface_match(const CagSurface *a, const CagSurface *b, const CagE
   if (!status) {
     double from = cag_net_start(&nets[1]), to = cag_net_end(&nets[1]);
     if (seam.reversed) cag_net_reverse(&nets[0]);
-    // Shear is by the parameter of a, and by its sense; b may have inner knots.
+    // Shear uses the parameter of a, and its direction; b may have inner knots.
     const double sign = seam.reversed ? -1 : 1;
     const CagEdgeMatch over = {
         how->ratio, {sign * how->shear[seam.reversed], sign * how->shear[!seam.reversed]}};
@@ -380,11 +381,12 @@ CagStatus cag_surface_match(const CagSurface *a, const CagSurface *b, const CagE
 #define CREASE_PROBES 9
 // Rounding of one-sided tangents stays well below this angle.
 #define CREASE_LEAST 1e-7
-// Derivatives by which a tangent is looked for where the first ones vanish.
+// Number of derivatives tried for a tangent if the first ones vanish.
 #define TANGENT_ORDERS 5
 #define VANISHED CAG_COINCIDENT
 
-// Unit tangent across the line from one side, in the sense of growing parameters; zero: none found.
+// Unit tangent across the line from one side, in the direction of increasing parameters; zero: none
+// found.
 static CagStatus side_tangent(const CagSurface *s, int direction, double at, double other,
                               CagSide side, double length, CagVec3 *out, CagError *err) {
   CagVec3 d[(TANGENT_ORDERS + 1) * (TANGENT_ORDERS + 1)];

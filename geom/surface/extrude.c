@@ -1,8 +1,8 @@
-// Extrusions: a curve carried along a vector, turned about the z axis and scaled on the way.
+// Extrusions: a curve translated along a vector, with rotation about the z axis and scale.
 //
 // S(u, v) = [m(v) (x + i y), z](u) + v V with the complex factor m(v) = (1 + k v) e^(i a v), a the
 // twist and 1 + k the scale reached at v = 1. Its j-th derivative is
-// (i a)^j (1 + k v) e^(i a v) + j k (i a)^(j - 1) e^(i a v). z is neither turned nor scaled.
+// (i a)^j (1 + k v) e^(i a v) + j k (i a)^(j - 1) e^(i a v). z is neither rotated nor scaled.
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-// Points of a surface on grids with unit normals: the kind's own grid, and a cross product for each
-// point. NURBS make both at once.
+// Points and unit normals of a surface on grids: the kind's own grid, and a cross product for each
+// point. NURBS compute both at once.
 
 #include "geom/surface/frames.h"
 
@@ -8,12 +8,13 @@
 #include "base/memory.h"
 #include "geom/linalg/tolerance.h"
 
-// Rows are evaluated together up to this many points: their partials stay in the cache.
+// Rows are evaluated in blocks of up to this many points, so that their partials stay in the cache.
 #define TOGETHER 4096
 
 bool cag_normal_of_partials(const CagSurface *s, CagVec3 point, CagVec3 du, CagVec3 dv,
                             CagVec3 *out) {
-  const double parallel = CAG_PARALLEL; // of the product of their lengths: the rest is rounding
+  const double parallel = CAG_PARALLEL; // relative to the product of their lengths; smaller values
+                                        // are rounding
   CagVec3 n = cag_cross(du, dv);
   double length2 = cag_dot(n, n), uu = cag_dot(du, du), vv = cag_dot(dv, dv);
   double u = cag_partial_noise(point, s->u1 - s->u0), v = cag_partial_noise(point, s->v1 - s->v0);

@@ -1,7 +1,7 @@
-// Surfaces by a function of the caller.
+// Surfaces defined by a function of the caller.
 //
 // Images under transforms are placed surfaces (placed.c). Grids are evaluated row by row, so that
-// the function is entered once for many points.
+// one call handles many points.
 
 #include "geom/surface/function.h"
 
@@ -98,8 +98,8 @@ static CagStatus check_range(double a, double b, bool angular, const char *name,
                   cag_number_text(angular ? b * (180 / M_PI) : b, y));
 }
 
-// The function must have points at the corners, the middle and on the edges, where closedness is
-// judged.
+// The function must be defined at the corners, the middle, and on the edges, where closedness is
+// determined.
 static CagStatus probe(const CagSurface *s, CagError *err) {
   CagStatus status = CAG_OK;
   for (int i = 0; i <= 2; i++)
@@ -127,7 +127,7 @@ CagStatus cag_surface_function(const CagSurfaceFunction *f, double u0, double u1
   made->function = *f;
   status = probe(s, err);
   if (status) {
-    made->function.release = NULL; // the context stays the caller's
+    made->function.release = NULL; // the caller keeps the context
     cag_surface_release(s);
     return status;
   }
@@ -145,7 +145,7 @@ bool cag_surface_is_formula(const CagSurface *s) {
 
 CagStatus cag_surface_eval_beside(const CagSurface *s, const double lo[2], const double hi[2],
                                   const double at[2], int n, CagVec3 *out, CagError *err) {
-  // Parts of the rectangle, different so that no simple line through the place is met.
+  // Fractions of the rectangle, different so that no simple line through the point is hit.
   static const double steps[2] = {1e-9, 1.37e-9};
   double beside[2];
   for (int k = 0; k < 2; k++) {

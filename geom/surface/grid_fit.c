@@ -1,5 +1,6 @@
 // B-spline surfaces from grids of points (Piegl and Tiller 1997, chapter 9): interpolation by two
-// banded solutions, least squares in rounds of solving for the net and moving the parameters.
+// banded solutions, least squares by alternating between solving for the control net and moving the
+// parameters.
 
 #include <math.h>
 #include <string.h>
@@ -10,8 +11,9 @@
 #include "geom/surface/grid_fit.h"
 #include "geom/surface/net.h"
 
-// Parameters 0..end of n points with a stride; a line without length gets even ones. Of a closed
-// line the way back to the first point counts too, so that the last parameter is less than the end.
+// Parameters 0..end of n points with a stride; equally spaced for a line of zero length. For a
+// closed line the distance back to the first point counts too, so that the last parameter is less
+// than the end.
 static void line_parameters(const CagVec3 *p, size_t n, size_t stride, bool even, bool closed,
                             double end, double *out, size_t step) {
   double total = 0;
@@ -80,7 +82,7 @@ static void load(CagNet *net, const CagVec3 *points, size_t n) {
   }
 }
 
-// With open directions and parameters that all lines share: two banded solutions.
+// For open directions and parameters shared by all lines: two banded solutions.
 static CagStatus interpolate_banded(const CagGridData *g, CagSurface **out, CagError *err) {
   CagStatus status;
   CagNet net, across = {0};
@@ -108,7 +110,7 @@ static CagStatus interpolate_banded(const CagGridData *g, CagSurface **out, CagE
   cag_surface_release(half);
   if (!status) {
     status = cag_net_interpolate(&net, at + g->r, err);
-    // The weights were interpolated too: they are 1.
+    // The weights were interpolated too; set them to exactly 1.
     for (size_t i = 3; !status && i < net.count * net.width; i += 4) net.data[i] = 1;
     if (!status) status = cag_net_to_surface(&net, 1, &across, out, err);
     cag_net_free(&net);
@@ -124,7 +126,7 @@ static void spread(double *x, size_t r, size_t s, size_t i, size_t j, bool rows)
   for (size_t k = 0; k < (rows ? s : r); k++) x[rows ? i * s + k : k * s + j] = x[i * s + j];
 }
 
-// The mean over the lines, for all of them.
+// Replaces the parameters of all lines by their mean.
 static void average(double *x, size_t r, size_t s, bool over_columns, bool closed, double end) {
   for (size_t i = 0; i < (over_columns ? r : s); i++) {
     size_t lines = over_columns ? s : r, n = over_columns ? r : s;
@@ -157,7 +159,7 @@ void cag_grid_report_free(CagGridReport *report) {
 
 // --- Least squares ---
 
-// The first parameter of a closed direction by its spacing.
+// The first parameter of a closed direction, determined by its spacing.
 static double phase(const CagGridAxis *a) { return a->degree % 2 == 0 ? 0.5 : 0; }
 
 static CagStatus make_axis(const CagGridData *g, int k, size_t count, CagGridAxis *a,
@@ -208,11 +210,12 @@ bool cag_grid_on_border(const CagGridFit *f, size_t i, int direction) {
          (line == 0 || line + 1 == (direction == 0 ? f->g->r : f->g->s));
 }
 
-// The square of a partial below this part of the other's is that of a row at one place.
+// If the square of a partial is below this fraction of the other's, the row has collapsed to a
+// point.
 #define AT_ONE_PLACE (CAG_GRID_RANK * CAG_GRID_RANK)
 
-// One step of Gauss and Newton towards the nearest point for all data. Data on an open border stay
-// there, so that the surface keeps its edges.
+// One Gauss-Newton step of all data towards the nearest points. Data on an open border stay there,
+// so that the surface keeps its edges.
 static CagStatus correct(CagGridFit *f, const CagSurface *s, CagError *err) {
   const CagGridAxis *au = &f->axis[0], *av = &f->axis[1];
   for (size_t i = 0; i < f->rows; i++) {
@@ -236,7 +239,7 @@ static CagStatus correct(CagGridFit *f, const CagSurface *s, CagError *err) {
   return CAG_OK;
 }
 
-// Rounds end when the residual falls by less than this part of it.
+// Iteration stops when the residual decreases by less than this fraction.
 #define LEAST_GAIN 1e-6
 
 static CagStatus move_parameters(CagGridFit *f, const CagSurface *s, CagError *err) {
@@ -271,7 +274,7 @@ static CagStatus improve(CagGridFit *f, CagSurface **s, CagGridReport *report, C
   return status;
 }
 
-// --- All of it ---
+// --- The complete fit ---
 
 static CagStatus take_parameters(CagGridFit *f, CagError *err) {
   const CagGridData *g = f->g;
@@ -284,7 +287,7 @@ static CagStatus take_parameters(CagGridFit *f, CagError *err) {
     for (size_t i = 0; i < f->rows; i++) {
       double *t = &f->parameters[k][i];
       char text[32], from[32], to[32];
-      // The last is the end itself, which the sum may miss by its rounding.
+      // The last is exactly the end, which the sum may miss by rounding.
       *t = g->parameters[k] ? g->parameters[k][i]
            : a->closed      ? cag_grid_moved(a, lo + *t, phase(a))
            : *t == end[k]   ? hi
@@ -341,8 +344,8 @@ CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface
   return status;
 }
 
-// Knots of an open direction, at which its points can be interpolated: means of the parameters,
-// which are those of the first line where they were given.
+// Knots of an open direction suitable for interpolation: means of the parameters, which are those
+// of the first line if they were given.
 static CagStatus interpolation_knots(const CagGridData *g, int k, double **out, CagError *err) {
   size_t n = k ? g->s : g->r;
   int degree = k ? g->degree_v : g->degree_u;

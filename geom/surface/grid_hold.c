@@ -1,10 +1,11 @@
-// A fit to a grid of points that holds a coordinate: the control points keep
-// theirs, those of given planes or those of a first fit, and the parameters of the data move to
-// where the surface has the data's. Least squares for the others then leaves the match alone.
+// A fit to a grid of points that keeps one coordinate exact: this coordinate of the control points
+// is fixed, from given planes or from a first fit, and the parameters of the data move to where the
+// surface has the data's coordinate. Least squares for the other coordinates then preserves the
+// match.
 //
-// In planes the coordinate is a function of one parameter, which grows or falls throughout where
-// the planes do. Its inverse is found from the coordinate alone, so that data of one station get
-// one parameter to the last bit, and the fit stays a product where it is one.
+// With planes the coordinate is a function of one parameter, monotone if the planes are. It is
+// inverted independently of the other coordinates, so that data of one station get identical
+// parameters, and a tensor product fit stays one.
 
 #include <float.h>
 #include <math.h>
@@ -16,14 +17,14 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/grid_fit.h"
 
-// Most steps to a parameter: of Newton's method, and of bisection with it.
+// Maximum number of steps for a parameter, by Newton's method and bisection.
 #define STEPS_MOST 50
 #define BISECTIONS_MOST 200
-// Most halvings of a step that brings no gain.
+// Maximum number of halvings of a step without improvement.
 #define HALVINGS_MOST 30
-// Sums of a basis times coordinates agree to so many units in the last place.
+// Sums of basis functions times coordinates agree to this many units in the last place.
 #define ROUNDING (16 * DBL_EPSILON)
-// Parameters that fall by less than this part of the range are in order but for rounding.
+// Parameters that decrease by less than this fraction of the range are in order up to rounding.
 #define IN_ORDER CAG_COINCIDENT
 
 static const char *name_of(const CagGridFit *f) {
@@ -41,7 +42,7 @@ static double size_of(const CagGridFit *f) {
   return most;
 }
 
-// How far the coordinate may be off.
+// Accepted deviation of the coordinate.
 static double slack_of(const CagGridFit *f) { return fmax(f->g->slack, ROUNDING * size_of(f)); }
 
 static CagStatus fail_turns(const CagGridFit *f, size_t i, size_t before, CagError *err) {
@@ -57,7 +58,7 @@ static CagStatus fail_turns(const CagGridFit *f, size_t i, size_t before, CagErr
 
 // --- Planes ---
 
-// How much the coordinate changes along the lines of a direction, from their starts to their ends.
+// Total change of the coordinate along the lines of a direction, from their starts to their ends.
 static double extent(const CagGridFit *f, int k) {
   const size_t r = f->g->r, s = f->g->s, lines = k == 0 ? s : r;
   double sum = 0;
@@ -106,7 +107,7 @@ static CagStatus check_given(const CagGridFit *f, CagError *err) {
   return CAG_OK;
 }
 
-// At the mean parameter of each line of data the mean of its coordinate.
+// The mean coordinate of each line of data, at its mean parameter.
 static void stations(const CagGridFit *f, double *at, double *x) {
   const size_t r = f->g->r, s = f->g->s;
   const int k = f->planes_along;
@@ -121,7 +122,7 @@ static void stations(const CagGridFit *f, double *at, double *x) {
   }
 }
 
-// Linear between the stations, and on beyond the last ones.
+// Linear interpolation between the stations, and extrapolation beyond the last ones.
 static double between(const double *at, const double *x, size_t n, double t) {
   size_t i = 1;
   while (i + 1 < n && (at[i] < t || !(at[i] > at[i - 1]))) i++;
@@ -129,8 +130,8 @@ static double between(const double *at, const double *x, size_t n, double t) {
   return step > 0 ? x[i - 1] + (t - at[i - 1]) / step * (x[i] - x[i - 1]) : x[i];
 }
 
-// Planes at the places where control points of a straight line would lie; the outer ones so far out
-// that all data lie between them.
+// Planes at the Greville abscissas, where the control points of a straight line would be; the outer
+// ones far enough out that all data lie between them.
 static CagStatus find_planes(CagGridFit *f, CagError *err) {
   const CagGridAxis *a = &f->axis[f->planes_along];
   const size_t n = f->planes_along == 0 ? f->g->r : f->g->s, p = (size_t)a->degree;
@@ -176,8 +177,8 @@ static double along_planes(const CagGridFit *f, double t, double *slope) {
   return sum;
 }
 
-// The parameter of a coordinate, or the end next to it. Newton's method within a bracket, which
-// every third step halves.
+// The parameter for a coordinate, or the nearest end. Newton's method within a bracket, which every
+// third step halves.
 static double parameter_of(const CagGridFit *f, double x) {
   const CagGridAxis *a = &f->axis[f->planes_along];
   double lo = cag_grid_start(a), hi = cag_grid_end(a), slope;
@@ -211,7 +212,7 @@ static CagStatus fail_beyond(const CagGridFit *f, size_t i, CagError *err) {
                   cag_number_text(along_planes(f, cag_grid_end(a), &slope), to));
 }
 
-// Whether parameters have to move: if one does, all go where their coordinate says.
+// Whether all parameters match; if one does not, all are set from their coordinates.
 static bool planes_matched(const CagGridFit *f, double slack) {
   const double *t = f->parameters[f->planes_along];
   double slope;
@@ -264,8 +265,8 @@ static double gap_of(const CagGridFit *f, size_t i, const CagVec3 d[4]) {
   return of_data(f, i) - coordinate(f, d[0]);
 }
 
-// The shortest step, as parts of the ranges, that would close the gap: up the gradient, in the
-// directions that are open to the point. Zero where the coordinate stands still.
+// The shortest step, as fractions of the ranges, that would close the gap: along the gradient, in
+// the directions free for the point. Zero where the coordinate is stationary.
 static void shortest_step(const CagGridFit *f, size_t i, const CagVec3 d[4], double gap,
                           double step[2]) {
   double g[2];
@@ -381,8 +382,8 @@ CagStatus cag_grid_hold(CagGridFit *f, int *rounds, CagError *err) {
 
 // --- Corrections ---
 
-// The direction, as steps of the parameters, along which the coordinate does not change. Zero where
-// a border leaves none.
+// The direction, as a step of the parameters, along which the coordinate is constant. Zero if a
+// border leaves none.
 static void level_direction(const CagGridFit *f, size_t i, const CagVec3 d[4], double out[2]) {
   double g[2], part[2];
   for (int k = 0; k < 2; k++) {
@@ -394,7 +395,7 @@ static void level_direction(const CagGridFit *f, size_t i, const CagVec3 d[4], d
   out[1] = g[0];
   for (int k = 0; k < 2; k++) {
     if (!cag_grid_on_border(f, i, k) || (f->planes && k == f->planes_along)) continue;
-    // The line of one coordinate must run along this border.
+    // The line of constant coordinate must run along this border.
     if (part[1 - k] > IN_ORDER * part[k]) out[1 - k] = 0;
     out[k] = 0;
   }

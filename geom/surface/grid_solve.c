@@ -1,10 +1,10 @@
-// The net of a fit to a grid of points, by Householder QR. Where all lines share their parameters
-// the matrix is the product of one by u and one by v, which are solved one after the other; else it
-// is solved as a whole.
+// The control net of a fit to a grid of points, by Householder QR. If all lines share their
+// parameters, the matrix is a product of one in u and one in v, which are solved one after the
+// other; otherwise it is solved as a whole.
 //
-// With fixed edges the corners are those of the data, and each edge is fitted to its border of the
-// data alone; what is known moves to the right sides. That too is a product where the matrix is:
-// the residual of an edge is orthogonal to the rest of its basis.
+// With fixed edges the corners are those of the data, and each edge is fitted only to its border of
+// the data; known values move to the right-hand sides. That is also a product if the matrix is,
+// since the residual of an edge is orthogonal to the rest of its basis.
 
 #include <lapacke.h>
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "geom/surface/family.h"
 #include "geom/surface/grid_fit.h"
 
-// Most numbers in the matrix of a fit whose lines have parameters of their own.
+// Maximum size of the matrix of a fit whose lines have separate parameters.
 #define DENSE_MOST 50000000
 
 // Values of the basis at t, folded onto the distinct points: entries of `row` with a stride.
@@ -71,8 +71,8 @@ static bool is_product(const CagGridFit *f) {
 
 static bool keeps_ends(const CagGridFit *f, int k) { return f->edges && !f->axis[k].closed; }
 
-// Of `lines` lines of n data each (data[i * lines + line]) the control points, in place of the
-// first rows. With `ends` the first and last are the first and last data.
+// Replaces the first rows of `lines` lines of n data each (data[i * lines + line]) by their control
+// points. With `ends` the first and last are the first and last data.
 static CagStatus solve_lines(const CagGridAxis *a, bool ends, const double *parameters,
                              size_t stride, size_t n, CagVec3 *data, size_t lines, CagError *err) {
   const size_t skip = ends ? 1 : 0, unknown = a->count - 2 * skip;
@@ -130,7 +130,7 @@ static CagStatus solve_product(CagGridFit *f, CagError *err) {
 
 // --- As a whole ---
 
-// The edge where direction k is at its first or last line: a curve by the other direction.
+// The edge with direction k at its first or last row, as a curve in the other direction.
 static CagStatus solve_edge(CagGridFit *f, int k, bool last, CagVec3 *line, CagError *err) {
   const size_t s = f->g->s, nv = f->axis[1].count;
   const size_t n = k == 0 ? s : f->g->r, stride = k == 0 ? 1 : s;
@@ -154,13 +154,13 @@ static CagStatus solve_edges(CagGridFit *f, CagError *err) {
   return status;
 }
 
-// Whether a control point is one of an edge that is solved for already.
+// Whether a control point belongs to an edge that has been solved already.
 static bool on_edge(const CagGridFit *f, size_t i, size_t j) {
   return (keeps_ends(f, 0) && (i == 0 || i + 1 == f->axis[0].count)) ||
          (keeps_ends(f, 1) && (j == 0 || j + 1 == f->axis[1].count));
 }
 
-// The row of a data point; what is known of it goes to the right side.
+// The row of a data point; known values go to the right-hand side.
 static void fill_dense(const CagGridFit *f, size_t row, double *basis, double *matrix,
                        double *right) {
   const size_t nu = f->axis[0].count, nv = f->axis[1].count, rows = f->rows;
@@ -211,7 +211,7 @@ static CagStatus solve_dense(CagGridFit *f, CagError *err) {
   return status;
 }
 
-// Edges end in the data only where knots are clamped and the border has the end parameters.
+// Edges end in the data only if knots are clamped and the border has the end parameters.
 static CagStatus check_edges(const CagGridFit *f, CagError *err) {
   for (int k = 0; k < 2; k++) {
     const CagGridAxis *a = &f->axis[k];

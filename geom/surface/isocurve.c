@@ -1,9 +1,9 @@
-// Curves on surfaces along which one parameter is fixed.
+// Curves on surfaces with one fixed parameter.
 //
-// Of NURBS surfaces they are NURBS curves, exactly: the net contracted with the basis at the fixed
-// parameter. Of revolutions they are circles and the turned profile. Of any other kind they are
-// curves of a kind of their own, "isocurve", which asks the surface and keeps its parameter; they
-// have a NURBS form where the surface has one with the same parameters.
+// For NURBS surfaces they are exact NURBS curves: the net contracted with the basis at the fixed
+// parameter. For revolutions they are circles and the rotated profile. For other kinds they are
+// curves of the kind "isocurve", which evaluates the surface and keeps its parameter; they have a
+// NURBS form if the surface has one with the same parameters.
 
 #include <math.h>
 #include <stdio.h>
@@ -144,7 +144,7 @@ static void isocurve_describe(const CagCurve *curve, char *buffer, size_t size) 
   const Isocurve *c = (const Isocurve *)curve;
   bool angular = c->direction == 0 ? c->surface->angular_u : c->surface->angular_v;
   char text[32];
-  // Degrees to ten places: 30deg is no double of radians.
+  // Degrees to ten digits: 30deg is not exactly representable in radians.
   double shown = angular ? round(c->at * 180 / M_PI * 1e10) / 1e10 : c->at;
   snprintf(buffer, size, "of %s %s surface at %c = %s%s", cag_article(c->surface->kind->name),
            c->surface->kind->name, c->direction == 0 ? 'u' : 'v', cag_number_text(shown, text),
@@ -153,7 +153,7 @@ static void isocurve_describe(const CagCurve *curve, char *buffer, size_t size) 
 
 static void isocurve_destroy(CagCurve *c) { cag_surface_release(((Isocurve *)c)->surface); }
 
-// The exact form is one of the curve where a few points, at no simple fractions, agree.
+// The exact form is accepted if a few points, at odd fractions, agree.
 static bool agrees(const CagCurve *curve, const CagCurve *exact) {
   enum { POINTS = 7 };
   const double offset = 0.37, same = 1e-11;
@@ -251,8 +251,8 @@ static CagStatus of_nurbs(const CagSurfaceNurbsView *view, int direction, double
 
 // --- Revolutions ---
 
-// The circle of a profile point, or the profile turned; false: the point lies on the axis, or the
-// turn is more than an arc takes.
+// The circle of a profile point, or the rotated profile; false if the point is on the axis, or the
+// angle exceeds that of an arc.
 static bool of_revolution(const CagSurface *s, int direction, double at, CagCurve **out) {
   const CagCurve *profile;
   CagVec3 axis, through, p;
@@ -280,7 +280,7 @@ static bool of_revolution(const CagSurface *s, int direction, double at, CagCurv
 
 CagStatus cag_surface_isocurve(const CagSurface *s, int direction, double at, CagCurve **out,
                                CagError *err) {
-  // The check of the parameter, with its message, is that of a point.
+  // Evaluating a point checks the parameter, with its message.
   CagVec3 unused;
   CagStatus status = direction == 0 ? cag_surface_point(s, at, s->v0, &unused, err)
                                     : cag_surface_point(s, s->u0, at, &unused, err);

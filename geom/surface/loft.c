@@ -1,8 +1,8 @@
 // Lofts: compatible sections, interpolated across by a spline (Piegl and Tiller 1997, section
 // 10.3).
 //
-// Control points are interpolated in homogeneous coordinates, so that every section is met exactly
-// with its weights.
+// Control points are interpolated in homogeneous coordinates, so that every section is reproduced
+// exactly, including its weights.
 
 #include "geom/surface/loft.h"
 
@@ -15,7 +15,7 @@
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
-// Rows of all sections as one net across them.
+// The rows of all sections as one net across them.
 static CagStatus gather(const CagNet *sections, size_t n, int degree, CagNet *out, CagError *err) {
   size_t width = 4 * sections[0].count;
   CagStatus status = cag_net_new(degree, n, width, out, err);
@@ -25,7 +25,8 @@ static CagStatus gather(const CagNet *sections, size_t n, int degree, CagNet *ou
   return CAG_OK;
 }
 
-// Data rows, one for each section, become the coefficients of the spline that meets row j at v = j.
+// Replaces data rows, one for each section, by the coefficients of the spline that interpolates row
+// j at v = j.
 static CagStatus open_spline(CagNet *net, CagError *err) {
   double *at = cag_malloc(net->count * sizeof *at);
   if (!at) return cag_fail_memory(err);
@@ -36,7 +37,7 @@ static CagStatus open_spline(CagNet *net, CagError *err) {
   return status;
 }
 
-// Of a closed loft.
+// Maximum degree of a closed loft.
 #define DEGREE_MOST 31
 
 // With uniform periodic knots the system is circulant: row j has the basis at a knot, shifted.
@@ -79,12 +80,12 @@ static CagStatus check_closed(int degree, size_t n, CagError *err) {
   return CAG_OK;
 }
 
-// The same for a spline that runs on from the last row to the first.
+// The same for a spline that continues from the last row to the first.
 static CagStatus closed_spline(CagNet *net, CagError *err) {
   const size_t n = net->count, p = (size_t)net->degree;
   CagNet wrapped;
   CagStatus status = solve_circulant(net, err);
-  // The first rows again, and the ends clamped: the knots -p..n + p, the range 0..n.
+  // Appends the first rows and clamps the ends: knots -p..n + p, range 0..n.
   if (!status) status = cag_net_new(net->degree, n + p, net->width, &wrapped, err);
   if (status) return status;
   memcpy(wrapped.data, net->data, n * net->width * sizeof *net->data);
@@ -111,8 +112,7 @@ static CagStatus loft_nets(const CagNet *sections, size_t n, int degree, bool cl
   return status;
 }
 
-// Sections of any kind: the spline is linear in them, so its coefficients are those of the unit
-// rows.
+// Sections of any kind: the spline is linear in them, so its coefficients are those for unit data.
 static CagStatus loft_curves(const CagCurve *const *curves, size_t n, int degree, bool closed,
                              CagSurface **out, CagError *err) {
   CagNet net;

@@ -1,7 +1,7 @@
-// Meshes laid onto a surface.
+// Meshes mapped onto a surface.
 //
-// Edges are divided, not triangles: whether an edge is split depends on its two ends alone, so both
-// triangles beside it agree, and no cracks open.
+// Edges are divided, not triangles: whether an edge is split depends only on its ends, so both
+// adjacent triangles agree, and no cracks appear.
 
 #include "geom/surface/mapped.h"
 
@@ -12,7 +12,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Part of the domain's diagonal that an edge may span: more could hide a wave between its ends.
+// Maximum length of an edge, as a fraction of the domain's diagonal; longer edges might miss waves.
 #define SPAN 0.08
 #define ROUNDS 14
 #define DEFAULT_TOLERANCE 1e-3
@@ -28,7 +28,7 @@ typedef struct Mapping {
   size_t count, capacity;
   uint32_t *triangles;
   size_t triangle_count, triangle_most;
-  // Middles of the edges of this round: by the pair of ends, NONE where it stays whole.
+  // Midpoints of the edges in this round, by the pair of ends; NONE if the edge is not split.
   uint64_t *keys;
   uint32_t *middles;
   size_t slots;
@@ -44,7 +44,7 @@ static bool map_vertex(Mapping *m, CagVec3 p, Vertex *out) {
   out->normal = cag_vec3(0, 0, 0);
   m->status = cag_surface_point(m->s, p.x, p.y, &out->to, m->err);
   if (!m->status) m->status = cag_surface_normal(m->s, p.x, p.y, &out->normal, m->err);
-  // Without a normal a point of the surface itself has its place all the same.
+  // A point on the surface itself does not need a normal.
   if (m->status == CAG_E_DEGENERATE && p.z == 0) m->status = CAG_OK;
   out->to = cag_madd(out->to, p.z, out->normal);
   return !m->status;
@@ -60,7 +60,7 @@ static uint32_t add_vertex(Mapping *m, const Vertex *v) {
 }
 
 static bool load(Mapping *m, const CagMesh *mesh) {
-  // Copies of a vertex at sharp edges are one here.
+  // Copies of a vertex at sharp edges are identified here.
   uint32_t *place = cag_malloc((mesh->vertex_count + 1) * sizeof *place);
   m->triangle_count = mesh->triangle_count;
   m->triangles = cag_malloc((3 * mesh->triangle_count + 1) * sizeof *m->triangles);
@@ -127,7 +127,7 @@ static void put(uint32_t *out, size_t *n, uint32_t a, uint32_t b, uint32_t c) {
   out[(*n)++] = c;
 }
 
-// The parts of a triangle, at most four, by the middles of its edges ab, bc, ca.
+// The parts of a triangle, at most four, from the midpoints of its edges ab, bc, ca.
 static void divide_triangle(const uint32_t v[3], const uint32_t e[3], uint32_t *out, size_t *n) {
   int split = (e[0] != NONE) + (e[1] != NONE) + (e[2] != NONE);
   if (split == 0) {
@@ -141,7 +141,7 @@ static void divide_triangle(const uint32_t v[3], const uint32_t e[3], uint32_t *
     put(out, n, e[0], e[1], e[2]);
     return;
   }
-  // Turned so that a single split edge is the first, a single whole one the last.
+  // Rotated so that a single split edge comes first, or a single unsplit one last.
   int k = 0;
   while (split == 1 ? e[k] == NONE : e[(k + 2) % 3] != NONE) k++;
   uint32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3], ab = e[k], bc = e[(k + 1) % 3];
@@ -203,7 +203,7 @@ CagStatus cag_mesh_onto_surface(const CagMesh *mesh, const CagSurface *s, double
   Mapping m = {.s = s, .tolerance = tolerance, .span = SPAN, .err = err};
   m.triangle_most = max_triangles;
   bool changed = load(&m, mesh);
-  // The size of the image is known when its edges are short.
+  // The size of the image is known once its edges are short.
   for (int round = 0; round < ROUNDS && changed; round++) {
     if (!(tolerance > 0)) m.tolerance = DEFAULT_TOLERANCE * size_of(&m);
     if (!divide_all(&m, &changed)) break;

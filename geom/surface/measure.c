@@ -1,9 +1,9 @@
-// Areas, volume integrals and tight bounds of surfaces.
+// Areas, volume integrals, and tight bounds of surfaces.
 //
-// Integrals are taken cell by cell between the breaks, where the surface is smooth, by the tensor
-// product of the 15 point Gauss-Kronrod rule; a cell whose inner 7 point Gauss rule disagrees is
-// halved across the direction that disagrees more. A flat piece has closed form: moments of its
-// region by Green's theorem, along the boundary curves.
+// Integrals are computed cell by cell between the breaks, where the surface is smooth, by the
+// tensor product of the 15 point Gauss-Kronrod rule. If the embedded 7 point Gauss rule disagrees,
+// the cell is halved in the direction of the larger disagreement. A flat piece has a closed form:
+// moments of its region by Green's theorem, along the boundary curves.
 
 #include <float.h>
 #include <math.h>
@@ -43,17 +43,17 @@ static const double GAUSS[NODES] = {
     0, 0.381830050505118944950369775488975, 0, 0.279705391489276667901467771423780,
     0, 0.129484966168869693270611432679082, 0};
 
-// A cell is done when its rules differ by less than this part of the whole; the Kronrod value is
-// far better than the difference says, so the promised 1e-8 has room.
+// A cell is accepted if its rules differ by less than this fraction of the whole; the Kronrod value
+// is far more accurate than the difference, so the documented 1e-8 has a margin.
 #define CELL_TOLERANCE 1e-10
 #define MAX_DEPTH 60
-// No surface that converges needs as many cells; one that does not must still end.
+// Convergent integrals never need this many cells; others must terminate.
 #define MAX_CELLS 20000
-// A term that is below this part of what the extent of the surface allows is mostly rounding (the
-// flux through a wall that stands upright, say) and is not chased further.
+// A term below this fraction of what the extent of the surface allows is mostly rounding (such as
+// the flux through a vertical wall) and is not refined further.
 #define SMALLEST_TERM 1e-4
-// A surface whose extent is below this part of its distance from the origin is a point but for
-// rounding, and so is the area that it seems to have.
+// A surface whose extent is below this fraction of its distance from the origin is a point up to
+// rounding, and its apparent area is rounding as well.
 #define POINT_EXTENT 1e-9
 #define MAX_TERMS 10
 
@@ -63,11 +63,11 @@ typedef struct Integral {
   const CagSurface *s;
   Integrand *f;
   size_t terms;
-  const int *powers; // of length that each term has beyond an area
+  const int *powers; // powers of length of each term in addition to an area
   double sum[MAX_TERMS];
   double size[MAX_TERMS]; // of the magnitudes, estimated from the first pass
   double area, reach; // of the surface, and largest distance from the origin, from the first pass
-  size_t budget;      // cells that may still be taken
+  size_t budget;      // number of cells left
 } Integral;
 
 typedef struct Cell {
@@ -76,7 +76,7 @@ typedef struct Cell {
 
 typedef struct CellSums {
   double fine[MAX_TERMS], magnitude[MAX_TERMS];
-  double error_u, error_v; // largest disagreement relative to the integral's sizes
+  double error_u, error_v; // largest disagreement, relative to the sizes of the integrals
 } CellSums;
 
 static CagStatus sum_cell(Integral *in, const Cell *c, bool judge, CellSums *out, CagError *err) {
@@ -187,15 +187,15 @@ static void flux_terms(CagVec3 p, CagVec3 du, CagVec3 dv, double *out) {
 
 // --- Flat pieces ---
 
-// Error of the moments of a region, as a part of the largest that its box allows.
+// Tolerance of the moments of a region, as a fraction of the largest that its box allows.
 #define MOMENTS 1e-13
 
 // Moments of x^i y^j over the region, i + j <= 3, in the order of MOMENT.
 static const int MOMENT[MAX_TERMS][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1},
                                          {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}};
 
-// The integrands of the line integrals of x^(i + 1) y^j / (i + 1) dy, each as a part of what the
-// box allows.
+// The integrands of the line integrals of x^(i + 1) y^j / (i + 1) dy, each relative to what the box
+// allows.
 typedef struct Boundary {
   CagVec3 middle;
   double size[MAX_TERMS];
@@ -211,7 +211,7 @@ static void boundary_terms(void *context, CagVec3 p, CagVec3 d, double *out) {
   }
 }
 
-// About the middle of the region's box, which keeps the powers small.
+// Relative to the middle of the region's box, which keeps the powers small.
 static CagStatus region_moments(const CagRegion *r, CagVec3 *middle, double *out, CagError *err) {
   CagBounds box;
   CagStatus status = cag_region_bounds(r, &box, err);
@@ -290,7 +290,7 @@ static CagStatus planar_area(const CagRegion *r, const CagTransform *frame, doub
   return CAG_OK;
 }
 
-// --- Questions ---
+// --- Queries ---
 
 CagStatus cag_surface_area(const CagSurface *s, double *area, CagVec3 *centroid, CagError *err) {
   const CagRegion *region;
@@ -321,7 +321,7 @@ CagStatus cag_surface_volume_terms(const CagSurface *s, double terms[10], CagErr
 
 // --- Bounds ---
 
-// Sampling finds the hills, Newton's method their tops. Cells are sampled more finely when there
+// Sampling finds the peaks, Newton's method their maxima. Cells are sampled more densely if there
 // are few of them.
 #define FEW_CELLS 8
 #define SAMPLES_FEW 24
@@ -330,7 +330,7 @@ CagStatus cag_surface_volume_terms(const CagSurface *s, double terms[10], CagErr
 
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-// Climbs sign * coordinate from (u, v) within the cell; gives the best value met.
+// Maximizes sign * coordinate from (u, v) within the cell; returns the best value found.
 static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, int axis,
                        double sign, double *best, CagError *err) {
   const bool formula = cag_surface_is_formula(s);
@@ -346,7 +346,7 @@ static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, i
     if (status) return status;
     double value = sign * coordinate(d[0], axis);
     if (value > *best) *best = value;
-    if (k > 0 && value < here) { // overshot: half the way back
+    if (k > 0 && value < here) { // overshoot: halve the step
       step_limit /= 2;
       u = (u + last_u) / 2;
       v = (v + last_v) / 2;
@@ -360,7 +360,7 @@ static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, i
     double huu = sign * coordinate(d[cag_partial(2, 2, 0)], axis) * lu * lu;
     double huv = sign * coordinate(d[cag_partial(2, 1, 1)], axis) * lu * lv;
     double hvv = sign * coordinate(d[cag_partial(2, 0, 2)], axis) * lv * lv;
-    // A border that holds the climb back takes its direction out.
+    // Directions blocked by a border are removed.
     bool free_u = !((u <= c->u0 && gu <= 0) || (u >= c->u1 && gu >= 0));
     bool free_v = !((v <= c->v0 && gv <= 0) || (v >= c->v1 && gv >= 0));
     double su_ = 0, sv_ = 0, det = huu * hvv - huv * huv;
@@ -370,7 +370,7 @@ static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, i
     } else {
       if (free_u) su_ = huu < 0 ? -gu / huu : (gu > 0 ? 0.1 : gu < 0 ? -0.1 : 0);
       if (free_v) sv_ = hvv < 0 ? -gv / hvv : (gv > 0 ? 0.1 : gv < 0 ? -0.1 : 0);
-      // Both at once may cancel through the mixed term: take the steeper one alone.
+      // Both directions together may cancel through the mixed term: use only the steeper one.
       if (free_u && free_v && fabs(gu) >= fabs(gv)) sv_ = 0;
       else if (free_u && free_v) su_ = 0;
     }
@@ -388,8 +388,8 @@ static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, i
   return CAG_OK;
 }
 
-// Extremes over one cell: from each sample that no neighbor exceeds and that could still raise the
-// bounds.
+// Extrema over one cell: starts from each sample that is a local maximum and could still enlarge
+// the bounds.
 static CagStatus bound_cell(const CagSurface *s, const Cell *c, size_t n, CagVec3 *points,
                             double best[6], CagError *err) {
   double us[SAMPLES_FEW + 1], vs[SAMPLES_FEW + 1];
@@ -408,7 +408,7 @@ static CagStatus bound_cell(const CagSurface *s, const Cell *c, size_t n, CagVec
       top = fmax(top, value);
       bottom = fmin(bottom, value);
     }
-    // What a hill between samples may add, generously.
+    // Generous estimate of how far a peak between samples may rise.
     double reserve = (top - bottom) * (n >= SAMPLES_FEW ? 0.05 : 0.25);
     if (top + reserve <= best[e]) continue;
     best[e] = fmax(best[e], top);
@@ -421,7 +421,7 @@ static CagStatus bound_cell(const CagSurface *s, const Cell *c, size_t n, CagVec
           size_t a = i + (size_t)(k / 3) - 1, b = j + (size_t)(k % 3) - 1;
           if (k == 4 || a > n || b > n) continue; // below 0 wraps above n
           double other = sign * coordinate(points[a * row + b], axis);
-          // Of equal neighbors the first climbs.
+          // Among equal neighbors the first is used.
           summit = k < 4 ? value > other : value >= other;
         }
         if (summit) status = climb(s, c, us[i], vs[j], axis, sign, &best[e], err);

@@ -1,14 +1,15 @@
-// Frames along a path as power series, whose derivatives are exact ones of what is evaluated.
+// Frames along a path as power series, so that derivatives are exactly those of the evaluated
+// function.
 //
-// The rotation minimizing frame is kept as an angle phi(v) against an analytic frame: on each
-// segment of the path a fixed vector a gives e2 = unit(C' x a), e1 = e2 x T, and n1 = cos phi e1 +
-// sin phi e2 with phi' = e1 . (C'' x a) / |C' x a|. phi' is integrated as a polynomial per segment,
-// and segments meet to rounding with all derivatives that the path has. A closed path brings the
-// frame home turned by some angle; it is given back evenly over v.
+// The rotation minimizing frame is stored as an angle phi(v) relative to an analytic frame: on each
+// segment of the path a fixed vector a defines e2 = unit(C' x a), e1 = e2 x T, and n1 = cos phi e1
+// + sin phi e2 with phi' = e1 . (C'' x a) / |C' x a|. phi' is integrated as a polynomial per
+// segment, and segments match to rounding in all derivatives that the path has. A closed path
+// returns the frame rotated by some angle; this is distributed evenly over v.
 //
-// At a corner of the path the bodies of both sides are mitered: each section is shifted along the
-// tangent by a multiple that grows linearly over the smooth piece to what puts it into the
-// bisecting plane, so that straight pieces are exact prisms cut by that plane.
+// At a corner of the path the bodies on both sides are mitered: each section is shifted along the
+// tangent by a multiple that grows linearly over the smooth piece until it lies in the bisecting
+// plane, so that straight pieces are exact prisms cut by that plane.
 
 #include "geom/surface/motion.h"
 
@@ -22,7 +23,7 @@
 #include "geom/surface/motion_parts.h"
 
 #define NODES CAG_MOTION_NODES
-// Gauss-Legendre nodes that sample phi' on a segment, and so the degree of phi.
+// Gauss-Legendre nodes at which phi' is sampled on a segment; their number is the degree of phi.
 static const double NODE[NODES] = {
     -0.960289856497536231683560868569, -0.796666477413626739591553936476,
     -0.525532409916328985817739049189, -0.183434642495649804939476142360,
@@ -34,15 +35,15 @@ static const double WEIGHT[NODES] = {
     0.362683783378361982965150449277, 0.313706645877887287337962201987,
     0.222381034453374470544355994426, 0.101228536290376259152531354310};
 
-// A segment is short enough when the last terms of phi are below this, in radians.
+// A segment is short enough if the last terms of phi are below this, in radians.
 #define ANGLE_TOLERANCE 1e-13
 #define MAX_DEPTH 20
-// The tangent may lean this far towards the fixed vector; the sine of the angle between them.
+// Minimum sine of the angle between the tangent and the fixed vector.
 #define LEAST_SINE 0.5
-// A path turns a corner where its unit tangents differ by more than this.
+// A path has a corner if its unit tangents differ by more than this.
 #define CORNER CAG_PARALLEL
 
-// The velocity of a path may vanish with so many of its derivatives.
+// Maximum number of derivatives of the velocity that may vanish with it.
 #define MOST_STOP 3
 
 // --- Truncated power series in v ---
@@ -123,9 +124,9 @@ static CagStatus zero_tangent(double v, CagError *err) {
 }
 
 // The unit tangent as a series of order n, from that of the velocity. Where the path stops, as at
-// repeated control points, it is the limit from the side asked: the velocity is a power of the
-// parameter times a series that does not vanish. Within a segment only an even power goes on; at
-// its ends transport() finds paths that turn back.
+// repeated control points, it is the limit from the given side: the velocity is a power of the
+// parameter times a series that does not vanish. Within a segment the path continues only for an
+// even power; at segment ends transport() detects paths that turn back.
 static CagStatus unit_tangent(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                               CagSide side, const CagVec3 *velocity, CagVec3 *out, CagError *err) {
   if (cag_norm(velocity[0]) > 0) {
@@ -149,7 +150,7 @@ static CagStatus unit_tangent(const CagMotion *t, const CagMotionSegment *g, dou
   return CAG_OK;
 }
 
-// Unit tangent and reference frame at v on segment g, as series of order n; C alongside.
+// Unit tangent and reference frame at v on segment g, as series of order n, and the path's point.
 static CagStatus reference(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                            CagSide side, Frame *out, CagError *err) {
   CagVec3 c[ORDER + 1], velocity[ORDER], a[ORDER] = {g->a}, across[ORDER];
@@ -212,15 +213,15 @@ static void square_to(const CagVec3 *toward, int n, Frame *f) {
   series_cross(f->t, f->n1, n, f->n2);
 }
 
-// The direction leans so far towards the tangent (sine of the angle) that it gives no frame.
+// If the sine of the angle between direction and tangent is below this, there is no frame.
 #define ALONG_TANGENT CAG_PARALLEL
 
-// Where the curvature vanishes but for rounding, at an inflection or at the end of a natural
-// spline, the binormal is the limit from the side asked: that of its derivative. Fills `binormal`
-// with a multiple of the series of the limit; false: there is none.
+// Where the curvature vanishes up to rounding, at an inflection or at the end of a natural spline,
+// the binormal is the limit from the given side: that of its derivative. Fills `binormal` with a
+// multiple of the series of the limit; false: it does not exist.
 static bool limit_binormal(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                            CagSide side, CagVec3 *binormal) {
-  const double vanishing = CAG_ROUNDING; // of what it grows to over the domain
+  const double vanishing = CAG_ROUNDING; // relative to its growth over the domain
   CagVec3 bend[ORDER], next[ORDER];
   Frame f;
   CagError ignored;
@@ -306,7 +307,7 @@ const CagMotionSegment *cag_motion_segment(const CagMotion *t, double v, CagSide
   return &t->segments[low];
 }
 
-// Shears the spokes along the tangent, into the miters of the piece.
+// Shears the axes along the tangent into the miters of the piece.
 static void shear(const CagMotionPiece *p, double v, int n, Frame *f) {
   for (int axis = 0; axis < 2; axis++) {
     double slope = (p->end[axis] - p->start[axis]) / (p->v1 - p->v0);
@@ -391,8 +392,8 @@ CagStatus cag_motion_at(const CagMotion *m, double t, int n, CagSide side, CagMo
 
 // --- Construction ---
 
-// phi over the segment from samples of phi', by Legendre series; phi = 0 at its start. False: the
-// segment is too long.
+// phi over the segment from samples of phi', by Legendre series; phi = 0 at its start. *good is
+// false if the segment is too long.
 static CagStatus integrate_angle(const CagMotion *t, CagMotionSegment *g, bool *good,
                                  CagError *err) {
   double half = (g->v1 - g->v0) / 2, rate[NODES];
@@ -441,7 +442,7 @@ static CagStatus add_segment(CagMotion *t, const CagMotionSegment *g, CagError *
   return CAG_OK;
 }
 
-// The unit axis that leans least towards the tangent.
+// The coordinate axis least aligned with the tangent.
 static CagVec3 fixed_vector(CagVec3 tangent) {
   double x = fabs(tangent.x), y = fabs(tangent.y), z = fabs(tangent.z);
   if (z <= x && z <= y) return cag_vec3(0, 0, 1);
@@ -451,7 +452,7 @@ static CagVec3 fixed_vector(CagVec3 tangent) {
 static CagStatus divide(CagMotion *t, size_t piece, double v0, double v1, int depth,
                         CagError *err) {
   if (t->how.orient != CAG_ORIENT_RMF) {
-    // Other frames need no angle: the segment only tells the piece.
+    // Other frames need no angle: the segment only stores the piece.
     CagMotionSegment plain = {.v0 = v0, .v1 = v1, .piece = piece};
     return add_segment(t, &plain, err);
   }
@@ -467,7 +468,7 @@ static CagStatus divide(CagMotion *t, size_t piece, double v0, double v1, int de
   return status ? status : divide(t, piece, (v0 + v1) / 2, v1, depth + 1, err);
 }
 
-// X turned by the smallest rotation that takes Z to the tangent: the first spoke of every body.
+// X rotated by the smallest rotation that maps Z to the tangent: the first axis of every motion.
 static CagVec3 first_spoke(CagVec3 t) {
   if (t.z < -1 + 1e-12) return cag_vec3(1, 0, 0);
   CagVec3 v = cag_cross(cag_vec3(0, 0, 1), t), x = {1, 0, 0};
@@ -476,7 +477,7 @@ static CagVec3 first_spoke(CagVec3 t) {
   return cag_unit(cag_madd(n, -cag_dot(n, t), t));
 }
 
-// The unit normal of the plane that halves a corner; false: there is no corner.
+// The unit normal of the bisecting plane of a corner; *corner is false if there is none.
 static CagStatus bisector(CagVec3 in, CagVec3 out, double v, bool *corner, CagVec3 *m,
                           CagError *err) {
   *corner = cag_norm(cag_sub(in, out)) > CORNER;
@@ -491,7 +492,7 @@ static CagStatus bisector(CagVec3 in, CagVec3 out, double v, bool *corner, CagVe
 
 static CagVec3 reflected(CagVec3 p, CagVec3 m) { return cag_madd(p, -2 * cag_dot(p, m), m); }
 
-// Carries the first spoke along all segments: sets phi at each start.
+// Transports the first axis along all segments: sets phi at each start.
 static CagStatus transport(CagMotion *t, CagError *err) {
   CagVec3 spoke = {0, 0, 0}, tangent = {0, 0, 0}, home = {0, 0, 0}, home_tangent = {0, 0, 0};
   Frame f;
@@ -531,14 +532,14 @@ static CagStatus transport(CagMotion *t, CagError *err) {
   return CAG_OK;
 }
 
-// Shift along the tangent that takes each spoke into the plane perpendicular to m.
+// Shift along the tangent that moves each axis into the plane perpendicular to m.
 static void miter(const Frame *f, CagVec3 m, double *out) {
   double along = cag_dot(f->t[0], m);
   out[0] = -cag_dot(f->n1[0], m) / along;
   out[1] = -cag_dot(f->n2[0], m) / along;
 }
 
-// Mitered sections of both sides are the same when their spokes differ by less.
+// Mitered sections of both sides are equal if their axes differ by less than this.
 #define CORNER_FRAME CAG_PARALLEL
 
 static CagStatus set_miters(CagMotion *t, CagError *err) {
@@ -607,7 +608,7 @@ static CagStatus set_frames(CagMotion *m, CagError *err) {
   return status ? status : set_miters(m, err);
 }
 
-// Places at which a frame and the scale are tried when the motion is made, on every smooth piece.
+// Number of points on every smooth piece at which frame and scale are tested during construction.
 #define PROBES 16
 
 static CagStatus probe(const CagMotion *m, CagError *err) {
@@ -631,7 +632,7 @@ static CagStatus probe(const CagMotion *m, CagError *err) {
   return CAG_OK;
 }
 
-// The path in space, without the stretches over which it stays in one point.
+// The path in space, without the intervals on which it rests in one point.
 static CagStatus moving_path(const CagCurve *path, CagCurve **out, CagError *err) {
   CagCurve *space;
   CagStatus status = cag_surface_space_curve(path, &space, err);
@@ -705,7 +706,7 @@ void cag_motion_release(CagMotion *m) {
   cag_free(m);
 }
 
-// --- Questions ---
+// --- Queries ---
 
 void cag_motion_domain(const CagMotion *m, double *start, double *end, bool *angular) {
   *start = m->start;

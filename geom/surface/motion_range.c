@@ -1,4 +1,5 @@
-// Ranges of the derivatives of a motion over an interval: what motion.c evaluates, by ranges.
+// Interval bounds of the derivatives of a motion: the evaluation of motion.c in interval
+// arithmetic.
 
 #include <string.h>
 
@@ -49,8 +50,8 @@ static CagInterval within_one(CagInterval a) {
   return (CagInterval){cag_higher(a.lo, -1), cag_lower(a.hi, 1)};
 }
 
-// Of unit length. If the range of `a` contains 0, the direction is unknown: each coordinate
-// gets the range -1..1. Derivatives have no bounds then.
+// The unit vector of `a`. If the range of `a` contains 0, the direction is unknown: each coordinate
+// gets the range -1..1, and derivatives have no bounds.
 static bool unit_ranges(const CagInterval3 *a, int n, CagInterval3 *out) {
   const CagInterval any = {-1, 1};
   if (cag_intervals3_unit(a, n, out)) {
@@ -74,7 +75,7 @@ static bool tangent_ranges(const CagMotion *m, double a, double b, int n, Frame 
   return unit_ranges(velocity, n, out->t);
 }
 
-// The polynomial of the angle on the segment.
+// The range of the polynomial of the angle on the segment.
 static void angle_ranges(const CagMotionSegment *g, double a, double b, int n, CagInterval *out) {
   const double half = (g->v1 - g->v0) / 2, middle = (g->v0 + g->v1) / 2;
   const double s = ((a + b) / 2 - middle) / half, reach = (b - a) / 2 / half;
@@ -96,7 +97,7 @@ static void angle_ranges(const CagMotionSegment *g, double a, double b, int n, C
   }
 }
 
-// Turns x and y by the angle.
+// Rotates x and y by the angle.
 static void turn_ranges(const CagInterval3 *x, const CagInterval3 *y, const CagInterval *by, int n,
                         CagInterval3 *to_x, CagInterval3 *to_y) {
   CagInterval s[ORDER], c[ORDER];
@@ -110,7 +111,7 @@ static void turn_ranges(const CagInterval3 *x, const CagInterval3 *y, const CagI
   cag_intervals3_sub(p, q, n, to_y);
 }
 
-// The cross product of unit vectors that are perpendicular.
+// The cross product of perpendicular unit vectors.
 static void perpendicular_ranges(const CagInterval3 *a, const CagInterval3 *b, int n,
                                  CagInterval3 *out) {
   cag_intervals3_cross(a, b, n, out);
@@ -170,7 +171,7 @@ static bool frame_ranges(const CagMotion *m, const CagMotionSegment *g, double a
   return minimizing(m, g, a, b, n, out);
 }
 
-// A linear function over [a, b] by its values at both ends.
+// A linear function over [a, b] from its values at both ends.
 static void linear_ranges(double at_a, double at_b, double length, int n, CagInterval *out) {
   for (int k = 0; k <= n; k++) out[k] = cag_interval(0);
   out[0] = (CagInterval){fmin(at_a, at_b), fmax(at_a, at_b)};

@@ -1,10 +1,10 @@
-// The point of a surface that is nearest to a given one.
+// The point of a surface nearest to a given one.
 //
-// Cells of the surface are taken by the lower bounds of their distances, the lowest first, and
-// halved until none can hold a nearer point than the best one found. Newton's method finds
-// candidates: from the lowest place of each patch, and from any known point that is nearer than the
-// best one. It stays within a smooth piece of the surface; where it ends at a crease or a seam it
-// goes on in the piece across, as long as that leads nearer.
+// Cells of the surface are processed in the order of their lower bounds and halved until none can
+// contain a closer point than the best one found. Newton's method finds candidates: from the point
+// with the lowest bound of each patch, and from any known point that is closer than the best one.
+// It stays within a smooth piece of the surface; if it ends at a crease or a seam, it continues in
+// the adjacent piece as long as the distance decreases.
 
 #include "geom/surface/nearest.h"
 
@@ -20,20 +20,20 @@
 #include "geom/surface/trimmed.h"
 
 #define STEPS 60
-// Places count as equally near when their distances differ by less than this part of the size: of
-// surfaces with certain bounds, and of those that are sampled.
+// Points are equally near if their distances differ by less than this fraction of the size: for
+// surfaces with rigorous bounds, and for sampled ones.
 #define EQUALLY_NEAR 1e-13
 #define EQUALLY_NEAR_SAMPLED 1e-10
-// Cells taken, at which the best point so far is given: surfaces all of whose points are equally
-// near, but for rounding, never run out of cells.
+// Number of cells after which the best point is returned: surfaces with a constant distance, up to
+// rounding, never run out of cells.
 #define MOST_CELLS 20000
 #define MOST_CELLS_SAMPLED 3000
-// Distances within this part of the size are the same but for rounding.
+// Distances within this fraction of the size are equal up to rounding.
 #define ROUNDING (4 * DBL_EPSILON)
-// Cells across the outline of a region are halved down to this part of the domain.
+// Cells that intersect the outline of a region are halved down to this fraction of the domain.
 #define FINEST 1e-6
 
-// A part of the parameter rectangle where the surface is smooth. A ring is all of a closed
+// A part of the parameter rectangle on which the surface is smooth. A ring is an entire closed
 // direction without breaks.
 typedef struct Piece {
   double low[2], high[2];
@@ -43,7 +43,7 @@ typedef struct Piece {
 typedef struct Search {
   const CagSurface *s;
   CagVec3 p;
-  const CagRegion *region; // only its inside counts; NULL: all
+  const CagRegion *region; // only its inside counts; NULL: the whole surface
   CagDistanceCells cells;
   double *cuts[2]; // breaks and both ends
   size_t pieces[2];
@@ -83,7 +83,7 @@ static CagStatus find_cuts(Search *f, CagError *err) {
 
 // --- Newton's method ---
 
-// x + d within the piece, or around it.
+// x + d, clamped to the piece, or wrapped around it.
 static double stepped(const Piece *in, int k, double x, double d) {
   const double low = in->low[k], high = in->high[k], range = high - low;
   const double y = x + fmin(fmax(d, -range / 2), range / 2);
@@ -92,8 +92,8 @@ static double stepped(const Piece *in, int k, double x, double d) {
   return fmin(fmax(y, low), high);
 }
 
-// The step of the squared distance's second-order model where that has a minimum, else of the one
-// that takes the surface for flat. `fixed`: the parameter stays.
+// The step to the minimum of the second-order model of the squared distance, or if there is none,
+// of the model for a flat surface. `fixed`: the parameter stays.
 static void model_step(const CagVec3 *d, CagVec3 r, const bool fixed[2], double out[2]) {
   const CagVec3 du = d[cag_partial(2, 1, 0)], dv = d[cag_partial(2, 0, 1)];
   const double g[2] = {cag_dot(r, du), cag_dot(r, dv)};
@@ -123,10 +123,10 @@ static void model_step(const CagVec3 *d, CagVec3 r, const bool fixed[2], double 
   out[1] = -(h[0] * g[1] - h[1] * g[0]) / det;
 }
 
-// A place in a piece, with all that a step needs.
+// A point in a piece, with all data that a step needs.
 typedef struct Place {
   double at[2], distance;
-  double off; // how far the line to the point leans along the directions that are free
+  double off; // component of the line to the point along the free directions
   bool fixed[2];
   CagVec3 r, d[9];
 } Place;
@@ -144,7 +144,7 @@ static CagStatus surface_place(const Search *f, const Piece *in, CagVec3 p, cons
   out->distance = cag_norm(out->r);
   out->off = 0;
   for (int k = 0; k < 2; k++) {
-    // At an end from which the distance falls only beyond it.
+    // At an end, if the distance decreases only beyond it.
     const CagVec3 along = out->d[k ? cag_partial(2, 0, 1) : cag_partial(2, 1, 0)];
     const double slope = cag_dot(out->r, along), speed = cag_norm(along);
     out->fixed[k] =
@@ -154,8 +154,8 @@ static CagStatus surface_place(const Search *f, const Piece *in, CagVec3 p, cons
   return CAG_OK;
 }
 
-// Goes to the local minimum of the piece. Near it the distance no longer changes but for rounding,
-// and the slope tells which place is better.
+// Finds the local minimum in the piece. Near it the distance is constant up to rounding, and the
+// slope decides which point is better.
 static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const double start[2],
                          CagSurfaceNearest *out, CagError *err) {
   Place here, there;
@@ -164,7 +164,7 @@ static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const doub
   for (int i = 0; !status && i < STEPS; i++) {
     double step[2];
     model_step(here.d, here.r, here.fixed, step);
-    // Shorter steps until the distance falls.
+    // Shorten the step until the distance decreases.
     bool better = false;
     for (double part = 1; !status && !better && part > 1e-4; part /= 4) {
       const double at[2] = {stepped(in, 0, here.at[0], part * step[0]),
@@ -181,7 +181,8 @@ static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const doub
   return status;
 }
 
-// The piece beside the place at an end of its own: 0 none, else whether the parameter changes.
+// The piece adjacent to the point at an end of its own: 0 if there is none, else whether the
+// parameter changes.
 static bool beside(const Search *f, int k, size_t piece, double *x, size_t *out) {
   const size_t last = f->pieces[k] - 1;
   const bool low = *x <= f->cuts[k][piece], high = *x >= f->cuts[k][piece + 1];
@@ -193,14 +194,14 @@ static bool beside(const Search *f, int k, size_t piece, double *x, size_t *out)
   return true;
 }
 
-// From a place of a piece to the minimum that descending leads to, over creases.
+// Descends from a point in a piece to a local minimum, across creases.
 static CagStatus descend_over(const Search *f, const size_t start[2], const double from[2],
                               CagVec3 p, CagSurfaceNearest *out, CagError *err) {
   size_t piece[2] = {start[0], start[1]};
   Piece in = piece_of(f, piece);
   CagStatus status = descend(f, &in, p, from, out, err);
   bool moved = true;
-  // Each crossing must get nearer by more than rounding; many in a row do not help.
+  // Each crossing must reduce the distance by more than rounding; many in a row do not help.
   for (int crossings = 0; !status && moved && crossings < STEPS; crossings++) {
     moved = false;
     for (int ways = 1; !status && !moved && ways < 4; ways++) {
@@ -236,7 +237,8 @@ static CagStatus offer(Search *f, const CagSurfaceNearest *found, CagError *err)
   return CAG_OK;
 }
 
-// A parameter of a cell as one of the surface, exactly or nearly, and its piece.
+// Converts a parameter of a cell to one of the surface, exactly or approximately, and finds its
+// piece.
 static double own_parameter(const Search *f, int k, double x, const double range[2],
                             size_t *piece) {
   const CagSurface *s = f->s, *exact = f->cells.exact;
@@ -253,8 +255,8 @@ static double own_parameter(const Search *f, int k, double x, const double range
   return fmin(fmax(x, f->cuts[k][*piece]), f->cuts[k][*piece + 1]);
 }
 
-// Parameters of a point of the surface that a cell of other parameters knows, by descending to it
-// from the nearest of some samples.
+// Parameters of a point on the surface that is known by a cell with other parameters, by descending
+// to it from the nearest of some samples.
 static CagStatus parameters_of(const Search *f, CagVec3 q, size_t piece[2], double at[2],
                                CagError *err) {
   enum { SAMPLES = 9, KEPT = 4 };
@@ -311,7 +313,7 @@ static CagStatus try_cell(Search *f, const CagDistanceCell *cell, CagError *err)
   if (!status) status = offer(f, &found, err);
   const double least = sqrt(cell->least), same = EQUALLY_NEAR * f->cells.size;
   if (status || !(least < f->best.distance - same)) return status;
-  // The known point itself, where that led elsewhere.
+  // Use the known point itself if the descent led elsewhere.
   if (f->cells.same) {
     at[0] = own_parameter(f, 0, cell->least_at[0], cell->u, &piece[0]);
     at[1] = own_parameter(f, 1, cell->least_at[1], cell->v, &piece[1]);
@@ -346,7 +348,8 @@ static CagStatus try_loops(Search *f, const CagTransform *flat, CagError *err) {
   return status;
 }
 
-// Whether a cell lies outside the region, or is so small that its part inside is its outline's.
+// Whether a cell lies outside the region, or is so small that the search on the outline covers its
+// inner part.
 static CagStatus is_outside(const Search *f, const CagDistanceCell *cell, bool *out,
                             CagError *err) {
   double middle[2], reach = 0;
@@ -377,7 +380,7 @@ static CagStatus is_outside(const Search *f, const CagDistanceCell *cell, bool *
   return status;
 }
 
-// --- All ---
+// --- Complete search ---
 
 static CagStatus search_cells(Search *f, CagError *err) {
   CagStatus status = CAG_OK;
@@ -387,7 +390,7 @@ static CagStatus search_cells(Search *f, CagError *err) {
     const double share = sampled ? EQUALLY_NEAR_SAMPLED : EQUALLY_NEAR;
     CagDistanceCell cell;
     bool found, outside = false;
-    // Nearer by more than that, squared.
+    // Squared distance that improves on the best by more than the tolerance.
     double nearer = f->best.distance - share * f->cells.size;
     if (!(nearer > 0)) break;
     status = cag_stop_check(err);
@@ -416,7 +419,7 @@ static CagStatus try_core(Search *f, bool *certain, CagError *err) {
   return status;
 }
 
-// Of a flat piece: the foot of the perpendicular where that is within, else a point of its outline.
+// For a flat piece: the perpendicular foot if it is inside, else a point on the outline.
 static CagStatus closest_planar(Search *f, const CagTransform *frame, CagError *err) {
   CagVec3 a = cag_transform_vector(frame, cag_vec3(1, 0, 0));
   CagVec3 b = cag_transform_vector(frame, cag_vec3(0, 1, 0));
@@ -454,7 +457,7 @@ CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest 
     cag_distance_cells_free(&f.cells);
     cag_free(f.cuts[0]);
     cag_free(f.cuts[1]);
-    // A seam is at the start.
+    // A point on a seam is reported at its start.
     if (s->closed_u && f.best.u >= s->u1) f.best.u = s->u0;
     if (s->closed_v && f.best.v >= s->v1) f.best.v = s->v0;
   }

@@ -11,15 +11,16 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/nearest_swept.h"
 
-// Cells of a sampled patch in each direction: of a surface of few patches, and of one of many.
+// Number of cells of a sampled patch in each direction, for surfaces with few and with many
+// patches.
 #define CELLS_FEW 6
 #define CELLS_MANY 2
 #define PATCHES_FEW 16
-// Samples of a cell in each direction. The biquadratic polynomial meets the first, the third and
-// the last; the others stand where no wave has its nodes.
+// Samples of a cell in each direction. The biquadratic polynomial interpolates the first, the
+// third, and the last; the others are placed away from common nodes of waves.
 #define SAMPLES 5
 static const double SAMPLE[SAMPLES] = {0, 0.21, 0.5, 0.83, 1};
-// The sampled distance may differ from the polynomial by this much more than the samples tell.
+// Safety factor for the difference between the sampled distance and the polynomial.
 #define SAFETY 2
 // Rounding of a squared distance, in units of that of the largest term.
 #define ROUNDING (8 * DBL_EPSILON)
@@ -45,7 +46,7 @@ CagStatus cag_distance_cells_push(CagDistanceCells *c, const CagDistanceCell *ce
   return CAG_OK;
 }
 
-// Room for the control points of a cell. Blocks move when there are more of them.
+// Allocates a block for the control points of a cell. Blocks may move when their number grows.
 static CagStatus take_block(CagDistanceCells *c, size_t *block, CagError *err) {
   if (c->unused_count > 0) {
     *block = c->unused[--c->unused_count];
@@ -71,8 +72,7 @@ void cag_distance_cells_drop(CagDistanceCells *c, const CagDistanceCell *cell) {
 
 static double squared(const double *h) { return h[0] * h[0] + h[1] * h[1] + h[2] * h[2]; }
 
-// Coefficients of the product of the patch with itself: of the squared distance times the squared
-// weight, and of the latter.
+// Coefficients of the squared distance times the squared weight, and of the squared weight.
 static void square_patch(const CagDistanceCells *c, const double *x, double *distance,
                          double *weight) {
   const int p = c->p_degree, q = c->q_degree, columns = 2 * q + 1;
@@ -108,7 +108,7 @@ static void square_patch(const CagDistanceCells *c, const double *x, double *dis
     }
 }
 
-// How much the coefficients bend along each direction: the one that bends more is halved.
+// Whether the coefficients bend more in v than in u; that direction is halved.
 static bool bends_across(const double *d, int rows, int columns) {
   double along_u = 0, along_v = 0;
   for (int i = 0; i < rows; i++)
@@ -151,7 +151,7 @@ static void bound_patch(const CagDistanceCells *c, CagDistanceCell *cell) {
   cell->across = bends_across(distance, rows, columns);
 }
 
-// One coordinate range of de Casteljau's halves. `stride` numbers from a point to the next.
+// De Casteljau halving along one line; `stride` numbers from one point to the next.
 static void halve_line(const double *from, int degree, size_t stride, double *left, double *right) {
   memcpy(right, from, 4 * sizeof *right);
   for (int i = 0; i <= degree; i++)
@@ -188,7 +188,7 @@ static CagStatus halve_patch(CagDistanceCells *c, const CagDistanceCell *cell,
   return CAG_OK;
 }
 
-// The box of a patch's control points, its distance from p and its farthest point.
+// The bounding box of a patch's control points, its distance from p, and its farthest point.
 static void box_patch(CagDistanceCells *c, const CagSurfaceNurbsView *is, size_t u, size_t v,
                       double *bound) {
   CagBounds box = CAG_BOUNDS_EMPTY;
@@ -223,7 +223,7 @@ static CagStatus push_patches(CagDistanceCells *c, CagError *err) {
   return status;
 }
 
-// Control points of a patch that was known by its box.
+// Computes the control points of a patch that was known only by its box.
 static CagStatus open_patch(CagDistanceCells *c, CagDistanceCell *cell, CagError *err) {
   CagSurfaceNurbsView is;
   cag_surface_nurbs_view(c->exact, &is);
@@ -240,7 +240,7 @@ static CagStatus open_patch(CagDistanceCells *c, CagDistanceCell *cell, CagError
   double *made = line + 4 * (p + 1);
   for (int j = 0; j <= q; j++) {
     for (int i = 0; i <= p; i++) memcpy(line + 4 * i, x + 4 * (i * (q + 1) + j), 4 * sizeof *line);
-    // The 2 p + 2 knots about the span stand for all.
+    // The 2 p + 2 knots around the span suffice.
     cag_bspline_piece(line, is.knots_u + (u - (size_t)p), p, (size_t)p, made);
     for (int i = 0; i <= p; i++) {
       double *h = x + 4 * (i * (q + 1) + j);
@@ -340,7 +340,7 @@ static CagStatus prepare_patches(CagDistanceCells *c, const CagSurfaceNurbsView 
   c->q_degree = q;
   c->rational = is->rational;
   c->block_size = 4 * (size_t)(p + 1) * (size_t)(q + 1);
-  // A patch, its two products, and lines of control points.
+  // A patch, its two products, and rows of control points.
   c->work =
       cag_malloc(sizeof(double) * (c->block_size + 2 * (size_t)(2 * p + 1) * (size_t)(2 * q + 1) +
                                    8 * (size_t)(p + 1)));
@@ -353,7 +353,7 @@ static CagStatus prepare_patches(CagDistanceCells *c, const CagSurfaceNurbsView 
   return CAG_OK;
 }
 
-// Are the parameters of the exact form those of the surface, up to an affine map?
+// Whether the parameters of the exact form are those of the surface, up to an affine map.
 static bool same_parameters(const CagSurface *s, const CagSurface *exact) {
   static const double at[3][2] = {{0.137, 0.871}, {0.583, 0.391}, {0.711, 0.094}};
   CagError ignored;
@@ -365,7 +365,7 @@ static bool same_parameters(const CagSurface *s, const CagSurface *exact) {
         cag_surface_point(exact, exact->u0 + x * (exact->u1 - exact->u0),
                           exact->v0 + y * (exact->v1 - exact->v0), &b, &ignored))
       return false;
-    const double same = CAG_ROUNDING; // rounding of both, as a part of their size
+    const double same = CAG_ROUNDING; // rounding of both, relative to their size
     if (cag_norm(cag_sub(a, b)) > same * (cag_norm(a) + cag_norm(b))) return false;
   }
   return true;
@@ -428,7 +428,7 @@ CagStatus cag_distance_cells_next(CagDistanceCells *c, double below, CagDistance
     out->raw = false;
     CagStatus status = c->exact ? open_patch(c, out, err) : cag_swept_cell_bound(c, out, err);
     if (status) return status;
-    // The patch may be farther than its box.
+    // The patch may be farther away than its box.
     if (!(c->count > 0 && c->items[0].bound < out->bound)) return CAG_OK;
     *found = false;
     status = cag_distance_cells_push(c, out, err);

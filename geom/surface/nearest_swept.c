@@ -1,12 +1,11 @@
-// Lower bounds of the distances of cells of tubes, sweeps and extrusions, by ranges of their
+// Lower bounds of the distances of cells of tubes, sweeps, and extrusions, from intervals of their
 // derivatives.
 //
-// A function over an interval of length h is nowhere lower than the chord of its values at both
-// ends by more than h^2 / 8 times the largest second derivative; a convex function is nowhere lower
-// than its tangents. Both hold for the squared distance of a cell, by u and by v. A tube is a
-// family of circles: w being the path less p, and Z its tangent times the scale, the squared
-// distance of p from the circle of radius R |Z| is w^2 + R^2 Z^2 - 2 R |w x Z|, so that cells are
-// intervals of v alone.
+// A function on an interval of length h is below the chord of its end values by at most h^2 / 8
+// times the largest second derivative; a convex function is never below its tangents. Both apply to
+// the squared distance on a cell, in u and in v. A tube is a family of circles: with w the path
+// minus p, and Z its tangent times the scale, the squared distance of p from the circle of radius R
+// |Z| is w^2 + R^2 Z^2 - 2 R |w x Z|, so that cells are intervals of v only.
 
 #include "geom/surface/nearest_swept.h"
 
@@ -24,15 +23,15 @@
 #define SECOND 2
 // Rounding of a squared distance, in units of that of the largest term.
 #define ROUNDING (8 * DBL_EPSILON)
-// First cells of a round section, and of another smooth piece.
+// Initial number of cells for a round section, and for another smooth piece.
 #define ROUND_PARTS 4
 #define OTHER_PARTS 2
-// First intervals of an extrusion by v.
+// Initial number of intervals of an extrusion in v.
 #define EXTRUSION_PARTS 4
 
 // --- The surface ---
 
-// The section's circle about the origin of the spokes; false: another section.
+// The section's circle about the origin of the axes; false: another section.
 static bool is_centered_circle(const CagCurve *section, double *radius) {
   double a, b;
   CagTransform frame;
@@ -45,8 +44,8 @@ static bool is_centered_circle(const CagCurve *section, double *radius) {
   return true;
 }
 
-// The spokes of an extrusion: x and y are multiplied by the complex factor
-// (1 + k v) exp(i a v), a being the twist and 1 + k the scale.
+// The axes of an extrusion: x and y are multiplied by the complex factor (1 + k v) exp(i a v), a
+// being the twist and 1 + k the scale.
 static void extrusion_ranges(const CagTwisted *e, double a, double b, int n, CagMotionRanges *out) {
   const CagInterval none = cag_interval(0), v = {a, b};
   const double k = e->scale - 1;
@@ -80,7 +79,7 @@ static bool spoke_ranges(const CagSwept *w, double a, double b, int n, CagMotion
   return true;
 }
 
-// The ends of the stretches along which the surface is analytic.
+// The ends of the intervals on which the surface is analytic.
 static CagStatus find_joints(const CagSwept *w, double **out, size_t *n, CagError *err) {
   if (w->motion) return cag_motion_joints(w->motion, out, n, err);
   *out = cag_malloc((EXTRUSION_PARTS + 1) * sizeof **out);
@@ -109,7 +108,7 @@ CagStatus cag_swept_cells_begin(CagDistanceCells *c, bool region, bool *known, C
   CagStatus status = find_joints(w, &joints, &n, err);
   if (!status) status = cag_curve_cuts(w->section, &cuts, &n, err);
   if (!status) {
-    // A tiny interval shows whether there are ranges at all.
+    // A tiny interval shows whether ranges are available at all.
     const double tiny = 1e-6, dv = tiny * (joints[1] - joints[0]), du = tiny * (cuts[1] - cuts[0]);
     *known = spoke_ranges(w, joints[0], joints[0] + dv, SECOND, &at) &&
              cag_curve_ranges(w->section, cuts[0], cuts[0] + du, SECOND, section);
@@ -166,7 +165,7 @@ static CagInterval3 less_point(CagInterval3 a, CagVec3 p) {
                         cag_interval_sub(a.z, cag_interval(p.z))};
 }
 
-// A vector, or with `move` a point, through the map.
+// The image of a vector, or with `move` of a point.
 static CagInterval3 mapped(const CagTransform *t, CagInterval3 a, bool move) {
   CagInterval out[3];
   for (int i = 0; i < 3; i++) {
@@ -202,8 +201,8 @@ static double box_distance(CagInterval3 box, CagVec3 p) {
   return x * x + y * y + z * z;
 }
 
-// The range of a function of the cell: `natural`, and that of its value in the middle and its
-// derivatives by u and v.
+// The range of a function on the cell: the intersection of `natural` with the mean value form, from
+// the value at the middle and the derivatives in u and v.
 static CagInterval3 centered(CagInterval3 natural, CagVec3 middle, CagInterval3 by_u, double hu,
                              CagInterval3 by_v, double hv) {
   const CagInterval3 at = {cag_interval(middle.x), cag_interval(middle.y), cag_interval(middle.z)};
@@ -217,8 +216,8 @@ static double width(CagInterval3 a) {
   return fmax(a.x.hi - a.x.lo, fmax(a.y.hi - a.y.lo, a.z.hi - a.z.lo));
 }
 
-// The squared distance of p from the box that holds a cell. The cell is to be halved where that
-// makes the box smaller.
+// The squared distance of p from the box of a cell. Halving is chosen in the direction that shrinks
+// the box more.
 static double box_bound(const CagDistanceCells *c, CagDistanceCell *cell) {
   CagInterval3 section;
   CagMotionRanges m;
@@ -238,15 +237,14 @@ static double box_bound(const CagDistanceCells *c, CagDistanceCell *cell) {
   return box_distance(partial(&c->swept, &section, &m, 0, 0), c->p);
 }
 
-// What is known of half the squared distance over a cell.
+// Bounds of half the squared distance on a cell.
 typedef struct Bends {
   CagInterval slope[2];   // first derivatives
   CagInterval uu, uv, vv; // second derivatives
   double least;           // a lower bound of the squared distance
 } Bends;
 
-// `middle`: point and first derivatives in the middle. Returns false if the ranges
-// are unknown.
+// `middle`: point and first derivatives at the middle. Returns false if the ranges are unknown.
 static bool bend_ranges(const CagDistanceCells *c, const CagDistanceCell *cell,
                         const CagVec3 *middle, Bends *out) {
   const CagSwept *w = &c->swept;
@@ -277,7 +275,7 @@ static bool bend_ranges(const CagDistanceCells *c, const CagDistanceCell *cell,
 
 // --- Cells of sweeps ---
 
-// Notes a point of the cell, if it is the nearest so far.
+// Records a point of the cell if it is the nearest so far.
 static void note_point(CagDistanceCells *c, CagDistanceCell *cell, double u, double v,
                        CagVec3 point) {
   const CagVec3 r = cag_sub(point, c->p);
@@ -294,8 +292,8 @@ static void note_point(CagDistanceCells *c, CagDistanceCell *cell, double u, dou
 // have both signs.
 static int lowest_end(CagInterval slope) { return slope.lo >= 0 ? 0 : slope.hi <= 0 ? 1 : -1; }
 
-// By the tangents at the best place so far, or at the lowest one known, where the function is
-// convex. Where it only rises or falls along a direction, it counts at the lowest end alone.
+// Bound from the tangents at the best point so far, or at the lowest known point, if the function
+// is convex. In a direction in which it is monotone only the lowest end counts.
 static CagStatus tangent_bound(const CagDistanceCells *c, const CagDistanceCell *cell,
                                const Bends *bend, double *out, CagError *err) {
   const int end[2] = {lowest_end(bend->slope[0]), lowest_end(bend->slope[1])};
@@ -353,7 +351,7 @@ static CagStatus bound_sweep(CagDistanceCells *c, CagDistanceCell *cell, CagErro
     return CAG_OK;
   }
   const double hu = cell->u[1] - cell->u[0], hv = cell->v[1] - cell->v[0];
-  // The whole squared distance bends twice as much as its half.
+  // The squared distance bends twice as much as its half.
   const double by_u = hu * hu / 4 * fmax(0, bend.uu.hi), by_v = hv * hv / 4 * fmax(0, bend.vv.hi);
   double bound = fmax(bend.least, low - by_u - by_v);
   cell->across = by_v > by_u;
@@ -365,7 +363,7 @@ static CagStatus bound_sweep(CagDistanceCells *c, CagDistanceCell *cell, CagErro
 
 // --- Cells of tubes ---
 
-// The circle at v: the squared distance of p, p relative to the center, and the spokes.
+// The circle at v: the squared distance of p, p relative to the center, and the axes.
 typedef struct Circle {
   double value;
   CagVec3 r, x, y;
@@ -381,7 +379,7 @@ static CagStatus circle_at(const CagDistanceCells *c, double v, CagSide side, Ci
   if (status) return status;
   const CagVec3 w = cag_sub(m.origin[0], s->p), z = m.z[0];
   const double length = cag_norm(z);
-  // Along the axis of the circle, and off the circle in its plane.
+  // Components along the axis of the circle, and off the circle in its plane.
   const double along = length > 0 ? cag_dot(w, z) / length : cag_norm(w);
   const double off = length > 0 ? cag_norm(cag_cross(w, z)) / length - s->radius * length : 0;
   *out = (Circle){along * along + off * off, cag_scaled(w, -1), m.x[0], m.y[0]};
@@ -423,8 +421,8 @@ static bool tube_bends(const CagDistanceCells *c, const CagDistanceCell *cell, d
   return true;
 }
 
-// By the tangent at the best place so far, or at the nearer end, of a convex function. Its slope is
-// that of the squared distance by v at the nearest point of the circle.
+// Bound of a convex function from the tangent at the best point so far, or at the nearer end. Its
+// slope is the derivative of the squared distance in v at the nearest point of the circle.
 static CagStatus tube_tangent(const CagDistanceCells *c, const CagDistanceCell *cell,
                               const Circle ends[2], double *out, CagError *err) {
   const double *v = cell->v;
@@ -485,7 +483,7 @@ CagStatus cag_swept_cell_bound(CagDistanceCells *c, CagDistanceCell *cell, CagEr
 
 // --- The first cells ---
 
-// u runs over [cuts[i], cuts[i + 1]] in `parts` cells.
+// Adds cells for u over [cuts[i], cuts[i + 1]], in `parts` cells each.
 static CagStatus push_row(CagDistanceCells *c, const double v[2], const CagMotionRanges *m,
                           const double *cuts, size_t pieces, size_t parts, CagError *err) {
   CagStatus status = CAG_OK;

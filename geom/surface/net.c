@@ -13,7 +13,7 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/family.h"
 
-// Knots nearer than this part of the range are one knot.
+// Knots closer than this fraction of the range are equal.
 #define SAME_KNOT CAG_COINCIDENT
 
 CagStatus cag_net_new(int degree, size_t count, size_t width, CagNet *out, CagError *err) {
@@ -47,7 +47,7 @@ int cag_net_multiplicity(const CagNet *net, double t) {
 
 CagStatus cag_net_insert(CagNet *net, double t, CagError *err) {
   size_t p = (size_t)net->degree, n = net->count, span = p;
-  // A knot that is nearly there is taken as it is.
+  // Reuse the exact value of a knot that is nearly equal.
   for (size_t i = p; i <= n; i++)
     if (same_knot(net, net->knots[i], t)) t = net->knots[i];
   while (span + 1 < n && net->knots[span + 1] <= t) span++;
@@ -98,9 +98,9 @@ CagStatus cag_net_trim(CagNet *net, double a, double b, CagError *err) {
   return CAG_OK;
 }
 
-// Removes knot number r, the last of its equals, where that changes nothing.
+// Removes knot number r, the last of equal ones, if that changes nothing.
 static CagStatus drop_knot(CagNet *net, size_t r, CagError *err) {
-  // Inverse of Boehm's insertion, from both sides to the middle (Tiller 1992).
+  // Inverse of Boehm's insertion, from both ends to the middle (Tiller 1992).
   size_t p = (size_t)net->degree, n = net->count, width = net->width;
   double t = net->knots[r];
   int times = 0;
@@ -128,7 +128,7 @@ static CagStatus drop_knot(CagNet *net, size_t r, CagError *err) {
     memcpy(net->data + j * width, work + (j - off) * width, width * sizeof *work);
   }
   cag_free(work);
-  size_t gone = (2 * r - s - p) / 2; // the point that two others now stand for
+  size_t gone = (2 * r - s - p) / 2; // the point that is redundant now
   memmove(net->data + gone * width, net->data + (gone + 1) * width,
           (n - gone - 1) * width * sizeof *net->data);
   memmove(net->knots + r, net->knots + r + 1, (n + p - r) * sizeof *net->knots);
@@ -142,7 +142,7 @@ CagStatus cag_net_drop(CagNet *net, double t, CagError *err) {
   return drop_knot(net, r, err);
 }
 
-// No inner knot of a trimmed net may occur more often than the degree.
+// The multiplicity of inner knots of a trimmed net must not exceed the degree.
 static CagStatus check_inner_knots(const CagNet *net, CagError *err) {
   const size_t p = (size_t)net->degree;
   for (size_t i = p + 1; i + p < net->count; i++)
@@ -221,12 +221,12 @@ CagStatus cag_nets_unify(CagNet *nets, size_t n, CagError *err) {
   for (size_t i = 0; i < n; i++) degree = nets[i].degree > degree ? nets[i].degree : degree;
   for (size_t i = 0; i < n; i++)
     while (!status && nets[i].degree < degree) status = cag_net_raise(&nets[i], err);
-  // Forward the last has all knots; backward all get them.
+  // After the forward pass the last net has all knots; the backward pass distributes them.
   for (size_t i = 1; !status && i < n; i++)
     status = cag_net_take_knots(&nets[i], &nets[i - 1], err);
   for (size_t i = n - 1; !status && i-- > 0;)
     status = cag_net_take_knots(&nets[i], &nets[i + 1], err);
-  // Knots that were nearly the same become the same.
+  // Makes nearly equal knots identical.
   for (size_t i = 1; !status && i < n; i++)
     memcpy(nets[i].knots, nets[0].knots,
            (nets[0].count + (size_t)degree + 1) * sizeof *nets[0].knots);
@@ -325,7 +325,7 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
     cag_bspline_basis(net->knots, net->degree, span, t, basis);
     for (size_t k = 0; k <= p; k++) {
       size_t j = span - p + k;
-      // Schoenberg and Whitney: an entry off the band means a singular system.
+      // Schoenberg-Whitney condition: an entry outside the band means a singular system.
       if (basis[k] == 0) continue;
       if (j > i + p || i > j + p) least = 0;
       else band[j * rows + 2 * p + i - j] = basis[k];

@@ -72,7 +72,7 @@ static bool near(const double *a, const double *b, double size) {
   return true;
 }
 
-// Same place, whatever the weights.
+// Whether the points are equal, whatever their weights.
 static bool near_point(const double *a, const double *b, double size) {
   for (int c = 0; c < 3; c++)
     if (fabs(a[c] * b[3] - b[c] * a[3]) > CAG_SURFACE_SAME * size * fmax(a[3], b[3])) return false;
@@ -84,8 +84,8 @@ static bool clamped(const Direction *d) {
          d->knots[d->count] == d->knots[d->count + (size_t)d->degree];
 }
 
-// Flags from the net where the edges of the surface are those of the net, which is certain; else
-// from points.
+// Determines the flags from the net if the edges of the surface are those of the net, which is
+// exact; else from points.
 static void judge(Nurbs *b) {
   cag_surface_judge(&b->base);
   size_t nu = b->u.count, nv = b->v.count;
@@ -120,7 +120,7 @@ static void judge(Nurbs *b) {
   b->base.closed_v = b->base.closed_v || b->v.periodic;
 }
 
-// Partials are differences of neighboring points by the length of a span.
+// Partials are differences of neighboring points divided by the length of a span.
 static void find_noise(Nurbs *b) {
   double most = 0, weight = 0;
   for (size_t i = 0; i < b->u.count * b->v.count; i++) {
@@ -151,7 +151,7 @@ static void nurbs_destroy(CagSurface *s) {
   cag_free(b->planes);
 }
 
-// Takes copies of everything; the net is homogeneous and already holds the repeated lines of closed
+// Copies everything; the net is homogeneous and already contains the repeated lines of closed
 // directions.
 static CagStatus build(const double *net, const Direction *u, const Direction *v, CagSurface **out,
                        CagError *err) {
@@ -177,7 +177,7 @@ static CagStatus build(const double *net, const Direction *u, const Direction *v
   memcpy(b->u.knots, u->knots, knots_u * sizeof(double));
   memcpy(b->v.knots, v->knots, knots_v * sizeof(double));
   memcpy(b->net, net, 4 * total * sizeof(double));
-  // Equal weights are no weights.
+  // Equal weights mean a polynomial surface.
   double w = net[3];
   for (size_t i = 0; i < total; i++) b->rational = b->rational || net[4 * i + 3] != w;
   if (!b->rational && w != 1)
@@ -223,7 +223,7 @@ static CagStatus check_weights(const double *weights, size_t nu, size_t nv, CagE
   return CAG_OK;
 }
 
-// Fills a direction: the given knots, or whole ones of a closed direction (malloc'd, in *own).
+// Fills a direction: the given knots, or integers for a closed direction (malloc'd, in *own).
 static CagStatus make_direction(size_t count, int degree, const double *knots, bool closed,
                                 const char *name, Direction *out, double **own, CagError *err) {
   *own = NULL;
@@ -289,7 +289,7 @@ CagStatus cag_surface_bezier(const CagVec3 *net, const double *weights, size_t n
   return cag_surface_nurbs(net, weights, nu, nv, p, q, knots_u, knots_v, out, err);
 }
 
-// --- The rest of the table ---
+// --- Other functions of the kind ---
 
 static CagStatus nurbs_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   (void)err;
@@ -398,7 +398,7 @@ CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagEr
   return status;
 }
 
-// v runs backwards over the same domain.
+// Reverses v over the same domain.
 static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
   size_t nu = b->u.count, nv = b->v.count, knots = nv + (size_t)b->v.degree + 1;
   double *h = cag_malloc(4 * nu * nv * sizeof *h), *turned = cag_malloc(knots * sizeof *turned);
@@ -407,7 +407,7 @@ static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
     for (size_t i = 0; i < nu; i++)
       for (size_t j = 0; j < nv; j++)
         memcpy(h + 4 * (i * nv + nv - 1 - j), b->net + 4 * (i * nv + j), 4 * sizeof *h);
-    // The ends of the domain change places exactly; the rest are mirrored in its middle.
+    // The ends of the domain are exchanged exactly; other knots are reflected about its middle.
     double a = b->base.v0, z = b->base.v1;
     for (size_t k = 0; k < knots; k++) {
       double t = b->v.knots[knots - 1 - k];
@@ -429,7 +429,7 @@ CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err)
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) {
-    // A mirrored region in a mirrored frame: the same piece of plane seen from behind.
+    // A reflected region in a reflected frame: the same part of the plane with the opposite normal.
     CagTransform mirror = cag_transform_identity();
     mirror.m[1][1] = -1;
     mirror.m[1][3] = s->v0 + s->v1;
@@ -444,7 +444,7 @@ CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err)
   const CagCurve *profile;
   CagVec3 axis, through;
   double from, to;
-  // The same profile turned the other way, where that leaves the ends of the turn where they are.
+  // Reverse the rotation of the profile, if that preserves the ends of the angle range.
   if (cag_surface_revolution_view(s, &profile, &axis, &through, &from, &to) &&
       (from == -to || (from == 0 && to == 2 * M_PI)))
     return cag_surface_revolve(profile, cag_scaled(axis, -1), through, from, to, out, err);

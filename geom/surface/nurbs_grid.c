@@ -1,7 +1,7 @@
 // Tensor product NURBS surfaces on grids, in wide registers.
 //
-// The basis by v is made once for all rows. Each row contracts the net's planes with the basis by
-// u; what is left is a curve in v, whose columns are worked on several at a time.
+// The basis in v is computed once for all rows. Each row contracts the net's planes with the basis
+// in u, which leaves a curve in v; its columns are processed several at a time.
 
 #include <float.h>
 #include <math.h>
@@ -13,31 +13,31 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/tensor.h"
 
-// What is known of one row u and one run of columns in the same span of v.
+// The data of one row u and a run of columns in the same span of v.
 typedef struct Run {
   size_t n;            // columns
-  size_t room;         // columns that may be written: those after n are written again later
+  size_t room;         // number of columns that may be written: those after n are overwritten later
   const double *m, *d; // values and slopes by v: [l * stride + column]
   size_t stride;       // columns of the whole grid
   const double *a[4];  // row contracted with the values by u: x, y, z, w from the span's first on
-  const double *da[4]; // with the slopes
+  const double *da[4]; // the same, contracted with the slopes
   double *point, *du, *dv; // 3 numbers per column; du, dv may be NULL together
   double *normal;          // of unit length, or zero; NULL: not asked for
   const double *noise2;    // of Nurbs
 } Run;
 
-// Vectors whose cross product is shorter than this part of the product of their lengths are
-// parallel: what is left is rounding.
+// Vectors are parallel if their cross product is below this fraction of the product of their
+// lengths, which is rounding.
 #define PARALLEL CAG_PARALLEL
 
-// What the cross product is scaled by; 0: there is no normal.
+// Factor that normalizes the cross product; 0: there is no normal.
 INLINE double normal_scale(double length2, double uu, double vv, const double noise2[2]) {
   bool good = (length2 > PARALLEL * PARALLEL * uu * vv) & (length2 > DBL_MIN) & (uu > noise2[0]) &
               (vv > noise2[1]);
   return good ? 1 / sqrt(length2) : 0;
 }
 
-// Columns worked on at a time: their rows of results stay in the first cache.
+// Number of columns processed together, so that their results stay in the L1 cache.
 #define CHUNK 64
 
 // sum_l a[l] f[l * stride + j] for all j of a chunk.
@@ -63,7 +63,7 @@ typedef struct Chunk {
   double point[4][CHUNK], du[4][CHUNK], dv[4][CHUNK], normal[3][CHUNK];
 } Chunk;
 
-// Divides by the weights. Gives the count of those that are not positive.
+// Divides by the weights. Returns the number of weights that are not positive.
 INLINE size_t chunk_quotients(Chunk *restrict s, size_t n, bool first) {
   size_t bad = 0;
   for (size_t j = 0; j < n; j++) {
@@ -93,7 +93,7 @@ INLINE void chunk_normals(Chunk *restrict s, size_t n, const double noise2[2]) {
   }
 }
 
-// Any degree. False: a weight is not positive.
+// For any degree. Returns false if a weight is not positive.
 WIDEST static bool run_any(const Run *r, int q, bool rational, bool first) {
   Chunk s;
   size_t bad = 0;
@@ -119,8 +119,8 @@ WIDEST static bool run_any(const Run *r, int q, bool rational, bool first) {
   return bad == 0;
 }
 
-// Degrees up to 3 with vectors of four numbers in registers from the basis to the interleaved
-// result. The arithmetic of a column is that of run_any.
+// Degrees up to 3 keep vectors of four numbers in registers from the basis to the interleaved
+// result. The arithmetic of each column is the same as in run_any.
 #ifdef __has_builtin
 #if __has_builtin(__builtin_shufflevector)
 #define FUSED
@@ -149,7 +149,7 @@ INLINE void wide_store(double *to, Wide3 p) {
   Wide low = __builtin_shufflevector(p.x, p.y, 0, 4, 1, 5);
   Wide high = __builtin_shufflevector(p.x, p.y, 2, 6, 3, 7);
   Wide across = __builtin_shufflevector(low, p.z, 3, 5, 3, 5);
-  // One by one: an array of all three would be stored and read again.
+  // One by one: an array of all three would go through memory.
   Wide first = __builtin_shufflevector(low, p.z, 0, 1, 4, 2);
   Wide second = __builtin_shufflevector(across, high, 0, 1, 4, 5);
   Wide third = __builtin_shufflevector(high, p.z, 6, 2, 3, 7);
@@ -158,7 +158,7 @@ INLINE void wide_store(double *to, Wide3 p) {
   memcpy(to + 2 * WIDE, &third, sizeof third);
 }
 
-// Of the last columns of a grid only `n` have room.
+// At the last columns of a grid there is room for only `n`.
 INLINE void wide_put(double *to, Wide3 p, size_t n) {
   double all[3 * WIDE];
   if (n >= WIDE) {
@@ -182,7 +182,7 @@ INLINE Wide3 wide_sums(double (*a)[4], const Basis *b) {
   return (Wide3){wide_sum(a[0], b), wide_sum(a[1], b), wide_sum(a[2], b)};
 }
 
-// As cag_tensor_basis_first, of several parameters in the same span.
+// Like cag_tensor_basis_first, for several parameters in the same span.
 INLINE void basis_wide(const Direction *d, int p, size_t span, Wide t, Wide *values, Wide *slopes) {
   const double *knots = d->knots + span;
   Wide left[4], right[4], lower[4], before = {0};
@@ -216,7 +216,7 @@ INLINE void columns_wide(const Direction *d, int p, size_t span, const double *v
     basis_wide(d, p, span, t, value, slope);
     for (int l = 0; l <= p; l++) {
       size_t at = (size_t)l * stride + j;
-      // Behind the last of a row stands the next one.
+      // The end of a row is followed by the next row.
       if (some == WIDE) {
         memcpy(m + at, &value[l], sizeof value[l]);
         memcpy(slopes + at, &slope[l], sizeof slope[l]);
@@ -239,7 +239,7 @@ INLINE bool run_wide(const Run *r, int q, bool rational, bool partials, bool nor
   double a[4][4] = {{0}}, da[4][4] = {{0}}, scale[CHUNK], uu[CHUNK], vv[CHUNK];
   const double noise2[2] = {r->noise2[0], r->noise2[1]};
   Wide3 cross[CHUNK / WIDE];
-  // Rows that a lower degree does not have count for nothing.
+  // Rows beyond the degree contribute nothing.
   size_t row[4], room = r->room;
   bool good = true;
   for (int l = 0; l < 4; l++) row[l] = l <= q ? (size_t)l * r->stride : 0;
@@ -345,13 +345,13 @@ static void basis_columns(const Direction *d, size_t span, const double *vs, siz
   }
 }
 
-// Working memory of a grid: everything that does not depend on both parameters.
+// Scratch memory of a grid: everything that depends on only one parameter.
 typedef struct GridWork {
   double *m, *d;   // basis by v, [l * nv + column]
   size_t *span;    // by v, per column
-  size_t *end;     // of the columns in the same span, at the first of them
+  size_t *end;     // end of the columns in the same span, stored at the first of them
   double *row;     // 8 x count_v: planes contracted by u with values and slopes
-  double *du, *dv; // where the caller wants only one of them
+  double *du, *dv; // used if the caller wants only one of them
 } GridWork;
 
 static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
@@ -380,8 +380,8 @@ static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool 
   return CAG_OK;
 }
 
-// sum_k f[k] net[k * stride + j] for the columns lo..hi, in the order of k. Few columns are met as
-// often as many (a cell of a surface alone): so no sums on their way through memory.
+// sum_k f[k] net[k * stride + j] for the columns lo..hi, in the order of k. There are often few
+// columns (a single cell of a surface), so sums are not accumulated in memory.
 INLINE void contract_lines(const double *f, int p, const double *net, size_t stride, size_t lo,
                            size_t hi, double *restrict to) {
   for (size_t j = lo; j < hi; j++) {
@@ -416,7 +416,7 @@ CagStatus cag_tensor_frames(const Nurbs *b, const double *us, size_t nu, const d
   const CagSurface *s = &b->base;
   if (nu == 0 || nv == 0) return CAG_OK;
   bool partials = du || dv, first = partials || normals, positive = true;
-  bool one = partials && !(du && dv); // wanted only: the other goes to a row of its own
+  bool one = partials && !(du && dv); // only one is requested: the other goes to a scratch row
   GridWork w = {0};
   CagStatus status = grid_prepare(b, vs, nv, one, &w, err);
   size_t q = (size_t)b->v.degree, low = SIZE_MAX, high = 0;

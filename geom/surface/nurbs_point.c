@@ -14,14 +14,14 @@ size_t cag_tensor_span(const Direction *d, double t, CagSide side) {
     if (above) low = middle;
     else high = middle;
   }
-  // At an end of the domain the bisection may stop at an empty span; the piece is the nearest one.
+  // At an end of the domain the bisection may stop at an empty span; use the nearest nonempty one.
   while (low > (size_t)d->degree && d->knots[low] >= d->knots[low + 1]) low--;
   while (low + 1 < d->count && d->knots[low] >= d->knots[low + 1]) low++;
   return low;
 }
 
 // Values of the p + 1 basis functions of degree p on the span, by the triangular scheme of Cox and
-// de Boor; `lower` takes those of the degree below (p of them) where it is not NULL.
+// de Boor. `lower` (may be NULL) receives the p values of degree p - 1.
 INLINE void basis_scheme(const Direction *d, int p, size_t span, double t, double *values,
                          double *lower) {
   double left[MAX_DEGREE + 1], right[MAX_DEGREE + 1];
@@ -59,7 +59,7 @@ INLINE void basis_first_of(const Direction *d, int p, size_t span, double t, dou
   }
 }
 
-// Values and first derivatives. The loops of the degrees that are met most are unrolled.
+// Values and first derivatives. The loops for common degrees are unrolled.
 void cag_tensor_basis_first(const Direction *d, size_t span, double t, double *values,
                             double *slopes) {
   switch (d->degree) {
@@ -132,8 +132,8 @@ static CagStatus divide(int n, const double (*h)[4], CagVec3 *out, CagError *err
   return CAG_OK;
 }
 
-// All partials of total order <= n of the homogeneous point. bu, bv: the bases' derivatives; p, q:
-// the degrees, once more, so that their loops may be unrolled.
+// All partials of total order <= n of the homogeneous point. bu, bv: derivatives of the bases; p,
+// q: the degrees, passed separately so that loops can be unrolled.
 INLINE void contract_net(const Nurbs *b, int p, int q, size_t iu, size_t iv, int n,
                          const double *bu, const double *bv, double (*h)[4]) {
   double row[MAX_DEGREE + 1][4];

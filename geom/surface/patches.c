@@ -1,4 +1,4 @@
-// Coons patches keep their curves; Hermite patches become B-spline surfaces at once.
+// Coons patches keep their curves; Hermite patches are converted to B-spline surfaces.
 
 #include "geom/surface/patches.h"
 
@@ -24,7 +24,7 @@ static const CagSurfaceKind coons_kind;
 
 #define MAX_TRIANGLE 25
 
-// Corners differ when they are farther apart than this share of the patch's size.
+// Corners differ if they are farther apart than this fraction of the patch's size.
 #define CORNER_GAP CAG_COINCIDENT
 
 static CagStatus eval_fraction(const CagCurve *c, double v, int n, CagSide side, CagVec3 *out,
@@ -68,14 +68,14 @@ static bool is_polynomial(const CagNet *net) {
   return true;
 }
 
-// The line between two points on the knots of another net: Greville's abscissas reproduce it.
+// The line between two points over the knots of another net; the Greville abscissas reproduce it.
 static void ruling(const CagNet *like, size_t i, double *out) {
   double sum = 0;
   for (int k = 1; k <= like->degree; k++) sum += like->knots[i + (size_t)k];
   *out = sum / like->degree;
 }
 
-// The sum of two ruled surfaces less the bilinear one, all on the same knots.
+// The sum of two ruled surfaces minus the bilinear one, all over the same knots.
 static CagStatus coons_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   const Coons *c = (const Coons *)s;
   CagNet net[4] = {{0}, {0}, {0}, {0}};
@@ -196,7 +196,7 @@ static CagStatus check_corners(const CagVec3 end[4][2], double size, CagError *e
   char text[32], mend[100] = "move one of the two ends onto the other";
   for (int pass = 0; pass < 2; pass++)
     for (unsigned turned = 1; turned < 16; turned++) {
-      // One reversed edge is the better advice than several.
+      // Prefer the advice to reverse a single edge.
       bool single = (turned & (turned - 1)) == 0;
       if (single != (pass == 0)) continue;
       if (largest_gap(end, turned, &ti, &tj) > CORNER_GAP * size) continue;
@@ -302,7 +302,7 @@ static void spline_line(const CagVec3 *values, CagVec3 *tangents, size_t n, size
     CagVec3 before = cag_sub(values[k * stride], values[(k - 1) * stride]);
     CagVec3 after = cag_sub(values[(k + 1) * stride], values[k * stride]);
     CagVec3 right = cag_add(cag_scaled(before, 3 * a * a), cag_scaled(after, 3 * b * b));
-    // Forward elimination; work holds what stands right of the diagonal.
+    // Forward elimination; work holds the superdiagonal.
     double left = k == 1 ? 0 : work[k - 1], pivot = 2 * (a + b) - a * left;
     right = cag_madd(right, -a, tangents[(k - 1) * stride]);
     work[k] = b / pivot;
@@ -362,7 +362,7 @@ static void bezier_knots(const double *steps, size_t pieces, double *knots) {
   knots[k] = at;
 }
 
-// Bezier pieces, then the knots that C2 makes idle are taken out in both directions.
+// Bezier pieces; then the knots that are redundant by C2 are removed in both directions.
 static CagStatus composite_surface(const Composite *c, CagSurface **out, CagError *err) {
   const CagHermiteGrid *g = c->g;
   size_t m = g->nu - 1, n = g->nv - 1, row = g->nv, columns = 3 * n + 1;
@@ -444,8 +444,8 @@ CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, Ca
 
 // --- Triangles ---
 
-// Row m of the tensor net is the Bezier curve of degree m of the points with i = n - m, raised to
-// n.
+// Row m of the tensor product net is the Bezier curve of degree m of the points with i = n - m,
+// elevated to degree n.
 CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface **out,
                                       CagError *err) {
   if (n < 1 || n > MAX_TRIANGLE)

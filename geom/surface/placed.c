@@ -1,8 +1,8 @@
-// A surface seen through an affine map, and turned over: the image of every kind that has no image
-// of its own.
+// A surface under an affine map, optionally flipped: the image of kinds without a transform of
+// their own.
 //
-// Kind "transformed". S'(u, v) = M S(u, v), or M S(u, v0 + v1 - v) where it is flipped. Placing a
-// placed surface composes the maps, so that there is never more than one wrapper.
+// Kind "transformed". S'(u, v) = M S(u, v), or M S(u, v0 + v1 - v) if it is flipped. Placing a
+// placed surface composes the maps, so wrappers are never nested.
 
 #include <stdio.h>
 
@@ -14,7 +14,7 @@ typedef struct Placed {
   CagSurface *inner;
   CagTransform map;
   bool flip;
-  CagKeptBreaks breaks; // where it is flipped: those of `inner` in v
+  CagKeptBreaks breaks; // if flipped: those of `inner` in v
 } Placed;
 
 static const CagSurfaceKind placed_kind;

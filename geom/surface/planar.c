@@ -1,8 +1,7 @@
-// A flat piece: the part of a placed XY plane within a region.
+// A planar surface: the part of a placed XY plane within a region.
 //
 // The rectangle of parameters is the region's bounding box; points of it outside the region can be
-// evaluated but do not belong to the surface, which is why area, volume, bounds and meshes ask for
-// the region.
+// evaluated but do not belong to the surface, so area, volume, bounds, and meshes use the region.
 
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +36,7 @@ static CagStatus planar_eval(const CagSurface *s, double u, double v, int n, Cag
   return CAG_OK;
 }
 
-// The whole rectangle, and so exact only where the region is one.
+// Covers the whole rectangle, so it is exact only if the region is one.
 static CagStatus planar_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   const Planar *p = (const Planar *)s;
   double area, rectangle = (s->u1 - s->u0) * (s->v1 - s->v0);

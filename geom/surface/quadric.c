@@ -1,25 +1,24 @@
-// Quadrics: values, maps, and the reduction to standard form.
+// Quadrics: evaluation, transforms, and the reduction to standard form.
 //
-// The symmetric 3x3 matrix of the second-degree terms is diagonalized by Jacobi rotations; in the
-// eigenbasis the square is completed for every eigenvalue that is not zero, and what remains (a
-// constant k1, a linear term of length g along the directions of zero eigenvalues) decides the
-// class (Beyer 1987, CRC Standard Mathematical Tables, quadrics). Before that, lengths are measured
-// in units of the quadric's own size, so that the decisions do not depend on the unit of the
-// drawing.
+// The symmetric 3x3 matrix of the quadratic terms is diagonalized by Jacobi rotations. In the
+// eigenbasis the square is completed for every nonzero eigenvalue; the remainder (a constant k1, a
+// linear term of length g along the directions of zero eigenvalues) determines the class (Beyer
+// 1987, CRC Standard Mathematical Tables, quadrics). Before that, lengths are scaled to the
+// quadric's own size, so that decisions do not depend on the unit of the drawing.
 
-// Where the coefficients are integers of a moderate size, ranks and the constant are found by exact
-// integers instead: a determinant is then 0 or it is not.
+// If the coefficients are integers of moderate size, ranks and the constant are computed exactly in
+// integers instead: a determinant is then exactly 0 or not.
 
 #include "geom/surface/quadric.h"
 
 #include <float.h>
 #include <math.h>
 
-// An eigenvalue below this part of the largest is zero: a coefficient in a script has fewer digits
-// than this leaves.
+// An eigenvalue below this fraction of the largest is zero: coefficients in scripts have fewer
+// digits than this.
 #define RANK_TOLERANCE 1e-10
-// The constant and the linear rest come out of a subtraction of numbers near 1 (in the quadric's
-// own units): this much is its rounding.
+// The constant and the linear remainder result from a subtraction of numbers near 1 (in the
+// quadric's own units): this is its rounding.
 #define REST_TOLERANCE 1e-13
 
 // name, in the order of CagQuadricClass
@@ -105,8 +104,8 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 
 // --- Eigenvectors ---
 
-// Cyclic Jacobi of a symmetric matrix; v holds the eigenvectors. A diagonal matrix is left alone,
-// to the last bit.
+// Cyclic Jacobi method for a symmetric matrix; v holds the eigenvectors. A diagonal matrix is not
+// changed at all.
 static void jacobi(double a[3][3], CagVec3 v[3]) {
   double e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int sweep = 0; sweep < 40; sweep++) {
@@ -147,7 +146,7 @@ static void jacobi(double a[3][3], CagVec3 v[3]) {
 
 static double entry(CagVec3 v, int i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
 
-// True when the component of largest magnitude is negative (ties: the first).
+// Whether the component of largest magnitude is negative (ties: the first).
 static bool points_down(CagVec3 v) {
   double best = 0;
   for (int i = 2; i >= 0; i--)
@@ -157,8 +156,8 @@ static bool points_down(CagVec3 v) {
 
 // --- Exact ranks ---
 
-// Twice the coefficients are integers up to this: determinants of order 4 have less than 70 bits,
-// and no eigenvalue is so small that its sign is rounding.
+// Twice the coefficients must be integers up to this: determinants of order 4 then have less than
+// 70 bits, and no eigenvalue is so small that its sign is rounding.
 #define EXACT_MOST 16384
 
 __extension__ typedef __int128 Integer;
@@ -168,7 +167,7 @@ typedef struct ExactRanks {
   double k1; // the constant once the squares are completed, where no linear term remains
 } ExactRanks;
 
-// Of the rows and columns given, by the first row.
+// The minor of the given rows and columns, expanded along the first row.
 static Integer minor_of(const Integer m[4][4], const int *rows, const int *columns, int n) {
   if (n == 0) return 1;
   Integer sum = 0;
@@ -182,7 +181,7 @@ static Integer minor_of(const Integer m[4][4], const int *rows, const int *colum
   return sum;
 }
 
-// The n of `size` places that the set bits of a mask name; false: another number of bits.
+// The n of `size` indices given by the set bits of a mask; false: another number of bits.
 static bool places_of(unsigned mask, int size, int n, int *out) {
   int count = 0;
   for (int i = 0; i < size; i++)
@@ -219,8 +218,8 @@ static bool exact_ranks(const CagQuadric *q, ExactRanks *out) {
   const Integer(*rows_of)[4] = (const Integer(*)[4])m;
   out->rank3 = rank_of(rows_of, 3);
   out->rank4 = rank_of(rows_of, 4);
-  // With n = rank3 the sums of principal minors of order n, and of those of order n + 1 with the
-  // last row, are the products of the eigenvalues without and with the constant.
+  // With n = rank3 the sum of the principal minors of order n, and that of the minors of order n +
+  // 1 with the last row, are the products of the nonzero eigenvalues without and with the constant.
   Integer without = 0, with = 0;
   for (unsigned a = 0; a < 8; a++) {
     int places[4];
@@ -236,25 +235,26 @@ static bool exact_ranks(const CagQuadric *q, ExactRanks *out) {
 // --- Reduction ---
 
 // The equation in its eigenbasis, with lengths in units of `size` and divided by about the largest
-// eigenvalue: sum lam_i y_i^2 + lin_i y_i + k, squares completed where lam_i is not zero. Both
-// units are powers of two, so that they cost no digit.
+// eigenvalue: sum lam_i y_i^2 + lin_i y_i + k, with squares completed if lam_i is not zero. Both
+// units are powers of two, so scaling is exact.
 typedef struct Reduced {
   double size;
   double lam[3], lin[3], k1;
   CagVec3 v[3];
   double center[3]; // in the eigenbasis, own units; 0 along zero eigenvalues
-  double g;         // length of the linear rest
+  double g;         // length of the linear remainder
   int rank3;
 } Reduced;
 
-// The power of two that is at most x > 0.
+// The largest power of two not above x > 0.
 static double power_of_two(double x) {
   int exponent;
   frexp(x, &exponent);
   return ldexp(1, exponent - 1);
 }
 
-// Between the eigenvalues (the diagonal) that are 0 and those that are not, of a known rank.
+// A limit between the eigenvalues (the diagonal) that are 0 and those that are not, for a known
+// rank.
 static double rank_limit(const double m[3][3], int rank) {
   double sizes[3] = {fabs(m[0][0]), fabs(m[1][1]), fabs(m[2][2])};
   for (int i = 0; i < 2; i++)
@@ -281,7 +281,7 @@ static void reduce(const CagQuadric *q, Reduced *r) {
   r->g = 0;
   ExactRanks exact = {0};
   const bool is_exact = exact_ranks(q, &exact);
-  double terms = 1; // of which k1 is the sum, with what the rounding of each counts
+  double terms = 1; // terms whose sum is k1, weighted by their rounding
   const double zero =
       is_exact ? rank_limit((const double(*)[3])m, exact.rank3) : RANK_TOLERANCE * largest;
   for (int i = 0; i < 3; i++) {
@@ -297,7 +297,7 @@ static void reduce(const CagQuadric *q, Reduced *r) {
     r->center[i] = -r->lin[i] / (2 * r->lam[i]);
     r->k1 -= r->lin[i] * r->lin[i] / (4 * r->lam[i]);
     terms += r->lin[i] * r->lin[i] / (4 * fabs(r->lam[i]));
-    // Eigenvalues have rounding of the largest one.
+    // All eigenvalues have the rounding of the largest one.
     terms += 4 * (DBL_EPSILON / REST_TOLERANCE) * r->center[i] * r->center[i];
   }
   if (is_exact) {
@@ -310,10 +310,10 @@ static void reduce(const CagQuadric *q, Reduced *r) {
   if (fabs(r->k1) <= REST_TOLERANCE * terms) r->k1 = 0;
 }
 
-// The roles of the eigenvectors: which is e1, e2, e3, and their senses.
+// The assignment of eigenvectors to e1, e2, e3, and their orientation.
 typedef struct Roles {
   int axis[3];
-  bool fixed[3]; // the sense must stay
+  bool fixed[3]; // the orientation must not change
 } Roles;
 
 static double nearness(const Reduced *r, const int axis[3]) {
@@ -322,8 +322,7 @@ static double nearness(const Reduced *r, const int axis[3]) {
   return sum;
 }
 
-// Of e1 and e2 (or of all three) whose roles are alike, gives the order nearest to the world's
-// axes.
+// Orders e1 and e2 (or all three), if they are interchangeable, to be nearest to the world's axes.
 static void order_free(const Reduced *r, int axis[3], bool all) {
   static const int ORDER[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}};
   int start[3] = {axis[0], axis[1], axis[2]};
@@ -338,8 +337,8 @@ static void order_free(const Reduced *r, int axis[3], bool all) {
   }
 }
 
-// Right-handed frame with the given origin: free senses go along the world's axes, then the free
-// one that is farthest from its axis gives way to the handedness.
+// Right-handed frame with the given origin: free orientations follow the world's axes; then the
+// free axis that is farthest from its world axis is reversed if necessary for handedness.
 static void set_frame(const CagVec3 e[3], const bool fixed[3], CagVec3 origin, CagTransform *out) {
   CagVec3 axis[3];
   for (int i = 0; i < 3; i++)
@@ -366,7 +365,7 @@ static CagVec3 from_basis(const Reduced *r, const double y[3]) {
   return p;
 }
 
-// Index of the eigenvalue whose sign is alone among those that are not zero (three of them).
+// Index of the eigenvalue whose sign differs from the other two (all three are nonzero).
 static int odd_sign(const double lam[3]) {
   int positive = (lam[0] > 0) + (lam[1] > 0) + (lam[2] > 0);
   for (int i = 0; i < 3; i++)
@@ -391,7 +390,7 @@ static void central(const Reduced *r, CagQuadricForm *f) {
     axis[0] = (odd + 1) % 3;
     axis[1] = (odd + 2) % 3;
     order_free(r, axis, false);
-    // lam / -k1 of the odd axis: negative is one sheet.
+    // lam / -k1 of the odd axis: negative means one sheet.
     f->class_id = r->k1 == 0                 ? CAG_QUADRIC_CONE
                   : r->lam[odd] * -r->k1 < 0 ? CAG_QUADRIC_HYPERBOLOID_ONE
                                              : CAG_QUADRIC_HYPERBOLOID_TWO;
@@ -415,7 +414,8 @@ static void paraboloid(const Reduced *r, int zero, CagQuadricForm *f) {
   vertex[zero] = -r->k1 / r->lin[zero];
   CagVec3 up = r->v[zero];
   double slope = r->lin[zero];
-  // Z = -(lam_1 X^2 + lam_2 Y^2) / slope: an elliptic one opens along e3; of a saddle e3 goes up.
+  // Z = -(lam_1 X^2 + lam_2 Y^2) / slope: an elliptic paraboloid opens along e3; for a saddle e3
+  // points up.
   if (elliptic ? r->lam[axis[0]] * slope > 0 : points_down(up)) {
     up = cag_scaled(up, -1);
     slope = -slope;
@@ -443,7 +443,7 @@ static void cylinder(const Reduced *r, int zero, CagQuadricForm *f) {
   } else {
     f->class_id = r->k1 == 0 ? CAG_QUADRIC_INTERSECTING_PLANES : CAG_QUADRIC_HYPERBOLIC_CYLINDER;
   }
-  // e1 is the axis that a hyperbola meets.
+  // e1 is the axis that intersects the hyperbola.
   if (same || r->k1 == 0) order_free(r, axis, false);
   else if (r->lam[axis[0]] * r->k1 > 0) {
     int swap = axis[0];
@@ -461,8 +461,8 @@ static void cylinder(const Reduced *r, int zero, CagQuadricForm *f) {
   set_frame(e, fixed, from_basis(r, r->center), &f->frame);
 }
 
-// One eigenvalue: y along its vector; the linear rest spans a direction w of the plane
-// perpendicular to it.
+// One eigenvalue: y is along its eigenvector; the linear remainder is along a direction w in the
+// perpendicular plane.
 static void single(const Reduced *r, int one, CagQuadricForm *f) {
   if (r->g == 0) {
     f->class_id = r->k1 == 0                ? CAG_QUADRIC_COINCIDENT_PLANES
@@ -494,7 +494,7 @@ static void single(const Reduced *r, int one, CagQuadricForm *f) {
   set_frame(e, fixed, from_basis(r, vertex), &f->frame);
 }
 
-// No term of second degree.
+// No quadratic terms.
 static void linear(const CagQuadric *q, CagQuadricForm *f) {
   CagVec3 n = cag_vec3(q->c[6], q->c[7], q->c[8]);
   double length = cag_norm(n);

@@ -1,22 +1,22 @@
-// What a quadric's equation tells about its points and its plane sections.
+// Points of a quadric given by its equation, and its plane sections.
 //
-// Sums of a few products are compared with the sum of their magnitudes, whose rounding they are
-// known to: that makes every decision here independent of the unit and of the equation's factor.
+// Sums of a few products are compared with the sum of their magnitudes, to which their rounding is
+// relative. Therefore all decisions are independent of the unit and of the equation's factor.
 
 #include "geom/surface/quadric_equation.h"
 
 #include <float.h>
 #include <math.h>
 
-// A point counts as one of the surface when the terms of the equation cancel to this part: points
-// that a script computes in a few steps do.
+// A point is on the surface if the terms of the equation cancel to this fraction, as for points
+// that a script computes in a few steps.
 #define ON_SURFACE 1e-8
-// The gradient vanishes when its terms cancel to this part.
+// The gradient vanishes if its terms cancel to this fraction.
 #define NO_GRADIENT 1e-11
-// Eigenvalues of the form in the tangent plane below this part of the larger one are 0. The point
-// moves them by its own error.
+// Eigenvalues of the form in the tangent plane below this fraction of the larger one are 0. They
+// change with the error of the point.
 #define NO_CURVATURE 1e-8
-// Coefficients of a section below this many roundings of their terms are 0.
+// Coefficients of a section below this number of rounding errors of their terms are 0.
 #define ROUNDINGS (16 * DBL_EPSILON)
 
 static const int TERMS = 10;
@@ -41,7 +41,7 @@ CagVec3 cag_quadric_gradient(const CagQuadric *q, CagVec3 p) {
                   c[5] * p.x + c[4] * p.y + 2 * c[2] * p.z + c[8]);
 }
 
-// The largest sum of magnitudes of a gradient's component.
+// The largest sum of magnitudes over the gradient's components.
 static double gradient_size(const CagQuadric *q, CagVec3 p) {
   CagQuadric positive;
   for (int i = 0; i < TERMS; i++) positive.c[i] = fabs(q->c[i]);
@@ -126,7 +126,7 @@ CagTransform cag_plane_frame(const CagPlane *plane) {
   return t;
 }
 
-// A sum that is nothing but its own rounding is 0: else a parabola would be a very long ellipse.
+// Replaces a sum that is only rounding by 0; otherwise a parabola would become a very long ellipse.
 static double settled(double value, double magnitude) {
   return fabs(value) <= ROUNDINGS * magnitude ? 0 : value;
 }

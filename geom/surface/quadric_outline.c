@@ -1,9 +1,10 @@
-// The part of a sheet of a quadric between planes: from cells of its parameter plane to surfaces.
+// The part of a sheet of a quadric within half spaces: from cells of its parameter plane to
+// surfaces.
 //
-// Cells that share a piece of a line of constant u are one; what is left of those lines and the
-// ends of the cells in v are the edges of the outline. They are followed with the inside on the
-// left. Where an outline is a rectangle, the piece is a patch; elsewhere a patch that is trimmed by
-// splines, which interpolate the exact outline.
+// Cells that share a piece of a line of constant u are merged; the remaining pieces of those lines
+// and the ends of the cells in v are the edges of the outline. They are followed with the inside on
+// the left. If an outline is a rectangle, the piece is a plain patch; otherwise it is a patch
+// trimmed by splines that interpolate the exact outline.
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 #include "geom/surface/quadric_within.h"
 #include "geom/surface/trimmed.h"
 
-// Ends of cells at one place of u that are nearer than this are one.
+// Ends of cells at one place in u that are closer than this coincide.
 #define SAME_VERTEX 1e-11
 
 typedef struct Vertex {
@@ -41,7 +42,7 @@ typedef struct Outline {
   Ends *ends;
   Edge *edges;
   size_t edge_count;
-  size_t *path; // edges of the loop under way
+  size_t *path; // edges of the current loop
   size_t path_count;
 } Outline;
 
@@ -76,8 +77,8 @@ static bool is_covered(const Outline *o, size_t place, int right_end, size_t ver
   return false;
 }
 
-// The ends of the cells that begin or end at a place, as vertices, and the edges between these;
-// false: an end at infinity.
+// Adds the ends of the cells at a place as vertices, and the edges between them; false: an end at
+// infinity.
 static bool add_vertices(Outline *o, size_t place, End *ends) {
   const CagQuadricCells *c = o->c;
   size_t n = 0;
@@ -126,16 +127,16 @@ static int direction_of(const Edge *e) {
   return e->kind == EDGE_HIGH ? LEFT : RIGHT;
 }
 
-// How far an edge is turned clockwise from the one that arrives: from none, to the other edge of a
-// cell that ends in the vertex, to a whole turn.
+// Clockwise angle from the arriving edge: from none, via the other edge of a cell that ends in the
+// vertex, to a full turn.
 static int turned(const Edge *arrives, const Edge *e) {
   const bool along = arrives->kind != EDGE_ACROSS && e->kind != EDGE_ACROSS;
   if (along && e->kind != arrives->kind && e->cell == arrives->cell) return 0;
   return (direction_of(e) - direction_of(arrives) + 5) % 4 + 1;
 }
 
-// The edge that follows; where several leave a vertex, the first one clockwise from the edge that
-// arrives, so that pieces which touch in a point stay loops of their own.
+// The next edge. If several leave a vertex, the first one clockwise from the arriving edge, so that
+// pieces that touch in a point stay separate loops.
 static Edge *next_edge(const Outline *o, const Edge *arrives) {
   Edge *found = NULL;
   int least = 0;
@@ -161,8 +162,8 @@ static void follow(Outline *o, size_t start) {
   }
 }
 
-// Whether the loop runs around a rectangle, which it then gives. Where the same v bounds all cells,
-// every side is a limit of u or of v alone.
+// Whether the loop is a rectangle, which is then returned. If all cells have the same constant
+// bounds of v, every side is a line of constant u or v.
 static bool is_rectangle(const Outline *o, double u[2], double v[2]) {
   const CagQuadricCells *c = o->c;
   u[0] = v[0] = INFINITY;
@@ -182,7 +183,7 @@ static bool is_rectangle(const Outline *o, double u[2], double v[2]) {
 // --- Splines ---
 
 #define DEGREE 7
-// Interpolating pieces are halved down to this part of an edge.
+// Interpolating pieces are halved down to this fraction of an edge.
 #define LEAST_PIECE 1e-6
 
 typedef struct Spline {
@@ -200,8 +201,8 @@ static void push(Spline *s, CagVec3 p) {
   s->points[s->count++] = p;
 }
 
-// An edge of a cell from left to right, with a parameter 0..1 in which it is smooth: about a fold,
-// v goes with the square root of u.
+// An edge of a cell from left to right, with a parameter 0..1 in which it is smooth: near a fold, v
+// is a function of the square root of u.
 typedef struct Graph {
   const CagQuadricCells *c;
   const CagQuadricBound *bound;
@@ -232,7 +233,7 @@ static void bernstein(double t, double out[DEGREE + 1]) {
 
 static double node(int i) { return (1 - cos(M_PI * i / DEGREE)) / 2; }
 
-// The control points of the polynomial through points at the nodes: Gauss with pivots.
+// The control points of the polynomial through points at the nodes, by elimination with pivoting.
 static void interpolate(CagVec3 p[DEGREE + 1]) {
   double m[DEGREE + 1][DEGREE + 1];
   for (int i = 0; i <= DEGREE; i++) bernstein(node(i), m[i]);
@@ -340,7 +341,7 @@ static void fit(Spline *out, const Graph *g, double s0, double s1, bool backward
     fit(out, g, backwards ? s0 : half, backwards ? half : s1, backwards);
     return;
   }
-  // The first point is the last one of the piece before.
+  // The first point is the last one of the previous piece.
   for (int i = 1; i <= DEGREE; i++) push(out, p[backwards ? DEGREE - i : i]);
 }
 
@@ -363,7 +364,7 @@ static void add_to_spline(const Outline *o, const Edge *e, Spline *out) {
                    c->places[cell->place + 1].u,
                    {is_folded(c, b, cell->place), is_folded(c, b, cell->place + 1)}};
   fit(out, &g, 0, 1, e->kind == EDGE_HIGH);
-  // It ends in the vertex itself.
+  // End exactly in the vertex.
   const Vertex *end = &o->vertices[e->to];
   if (!out->failed) out->points[out->count - 1] = cag_vec3(end->u, end->v, 0);
 }
@@ -398,7 +399,7 @@ static CagStatus add_patch(const Outline *o, const double u[2], const double v[2
   return status;
 }
 
-// An outer loop with its holes.
+// Adds an outer loop with its holes.
 static CagStatus add_trimmed(const Outline *o, const CagRegion *all, size_t outer,
                              CagSurface **list, size_t most, size_t *n, CagError *err) {
   if (*n == most) return CAG_OK;
@@ -459,7 +460,7 @@ static CagStatus add_surfaces(Outline *o, CagSurface **list, size_t most, size_t
 
 CagStatus cag_quadric_outline(const CagQuadricCells *c, CagSurface **list, size_t most, size_t *n,
                               CagError *err) {
-  // Four ends of every cell are vertices; between neighboring ones there is one edge at most.
+  // The four ends of every cell are vertices; between neighboring ones there is at most one edge.
   const size_t cells = c->cell_count;
   Outline o = {.c = c};
   o.vertices = cag_malloc(4 * cells * sizeof *o.vertices);

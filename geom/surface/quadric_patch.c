@@ -1,8 +1,8 @@
 // The real pieces of quadrics as parametric patches.
 //
-// In units of the semi-axes every form is a product of functions of u and of v in each coordinate
-// (the saddle has a second product in z), so one table of such functions serves all of them, with
-// any number of partials. A frame, any affine map, places the unit form.
+// In units of the semi-axes each coordinate of every form is a product of a function of u and a
+// function of v (the saddle has a second product in z), so one table of functions covers all forms,
+// with any number of partials. A frame, which may be any affine map, places the unit form.
 
 #include <math.h>
 #include <stdio.h>
@@ -84,7 +84,7 @@ static void derivatives(Function f, double t, int n, double *out) {
   case COS:
   case SIN:
     cag_sincos(t, &s, &c);
-    // cos -> -sin -> -cos; sin starts a quarter earlier.
+    // cos -> -sin -> -cos; sin is a quarter turn ahead.
     a = f == COS ? c : s;
     b = f == COS ? -s : c;
     for (int k = 0; k <= n; k++) {
@@ -154,8 +154,8 @@ static CagStatus patch_grid(const CagSurface *s, const double *us, size_t nu, co
 
 // --- Exact form ---
 
-// Control points of the unit form are products of those of two arcs. `x` and `z` name the entries
-// of the arc by v (0, 1, or 2: its weight) that go into x, y and into z.
+// Control points of the unit form are products of those of two arcs. `x` and `z` select the entries
+// of the arc in v (0, 1, or 2: its weight) for x, y and for z.
 typedef struct Exact {
   CagConicArc u, v;
   int x, z;
@@ -191,7 +191,7 @@ static CagStatus patch_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
                                       out, err);
 }
 
-// --- The rest of the table ---
+// --- Other functions of the kind ---
 
 // The implicit form of each shape, in the order of CagQuadric.
 static const double UNIT_EQUATION[][10] = {
@@ -206,7 +206,7 @@ static CagStatus patch_transform(const CagSurface *s, const CagTransform *t, Cag
                                  CagError *err) {
   const Patch *p = (const Patch *)s;
   if (!cag_transform_is_affine(t)) return cag_surface_transform_placed(s, t, out, err);
-  // A map that flattens leaves no quadric.
+  // A singular map leaves no quadric.
   CagTransform frame = cag_transform_multiply(t, &p->frame), unused;
   if (cag_transform_inverse(t, &unused, err)) return cag_surface_placed(s, t, false, out, err);
   CagStatus status = cag_surface_quadric(p->shape, &frame, s->u0, s->u1, s->v0, s->v1, out, err);
@@ -272,7 +272,7 @@ bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out) {
   return out->pieces > 0 && out->trimmed == trimmed;
 }
 
-// --- The other normal ---
+// --- Reversing the normal ---
 
 // The shapes are symmetric in the coordinate that is odd in u.
 static CagStatus turn_patch(const Patch *p, CagSurface **out, CagError *err) {
@@ -359,8 +359,8 @@ size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2
 
 // --- Pieces within a box ---
 
-// The pieces found so far: sheets, nappes, branches, planes, or what a box leaves of them: no box
-// leaves more than 18, as its edges meet a quadric in 24 points.
+// Maximum number of pieces: sheets, nappes, branches, planes, or what a box leaves of them. A box
+// leaves at most 18, since its edges intersect a quadric in at most 24 points.
 #define PIECES_MOST 32
 typedef struct Pieces {
   CagSurface *s[PIECES_MOST];
@@ -369,13 +369,13 @@ typedef struct Pieces {
 
 typedef struct Clip {
   const CagQuadricForm *form;
-  CagVec3 lo, hi; // canonical coordinates that the box reaches; infinite without one
+  CagVec3 lo, hi; // range of canonical coordinates in the box; infinite without one
   CagQuadricSide sides[CAG_QUADRIC_SIDES];
   size_t side_count;
   double size;
 } Clip;
 
-// The unit form's frame: columns times the semi-axes (with signs), origin shifted by nothing.
+// The unit form's frame: columns times the semi-axes (with signs), with the same origin.
 static CagTransform scaled_frame(const CagQuadricForm *f, double a, double b, double c) {
   CagTransform t = f->frame;
   for (int i = 0; i < 3; i++) {
@@ -421,7 +421,7 @@ static CagStatus pieces_about_axis(const Clip *c, Pieces *p, CagError *err) {
   }
 }
 
-// Shapes without angles: over somewhat more of u than the box reaches.
+// For shapes without angles: over somewhat more of u than the box covers.
 static CagStatus add_across(Pieces *p, const Clip *c, CagQuadricShape shape,
                             const CagTransform *frame, double u0, double u1, CagError *err) {
   const double room = (u1 - u0) / 64;
@@ -454,7 +454,7 @@ static CagStatus pieces_across(const Clip *c, Pieces *p, CagError *err) {
 
 #define POLYGON_MOST 12 // a square cut by six planes
 
-// Keeps what lies on the side sign * coordinate <= sign * limit (Sutherland and Hodgman 1974).
+// Keeps the side sign * coordinate <= sign * limit (Sutherland and Hodgman 1974).
 static size_t cut(CagVec3 *polygon, size_t n, int axis, double limit, double sign) {
   CagVec3 kept[POLYGON_MOST];
   size_t count = 0;
@@ -487,7 +487,7 @@ static CagStatus add_plane(Pieces *p, CagVec3 through, CagVec3 x, CagVec3 y, con
     count = cut(polygon, count, axis, hi[axis], 1);
     count = cut(polygon, count, axis, lo[axis], -1);
   }
-  // Corners that coincide to rounding are one.
+  // Merges corners that coincide to rounding.
   CagVec3 flat[POLYGON_MOST];
   size_t distinct = 0;
   for (size_t i = 0; i < count; i++) {
@@ -534,7 +534,7 @@ static CagStatus pieces_of_planes(const CagQuadricForm *f, const CagBounds *box,
   }
 }
 
-// The sides of the box, or the two of the range of z, and the canonical coordinates it reaches.
+// The sides of the box, or the two of the range of z, and the range of canonical coordinates.
 static CagStatus set_clip(const CagQuadricForm *f, const CagBounds *within, bool z_only, Clip *out,
                           CagError *err) {
   *out = (Clip){.form = f, .size = cag_norm(cag_vec3(f->semi[0], f->semi[1], f->semi[2]))};
@@ -562,10 +562,11 @@ static CagStatus set_clip(const CagQuadricForm *f, const CagBounds *within, bool
   return CAG_OK;
 }
 
-// Directions of z across the axis below this part of those along it are rounding.
+// Components of z across the axis below this fraction of those along it are rounding.
 #define LEVEL 1e-9
 
-// Whether all planes of constant z meet the quadric in ellipses, so that a range of z bounds it.
+// Whether all planes of constant z intersect the quadric in ellipses, so that a range of z bounds
+// it.
 static bool is_bounded_by_z(const CagQuadricForm *f) {
   const double a = f->frame.m[2][0] * f->semi[0], b = f->frame.m[2][1] * f->semi[1];
   const double along = fabs(f->frame.m[2][2]);

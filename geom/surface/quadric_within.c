@@ -1,12 +1,12 @@
-// The part of a sheet of a quadric between planes: where in its parameter plane that is.
+// The part of a sheet of a quadric within half spaces, as a part of its parameter plane.
 //
-// In units of the semi-axes a plane is a x + b y + c z = d, and along a line of constant u it is an
-// equation for v of the second degree (in v, in e^v, or in the sine and cosine of v), so that its
-// roots have a closed form. Which of the roots end the intervals of v that lie within all planes
-// changes at places of u only where two roots of a plane become one, where a line common to two
-// planes meets the quadric, or where a root passes an end of the domain. All these places have a
-// closed form as well. Between neighboring ones the intervals are found at the middle; they are the
-// cells of which the outline is made.
+// In units of the semi-axes a plane is a x + b y + c z = d. On a line of constant u it is a
+// quadratic equation for v (in v, in e^v, or in the sine and cosine of v), so its roots have a
+// closed form. The roots that bound the intervals of v within all half spaces change only at places
+// in u at which two roots of a plane coincide, the intersection of two planes meets the quadric, or
+// a root passes an end of the domain. All these places have a closed form as well. Between
+// neighboring places the intervals are determined at the middle; they are the cells that form the
+// outline.
 
 #include "geom/surface/quadric_within.h"
 
@@ -15,11 +15,11 @@
 
 #include "base/memory.h"
 
-// Coefficients below this part of the largest are rounding of the frame.
+// Coefficients below this fraction of the largest are rounding of the frame.
 #define ALIGNED 1e-14
-// A plane that passes the top of a sheet by this part touches it.
+// A plane that passes the apex of a sheet within this fraction touches it.
 #define TOUCHING 1e-13
-// Places nearer than this part of the domain are one.
+// Places closer than this fraction of the domain coincide.
 #define SAME_PLACE 1e-11
 
 static bool is_angular(CagQuadricShape s) {
@@ -55,7 +55,7 @@ static double part_of_u(CagQuadricShape shape, const CagQuadricCut *p, double u)
 }
 
 // Real roots of a x^2 + 2 b x + c = 0, the one with minus before the square root first; NAN: none.
-// rest: b^2 - a c, where it is known better than by this difference.
+// rest: b^2 - a c, if a more accurate value is known.
 static void quadratic(double a, double b, double c, double rest, double out[2]) {
   out[0] = out[1] = NAN;
   if (!(rest >= 0)) return;
@@ -76,7 +76,7 @@ static double half_turn(double v) {
   return v;
 }
 
-// Where the two roots become one: the square of the part of u there (about an axis); NAN: nowhere.
+// Where the two roots coincide: the square of the part of u there (about an axis); NAN: nowhere.
 static double fold_square(CagQuadricShape shape, const CagQuadricCut *p) {
   switch (shape) {
   case CAG_SHAPE_ELLIPSOID: return (p->d - p->c) * (p->d + p->c);
@@ -87,19 +87,19 @@ static double fold_square(CagQuadricShape shape, const CagQuadricCut *p) {
   }
 }
 
-// What is known of the roots at a place: they need not exist, they do (what denies that is
-// rounding), or the two are one.
+// What is known about the roots at a place: they may exist, they exist (a contrary result is
+// rounding), or they coincide.
 typedef enum Known { MAY_EXIST, EXIST, FOLDED } Known;
 
 static double known_rest(double rest, Known known) {
   return known == FOLDED ? 0 : known == EXIST ? fmax(rest, 0) : rest;
 }
 
-// v at which a cut meets the line of constant u; NAN: nowhere, or not there.
+// v at which a cut intersects the line of constant u; NAN: none.
 static void roots(CagQuadricShape shape, const CagQuadricCut *p, double u, Known known,
                   double out[2]) {
   const double at = part_of_u(shape, p, u), square = fold_square(shape, p);
-  // (at - fold) (at + fold) has no cancellation beyond that of the difference itself.
+  // (at - fold) (at + fold) has no further cancellation than the difference itself.
   double rest = square > 0 ? (at - sqrt(square)) * (at + sqrt(square)) : at * at - square;
   if (shape == CAG_SHAPE_HYPERBOLOID_ONE) rest = -rest; // roots within the folds
   rest = known_rest(rest, known);
@@ -151,7 +151,7 @@ static void add_place(CagQuadricCells *c, double u, unsigned folds) {
   if (u >= s->u0 && u <= s->u1) c->places[c->place_count++] = (CagQuadricPlace){u, folds};
 }
 
-// Where the part of u has a value.
+// Adds the solutions for a given value of the part of u.
 static void add_solutions(CagQuadricCells *c, const CagQuadricCut *p, double value,
                           unsigned folds) {
   double u[2] = {NAN, NAN};
@@ -180,7 +180,7 @@ static void add_solutions(CagQuadricCells *c, const CagQuadricCut *p, double val
   for (int k = 0; k < 2; k++) add_place(c, u[k], folds);
 }
 
-// Where a root begins, ends, or passes the end of the domain or infinity.
+// Adds the places at which a root begins, ends, or passes the end of the domain or infinity.
 static void add_turns(CagQuadricCells *c, size_t side) {
   const CagQuadricCut *p = &c->cuts[side];
   const CagQuadricShape shape = c->sheet->shape;
@@ -206,14 +206,14 @@ static void add_turns(CagQuadricCells *c, size_t side) {
 
 static CagVec3 direction(const CagQuadricCut *p) { return cag_vec3(p->a, p->b, p->c); }
 
-// The terms of second degree of the unit form for two vectors.
+// The quadratic terms of the unit form for two vectors.
 static double second_degree(CagQuadricShape shape, CagVec3 p, CagVec3 q) {
   static const double SIGN[][3] = {{1, 1, 1},  {1, 1, -1}, {1, 1, -1}, {1, 1, -1}, {1, 1, 0},
                                    {1, -1, 0}, {1, 1, 0},  {0, 1, 0},  {1, -1, 0}};
   return SIGN[shape][0] * p.x * q.x + SIGN[shape][1] * p.y * q.y + SIGN[shape][2] * p.z * q.z;
 }
 
-// The rest of it, linear in p.
+// The remaining terms, linear in p.
 static double first_degree(CagQuadricShape shape, CagVec3 p) {
   return shape == CAG_SHAPE_PARABOLIC_CYLINDER ? -4 * p.x
          : shape == CAG_SHAPE_ELLIPTIC_PARABOLOID || shape == CAG_SHAPE_HYPERBOLIC_PARABOLOID ? -p.z
@@ -238,12 +238,12 @@ static void add_place_of(CagQuadricCells *c, CagVec3 p) {
   case CAG_SHAPE_HYPERBOLIC_CYLINDER: add_place(c, asinh(p.y), 0); return;
   default:
     add_place(c, atan2(p.y, p.x), 0);
-    // The other nappe of a cone has it half a turn on.
+    // On the other nappe of a cone it is half a turn further.
     if (c->sheet->shape == CAG_SHAPE_CONE) add_place(c, atan2(-p.y, -p.x), 0);
   }
 }
 
-// Where the line common to two cuts meets the quadric.
+// Adds the places at which the intersection of two cuts meets the quadric.
 static void add_corners(CagQuadricCells *c, const CagQuadricCut *p, const CagQuadricCut *q) {
   const CagQuadricShape shape = c->sheet->shape;
   const CagVec3 m = direction(p), n = direction(q), along = cag_cross(m, n);
@@ -283,7 +283,7 @@ static void find_places(CagQuadricCells *c) {
   for (size_t i = 1; i < c->place_count; i++) {
     CagQuadricPlace *last = &c->places[n - 1];
     if (c->places[i].u - last->u <= same) {
-      // A fold is the more exact one of them.
+      // A fold is the most accurate of them.
       if (c->places[i].folds && !last->folds && n > 1) last->u = c->places[i].u;
       last->folds |= c->places[i].folds;
     } else c->places[n++] = c->places[i];
@@ -344,7 +344,7 @@ static void find_cells(CagQuadricCells *c, size_t place) {
   }
 }
 
-// A turn begins behind a place without cells, if there is one, so that no piece is cut at 0.
+// Starts the turn after a place without cells, if there is one, so that no piece is cut at 0.
 static void begin_turn(CagQuadricCells *c) {
   const size_t last = c->place_count - 1;
   size_t begin = 0;
@@ -355,7 +355,7 @@ static void begin_turn(CagQuadricCells *c) {
     break;
   }
   if (begin == 0 || begin == last) return;
-  // Place 0 and the last one are the same.
+  // Place 0 and the last one coincide.
   CagQuadricPlace turned[PLACES_MOST];
   c->places[0].folds |= c->places[last].folds;
   for (size_t i = 0; i < last; i++) {
@@ -376,7 +376,7 @@ static void set_cut(const CagQuadricSheet *s, const CagQuadricSide *side, CagQua
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) k[j] += n[i] * s->frame.m[i][j];
   k[3] -= side->d;
-  // A coordinate, or a distance from the origin, that the frame's rounding alone brings in.
+  // Removes coordinates and distances from the origin that are only rounding of the frame.
   for (int j = 0; j < 4; j++) {
     double terms = j < 3 ? 0 : side->d * side->d;
     for (int i = 0; i < 3; i++) terms += s->frame.m[i][j] * s->frame.m[i][j];

@@ -1,4 +1,5 @@
-// Knots, degrees and joins of NURBS surfaces, direction by direction on their nets.
+// Knots, degrees, and joins of NURBS surfaces, by operations on their nets in one direction at a
+// time.
 
 #include "geom/surface/reshape.h"
 
@@ -11,8 +12,8 @@
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
-// Places along an edge at which two surfaces are compared: between them no spline of usual degree
-// hides a gap.
+// Number of points along an edge at which two surfaces are compared: enough that no spline of usual
+// degree hides a gap between them.
 #define EDGE_PROBES 33
 
 // --- Nets ---
@@ -24,8 +25,8 @@ static bool periodic_in(const CagSurface *s, int direction) {
   return cag_surface_nurbs_view(s, &v) && (direction == 0 ? v.periodic_u : v.periodic_v);
 }
 
-// Takes the last lines of a direction, which repeat the first ones, for what they are. Homogeneous
-// points of n x m distinct lines, by their row length; knots as they are.
+// Restores a closed direction, whose last lines repeat the first ones. h: homogeneous points of n x
+// m distinct lines, with their row length; knots are kept.
 static CagStatus closed_again(const double *h, size_t row, size_t n, size_t m,
                               const CagSurfaceNurbsView *v, bool closed_u, bool closed_v,
                               CagSurface **out, CagError *err) {
@@ -46,7 +47,7 @@ static CagStatus closed_again(const double *h, size_t row, size_t n, size_t m,
   return status;
 }
 
-// A closed direction stays so when the other one is changed.
+// A closed direction stays closed when the other one is changed.
 static CagStatus changed(const CagSurface *s, int direction, NetChange change, const void *how,
                          CagSurface **out, CagError *err) {
   CagNet net, across;
@@ -120,7 +121,7 @@ static CagStatus raise(CagNet *net, const void *how, CagError *err) {
   return status;
 }
 
-// A change by u, then one by v; NULL: none.
+// A change in u, then one in v; NULL: none.
 static CagStatus both(const CagSurface *s, NetChange change, const void *u, const void *v,
                       CagSurface **out, CagError *err) {
   CagSurface *first;
@@ -138,10 +139,10 @@ static CagStatus both(const CagSurface *s, NetChange change, const void *u, cons
 
 // --- Refinement ---
 
-// Whether knot i of the net is at the same place as t.
+// Whether knot i of the net equals t.
 static bool at_knot(const CagNet *net, size_t i, double t) {
   const double same =
-      CAG_ROUNDING; // of the usable range: what the same number is after some arithmetic
+      CAG_ROUNDING; // of the usable range: rounding of the same number after some arithmetic
   return fabs(net->knots[i] - t) <= same * (cag_net_end(net) - cag_net_start(net));
 }
 
@@ -152,8 +153,8 @@ static CagStatus fail_superset(const CagNet *net, size_t i, CagError *err) {
                   cag_number_text(net->knots[i], text));
 }
 
-// Inserts what the wanted vector has more than the net, inside of the usable range. Knots are
-// walked together: each old one must turn up.
+// Inserts the knots of the wanted vector that the net lacks, inside the usable range. The knots are
+// compared in order: each old one must appear.
 static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
   const CagRefinement *r = how;
   size_t old = net->count + (size_t)net->degree + 1, i = 0, more = 0;
@@ -190,9 +191,9 @@ static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
   return status;
 }
 
-// A closed direction by its midpoints: N(t) = 2^-p sum over k of C(p + 1, k) N(2t - k) of the
-// uniform basis function of degree p, so point i goes into the new points 2i - p + k. Unit knots
-// stay unit knots: the domain is twice as long.
+// Refines a closed direction at its midpoints: N(t) = 2^-p sum over k of C(p + 1, k) N(2t - k) for
+// the uniform basis function of degree p, so point i contributes to the new points 2i - p + k.
+// Knots keep the spacing 1, so the domain doubles in length.
 static CagStatus halved_closed(const CagSurface *s, int direction, CagSurface **out,
                                CagError *err) {
   CagSurfaceNurbsView v;
@@ -342,7 +343,7 @@ CagStatus cag_surface_nurbs_part(const CagSurface *s, double u0, double u1, doub
 
 // --- Edges ---
 
-// Partials at a fraction of a side: along it, and outward across it.
+// Partials at a fraction of a side: along the edge, and outward across it.
 static CagStatus edge_partials(const CagSurface *s, int side, double f, CagVec3 *point,
                                CagVec3 *along, CagVec3 *across, CagVec3 second[3], CagError *err) {
   bool of_u = side < 2;
@@ -393,7 +394,7 @@ static double across_curvature(CagVec3 along, CagVec3 across, const CagVec3 seco
 static CagStatus find_seam(const CagSurface *a, const CagSurface *b, const int sides[2],
                            CagSeam *out, CagError *err) {
   out->gap = INFINITY;
-  // The usual order first: the end of the first on the start of the second.
+  // The usual pair first: the end of the first surface with the start of the second.
   static const int ORDER[] = {1, 3, 0, 2};
   for (int x = 0; x < 4; x++)
     for (int y = 3; y >= 0; y--)
@@ -434,7 +435,7 @@ CagStatus cag_surface_seam_on(const CagSurface *a, const CagSurface *b, const in
       lb = cag_scaled(lb, -1);
       sb[1] = cag_scaled(sb[1], -1);
     }
-    // Across the seam b goes inward where a goes outward.
+    // The outward direction of a across the seam is inward for b.
     xb = cag_scaled(xb, -1);
     sb[1] = cag_scaled(sb[1], -1);
     CagVec3 na = cag_cross(xa, la), nb = cag_cross(xb, lb);
@@ -454,7 +455,8 @@ CagStatus cag_surface_seam_on(const CagSurface *a, const CagSurface *b, const in
 
 // --- Join ---
 
-// The surface turned so that the side becomes u1 (`last`) or u0, its direction reversed on demand.
+// The net of the surface reoriented so that the side becomes u1 (`last`) or u0, with the direction
+// of the side reversed on demand.
 static CagStatus turned(const CagSurface *s, int side, bool last, bool reverse, CagNet *net,
                         CagNet *across, CagError *err) {
   int direction = side < 2 ? 0 : 1;
@@ -481,7 +483,7 @@ static CagStatus turned(const CagSurface *s, int side, bool last, bool reverse, 
   return status;
 }
 
-// Both with one degree and knot vector by v, that of the first: as surfaces again.
+// Gives both nets the degree and the knot vector in v of the first.
 static CagStatus alike_across(CagNet nets[2], CagNet across[2], CagError *err) {
   CagNet lines[2], along[2];
   CagStatus status = CAG_OK;
@@ -516,7 +518,7 @@ static CagStatus alike_across(CagNet nets[2], CagNet across[2], CagError *err) {
   return status;
 }
 
-// The second behind the first; the row between is the first's.
+// Appends the second net to the first, whose row at the joint is kept.
 static CagStatus behind(const CagNet nets[2], CagNet *out, CagError *err) {
   const CagNet *a = &nets[0], *b = &nets[1];
   size_t p = (size_t)a->degree, n = a->count + b->count - 1;

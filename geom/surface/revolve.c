@@ -1,8 +1,8 @@
-// Surfaces of revolution: a curve turned about an axis.
+// Surfaces of revolution: a curve revolved about an axis.
 //
 // S(u, v) = A + axial(u) + cos v radial(u) + sin v (w x radial(u)), where P(u) - A splits into its
-// part along the unit axis w and the rest. A turn by v of a vector is one of the plane
-// perpendicular to w, so the j-th derivative by v is the radial part turned by j right angles more.
+// part along the unit axis w and the rest. Rotation by v acts in the plane perpendicular to w, so
+// the j-th derivative by v is the radial part rotated by j further right angles.
 
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +18,7 @@ typedef struct Revolution {
   CagCurve *profile; // of space
   CagVec3 axis;      // unit
   CagVec3 through;
-  double on_axis; // a profile point nearer to the axis than this lies on it
+  double on_axis; // a profile point closer to the axis than this lies on it
   // Parameters between the ends at which the profile crosses or touches the axis. The surface is a
   // single point there, and its normal is reversed.
   double *meets;
@@ -33,8 +33,8 @@ static void split(const Revolution *r, CagVec3 p, CagVec3 *axial, CagVec3 *radia
   *radial = cag_sub(p, *axial);
 }
 
-// As above of a profile point; one on the axis has no radial part at all, so that a pole is one
-// point to the last bit.
+// The same for a profile point; a point on the axis has exactly no radial part, so that a pole is
+// one point to the last bit.
 static void split_point(const Revolution *r, CagVec3 p, CagVec3 *axial, CagVec3 *radial) {
   split(r, cag_sub(p, r->through), axial, radial);
   if (cag_norm(*radial) <= r->on_axis) *radial = (CagVec3){0, 0, 0};
@@ -95,7 +95,7 @@ static CagStatus revolution_grid(const CagSurface *s, const double *us, size_t n
   return status;
 }
 
-// The exact form: each control point of the profile goes around on the arc's own control points.
+// The exact form: each control point of the profile is revolved by the control points of the arc.
 static CagStatus revolution_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   const Revolution *r = (const Revolution *)s;
   CagCurve *exact;
@@ -112,7 +112,7 @@ static CagStatus revolution_to_nurbs(const CagSurface *s, CagSurface **out, CagE
   }
   for (size_t i = 0; i < view.count; i++) {
     const double *h = view.homogeneous + 4 * i;
-    // Homogeneous point less w times the axis point.
+    // Homogeneous point minus w times the axis point.
     CagVec3 q = {h[0] - h[3] * r->through.x, h[1] - h[3] * r->through.y,
                  h[2] - h[3] * r->through.z};
     CagVec3 axial, radial;
@@ -145,7 +145,7 @@ static CagStatus revolution_transform(const CagSurface *s, const CagTransform *t
   CagCurve *profile;
   CagStatus status = cag_curve_transform(r->profile, t, &profile, err);
   if (status) return status;
-  // In a mirror the turn runs the other way about the image of the axis.
+  // Under a reflection the rotation about the image of the axis is reversed.
   CagVec3 axis = cag_scaled(cag_transform_vector(t, r->axis), cag_transform_mirrors(t) ? -1 : 1);
   status = cag_surface_revolve(profile, axis, cag_transform_point(t, r->through), s->v0, s->v1, out,
                                err);
@@ -170,7 +170,7 @@ static size_t revolution_breaks(const CagSurface *s, int direction, double *out,
   return own + r->meet_count;
 }
 
-// --- Where the profile meets the axis ---
+// --- Intersections of the profile with the axis ---
 
 // Samples between two breaks of the profile, and steps that refine a minimum to rounding accuracy.
 enum { MEET_SAMPLES = 32, MEET_STEPS = 90 };
@@ -265,7 +265,7 @@ static const CagSurfaceKind revolution_kind = {
     .destroy = revolution_destroy,
 };
 
-// A turn may overlap itself, but not more than once.
+// A revolution may overlap itself, but at most once.
 #define MOST_TURN (4 * M_PI)
 
 CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 through, double from,

@@ -1,8 +1,8 @@
-// Ruled, bilinear and translational surfaces: sums of curves.
+// Ruled, bilinear, and translational surfaces: sums of curves.
 //
-// A ruled surface keeps its two curves as they are and walks both by the fraction v of their
-// domains: S(u, v) = (1 - u) second(v) + u first(v). A bilinear one is the ruled surface of two
-// lines. A translational surface is a(u) + b(v) - b(start).
+// A ruled surface keeps its two curves and uses the fraction v of their domains: S(u, v) = (1 - u)
+// second(v) + u first(v). A bilinear surface is the ruled surface of two lines. A translational
+// surface is a(u) + b(v) - b(start).
 
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static double in_domain(const CagCurve *c, double fraction) {
   return fraction >= 1 ? c->end : c->start + fraction * (c->end - c->start);
 }
 
-// Point and derivatives by the fraction of the domain.
+// Point and derivatives with respect to the fraction of the domain.
 static CagStatus eval_fraction(const CagCurve *c, double v, int n, CagSide side, CagVec3 *out,
                                CagError *err) {
   CagStatus status = cag_curve_eval(c, in_domain(c, v), n, side, out, err);
@@ -156,7 +156,7 @@ static void pair_destroy(CagSurface *s) {
   cag_curve_release(((Pair *)s)->b);
 }
 
-// Exact with rational curves too: the parameter along a ruling is then a weighted one.
+// Also exact for rational curves: the parameter along a ruling is then a weighted one.
 static CagStatus ruled_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   const Pair *p = (const Pair *)s;
   CagCompatible both;
@@ -196,7 +196,7 @@ CagStatus cag_surface_ruled(const CagCurve *first, const CagCurve *second, CagSu
 
 CagStatus cag_surface_bilinear(CagVec3 p00, CagVec3 p01, CagVec3 p10, CagVec3 p11, CagSurface **out,
                                CagError *err) {
-  // A side that is one point is a pole; a line cannot be one, so such a patch is a NURBS.
+  // A side that is one point is a pole; a line cannot be a point, so such a patch is a NURBS.
   if (cag_norm(cag_sub(p00, p01)) == 0 || cag_norm(cag_sub(p10, p11)) == 0) {
     const CagVec3 net[4] = {p00, p01, p10, p11};
     const double knots[4] = {0, 0, 1, 1};

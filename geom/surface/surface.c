@@ -1,5 +1,5 @@
-// What every surface answers, written once against CagSurfaceKind: checked evaluation, normals with
-// their limits at poles, reference counts, and the fallbacks for kinds that do not specialize.
+// Operations on all kinds of surfaces through CagSurfaceKind: checked evaluation, normals with
+// their limits at poles, reference counts, and fallbacks for optional functions.
 
 #include "geom/surface/surface.h"
 
@@ -14,8 +14,7 @@
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
 
-// A parameter this many ulps outside the domain is taken for the end: it is the rounding of a
-// parameter that was computed.
+// A parameter this many ulps outside the domain is snapped to the end: it is a rounding error.
 #define SNAP_ULPS 16
 
 CagStatus cag_surface_block(size_t size, const CagSurfaceKind *kind, double u0, double u1,
@@ -152,7 +151,7 @@ static CagStatus grid_by_points(const CagSurface *s, const double *us, size_t nu
   return CAG_OK;
 }
 
-// Points that are evaluated between two looks at the stop flag.
+// Points between checks of the stop flag.
 #define BLOCK ((size_t)1 << 16)
 
 static CagStatus grid_by_blocks(const CagSurface *s, const double *us, size_t nu, const double *vs,
@@ -176,7 +175,7 @@ static bool all_inside(const double *t, size_t n, double a, double b) {
   return inside;
 }
 
-// Checked copy of parameters, with those a few ulps outside moved to the end.
+// A validated copy of parameters, with those a few ulps outside snapped to the end.
 static CagStatus snapped(const double *t, size_t n, double a, double b, bool angular,
                          const char *name, double **out, CagError *err) {
   double *copy = cag_malloc((n ? n : 1) * sizeof *copy);
@@ -216,11 +215,11 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
 
 // --- Normals ---
 
-// |S_u x S_v| below this part of |S_u| |S_v| (both times the length of the domain, the larger of
-// them for both) is zero: the rounding of a pole is near 1e-16, the flattest honest patch far
-// above.
+// |S_u x S_v| is zero below this fraction of |S_u| |S_v| (both multiplied by the length of the
+// domain; the larger of them is used for both): rounding at a pole is near 1e-16, and the flattest
+// valid patch is far above.
 #define NORMAL_ZERO CAG_ROUNDING
-// Order of the expansion that looks for the limit: a pole of a smooth surface needs 1, a cusp 2.
+// Order of the expansion that determines the limit: a pole of a smooth surface needs 1, a cusp 2.
 #define NORMAL_ORDER 4
 
 // Coefficients (times k!) of the expansion of S_u (i0 = 1) or S_v (i0 = 0) along the direction
@@ -238,8 +237,8 @@ static void expand(const CagVec3 *d, int n, int i0, double du, double dv, CagVec
   }
 }
 
-// First direction that S_u x S_v takes on the way (du, dv) into the surface. False: none is found.
-// zero: what is no longer counts for nothing.
+// The first nonzero direction of S_u x S_v along the line (du, dv) into the surface. False: none
+// found. zero: smaller values are 0.
 static bool limit_along(const CagVec3 *d, int n, double du, double dv, double zero,
                         CagVec3 *normal) {
   CagVec3 a[NORMAL_ORDER], b[NORMAL_ORDER];
@@ -279,7 +278,7 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
     return CAG_OK;
   }
 
-  // A pole or a cusp: partials in units of the domain, then the limit on the ways that lead inside.
+  // A pole or a cusp: partials in units of the domain, then the limit along lines into the domain.
   CagVec3 d[(NORMAL_ORDER + 1) * (NORMAL_ORDER + 1)];
   status = s->kind->eval(s, u, v, NORMAL_ORDER, su, sv, d, err);
   if (status) return status;
@@ -292,7 +291,7 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
     }
   double inward_u = su == CAG_SIDE_LEFT ? -1 : 1, inward_v = sv == CAG_SIDE_LEFT ? -1 : 1;
   const double ways[3][2] = {{0, inward_v}, {inward_u, 0}, {inward_u, inward_v}};
-  // At an edge u = const the way inside runs by u, elsewhere by v.
+  // From an edge u = const the inward direction is u, otherwise v.
   bool edge_u = u <= s->u0 || u >= s->u1, edge_v = v <= s->v0 || v >= s->v1;
   size_t start = edge_u && !edge_v ? 1 : 0;
   for (size_t i = 0; i < 3; i++) {
@@ -309,7 +308,7 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
 
 // --- Flags ---
 
-// Odd fractions, so that symmetric shapes do not meet by accident.
+// Odd fractions, so that symmetric shapes do not coincide by accident.
 static const double PROBES[] = {0, 0.0831, 0.2113, 0.3407, 0.4729, 0.6151, 0.7393, 0.8677, 1};
 #define PROBE_COUNT (sizeof PROBES / sizeof *PROBES)
 

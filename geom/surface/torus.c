@@ -2,7 +2,7 @@
 // point outward.
 //
 // S(u, v) = [(R + r cos v) cos u, (R + r cos v) sin u, r sin v]. R > r is a ring, R = r a horn
-// torus with a point on the axis, R < r a spindle that crosses itself; all are exact.
+// torus with a point on the axis, R < r a spindle torus that crosses itself; all are exact.
 
 #include <math.h>
 #include <stdio.h>

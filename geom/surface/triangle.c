@@ -8,10 +8,10 @@
 #include "base/memory.h"
 #include "geom/linalg/tolerance.h"
 
-// How far barycentric coordinates may be from a sum of 1, and below 0.
+// Tolerance for the sum of barycentric coordinates, and for negative ones.
 #define BARYCENTRIC_SLACK CAG_COINCIDENT
 
-// Where b_ijk stands: row j + k, place k.
+// Index of b_ijk: row j + k, position k.
 static size_t triangle_index(int j, int k) {
   return (size_t)(j + k) * (size_t)(j + k + 1) / 2 + (size_t)k;
 }
@@ -35,8 +35,8 @@ static CagVec3 blend(const double w[3], CagVec3 a, CagVec3 b, CagVec3 c) {
   return cag_madd(cag_madd(cag_scaled(a, w[0]), w[1], b), w[2], c);
 }
 
-// One step: a net of this degree becomes one of a degree less, in place. Each point needs none that
-// was written before it.
+// One step: reduces a net of this degree to one of a degree less, in place. Each point uses only
+// points that have not been overwritten.
 static void step(CagVec3 *net, int degree, const double w[3]) {
   for (int row = 0; row < degree; row++)
     for (int k = 0; k <= row; k++) {
@@ -83,8 +83,8 @@ void cag_triangle_elevate(const CagVec3 *net, int degree, CagVec3 *out) {
     }
 }
 
-// After r steps the border of the net against corner c, where that index is 0, is what the part
-// without corner c has where its own index is r.
+// After r steps the border of the net opposite corner c, where that index is 0, is the row with
+// index r of the part without corner c.
 CagStatus cag_triangle_split(const CagVec3 *net, int degree, const double uvw[3],
                              CagVec3 *const out[3], CagError *err) {
   CagStatus status = check_coordinates(uvw, err);

@@ -1,9 +1,9 @@
-// Trimmed surfaces: evaluation is the inner surface's, measures are taken within the loops.
+// Trimmed surfaces: evaluation uses the inner surface, measures use the part within the loops.
 //
 // An integral of f over the region is the line integral of F dv along its loops, outer ones
-// counter-clockwise and holes clockwise, where F is the integral of f by u from the left side of
-// the region's box. Both integrations are adaptive and cut where the surface has breaks, so that
-// they meet smooth pieces only.
+// counter-clockwise and holes clockwise, where F is the integral of f in u from the left side of
+// the region's box. Both integrations are adaptive and split at the breaks of the surface, so that
+// the pieces are smooth.
 
 #include "geom/surface/trimmed.h"
 
@@ -19,7 +19,7 @@
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 
-// Loops may leave the domain by this part of it, which rounding of their own is.
+// Loops may leave the domain by this fraction of it, to allow for rounding.
 #define OUTSIDE CAG_COINCIDENT
 
 typedef struct Trimmed {
@@ -44,7 +44,7 @@ static CagStatus trimmed_grid(const CagSurface *s, const double *us, size_t nu, 
 static CagStatus trimmed_transform(const CagSurface *s, const CagTransform *t, CagSurface **out,
                                    CagError *err) {
   const Trimmed *w = (const Trimmed *)s;
-  // A projection changes the parameters of all but control points.
+  // A projective map changes the parameters of every kind except those with control points.
   if (!cag_transform_is_affine(t) && !cag_surface_nurbs_view(w->inner, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                     "only a trimmed NURBS surface can be projected: trim `to_nurbs` of the %s",
@@ -138,8 +138,8 @@ CagStatus cag_trimmed_loop(const CagSurface *s, size_t i, CagCurve **out, CagErr
 
 // --- Integrals ---
 
-// Differences of the rules below this part of the integral of magnitudes are taken as none. The
-// inner integral is the integrand of the outer one and must be better.
+// Differences of the rules below this fraction of the integral of magnitudes are ignored. The inner
+// integral is the integrand of the outer one and must be more accurate.
 #define OUTER 1e-10
 #define INNER 1e-12
 #define TERMS 10
@@ -151,8 +151,8 @@ typedef struct Integral {
   const CagCurve *loop;
   Integrand *f;
   int parts;
-  double from; // where inner integrals begin
-  double v;    // of the inner integral under way
+  double from; // where inner integrals start
+  double v;    // of the current inner integral
   double *cuts;
   size_t cut_count;
 } Integral;
@@ -179,7 +179,8 @@ static CagStatus along_loop(void *context, double t, double *out, CagError *err)
   double ends[64];
   size_t n = 0;
   const size_t room = sizeof ends / sizeof *ends - 1;
-  // The first cut is where integrals begin; of very many, the last ones are left to the bisection.
+  // The first cut is the start of the integrals; if there are very many, the last ones are left to
+  // bisection.
   for (size_t i = 0; i < in->cut_count && in->cuts[i] < d[0].x && n < room; i++)
     ends[n++] = in->cuts[i];
   ends[n++] = d[0].x;
@@ -245,7 +246,8 @@ CagStatus cag_trimmed_area(const CagSurface *s, double *area, CagVec3 *centroid,
   return CAG_OK;
 }
 
-// The volume integrals as fluxes, as measure.c has them; two halves, for the integration's width.
+// The volume integrals as fluxes, as in measure.c; in two halves, because of the integration's
+// limit on parts.
 static void first_fluxes(CagVec3 p, CagVec3 du, CagVec3 dv, double *out) {
   CagVec3 n = cag_cross(du, dv);
   out[0] = cag_dot(p, n) / 3;
@@ -274,13 +276,14 @@ CagStatus cag_trimmed_volume_terms(const CagSurface *s, double terms[10], CagErr
 
 // --- Bounds ---
 
-// Samples each way that find the hills; Newton's method then climbs the highest of each direction.
+// Number of samples in each direction for finding peaks; Newton's method then refines the highest
+// in each direction.
 #define SAMPLES 32
 #define NEWTON_STEPS 30
 
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-// From (u, v) towards the place where the gradient of a coordinate vanishes.
+// From (u, v) to the point at which the gradient of a coordinate vanishes.
 static CagStatus climb(const Trimmed *w, double u, double v, int axis, double sign, double *best,
                        CagError *err) {
   const CagSurface *s = &w->base;
@@ -296,7 +299,7 @@ static CagStatus climb(const Trimmed *w, double u, double v, int axis, double si
     double huu = coordinate(d[cag_partial(2, 2, 0)], axis);
     double huv = coordinate(d[cag_partial(2, 1, 1)], axis);
     double hvv = coordinate(d[cag_partial(2, 0, 2)], axis), det = huu * hvv - huv * huv;
-    // Only a summit draws Newton's method; elsewhere the edge holds the extreme.
+    // Newton's method is used only near a maximum; otherwise the extremum is on the edge.
     if (!(det > 0) || sign * huu >= 0) return CAG_OK;
     double step_u = -(hvv * gu - huv * gv) / det, step_v = -(huu * gv - huv * gu) / det;
     u = clamp(u + step_u, s->u0, s->u1);
@@ -311,7 +314,7 @@ static double sample_at(double lo, double hi, int i) {
   return lo + (hi - lo) * (i + 0.5) / SAMPLES;
 }
 
-// Highest sample inside for each of the six directions, then climbed.
+// The highest sample inside for each of the six directions, refined.
 static CagStatus inner_extremes(const Trimmed *w, double best[6], CagError *err) {
   const CagSurface *s = &w->base;
   double top[6], place[6][2] = {{0}};
@@ -386,7 +389,7 @@ CagStatus cag_trimmed_bounds(const CagSurface *s, CagBounds *out, CagError *err)
 
 CagStatus cag_trimmed_flip(const CagSurface *s, CagSurface **out, CagError *err) {
   const Trimmed *w = (const Trimmed *)s;
-  // The inner surface's v runs backwards over its domain, and so does the region's.
+  // The inner surface's v is reversed over its domain, and so is the region's.
   CagTransform mirror = cag_transform_identity();
   mirror.m[1][1] = -1;
   mirror.m[1][3] = w->inner->v0 + w->inner->v1;

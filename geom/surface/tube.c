@@ -1,6 +1,6 @@
 // Sweeps and tubes: S(u, v) = origin(v) + x(u) X(v) + y(u) Y(v) + z(u) Z(v).
 //
-// A tube is the sweep of a circle; without turning, scaled by the radius where that changes.
+// A tube is the sweep of a circle without twist, scaled by the radius if that varies.
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ typedef struct Sweep {
   CagSurface base;
   CagCurve *section; // as given: dimension 2 or 3
   CagMotion *motion;
-  CagCurve *center; // of a tube of constant radius; otherwise NULL
+  CagCurve *center; // for a tube of constant radius; otherwise NULL
   double radius;
 } Sweep;
 
@@ -115,7 +115,7 @@ static bool is_untwisted(const CagMotion *m) {
   return cag_motion_path(m) && !how->twist.function && how->twist.start == 0 && how->twist.end == 0;
 }
 
-// Every smooth piece of the path is straight (a line, or a polyline).
+// Whether every smooth piece of the path is straight (a line, or a polyline).
 static bool is_straight(const CagCurve *path) {
   const CagVec3 *points;
   size_t n;
@@ -146,7 +146,7 @@ static CagStatus rows_to_nurbs(const Sweep *s, const CagNurbsView *c, size_t row
   return status;
 }
 
-// Along straight pieces the section goes linearly from frame to frame.
+// Along straight pieces the section moves linearly from frame to frame.
 static CagStatus straight_to_nurbs(const Sweep *s, CagSurface **out, CagError *err) {
   size_t inner = cag_motion_breaks(s->motion, NULL, 0);
   double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
@@ -177,7 +177,7 @@ static CagStatus placed_section(const Sweep *s, CagCurve **out, CagError *err) {
   return status;
 }
 
-// A section that keeps its place in the frame of a circle turns about the circle's axis.
+// A section that is fixed in the frame of a circle is revolved about the circle's axis.
 static CagStatus round_to_nurbs(const Sweep *s, const CagCurve *path, const CagTransform *circle,
                                 CagSurface **out, CagError *err) {
   CagCurve *section;
@@ -271,7 +271,7 @@ static CagStatus make(const CagSurfaceKind *kind, const CagCurve *section, const
   return CAG_OK;
 }
 
-// A section of space whose z is not 0 leaves the plane in which mitered pieces meet.
+// A space section with nonzero z leaves the plane in which mitered pieces meet.
 static CagStatus check_plane(const CagCurve *section, const CagMotion *motion, CagError *err) {
   if (section->dimension == 2 || !cag_motion_has_corner(motion)) return CAG_OK;
   CagBounds box;

@@ -1,9 +1,9 @@
 // Unrolling of developable surfaces that are straight along one parameter.
 //
-// With S(s, t) = a(t) + s r(t), the plane image is p(t) + s R(t): R has the length of r and turns
-// as r does within the tangent plane, and p moves along R and across it as a does along and across
-// r. That keeps the first fundamental form, and so all lengths, where the tangent plane is the same
-// along each ruling. The angle and the point are integrals over t, kept as series.
+// With S(s, t) = a(t) + s r(t), the plane image is p(t) + s R(t): R has the length of r and rotates
+// as r does within the tangent plane, and p moves along and perpendicular to R as a does with
+// respect to r. This preserves the first fundamental form, and so all lengths, if the tangent plane
+// is constant along each ruling. The angle and the point are integrals over t, stored as series.
 
 #include <math.h>
 
@@ -16,20 +16,21 @@
 
 #define SERIES 1e-13
 #define INTEGRAL 1e-13
-// The series' angles begin here, so that those of a cylinder, all rounding, are a series at all.
+// The angle starts here rather than at 0, so that the series of a cylinder's angle, which is only
+// rounding, has a nonzero size.
 #define START 1.0
-// The tangent plane turns by less along a ruling of a developable surface; sine of the angle.
+// Largest rotation (sine) of the tangent plane along a ruling of a developable surface.
 #define SAME_PLANE 1e-7
-// Second derivatives along a straight direction, as a part of the first.
+// Largest second derivative along a straight direction, relative to the first.
 #define STRAIGHT CAG_COINCIDENT
 
 typedef struct Unrolling {
   const CagSurface *s;
-  int direction; // in which it is straight: 0: u
+  int direction; // the straight direction: 0: u
   double s0, s1, t0, t1;
   const CagChebyshev *angle;
-  // Ends of the smooth stretches along t, and up to each of them the integrals of the turning and
-  // of the walk (three numbers): a place needs those of its own stretch alone.
+  // Ends of the smooth intervals along t, and the integrals of the rotation and of the displacement
+  // (three numbers) up to each of them: a point needs only the integrals over its own interval.
   double *cuts, *sums;
   size_t cut_count;
 } Unrolling;
@@ -49,8 +50,8 @@ static CagStatus partials(const Unrolling *w, double s, double t, CagVec3 *d, Ca
   return CAG_OK;
 }
 
-// Unit ruling e and f, perpendicular to it in the tangent plane. The plane is taken at the end of
-// the ruling where the partials are less parallel: the other may be an apex.
+// Unit ruling e, and f perpendicular to it in the tangent plane. The plane is evaluated at the end
+// of the ruling where the partials are less parallel, since the other may be an apex.
 static CagStatus axes_at(const Unrolling *w, double t, CagVec3 d[5], CagVec3 *e, CagVec3 *f,
                          CagError *err) {
   CagVec3 far[5];
@@ -86,7 +87,8 @@ static CagStatus walking(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// The integral from t0 to t of the turning (first = 0, one number) or the walk (first = 1, two).
+// The integral from t0 to t of the rotation (first = 0, one number) or the displacement (first = 1,
+// two).
 static CagStatus integral_to(Unrolling *w, double t, size_t first, double *out, CagError *err) {
   size_t k = 0;
   while (k + 1 < w->cut_count && w->cuts[k + 1] <= t) k++;
@@ -149,7 +151,7 @@ static CagStatus rows_at(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// Odd numbers of probes miss symmetric places.
+// An odd number of probes avoids symmetric points.
 #define PROBES 17
 
 static CagStatus is_straight(const Unrolling *w, bool *out, CagError *err) {
