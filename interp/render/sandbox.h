@@ -1,9 +1,9 @@
-// A process shut off from the files it has no business with, by the kernel (Landlock, Linux 5.13
-// and later).
+// Restricts a process to the files that it needs, through the kernel (Landlock, Linux 5.13 and
+// later).
 //
-// A ruleset is prepared before fork, where memory may be allocated, and entered by the child before
-// exec. Where the kernel has no Landlock, nothing is restricted and the caller's own checks are all
-// there is.
+// A ruleset is prepared before fork, because it allocates memory, and is entered by the child
+// before exec. If the kernel has no Landlock, nothing is restricted, and only the caller's own
+// checks apply.
 
 #ifndef CAG_INTERP_RENDER_SANDBOX_H
 #define CAG_INTERP_RENDER_SANDBOX_H
