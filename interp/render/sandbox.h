@@ -11,13 +11,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// Prepares a ruleset: everything beneath the `readable` paths can be read and executed, everything
-// beneath `folder` also written; paths that do not exist are skipped. Returns a file descriptor to
-// close, or -1 when the kernel has no Landlock.
+// Prepares a ruleset: everything below the `readable` paths can be read and executed, and
+// everything below `folder` can also be written. Paths that do not exist are skipped. Returns a
+// file descriptor to close, or -1 if the kernel has no Landlock.
 int cag_sandbox_prepare(const char *const *readable, size_t count, const char *folder);
 
-// Puts this process and its children under the ruleset for good. Async-signal-safe. True for a
-// descriptor of -1.
+// Restricts this process and its children permanently. Async-signal-safe. Returns true for the
+// descriptor -1.
 bool cag_sandbox_enter(int ruleset);
 
 #endif
