@@ -1,5 +1,5 @@
-// The arena: blocks in a list, the one in use first. Small things are cut from it one behind the
-// other.
+// Arenas: a list of blocks, of which the first one is in use. Small allocations are cut from it one
+// after the other.
 
 #include "base/arena.h"
 
@@ -14,7 +14,7 @@ struct CagArenaBlock {
   alignas(max_align_t) char bytes[];
 };
 
-// Blocks grow from small (the REPL makes a tree per line) to large (a generated script of many
+// Blocks grow from small (the REPL makes a tree for each line) to large (a generated script of many
 // megabytes).
 #define FIRST_BLOCK ((size_t)4 << 10)
 #define LARGEST_BLOCK ((size_t)256 << 10)
@@ -32,7 +32,7 @@ void *cag_arena_alloc(CagArena *a, size_t size) {
   if (!b || b->size - b->used < size) {
     size_t next = b ? 2 * b->size : FIRST_BLOCK;
     if (next > LARGEST_BLOCK) next = LARGEST_BLOCK;
-    if (b && size > next / 4) { // a block of its own, behind the one in use
+    if (b && size > next / 4) { // a block of its own, after the one in use
       CagArenaBlock *own = block_new(size);
       own->used = size;
       own->next = b->next;

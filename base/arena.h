@@ -1,4 +1,4 @@
-// An arena: memory for many small things that die together.
+// Arenas: memory for many small allocations that are freed together.
 
 #ifndef CAG_BASE_ARENA_H
 #define CAG_BASE_ARENA_H
@@ -16,7 +16,7 @@ typedef struct CagArena {
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);
-// Forgets all that lies in it, and keeps a block for what comes.
+// Invalidates all allocations, but keeps one block for later ones.
 void cag_arena_reset(CagArena *a);
 
 #endif

@@ -1,4 +1,4 @@
-// Arrays that grow.
+// Growing arrays.
 
 #include "base/array.h"
 

@@ -1,4 +1,4 @@
-// Arrays that grow.
+// Growing arrays.
 //
 // An array is a pointer, a count, and a capacity in whatever structure owns it:
 //
@@ -12,13 +12,13 @@
 #include <stddef.h>
 
 // Makes room for at least `count` items. The capacity at least doubles, so adding n items one by
-// one costs O(n) time. Returns false if memory ran out; the array is then as it was. Allocates with
+// one takes O(n) time. Returns false if memory ran out; the array is then unchanged. Allocates with
 // cag_realloc (base/memory.h).
 #define CAG_RESERVE(items, capacity, count)                                                        \
   cag_array_reserve(&(items), &(capacity), (count), sizeof *(items))
 
-// Allocates exactly `count` items, for arrays that share a capacity or that never grow item by item.
-// Returns false if memory ran out; the array is then as it was.
+// Allocates exactly `count` items, for arrays that share a capacity or that never grow item by
+// item. Returns false if memory ran out; the array is then unchanged.
 #define CAG_RESIZE(items, count) cag_array_resize(&(items), (count), sizeof *(items))
 
 bool cag_array_resize(void *items, size_t count, size_t size);

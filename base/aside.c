@@ -1,4 +1,4 @@
-// Work of libraries that cannot be interrupted: a thread that the caller may leave behind.
+// Library calls that cannot be interrupted: they run on a thread that the caller can abandon.
 
 #include "base/aside.h"
 
@@ -15,7 +15,7 @@
 typedef struct Aside {
   pthread_mutex_t mutex;
   pthread_cond_t ended;
-  bool done, left; // the work has ended; the caller has returned before
+  bool done, left; // the work has ended; the caller has returned early
   void (*work)(void *data);
   void (*release)(void *data);
   void *data;
@@ -48,13 +48,13 @@ static void *run_work(void *context) {
   const bool left = a->left;
   pthread_cond_signal(&a->ended);
   pthread_mutex_unlock(&a->mutex);
-  if (!left) return NULL; // the caller waits, and frees it
+  if (!left) return NULL; // the caller is waiting and frees it
   a->release(a->data);
   free_aside(a);
   return NULL;
 }
 
-// Signals are for the threads of the program.
+// Starts the thread with all signals blocked, so that the program's own threads handle them.
 static bool start_thread(Aside *a, pthread_t *thread) {
   sigset_t all, before;
   sigfillset(&all);
@@ -92,7 +92,7 @@ bool cag_run_aside(void (*work)(void *data), void (*release)(void *data), void *
     return true;
   }
   if (!wait_for(a)) {
-    pthread_detach(thread); // it frees the rest
+    pthread_detach(thread); // the thread frees it
     return false;
   }
   pthread_join(thread, NULL);

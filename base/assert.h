@@ -1,5 +1,6 @@
-// Invariants as code. CAG_ASSERT checks in builds with CAG_CHECKED, which the sanitized ones are;
-// in others, the condition is compiled but not evaluated, so that the library never ends its host.
+// Assertions. CAG_ASSERT checks its condition in builds with CAG_CHECKED, such as the sanitizer
+// builds. In other builds, the condition is compiled but not evaluated, so that the library never
+// aborts its host.
 
 #ifndef CAG_BASE_ASSERT_H
 #define CAG_BASE_ASSERT_H

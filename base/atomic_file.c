@@ -1,10 +1,9 @@
-// Output files that appear whole or not at all: buffering, the rename, and the registry of live
-// temporaries.
+// Atomic output files: buffering, renaming, and the registry of temporary files.
 //
-// The registry is the one table of the process that a signal handler may read. A slot holds the
-// open folder and the name of a temporary in it (not a path: the working folder may change), and is
-// written only while its state is BUSY; the handler touches only slots that are LIVE. It also holds
-// the process id, for a child after fork owns none of them.
+// The registry is a process-wide table that a signal handler may read. A slot holds the descriptor
+// of the folder and the name of a temporary file in it (not a path, because the working folder may
+// change). A slot is written only while its state is BUSY, and the handler touches only slots that
+// are LIVE. A slot also holds the process id, because a child after fork owns none of the files.
 
 #include "base/atomic_file.h"
 
@@ -21,14 +20,14 @@
 #include "base/memory.h"
 #include "base/stop.h"
 
-// Large enough that the cost of a system call disappears beside formatting and copying.
+// Large enough that system calls cost little compared to formatting and copying.
 #define BUFFER_SIZE ((size_t)1024 * 1024)
-// How many outputs may be open at once in one process; a batch has one or two per core.
+// The maximum number of outputs open at once in a process; a batch has one or two per core.
 #define SLOT_COUNT 256
-// Tries at a temporary name that nobody has; 64 random bits make a second try a sign of trouble,
-// not of chance.
+// Attempts to find an unused temporary name. With 64 random bits, a second attempt indicates a
+// problem rather than a coincidence.
 #define NAME_TRIES 16
-// ".", "." and 16 hexadecimal digits and ".tmp" around the name.
+// The name is preceded by "." and followed by ".", 16 hexadecimal digits, and ".tmp".
 #define NAME_EXTRA 22
 
 typedef enum { SLOT_FREE, SLOT_BUSY, SLOT_LIVE } SlotState;
@@ -44,15 +43,15 @@ static Slot slots[SLOT_COUNT];
 
 struct CagAtomicFileState {
   CagAtomicFile
-      file; // what the user holds; first, so that both have one address and one allocation
+      file; // what the caller holds; first, so that both have one address and one allocation
   int fd;
-  int folder;     // open folder of the place, or -1 when written directly
-  Slot *slot;     // registry entry of the temporary, or NULL when written directly
+  int folder;     // descriptor of the destination's folder, or -1 when written directly
+  Slot *slot;     // registry entry of the temporary file, or NULL when written directly
   char *name;     // final name in the folder
   char *shown;    // the path as the user gave it, for messages
-  uint64_t taken; // bytes handed to the system
+  uint64_t taken; // bytes passed to the system
   int error;      // errno of the first failure, or 0
-  bool in_memory; // then fd is -1, and what is flushed goes here:
+  bool in_memory; // fd is then -1, and the buffer is flushed to:
   char *memory;
   size_t memory_capacity;
   char buffer[BUFFER_SIZE];
@@ -88,11 +87,11 @@ static bool fail_open(CagError *err, const char *path, int code) {
   return cag_fail_io(err, CAG_E_FILE, help, "cannot write '%s': %s", path, strerror(code));
 }
 
-// What stands at the place already decides how it is written.
+// How an output is written, which depends on what exists at its path.
 typedef enum { PLACE_RENAMED, PLACE_DIRECT, PLACE_REFUSED } PlaceKind;
 
-// Looks at what is at `path`, following symbolic links. `mode` becomes the permission bits to keep,
-// or 0 when nothing is there.
+// Examines `path`, following symbolic links. Sets `mode` to the permission bits to keep, or to 0 if
+// nothing exists there.
 static PlaceKind place_inspect(const char *path, mode_t *mode, CagError *err) {
   struct stat st;
   *mode = 0;
@@ -126,8 +125,8 @@ static PlaceKind place_inspect(const char *path, mode_t *mode, CagError *err) {
   return PLACE_RENAMED;
 }
 
-// The temporary's name: hidden, begins like the final name, ends in random digits that no other run
-// has.
+// Makes the name of the temporary file: hidden, starting with the final name, and ending with
+// random digits.
 static void temporary_name(const char *name, char out[NAME_MAX + 1]) {
   uint64_t digits = 0;
   if (getrandom(&digits, sizeof digits, GRND_NONBLOCK) != sizeof digits) {
@@ -138,7 +137,7 @@ static void temporary_name(const char *name, char out[NAME_MAX + 1]) {
   snprintf(out, NAME_MAX + 1, ".%.*s.%016llx.tmp", keep, name, (unsigned long long)digits);
 }
 
-// Creates the temporary in s->folder and enters it into the registry.
+// Creates the temporary file in s->folder and enters it into the registry.
 static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, CagError *err) {
   s->slot = slot_take();
   if (!s->slot)
@@ -149,7 +148,7 @@ static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, Cag
   int code = EEXIST;
   for (int attempt = 0; attempt < NAME_TRIES && s->fd < 0 && code == EEXIST; attempt++) {
     temporary_name(s->name, s->slot->name);
-    // Live before it exists: a signal that comes between the two calls leaves nothing behind.
+    // Live before the file exists, so that a signal between the two calls leaves nothing behind.
     atomic_store(&s->slot->state, SLOT_LIVE);
     // The kernel applies the umask: a new file gets the mode that any program would give it.
     s->fd = openat(s->folder, s->slot->name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
@@ -162,8 +161,8 @@ static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, Cag
   return true;
 }
 
-// Splits the place into an open folder and a name, links resolved, so that later steps cannot be
-// led elsewhere.
+// Resolves links and splits the path into an open folder and a name, so that later changes of links
+// have no effect.
 static bool open_folder(struct CagAtomicFileState *s, bool exists, CagError *err) {
   char *resolved = exists ? cag_realpath(s->shown) : cag_strdup(s->shown);
   if (!resolved) return fail_open(err, s->shown, errno);
@@ -188,7 +187,7 @@ done:
   return ok;
 }
 
-// Closes what is open, removes the temporary, and releases everything.
+// Closes what is open, removes the temporary file, and releases everything.
 static void dispose(struct CagAtomicFileState *s) {
   if (s->slot && atomic_load(&s->slot->state) == SLOT_LIVE) unlinkat(s->folder, s->slot->name, 0);
   slot_release(s->slot);
@@ -202,7 +201,7 @@ static void dispose(struct CagAtomicFileState *s) {
 
 static bool open_place(struct CagAtomicFileState *s, const char *path, CagError *err) {
   if (!strcmp(path, "-")) {
-    fflush(stdout); // what was printed before stands before
+    fflush(stdout); // earlier output of printf comes first
     s->fd = STDOUT_FILENO;
     return true;
   }
@@ -217,7 +216,7 @@ static bool open_place(struct CagAtomicFileState *s, const char *path, CagError 
   return open_folder(s, mode != 0, err) && create_temporary(s, mode, err);
 }
 
-// An unopened file with an empty buffer, shown as `shown` in messages.
+// Returns an unopened file with an empty buffer, called `shown` in messages.
 static struct CagAtomicFileState *new_state(const char *shown, CagError *err) {
   struct CagAtomicFileState *s = cag_malloc(sizeof *s);
   char *copy = cag_strdup(shown);
@@ -227,7 +226,7 @@ static struct CagAtomicFileState *new_state(const char *shown, CagError *err) {
     fail_open(err, shown, ENOMEM);
     return NULL;
   }
-  // Not the whole: the buffer stays untouched until it is used.
+  // Without the buffer, whose pages stay untouched until they are used.
   memset(s, 0, offsetof(struct CagAtomicFileState, buffer));
   s->fd = s->folder = -1;
   s->shown = copy;
@@ -257,8 +256,9 @@ CagAtomicFile *cag_atomic_file_open(const char *path, CagError *err) {
   return &s->file;
 }
 
-// Opens a file without a name in the folder of the place: it goes when its owner does. *known is
-// false where the file system has none such, or something stands in the way that an open tells of.
+// Opens an unnamed file in the destination's folder, which disappears when it is closed. Sets
+// *known to false if the file system does not support such files or the open fails; only a regular
+// open can then tell whether the output is writable.
 static bool try_folder(const char *path, bool exists, bool *known, CagError *err) {
   struct CagAtomicFileState *s = new_state(path, err);
   *known = true;
@@ -291,7 +291,7 @@ bool cag_atomic_file_try(const char *path, CagError *err) {
   return trial != NULL;
 }
 
-// Appends to the memory, which always has room for a zero byte more.
+// Appends to the memory, which always has room for one more zero byte.
 static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
   const size_t size = (size_t)s->taken;
   if (n >= s->memory_capacity - size) {
@@ -307,7 +307,7 @@ static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
   if (n) memcpy(s->memory + size, data, n);
 }
 
-// Hands all n bytes to the system, however it splits them. After a failure nothing more is tried.
+// Passes all n bytes to the system, repeating partial writes. Does nothing after a failure.
 static void write_through(struct CagAtomicFileState *s, const char *data, size_t n) {
   if (!s->error && cag_stopped()) s->error = ECANCELED;
   if (s->in_memory && !s->error) append(s, data, n);
@@ -332,7 +332,7 @@ void cag_atomic_file_flush(CagAtomicFile *f) {
 
 void cag_atomic_file_expect(CagAtomicFile *f, uint64_t bytes) {
 #ifdef FALLOC_FL_KEEP_SIZE
-  // Only a hint: a full disk is told by the write that meets it.
+  // Only a hint: if the disk is full, a later write reports it.
   const struct CagAtomicFileState *s = f->state;
   if (s->slot && !s->error && bytes > BUFFER_SIZE && bytes <= INT64_MAX)
     (void)!fallocate(s->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
@@ -363,7 +363,8 @@ void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...) {
   va_list again;
   va_copy(again, args);
   int n = vsnprintf(f->at, room, format, args);
-  // A negative result, of a text beyond INT_MAX or exhausted memory, counts as exhausted memory.
+  // A negative result, for a text longer than INT_MAX or exhausted memory, counts as exhausted
+  // memory.
   if (n >= 0 && (size_t)n < room) {
     f->at += n;
   } else {
@@ -402,7 +403,7 @@ static void fail_write(const struct CagAtomicFileState *s, int code, CagError *e
 bool cag_atomic_file_commit(CagAtomicFile *f, CagError *err) {
   struct CagAtomicFileState *s = f->state;
   cag_atomic_file_flush(f);
-  // Some file systems report a full disk only at close.
+  // Some file systems report a full disk only when the file is closed.
   if (s->fd != STDOUT_FILENO && close(s->fd) != 0 && !s->error && errno != EINTR) s->error = errno;
   s->fd = -1;
   if (!s->error && s->slot) {

@@ -1,11 +1,11 @@
-// Output files that appear whole or not at all.
+// Atomic output files.
 //
-// A file is written beside its place, in the same folder, under a temporary name that nobody else
-// uses, and renamed when it is whole: a killed run leaves the old file or the new one. Errors of
-// writing are sticky: a writer need not look at each call, it learns of the first error from
-// cag_atomic_file_commit (or, to stop early, from cag_atomic_file_failed). Every opened file ends
-// with exactly one commit or abort. Work that is asked to end (base/stop.h) meets an error of
-// status CAG_E_CALLBACK at its next write.
+// A file is written under a unique temporary name in the folder of its destination, and renamed
+// when it is complete. If the run is killed, the old file remains. Write errors are sticky: a
+// writer does not have to check each call, because cag_atomic_file_commit returns the first error
+// (to stop early, use cag_atomic_file_failed). Every opened file must be ended with exactly one
+// commit or abort. After a request to stop (base/stop.h), the next write fails with status
+// CAG_E_CALLBACK.
 //
 //     CagAtomicFile *f = cag_atomic_file_open(path, &err);
 //     if (!f) return false;
@@ -17,10 +17,10 @@
 //     }
 //     return cag_atomic_file_commit(f, &err);        // or cag_atomic_file_abort(f)
 //
-// `-` is standard output. A device or pipe (/dev/null, /dev/full, a FIFO) is written directly,
-// never renamed over. A symbolic link to a file keeps being one: the file that it points to is
-// replaced. Folders, sockets, disks, dangling links and write-protected files are refused. An
-// existing file's permission bits are kept; a new file gets those of the umask.
+// The path `-` is standard output. Devices and pipes (/dev/null, /dev/full, a FIFO) are written
+// directly and never replaced. For a symbolic link, the target file is replaced and the link
+// remains. Folders, sockets, disks, dangling links, and write-protected files are refused. The
+// permission bits of an existing file are kept; a new file gets those of the umask.
 
 #ifndef CAG_BASE_ATOMIC_FILE_H
 #define CAG_BASE_ATOMIC_FILE_H
@@ -32,8 +32,8 @@
 
 #include "base/status.h"
 
-// The most that one cag_atomic_file_reserve may ask for. The buffer is many times larger, so that
-// the system is called seldom.
+// The most that one call of cag_atomic_file_reserve may request. The buffer is many times larger,
+// to save system calls.
 #define CAG_ATOMIC_FILE_RESERVE_MAX ((size_t)64 * 1024)
 
 typedef struct CagAtomicFile {
@@ -42,65 +42,68 @@ typedef struct CagAtomicFile {
   struct CagAtomicFileState *state;
 } CagAtomicFile;
 
-// Opens the output `path`. NULL and an error of exit status CAG_E_FILE when it cannot be written
-// there.
+// Opens the output `path`. Returns NULL, with an error of status CAG_E_FILE, if it cannot be
+// written.
 CagAtomicFile *cag_atomic_file_open(const char *path, CagError *err);
 
-// Whether cag_atomic_file_open would open the output, without leaving anything when it is killed
-// meanwhile; false, with `err`, when not. Of pipes and devices, which would notice, only that they
-// are there.
+// Tests whether cag_atomic_file_open would succeed, and leaves nothing behind even if the process
+// is killed meanwhile. Returns false, with `err`, if not. Pipes and devices are not opened, because
+// their other end would notice; for these, only their existence is checked.
 bool cag_atomic_file_try(const char *path, CagError *err);
 
-// Opens a target in memory instead, for what is handed on (a scene for the renderer) and for tests:
-// the same writers serve both. End it with cag_atomic_file_commit_memory or cag_atomic_file_abort.
+// Opens an output in memory instead, for data that is passed on (a scene for the renderer) and for
+// tests. All writing functions work on it. End it with cag_atomic_file_commit_memory or
+// cag_atomic_file_abort.
 CagAtomicFile *cag_atomic_file_open_memory(CagError *err);
 
-// Tells that about `bytes` bytes will come: a file system then finds room for them in one piece,
-// which is quicker. Telling more or less, or nothing, changes nothing else.
+// Announces that about `bytes` bytes will be written, so that the file system can allocate them at
+// once. This is only a hint for speed and need not be accurate.
 void cag_atomic_file_expect(CagAtomicFile *f, uint64_t bytes);
 
 // Appends n bytes, of any size.
 void cag_atomic_file_write(CagAtomicFile *f, const void *data, size_t n);
 
-// Appends the zero-ended text, without its zero.
+// Appends the zero-terminated text, without its zero.
 void cag_atomic_file_text(CagAtomicFile *f, const char *text);
 
 // Appends formatted text of any length.
 void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-// Empties the buffer to the system; makes room for at least CAG_ATOMIC_FILE_RESERVE_MAX bytes, also
-// after an error (the bytes go nowhere then). Called by reserve; seldom of use elsewhere.
+// Flushes the buffer to the system and makes room for at least CAG_ATOMIC_FILE_RESERVE_MAX bytes,
+// even after an error (the bytes are then discarded). Called by cag_atomic_file_reserve; rarely
+// needed elsewhere.
 void cag_atomic_file_flush(CagAtomicFile *f);
 
-// Room for n bytes (at most CAG_ATOMIC_FILE_RESERVE_MAX), never NULL. Write from there on, then
-// tell how far with advance.
+// Returns room for n bytes (at most CAG_ATOMIC_FILE_RESERVE_MAX), never NULL. After writing there,
+// call cag_atomic_file_advance with the end of what was written.
 static inline char *cag_atomic_file_reserve(CagAtomicFile *f, size_t n) {
   if ((size_t)(f->limit - f->at) < n) cag_atomic_file_flush(f);
   return f->at;
 }
 
-// Takes what was written into the reserved room, up to but not including `end`.
+// Appends what was written into the reserved room, up to but not including `end`.
 static inline void cag_atomic_file_advance(CagAtomicFile *f, char *end) { f->at = end; }
 
-// True after a write failed: a long export can stop, abort or commit will tell.
+// Returns whether a write failed. A long export can then stop early; the error is returned by
+// cag_atomic_file_commit.
 bool cag_atomic_file_failed(const CagAtomicFile *f);
 
-// Bytes appended so far.
+// Returns the number of bytes appended so far.
 uint64_t cag_atomic_file_size(const CagAtomicFile *f);
 
-// Writes the rest, closes, renames into place, and releases `f`. On failure the temporary is
-// removed, what was at the place before is untouched, and `err` says why.
+// Writes the rest, closes the file, renames it, and releases `f`. On failure, sets `err` and
+// removes the temporary file; an existing file at the path is unchanged.
 bool cag_atomic_file_commit(CagAtomicFile *f, CagError *err);
 
-// Ends a target in memory: what was written, with a zero byte behind it, is the caller's to free.
+// Ends an output in memory. The caller must free the bytes, which are followed by a zero byte.
 bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagError *err);
 
-// Removes the temporary and releases `f`, which may be NULL. Nothing at the place itself changes.
+// Removes the temporary file and releases `f`, which may be NULL. Nothing at the path changes.
 void cag_atomic_file_abort(CagAtomicFile *f);
 
-// Removes the temporaries of all files that are open in this process. Async-signal-safe: call it in
-// the handler of a signal that ends the process. Files that are open stay valid to abort, but their
+// Removes the temporary files of all outputs that are open in this process. Async-signal-safe: call
+// it in the handler of a signal that ends the process. Open outputs can still be aborted, but their
 // commit fails.
 void cag_atomic_files_cleanup(void);
 

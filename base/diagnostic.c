@@ -1,4 +1,4 @@
-// Diagnostics as data: the list, and the nearest name.
+// Diagnostics as data: the list, and the search for the nearest name.
 
 #include "base/diagnostic.h"
 
@@ -9,14 +9,14 @@
 
 // ---- the list ----
 //
-// Texts come from malloc and are charged to no account (base/memory.h): they must be made when the
-// limit of a run is exceeded, and outlive the run.
+// Texts are allocated with malloc and charged to no account (base/memory.h), because they must be
+// available after the limit of a run is exceeded, and must outlive the run.
 
-// Where errors go that the list has no room for. One for each thread, so that two interpreters do
-// not meet.
+// Receives errors for which the list has no room. Thread-local, so that interpreters on different
+// threads do not interfere.
 static _Thread_local CagDiagnostic scratch;
 
-// The message of an error for which there was no memory. It is not freed.
+// The message if there was no memory for one. It is not freed.
 static char no_memory[] = "out of memory";
 
 static void release(CagDiagnostic *d) {
@@ -58,7 +58,7 @@ CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSo
   return fresh;
 }
 
-// What is added to the scratch diagnostic would never be read nor released.
+// Texts added to the scratch diagnostic would be neither read nor released.
 static bool is_scratch(const CagDiagnostic *d) { return d == &scratch; }
 
 void cag_diagnostic_set_help(CagDiagnostic *d, const char *format, ...) {
@@ -128,14 +128,13 @@ void cag_diagnostics_sort_last(CagDiagnostics *d) {
 
 // ---- the nearest name ----
 
-// Longer names are not compared: nobody misspells them one letter at a time.
+// Longer names are not compared.
 #define LONGEST_NAME 64
 
 static char folded(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
-// Edit distance of two names, where two neighbors that change places count as one edit (optimal
-// string alignment), or `limit + 1` when it is larger than limit. Bytes are compared without regard
-// to case.
+// The edit distance of two names, where a transposition of two neighboring letters counts as one
+// edit (optimal string alignment), or `limit + 1` if it is larger than limit. Ignores case.
 static size_t edit_distance(const char *a, size_t n, const char *b, size_t m, size_t limit) {
   size_t rows[3][LONGEST_NAME + 1];
   size_t *before = rows[0], *last = rows[1], *row = rows[2];
@@ -174,8 +173,8 @@ const char *cag_nearest_name(const char *name, const char *const *candidates, si
       continue;
     size_t distance = edit_distance(name, n, candidates[i], m, limit);
     if (distance > limit || distance >= n)
-      continue;                              // a name with every letter changed is another name
-    if (best && distance == limit) continue; // the first of equals stays
+      continue;                              // if every letter differs, it is not a misspelling
+    if (best && distance == limit) continue; // keep the first of equally near names
     best = candidates[i];
     if (distance == 0) return best;
     limit = distance;

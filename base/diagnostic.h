@@ -1,7 +1,7 @@
-// Diagnostics: what is wrong with a script, where, and how to fix it.
+// Diagnostics: what is wrong with a script, its location, and how to fix it.
 //
-// Every kind of error is a row of errors.def: a stable code, a short name, and its explanation. A
-// diagnostic is plain data; `cag_diagnostic_render` makes the text a person reads, or one line of
+// Every kind of error is a row of errors.def: a stable code, a short name, and an explanation. A
+// diagnostic is plain data. `cag_diagnostic_render` formats it as text for people or as one line of
 // JSON.
 
 #ifndef CAG_BASE_DIAGNOSTIC_H
@@ -18,11 +18,11 @@ typedef enum CagSeverity {
   CAG_SEVERITY_NOTE
 } CagSeverity;
 
-// A further place: a call of the chain ("called from", in `text` the function's name) or a related
-// definition.
+// A further location: a call of the call chain ("called from", with the function's name in `text`),
+// or a related definition.
 typedef struct CagNote {
   enum { CAG_NOTE_CALL, CAG_NOTE_TAIL_CALL, CAG_NOTE_RELATED, CAG_NOTE_OMITTED } kind;
-  const CagSource *source; // NULL: no place
+  const CagSource *source; // NULL: no location
   CagSpan span;
   char *text; // CALL: the function; RELATED: "first defined here"; OMITTED: "9 980 more calls"
 } CagNote;
@@ -32,15 +32,14 @@ typedef struct CagDiagnostic {
   CagErrorId id;
   char *message; // "sin expects an angle, found the number 30"
   char *help;    // how to fix it, shown after the carets: "write 30deg or 30rad"; NULL: none
-  const CagSource *source; // NULL: the error has no place in a script
+  const CagSource *source; // NULL: the error has no location in a script
   CagSpan span;
   CagNote *notes;
   size_t note_count, note_capacity;
 } CagDiagnostic;
 
-// A list of diagnostics that a parse or a run fills. At most CAG_DIAGNOSTICS_MAX errors are kept;
-// `dropped` counts the others. The list itself allocates nothing, so exhausted memory can always be
-// reported.
+// The diagnostics of a parse or a run. At most CAG_DIAGNOSTICS_MAX errors are kept; `dropped`
+// counts the others. The list itself allocates nothing, so exhausted memory can always be reported.
 #define CAG_DIAGNOSTICS_MAX 20
 typedef struct CagDiagnostics {
   CagDiagnostic items[CAG_DIAGNOSTICS_MAX];
@@ -52,8 +51,8 @@ void cag_diagnostics_clear(CagDiagnostics *d);
 // Releases all but the first n diagnostics.
 void cag_diagnostics_truncate(CagDiagnostics *d, size_t n);
 
-// Adds an error with a message formatted as by printf. If there is no memory for the message, the
-// error added is that of exhausted memory. The pointer is valid until the next call. If the list is
+// Adds an error with a message formatted as by printf. If there is no memory for the message, adds
+// the error for exhausted memory instead. The pointer is valid until the next call. If the list is
 // full, returns a scratch diagnostic that is discarded; never returns NULL.
 CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
                                    CagSpan span, const char *format, ...)
@@ -62,10 +61,11 @@ void cag_diagnostic_set_help(CagDiagnostic *d, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void cag_diagnostic_add_note(CagDiagnostic *d, int kind, const CagSource *source, CagSpan span,
                              const char *format, ...) __attribute__((format(printf, 5, 6)));
-// Moves what `from` holds to the end of `to`, leaving `from` empty.
+// Moves the diagnostics of `from` to the end of `to`.
 void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from);
 
-// Puts the items from number `from` on, all of one source, in the order of the text.
+// Sorts the items from index `from` on, which all have the same source, by their position in the
+// text.
 void cag_diagnostics_sort(CagDiagnostics *d, size_t from);
 // Sorts only the items at the end that share the source of the last one.
 void cag_diagnostics_sort_last(CagDiagnostics *d);
@@ -76,12 +76,12 @@ typedef enum CagDiagnosticStyle {
   CAG_DIAGNOSTIC_JSON
 } CagDiagnosticStyle;
 
-// Writes a diagnostic as in section 6 of the language, or as one JSON object on one line.
+// Writes a diagnostic as described in section 6 of the language, or as one JSON object on one line.
 void cag_diagnostic_render(const CagDiagnostic *d, CagDiagnosticStyle style, FILE *out);
 void cag_diagnostics_render(const CagDiagnostics *d, CagDiagnosticStyle style, FILE *out);
 
-// The candidate nearest to `name` by edit distance (at most a third of its length, one at least),
-// or NULL.
+// Returns the candidate nearest to `name` by edit distance, which may be at most a third of its
+// length or 1, or NULL.
 const char *cag_nearest_name(const char *name, const char *const *candidates, size_t count);
 
 #endif

@@ -1,10 +1,9 @@
-// Diagnostics as a person reads them, and as editors do.
+// Diagnostics as text for people, and as JSON for editors.
 //
-// A source line is shown through a list of cells: one for each character, with the text that stands
-// for it (a tab becomes blanks, a control character a replacement mark) and its width on a
-// terminal. Line and underline are both drawn from the same widths, so the carets stand below what
-// they mean. Of a line that is too long only a window around the span is shown, and no more than
-// that window is ever looked at.
+// A source line is shown as a list of cells, one for each character, with the text that represents
+// it (a tab becomes blanks, a control character a replacement mark) and its width on a terminal.
+// The line and its underline use the same widths, so the carets are aligned. Of a line that is too
+// long, only a window around the span is shown and processed.
 
 #include "base/diagnostic.h"
 #include "base/json_text.h"
@@ -15,8 +14,8 @@
 #include <string.h>
 #include <utf8proc.h>
 
-#define WINDOW 100 // columns of a source line that are shown at most
-#define LEAD 40    // columns before the span that a cut line keeps
+#define WINDOW 100 // maximum number of columns of a source line that are shown
+#define LEAD 40    // columns before the span that are kept if a line is cut
 #define TAB 4      // columns from one tab stop to the next
 #define REPLACEMENT "\xef\xbf\xbd"
 
@@ -34,8 +33,7 @@ static const char *severity_name(CagSeverity s) {
 
 // ---- text ----
 
-// One character of a source line: how many bytes it takes, how many columns, and what is written
-// for it.
+// One character of a source line: its bytes, its width in columns, and the text that represents it.
 typedef struct Cell {
   size_t bytes;
   int width;
@@ -64,8 +62,8 @@ typedef struct Window {
   size_t from, to;
 } Window;
 
-// The whole line when it is short; else LEAD columns before the span and what fits behind. Columns
-// are counted as characters here, of which none needs more than two.
+// Returns the whole line if it is short, or else LEAD columns before the span and what fits after
+// them. The LEAD columns are counted in characters, which are at most two columns wide.
 static Window choose_window(const char *line, size_t length, size_t start) {
   size_t columns = 0, i = 0;
   while (i < length && columns <= WINDOW) {
@@ -100,7 +98,7 @@ static void draw_line(FILE *out, const char *line, Window w, size_t length) {
   fputc('\n', out);
 }
 
-// Blanks below what stands before the span, then carets below the span, one at least.
+// Draws blanks below the text before the span, then at least one caret below the span.
 static void draw_carets(FILE *out, const char *line, Window w, size_t start, size_t end) {
   size_t column = 0, blanks = 0, carets = 0;
   for (size_t i = w.from; i < w.to && i < end;) {
@@ -122,7 +120,8 @@ static int digits_of(size_t n) {
   return digits;
 }
 
-// Shows the place of a diagnostic; gives the width of the gutter, so that notes can stand below it.
+// Shows the location of a diagnostic. Returns the width of the gutter, with which notes are
+// aligned.
 static int draw_place(FILE *out, const CagDiagnostic *d, const Colors *k) {
   CagPosition p = cag_source_position(d->source, d->span.start);
   int gutter = digits_of(p.line);
@@ -200,7 +199,7 @@ static void json_text(FILE *out, const char *text) {
       continue;
     }
     char escape[8];
-    // Terminals act on DEL, which JSON allows.
+    // DEL is valid in JSON, but terminals interpret it.
     const char *escaped = text[i] == 127 ? "\\u007f" : cag_json_escape(text[i], escape);
     if (escaped) fputs(escaped, out);
     else fwrite(text + i, 1, (size_t)n, out);

@@ -1,4 +1,4 @@
-// The table of errors, and how rows are found.
+// The table of errors, and lookups in it.
 
 #include "base/error.h"
 

@@ -1,8 +1,8 @@
 // The table of errors.
 //
-// Every kind of error is a row of errors.def: a stable code, a short name (its reason), and its
-// explanation. The core, the language, and the program name it by its number, so an error without a
-// row does not compile.
+// Every kind of error is a row of errors.def: a stable code, a short name (its reason), and an
+// explanation. All code refers to a kind by its CagErrorId, so an error without a row does not
+// compile.
 
 #ifndef CAG_BASE_ERROR_H
 #define CAG_BASE_ERROR_H
@@ -19,17 +19,18 @@ typedef enum CagErrorId {
 
 typedef struct CagErrorInfo {
   const char *code;        // "E0101"
-  const char *reason;      // short name, "parameter-range": what `attempt` sees as err.reason
+  const char *reason;      // short name, "parameter-range"; `attempt` receives it as err.reason
   const char *title;       // one phrase
-  const char *explanation; // some sentences
+  const char *explanation; // a few sentences
   const char *example;     // a script that provokes it; NULL: none can
 } CagErrorInfo;
 
 const CagErrorInfo *cag_error_info(CagErrorId id);
-// The row with this code ("E0101", any case) or with this reason; CAG_ERR_COUNT if there is none.
+// Returns the row with this code ("E0101", in any case) or with this reason, or CAG_ERR_COUNT.
 CagErrorId cag_error_by_code(const char *code);
 CagErrorId cag_error_by_reason(const char *reason);
-// Whether the error is a limit of the run: it passes through `attempt`, and the exit status is 5.
+// Returns whether the error is an exceeded limit of the run, which `attempt` does not catch. The
+// exit status is then 5.
 bool cag_error_is_limit(CagErrorId id);
 
 #endif

@@ -9,7 +9,7 @@
 
 typedef struct Guard {
   struct Guard *outer;
-  CagCleanup *cleanups; // those pushed before this guard
+  CagCleanup *cleanups; // pushed before this guard
   jmp_buf left;
 } Guard;
 

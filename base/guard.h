@@ -1,6 +1,6 @@
-// Work that may run out of memory at any point, or be asked to end (cag_source_check).
+// Work that may run out of memory at any point, or be asked to stop (cag_source_check).
 //
-// A parser or a printer allocates at a hundred locations. Such work runs in a guard: a failed
+// A parser or a printer allocates in a hundred places. Such work runs in a guard: a failed
 // allocation jumps out of the work, and the guard reports the failure. The caller of the guard
 // releases everything reachable from its context, and cleanups release the rest. Guards can be
 // nested, and each thread has its own.

@@ -27,12 +27,12 @@ uint64_t cag_hash_word(uint64_t hash, uint64_t word) {
 
 uint64_t cag_hash_number(uint64_t hash, double x) {
   uint64_t bits;
-  if (x == 0) x = 0; // of both zeros
+  if (x == 0) x = 0; // 0 and -0
   memcpy(&bits, &x, sizeof bits);
   return cag_hash_word(hash, bits);
 }
 
-// The low bits of a sum of bytes are its worst, and an index uses them.
+// The low bits of a sum of bytes are the worst mixed, but the index uses them.
 static size_t first_slot(const CagHashIndex *x, uint64_t hash) {
   return (size_t)(hash ^ hash >> 32) & (x->size - 1);
 }
@@ -43,8 +43,8 @@ static void insert_slot(CagHashIndex *x, CagHashSlot s) {
   x->slots[at] = s;
 }
 
-// Slots move in the order of their probes, which keeps numbers with equal hashes in their order:
-// the walk begins behind a free slot.
+// Slots are moved in probe order, starting after a free slot, so that numbers with equal hashes
+// keep their order.
 static void move_slots(CagHashIndex *to, const CagHashIndex *from) {
   size_t start = 0;
   while (start < from->size && from->slots[start].number) start++;

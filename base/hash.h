@@ -1,15 +1,16 @@
-// Hashes of data, and an index that finds numbered things by their hash.
+// Hashes of data, and an index that finds items by their hash.
 //
-// An index holds pairs of a hash and a number, usually the position of a thing in an array. It
-// knows nothing about the things: the caller computes the hash and compares the candidates. For
-// example, to find a name in a list:
+// An index holds pairs of a hash and a number, usually the position of an item in an array. It does
+// not know the items: the caller computes the hashes and compares the candidates. For example, to
+// find a name in a list:
 //
 //     const uint64_t hash = cag_hash_text(CAG_HASH_START, name);
 //     size_t i;
 //     for (CagHashWalk w = cag_hash_walk(&index, hash); cag_hash_next(&w, &i);)
 //       if (strcmp(list[i].name, name) == 0) return i;
 //
-// Numbers with equal hashes come in the order in which they were added. An index of zeros is empty.
+// Numbers with equal hashes are found in the order in which they were added. A zeroed index is
+// empty.
 
 #ifndef CAG_BASE_HASH_H
 #define CAG_BASE_HASH_H
@@ -18,14 +19,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The hash of nothing. Each function below adds to a hash and returns the new one.
+// The hash of an empty sequence. Each function below adds to a hash and returns the new one.
 #define CAG_HASH_START UINT64_C(14695981039346656037)
 
 uint64_t cag_hash_bytes(uint64_t hash, const void *bytes, size_t n);
-// The bytes of the text without the zero at its end.
+// Adds the bytes of the text without its terminating zero.
 uint64_t cag_hash_text(uint64_t hash, const char *text);
 uint64_t cag_hash_word(uint64_t hash, uint64_t word);
-// Equal numbers add the same, also 0 and -0.
+// Equal numbers add the same, including 0 and -0.
 uint64_t cag_hash_number(uint64_t hash, double x);
 
 typedef struct CagHashSlot {

@@ -49,8 +49,8 @@ static void *refuse(void) {
   return NULL;
 }
 
-// The usable size of a block is a little more than what was asked for, so the limit may be exceeded
-// by that much.
+// The usable size of a block is a little larger than the requested size, so the limit may be
+// exceeded by that much.
 static void *charged(void *block) {
   if (cag_account && block) cag_account->used += malloc_usable_size(block);
   return block;
@@ -70,7 +70,7 @@ void *cag_calloc(size_t count, size_t size) {
 void *cag_realloc(void *block, size_t size) {
   CagAccount *a = cag_account;
   if (!a) return realloc(block, size);
-  // The old block is held until the new one has its bytes.
+  // The old block stays charged until the new one has its contents.
   const size_t old = block ? malloc_usable_size(block) : 0;
   if (size > old && !has_room(a, size - old)) return refuse();
   void *moved = realloc(block, size);

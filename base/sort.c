@@ -1,4 +1,4 @@
-// Sorting that can be stopped: blocks are sorted by qsort, and merged.
+// Interruptible sorting: blocks are sorted by qsort and merged.
 
 #include "base/sort.h"
 
@@ -8,9 +8,9 @@
 #include "base/memory.h"
 #include "base/stop.h"
 
-// Elements of a block: some milliseconds of qsort.
+// Elements per block: a few milliseconds of qsort.
 #define BLOCK ((size_t)1 << 14)
-// Elements merged between two looks at the stop flag.
+// Elements merged between two checks of the stop flag.
 #define MERGED_BETWEEN_LOOKS ((size_t)1 << 12)
 
 typedef struct Sort {
@@ -18,8 +18,8 @@ typedef struct Sort {
   int (*compare)(const void *, const void *);
 } Sort;
 
-// Merges the sorted runs [0, middle) and [middle, n) of `from`. Of equal elements those of the
-// first run come first.
+// Merges the sorted runs [0, middle) and [middle, n) of `from`. Stable: equal elements of the first
+// run come first.
 static CagStatus merge(const Sort *s, const char *from, size_t middle, size_t n, char *to,
                        CagError *err) {
   const size_t size = s->size;

@@ -44,8 +44,9 @@ void cag_source_free(CagSource *s) {
   cag_free(s);
 }
 
-// Bytes of the well-formed UTF-8 character at p (Unicode 15, table 3-7), 0 when there is none. p is
-// NUL-terminated, and a NUL is never part of a longer character, so nothing behind the end is read.
+// Returns the number of bytes of the well-formed UTF-8 character at p (Unicode 15, table 3-7), or 0
+// if there is none. p is NUL-terminated, and a NUL is never part of a longer character, so nothing
+// after the end is read.
 static size_t character_length(const unsigned char *p) {
   unsigned char a = p[0], low = 0x80, high = 0xbf;
   size_t n;
@@ -68,8 +69,8 @@ size_t cag_source_bad_utf8(const CagSource *s) {
   const unsigned char *p = (const unsigned char *)s->text;
   size_t i = 0;
   while (i < s->length) {
-    uint64_t eight; // most of a script is ASCII: eight bytes at a time, none with its high bit set
-                    // and none zero
+    uint64_t eight; // Most of a script is ASCII: skip eight bytes at a time if none is zero or has
+                    // its high bit set.
     while (s->length - i >= sizeof eight) {
       memcpy(&eight, p + i, sizeof eight);
       if ((eight | (eight - 0x0101010101010101u)) & 0x8080808080808080u) break;

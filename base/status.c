@@ -1,4 +1,4 @@
-// Errors as values: filling a CagError, and numbers as messages show them.
+// Errors as values: setting a CagError, and formatting numbers for messages.
 
 #include "base/status.h"
 
@@ -27,7 +27,7 @@ CagStatus(cag_fail)(CagError *err, CagStatus status, CagErrorId id, const char *
 
 // --- Files and renderers ---
 
-// Takes an incomplete UTF-8 character off the end of a text that was cut to fit.
+// Removes an incomplete UTF-8 character from the end of a text that was truncated to fit.
 static void trim_cut_character(char *text) {
   size_t n = strlen(text), tail = 0;
   while (tail < n && tail < 4 && cag_utf8_is_within(text[n - 1 - tail])) tail++;
@@ -85,14 +85,15 @@ bool cag_memory_was_out(void) {
   return out;
 }
 
-// Functions that only tell that they could not finish do so as well if the work is to end.
+// If the work is to stop, some functions report this as failure without a reason, and their callers
+// then call this.
 CagStatus(cag_fail_memory)(CagError *err) {
   if (cag_stopped()) return cag_stop_fail(err);
   cag_note_memory();
   return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "out of memory");
 }
 
-// 17 digits always read back the same, 15 often do and are what a person would write.
+// 17 digits always read back the same. 15 often do, and are what a person would write.
 const char *cag_number_text(double x, char *buffer) {
   enum { SIZE = 32 };
   if (isnan(x)) {

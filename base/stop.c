@@ -1,4 +1,4 @@
-// Long work is asked to end: the thread's flag.
+// Stopping long work: the thread's stop flag.
 
 #include "base/stop.h"
 
@@ -13,7 +13,7 @@ const volatile int *cag_stop_lend(const volatile int *flag) {
 }
 
 CagStatus cag_stop_fail(CagError *err) {
-  // Not by cag_fail: loops that pass over failures reach their end soonest.
+  // Does not call cag_fail, because loops that ignore failures should end quickly.
   err->status = CAG_E_CALLBACK;
   err->id = CAG_ERR_interrupted;
   err->argument[0] = 0;

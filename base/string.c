@@ -1,4 +1,4 @@
-// Strings that grow.
+// Growing strings.
 
 #include "base/string.h"
 

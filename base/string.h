@@ -1,4 +1,4 @@
-// Strings that grow.
+// Growing strings.
 
 #ifndef CAG_BASE_STRING_H
 #define CAG_BASE_STRING_H
@@ -11,7 +11,7 @@
 typedef struct CagString {
   char *bytes; // NULL if nothing was added
   size_t length, capacity;
-  size_t most; // where writers stop (see cag_print_value); 0: nowhere
+  size_t most; // length at which writers stop (see cag_print_value); 0: unlimited
   bool failed;
 } CagString;
 void cag_string_add(CagString *s, const char *bytes, size_t n);

@@ -1,4 +1,4 @@
-// The difference of two texts, line by line.
+// Line-based comparison of two texts.
 
 #ifndef CAG_CLI_DIFF_H
 #define CAG_CLI_DIFF_H
@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// Writes what turns `a` into `b` as a unified diff with three lines of context, in the form that
-// `patch` reads; nothing where they are equal.
+// Writes the difference from `a` to `b` as a unified diff with three lines of context, as accepted
+// by `patch`, or nothing if they are equal.
 void cag_tool_diff(const char *name, const char *a, size_t a_length, const char *b, size_t b_length,
                    FILE *out);
 

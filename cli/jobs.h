@@ -1,9 +1,7 @@
-// The file of jobs of a batch, as rows of texts: CSV with a line of names above, or JSON, a list of
-// records.
+// The job file of a batch, as rows of texts: CSV with a header line, or JSON, a list of records.
 //
-// Nothing is understood here but the columns' names; whether a size is a size is looked at by
-// batch_check.c. What is wrong with the file is kept as a list of problems with the rows' numbers,
-// so that all of them can be told at once.
+// Only the names of columns are interpreted here; batch_check.c checks the values. Errors are kept
+// as a list of problems with row numbers, so that all of them can be reported at once.
 
 #ifndef CAG_CLI_JOBS_H
 #define CAG_CLI_JOBS_H
@@ -11,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// CAG_JOB_COLUMN(name): the columns that have a meaning. All others are params of the script.
+// CAG_JOB_COLUMN(name): the columns with a fixed meaning. All others are params of the script.
 #define CAG_JOB_COLUMNS(CAG_JOB_COLUMN)                                                            \
   CAG_JOB_COLUMN(script)                                                                           \
   CAG_JOB_COLUMN(output)                                                                           \
@@ -36,17 +34,17 @@ typedef struct CagJobParam {
   char *name, *value;
 } CagJobParam;
 
-// A row. Texts are NULL where nothing was given: an empty field is nothing given.
+// A row. Texts are NULL if they are not given, which includes empty fields.
 typedef struct CagJob {
-  size_t number; // from 1, the line of names not counted
-  size_t line;   // where it begins in the file; 0: not known (JSON)
+  size_t number; // from 1, without the header line
+  size_t line;   // line of the file where it starts; 0: unknown (JSON)
   char *cells[CAG_JOB_COLUMN_COUNT];
-  CagJobParam *params; // by name
+  CagJobParam *params; // sorted by name
   size_t param_count;
 } CagJob;
 
 typedef struct CagJobProblem {
-  size_t row, line; // 0: of the file
+  size_t row, line; // 0: applies to the file
   const char *code;
   char *message, *help; // help may be NULL
 } CagJobProblem;
@@ -58,12 +56,12 @@ typedef struct CagJobs {
   size_t problem_count, problem_capacity;
 } CagJobs;
 
-// Reads the text of a file of jobs; `is_json` says as what. Begins with {0}; release with
-// cag_jobs_free, also after problems. False only when memory is out.
+// Parses the text of a job file as CSV or, with `is_json`, as JSON. Initialize with {0}. Release
+// with cag_jobs_free, even after problems. Returns false only if memory ran out.
 bool cag_jobs_read(CagJobs *jobs, const char *text, size_t length, bool is_json);
 void cag_jobs_free(CagJobs *jobs);
 
-// Adds a problem of a row (NULL: of the whole file). False: memory is out.
+// Adds a problem of a row (NULL: of the whole file). Returns false if memory ran out.
 bool cag_jobs_problem(CagJobs *jobs, const CagJob *row, const char *code, const char *help,
                       const char *format, ...) __attribute__((format(printf, 5, 6)));
 

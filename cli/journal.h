@@ -1,11 +1,11 @@
-// The journal of a batch: what was done, kept so that a run that was killed goes on where it ended.
+// The journal of a batch: a record of finished tasks, with which a killed batch can be resumed.
 //
-// A journal is a text of lines, each a JSON object, to which lines are only ever added; a line
-// counts when it is whole, and is on the disk when cag_journal_sync returns. A kill can tear the
-// last line only: it is passed over, and the next line begins on a line of its own. Later lines
-// about a key stand for the earlier ones.
+// A journal is a text of lines, each a JSON object, to which lines are only appended. Incomplete
+// lines are ignored, and complete lines are on the disk after cag_journal_sync returns. If the
+// batch is killed, only the last line can be incomplete; the next entry then starts on a new line.
+// Later lines about a key override earlier ones.
 //
-// While a journal is open it is locked: a second batch of the same jobs is refused.
+// While a journal is open, it is locked, so a second batch with the same jobs is refused.
 
 #ifndef CAG_CLI_JOURNAL_H
 #define CAG_CLI_JOURNAL_H
@@ -15,14 +15,14 @@
 
 #include "base/status.h"
 
-// 128 bits as hexadecimal digits, and a zero.
+// 128 bits as hexadecimal digits, and a terminating zero.
 #define CAG_JOURNAL_KEY_SIZE 33
 
 typedef enum CagJournalWhat {
   CAG_JOURNAL_DONE,
   CAG_JOURNAL_FAILED,
-  CAG_JOURNAL_SUBMITTED, // to a queue; the key is the number of the queue's job
-  CAG_JOURNAL_COLLECTED  // the queue's job has ended and its results are in the journal
+  CAG_JOURNAL_SUBMITTED, // to a queue; the key is the queue's job id
+  CAG_JOURNAL_COLLECTED  // the queue's job has ended, and its results are in the journal
 } CagJournalWhat;
 
 typedef struct CagJournalEntry {
@@ -35,29 +35,29 @@ typedef struct CagJournalEntry {
 
 typedef struct CagJournal {
   int fd;
-  const char *path;         // the caller's
-  CagJournalEntry *entries; // of keys that are known, by key
+  const char *path;         // belongs to the caller
+  CagJournalEntry *entries; // latest entry of each key, by key
   size_t count;
-  bool unsynced;                  // lines were written that the disk may not have
-  char job[CAG_JOURNAL_KEY_SIZE]; // the queue's job that was submitted and not collected; empty:
+  bool unsynced;                  // lines were written that may not be on the disk yet
+  char job[CAG_JOURNAL_KEY_SIZE]; // the queue's job that was submitted but not collected; empty:
                                   // none
 } CagJournal;
 
-// Opens and reads the journal, and makes it where there is none; a `fresh` one forgets what it
-// held. Fails with the reason in `err`: a file that cannot be read or written, one that is no
-// journal, a batch that holds it.
+// Opens and reads the journal, which is created if it does not exist. With `fresh`, earlier
+// contents are discarded. Fails, with the reason in `err`, if the file cannot be read or written,
+// is not a journal, or is locked by another batch.
 bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagError *err);
 void cag_journal_close(CagJournal *j);
 
-// The newest of the key that was there when the journal was opened, or NULL.
+// Returns the latest entry of the key when the journal was opened, or NULL.
 const CagJournalEntry *cag_journal_find(const CagJournal *j, const char *key);
 
-// Adds a line, which a kill leaves there; when power fails, the disk may not have it before the
-// next cag_journal_sync.
+// Appends a line. It survives if the process is killed, but after a power failure only if
+// cag_journal_sync was called.
 bool cag_journal_write(CagJournal *j, const CagJournalEntry *entry, CagError *err);
-// Waits until the disk has all lines.
+// Waits until all lines are on the disk.
 bool cag_journal_sync(CagJournal *j, CagError *err);
-// Both.
+// Appends a line and waits until it is on the disk.
 bool cag_journal_add(CagJournal *j, const CagJournalEntry *entry, CagError *err);
 
 #endif

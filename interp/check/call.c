@@ -8,7 +8,7 @@
 
 // ---- calls ----
 
-// A call with what a pipe puts before its arguments.
+// A call, including an argument from a pipe.
 typedef struct CallView {
   const CagExpr *e; // the call; NULL: a pipe into a function
   const CagExpr *piped;
@@ -31,7 +31,7 @@ static CagTypes first_types(const CallView *v) {
   return CAG_TYPES_ANY;
 }
 
-// What a call is held against: a row of the table, or a function of a script.
+// What a call is checked against: a row of the table, or a function of a script.
 typedef struct Callee {
   const char *name;
   const char *const *parameters;
@@ -52,13 +52,13 @@ static size_t parameter_named(const Callee *f, const char *name) {
   return f->count;
 }
 
-// Shows the form of a call of a built-in where other languages have another.
+// Adds the correct form of a call of a built-in if other languages use a different one.
 static void help_call(const Callee *f, CagDiagnostic *d) {
   const char *form = f->builtin ? cag_foreign_call(f->name) : NULL;
   if (form) cag_diagnostic_set_help(d, "write %s", form);
 }
 
-// Whether the arguments fit the parameters; where `tell`, the first that does not is reported.
+// Returns whether the arguments fit the parameters. With `tell`, reports the first that does not.
 static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool tell) {
   char text[256];
   if (v->positional > f->count && !f->variadic) {
@@ -70,7 +70,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
     }
     return false;
   }
-  uint64_t given = 0; // parameters by name; functions have few
+  uint64_t given = 0; // named arguments, by parameter; functions have few parameters
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
     const CagArgument *a = &v->e->as.call.arguments[i];
     if (!a->name) continue;
@@ -102,7 +102,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
   return true;
 }
 
-// An argument that a parameter does not take.
+// An argument of a type that its parameter does not accept.
 typedef struct Misfit {
   const CagExpr *value;
   size_t parameter;
@@ -116,7 +116,7 @@ static bool fits(const CagBuiltin *row, const CagSignature *s, size_t k, CagType
   return types & taken;
 }
 
-// Whether the arguments are of types that a row takes; else the first that is not.
+// Returns whether a row accepts the types of the arguments. Otherwise, sets the first misfit.
 static bool types_fit(const CagBuiltin *row, const CagSignature *s, const CallView *v,
                       Misfit *out) {
   size_t k = 0;
@@ -130,7 +130,8 @@ static bool types_fit(const CagBuiltin *row, const CagSignature *s, const CallVi
   return true;
 }
 
-// "a number", or in the words of the signature if these are many: "a list of points".
+// Describes the expected types: "a number", or the words of the signature if there are many types:
+// "a list of points".
 static const char *expected_text(const CagSignature *s, const Misfit *m, char *buffer,
                                  size_t size) {
   const CagTypes taken = m->taken & ~CAG_TYPES(NONE);
@@ -159,7 +160,7 @@ static void report_misfit(Check *c, const CagSignature *s, const Misfit *m) {
     cag_diagnostic_set_help(d, "write %s", cag_foreign_call(s->name));
 }
 
-// Warns about a row whose summary says what to use instead.
+// Warns about a row whose summary states a replacement.
 static void check_deprecated_row(Check *c, const CagBuiltin *row, const char *name, CagSpan span) {
   static const char mark[] = "Deprecated: ";
   if (strncmp(row->summary, mark, strlen(mark)) != 0) return;
@@ -171,12 +172,12 @@ static void check_deprecated_row(Check *c, const CagBuiltin *row, const char *na
 }
 
 static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
-  if (strcmp(row->signature, "error(message)") == 0) return CAG_TYPES_ANY; // it gives nothing back
+  if (strcmp(row->signature, "error(message)") == 0) return CAG_TYPES_ANY; // it does not return
   if (row->result && strncmp(row->result, "as ", 3) == 0) return first ? first : CAG_TYPES_ANY;
   return cag_types_of_result(row->result);
 }
 
-// Rows of one name are tried in order: a call is good when one of them takes it.
+// Rows of one name are tried in order. A call is valid if one of them accepts it.
 static CagTypes check_builtin(Check *c, size_t index, const CallView *v, CagSpan callee) {
   size_t rows, candidates = 0, only = 0, fitting = 0, misfits = 0;
   Misfit misfit, nearest = {0};
@@ -196,7 +197,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v, CagSpan
     fitting++;
     result |= result_of(&row[i], first);
     if (types_fit(&row[i], s, v, &misfit)) continue;
-    // Of several rows, that is meant which takes the most of the arguments.
+    // Of several rows, report the one that accepts the most arguments.
     if (misfits++ > 0 && misfit.parameter <= nearest.parameter) continue;
     nearest = misfit;
     missed = s;
@@ -228,7 +229,7 @@ static CagTypes check_function(Check *c, const char *name, const CagFunctionAst 
   return CAG_TYPES_ANY;
 }
 
-// The function that an expression stands for, and its name; NULL: not known.
+// Returns the function that an expression refers to, and its name, or NULL if it is unknown.
 static const CagFunctionAst *function_of(const Check *c, const CagExpr *e, const char **name) {
   const CagStatement *s = NULL;
   if (e->kind == CAG_EXPR_NAME && e->as.name.binding == CAG_BIND_DECL && e->as.name.decl) {
@@ -253,12 +254,12 @@ static bool names_builtin(const CagExpr *e) {
          e->as.name.index < cag_builtin_count();
 }
 
-// `attempt` is there for what may fail: its function is not judged.
+// The function given to `attempt` is expected to fail, so it is not checked.
 static bool is_attempt(const CagExpr *e) {
   return names_builtin(e) && strcmp(cag_builtin_name(e->as.name.index), "attempt") == 0;
 }
 
-// A curve is called with one parameter, a surface with two.
+// A curve takes one parameter, a surface two.
 static void check_shape_call(Check *c, CagTypes called, const CallView *v) {
   const bool curve = called == CAG_TYPES(CURVE), surface = called == CAG_TYPES(SURFACE);
   const bool number = !(first_types(v) & ~(CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE)));
@@ -268,7 +269,7 @@ static void check_shape_call(Check *c, CagTypes called, const CallView *v) {
     cag_check_report(c, CAG_ERR_arity, v->span, "a surface takes two parameters, u and v");
 }
 
-// A call, or a pipe into what is called.
+// Checks a call, or a pipe into a function.
 static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   CagTypes few[16];
   v->types = few;
@@ -306,7 +307,7 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   return result;
 }
 
-// A call that looks right is tried where all that it is given is written out.
+// Evaluates a call without errors if all its arguments are constant.
 static void try_call(Check *c, const CagExpr *e, size_t errors_before) {
   if (!c->unjudged && !c->thunks && cag_check_error_count(c) == errors_before)
     cag_check_constant(&c->constants, e);

@@ -1,4 +1,4 @@
-// Checks the statements of a module, and finds which definitions are reached.
+// Checks the statements of a module, and finds unused definitions.
 
 #include "interp/check/check.h"
 
@@ -9,7 +9,7 @@
 
 // ---- the module ----
 
-// A number that is written, with its sign; false: something else.
+// Reads a number literal with its sign. Returns false for anything else.
 static bool literal(const CagExpr *e, double *x) {
   const bool negative = e->kind == CAG_EXPR_NEGATE;
   if (negative) e = e->as.unary.operand;
@@ -18,7 +18,7 @@ static bool literal(const CagExpr *e, double *x) {
   return true;
 }
 
-// A default that is written out, of another kind than its range, or not in its list.
+// Tests whether a literal default is of another type than its range, or not in its list.
 static bool is_elsewhere(const CagExpr *value, const CagExpr *domain) {
   double x, y;
   const bool word = value->kind == CAG_EXPR_TEXT, number = literal(value, &x);
@@ -83,8 +83,8 @@ static void walk_statement(Check *c, const CagStatement *s) {
   }
 }
 
-// Marks what statements use, and what that uses. Of a module that shows and prints nothing all
-// public definitions are for others.
+// Marks the definitions that statements use, directly or indirectly. If a module shows and prints
+// nothing, all its public definitions count as used.
 static void mark_reached(Check *c, bool is_script) {
   const size_t n = c->ast->top_count;
   for (size_t i = 0; i < n; i++)
@@ -132,8 +132,8 @@ static void warn_unused(Check *c) {
   }
 }
 
-// Definitions that contain an error numbered `from` or higher are not evaluated, and neither are
-// those damaged by syntax errors.
+// Marks definitions that are not evaluated: those that contain an error numbered `from` or higher,
+// and those damaged by syntax errors.
 static void mark_bad(Check *c, size_t from) {
   for (size_t k = 0; k < c->ast->top_count; k++)
     c->top_bad[k] = c->ast->tops[k]->statement->damage != CAG_SOUND;
@@ -165,7 +165,7 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   cag_check_circles(m->ast, &vm->errors);
   mark_bad(&c, known);
   for (size_t i = 0; i < m->ast->count; i++) walk_statement(&c, m->ast->statements[i]);
-  // Unused names are reported only if everything was read and no name is unknown. Otherwise an
+  // Unused names are reported only if everything was read and all names are known. Otherwise an
   // unknown name or unread text may be a use.
   if (m->sound && known == m->first_error) warn_unused(&c);
   cag_diagnostics_sort_last(&vm->errors);

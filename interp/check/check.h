@@ -1,16 +1,16 @@
-// What can be told of a script without running it: calls that cannot go well, values of a type that
-// an operator or a function never takes, definitions that nothing uses.
+// Static checks: calls that always fail, values of a type that an operator or a function never
+// accepts, and unused definitions.
 //
-// The types that an expression may have are inferred as a set; an error is reported only where no
-// type of the set would do. So what is reported is wrong whenever the place is reached.
+// The possible types of an expression are inferred as a set. An error is reported only if no type
+// of the set is valid, so a reported expression always fails when it is evaluated.
 
 #ifndef CAG_INTERP_CHECK_H
 #define CAG_INTERP_CHECK_H
 
 #include "interp/vm/vm.h"
 
-// Checks a module whose names were resolved, which may have failed for some of them and of its
-// imports. Errors and warnings go to vm->errors; false where there are errors.
+// Checks a module after its names were resolved, even if some names or imports are unknown. Adds
+// errors and warnings to vm->errors. Returns false if there are errors.
 bool cag_check_module(CagVm *vm, CagModuleUnit *m);
 
 #endif

@@ -1,5 +1,5 @@
 // Finds circular definitions in scripts without syntax errors. In the graph, node 2k is the value
-// of definition k, and node 2k + 1 is a call of it. The depth-first search uses its own stack
+// of definition k, and node 2k + 1 is a call of it. The depth-first search uses an explicit stack
 // because chains may be long.
 
 #include <string.h>
@@ -14,14 +14,14 @@ typedef struct Edge {
 
 typedef struct Node {
   Edge *edges;
-  size_t count, capacity, next; // next: the edge to follow
+  size_t count, capacity, next; // next: the edge to follow next
   enum { NEW, OPEN, DONE } state;
 } Node;
 
 typedef struct Graph {
   const CagModuleAst *ast;
   Node *nodes;
-  size_t from; // whose expression is walked
+  size_t from; // definition whose expression is being searched
   CagArena memory;
 } Graph;
 
@@ -120,8 +120,8 @@ static void walk(Graph *g, const CagExpr *e) {
 
 // ---- search ----
 
-// The path from its node `at` on is a circle that the edge at `span` closes. A circle of calls
-// alone is a recursion, and no concern here.
+// Reports the circle that the edge at `span` closes: the path from its node `at` on. A circle that
+// consists only of calls is a recursion, which is valid.
 static void report_circle(const Graph *g, const size_t *path, size_t length, size_t at,
                           CagSpan span, CagDiagnostics *errors) {
   CagString s = {0};
@@ -180,7 +180,7 @@ void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
     if (f) walk(&g, f->body);
     else walk(&g, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value);
   }
-  for (size_t k = 0; k < n; k++) // as a run does: from values
+  for (size_t k = 0; k < n; k++) // starting from values, as a run does
     if (g.nodes[2 * k].state == NEW) search(&g, 2 * k, path, errors);
   cag_cleanup_run(&cleanup);
 }

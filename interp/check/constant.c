@@ -6,14 +6,15 @@
 #include "interp/check/constant.h"
 #include "interp/vm/builtin.h"
 
-// Expressions of more nodes are data, which take long and seldom are wrong.
+// Larger expressions are data, which take long and are rarely wrong.
 #define NODES_MAX 400
-// Larger numbers may be counts, which take long.
+// Larger numbers may be counts, which may take long.
 #define NUMBER_MAX 1e5
-// So many calls are evaluated in a file: their code is kept as long as the machine.
+// The maximum number of calls that are evaluated in a file. Their code is kept as long as the
+// machine.
 #define CALLS_MAX 20000
 
-// Families of built-ins that are quick, whatever constants they are given.
+// Tests for families of built-ins that are fast for all constants.
 static bool is_quick(const CagBuiltin *row) {
   static const char *const families[] = {"Numbers",
                                          "Angles",
@@ -84,7 +85,7 @@ static bool is_constant(const CagConstants *c, const CagExpr *e, size_t *nodes) 
   switch (e->kind) {
   case CAG_EXPR_NUMBER:
   case CAG_EXPR_ANGLE: return fabs(e->as.number) <= NUMBER_MAX;
-  case CAG_EXPR_TEXT: return !strchr(e->as.text.bytes, '.'); // else it may name a file
+  case CAG_EXPR_TEXT: return !strchr(e->as.text.bytes, '.'); // with a point, it may be a file name
   case CAG_EXPR_TRUE:
   case CAG_EXPR_FALSE:
   case CAG_EXPR_NONE: return true;
@@ -132,7 +133,7 @@ void cag_check_constant(CagConstants *c, const CagExpr *e) {
   CagDiagnostics found = vm->errors;
   vm->errors = known;
   vm->failed = false;
-  if (vm->stop) c->evaluated = CALLS_MAX; // interrupted: said once
+  if (vm->stop) c->evaluated = CALLS_MAX; // interrupted: report this only once
   cag_diagnostics_move(&vm->errors, &found);
   cag_diagnostics_clear(&found);
 }

@@ -1,4 +1,4 @@
-// Types of expressions.
+// Type inference for expressions.
 
 #include "interp/check/walk.h"
 
@@ -50,7 +50,7 @@ static CagTypes infer_branch(Check *c, const CagExpr *e) {
   return types | cag_check_infer(c, e);
 }
 
-// What a list, range or text gives one after the other.
+// Returns the types of the elements of a list, range, or text.
 static CagTypes types_of_elements(const CagExpr *source, CagTypes types) {
   if (source->kind == CAG_EXPR_RANGE && source->as.range.low->kind == CAG_EXPR_NUMBER)
     return CAG_TYPES(NUMBER);
@@ -97,7 +97,7 @@ static CagTypes infer_block(Check *c, const CagExpr *e) {
       continue;
     }
     const CagDecl *decl = s->as.definition.decl;
-    cag_check_learn(c, decl, CAG_TYPES_ANY); // a function sees itself
+    cag_check_learn(c, decl, CAG_TYPES_ANY); // recursion
     cag_check_learn(c, decl, cag_check_infer(c, s->as.definition.value));
     if (decl->used || decl->name[0] == '_') continue;
     snprintf(text, sizeof text, "nothing uses %s", decl->name);
@@ -130,7 +130,7 @@ static CagTypes infer_negation(Check *c, const CagExpr *e) {
   return CAG_TYPES_ANY;
 }
 
-// A range from a number to an angle, or back.
+// Reports a range from a number to an angle or vice versa.
 static void check_mixed_range(Check *c, const CagExpr *e, CagTypes low, CagTypes high) {
   char text[320];
   if (!((low == CAG_TYPES(NUMBER) && high == CAG_TYPES(ANGLE)) ||
@@ -166,7 +166,7 @@ void cag_check_infer_all(Check *c, CagExpr *const *items, size_t count) {
   for (size_t i = 0; i < count; i++) cag_check_infer(c, items[i]);
 }
 
-// Members of values that have none, or few: those of a vector and of a range.
+// Checks members of values that have few or none, such as vectors and ranges.
 static void check_member(Check *c, const CagExpr *e, CagTypes types) {
   static const char *const ends[] = {"start", "end", "step"};
   const CagTypes none = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(BOOL) | CAG_TYPES(TEXT) |
@@ -176,7 +176,9 @@ static void check_member(Check *c, const CagExpr *e, CagTypes types) {
   bool known = types & ~(none | CAG_TYPES(LIST) | CAG_TYPES(RANGE));
   if (types & CAG_TYPES(LIST)) known |= strlen(name) == 1 && strchr("xyzw", *name);
   for (size_t i = 0; types & CAG_TYPES(RANGE) && i < 3; i++) known |= strcmp(name, ends[i]) == 0;
-  if (types & CAG_TYPES(RANGE)) known |= strlen(name) == 1 && strchr("xyzw", *name); // as a list
+  if (types & CAG_TYPES(RANGE))
+    known |= strlen(name) == 1 && strchr("xyzw", *name); // as for a
+                                                         // list
   if (known) return;
   snprintf(text, sizeof text, "%s has no member `%s`", cag_types_text(types, found, sizeof found),
            name);

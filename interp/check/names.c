@@ -1,10 +1,10 @@
-// Reports of the checker, and what is known of names.
+// Reporting by the checker, and the types of names.
 
 #include "interp/check/walk.h"
 
 #include <string.h>
 
-// Definitions are checked at their first use. The checker does not follow longer chains.
+// Definitions are checked at their first use. Longer chains are not followed.
 #define DEPTH_MAX 1000
 
 // ---- reports ----
@@ -32,7 +32,7 @@ void cag_check_report_found(Check *c, CagErrorId id, CagSpan span, const char *w
 
 size_t cag_check_error_count(const Check *c) { return c->vm->errors.count + c->vm->errors.dropped; }
 
-// ---- names ----
+// ---- types of names ----
 
 static size_t slot_of(const Check *c, const CagDecl *decl) {
   size_t i = ((size_t)decl >> 4) * 0x9E3779B97F4A7C15u >> 20 & (c->known_size - 1);

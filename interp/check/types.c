@@ -8,7 +8,7 @@
 #define SHAPES                                                                                     \
   (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
    CAG_TYPES(MESH) | CAG_TYPES(LABEL) | CAG_TYPES(GROUP))
-// Types whose operators are all told by the table below; of others nothing is said.
+// Types whose operators are all in the table below. Nothing is assumed about other types.
 #define PLAIN                                                                                      \
   (CAG_TYPES(NONE) | CAG_TYPES(BOOL) | CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(TEXT) |    \
    CAG_TYPES(LIST) | CAG_TYPES(RANGE) | CAG_TYPES(RECORD) | CAG_TYPES_FUNCTION)
@@ -67,11 +67,11 @@ CagTypes cag_types_of_result(const char *result) {
 
 CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t parameter) {
   if (parameter == 0 && row->first) return row->first;
-  if (s->variadic && parameter >= s->count) parameter = 0; // further ones are as the first
+  if (s->variadic && parameter >= s->count) parameter = 0; // further arguments are like the first
   if (parameter >= s->count) return CAG_TYPES_ANY;
   const CagTypes accepted = cag_signature_types(s)->items[parameter].accepts;
   if (!accepted) return CAG_TYPES_ANY;
-  // Instead of several values, one list of them may be given.
+  // A list can be given instead of several values.
   if (s->variadic) return accepted | LISTS;
   return parameter < s->required ? accepted & ~CAG_TYPES(NONE) : accepted;
 }
@@ -122,7 +122,7 @@ CagTypes cag_types_joined(CagBinaryOp op, CagTypes left, CagTypes right) {
   case CAG_OP_GREATER_EQUAL: op = CAG_OP_LESS; break;
   default: break;
   }
-  // Types that the table does not tell of may join in their own ways.
+  // Types outside of the table may support any operator.
   if ((left | right) & ~PLAIN) result = op == CAG_OP_LESS ? CAG_TYPES(BOOL) : CAG_TYPES_ANY;
   for (size_t i = 0; i < sizeof joined / sizeof *joined; i++)
     if (joined[i].op == op && left & joined[i].left && right & joined[i].right)

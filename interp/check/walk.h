@@ -1,5 +1,4 @@
-// The internals of the checker: its state, its reports, the types of names, and the inference of
-// types of expressions.
+// Internals of the checker: its state, its reports, the types of names, and type inference.
 
 #ifndef CAG_INTERP_CHECK_WALK_H
 #define CAG_INTERP_CHECK_WALK_H
@@ -8,7 +7,7 @@
 #include "interp/check/constant.h"
 #include "interp/check/types.h"
 
-// What is known of a definition, parameter or name of a comprehension.
+// The types of a definition, a parameter, or a name of a comprehension.
 typedef struct Known {
   const CagDecl *decl;
   CagTypes types;
@@ -20,19 +19,20 @@ typedef struct Check {
   const CagModuleAst *ast;
   Known *known; // open addressing by the address of the declaration
   size_t known_count, known_size;
-  // Definitions of the top level: what is known of them, and which others they use.
+  // Top-level definitions: their types, and which other definitions they use.
   CagTypes *top_types;
   bool *top_done, *top_busy, *reached;
-  size_t *edges; // pairs: user, used
+  size_t *edges; // pairs: user and used definition
   size_t edge_count, edge_capacity;
-  size_t top;             // whose value is walked; the number of tops for statements
-  size_t unjudged;        // calls of `attempt` around
-  CagDiagnostics ignored; // what is said of them
-  size_t depth;           // definitions that are walked within one another
+  size_t top;             // definition whose value is being checked; the number of definitions for
+                          // statements
+  size_t unjudged;        // enclosing calls of `attempt`
+  CagDiagnostics ignored; // errors in them
+  size_t depth;           // nesting of definitions that are being checked
   CagConstants constants;
   bool *top_bad;   // top-level definitions with errors
   CagArena memory; // holds all of the above
-  size_t thunks;   // enclosing functions without parameters, in which calls may be meant to fail
+  size_t thunks;   // enclosing functions without parameters, whose calls may be meant to fail
 } Check;
 
 // ---- reports ----
@@ -51,7 +51,8 @@ size_t cag_check_error_count(const Check *c);
 void cag_check_learn(Check *c, const CagDecl *decl, CagTypes types);
 // Returns the types of a top-level definition, and checks the definition first if necessary.
 CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl);
-// The statement that defines an imported name, or the member of an imported module; NULL: unknown.
+// Returns the statement that defines an imported name or a member of an imported module, or NULL if
+// it is unknown.
 const CagStatement *cag_check_find_public(const Check *c, const CagStatement *import,
                                           const char *name);
 // Warns about the use of a definition whose documentation contains `deprecated: ...`.

@@ -1,4 +1,4 @@
-// The documents that are compiled into the program, and the chapters of the manual among them.
+// The documents that are embedded into the program, and the chapters of the manual among them.
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-// The public definitions of a script or module, with what their /// lines say.
+// The public definitions of a script or module, with the text of their /// lines.
 
 #include <string.h>
 
@@ -14,8 +14,8 @@ static char *copy(const char *text, size_t n) {
   return out;
 }
 
-// A part of the source on one line: line breaks and the spaces around them become one space, or
-// nothing within a bracket's ends.
+// Copies a part of the source as one line. Line breaks and the spaces around them become one space,
+// or nothing next to brackets.
 static char *copy_line(const char *text, size_t n) {
   char *out = copy(text, n), *to = out;
   for (char *at = out; *at;) {
@@ -50,7 +50,7 @@ static void read_arguments(const CagSource *s, const CagFunctionAst *f, CagDocEn
   e->argument_count = f->parameter_count;
 }
 
-// The lines of the source that the /// lines before a statement stand on; `count` of them.
+// Finds the source lines of the `count` /// lines before a statement.
 static void find_lines(const CagModuleAst *ast, const CagStatement *st, size_t count,
                        CagDocEntry *e) {
   size_t i = 0;
@@ -62,7 +62,7 @@ static void find_lines(const CagModuleAst *ast, const CagStatement *st, size_t c
       e->lines[--count] = cag_source_position(ast->source, ast->comments[i].span.start).line;
 }
 
-// "- `width`: number, mm: how wide" of a parameter of the function; `n` bytes.
+// Finds the parameter that an item such as "- `width`: number, mm: how wide" describes; `n` bytes.
 static CagDocArgument *find_item(CagDocEntry *e, const char *line, size_t n, size_t *skip) {
   for (size_t i = 0; i < e->argument_count; i++) {
     const size_t k = strlen(e->arguments[i].name);
@@ -74,7 +74,7 @@ static CagDocArgument *find_item(CagDocEntry *e, const char *line, size_t n, siz
   return NULL;
 }
 
-// Adds a part of a line to what is said of a parameter.
+// Adds a part of a line to the description of a parameter.
 static void add_meaning(CagDocArgument *a, const char *text, size_t n) {
   char *old = a->meaning;
   const size_t spaces = strspn(text, " ");
@@ -84,13 +84,13 @@ static void add_meaning(CagDocArgument *a, const char *text, size_t n) {
   cag_free(old);
 }
 
-// Moves the items that tell of parameters from the text to the arguments. An item goes on in lines
-// indented by two.
+// Moves the items that describe parameters from the text to the arguments. Continuation lines of an
+// item are indented by two.
 static void read_items(CagDocEntry *e) {
   char *to = e->text;
   size_t kept = 0, line = 0;
   CagDocArgument *item = NULL;
-  bool gap = false; // a blank line here would be the second where items stood
+  bool gap = false; // the last kept line is blank, so a blank line after the items is dropped
   for (const char *at = e->text; *at; line++) {
     size_t n = strcspn(at, "\n"), skip = 0;
     const size_t next = n + (at[n] == '\n');
@@ -99,7 +99,8 @@ static void read_items(CagDocEntry *e) {
     item = begun ? begun : more ? item : NULL;
     if (item) {
       add_meaning(item, at + skip, n - skip);
-      gap = to == e->text || (to - e->text > 1 && to[-2] == '\n'); // blank, or nothing, before it
+      gap = to == e->text || (to - e->text > 1 && to[-2] == '\n'); // blank, or the start of the
+                                                                   // text
     } else if (n > 0 || !gap) {
       gap = false;
       e->lines[kept++] = e->lines[line];
@@ -111,7 +112,7 @@ static void read_items(CagDocEntry *e) {
   *to = 0;
 }
 
-// "flat(profile, height = 10)": the head of a definition, up to its `=`.
+// Returns the head of a definition up to its `=`: "flat(profile, height = 10)".
 static char *function_head(const CagSource *s, CagSpan statement, const CagFunctionAst *f) {
   size_t end = f->body->span.start;
   const char *text = s->text;
@@ -155,7 +156,7 @@ static void read_entry(const CagModuleAst *ast, const CagDecl *d, CagDocEntry *e
   if (e->text) read_items(e);
 }
 
-// The // lines at the very start, without their slashes.
+// Reads the // lines at the very start, without their slashes.
 static char *read_purpose(const CagModuleAst *ast) {
   const CagSource *s = ast->source;
   char *out = copy(s->text, s->length), *to = out;
@@ -207,7 +208,7 @@ size_t cag_doc_part(const char *text, bool *is_code) {
   while (*at) {
     const size_t n = strcspn(at, "\n"), next = n + (at[n] == '\n');
     const bool indented = strncmp(at, "    ", 4) == 0;
-    // A blank line goes on with a script when the line behind it does.
+    // A blank line belongs to a script if the next line does.
     const bool between = n == 0 && strncmp(at + next, "    ", 4) == 0;
     if (*is_code ? !indented && !between : indented) break;
     at += next;
@@ -234,8 +235,8 @@ static bool is_letter(char c) {
          (unsigned char)c >= 0x80;
 }
 
-// Whether a text has the word, other than as a member (`.word`) or, with `defined`, as what a line
-// defines: a name imported must not be defined again.
+// Tests whether a text contains the word, other than as a member (`.word`). With `defined`, tests
+// whether a line defines the word; an imported name must not be defined again.
 static bool has_word(const char *text, const char *word, bool defined) {
   const size_t n = strlen(word);
   for (const char *at = text; (at = strstr(at, word)); at += n) {
@@ -248,8 +249,8 @@ static bool has_word(const char *text, const char *word, bool defined) {
   return false;
 }
 
-// What the module is called in examples: as the head of the script shows its import ("import
-// parts.flange as f"), or else as its file is.
+// Finds the name of the module in examples: as in the import in the head of the script ("import
+// parts.flange as f"), or else the name of its file.
 static void find_module_name(const CagDocModule *m, const char *file, char *name, size_t size) {
   const int n = (int)strcspn(file, ".");
   snprintf(name, size, "%.*s", n, file);
@@ -264,7 +265,7 @@ static void find_module_name(const CagDocModule *m, const char *file, char *name
   }
 }
 
-// Whether the text has members of the module that a script of this name would be: "flange.plate".
+// Tests whether the text uses members of a module with the name of this script: "flange.plate".
 static bool has_members_of(const char *text, const char *stem) {
   const size_t n = strlen(stem);
   if (n == 0 || (*stem >= '0' && *stem <= '9')) return false;
@@ -320,7 +321,7 @@ size_t cag_doc_default(const char *fallback) {
 size_t cag_doc_sentence(const char *text) {
   for (const char *at = text; *at; at++) {
     const bool stop = *at == '.' && (at[1] == ' ' || at[1] == '\n' || at[1] == 0);
-    // "1 .. n ... and so on" and "e.g. x" are no ends.
+    // "1 .. n ... and so on" and "e.g. x" do not end a sentence.
     if (stop && at > text && at[-1] != '.' && (at[1] == 0 || (at[2] >= 'A' && at[2] <= 'Z')))
       return (size_t)(at - text) + 1;
   }

@@ -1,4 +1,4 @@
-// What parameters mean, looked up in parameters.def and library_parameters.def.
+// Lookup of the meaning of parameters in parameters.def and library_parameters.def.
 
 #include <string.h>
 

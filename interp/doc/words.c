@@ -1,4 +1,4 @@
-// Words of the language and topics, as text for a terminal.
+// Documentation of words of the language and of topics, as text for a terminal.
 
 #include <string.h>
 
@@ -6,7 +6,8 @@
 
 typedef struct Row {
   bool is_topic;
-  const char *word, *head, *text, *example; // head: the form of a word, what a topic refers to
+  const char *word, *head, *text, *example; // head: the form of a word, or the references of a
+                                            // topic
 } Row;
 
 static const Row rows[] = {

@@ -8,17 +8,17 @@
 #include "base/memory.h"
 #include "interp/doc/doc.h"
 
-// Columns that a line has at most, and those that a narrow terminal is taken to have at least.
+// The maximum line width, and the width assumed for narrower terminals, in columns.
 #define WIDTH 92
 #define NARROWEST 40
-// Where what is said about a parameter begins.
+// The column at which the description of a parameter starts.
 #define NAME_COLUMN 24
 
 static void heading(const CagDocWriter *w, const char *text) {
   fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", text);
 }
 
-// The columns of a line: a narrow terminal has less.
+// Returns the line width, which is smaller on a narrow terminal.
 static size_t width_of(FILE *out) {
   struct winsize size;
   const int fd = fileno(out);
@@ -26,7 +26,7 @@ static size_t width_of(FILE *out) {
   return size.ws_col < NARROWEST ? NARROWEST : size.ws_col < WIDTH ? size.ws_col : WIDTH;
 }
 
-// Text wrapped at word ends; the first line goes on at column `at`, further ones begin at `indent`.
+// Writes text with wrapped lines. The first line starts at column `at`, the others at `indent`.
 static void write_wrapped(FILE *out, const char *text, size_t length, size_t indent, size_t at) {
   const size_t width = width_of(out);
   size_t column = at;
@@ -67,8 +67,9 @@ void cag_doc_write_indented(FILE *out, const char *text, int indent) {
 
 static bool is_script(const char *line) { return strncmp(line, "    ", 4) == 0; }
 
-// The length of the paragraph that begins with this line, without its last newline; *longest is
-// that of its longest line. Items of lists and rows of tables are paragraphs of their own.
+// Returns the length of the paragraph that starts with this line, without its last newline.
+// *longest is the length of its longest line. Items of lists and rows of tables are separate
+// paragraphs.
 static size_t paragraph(const char *text, size_t *longest) {
   size_t end = *longest = strcspn(text, "\n");
   while (text[end] == '\n') {
@@ -81,8 +82,7 @@ static size_t paragraph(const char *text, size_t *longest) {
   return end;
 }
 
-// Lines as they stand, except paragraphs that do not fit, which are wrapped. Scripts are indented by
-// four.
+// Writes lines as they are, but wraps paragraphs that are too wide. Scripts are indented by four.
 static void write_prose(FILE *out, const char *text, size_t indent) {
   const size_t width = width_of(out);
   while (*text) {
@@ -184,7 +184,7 @@ static void write_arguments(FILE *out, const CagDocModule *m, const CagDocEntry 
   }
 }
 
-// Whether the /// lines tell of parameters one by one.
+// Tests whether the /// lines describe single parameters.
 static bool tells_parameters(const CagDocEntry *e) {
   for (size_t i = 0; i < e->argument_count; i++)
     if (e->arguments[i].meaning) return true;

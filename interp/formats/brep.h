@@ -1,14 +1,15 @@
-// A scene as exact boundaries, for files of other CAD systems: what STEP and IGES share.
+// The boundary representation of a scene, from which STEP and IGES files for CAD systems are
+// written.
 //
-// Every shape becomes NURBS curves and surfaces. A face is a piece of a surface that is smooth (cut
-// where the tangent planes break), bounded by loops of edge uses, the face on the left of each as
-// seen against its normal. Faces of one shape that meet share the edge between them, and edges that
-// meet share the vertex; a seam is an edge that its face uses twice, a pole a vertex without an
+// Every shape becomes NURBS curves and surfaces. A face is a smooth part of a surface (split where
+// the tangent plane is discontinuous), bounded by loops of edge uses; the face is on the left of
+// each use, seen against its normal. Adjacent faces of a shape share their edge, and adjacent edges
+// share their vertex. A seam is an edge that its face uses twice, and a pole is a vertex without an
 // edge.
 //
-// Curves and surfaces are clamped, their weights positive, and weights that are all alike are left
-// out. What has no exact form is approximated within the tolerance that the user gave, or is an
-// error where there is none.
+// Curves and surfaces are clamped, with positive weights; weights that are all equal are omitted.
+// Shapes without an exact form are approximated within the user's tolerance, or cause an error if
+// there is none.
 
 #ifndef CAG_INTERP_FORMATS_BREP_H
 #define CAG_INTERP_FORMATS_BREP_H
@@ -17,8 +18,8 @@
 
 typedef struct CagBrepEdge {
   CagCurve *curve; // of a NURBS kind
-  size_t from, to; // vertices; the same where the curve is closed
-  bool straight;   // evenly run along a line
+  size_t from, to; // vertices; equal if the curve is closed
+  bool straight;   // a line with constant speed
 } CagBrepEdge;
 
 typedef struct CagBrepUse {
@@ -32,19 +33,19 @@ typedef struct CagBrepLoop {
 } CagBrepLoop;
 
 typedef struct CagBrepFace {
-  CagSurface *surface; // of a NURBS kind; of a flat face a rectangle about it
+  CagSurface *surface; // of a NURBS kind; for a flat face, a rectangle around it
   bool flat;
   bool whole;          // its loops are the four sides of the surface
   CagTransform plane;  // FLAT: x, y, normal and origin, orthonormal
   size_t first, count; // loops
-  size_t source;       // index of the surface that it is a piece of, within its shape
+  size_t source;       // index, within its shape, of the surface that it is a part of
 } CagBrepFace;
 
 // A connected set of faces.
 typedef struct CagBrepShell {
   size_t first, count; // faces
   bool closed;
-  size_t void_of; // a hollow of this shell; its own index: it is none
+  size_t void_of; // the shell in which this one is a cavity; its own index: none
 } CagBrepShell;
 
 typedef enum CagBrepKind { CAG_BREP_CURVE, CAG_BREP_SHEET, CAG_BREP_SOLID } CagBrepKind;
@@ -55,8 +56,8 @@ typedef struct CagBrepShape {
   const CagMaterial *material;
   CagCurve *curve;     // CURVE: of a NURBS kind
   size_t first, count; // shells
-  bool approximate;    // a part of it is near, not exact
-  double tolerance;    // within which it is
+  bool approximate;    // some part is approximated
+  double tolerance;    // of the approximation
 } CagBrepShape;
 
 typedef struct CagBrep {
@@ -68,10 +69,10 @@ typedef struct CagBrep {
   CagBrepShell *shells;
   CagBrepShape *shapes;
   size_t vertex_count, edge_count, use_count, loop_count, face_count, shell_count, shape_count;
-  double accuracy; // mm: no two things that are meant to meet are farther apart
+  double accuracy; // mm: the largest distance between parts that should meet
 } CagBrep;
 
-// Grounds are left out. Release with cag_brep_free, after a failure too.
+// Grounds are omitted. Release with cag_brep_free, even after a failure.
 CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err);
 void cag_brep_free(CagBrep *b);
 

@@ -1,4 +1,5 @@
-// A glTF 2.0 document as .gltf and .glb share it: a plan of meshes and nodes, the JSON, the data.
+// Internals of .gltf and .glb: a plan of meshes and nodes, the JSON, and the data of a glTF 2.0
+// document.
 
 #ifndef CAG_INTERP_FORMATS_GLTF_H
 #define CAG_INTERP_FORMATS_GLTF_H
@@ -6,18 +7,18 @@
 #include "interp/formats/mesh_copies.h"
 #include "interp/formats/mesh_write.h"
 
-// The JSON as it grows. After memory ran out nothing is added.
+// The growing JSON. Nothing is added after memory ran out.
 typedef struct CagGltfText {
   char *at;
   size_t length, capacity;
-  size_t data_at; // where the uri of the data can stand
+  size_t data_at; // where the URI of the data can be inserted
   bool failed;
 } CagGltfText;
 
 typedef struct CagGltfPart {
-  bool shown; // false: single precision leaves nothing of it
+  bool shown; // false: empty in single precision
   size_t mesh, mesh_of,
-      material; // numbers in the file; mesh_of: the part that its mesh is told for
+      material; // indices in the file; mesh_of: the part that contains its mesh
   // Of originals:
   float *positions;
   float least[3], most[3];
@@ -30,7 +31,7 @@ typedef struct CagGltfPlan {
   CagMeshCopy *copies;
   CagGltfPart *parts;
   CagMaterialList materials;
-  CagHashIndex told; // parts that a mesh is told for, by original and material
+  CagHashIndex told; // parts that have a mesh, by original and material
   uint64_t data_bytes;
 } CagGltfPlan;
 

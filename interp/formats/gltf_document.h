@@ -1,4 +1,4 @@
-// A glTF document taken apart: its JSON, its buffers, and typed views of them.
+// A parsed glTF document: its JSON, its buffers, and typed views of them.
 
 #ifndef CAG_INTERP_FORMATS_GLTF_DOCUMENT_H
 #define CAG_INTERP_FORMATS_GLTF_DOCUMENT_H
@@ -7,7 +7,7 @@
 
 #include "interp/formats/mesh_draft.h"
 
-// An array of the document, for access by number.
+// An array of the document, with access by index.
 typedef struct CagGltfArray {
   const cJSON **items;
   size_t count;
@@ -27,7 +27,7 @@ typedef struct CagGltf {
   size_t buffer_count;
 } CagGltf;
 
-// Elements of `width` numbers of one component type, with those that are said one by one (sparse).
+// Elements of `width` numbers of one component type, some of which may be replaced (sparse).
 typedef struct CagGltfAccessor {
   const unsigned char *data; // NULL: zeros
   size_t count, stride;
@@ -38,20 +38,20 @@ typedef struct CagGltfAccessor {
   int sparse_component;
 } CagGltfAccessor;
 
-// Reads JSON and buffers. After a failure too, cag_gltf_close is to be called.
+// Reads JSON and buffers. Call cag_gltf_close even after a failure.
 CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err);
 void cag_gltf_close(CagGltf *g);
-// Checks accessor `number` against its buffers. width: the numbers an element must have.
+// Checks accessor `number` against its buffers. width: the required count of numbers in an element.
 CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfAccessor *out,
                             CagError *err);
-// Number k of element i; sparse elements are another matter.
+// Returns number k of element i, without sparse replacements.
 double cag_gltf_number(const CagGltfAccessor *a, size_t i, int k);
 uint32_t cag_gltf_index(const unsigned char *data, int component, size_t i);
-// Number k of what sparse element i is replaced with.
+// Returns number k of the replacement of sparse element i.
 double cag_gltf_sparse_number(const CagGltfAccessor *a, size_t i, int k);
 
-// A whole number of 0 or more under a key: `fallback` where it is missing. False: it is another
-// value.
+// Reads a nonnegative integer under a key, or `fallback` if the key is missing. Returns false for
+// another value.
 bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out);
 CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

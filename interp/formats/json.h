@@ -1,8 +1,8 @@
 // The scene as data, in JSON.
 //
-// One object. Numbers are in the shortest form that reads back the same; lengths are millimeters,
-// angles radians, colors linear [r, g, b], transforms four rows of four for column vectors.
-// What is infinite or absent is null.
+// The file is one object. Numbers are in the shortest form that reads back the same. Lengths are in
+// millimeters, angles in radians, colors are linear [r, g, b], and transforms are four rows of four
+// for column vectors. Infinite or missing values are null.
 //
 //   format "cag-scene", version 1, generator, script, units "mm", up "z"
 //   bounds      {min, max} of everything but grounds, or null
@@ -51,7 +51,7 @@
 #include "base/atomic_file.h"
 #include "interp/scene/scene.h"
 
-// Writes the scene to an open file. Errors of writing stay in the file until its commit.
+// Writes the scene to an open file. Write errors remain in the file until its commit.
 CagStatus cag_export_json(const CagScene *scene, CagAtomicFile *file, CagError *err);
 
 #endif

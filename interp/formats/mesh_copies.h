@@ -1,20 +1,21 @@
-// Which parts of an output are another part moved, so that formats with instances write one mesh.
+// Finds parts of an output that are congruent, so that formats with instances contain their mesh
+// only once.
 
 #ifndef CAG_INTERP_FORMATS_MESH_COPIES_H
 #define CAG_INTERP_FORMATS_MESH_COPIES_H
 
 #include "interp/formats/mesh_formats.h"
 
-// Part i is the mesh of part `original` (<= i, itself an original) turned and carried by `place`.
+// Part i is the mesh of part `original` (<= i, itself an original), transformed by `place`.
 typedef struct CagMeshCopy {
   size_t original;
-  CagTransform place; // rigid, no mirror; exactly the identity of an original
+  CagTransform place; // a rigid motion; exactly the identity for an original
 } CagMeshCopy;
 
-// However the copies were made: the meshes are compared. Copies agree in parameters and, moved, in
-// positions and normals, within what single precision does not show, and in their triangles but for
-// the diagonals of quads, which rounding may choose. same_material: they agree in that as well.
-// *out from malloc, an element a part.
+// Compares the meshes, regardless of how the copies were made. Copies agree in parameters and,
+// after the transform, in positions and normals, up to single precision. Their triangles agree
+// except for the diagonals of quads, which may depend on rounding. same_material: their materials
+// must agree, too. *out is allocated with malloc and has an element for each part.
 CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, bool same_material,
                                CagMeshCopy **out, CagError *err);
 

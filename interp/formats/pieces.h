@@ -1,4 +1,4 @@
-// A curve taken apart into cubic Bezier pieces, as lathes, prisms and flat pictures want it.
+// Conversion of curves to cubic Bezier pieces, for lathes, prisms, and flat pictures.
 
 #ifndef CAG_INTERP_FORMATS_PIECES_H
 #define CAG_INTERP_FORMATS_PIECES_H
@@ -6,16 +6,16 @@
 #include "geom/curve/curve.h"
 
 typedef struct CagPieces {
-  CagVec3 *points; // four a piece; from malloc, to be freed by the owner
+  CagVec3 *points; // four per piece; allocated with malloc, freed by the owner
   size_t count, capacity;
-  bool linear; // every piece is straight and evenly run
+  bool linear; // every piece is straight and has constant speed
 } CagPieces;
 
-// The curve's pieces in order: exact, for polynomials of degree up to 3. False: it is another curve
-// (rational, of higher degree, without such a form), or memory is out; nothing to free then.
+// Returns the pieces of a polynomial curve of degree up to 3, in order, exactly. Returns false if
+// the curve is of another kind or memory ran out; there is then nothing to free.
 bool cag_pieces_of_curve(const CagCurve *c, CagPieces *out);
 
-// Adds one piece of four points, or all of another list. False: memory is out.
+// Adds one piece of four points, or all of another list. Returns false if memory ran out.
 bool cag_pieces_add(CagPieces *p, const CagVec3 cubic[4]);
 bool cag_pieces_append(CagPieces *p, const CagPieces *more);
 

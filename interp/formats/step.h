@@ -1,8 +1,8 @@
 // A scene as STEP (ISO 10303-21, schema AUTOMOTIVE_DESIGN of AP214): exact geometry for other CAD
 // systems.
 //
-// Solids are manifold solids bounded by advanced faces, surfaces and regions are shells, curves a
-// geometric curve set; all carry their names and colors. Lengths are millimeters.
+// Solids are manifold solids bounded by advanced faces, surfaces and regions are shells, and curves
+// are geometric curve sets. All have their names and colors. Lengths are in millimeters.
 
 #ifndef CAG_INTERP_FORMATS_STEP_H
 #define CAG_INTERP_FORMATS_STEP_H
@@ -10,7 +10,7 @@
 #include "base/atomic_file.h"
 #include "interp/formats/brep.h"
 
-// Errors of writing stay in the file until its commit.
+// Write errors remain in the file until its commit.
 CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile *file,
                           CagError *err);
 

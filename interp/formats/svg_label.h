@@ -1,4 +1,4 @@
-// Texts and marks of an SVG picture.
+// Texts and marks of an SVG drawing.
 
 #ifndef CAG_INTERP_FORMATS_SVG_LABEL_H
 #define CAG_INTERP_FORMATS_SVG_LABEL_H
@@ -15,7 +15,7 @@
 // number in the label is not finite.
 bool cag_svg_label(FILE *out, const CagLabel *label, CagVec3 at, CagVec3 along, const char *color,
                    double unit, CagBounds *box);
-// Text of an element: with & < > " and control characters replaced.
+// Writes text, escaping & < > " and control characters.
 void cag_svg_escape(FILE *out, const char *text, size_t n);
 
 #endif

@@ -1,7 +1,7 @@
-// URDF files: the XML in which ROS and most simulators describe robots, as plain data, and a serial
-// chain of it as the rows of a robot.
+// Reading of URDF files, the XML format for robots of ROS and most simulators, as plain data, and
+// conversion of a serial chain to the rows of a robot.
 //
-// A file is a tree of links (frames with bodies) that joints hang on each other. Lengths are
+// A file is a tree of links (frames with bodies) that are connected by joints. Lengths are
 // converted from meters to millimeters. Files with a document type are refused, so that no entity
 // is expanded and no other file is read.
 
@@ -27,7 +27,7 @@ typedef struct CagUrdfBody {
   CagUrdfBodyKind kind;
   CagTransform place;
   double size[3];   // BOX: sides; CYLINDER: radius, length; SPHERE: radius
-  const char *file; // MESH: as the file has it
+  const char *file; // MESH: as in the file
   double scale[3];
   const char *material; // its name, or NULL
   bool colored;
@@ -39,7 +39,7 @@ typedef struct CagUrdfBody {
 typedef struct CagUrdfNode {
   const char *name;
   CagUrdfBody *visuals, *collisions;
-  size_t above; // the joint that it hangs on; CAG_URDF_NONE: a root
+  size_t above; // its parent joint; CAG_URDF_NONE: a root
   long line;
 } CagUrdfNode;
 
@@ -57,15 +57,15 @@ typedef struct CagUrdfEdge {
   CagUrdfJointKind kind;
   size_t parent, child;
   CagTransform origin;
-  CagVec3 axis;                    // unit
-  double low, high, speed, effort; // radians or mm; 0: not said
+  CagVec3 axis;                    // a unit vector
+  double low, high, speed, effort; // radians or mm; 0: not given
   const char *mimic;               // name of the joint that it follows; NULL: none
-  double multiplier, offset;       // as the file has them
+  double multiplier, offset;       // as in the file
   long line;
 } CagUrdfEdge;
 
 typedef struct CagUrdfTree {
-  CagArena arena;   // of all the texts and lists
+  CagArena arena;   // owns all texts and lists
   const char *file; // for messages
   const char *name;
   CagUrdfNode *nodes;
@@ -74,21 +74,23 @@ typedef struct CagUrdfTree {
 } CagUrdfTree;
 
 // Reads a file's bytes. Fails with CAG_E_ARGUMENT and one of the reasons
-//   "urdf-syntax"   no well-formed XML, something missing or no number: the line is told
-//   "urdf-chain"    links or joints that make no tree
-//   "urdf-joint"    a joint of a kind that there is not
-//   "joint-limits"  limits that no joint has
-// To be freed in either case.
+//   "urdf-syntax"   XML that is not well-formed, a missing element, or an invalid number; the
+//                   message states the line
+//   "urdf-chain"    links and joints that do not form a tree
+//   "urdf-joint"    an unknown type of joint
+//   "joint-limits"  invalid limits
+// The tree must be freed in any case.
 CagStatus cag_urdf_read(const char *file, const char *bytes, size_t size, CagUrdfTree *out,
                         CagError *err);
 void cag_urdf_tree_free(CagUrdfTree *t);
 
-// The joints from the link `base` down to the link `tip`, in order; *out from malloc. NULL: from
-// the root; to the end of what does not branch. Fails with "urdf-branches", "urdf-chain".
+// Returns the joints from the link `base` down to the link `tip` in order; *out is allocated with
+// malloc. A NULL base means the root, and a NULL tip the end of the part that does not branch.
+// Fails with "urdf-branches" or "urdf-chain".
 CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip, size_t **out,
                          size_t *n, CagError *err);
 
-// A body of a row: in the frame after the row.
+// A body of a row, in the frame after the row.
 typedef struct CagUrdfPlaced {
   size_t node;
   CagTransform place;
@@ -106,10 +108,10 @@ typedef struct CagUrdfRows {
   CagTransform base, tool;
 } CagUrdfRows;
 
-// A chain as classic Denavit-Hartenberg rows; where no row gives the way from one axis to the next,
-// a fixed link stands between. Links without bodies of their own go into the rows before them.
-// `bodies`: whether bodies matter. Fails with "urdf-joint" (floating and planar joints, and ones
-// that follow others, but for the two halves of a screw). To be freed in either case.
+// Converts a chain to classic Denavit-Hartenberg rows. A fixed link is inserted if no row leads
+// from one axis to the next. Links without bodies are merged into the preceding rows. `bodies`:
+// whether bodies are needed. Fails with "urdf-joint" for floating and planar joints, and for joints
+// that follow others, except the two halves of a screw. The result must be freed in any case.
 CagStatus cag_urdf_rows(const CagUrdfTree *t, const char *base, const size_t *chain, size_t n,
                         bool bodies, CagUrdfRows *out, CagError *err);
 void cag_urdf_rows_free(CagUrdfRows *r);

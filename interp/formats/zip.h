@@ -1,5 +1,4 @@
-// ZIP archives as office-like formats (3MF) are packed in: deflated members, the same bytes for the
-// same content.
+// ZIP archives, the container of 3MF files: deflated members, and reproducible bytes.
 
 #ifndef CAG_INTERP_FORMATS_ZIP_H
 #define CAG_INTERP_FORMATS_ZIP_H
@@ -16,19 +15,19 @@ typedef struct CagZip {
     char name[CAG_ZIP_NAME];
     uint32_t crc, packed, size, offset;
   } members[CAG_ZIP_MEMBERS];
-  struct CagZipPacker *packer; // of the member that is open
+  struct CagZipPacker *packer; // of the open member
 } CagZip;
 
-// Opens a member, adds bytes to it in any pieces, and closes it: only then it is written. Fails
-// with CAG_E_LIMIT "file-too-large" beyond 4 GB.
+// Opens a member, adds bytes to it in any pieces, and closes it, which writes it. Fails with
+// CAG_E_LIMIT "file-too-large" beyond 4 GB.
 CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err);
 CagStatus cag_zip_feed(CagZip *z, const char *bytes, size_t n, CagError *err);
 CagStatus cag_zip_close(CagZip *z, CagError *err);
-// All three.
+// Opens, writes, and closes a member.
 CagStatus cag_zip_add(CagZip *z, const char *name, const char *bytes, size_t n, CagError *err);
-// The directory at the end of the archive.
+// Writes the directory at the end of the archive.
 void cag_zip_end(CagZip *z);
-// Lets go of a member that was not closed; harmless otherwise.
+// Releases a member that was not closed. Otherwise does nothing.
 void cag_zip_free(CagZip *z);
 
 #endif

@@ -1,4 +1,4 @@
-// How far two pictures differ: sums per channel, color differences, heatmap.
+// Comparison of two pictures: statistics per channel, color differences, and a heatmap.
 
 #include "interp/render/compare.h"
 
@@ -10,7 +10,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-// The index in b of each channel of a, or an error that names what is missing.
+// Returns the index in b of each channel of a, or sets an error that names the missing channel.
 static size_t *match_channels(const CagImage *a, const char *a_name, const CagImage *b,
                               const char *b_name, CagError *err) {
   if (a->width != b->width || a->height != b->height) {
@@ -41,7 +41,7 @@ static size_t *match_channels(const CagImage *a, const char *a_name, const CagIm
   return NULL;
 }
 
-// The difference of two samples: infinite when one is not finite and they are not equal.
+// The difference of two samples, which is infinite if they differ and one is not finite.
 static double difference(float x, float y) {
   if (x == y || (isnan(x) && isnan(y))) return 0;
   if (!isfinite(x) || !isfinite(y)) return INFINITY;
@@ -53,7 +53,7 @@ static void compare_channel(const float *a, const float *b, size_t width, size_t
   double sum = 0;
   out->peak = 1;
   for (size_t y = 0; y < height; y++) {
-    double row = 0; // summed by rows, so that no digits of a large picture are lost
+    double row = 0; // summed by rows, to reduce rounding errors in large pictures
     for (size_t x = 0; x < width; x++) {
       const float p = a[y * width + x], q = b[y * width + x];
       const double d = difference(p, q);
@@ -98,7 +98,7 @@ static void compare_colors(const CagImage *a, const CagImage *b, CagCompareRepor
   for (size_t y = 0; y < a->height; y++) {
     double row = 0;
     for (size_t i = y * a->width; i < (y + 1) * a->width; i++) {
-      bool same = true; // most pixels of like pictures are: the formula is slow
+      bool same = true; // most pixels of similar pictures are equal, and the formula is slow
       for (int k = 0; k < 3; k++)
         same &= cag_image_plane(a, rgb_a[k])[i] == cag_image_plane(b, rgb_b[k])[i];
       if (same) continue;
@@ -167,7 +167,7 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
           r->differing_pixels, pixels, 100 * (double)r->differing_pixels / pixels);
 }
 
-// The colors of heat: black, red, yellow, white at 0, 1/3, 2/3, 1.
+// The colors of the heatmap: black, red, yellow, and white at 0, 1/3, 2/3, and 1.
 static void heat(double t, float *r, float *g, float *b) {
   *r = (float)fmin(3 * t, 1);
   *g = (float)fmin(fmax(3 * t - 1, 0), 1);
@@ -201,11 +201,11 @@ bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, Ca
   return true;
 }
 
-// From linear sRGB to XYZ (IEC 61966-2-1); the sums of the rows are the white D65.
+// From linear sRGB to XYZ (IEC 61966-2-1). The sums of the rows are the white point D65.
 static const double XYZ[3][3] = {
     {0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}};
 
-// The cube root with its linear beginning (CIE 15): the bounds are (6/29)^3 and 3 (6/29)^2.
+// The cube root with a linear start (CIE 15). The constants are (6/29)^3 and 3 (6/29)^2.
 static double lab_curve(double t) {
   const double delta = 6.0 / 29.0;
   return t > delta * delta * delta ? cbrt(t) : t / (3 * delta * delta) + 4.0 / 29.0;
@@ -229,7 +229,7 @@ void cag_compare_lab(const double linear_rgb[3], double lab[3]) {
 
 static double degrees(double d) { return d * PI / 180; }
 
-// The angle of (a, b) in 0..2 pi; 0 for no color.
+// The angle of (a, b) in 0..2 pi, or 0 for gray.
 static double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double h = atan2(b, a);
@@ -242,7 +242,7 @@ static double chroma_weight(double c) {
   return sqrt(c7 / (c7 + limit7));
 }
 
-// The mean of two hues on the shorter way round, and their signed difference.
+// The mean of two hues along the shorter arc, and their signed difference.
 static void hue_pair(double h1, double h2, bool gray, double *mean, double *step) {
   *step = gray ? 0 : h2 - h1;
   if (*step > PI) *step -= 2 * PI;

@@ -1,5 +1,5 @@
-// The handler cannot ask the context for user data: the library calls it while it holds the lock of
-// the context, which that call would wait for. So the place to write to belongs to the thread.
+// The error handler cannot ask the context for user data, because the library holds the lock of the
+// context during the call, which would deadlock. So the destination is thread-local.
 
 #include "interp/render/exr_complaint.h"
 

@@ -1,4 +1,4 @@
-// Facts in the header of an EXR file: the list of them.
+// The list of attributes in the header of an EXR file.
 
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "interp/render/exr.h"
 
-// Attributes that describe how the file is stored: the library writes them.
+// Attributes that describe how the file is stored, which the library writes.
 static const char *const RESERVED[] = {
     "channels",           "chunkCount",         "compression", "dataWindow", "displayWindow",
     "lineOrder",          "maxSamplesPerPixel", "name",        "preview",    "pixelAspectRatio",
@@ -19,7 +19,7 @@ bool cag_exr_name_is_reserved(const char *name) {
   return false;
 }
 
-// The entry of that name, made if it is not there, emptied if it is.
+// Returns the entry of that name: a new one, or the existing one after clearing it.
 static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagError *err) {
   size_t length = strlen(name);
   if (!length || length > CAG_IMAGE_NAME_MAX || cag_exr_name_is_reserved(name)) {

@@ -1,8 +1,8 @@
-// EXR files, the reading side.
+// Reading EXR files.
 //
-// The file is read into memory first: then no length can change under the decoder, and standard
-// input is like a file. The library's header checks are strict, its repair of files without a chunk
-// table is off: a damaged picture is an error, not a guess.
+// The file is first read into memory, so that its length cannot change while it is decoded, and
+// standard input works like a file. The library's strict header checks are on, and its
+// reconstruction of missing chunk tables is off: a damaged picture is an error.
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,15 +17,15 @@
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 
-// Largest file taken into memory: an uncompressed float picture of CAG_IMAGE_SAMPLES_MAX and its
-// header fit.
+// The largest file that is read: an uncompressed float picture of CAG_IMAGE_SAMPLES_MAX samples and
+// its header.
 #define FILE_SIZE_MAX (((size_t)1 << 32) + ((size_t)1 << 24))
-// A first block for inputs of unknown length (pipes).
+// The first block for inputs of unknown length (pipes).
 #define PIPE_BLOCK ((size_t)1 << 20)
-// The four bytes that every EXR begins with.
+// The first four bytes of every EXR.
 static const unsigned char MAGIC[4] = {0x76, 0x2f, 0x31, 0x01};
 
-// The bytes, and the first complaint of the library.
+// The bytes, and the first error message of the library.
 typedef struct {
   const unsigned char *bytes;
   size_t size;
@@ -51,8 +51,8 @@ static int64_t source_read(exr_const_context_t ctxt, void *user, void *buffer, u
                            uint64_t offset, exr_stream_error_func_ptr_t error_cb) {
   const Source *source = user;
   (void)ctxt, (void)error_cb;
-  // Like pread, gives what there is: the library reads ahead over a short file's end, and checks
-  // where it needs all.
+  // Like pread, returns the available bytes: the library may read beyond the end of a short file,
+  // and checks whether it got enough.
   if (offset >= source->size) return 0;
   if (n > source->size - offset) n = source->size - offset;
   memcpy(buffer, source->bytes + offset, (size_t)n);
@@ -64,7 +64,7 @@ static int64_t source_size(exr_const_context_t ctxt, void *user) {
   return (int64_t)((const Source *)user)->size;
 }
 
-// One part of the file while it is decoded into planes first_channel ... of the image.
+// A part of the file that is decoded into planes first_channel ... of the image.
 typedef struct {
   exr_context_t file;
   int part;
@@ -73,8 +73,8 @@ typedef struct {
   exr_attr_box2i_t data, display;
   bool begun;
   exr_decode_pipeline_t decoder;
-  int64_t x0, y0; // upper left pixel of the chunk that is decoded
-  exr_result_t (*decompress)(exr_decode_pipeline_t *); // the library's choice
+  int64_t x0, y0;                                      // upper left pixel of the current chunk
+  exr_result_t (*decompress)(exr_decode_pipeline_t *); // the function that the library chose
 } PartReader;
 
 // An IEEE 754 binary16 number.
@@ -94,7 +94,7 @@ static float half_to_float(uint16_t h) {
   return value;
 }
 
-// A sample as it stands in the file, little-endian.
+// Converts a sample from the file, little-endian.
 static float sample(const uint8_t *at, uint16_t type) {
   if (type == EXR_PIXEL_HALF) return half_to_float((uint16_t)(at[0] | at[1] << 8));
   const uint32_t bits =
@@ -109,9 +109,9 @@ static int64_t clamp(int64_t i, int64_t least, int64_t most) {
   return i < least ? least : i > most ? most : i;
 }
 
-// Puts one stored row of `count` samples, the first of which belongs to the file's pixel (x, y),
-// into the plane, as far as it is in the display window. A sample fills the xs by ys pixels that it
-// stands for.
+// Copies one stored row of `count` samples, the first of which belongs to the file's pixel (x, y),
+// to the part of the plane in the display window. With coarser sampling, a sample fills xs by ys
+// pixels.
 static void put_row(const PartReader *r, const exr_coding_channel_info_t *c, float *plane,
                     const uint8_t *from, int64_t x, int64_t y, int64_t count) {
   const int64_t width = (int64_t)r->image->width, height = (int64_t)r->image->height;
@@ -127,9 +127,10 @@ static void put_row(const PartReader *r, const exr_coding_channel_info_t *c, flo
   }
 }
 
-// The last step of the decoder, in the place of the library's, which in 3.1 confuses coarser
-// samplings. The chunk's data are its rows from above, and in each row the samples of the channels
-// that have one there. Windows begin and end between samples: the library checks this.
+// The last step of the decoder. It replaces the library's own, which handles coarser samplings
+// incorrectly in version 3.1. The data of a chunk are its rows from top to bottom; a row contains
+// only the channels that have samples in it. The library checks that windows are aligned with
+// samples.
 static exr_result_t unpack(exr_decode_pipeline_t *d) {
   const PartReader *r = d->decoding_user_data;
   const uint8_t *at = d->unpacked_buffer;
@@ -151,8 +152,8 @@ static exr_result_t unpack(exr_decode_pipeline_t *d) {
   return EXR_ERR_SUCCESS;
 }
 
-// A chunk that compression would not make smaller is stored as it is; the library's B44 does not
-// know that.
+// A chunk that compression would not make smaller is stored uncompressed, which the library's B44
+// does not handle.
 static exr_result_t decompress(exr_decode_pipeline_t *d) {
   const PartReader *r = d->decoding_user_data;
   if (d->chunk.packed_size == d->chunk.unpacked_size) return EXR_ERR_SUCCESS;
@@ -162,7 +163,7 @@ static exr_result_t decompress(exr_decode_pipeline_t *d) {
 // Decodes one chunk, whose upper left pixel is (x0, y0).
 static exr_result_t read_chunk(PartReader *r, const exr_chunk_info_t *chunk, int64_t x0,
                                int64_t y0) {
-  // The library takes an empty chunk for decoded, and would leave what the memory held before.
+  // The library treats an empty chunk as decoded and would leave uninitialized memory.
   if (!chunk->packed_size || chunk->packed_size > chunk->unpacked_size)
     return EXR_ERR_CORRUPT_CHUNK;
   const bool first = !r->begun;
@@ -180,7 +181,7 @@ static exr_result_t read_chunk(PartReader *r, const exr_chunk_info_t *chunk, int
     r->decoder.unpack_and_convert_fn = unpack;
     r->decoder.decoding_user_data = r;
   }
-  // The library does not check the size of a chunk that is not compressed.
+  // The library does not check the size of an uncompressed chunk.
   if (!r->decompress && chunk->packed_size != chunk->unpacked_size) return EXR_ERR_CORRUPT_CHUNK;
   return exr_decoding_run(r->file, r->part, &r->decoder);
 }
@@ -229,7 +230,7 @@ static exr_result_t read_part(exr_context_t file, int part, size_t first_channel
   return rv;
 }
 
-// The name of a channel in the image; see the header for the rule.
+// Sets the name of a channel in the image, by the rule in the header.
 static void name_channel(CagImage *image, size_t c, exr_context_t file, int part,
                          const char *channel) {
   const char *name = NULL;
@@ -245,9 +246,9 @@ static void name_channel(CagImage *image, size_t c, exr_context_t file, int part
   cag_image_set_name(image, c, full);
 }
 
-// Checks the channels of a part. PIZ, PXR24 and B44 look at the channels while they decompress,
-// where OpenEXRCore 3.1 errs for coarser samplings, and in B44 for channels that are not half, up
-// to reading beyond its memory: such files are refused.
+// Checks the channels of a part. For PIZ, PXR24, and B44, decompression depends on the channels.
+// OpenEXRCore 3.1 does this incorrectly for coarser samplings, and in B44 for channels that are not
+// half, up to reading out of bounds. Such files are refused.
 static bool survey_channels(exr_context_t file, const Source *source, int part,
                             const exr_attr_chlist_t *list, bool *all_half, CagError *err) {
   exr_compression_t kind;
@@ -265,7 +266,7 @@ static bool survey_channels(exr_context_t file, const Source *source, int part,
   return true;
 }
 
-// Checks every part and counts the channels of all.
+// Checks every part, and counts all channels.
 static bool survey(exr_context_t file, const Source *source, int parts, size_t *channels,
                    bool *all_half, CagError *err) {
   *channels = 0;
@@ -284,7 +285,7 @@ static bool survey(exr_context_t file, const Source *source, int parts, size_t *
   return true;
 }
 
-// Takes the facts of the header that the list can hold.
+// Reads the header attributes whose types the list supports.
 static bool read_metadata(exr_context_t file, CagExrMetadata *out, CagError *err) {
   bool ok = true;
   const exr_attribute_t *a;
@@ -346,7 +347,7 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
   return fail_code(err, source, rv);
 }
 
-// Opens the bytes of `source`, to be closed with exr_finish when the result is 0.
+// Opens the bytes of `source`. If the result is 0, close it with exr_finish.
 static exr_result_t open_source(Source *source, exr_context_t *file) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   setup.error_handler_fn = cag_exr_complaint_keep;
@@ -412,7 +413,7 @@ static bool fail_file(CagError *err, const char *shown, const char *why) {
   return cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s': %s", shown, why);
 }
 
-// Reads everything from an open file; its size is only a first guess.
+// Reads everything from an open file, whose size is only an initial estimate.
 static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size, CagError *err) {
   struct stat st;
   if (fstat(fd, &st) != 0) return fail_file(err, shown, strerror(errno));

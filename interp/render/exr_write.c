@@ -1,8 +1,8 @@
-// EXR files, the writing side.
+// Writing EXR files.
 //
-// OpenEXRCore writes with seeks (the table of chunk offsets goes into the header at the end), which
-// standard output cannot do; so the compressed file is built in memory and then handed to an atomic
-// file in one piece.
+// OpenEXRCore seeks back to write the table of chunk offsets into the header, which standard output
+// does not support. So the compressed file is built in memory and then passed to an atomic file as
+// a whole.
 
 #include <openexr.h>
 #include <stdint.h>
@@ -14,10 +14,10 @@
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 
-// Names up to this many bytes need no flag in the file for long ones.
+// Names of up to this many bytes do not need the file's flag for long names.
 #define SHORT_NAME_MAX 31
 
-// The file as it grows, and the first complaint of the library.
+// The growing file, and the first error message of the library.
 typedef struct {
   unsigned char *bytes;
   size_t size, capacity;
@@ -29,13 +29,13 @@ static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data
                           uint64_t offset, exr_stream_error_func_ptr_t error_cb) {
   Sink *sink = user;
   (void)error_cb;
-  // No sum overflows: a picture has at most CAG_IMAGE_SAMPLES_MAX samples.
+  // The sum does not overflow: a picture has at most CAG_IMAGE_SAMPLES_MAX samples.
   const size_t end = (size_t)(offset + n);
   if (!CAG_RESERVE(sink->bytes, sink->capacity, end)) {
     cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
     return -1;
   }
-  // A gap, as the library leaves for the table of offsets, reads as zeros until it is filled.
+  // The gap that the library leaves for the table of offsets is zero until it is filled.
   if (offset > sink->size) memset(sink->bytes + sink->size, 0, (size_t)offset - sink->size);
   memcpy(sink->bytes + offset, data, (size_t)n);
   if (end > sink->size) sink->size = end;
@@ -76,7 +76,7 @@ static exr_result_t write_header(exr_context_t file, const CagImage *image, CagE
   return rv ? rv : exr_write_header(file);
 }
 
-// Points the encoder's channels, which are in the order of their names, at the rows from y on.
+// Sets the encoder's channels, which are in the order of their names, to the rows from y on.
 static exr_result_t aim_channels(exr_encode_pipeline_t *encoder, const CagImage *image, size_t y) {
   for (int16_t i = 0; i < encoder->channel_count; i++) {
     exr_coding_channel_info_t *to = &encoder->channels[i];
@@ -151,7 +151,7 @@ static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
 bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
                    const CagExrMetadata *metadata, CagError *err) {
   if (!check_names(path, image, err)) return false;
-  // Opened first: a place that cannot be written to is told before the work of compressing.
+  // Opened first, to report an unwritable path before the compression.
   CagAtomicFile *out = cag_atomic_file_open(path, err);
   if (!out) return false;
   Sink sink = {.shown = path};

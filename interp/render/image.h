@@ -1,8 +1,8 @@
 // Pictures in memory: named channels of 32-bit floats.
 //
-// The samples are planar: channel c is one block of width * height floats, row after row from the
-// top, x fastest. Color is linear light with the sRGB primaries unless a function says otherwise.
-// Channel names are those of EXR: R G B A Z, or `layer.name`.
+// Samples are planar: channel c is one block of width * height floats, in rows from the top, x
+// fastest. Colors are linear light with the sRGB primaries unless a function states otherwise.
+// Channels are named as in EXR: R G B A Z, or `layer.name`.
 
 #ifndef CAG_INTERP_RENDER_IMAGE_H
 #define CAG_INTERP_RENDER_IMAGE_H
@@ -12,10 +12,10 @@
 
 #include "base/status.h"
 
-// Longest channel name, in bytes: the limit of EXR files with long names.
+// The longest channel name in bytes: the limit of EXR files with long names.
 #define CAG_IMAGE_NAME_MAX 255
-// Longest side in pixels, and most samples (pixels times channels) of an image: 4 GB of floats.
-// Larger sizes come from damaged files and slips of the pen.
+// The longest side in pixels, and the maximum number of samples (pixels times channels) of an
+// image, which is 4 GB of floats. Larger sizes come from damaged files and typing errors.
 #define CAG_IMAGE_SIDE_MAX ((size_t)1 << 17)
 #define CAG_IMAGE_SAMPLES_MAX ((size_t)1 << 30)
 #define CAG_IMAGE_CHANNELS_MAX ((size_t)1024)
@@ -31,15 +31,15 @@ typedef struct CagImage {
   float *data; // channel_count planes of width * height samples
 } CagImage;
 
-// Makes an image of zeros with unnamed channels; release it with cag_image_free. A size of zero or
+// Makes an image of zeros with unnamed channels. Release it with cag_image_free. A size of zero or
 // above the limits is an error of status CAG_E_LIMIT.
 bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
                       CagError *err);
 
-// Releases the image and makes it empty; an empty one ({0}) is allowed.
+// Releases the image and makes it empty ({0}). Empty images are allowed.
 void cag_image_free(CagImage *image);
 
-// Names channel c; a name too long is cut.
+// Names channel c. A name that is too long is truncated.
 void cag_image_set_name(CagImage *image, size_t c, const char *name);
 
 // The samples of channel c.
@@ -50,8 +50,8 @@ static inline float *cag_image_plane(const CagImage *image, size_t c) {
 // Finds a channel by its name.
 bool cag_image_find(const CagImage *image, const char *name, size_t *index);
 
-// Finds the colour: R, G and B, or a luminance Y (or an only channel) three times. False when there
-// is none.
+// Finds the color channels: R, G, and B, or three times a luminance Y or the only channel. Returns
+// false if there are none.
 bool cag_image_find_color(const CagImage *image, size_t rgb[3]);
 
 #endif

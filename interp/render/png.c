@@ -1,7 +1,7 @@
-// PNG pictures: tone, transfer, and libpng.
+// PNG pictures: tone mapping, transfer function, and libpng.
 //
-// libpng leaves an error by longjmp. Each side therefore has one function that libpng calls run in,
-// which owns nothing: what is to be freed stands in a struct of its caller.
+// libpng reports errors by longjmp. Reading and writing each have one function that calls libpng
+// and owns no resources; a struct of its caller holds everything that must be freed.
 
 #include "interp/render/png.h"
 
@@ -63,17 +63,19 @@ static void on_error(png_structp png, png_const_charp message) {
 
 static void on_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
-// Writing.
+// --- Writing ---
 
 static void on_write(png_structp png, png_bytep data, png_size_t n) {
   CagAtomicFile *file = png_get_io_ptr(png);
   cag_atomic_file_write(file, data, n);
-  if (cag_atomic_file_failed(file)) png_error(png, "the disk refused the data"); // commit tells why
+  if (cag_atomic_file_failed(file))
+    png_error(png, "the disk refused the data"); // commit reports
+                                                 // the reason
 }
 
 static void on_flush(png_structp png) { (void)png; }
 
-// How samples become numbers of the file.
+// How samples are converted to numbers in the file.
 typedef struct {
   const CagImage *image;
   size_t rgb[3];
@@ -177,7 +179,7 @@ bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions 
                      s.message[0] ? s.message : "no memory");
 }
 
-// Reading.
+// --- Reading ---
 
 static void on_read(png_structp png, png_bytep data, png_size_t n) {
   Session *s = png_get_io_ptr(png);
@@ -198,7 +200,7 @@ static bool decode(Session *s, size_t *width, size_t *height, size_t *channels, 
   *width = png_get_image_width(s->png, s->info);
   *height = png_get_image_height(s->png, s->info);
   *channels = png_get_channels(s->png, s->info);
-  // The image's own limits are the limits of the decoded samples too.
+  // The limits of images apply to the decoded samples, too.
   if (!cag_image_create(&s->image, *width, *height, *channels, err)) return true;
   s->pixels = cag_malloc(*width * *height * *channels * sizeof *s->pixels);
   s->rows = cag_malloc(*height * sizeof *s->rows);

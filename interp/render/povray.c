@@ -1,4 +1,4 @@
-// Pictures by POV-Ray: the temporary folder, the process, and what its end means.
+// Rendering with POV-Ray: the temporary folder, the process, and the meaning of its exit.
 
 #include "interp/render/povray.h"
 
@@ -19,14 +19,14 @@
 #include "interp/render/povray_process.h"
 #include "interp/render/sandbox.h"
 
-// The name of the picture in the folder.
+// The file name of the picture in the folder.
 #define PICTURE "out.exr"
-// A run that asks for the version only is given this many seconds.
+// The time limit, in seconds, for a run that only prints the version.
 #define VERSION_TIME_LIMIT 20.0
-// Largest picture file that is taken back: half floats of the largest image.
+// The largest picture file that is read: half floats of the largest image.
 #define PICTURE_SIZE_MAX ((size_t)1 << 33)
 
-// Where POV-Ray is.
+// --- Finding POV-Ray ---
 
 static bool find_program(char path[PATH_MAX], CagError *err) {
   const char *list = getenv("PATH");
@@ -37,7 +37,7 @@ static bool find_program(char path[PATH_MAX], CagError *err) {
     struct stat st;
     if (length < PATH_MAX && access(path, X_OK) == 0 && stat(path, &st) == 0 &&
         S_ISREG(st.st_mode)) {
-      char real[PATH_MAX]; // the process starts in another folder
+      char real[PATH_MAX]; // absolute, because the process starts in another folder
       if (path[0] != '/' && realpath(path, real)) strcpy(path, real);
       return true;
     }
@@ -48,7 +48,7 @@ static bool find_program(char path[PATH_MAX], CagError *err) {
                      "POV-Ray is not installed: no program povray on PATH");
 }
 
-// The temporary folder.
+// --- The temporary folder ---
 
 static int remove_entry(const char *path, const struct stat *st, int type, struct FTW *at) {
   (void)st, (void)type, (void)at;
@@ -66,7 +66,7 @@ static bool make_folder(char folder[PATH_MAX], CagError *err) {
   if (!base || *base != '/') base = "/tmp";
   char pattern[PATH_MAX];
   const int n = snprintf(pattern, sizeof pattern, "%s/cag-povray-XXXXXX", base);
-  // The real path: rules of file access do not see through links.
+  // The real path, because rules of file access do not follow links.
   if (n < PATH_MAX && mkdtemp(pattern) && realpath(pattern, folder)) return true;
   const int code = n < PATH_MAX ? errno : ENAMETOOLONG;
   *folder = '\0';
@@ -80,7 +80,7 @@ static bool fail_temporary(CagError *err, const char *path, int code) {
                      "cannot write the temporary file '%s': %s", path, strerror(code));
 }
 
-// Writes `size` bytes to the file `name` of the folder.
+// Writes `size` bytes to the file `name` in the folder.
 static bool put_file(const char *folder, const char *name, const void *bytes, size_t size,
                      CagError *err) {
   char path[PATH_MAX];
@@ -120,7 +120,7 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagError *e
   if (!ok)
     cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s', which the scene uses: %s", file->source,
                 in && !bytes ? "it is not an ordinary file" : strerror(code));
-  // An include is part of the scene.
+  // Include files are part of the scene.
   const char *ending = strrchr(file->name, '.');
   if (ok && ending && !strcmp(ending, ".inc")) ok = cag_povray_check_files(bytes, size, err);
   ok = ok && put_file(folder, file->name, bytes, size, err);
@@ -129,7 +129,7 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagError *e
   return ok;
 }
 
-// POV-Ray's library of includes beside the program: <prefix>/share/povray-3.7/include.
+// Finds POV-Ray's include library relative to the program: <prefix>/share/povray-3.7/include.
 static void library_path(const char *program, char out[PATH_MAX]) {
   char real[PATH_MAX], probe[PATH_MAX + 64];
   *out = '\0';
@@ -144,7 +144,7 @@ static void library_path(const char *program, char out[PATH_MAX]) {
   if (access(probe, R_OK) == 0 && strlen(probe) < PATH_MAX) strcpy(out, probe);
 }
 
-// The configuration that POV-Ray looks for in its user's home, which is the folder.
+// Writes the configuration that POV-Ray reads from its user's home, which is the folder.
 static bool put_configuration(const char *folder, const char *library, CagError *err) {
   char text[3 * PATH_MAX], path[PATH_MAX];
   static const char *const LEVELS[] = {".povray", ".povray/3.7"};
@@ -163,14 +163,14 @@ static bool put_configuration(const char *folder, const char *library, CagError 
   return put_file(folder, ".povray/3.7/povray.ini", text, (size_t)n, err);
 }
 
-// The process.
+// --- The process ---
 
-// The folders that POV-Ray may read: system libraries, itself and its own library.
+// Makes a sandbox in which POV-Ray can read system libraries, itself, and its own library.
 static int prepare_sandbox(const char *program, const char *library, const char *folder) {
   char own[PATH_MAX] = "/usr";
   char *slash = realpath(program, own) ? strrchr(own, '/') : NULL;
   if (slash) *slash = '\0';
-  // A script on PATH may stand for the program; the link itself must be readable too.
+  // The program on PATH may be a script or a link, which must be readable, too.
   char named[PATH_MAX];
   snprintf(named, sizeof named, "%s", program);
   slash = strrchr(named, '/');
@@ -195,7 +195,7 @@ static int prepare_sandbox(const char *program, const char *library, const char 
   return cag_sandbox_prepare(readable, sizeof readable / sizeof *readable, folder);
 }
 
-// Runs the program with the arguments in the folder; `process` says the rest.
+// Runs the program with the arguments in the folder, with the settings in `process`.
 static CagPovrayEnd run_in_folder(const char *program, char *const *arguments, const char *folder,
                                   const char *library, CagPovrayProcess process,
                                   CagPovrayLog *log) {
@@ -215,9 +215,9 @@ static CagPovrayEnd run_in_folder(const char *program, char *const *arguments, c
   return end;
 }
 
-// What the end means.
+// --- The meaning of its exit ---
 
-// The text of a line of the scene, without what surrounds it.
+// Copies a line of the scene, without surrounding blanks.
 static void scene_line(const CagPovrayJob *job, size_t line, char *out, size_t size) {
   const char *at = job->scene, *end = job->scene + job->scene_size;
   for (size_t i = 1; i < line && at < end; i++) {
@@ -238,7 +238,7 @@ static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagErro
                      log->error_line, log->error_file, log->error_text, *text ? "\n" : "", text);
 }
 
-// Fills the error of a run that gave no picture.
+// Sets the error of a run that produced no picture.
 static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayLog *log,
                      CagError *err) {
   char last[CAG_POVRAY_LAST_LINES * CAG_POVRAY_LINE_MAX];
@@ -272,7 +272,7 @@ static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayL
                      *last ? "; its last lines were:" : "", last);
 }
 
-// Takes the picture into memory; false when there is none.
+// Reads the picture into memory. Returns false if there is none.
 static bool take_picture(const char *folder, CagPovrayResult *out) {
   char path[PATH_MAX + 16];
   snprintf(path, sizeof path, "%s/" PICTURE, folder);
@@ -306,10 +306,10 @@ static bool is_whole(void *user) {
          cag_exr_is_whole(p->result->exr, p->result->exr_size);
 }
 
-// Rendering.
+// --- Rendering ---
 
-// What the qualities mean to POV-Ray. Antialiasing never jitters: a scene gives the same picture
-// twice.
+// POV-Ray's settings for each quality. Antialiasing never uses jitter, so that pictures are
+// reproducible.
 static const struct {
   const char *quality, *antialias, *method, *depth;
 } QUALITIES[] = {
@@ -332,13 +332,13 @@ static CagPovrayEnd render_in_folder(const CagPovrayJob *job, const char *progra
   snprintf(width, sizeof width, "+W%d", job->width);
   snprintf(height, sizeof height, "+H%d", job->height);
   long count = job->threads > 0 ? job->threads : sysconf(_SC_NPROCESSORS_ONLN);
-  enum { THREADS_MAX = 512 }; // POV-Ray's own bound
+  enum { THREADS_MAX = 512 }; // POV-Ray's own limit
   snprintf(threads, sizeof threads, "+WT%ld",
            count < 1             ? 1
            : count > THREADS_MAX ? THREADS_MAX
                                  : count);
   const int q = job->quality;
-  // Columns and rows count from 1; without a region all of them are said.
+  // Columns and rows count from 1. Without a region, the ranges cover the whole picture.
   const bool part = job->region_width > 0;
   char edges[4][24];
   snprintf(edges[0], sizeof edges[0], "+SC%d", part ? job->region_x + 1 : 1);

@@ -1,23 +1,23 @@
-// The file names in a scene, checked before POV-Ray sees them.
+// Checks the file names in a scene before POV-Ray reads it.
 //
-// POV-Ray's language names files after #include and #fopen, and after the words for kinds of
-// pictures, height fields, densities and fonts. Each must be followed by a plain text: what is
-// computed cannot be checked, and our own scenes compute none.
+// In POV-Ray's language, file names follow #include and #fopen, and the words for pictures, height
+// fields, densities, and fonts. Each name must be a string literal, because computed names cannot
+// be checked. Our own scenes contain none.
 
 #include <ctype.h>
 #include <string.h>
 
 #include "interp/render/povray.h"
 
-// Words whose next text is a file name.
+// Words that are followed by a file name.
 static const char *const FILE_WORDS[] = {
     "bump_map",  "df3",           "exr",  "gif",          "hdr", "height_field", "iff",
     "image_map", "image_pattern", "jpeg", "material_map", "pgm", "png",          "pot",
     "ppm",       "sys",           "tga",  "tiff",         "ttf"};
-// Of these, the ones that are followed by `{` and, without a kind, by the name.
+// Of these, the ones that are followed by `{` and an optional file type before the name.
 static const char *const BLOCK_WORDS[] = {"bump_map", "height_field", "image_map", "image_pattern",
                                           "material_map"};
-// Functions that make texts.
+// Functions that return texts.
 static const char *const TEXT_FUNCTIONS[] = {"chr",    "concat", "datetime", "str",
                                              "strlwr", "strupr", "substr",   "vstr"};
 
@@ -33,7 +33,7 @@ typedef struct {
 
 static bool is_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
-// Passes a comment that begins at s->at; the inner kind nests.
+// Skips a comment that starts at s->at. Block comments nest.
 static void skip_comment(Scan *s, bool block) {
   size_t depth = 1;
   for (s->at += 2; s->at < s->end; s->at++) {
@@ -101,7 +101,8 @@ static bool is_one_of(const Scan *s, const char *const *words, size_t count) {
 }
 #define IS_ONE_OF(s, words) is_one_of(s, words, sizeof(words) / sizeof *(words))
 
-// A name that stays in the folder: relative, no step upwards, nothing that an escape could hide.
+// Tests whether a name stays in the folder: it must be relative, without `..`, and without escape
+// sequences, which could hide them.
 static bool stays_inside(const Scan *s) {
   if (!s->length || *s->start == '/' || *s->start == '~') return false;
   if (memchr(s->start, '\\', s->length) || memchr(s->start, '\0', s->length)) return false;
@@ -129,14 +130,15 @@ static bool refuse_computed(const Scan *s, CagError *err) {
                      s->line);
 }
 
-// After #include, or after #fopen and its identifier: only a text will do.
+// After #include, or after #fopen and its identifier, only a text is allowed.
 static bool check_directive(Scan *s, CagError *err) {
   if (is(s, "fopen")) next(s);
   next(s);
   return s->kind == TOKEN_TEXT ? check_name(s, err) : refuse_computed(s, err);
 }
 
-// After a word for a kind of file. Its name may stand in braces, and a kind may come between.
+// Checks the name after a word for a kind of file. It may be in braces, and a file type may precede
+// it.
 static bool check_word(Scan *s, CagError *err) {
   const bool block = IS_ONE_OF(s, BLOCK_WORDS);
   Scan ahead = *s;
@@ -144,7 +146,7 @@ static bool check_word(Scan *s, CagError *err) {
   if (block && ahead.kind == TOKEN_OTHER && *ahead.start == '{') next(&ahead);
   if (ahead.kind == TOKEN_TEXT) return check_name(&ahead, err);
   if (IS_ONE_OF(&ahead, TEXT_FUNCTIONS)) return refuse_computed(&ahead, err);
-  // `ttf internal 1` names no file; after a kind of picture an identifier would hold a name.
+  // `ttf internal 1` contains no file name. After a file type, an identifier could hold a name.
   if (!block && ahead.kind == TOKEN_WORD && !is(&ahead, "internal"))
     return refuse_computed(&ahead, err);
   return true;

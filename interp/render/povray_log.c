@@ -1,5 +1,4 @@
-// What POV-Ray says while it runs. Its lines are broken at 80 characters; what continues a line
-// begins with a blank.
+// The output of POV-Ray. It breaks lines at 80 characters; continuation lines start with a blank.
 
 #include "interp/render/povray_log.h"
 
@@ -20,7 +19,7 @@ static void report(CagPovrayLog *log, double percent) {
   if (log->progress && log->phase) log->progress(log->progress_user, percent, log->phase);
 }
 
-// A heading begins a phase.
+// A heading starts a phase.
 static bool take_heading(CagPovrayLog *log, const char *line) {
   for (size_t i = 0; i < sizeof PHASES / sizeof *PHASES; i++) {
     if (strncmp(line, PHASES[i].heading, strlen(PHASES[i].heading)) != 0) continue;
@@ -31,8 +30,8 @@ static bool take_heading(CagPovrayLog *log, const char *line) {
   return false;
 }
 
-// `Rendered 1024 of 3072 pixels (33%)`, and `Parsing 11179K tokens`, whose end nobody knows. The
-// percentage is made from the counts, which are finer.
+// Reads `Rendered 1024 of 3072 pixels (33%)` and `Parsing 11179K tokens`, whose total is unknown.
+// The percentage is computed from the counts, which are more precise.
 static bool take_progress(CagPovrayLog *log, const char *line) {
   double done, all;
   if (sscanf(line, "Rendered %lf of %lf pixels", &done, &all) == 2) {
@@ -51,7 +50,8 @@ static bool take_progress(CagPovrayLog *log, const char *line) {
   return false;
 }
 
-// `File 'scene.pov' line 12: Parse Error: ...`; only the first that is not merely possible.
+// Reads `File 'scene.pov' line 12: Parse Error: ...`. Keeps only the first definite error, not
+// possible ones.
 static void take_error(CagPovrayLog *log, const char *line) {
   const size_t used = strlen(log->error_text);
   if (log->error_continues && *line == ' ') {

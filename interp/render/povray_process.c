@@ -1,4 +1,4 @@
-// POV-Ray as a process. What is promised stands in povray_process.h.
+// The POV-Ray process (see povray_process.h).
 
 #include "interp/render/povray_process.h"
 
@@ -17,17 +17,17 @@
 #include "base/clock.h"
 #include "interp/render/sandbox.h"
 
-// How often the flag, the clock and the process are looked at, in milliseconds.
+// The interval, in milliseconds, at which the flag, the clock, and the process are checked.
 #define WATCH_INTERVAL 40
 // The same once the output is closed: the process is about to end.
 #define WATCH_INTERVAL_CLOSED 4
 
-// In the child, after fork: only calls that are safe in a signal handler.
+// Runs in the child after fork, so only async-signal-safe calls are allowed.
 static void become(const CagPovrayProcess *p, int output) {
   const struct rlimit no_core = {0, 0};
   int null = open("/dev/null", O_RDONLY);
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL); // POV-Ray does not outlive a killed cag
+  prctl(PR_SET_PDEATHSIG, SIGKILL); // POV-Ray must not outlive a killed cag
   setrlimit(RLIMIT_CORE, &no_core);
   sigset_t none;
   sigemptyset(&none);
@@ -42,16 +42,16 @@ static void become(const CagPovrayProcess *p, int output) {
   _exit(CAG_POVRAY_EXEC_FAILED);
 }
 
-// A process that is followed.
+// A process that is being watched.
 typedef struct {
   const CagPovrayProcess *process;
   CagPovrayLog *log;
   pid_t child;
   double begun;
-  int output;   // the end of its pipe; -1: it is closed
-  int folder;   // tells of files that are closed in the folder; -1: nothing tells
-  bool written; // the picture was written and closed since it was looked at last
-  bool stopped; // it was killed, for the reason `end`
+  int output;   // read end of its pipe; -1: closed
+  int folder;   // inotify descriptor for files closed in the folder; -1: none
+  bool written; // the picture was written and closed since the last check
+  bool stopped; // it was killed, with the reason in `end`
   CagPovrayEnd end;
 } Follow;
 
@@ -64,7 +64,7 @@ static bool should_end(Follow *f) {
   return true;
 }
 
-// Reads what it says.
+// Reads its output.
 static void drain(Follow *f) {
   char bytes[4096];
   const ssize_t n = read(f->output, bytes, sizeof bytes);
@@ -72,7 +72,7 @@ static void drain(Follow *f) {
   else if (n == 0 || (errno != EINTR && errno != EAGAIN)) f->output = -1;
 }
 
-// Reads which files were written.
+// Reads the names of the files that were written.
 static void take_events(Follow *f) {
   _Alignas(struct inotify_event) char bytes[sizeof(struct inotify_event) + NAME_MAX + 1];
   for (ssize_t n; (n = read(f->folder, bytes, sizeof bytes)) > 0;) {
@@ -92,7 +92,7 @@ static void wait_for_news(Follow *f) {
   if (waiting[1].revents) take_events(f);
 }
 
-// Whether there is nothing to wait for any more.
+// Returns whether the picture is complete.
 static bool has_picture(Follow *f) {
   if (!f->written || !f->log->told_statistics) return false;
   f->written = false;
@@ -108,10 +108,10 @@ static void stop(Follow *f, CagPovrayEndKind why) {
   kill(f->child, SIGKILL);
 }
 
-// Follows the process to its end, or ends it.
+// Watches the process until it ends, or kills it.
 static CagPovrayEnd follow(Follow *f) {
   int status = 0;
-  // An exit is looked for even while the output is open: a child of the child may hold it.
+  // Checks for an exit even while the output is open, because a grandchild may hold it.
   for (;;) {
     wait_for_news(f);
     const pid_t done = waitpid(f->child, &status, WNOHANG);
@@ -120,7 +120,7 @@ static CagPovrayEnd follow(Follow *f) {
     if (has_picture(f)) stop(f, CAG_POVRAY_EXITED);
     else if (should_end(f)) stop(f, f->end.kind);
   }
-  kill(-f->child, SIGKILL); // whatever it started
+  kill(-f->child, SIGKILL); // kills its own children, too
   while (f->output >= 0 && poll(&(struct pollfd){.fd = f->output, .events = POLLIN}, 1, 0) > 0)
     drain(f);
   cag_povray_log_finish(f->log);
@@ -129,7 +129,7 @@ static CagPovrayEnd follow(Follow *f) {
   return (CagPovrayEnd){CAG_POVRAY_EXITED, WEXITSTATUS(status)};
 }
 
-// Where the system has no more watches, the end of the process is waited for.
+// If the system has no more watches, waits for the process to end.
 static int watch_folder(const CagPovrayProcess *p) {
   const int fd = p->picture ? inotify_init1(IN_NONBLOCK | IN_CLOEXEC) : -1;
   if (fd < 0 || inotify_add_watch(fd, p->folder, IN_CLOSE_WRITE) >= 0) return fd;
@@ -147,7 +147,7 @@ CagPovrayEnd cag_povray_process_run(const CagPovrayProcess *process, CagPovrayLo
   CagPovrayEnd end = {CAG_POVRAY_NO_START, code};
   close(ends[1]);
   if (child > 0) {
-    setpgid(child, child); // on both sides, so that no kill comes too early
+    setpgid(child, child); // in both processes, so that a kill never comes too early
     fcntl(ends[0], F_SETFL, O_NONBLOCK);
     Follow f = {.process = process,
                 .log = log,

@@ -1,9 +1,9 @@
-// POV-Ray as a process: started in its folder and its sandbox, followed to its end. Part of
+// The POV-Ray process: started in its folder and sandbox, and watched until it ends. Part of
 // povray.c.
 //
-// Its end is not waited for: POV-Ray 3.7 sleeps for a third of a second after it has written the
-// picture and told its statistics. So when both have come, the picture is looked at, and when it is
-// whole the process is ended.
+// POV-Ray 3.7 sleeps for a third of a second after it has written the picture and printed its
+// statistics. To avoid this wait, the picture is checked after both, and the process is killed if
+// the picture is complete.
 
 #ifndef CAG_INTERP_RENDER_POVRAY_PROCESS_H
 #define CAG_INTERP_RENDER_POVRAY_PROCESS_H
@@ -16,12 +16,12 @@ typedef struct CagPovrayProcess {
   const char *program;
   char *const *arguments;
   char *const *environment;
-  const char *folder;                       // it starts there
+  const char *folder;                       // working folder of the process
   int ruleset;                              // of the sandbox
   double time_limit;                        // seconds; 0: none
   const volatile sig_atomic_t *interrupted; // may be NULL
-  // The name that its picture has in the folder, and whether what stands there is all of it. NULL:
-  // there is no picture to be waited for.
+  // The name of the picture in the folder, and a test whether the file there is complete. NULL: no
+  // picture is expected.
   const char *picture;
   bool (*is_whole)(void *user);
   void *user;
@@ -43,7 +43,7 @@ typedef struct CagPovrayEnd {
 // Exit status of a process whose program could not be run.
 #define CAG_POVRAY_EXEC_FAILED 127
 
-// Runs it to its end; what it says goes to the log.
+// Runs the process until it ends. Its output goes to the log.
 CagPovrayEnd cag_povray_process_run(const CagPovrayProcess *process, CagPovrayLog *log);
 
 #endif

@@ -1,5 +1,5 @@
-// Landlock rules around a child process. The C library has no functions for these system calls, so
-// they are made by number.
+// Landlock rules for a child process. The C library has no functions for these system calls, so
+// they are called by number.
 
 #include "interp/render/sandbox.h"
 
@@ -19,19 +19,19 @@
 
 #ifdef HAVE_LANDLOCK
 
-// Rights that headers older than the kernel lack: renaming between folders (ABI 2) and truncation
-// (ABI 3).
+// Rights that may be missing in old headers: renaming between folders (ABI 2) and truncation (ABI
+// 3).
 #define ACCESS_REFER (1ULL << 13)
 #define ACCESS_TRUNCATE (1ULL << 14)
 #define ACCESS_ABI1 ((1ULL << 13) - 1)
 
 static const uint64_t READ =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
-// What a rule on a file, rather than a folder, may speak of.
+// The rights that a rule on a file, rather than a folder, may contain.
 static const uint64_t FOR_FILES = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE |
                                   LANDLOCK_ACCESS_FS_WRITE_FILE | ACCESS_TRUNCATE;
 
-// Every right that this kernel can refuse, 0 without Landlock.
+// Returns all rights that this kernel can restrict, or 0 without Landlock.
 static uint64_t handled_rights(void) {
   long abi = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (abi < 1) return 0;

@@ -1,10 +1,10 @@
-// Colours: CSS names and hexadecimal texts in sRGB, made linear.
+// Colors: CSS names and hexadecimal texts in sRGB, converted to linear light.
 
 #include "interp/scene/color.h"
 
 #include <string.h>
 
-// X(name, 0xrrggbb), in the order of the alphabet (CSS Color Module Level 4).
+// X(name, 0xrrggbb), in alphabetical order (CSS Color Module Level 4).
 // clang-format off
 #define COLORS(X) \
   X(aliceblue, 0xf0f8ff) X(antiquewhite, 0xfaebd7) X(aqua, 0x00ffff) X(aquamarine, 0x7fffd4) \
@@ -82,7 +82,7 @@ static int hex_digit(char c) {
   return -1;
 }
 
-// "0a8" or "00aa88"
+// Reads "0a8" or "00aa88".
 static bool read_hex(const char *text, unsigned *rgb) {
   size_t n = strlen(text);
   if (n != 3 && n != 6) return false;
@@ -90,7 +90,7 @@ static bool read_hex(const char *text, unsigned *rgb) {
   for (size_t i = 0; i < n; i++) {
     int digit = hex_digit(text[i]);
     if (digit < 0) return false;
-    // Of the short form each digit stands twice.
+    // In the short form, each digit stands for two.
     *rgb = n == 6 ? *rgb << 4 | (unsigned)digit : *rgb << 8 | (unsigned)(17 * digit);
   }
   return true;

@@ -1,11 +1,12 @@
-// Scales of colors that look evenly stepped to the eye: viridis (Smith and van der Walt, 2015) for
-// values from low to high, and Moreland's cool to warm (2009) for values about a middle, both by
-// sRGB samples between which sRGB is interpolated. Stripes change sharply.
+// Perceptually uniform color scales: viridis (Smith and van der Walt, 2015) for values from low to
+// high, and Moreland's cool-to-warm (2009) for values about a middle, both interpolated between
+// sRGB samples. Stripes change sharply.
 
 #include "interp/scene/color_scale.h"
 
 #define SAMPLES 11
-// Stops that stand for a smooth scale: between them linear light and sRGB look alike.
+// The number of stops that approximate a smooth scale. Between them, the difference between linear
+// light and sRGB is invisible.
 #define SMOOTH_STOPS 41
 
 static const unsigned sequence[SAMPLES] = {0x440154, 0x482475, 0x414487, 0x355f8d,
@@ -16,7 +17,7 @@ static const unsigned diverging[SAMPLES] = {0x3b4cc0, 0x5977e3, 0x7b9ff9, 0x9ebe
                                             0xee8468, 0xd65244, 0xb40426};
 static const unsigned light_stripe = 0xf4f4f2, dark_stripe = 0x15181d, no_number = 0x808080;
 
-// Red, green, blue of 0xrrggbb, 0..1 sRGB.
+// Splits 0xrrggbb into red, green, and blue in sRGB, 0..1.
 static void split(unsigned rgb, double out[3]) {
   const double whole = 255;
   for (int k = 0; k < 3; k++) out[k] = (double)(rgb >> (16 - 8 * k) & 0xff) / whole;

@@ -1,13 +1,13 @@
-// What a scene gets that shows no camera or no light.
+// Default camera and lights, for scenes that show none.
 //
-// Camera: from the front, to the right and above (three quarters), as near as the corners of all
-// items' bounds allow with a margin. Things that lie flat in a plane z = constant are looked at
-// from above, without perspective, on white paper.
+// Camera: from the front, right, and above (a three-quarter view), as close as the corners of all
+// items' bounds allow with a margin. Shapes that lie flat in a plane z = constant are shown from
+// above, without perspective, on white paper.
 //
-// Light (no light and no sky shown): a studio scaled to the scene. A large warm key light from the
-// camera's upper left, a dim cool fill from its right, a rim light from behind, a sky of soft grays
-// that lights all sides, and a gray floor at the lowest point, whose tone meets the sky's, unless
-// the scene shows a ground of its own or the camera is below.
+// Lights (if the scene has no light and no sky): a studio scaled to the scene. It has a large warm
+// key light from the camera's upper left, a dim cool fill light from its right, a rim light from
+// behind, and a sky of soft grays that lights all sides. A gray floor at the lowest point blends
+// into the sky, unless the scene has its own ground or the camera is below it.
 
 #include <string.h>
 
@@ -16,10 +16,10 @@
 #include "base/stop.h"
 #include "interp/scene/scene.h"
 
-static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective
-// From the target to the automatic camera.
+static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a moderate perspective
+// The direction from the target to the automatic camera.
 static const CagVec3 THREE_QUARTERS = {0.62, -1, 0.55};
-// Thinner than this part of its width a scene is flat.
+// A scene is flat if its thickness is below this fraction of its width.
 #define FLAT 1e-6
 
 // --- Bounds ---
@@ -71,7 +71,7 @@ static CagStatus add_camera(CagScene *s, CagError *err) {
 
 // --- Studio ---
 
-// Where a light stands, in radii of the scene to the camera's right, up, and back to the camera.
+// The position of a light, in radii of the scene, to the camera's right, up, and backward.
 typedef struct StudioLight {
   double right, up, back;
   double size; // side, in radii
@@ -85,14 +85,14 @@ static const StudioLight STUDIO[] = {
     {1.6, 2.6, -3.4, 1.2, {1, 1, 1}, 0.28},       // rim
 };
 #define STUDIO_COUNT (sizeof STUDIO / sizeof *STUDIO)
-// From below to above; the middle is the horizon, where the floor's tone meets it.
+// From bottom to top; the middle color is the horizon, which the floor blends into.
 static const CagColor STUDIO_SKY[] = {
     {0.30, 0.30, 0.31}, {0.44, 0.44, 0.45}, {0.50, 0.51, 0.53}, {0.58, 0.60, 0.63}};
 #define SKY_COUNT (sizeof STUDIO_SKY / sizeof *STUDIO_SKY)
 static const CagColor FLOOR = {0.52, 0.52, 0.52};
-// The floor lies a little below the lowest point, so that a flat thing there and the floor are not
-// one plane. Across a wide gap one sees into the dark under the edge of a thing, so it is as narrow
-// as the tolerance of the renderer allows: a shadow is not cast across 1e-3 mm and less.
+// The floor is slightly below the lowest point, so that it does not coincide with a flat shape
+// there. The gap is as narrow as the renderer's tolerance allows, because a wide one shows a dark
+// edge under shapes. (Shadows are not cast across 1e-3 mm or less.)
 #define FLOOR_GAP_LEAST 2e-5 // radii
 #define FLOOR_GAP_MOST 5e-4  // radii
 #define FLOOR_GAP_OF_SHADOWS 1.5e-3
@@ -139,7 +139,7 @@ static bool has_ground(const CagScene *s) {
   return false;
 }
 
-// A drawing: even light from above on paper.
+// Light for a drawing: even, from above, on paper.
 static CagStatus add_paper_light(CagScene *s, CagError *err) {
   s->lights = cag_malloc(sizeof *s->lights);
   if (!s->lights) return cag_fail_memory(err);
@@ -160,7 +160,8 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   CagTransform frame = cag_camera_frame(&s->cameras[0]);
   s->studio = true;
   if (is_flat(&whole) && s->cameras[0].orthographic) return add_paper_light(s, err);
-  // The camera's right and back along the ground; looked at from straight above, as it sees them.
+  // The camera's right and backward directions along the ground; as the camera sees them if it
+  // looks straight down.
   CagVec3 right = column(&frame, 0), back = cag_cross(right, up);
   if (s->cameras[0].mirrored) back = cag_scaled(back, -1);
   if (cag_norm(back) == 0) back = cag_vec3(0, -1, 0);
@@ -184,7 +185,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   return status;
 }
 
-// Bounds of all items; those that are empty are taken out.
+// Computes the bounds of all items, and removes empty items.
 static CagStatus find_bounds(CagScene *s, CagError *err) {
   s->bounds = CAG_BOUNDS_EMPTY;
   s->empties = cag_malloc((s->item_count + 1) * sizeof *s->empties);
@@ -210,7 +211,7 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
 
 static bool is_finite(CagVec3 p) { return isfinite(p.x) && isfinite(p.y) && isfinite(p.z); }
 
-// What is too large for its own size has cameras and lights at no place.
+// Fails for scenes so large that the positions of cameras and lights overflow.
 static CagStatus check_finite(const CagScene *s, CagError *err) {
   const CagBounds *b = &s->bounds;
   bool good = !(b->min.x <= b->max.x) || is_finite(cag_sub(b->max, b->min));

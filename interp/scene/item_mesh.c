@@ -1,4 +1,4 @@
-// Items as meshes: surfaces and solids tessellated, regions flat, curves as tubes.
+// Meshes of items: surfaces and solids are tessellated, regions are flat, curves are tubes.
 
 #include "interp/scene/item_mesh.h"
 #include "geom/solid/tessellate.h"
@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "geom/tessellate/orient.h"
 
-// Radius of curves that say none, as a part of the diagonal of the scene's bounds.
+// The radius of curves without their own, as a fraction of the diagonal of the scene's bounds.
 #define LINE_PART 0.0025
 
 static double diagonal(const CagBounds *b) {
@@ -38,7 +38,7 @@ static CagStatus region_mesh(const CagItem *item, const CagTessellation *how, Ca
   return status;
 }
 
-// A closed surface with its normals outward, whatever its parameters say.
+// A closed surface gets outward normals, regardless of its parameters.
 static CagStatus surface_mesh(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                               CagError *err) {
   CagMesh *m = NULL;
@@ -63,7 +63,7 @@ static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out
   case CAG_ITEM_SURFACE: return surface_mesh(item->as.surface, &how, out, err);
   case CAG_ITEM_SOLID: return cag_solid_tessellate(item->as.solid, &how, out, err);
   case CAG_ITEM_MESH: return cag_mesh_outward(item->as.mesh, out, err);
-  case CAG_ITEM_GROUND: break; // for pictures, which have a plane of their own
+  case CAG_ITEM_GROUND: break; // only for pictures, which draw a plane
   }
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_value, "", -1, "a ground is not a mesh");
 }
@@ -129,7 +129,7 @@ CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t materia
     }
     part->triangle_count++;
   }
-  // The first vertex of a point may be another one here: the first that came.
+  // `weld` refers to the first vertex at a point, which may be a different one in the part.
   if (m->weld) memset(number, 0xff, m->vertex_count * sizeof *number);
   for (uint32_t v = 0; m->weld && v < part->vertex_count; v++) {
     uint32_t *first = &number[part->weld[v]];

@@ -1,4 +1,4 @@
-// The scene as plain data: release, default material, frame of a camera.
+// The scene as plain data: freeing it, the default material, and the frame of a camera.
 
 #include "interp/scene/scene.h"
 
@@ -50,8 +50,8 @@ void cag_scene_free(CagScene *s) {
   *s = (CagScene){0};
 }
 
-// Light gray with a soft gloss: shows form under any light. The texts are not allocated: who keeps
-// the material in a scene copies them.
+// Light gray and slightly glossy, to show form under any light. The texts are not allocated; code
+// that stores the material in a scene must copy them.
 CagMaterial cag_material_default(void) {
   static char name[] = "default", texture[] = "";
   return (CagMaterial){.name = name,
@@ -72,7 +72,7 @@ CagTransform cag_camera_frame(const CagCamera *c) {
     for (int i = 0; i < 3 && c->mirrored; i++) frame.m[i][0] = 0.0 - frame.m[i][0];
     return frame;
   }
-  // Eye and target are the same point: constructors refuse that, a far-fetched transform may not.
+  // Eye and target coincide. Constructors reject that, but an extreme transform can cause it.
   cag_look_at(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0, 0, 1), &frame, &err);
   frame.m[0][3] = c->eye.x;
   frame.m[1][3] = c->eye.y;

@@ -1,8 +1,8 @@
-// What a script shows, as plain data: the hand-over from the interpreter to exporters and
+// What a script shows, as plain data: the interface between the interpreter and the exporters and
 // renderers.
 //
-// A scene owns what it points to: texts are copies, geometry is retained. Positions are world
-// coordinates in millimeters, Z up; angles radians; colors linear RGB. Nothing here knows of
+// A scene owns its data: texts are copies, geometry is retained. Positions are world coordinates in
+// millimeters, Z up; angles are in radians; colors are linear RGB. The scene is independent of the
 // values of the language.
 
 #ifndef CAG_INTERP_SCENE_H
@@ -19,7 +19,8 @@ typedef struct CagColor {
   double r, g, b; // linear light
 } CagColor;
 
-// Color from "teal" (CSS names), "#0a8", "#00aa88": sRGB, made linear. False: no such color.
+// Converts "teal" (a CSS name), "#0a8", or "#00aa88" from sRGB to a linear color. Returns false for
+// other texts.
 bool cag_color_from_text(const char *text, CagColor *out);
 double cag_srgb_to_linear(double c);
 double cag_linear_to_srgb(double c);
@@ -29,15 +30,15 @@ typedef struct CagMaterial {
   CagColor color;
   double metallic;     // 0..1
   double roughness;    // 0..1
-  double ior;          // 1.5
+  double ior;          // 0..1: fraction of light that passes
   double transmission; // 0..1: share of light that passes
   CagColor emission;
-  double coat;     // 0..1: clear glaze over the base
+  double coat;     // 0..1: clear coat over the base
   char *texture;   // "" | "wood" | "marble" | "concrete" | "clay" ...: procedural pattern of the
-                   // engines; never NULL
+                   // renderers; never NULL
   CagColor color2; // second color of the pattern
   double texture_scale; // mm
-  char *pov;            // POV-Ray texture text for that engine only; NULL: none
+  char *pov;            // texture in POV-Ray syntax, for POV-Ray only; NULL: none
 } CagMaterial;
 
 typedef enum CagItemKind {
@@ -49,13 +50,14 @@ typedef enum CagItemKind {
   CAG_ITEM_GROUND
 } CagItemKind;
 
-// The material of a solid's operands or a mesh's triangles with a label.
+// The material of labeled operands of a solid or triangles of a mesh.
 typedef struct CagItemLabel {
   uint32_t label;
   size_t material; // index into materials
 } CagItemLabel;
 
-// One thing to draw; groups are taken apart. Names are unique within the scene ("vase", "vase.2").
+// A shape to draw. Groups are split into their items. Names are unique within the scene ("vase",
+// "vase.2").
 typedef struct CagItem {
   CagItemKind kind;
   char *name;
@@ -66,20 +68,22 @@ typedef struct CagItem {
     CagSolid *solid;
     CagMesh *mesh;
   } as;
-  CagTransform placement; // REGION only: where its plane lies
+  CagTransform placement; // REGION only: from z = 0 to its plane
   size_t material;        // index into materials
-  CagItemLabel *labels;   // SOLID, MESH: its labels, ascending; others have the item's material
+  CagItemLabel *labels;   // SOLID, MESH: labels, ascending; unlabeled parts have the item's
+                          // material
   size_t label_count;
   double tolerance;             // mm; 0: the scene's
-  double line_radius;           // CURVE: 0: by the size of the scene
+  double line_radius;           // CURVE; 0: derived from the size of the scene
   double dash;                  // CURVE: length of dashes in mm; 0: none
   double ground_z, ground_size; // GROUND; size may be infinite
 } CagItem;
 
-// X(NAME, text): what is drawn at a label's place.
+// X(NAME, text): the mark drawn at the location of a label.
 #define CAG_LABEL_MARKS(X)                                                                         \
   X(NONE, "none") X(DOT, "dot") X(CIRCLE, "circle") X(CROSS, "cross") X(ARROW, "arrow")
-// X(NAME, text, x, y): where a label's text stands, as steps right and up from its place.
+// X(NAME, text, x, y): the placement of a label's text, as steps to the right and up from its
+// location.
 #define CAG_LABEL_PLACES(X)                                                                        \
   X(RIGHT, "right", 1, 0)                                                                          \
   X(LEFT, "left", -1, 0)                                                                           \
@@ -100,31 +104,31 @@ typedef enum CagLabelPlace {
   CAG_LABEL_PLACES(X)
 #undef X
 } CagLabelPlace;
-// Their words, ending with NULL.
+// Their names, ending with NULL.
 extern const char *const cag_label_marks[];
 extern const char *const cag_label_places[];
 
-// A text or mark of flat pictures.
+// A text or mark in a flat picture.
 typedef struct CagLabel {
   char *text;
   CagVec3 at, along; // along: the direction of the text and of an arrow
-  bool directed;     // there is one
+  bool directed;     // it has a direction
   CagLabelPlace place;
   CagLabelMark mark;
-  double size;     // height of the text, mm; 0: by the size of the picture
+  double size;     // height of the text, mm; 0: derived from the size of the picture
   size_t material; // index into materials
 } CagLabel;
 
 typedef struct CagCamera {
   char *name;
-  CagVec3 eye, target, up; // up perpendicular to the view
+  CagVec3 eye, target, up; // up is perpendicular to the view direction
   bool orthographic;
   double fov;             // horizontal, radians (perspective)
   double width;           // mm (orthographic)
   int size[2];            // pixels
-  double focus, aperture; // mm, the aperture a lens's diameter; 0: everything is sharp
-  bool mirrored;          // the picture is seen in a mirror: its frame is left-handed
-  bool framed;            // stands where it sees everything, whatever the picture's shape
+  double focus, aperture; // mm; the aperture is the diameter of a lens; 0: everything is sharp
+  bool mirrored;          // the picture is mirrored: its frame is left-handed
+  bool framed;            // placed so that it sees everything, for any shape of the picture
 } CagCamera;
 
 typedef enum CagLightKind {
@@ -135,7 +139,7 @@ typedef enum CagLightKind {
 } CagLightKind;
 typedef struct CagLight {
   CagLightKind kind;
-  CagVec3 position, direction; // direction: the way the light goes (unit)
+  CagVec3 position, direction; // direction: of the light (a unit vector)
   double angle;                // SPOT: full cone, radians
   double size;                 // AREA: side of its square, mm
   CagColor color;
@@ -143,7 +147,7 @@ typedef struct CagLight {
 } CagLight;
 
 typedef struct CagSky {
-  size_t color_count; // colors from below to above; 0: none
+  size_t color_count; // number of colors, from bottom to top; 0: none
   CagColor *colors;
   char *image; // path of an EXR; NULL: none
 } CagSky;
@@ -151,30 +155,30 @@ typedef struct CagSky {
 typedef struct CagScene {
   CagItem *items;
   size_t item_count;
-  CagItem *empties; // shown items of which nothing is left, taken out by cag_scene_complete
+  CagItem *empties; // shown items that are empty, moved here by cag_scene_complete
   size_t empty_count;
   CagLabel *labels;
   size_t label_count;
   CagMaterial *materials;
-  size_t material_count; // 0 is the default material
+  size_t material_count; // material 0 is the default
   CagCamera *cameras;
-  size_t camera_count; // after cag_scene_complete at least one
+  size_t camera_count; // at least one after cag_scene_complete
   CagLight *lights;
   size_t light_count;
   CagSky sky;
   bool has_background;
   CagColor background;
   CagBounds bounds; // of all items except grounds
-  double tolerance; // mm: for items that say none; 0: by size of each
+  double tolerance; // mm: for items without their own; 0: derived from the size of each
   size_t max_triangles;
-  bool studio; // the studio set-up was added: no light was shown
+  bool studio; // the studio lights were added, because no light was shown
   bool automatic_camera;
   char *script; // name of the script, for metadata
   const volatile int *interrupt;
 } CagScene;
 
 void cag_scene_free(CagScene *s);
-// Index of the material of an item's triangles or operands with this label.
+// Returns the index of the material of an item's triangles or operands with this label.
 static inline size_t cag_item_label_material(const CagItem *item, uint32_t label) {
   size_t from = 0, to = item->label_count;
   while (from < to) {
@@ -185,31 +189,33 @@ static inline size_t cag_item_label_material(const CagItem *item, uint32_t label
   const bool found = from < item->label_count && item->labels[from].label == label;
   return found ? item->labels[from].material : item->material;
 }
-// Adds what is missing: a camera that frames everything (unless there is one), the studio light
-// (unless there is a light or a sky that lights). Computes bounds, and takes out items that are
-// empty; where these are all there is, nothing else is done.
+// Adds a camera that frames everything, unless there is one, and the studio lights, unless there is
+// a light or a sky that lights. Computes bounds, and moves empty items to `empties`. If all items
+// are empty, nothing else is done.
 CagStatus cag_scene_complete(CagScene *s, CagError *err);
 // Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
-// (size): used by cag_scene_complete, and again when a picture of another size is asked for.
+// (size). Called by cag_scene_complete, and again for a picture of another size.
 void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
-// The names of the standard views, NULL behind the last; and a camera of such a name, added behind
-// the others. It frames what is shown, without perspective.
+// The first function returns the name of standard view i, or NULL after the last one. The second
+// adds a camera of such a name after the others, which frames what is shown, without perspective.
 const char *cag_standard_view(size_t i);
 CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err);
-// Bounds of an item under a transform (NULL: none); a ground has none.
+// Computes the bounds of an item under a transform (NULL: none). A ground has none.
 CagStatus cag_item_bounds(const CagItem *item, const CagTransform *t, CagBounds *out,
                           CagError *err);
-// The box to frame: where nothing is shown, some room about the origin; and half its diagonal.
+// Returns the box to frame, which is a region about the origin if nothing is shown, and half its
+// diagonal.
 CagBounds cag_scene_framed(const CagScene *s);
 double cag_scene_radius(const CagBounds *b);
-// Camera to world: columns x (right), y (down), z (view), origin.
+// Returns the transform from camera to world: columns x (right), y (down), z (view direction),
+// origin.
 CagTransform cag_camera_frame(const CagCamera *c);
 // Tests whether the camera has depth of field. The rays of orthographic cameras are parallel.
 bool cag_camera_has_lens(const CagCamera *c);
 CagMaterial cag_material_default(void);
 
-// Mesh of one item at its tolerance (curves as tubes of their line radius, regions flat), its
-// closed parts outward; not of a ground. *out has one reference.
+// Makes the mesh of an item at its tolerance. Curves become tubes of their line radius, regions are
+// flat, and closed parts have outward normals. Not for grounds. *out has one reference.
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err);
 
 #endif

@@ -21,10 +21,10 @@
 
 #define SIDES 12
 #define BALL_RINGS 5
-// A curve follows its points to this part of the radius.
+// The chord tolerance of a curve, as a fraction of the radius.
 #define CHORD_PART 0.1
-// How far runs end before a sharp corner and begin after it, as parts of the radius: within the
-// ball, and different, so that a run back along the same line has no ring in common.
+// How far before and after a sharp corner runs stop, as fractions of the radius. This is within the
+// ball, and the two differ, so that a run that returns along the same line has no ring in common.
 #define SHORT_AT_END 0.03
 #define SHORT_AT_START 0.05
 // A joint takes at most this fraction of the adjacent segments on the inside.
@@ -33,7 +33,7 @@
 // shares no vertices with the other rings at that point, which would be welded.
 #define TURN_AT_START 0.1
 #define TURN_AT_END (-0.17)
-// Cosine of the turn from which a corner counts as sharp: 25 degrees.
+// The cosine of the turn from which a corner counts as sharp: 25 degrees.
 static const double SHARP_COSINE = 0.9063;
 static const double PI = 3.14159265358979323846;
 
@@ -44,7 +44,7 @@ typedef struct Buffer {
   size_t max_triangles;
 } Buffer;
 
-// Room for so many more; the limit of triangles is checked before memory is taken.
+// Makes room for more vertices and triangles. Checks the limit of triangles before it allocates.
 static CagStatus reserve(Buffer *b, size_t vertices, size_t triangles, CagError *err) {
   if (b->count + triangles > b->max_triangles)
     return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
@@ -83,7 +83,7 @@ static CagVec3 perpendicular(CagVec3 t) {
   return cag_unit(cag_cross(t, other));
 }
 
-// The mean direction of the segments that meet at point i.
+// Returns the mean direction of the segments that meet at point i.
 static CagVec3 tangent_at(const CagVec3 *p, size_t n, bool closed, size_t i) {
   CagVec3 before = {0, 0, 0}, after = {0, 0, 0};
   if (i > 0) before = cag_unit(cag_sub(p[i], p[i - 1]));
@@ -94,7 +94,7 @@ static CagVec3 tangent_at(const CagVec3 *p, size_t n, bool closed, size_t i) {
   return cag_norm(t) > 0 ? t : after;
 }
 
-// The frame vector r at p with tangent t carried to q with tangent u: two reflections.
+// Transports the frame vector r from p with tangent t to q with tangent u, by two reflections.
 static CagVec3 carry(CagVec3 p, CagVec3 t, CagVec3 r, CagVec3 q, CagVec3 u) {
   CagVec3 v = cag_sub(q, p);
   double c = cag_dot(v, v);
@@ -274,7 +274,7 @@ static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, 
   if (status) return status;
   const CagVec3 begin = tangent_at(p, n, true, 0), first = perpendicular(begin);
   CagVec3 t = begin, r = first;
-  // The frame comes back turned: each ring takes its share of the difference.
+  // The frame returns rotated: distribute the difference over the rings.
   for (size_t i = 1; i < n; i++) {
     CagVec3 u = tangent_at(p, n, true, i);
     r = carry(p[i - 1], t, r, p[i], u);
@@ -296,8 +296,8 @@ static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, 
   return CAG_OK;
 }
 
-// A direction turned by no angle that rings of tubes along the axes have: a rotation with the
-// columns (9, -20, 12)/25, (12, 15, 16)/25 and (-20, 0, 15)/25.
+// Rotates a direction by an angle that the rings of tubes along the axes do not have: by the
+// rotation with the columns (9, -20, 12)/25, (12, 15, 16)/25, and (-20, 0, 15)/25.
 static CagVec3 askew(CagVec3 n) {
   return cag_vec3((9 * n.x + 12 * n.y - 20 * n.z) / 25, (15 * n.y - 20 * n.x) / 25,
                   (12 * n.x + 16 * n.y + 15 * n.z) / 25);
@@ -335,14 +335,14 @@ static bool is_sharp(CagVec3 a, CagVec3 b, CagVec3 c) {
   return cag_dot(cag_unit(cag_sub(b, a)), cag_unit(cag_sub(c, b))) < SHARP_COSINE;
 }
 
-// The point on the way from a corner to the next point, at most half of it.
+// Returns the point at this distance from a corner toward the next point, at most halfway.
 static CagVec3 short_of(CagVec3 corner, CagVec3 next, double length) {
   double whole = cag_norm(cag_sub(next, corner));
   return cag_lerp(corner, next, fmin(length / whole, 0.5));
 }
 
-// The points of a path, and the state of its corners. The last point of a closed path is its first,
-// and the path begins at a sharp corner.
+// The points of a path, and the state of its corners. A closed path starts at a sharp corner, and
+// its last point equals the first.
 typedef struct Path {
   const CagVec3 *points;
   size_t count;
@@ -447,8 +447,8 @@ static CagStatus add_path(Buffer *b, const CagVec3 *p, size_t n, bool closed, do
   return add_loop(b, p, n, radius, err);
 }
 
-// Whole dashes, as many as fit with gaps as long between them; both ends of an open curve are
-// drawn.
+// Adds whole dashes, as many as fit with gaps of the same length between them. Both ends of an open
+// curve are drawn.
 static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, double dash,
                             double radius, CagError *err) {
   double length = 0;
@@ -457,7 +457,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   if (closed) count = 2 * floor(count / 2);
   else count = 2 * floor((count - 1) / 2) + 1;
   if (count < 2) return add_path(b, p, n, closed, radius, err);
-  // A dash has two triangles on each side at least, and every second step is one.
+  // A dash has at least two triangles per side, and every second step is a dash.
   if (count * SIDES > (double)b->max_triangles)
     return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "dash", -1,
                     "%.0f dashes need more than the %zu triangles allowed: make them longer",
@@ -466,7 +466,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   CagVec3 *run = cag_malloc((n + 2) * sizeof *run);
   if (!run) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
-  double at = 0, next = step;        // length walked, and where the dash or gap ends
+  double at = 0, next = step;        // length so far, and the end of the dash or gap
   const double sliver = 1e-9 * step; // a dash that ends this close to a point ends there
   bool drawn = true;
   size_t m = 0;
@@ -491,13 +491,13 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
     run[m++] = p[i];
     next += step;
   }
-  // Rounding may leave a sliver behind the last gap.
+  // Rounding may leave a sliver after the last gap.
   if (!status && drawn && next - at < step / 2) status = add_path(b, run, m, false, radius, err);
   cag_free(run);
   return status;
 }
 
-// Points without repetitions; returns how many.
+// Removes repeated points. Returns the number of points left.
 static size_t distinct(CagVec3 *p, size_t n) {
   size_t m = 0;
   for (size_t i = 0; i < n; i++)

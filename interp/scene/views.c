@@ -1,8 +1,8 @@
-// Cameras that frame what is shown: how near they stand, and the standard views by name.
+// Framing of cameras: their distance, and the standard views by name.
 //
-// Each item asks for room on both sides of the picture. Its bounds are taken in the camera's own
-// directions, not along the axes of space: the box of a slender thing that stands askew is many
-// times its size.
+// Each item needs room on both sides of the picture. Its bounds are computed along the camera's
+// axes, because the axis-aligned box of a slender oblique shape is many times larger than the
+// shape.
 
 #include <string.h>
 
@@ -12,7 +12,7 @@
 #include "base/stop.h"
 #include "interp/scene/scene.h"
 
-// Part of half the picture that stays free on each side.
+// The fraction of half the picture that stays free on each side.
 #define MARGIN 0.09
 
 static CagVec3 column(const CagTransform *t, int j) {
@@ -123,8 +123,8 @@ double cag_scene_radius(const CagBounds *b) {
 
 // --- Framing ---
 
-// How far things reach in the picture's direction a (0: right, 1: down), as limits of where the eye
-// may stand at depth 0: a point at (x, z) asks for x - k z <= e + k d and e - k d <= x + k z, with
+// The extent of the items in the picture's direction a (0: right, 1: down), as limits of the
+// position e of the eye: a point at (x, z) requires x - k z <= e + k d and e - k d <= x + k z, with
 // k the tangent of half the angle of view and d the distance.
 typedef struct Reach {
   double high, low;
@@ -136,7 +136,7 @@ typedef struct Framing {
   double k[2]; // 0: without perspective
 } Framing;
 
-// The lines of a transform that take a point to x - k z, x + k z, and what else makes it regular.
+// The transform that maps a point to x - k z and x + k z, with a third row that makes it regular.
 static CagTransform reach_transform(const Framing *f, int a) {
   const CagVec3 x = column(&f->frame, a), other = column(&f->frame, 1 - a);
   const CagVec3 z = column(&f->frame, 2);
@@ -151,7 +151,7 @@ static CagTransform reach_transform(const Framing *f, int a) {
   return t;
 }
 
-// The reach of a box along the axes of space.
+// The reach of an axis-aligned box.
 static Reach reach_of_box(const Framing *f, int a, const CagBounds *box) {
   Reach out = {-INFINITY, INFINITY};
   for (int c = 0; c < 8; c++) {
@@ -187,7 +187,7 @@ static void add_item(const Framing *f, const CagItem *item, Reach r[2]) {
   }
 }
 
-// Moves the camera, its direction kept, so that all items just fit.
+// Moves the camera, keeping its direction, so that all items just fit.
 void cag_camera_frame_all(const CagScene *s, CagCamera *c) {
   const CagBounds whole = cag_scene_framed(s);
   const double radius = cag_scene_radius(&whole);
@@ -211,7 +211,7 @@ void cag_camera_frame_all(const CagScene *s, CagCamera *c) {
     const double wide = r[0].high - r[0].low, tall = (r[1].high - r[1].low) * aspect;
     c->width = fmax(fmax(wide, tall), 1e-9 * radius) / (1 - MARGIN);
   }
-  // A single point has no reach: any distance shows it.
+  // A single point has no extent and is visible from any distance.
   if (!(distance > 0)) distance = 2 * radius;
   c->target =
       cag_madd(cag_madd(f.center, middle[0], column(&f.frame, 0)), middle[1], column(&f.frame, 1));
@@ -220,7 +220,7 @@ void cag_camera_frame_all(const CagScene *s, CagCamera *c) {
 
 // --- Standard views ---
 
-// From the target to the camera; seen without perspective.
+// Directions from the target to the camera, which has no perspective.
 static const struct {
   const char *name;
   CagVec3 back, up;
@@ -232,7 +232,7 @@ static const struct {
 
 const char *cag_standard_view(size_t i) { return i < VIEW_COUNT ? VIEWS[i].name : NULL; }
 
-// The studio's floor would hide what is looked at from below.
+// Removes the studio's floor, which would hide the shapes from below.
 static void drop_floor(CagScene *s) {
   CagItem *last = s->item_count ? &s->items[s->item_count - 1] : NULL;
   if (!s->studio || !last || last->kind != CAG_ITEM_GROUND || !last->name ||

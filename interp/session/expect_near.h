@@ -1,4 +1,4 @@
-// Comments that look like expectations of a test.
+// Misspelled expectations in tests.
 
 #ifndef CAG_INTERP_SESSION_EXPECT_NEAR_H
 #define CAG_INTERP_SESSION_EXPECT_NEAR_H
@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// What a comment's text was meant to begin with, "expect:" or "expect error:"; NULL: with nothing
-// of this kind, or it does.
+// Returns the start that a comment was probably meant to have, "expect:" or "expect error:", or
+// NULL if it has it or is an ordinary comment.
 const char *cag_test_meant(const char *text, size_t length);
 
 #endif

@@ -1,7 +1,7 @@
-// The name of a definition to which a shown expression leads.
+// The names of the definitions in a shown expression.
 //
-// `lid`, `lid |> color("red")`, `translate(lid, V)`, `around(lid, 4)`, `m.lid` and `lid(3)` lead to
-// `lid`; `[cup, lid]` and `group(cup, lid) |> scale(2)` do so part by part.
+// In `lid`, `lid |> color("red")`, `translate(lid, V)`, `around(lid, 4)`, `m.lid`, and `lid(3)`, it
+// is `lid`. In `[cup, lid]` and `group(cup, lid) |> scale(2)`, each part has its own.
 
 #ifndef CAG_INTERP_SESSION_LEAD_H
 #define CAG_INTERP_SESSION_LEAD_H
@@ -9,13 +9,13 @@
 #include "lang/ast.h"
 
 typedef struct CagLead {
-  const char *name;    // NULL: not to one name
-  const CagExpr *expr; // where there is none: what was shown, which may have parts; or NULL
+  const char *name;    // NULL: there is no single name
+  const CagExpr *expr; // without a name: the shown expression, which may have parts; or NULL
 } CagLead;
 
-// The leads of the elements of a shown list or group of a number of elements.
+// The leads of the elements of a shown list or group.
 typedef struct CagLeadParts {
-  CagLead each;           // of all of them, unless one of these is there
+  CagLead each;           // for all elements, unless one of the following is set
   CagExpr *const *items;  // of a list
   CagArgument *arguments; // of a call of `group`
 } CagLeadParts;

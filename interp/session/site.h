@@ -1,8 +1,8 @@
-// The site of all documentation: pages of static HTML, with no need of a network.
+// The documentation site: static HTML pages that work offline.
 //
-// Pages are written twice. The first time they go nowhere, and every script that they show is
-// kept; then all scripts are run, several at once, and their pictures made; the second time the
-// pages are written to files, with what the scripts printed. So a page says but once what it shows.
+// Pages are generated twice. The first pass discards its output and collects the scripts that the
+// pages show. Then all scripts are run in parallel, and their pictures are rendered. The second
+// pass writes the pages to files, with the output of the scripts.
 
 #ifndef CAG_INTERP_SESSION_SITE_H
 #define CAG_INTERP_SESSION_SITE_H
@@ -10,37 +10,37 @@
 #include "base/status.h"
 #include "interp/doc/doc.h"
 
-// What pictures of examples measure, in pixels.
+// The size of pictures of examples in pixels.
 #define CAG_SITE_WIDTH 320
 #define CAG_SITE_HEIGHT 240
 
-// A script that the pages show, and what came of it.
+// A script that the pages show, and its results.
 typedef struct CagSiteExample {
-  const char *about; // where it stands, for messages
+  const char *about; // its location, for messages
   char *text;
-  char *folder;   // of a script that it belongs to; NULL: it reads no files
-  char *function; // what it is an example of, whose picture may be made of its call; NULL: nothing
-  char *output;   // what it printed, and its error where one is expected
+  char *folder;   // of the script to which it belongs; NULL: it may not read files
+  char *function; // documented function, of whose call a picture may be made; NULL: none
+  char *output;   // printed output, including an expected error
   char *picture;  // "pictures/0123456789abcdef.png"; NULL: none
-  char *failure;  // why it is wrong; NULL: it is well
+  char *failure;  // why it failed; NULL: it succeeded
 } CagSiteExample;
 
-// A file of the user's that the site tells of.
+// A user's file that the site documents.
 typedef struct CagSiteScript {
-  char *file, *folder; // its name, and where it is
+  char *file, *folder; // its name, and its folder
   char *page;          // the name of its page: "parts.gripper"
-  CagDocModule module; // called as the user sees it: "parts/gripper.cag"
+  CagDocModule module; // named as the user sees it: "parts/gripper.cag"
 } CagSiteScript;
 
 typedef struct CagSite {
   CagSession *session; // reads modules
   const CagSiteOptions *options;
   const char *folder;
-  bool renders; // there is POV-Ray
+  bool renders; // POV-Ray is available
   CagSiteExample *examples;
   size_t count, capacity, next;
-  bool final;  // the second time
-  FILE *index; // what the search looks in, as it grows
+  bool final;  // the second pass
+  FILE *index; // the growing search index
   size_t index_count;
   CagDocModule *modules;
   size_t module_count;
@@ -50,35 +50,36 @@ typedef struct CagSite {
   bool failed;
 } CagSite;
 
-// Where an example stands.
+// The location of an example.
 typedef struct CagSiteSpot {
   FILE *out;
-  const char *root;     // leads from the page to the site's folder: "" or "../"
+  const char *root;     // path from the page to the site's folder: "" or "../"
   const char *about;    // for messages
-  const char *function; // what it is an example of; NULL: nothing
+  const char *function; // documented function; NULL: none
   const char *folder;   // as in CagSiteExample
 } CagSiteSpot;
 
-// Keeps an example (the first time), or finds it.
+// Collects an example (in the first pass), or finds it.
 const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, const char *text,
                                        size_t length);
-// Runs all examples and makes their pictures.
+// Runs all examples and renders their pictures.
 void cag_site_run(CagSite *s);
 
 // --- HTML ---
 void cag_html_text(FILE *out, const char *text, size_t length);
-// A script, its words colored; names of functions lead to their pages. `root` leads from the page
-// to the site's folder: "" or "../".
+// Writes a script with syntax highlighting and links from functions to their pages. `root` is the
+// path from the page to the site's folder: "" or "../".
 void cag_html_script(FILE *out, const char *root, const char *text, size_t length);
-// An example with what it printed and its picture.
+// Writes an example with its output and its picture.
 void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, size_t length);
-// Text in which `words` between backquotes are code, and lead to functions' pages.
+// Writes text in which `words` in backquotes are code, with links to functions.
 void cag_html_prose(FILE *out, const char *root, const char *text, size_t length);
-// Markdown, with tables. Fenced blocks of `cag` in the guide are examples (`cag fragment`: only
-// colored).
+// Converts Markdown, with tables. Fenced blocks of `cag` in the guide are examples; `cag fragment`
+// is only highlighted.
 void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
                        size_t length);
-// The anchor of a heading: "Curves and splines" is "curves-and-splines". malloc'd.
+// Returns the anchor of a heading, such as "curves-and-splines" for "Curves and splines", allocated
+// with malloc.
 char *cag_html_anchor(const char *heading);
 
 // --- Pages ---
@@ -88,32 +89,33 @@ typedef struct CagSitePage {
   FILE *out;
   char *text;
   size_t length;
-  CagCleanup cleanup; // until its end
+  CagCleanup cleanup; // active until its end
 } CagSitePage;
 
-// Begins a page at a path such as "functions/sin.html"; `section` marks its link at the top.
+// Starts a page at a path such as "functions/sin.html". `section` selects the highlighted link at
+// the top.
 void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *title,
                     const char *section);
 void cag_site_end(CagSitePage *p);
-// Writes a file of the site (the second time).
+// Writes a file of the site (in the second pass).
 void cag_site_write(CagSite *s, const char *path, const char *text, size_t length);
-// Adds what a search finds.
+// Adds an entry to the search index.
 void cag_site_find(CagSite *s, const char *name, const char *kind, const char *url,
                    const char *summary, size_t summary_length);
 
-// The table of parameters: its head, and a line.
+// Writes the head of a table of parameters, and a row.
 void cag_site_begin_parameters(const CagSitePage *p);
 void cag_site_parameter(const CagSitePage *p, const char *type, const char *meaning,
                         const char *name, const char *fallback);
 
-// Reads the scripts that the site is to tell of; false: a diagnostic says what is wrong.
+// Reads the scripts that the site documents. Returns false, after a diagnostic, on failure.
 bool cag_site_read_scripts(CagSite *s);
 void cag_site_free_scripts(CagSite *s);
 
 void cag_site_functions(CagSite *s); // the index, and a page for each function
 void cag_site_library(CagSite *s);
 void cag_site_scripts(CagSite *s);
-// Their part of the index of functions: its place in the list at the top, and the section.
+// The scripts' part of the index of functions: its entry in the list at the top, and its section.
 void cag_site_scripts_item(const CagSitePage *p);
 void cag_site_scripts_section(const CagSitePage *p);
 void cag_site_errors(CagSite *s);

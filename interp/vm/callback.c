@@ -1,15 +1,15 @@
 // Calls of the script from geometry: curves and surfaces by a formula.
 //
-// Geometry evaluates them when it likes, from built-ins that hold values in plain variables, and
-// from exporters when the script has long ended. So each call is protected by itself: running out
-// of memory ends in the status of the evaluation, and the collector leaves alone what is older than
-// the call (heap.c).
+// Geometry may evaluate them at any time: from built-ins that hold values in plain variables, or
+// from exporters after the script has ended. So each call is protected separately: exhausted memory
+// becomes the status of the evaluation, and the collector keeps all objects that are older than the
+// call (heap.c).
 
 #include "base/array.h"
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
-// Functions that evaluate curves that call functions ... so deep; the depth has six bits.
+// The maximum depth of functions that evaluate curves that call functions; it has six bits.
 #define DEPTH_MOST 60
 
 size_t cag_vm_keep(CagVm *vm, CagValue v) {

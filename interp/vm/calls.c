@@ -1,4 +1,4 @@
-// Binding of arguments, and calls of what is not a closure.
+// Binding of arguments, and calls of values that are not closures.
 
 #include "interp/vm/calls.h"
 
@@ -13,7 +13,7 @@
 
 static const char *function_name(const char *name) { return name ? name : "this function"; }
 
-// "f(x, y = ...)" for messages.
+// Formats "f(x, y = ...)" for messages.
 static void add_closure_signature(CagString *s, const CagProto *p) {
   cag_string_printf(s, "%s(", p->name ? p->name : "");
   for (size_t i = 0; i < p->parameter_count; i++) {
@@ -108,7 +108,7 @@ bool cag_bind_closure(CagVm *vm, const CagProto *p, CagValue *arguments, size_t 
 
 // --- Built-ins ---
 
-// Parameters that any built-in has.
+// The maximum number of parameters of a built-in.
 #define MAX_PARAMETERS 64
 
 static bool fail_no_row(CagVm *vm, size_t index, CagValue first) {
@@ -127,7 +127,8 @@ static bool fail_no_row(CagVm *vm, size_t index, CagValue first) {
   return false;
 }
 
-// Shows how a function is called: its signature, after the form where other languages have another.
+// Shows how to call a function: its signature, preceded by the correct form if other languages use
+// a different one.
 static bool help_call(CagVm *vm, const CagBuiltin *row, const CagSignature *s) {
   const char *form = cag_foreign_call(s->name);
   if (form) return cag_fail_help(vm, "write %s; the signature is %s", form, row->signature);
@@ -140,8 +141,8 @@ static bool fail_builtin_arity(CagVm *vm, const CagBuiltin *row, const CagSignat
   return help_call(vm, row, s);
 }
 
-// Moves named arguments to their parameters; `order` tells afterwards where each parameter came
-// from.
+// Moves named arguments to their parameters. `order` is set to the argument from which each
+// parameter came.
 static bool bind_names(CagVm *vm, const CagSignature *s, CagValue *values, size_t positional,
                        const char *const *names, size_t named, uint16_t *order) {
   CagValue moved[MAX_PARAMETERS];
@@ -170,8 +171,8 @@ static bool bind_names(CagVm *vm, const CagSignature *s, CagValue *values, size_
   return true;
 }
 
-// Of a built-in that has succeeded with an error set, or failed without one. The geometry core may
-// go on when a formula fails at a place that it only probes, and limits may be noticed late.
+// Handles a built-in that succeeded with an error set, or failed without one. This is valid after a
+// formula failed at a point that the geometry core only probed, or if a limit was noticed late.
 static bool check_answer(CagVm *vm, const char *name, bool ok) {
   if (!ok) return cag_vm_fail(vm, CAG_ERR_internal, "%s failed without an error", name);
   if (vm->native->probed || cag_vm_at_limit(vm)) return false;
@@ -227,7 +228,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   else if (ok == vm->failed) ok = check_answer(vm, s->name, ok);
   ok = ok && cag_check_defined(&call, *result);
   cag_vm_release_held(vm, held);
-  if (vm->stop) ok = cag_stop_answer(vm); // work that was cut short may have found anything
+  if (vm->stop) ok = cag_stop_answer(vm); // interrupted work may have returned anything
   vm->native = native.outer;
   vm->top = top;
   return ok;

@@ -1,10 +1,10 @@
-// Syntax tree to register code.
+// Compiles the syntax tree to register code.
 //
-// A function's parameters are its first registers; names of blocks and comprehensions get registers
-// as they come, temporaries above them, in the manner of a stack: `next` is the first free one.
-// compile_any gives the register where a value already lives (names never change, so nothing is
-// copied), compile_to puts it where the caller wants it. Conditions become jumps (jump_when).
-// Errors in the tree were found before: no ERROR expression comes here.
+// A function's parameters are its first registers. Names of blocks and comprehensions get registers
+// as they occur, with temporaries above them, as on a stack: `next` is the first free register.
+// compile_any returns the register that already holds a value (names never change, so nothing is
+// copied), and compile_to puts the value where the caller wants it. Conditions become jumps
+// (jump_when). Trees with errors are not compiled, so ERROR expressions do not occur.
 
 #include <string.h>
 
@@ -13,7 +13,7 @@
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
-// More elements than this are pushed one by one instead of standing in registers together.
+// Longer lists are built one element at a time instead of in consecutive registers.
 #define LIST_IN_REGISTERS 32
 
 typedef struct Unit {
@@ -21,7 +21,7 @@ typedef struct Unit {
   CagModuleUnit *module;
   CagProto *proto;
   struct Unit *outer;
-  const CagFunctionAst *function; // NULL: a definition's initializer or a statement
+  const CagFunctionAst *function; // NULL: initializer of a definition, or a statement
   CagArena *scratch;              // temporary memory, shared by nested functions
   const CagDecl **captured;       // decl of each capture
   size_t captured_capacity;
@@ -121,7 +121,7 @@ static void patch_to(Unit *u, size_t at, size_t target) {
   u->proto->code[at].x = (int32_t)((long)target - (long)at - 1);
 }
 
-// Jumps of the list lead to `target`; the list is done with.
+// Makes the jumps of the list lead to `target`, and frees the list.
 static void patch_all(Unit *u, Patches *list, size_t target) {
   for (size_t i = 0; i < list->count; i++) patch_to(u, list->at[i], target);
   *list = (Patches){0};
@@ -131,8 +131,8 @@ static size_t here(const Unit *u) { return u->proto->code_count; }
 
 // --- Constants ---
 
-// Value of an expression that is one whatever the script does: literals, signed numbers, lists of
-// these, built-in constants.
+// Evaluates an expression that is always constant: literals, signed numbers, lists of these, and
+// built-in constants.
 static bool constant_value(Unit *u, const CagExpr *e, CagValue *out) {
   switch (e->kind) {
   case CAG_EXPR_NUMBER: *out = cag_number(e->as.number); return true;
@@ -167,7 +167,7 @@ static bool constant_value(Unit *u, const CagExpr *e, CagValue *out) {
   }
 }
 
-// Number constants as operands of arithmetic.
+// Finds number constants among operands of arithmetic.
 static bool number_operand(Unit *u, const CagExpr *e, uint32_t *index) {
   CagValue v;
   if (e->kind != CAG_EXPR_NUMBER && e->kind != CAG_EXPR_NEGATE) return false;
@@ -204,10 +204,10 @@ static uint16_t capture_index(Unit *u, const CagDecl *d) {
 static size_t global_of(const Unit *u, const CagDecl *d) {
   CagModuleUnit *m = u->module;
   if (d->kind == CAG_DECL_TOP) return m->tops[d->index];
-  return d->index; // IMPORT, IMPORTED: the loader put the number of the global there
+  return d->index; // IMPORT, IMPORTED: the loader has stored the index of the global there
 }
 
-// Register of a name that lives in one, or false.
+// Finds the register of a name. Returns false if it is not in a register.
 static bool local_register(const Unit *u, const CagExpr *e, uint32_t *reg) {
   if (e->kind == CAG_EXPR_GROUP) return local_register(u, e->as.unary.operand, reg);
   if (e->kind != CAG_EXPR_NAME || e->as.name.binding != CAG_BIND_DECL) return false;
@@ -250,7 +250,7 @@ static bool is_comparison(const CagExpr *e) {
 
 static uint32_t operand(Unit *u, const CagExpr *e);
 
-// Jumps when the comparison's value is `sense`.
+// Jumps if the value of the comparison is `sense`.
 static void jump_on_comparison(Unit *u, const CagExpr *e, bool sense, Patches *out) {
   uint32_t mark = u->next;
   uint32_t left = operand(u, e->as.binary.left);
@@ -266,7 +266,7 @@ static void jump_on_comparison(Unit *u, const CagExpr *e, bool sense, Patches *o
   }
   bool swap = e->as.binary.op == CAG_OP_GREATER || e->as.binary.op == CAG_OP_GREATER_EQUAL;
   emit(u, e->span, op, swap ? right : left, swap ? left : right, swap);
-  if (sense) { // the instruction skips to behind the jump when the comparison fails
+  if (sense) { // if the comparison fails, the instruction skips to after the jump
     emit_wide(u, e->span, CAG_CODE_JUMP, 0, 1);
     add_patch(u, out, emit_wide(u, e->span, CAG_CODE_JUMP, 0, 0));
   } else {
@@ -281,7 +281,7 @@ static void jump_when(Unit *u, const CagExpr *e, bool sense, Patches *out) {
   case CAG_EXPR_NOT: jump_when(u, e->as.unary.operand, !sense, out); return;
   case CAG_EXPR_AND:
   case CAG_EXPR_OR: {
-    bool decisive = e->kind == CAG_EXPR_OR; // the value of the left side that settles the matter
+    bool decisive = e->kind == CAG_EXPR_OR; // the value of the left side that determines the result
     if (decisive == sense) {
       jump_when(u, e->as.binary.left, sense, out);
       jump_when(u, e->as.binary.right, sense, out);
@@ -331,8 +331,8 @@ static void add_site_span(Unit *u, CagSpan span) {
   p->site_spans[p->site_span_count++] = span;
 }
 
-// A call with callee, perhaps a piped first argument, and arguments; the result lands in a new
-// register, which is given back.
+// Compiles a call with a callee, an optional piped first argument, and arguments. Returns the new
+// register that receives the result.
 static uint32_t compile_call(Unit *u, const CagExpr *whole, const CagExpr *callee,
                              const CagExpr *piped, const CagArgument *arguments, size_t n,
                              bool tail) {
@@ -423,7 +423,7 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
   uint32_t r = plain == n ? target : take_registers(u, 1);
   emit(u, e->span, CAG_CODE_RECORD, r, first,
        (uint32_t)add_constant(u, cag_object(CAG_INTERNAL, layout)));
-  for (size_t i = plain; i < n; i++) { // from the first spread on: one field after the other
+  for (size_t i = plain; i < n; i++) { // from the first spread on, one field at a time
     const CagField *f = &e->as.record.fields[i];
     uint32_t inner = u->next;
     uint32_t v = compile_any(u, f->value);
@@ -437,7 +437,7 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
 
 static void compile_assert(Unit *u, const CagStatement *s);
 
-// The definitions and asserts of a block; their registers stay taken.
+// Compiles the definitions and asserts of a block. Their registers remain in use.
 static void compile_block_head(Unit *u, const CagExpr *e) {
   for (size_t i = 0; i < e->as.block.count; i++) {
     const CagStatement *s = e->as.block.statements[i];
@@ -506,7 +506,7 @@ static void compile_if(Unit *u, const CagExpr *e, uint32_t target) {
 
 static void compile_logical(Unit *u, const CagExpr *e, uint32_t target) {
   Patches end = {0};
-  // The target may be a register of a name that the right side reads: work in a fresh one.
+  // The target may be the register of a name that the right side reads, so use a new one.
   uint32_t mark = u->next;
   uint32_t r = take_registers(u, 1);
   compile_to(u, e->as.binary.left, r);
@@ -645,7 +645,7 @@ static void compile_to(Unit *u, const CagExpr *e, uint32_t target) {
   u->next = mark;
 }
 
-// Where the value of e is: a register that already holds it, or a new one.
+// Returns the register with the value of e: one that already holds it, or a new one.
 static uint32_t compile_any(Unit *u, const CagExpr *e) {
   uint32_t reg;
   if (local_register(u, e, &reg)) return reg;
@@ -703,7 +703,7 @@ static bool is_literal(const CagExpr *e) {
   }
 }
 
-// Evaluates one part of a failed condition again, for the message: its text and its value.
+// Evaluates one part of a failed condition again, for its text and value in the message.
 static uint32_t compile_part(Unit *u, const CagExpr *e) {
   if (is_literal(e) || e->kind == CAG_EXPR_LAMBDA) return 0;
   uint32_t r = take_registers(u, 2);

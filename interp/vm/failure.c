@@ -1,8 +1,8 @@
-// Errors of a run: where they are, how the calls led there, and how a script sees them.
+// Errors of a run: their location, the chain of calls, and their form in scripts.
 //
-// The place of an error is the instruction that the top frame is at: its pc stands just behind it.
+// The location of an error is the current instruction of the top frame, whose pc is just after it.
 // A built-in may name one of its arguments, which is then underlined if the call in the source
-// gives it.
+// contains it.
 
 #include <stdarg.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "interp/vm/jet.h"
 #include "interp/vm/vm.h"
 
-// Chains longer than this show their first and last frames only.
+// Of longer chains, only the first and last frames are shown.
 #define CHAIN_FIRST 6
 #define CHAIN_LAST 4
 
@@ -22,7 +22,7 @@ static uint32_t at_instruction(const CagFrame *f) {
 
 #define WHOLE_CALL (-2)
 
-// The call's argument spans at an instruction, or NULL.
+// Returns the call's argument spans at an instruction, or NULL.
 static const CagCallSite *find_site(const CagProto *p, uint32_t pc) {
   size_t low = 0, high = p->site_count;
   while (low < high) {
@@ -42,11 +42,11 @@ static CagSpan place_of(const CagFrame *f, int argument) {
 }
 
 static void add_call(CagDiagnostic *d, int kind, const CagProto *p, uint32_t pc) {
-  // The name is that of the function or definition that holds the call.
+  // The name is that of the function or definition that contains the call.
   cag_diagnostic_add_note(d, kind, p->source, p->spans[pc], "%s", p->name ? p->name : "");
 }
 
-// Adds frames below the top one, innermost first; of each its calls in tail position too.
+// Adds the frames below the top one, innermost first, and the calls in tail position of each.
 static void add_chain(CagVm *vm, CagDiagnostic *d) {
   size_t n = vm->frame_count;
   for (size_t back = 1; back <= n; back++) {
@@ -133,7 +133,7 @@ bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...) {
 bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  // A frame of the function for the time of the report, at its last instruction.
+  // A temporary frame of the function, at its last instruction.
   bool entered = function.type == CAG_CLOSURE && vm->frame_count < vm->frame_limit;
   if (entered) {
     CagClosure *c = CAG_AS_CLOSURE(function);
@@ -181,8 +181,8 @@ bool cag_fail_hidden(CagVm *vm) {
   return cag_fail_help(vm, "`%s` is defined here and hides the built-in function; rename it", name);
 }
 
-// Where parameter `parameter` of the running built-in stands in the call of the source; WHOLE_CALL:
-// nowhere.
+// Returns the index of the argument, in the call in the source, of parameter `parameter` of the
+// running built-in, or WHOLE_CALL.
 static int argument_of(const CagCall *call, int parameter) {
   const CagNative *n = call->vm->native;
   if (parameter < 0 || !n || !n->direct || n->frame_count != call->vm->frame_count)
@@ -235,8 +235,11 @@ bool cag_fail_type(CagCall *call, int argument, const char *expected) {
 
 bool cag_fail_geometry(CagCall *call, const CagError *err) {
   if (err->status == CAG_E_CALLBACK && call->vm->failed)
-    return false;                                      // the function of the script has said it
-  if (call->vm->stop) return cag_keep_going(call->vm); // whatever the work that was cut short says
+    return false; // the function of the script has set its
+                  // error
+  if (call->vm->stop)
+    return cag_keep_going(call->vm); // takes precedence over errors of
+                                     // interrupted work
   if (err->status == CAG_E_MEMORY) cag_vm_out_of_memory(call->vm);
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
   int parameter = -1;
@@ -266,7 +269,7 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm) {
   cag_memory_leave();
 }
 
-// --- What a script sees of its errors ---
+// --- Errors as values of a script ---
 
 bool cag_vm_at_limit(const CagVm *vm) {
   const CagErrorId id = vm->errors.count ? vm->errors.items[0].id : CAG_ERR_limit_memory;

@@ -1,4 +1,4 @@
-// Which files a script may have, and reading them (language, section 8).
+// Access to files by scripts, and reading files (language, section 8).
 
 #include <errno.h>
 #include <string.h>
@@ -8,10 +8,10 @@
 #include "base/stop.h"
 #include "interp/vm/vm.h"
 
-// Larger files are refused: no script or table is so large by right.
+// Larger files are refused.
 #define FILE_MAX ((size_t)1 << 30)
 
-// Between chunks the reading of a file can be stopped.
+// Reading can be stopped between chunks.
 #define CHUNK ((size_t)16 << 20)
 
 // Reasons that are distinguished by their address.
@@ -51,7 +51,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   }
   char *real = cag_vm_real_path(vm, asked);
   int why = errno;
-  // Whether a file outside exists is not told: only a missing one below the folders is called
+  // Does not reveal whether a file outside of the folders exists: only files inside are reported as
   // missing.
   bool outside = real ? !is_allowed(vm, real) : path[0] == '/' || strstr(path, "..") != NULL;
   cag_free(joined);
@@ -66,8 +66,8 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   return NULL;
 }
 
-// Reads what is left of a file, at most `most` bytes, with a zero behind. NULL, with *why: it
-// cannot be read, or is larger.
+// Reads the rest of a file, at most `most` bytes, and adds a zero byte. Returns NULL, with the
+// reason in *why, if it cannot be read or is larger.
 static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const char **why) {
   size_t capacity = first + 1, n = 0;
   char *bytes = cag_malloc(capacity);
@@ -79,7 +79,7 @@ static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const
     else if (cag_stopped()) *why = "it was stopped";
     else if (feof(f)) break;
     if (*why || n < capacity - 1) continue;
-    const int c = fgetc(f); // the size that a file says may be all that it has
+    const int c = fgetc(f); // files may be longer than their reported size
     if (c == EOF) break;
     ungetc(c, f);
     if (n >= most) *why = TOO_LARGE;
@@ -98,7 +98,7 @@ static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const
 }
 
 static char *read_at_most(const char *path, size_t most, size_t *length, const char **why) {
-  const size_t first = 65536; // of pipes, which do not tell their size
+  const size_t first = 65536; // for pipes, whose size is unknown
   char *bytes = NULL;
   struct stat st;
   FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rbe");
@@ -123,7 +123,7 @@ char *cag_read_whole_file(const char *path, size_t *length, const char **why) {
 
 bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **bytes, size_t *n) {
   CagVm *vm = call->vm;
-  // A path is relative to the file that says it.
+  // A path is relative to the file that contains it.
   char *folder = NULL;
   if (vm->frame_count) {
     const CagSource *s = vm->frames[vm->frame_count - 1].proto->source;
@@ -137,7 +137,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   char *real =
       cag_allowed_path(vm, path, folder && *folder ? folder : vm->root, message, sizeof message);
   cag_free(folder);
-  // Then the folders of -I, in their order, as for modules.
+  // Then the folders of -I in order, as for modules.
   for (size_t i = 0; !real && path[0] != '/' && i < vm->include_count; i++) {
     char ignored[512];
     real = cag_allowed_path(vm, path, vm->include[i], ignored, sizeof ignored);

@@ -1,14 +1,14 @@
-// The heap: pages of equal cells for small objects, malloc for large ones, mark and sweep over
-// both.
+// The heap: pages of equal cells for small objects, malloc for large ones, and mark-and-sweep
+// garbage collection of both.
 //
-// A cell of a page is free when its `type` is CELL_FREE. The mark alternates between 1 and 2 from
-// one collection to the next, so that nothing needs to be unmarked; an object is born with the mark
-// of the last collection and becomes garbage unless the next one reaches it.
+// A cell of a page is free if its `type` is CELL_FREE. The mark alternates between 1 and 2 from one
+// collection to the next, so that marks need not be cleared. A new object has the mark of the last
+// collection and becomes garbage unless the next collection reaches it.
 //
-// Geometry may call the script back (a curve by a formula), from within built-ins that hold values
-// in plain variables. An object therefore remembers how many such calls it was made inside of, and
-// a collection within a call leaves alone what was made outside of it. Values never change, so what
-// is older refers to nothing that was made inside.
+// Geometry may call the script (a curve by a formula) from within built-ins that hold values in
+// plain variables. An object therefore records the number of such calls in which it was made, and a
+// collection during a call keeps everything made outside of it. Values never change, so older
+// objects do not refer to objects made during the call.
 
 #include "interp/vm/heap.h"
 
@@ -22,11 +22,10 @@
 #include "interp/vm/vm.h"
 
 #define CELL_FREE 0xff
-// Pages are so large that their header is small beside them and the system's allocator is seldom
-// asked.
+// Pages are large compared to their header, and are rarely allocated.
 #define PAGE_BYTES ((size_t)64 * 1024)
-// A collection is due after so much allocation, or as much as is live, whichever is more: the cost
-// of marking stays in proportion.
+// A collection is due after this much allocation, or as much as is live, whichever is more. This
+// keeps the cost of marking proportional to allocation.
 
 struct CagPage {
   CagPage *next;
@@ -34,17 +33,17 @@ struct CagPage {
   max_align_t cells[];
 };
 
-// Under AddressSanitizer each object is a block of its own, so that a use after its end is seen.
+// Under AddressSanitizer, each object is a separate block, so that uses after free are detected.
 #if defined(__SANITIZE_ADDRESS__)
 #define SMALL_LIMIT 0
-// Collections come often then, to find what is not rooted.
+// Frequent collections reveal values that are not rooted.
 #define DEBT_MIN ((size_t)32 << 10)
 #else
 #define SMALL_LIMIT CAG_SMALL_MAX
 #define DEBT_MIN ((size_t)16 << 20)
 #endif
 
-// The mark's byte: the mark proper below, the depth of calls from geometry above.
+// The low bits of the mark byte are the mark; the others are the depth of calls from geometry.
 #define MARK_BITS 2
 #define MARK_MASK ((1 << MARK_BITS) - 1)
 
@@ -135,7 +134,7 @@ void cag_mark_value(CagHeap *h, CagValue v) {
   if (v.type >= CAG_FIRST_OBJECT && v.type != CAG_UNSET) cag_mark_object(h, v.as.object);
 }
 
-// Values marked, objects scanned, and pages swept, between two looks at the stop flag.
+// Values marked, objects scanned, and pages swept between two checks of the stop flag.
 enum { SCANS_BETWEEN_LOOKS = 1 << 14, PAGES_BETWEEN_LOOKS = 16 };
 
 void cag_mark_values(CagHeap *h, const CagValue *v, size_t n) {
@@ -146,7 +145,7 @@ void cag_mark_values(CagHeap *h, const CagValue *v, size_t n) {
   }
 }
 
-// Marks what an object refers to.
+// Marks the objects that an object refers to.
 static void scan(CagHeap *h, CagObject *o) {
   CAG_ASSERT(o->type >= CAG_FIRST_OBJECT && o->type <= CAG_INTERNAL && o->type != CAG_UNSET);
   const CagValueType *type = cag_value_types[o->type];
@@ -162,8 +161,8 @@ static void destroy(CagObject *o) {
 static void mark_roots(CagVm *vm) {
   CagHeap *h = &vm->heap;
   cag_mark_values(h, vm->stack, (size_t)(vm->top - vm->stack));
-  // What lies above the stack's top is dead: clear it, so that a later frame never shows the
-  // collector a stale pointer.
+  // Clears the dead values above the top of the stack, so that a later frame never exposes a stale
+  // pointer to the collector.
   if (vm->high_water > vm->top)
     memset(vm->top, 0, (size_t)(vm->high_water - vm->top) * sizeof *vm->top);
   vm->high_water = vm->top;
@@ -190,8 +189,8 @@ static bool lives(const CagHeap *h, CagObject *o) {
   return true;
 }
 
-// Frees the dead objects of a page and threads its free cells into their list. Returns their
-// number.
+// Frees the dead objects of a page and adds its free cells to their list. Returns the number of
+// objects freed.
 static size_t sweep_page(CagHeap *h, CagPage *page) {
   const size_t size_class = page->cell / CAG_SMALL_STEP;
   size_t live = 0;
@@ -211,10 +210,10 @@ static size_t sweep_page(CagHeap *h, CagPage *page) {
   return page->count - live;
 }
 
-// Where memory is short, empty pages go back to the system, but for one of each size class. Returns
-// false if the run must stop. Then the pages that were not swept keep their garbage, and their free
-// cells are lost, until the next collection. *live, *free_bytes: of the cells in use, and the
-// others.
+// If memory is short, returns empty pages to the system, except for one of each size class. Returns
+// false if the run must stop. The pages that were not swept then keep their garbage, and their free
+// cells are lost, until the next collection. *live and *free_bytes are the bytes of the cells in
+// use and of the others.
 static bool sweep(CagHeap *h, bool short_of_memory, size_t *live, size_t *free_bytes) {
   bool kept[CAG_SMALL_CLASSES] = {false};
   size_t swept = 0;
@@ -264,7 +263,7 @@ static bool drain(CagHeap *h) {
   return !cag_stopped();
 }
 
-// Marks the objects that a marked object refers to, even if that was done before.
+// Marks the objects that a marked object refers to, even if that has been done before.
 static bool scan_again(CagHeap *h, CagObject *o) {
   if ((o->mark & MARK_MASK) != h->mark) return true;
   scan(h, o);
@@ -296,7 +295,7 @@ static bool mark_all(CagVm *vm) {
   return done;
 }
 
-// Gives every object the mark of the last collection, which a stopped one did not.
+// Gives every object the mark of the last collection, which an interrupted collection has not done.
 static void mark_evenly(CagHeap *h) {
   for (CagPage *page = h->pages; page; page = page->next) {
     char *cell = (char *)page->cells;
@@ -317,7 +316,7 @@ void cag_collect(CagVm *vm) {
   size_t live = 0, free_bytes = 0;
   h->unfinished = !mark_all(vm) || !sweep(h, short_of_memory, &live, &free_bytes);
   if (h->unfinished) return; // the run ends
-  // What takes time to mark and sweep: cells, and lists of values.
+  // Objects that take time to mark and sweep: cells, and lists of values.
   live += h->values_marked * sizeof(CagValue);
   h->debt = 0;
   h->seen = vm->account.used;
@@ -327,7 +326,7 @@ void cag_collect(CagVm *vm) {
   h->collections++;
 }
 
-// Frees everything; the machine ends.
+// Frees everything, at the end of the machine.
 void cag_heap_free(CagVm *vm) {
   CagHeap *h = &vm->heap;
   for (CagPage *page = h->pages, *next; page; page = next) {

@@ -1,10 +1,10 @@
-// The heap: precise mark and sweep.
+// The heap: precise mark-and-sweep garbage collection.
 //
 // Allocation never collects. It adds to a debt, and the machine collects at safe points (calls of
-// script functions, back edges of loops, between top-level definitions) once the debt is due; so C
-// code between safe points needs no care. Roots are the machine's stack, the modules' globals,
-// constants, interned texts and the root stack. Crossing --max-memory after a collection is the
-// error E0602 (memory-limit).
+// script functions, back edges of loops, between top-level definitions) once the debt is due. C
+// code between safe points therefore needs no precautions. The roots are the machine's stack, the
+// modules' globals, constants, interned texts, and the root stack. If --max-memory is still
+// exceeded after a collection, the run fails with E0602 (memory-limit).
 //
 // Small objects (up to CAG_SMALL_MAX bytes) come from size-classed pages with free lists; larger
 // ones from cag_malloc. Everything that the run allocates, geometry included, is charged to the
@@ -15,13 +15,13 @@
 
 #include "interp/vm/value.h"
 
-// Zeroed except for the header, which is set. Never NULL: if the limit or the system's memory is
-// exceeded, the run ends there with the error of the memory limit (a long jump to where the run
-// began; cleanups release what C code holds, base/guard.h).
+// Allocates an object, zeroed except for its header. Never returns NULL: if the limit or the
+// system's memory is exceeded, the run ends with the error of the memory limit. A long jump then
+// leads to the start of the run, and cleanups release what C code holds (base/guard.h).
 void *cag_alloc(CagVm *vm, CagType type, size_t size);
 void cag_collect(CagVm *vm);
 
-// What objects with the type CAG_INTERNAL are: their head.flags.
+// Kinds of objects with the type CAG_INTERNAL, in their head.flags.
 enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2, CAG_INTERNAL_LABEL = 3 };
 
 void cag_heap_init(CagVm *vm);

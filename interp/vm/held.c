@@ -1,5 +1,5 @@
-// What built-ins hold besides values: a stack of things to release, so that a jump out of a
-// built-in loses nothing.
+// The resources of built-ins: a stack of what to release, so that a long jump out of a built-in
+// leaks nothing.
 
 #include <string.h>
 
@@ -33,8 +33,8 @@ void *cag_hold_array(CagCall *call, size_t count, size_t size) {
   return cag_hold(call, cag_calloc(count ? count : 1, size));
 }
 
-// Takes a thing out of the stack; things are released in about the reverse order, so it is near the
-// end.
+// Removes a resource from the stack. Resources are released in about the reverse order, so it is
+// usually near the end.
 static struct CagHeld remove_held(CagVm *vm, const void *what) {
   size_t at = vm->held_count;
   while (at > 0 && vm->held[at - 1].what != what) at--;

@@ -32,9 +32,9 @@ CagValue cag_jet_variable(CagVm *vm, int variables, int order, uint32_t level, i
   return cag_object(CAG_JET, j);
 }
 
-// Deeper values hold no coordinates.
+// Coordinates are not nested deeper.
 #define DEPTH_MOST 100
-// Nor do values of more parts: lists that share theirs would be walked endlessly.
+// Nor do they have more parts. Traversing lists with shared parts could take forever.
 #define PARTS_MOST 4000000
 
 static bool holds_jet(CagValue v, int depth, size_t *parts) {
@@ -117,7 +117,7 @@ void cag_series_scale(const CagSeries *a, double factor, CagSeries *out) {
   for (size_t i = 0; i < n; i++) out->c[i] = factor * a->c[i];
 }
 
-// Part i + j of out gets factor * (part i of a) * (part j of b) added.
+// Adds factor * (part i of a) * (part j of b) to part i + j of out.
 static inline void add_product(int variables, double factor, const double *a, int i,
                                const double *b, int j, double *out) {
   if (variables == 1) {
@@ -170,7 +170,7 @@ void cag_series_divide(const CagSeries *a, const CagSeries *b, CagSeries *out) {
 static void whole_power(const CagSeries *a, double r, CagSeries *out) {
   CagSeries square = *a, product;
   cag_series_constant(a, 1, &product);
-  // Above the order a power of what vanishes at 0 is 0: no need to count further.
+  // Above the order, powers of a jet with value 0 are 0, so larger exponents need not be counted.
   for (long n = (long)fmin(r, 64); n > 0; n /= 2) {
     if (n % 2) cag_series_multiply(&product, &square, &product);
     if (n > 1) cag_series_multiply(&square, &square, &square);
@@ -347,7 +347,7 @@ static bool power(CagVm *vm, const CagSeries *a, const CagSeries *b, CagSeries *
   return true;
 }
 
-// a - q b with the whole number q of the quotient. False: a jump is here.
+// Computes a - q b with the integer q of the quotient. Returns false at a discontinuity.
 static bool modulo(CagVm *vm, const CagSeries *a, const CagSeries *b, double value,
                    CagSeries *out) {
   if (value == 0 && !(cag_series_is_constant(a) && cag_series_is_constant(b))) {
@@ -363,7 +363,7 @@ static bool modulo(CagVm *vm, const CagSeries *a, const CagSeries *b, double val
 bool cag_jet_arithmetic(CagVm *vm, int op, CagValue a, CagValue b, CagValue value,
                         CagValue *result) {
   const CagJet *jet = CAG_AS_JET(a.type == CAG_JET ? a : b);
-  // The commonest: a jet and a number, or two jets, added.
+  // The most common case: the sum of a jet and a number, or of two jets.
   if (op <= CAG_OP_SUBTRACT) {
     const double sign = op == CAG_OP_ADD ? 1 : -1;
     const size_t n = cag_jet_count(jet->variables, jet->order);

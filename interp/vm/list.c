@@ -1,7 +1,7 @@
 // Lists and their builder.
 //
-// The representation of a list follows from its elements (value.h): packed numbers, packed vectors,
-// or values. It is chosen here and nowhere else, so that equal lists are represented alike.
+// The representation of a list is determined by its elements (value.h): packed numbers, packed
+// vectors, or values. It is chosen only here, so that equal lists have the same representation.
 
 #include <string.h>
 #include <sys/mman.h>
@@ -10,13 +10,13 @@
 #include "base/memory.h"
 #include "interp/vm/vm.h"
 
-// Larger data get a buffer of their own from malloc.
+// Larger data are allocated separately with malloc.
 #define INLINE_MAX 4096
 
 static size_t element_size(uint32_t dim) { return dim ? dim * sizeof(double) : sizeof(CagValue); }
 
-// From this size on, data are worth the kernel's large pages of 2 MiB: zeroing and mapping small
-// ones one by one would take as long as computing what stands in them.
+// From this size on, data use the kernel's huge pages of 2 MiB, because mapping and zeroing small
+// pages would take as long as computing the contents.
 #define LARGE_PAGES_FROM ((size_t)8 << 20)
 #define SMALL_PAGE ((uintptr_t)4096)
 
@@ -26,7 +26,7 @@ static void *list_block(size_t bytes) {
   if (p && bytes >= LARGE_PAGES_FROM) {
     const uintptr_t from = ((uintptr_t)p + SMALL_PAGE - 1) & ~(SMALL_PAGE - 1);
     const uintptr_t to = ((uintptr_t)p + bytes) & ~(SMALL_PAGE - 1);
-    madvise((void *)from, to - from, MADV_HUGEPAGE); // a hint: nothing is lost when it is refused
+    madvise((void *)from, to - from, MADV_HUGEPAGE); // only a hint, which may be refused
   }
 #endif
   return p;
@@ -59,7 +59,7 @@ CagValue cag_list_numbers(CagVm *vm, size_t n, double **numbers) {
 
 CagValue cag_list_vectors(CagVm *vm, size_t n, size_t d, double **numbers) {
   if (d == 0 || d > CAG_MAX_PACKED ||
-      (d == 1 && n)) { // lists of one number each are no vectors: keep them as values
+      (d == 1 && n)) { // lists of one number each are not vectors: keep them as values
     CagList *l = new_list(vm, n, 0);
     for (size_t i = 0; i < n; i++) l->as.items[i] = cag_none();
     *numbers = NULL;
@@ -81,14 +81,14 @@ CagValue cag_point(CagVm *vm, CagVec3 p, int dimension) {
   return cag_vector(vm, (double[]){p.x, p.y, p.z}, (size_t)dimension);
 }
 
-// Length of a value as an element of packed vectors: 0 when it is none.
+// Returns the length of a value as an element of packed vectors, or 0 if it is not a vector.
 static uint32_t vector_length(CagValue v) {
   if (v.type != CAG_LIST) return 0;
   const CagList *l = CAG_AS_LIST(v);
   return l->dim == 1 && l->length >= 2 && l->length <= CAG_MAX_PACKED ? (uint32_t)l->length : 0;
 }
 
-// Representation of a list whose first element is v.
+// Returns the representation of a list whose first element is v.
 static uint32_t dim_for(CagValue v) { return v.type == CAG_NUMBER ? 1 : vector_length(v); }
 
 static bool fits(CagValue v, uint32_t dim) {
@@ -123,7 +123,7 @@ CagValue cag_list_slice(CagVm *vm, CagValue list, size_t from, size_t count) {
   // A part of a mixed list may be uniform.
   if (whole->dim == 0 && count && dim_for(whole->as.items[from]))
     return cag_list_values(vm, whole->as.items + from, count);
-  // Small parts are copied: a view would keep the whole alive for little.
+  // Small parts are copied, because a view would keep the whole list alive.
   if (count * element <= 256) {
     CagList *l = new_list(vm, count, whole->dim);
     if (count) memcpy(l->as.data, (char *)whole->as.data + from * element, count * element);
@@ -154,7 +154,7 @@ static void grow(CagVm *vm, CagBuilder *b) {
   b->capacity = capacity;
 }
 
-// Turns packed data into values: an element of another kind came.
+// Converts packed data to values, after an element of another kind was added.
 static void unpack(CagVm *vm, CagBuilder *b) {
   CagCleanup cleanup;
   CagValue *items = cag_temporary(&cleanup, b->capacity, sizeof *items);

@@ -1,9 +1,8 @@
-// Loading of modules: where they are, their syntax trees, their names, and the slots of their
-// values.
+// Loading of modules: finding them, their syntax trees, their names, and the slots of their values.
 //
 // A module is loaded after its imports, so that their names are known. The syntax errors of all
-// files are reported together, along with unknown names in the readable parts of a file. Names from
-// a module that failed to load count as defined.
+// files are reported together, along with unknown names in the valid parts of a file. Names from a
+// module that failed to load count as defined.
 
 #include <string.h>
 #include <unistd.h>
@@ -34,8 +33,8 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
   return m;
 }
 
-// Looks whether the file is a text. Of bytes astray in a text the lexer tells each, with its place;
-// a zero byte is in no text, and such a file has too many of the others to tell.
+// Checks that the file is text. The lexer reports single invalid bytes with their locations. A zero
+// byte never occurs in text, and a file with one has too many invalid bytes to report each.
 static bool check_text(CagVm *vm, CagModuleUnit *m) {
   size_t bad = cag_source_bad_utf8(m->source);
   if (bad == m->source->length || !memchr(m->source->text, 0, m->source->length)) return true;
@@ -68,7 +67,7 @@ static size_t find_standard(CagVm *vm, const char *name) {
   return CAG_NO_MODULE;
 }
 
-// The circle from the first loading of module m on.
+// Reports circular imports, starting from the first loading of module m.
 static void fail_circle(CagVm *vm, const CagModuleUnit *from, const CagStatement *s,
                         const CagModuleUnit *m) {
   CagString chain = {0};
@@ -81,7 +80,7 @@ static void fail_circle(CagVm *vm, const CagModuleUnit *from, const CagStatement
   cag_string_free(&chain);
 }
 
-// Path as messages show it: that of the importing file with the last part exchanged.
+// Returns the path for messages: that of the importing file with its last part replaced.
 static char *shown_path(const CagModuleUnit *from, const char *relative) {
   const char *slash = from->path ? strrchr(from->name, '/') : NULL;
   char *out = NULL;
@@ -116,7 +115,7 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
   return load_unit(vm, m, CAG_PARSE_FILE);
 }
 
-// parts.gripper -> parts/gripper.cag; a text stays as it is.
+// Converts parts.gripper to parts/gripper.cag. A text is returned unchanged.
 static char *relative_path(const CagStatement *s) {
   char *p = NULL;
   if (s->as.import.is_text) return cag_strdup(s->as.import.path);
@@ -135,7 +134,7 @@ static void suggest_module(CagDiagnostic *d, const char *name) {
 }
 
 typedef struct ImportPaths {
-  char *relative, *folder; // path as written; directory of the importing file
+  char *relative, *folder; // path as written; folder of the importing file
   char *real, *shown;      // paths of the file that was found
 } ImportPaths;
 
@@ -209,7 +208,7 @@ static size_t find_builtin(void *context, const char *name) {
   return cag_builtin_find(name);
 }
 
-// Names defined by earlier texts of the REPL: the newest definition counts.
+// Finds names defined by earlier inputs of the REPL, the newest definition first.
 static size_t find_outer(void *context, const char *name) {
   CagVm *vm = context;
   for (size_t i = vm->outer_count; i-- > 0;)
@@ -226,7 +225,7 @@ static const struct CagPublicName *find_public(const CagModuleUnit *m, const cha
 static bool module_has(void *context, const CagStatement *s, const char *name,
                        const char *const **names, size_t *count) {
   CagVm *vm = context;
-  if (s->as.import.module >= vm->module_count) return true; // CAG_NO_MODULE: said already
+  if (s->as.import.module >= vm->module_count) return true; // CAG_NO_MODULE: already reported
   const CagModuleUnit *m = vm->modules[s->as.import.module];
   if (names) {
     *names = m->public_names;
@@ -235,7 +234,7 @@ static bool module_has(void *context, const CagStatement *s, const char *name,
   return find_public(m, name) != NULL;
 }
 
-// Gives the module's definitions their slots, and lists its public names.
+// Assigns slots to the module's definitions, and lists its public names.
 static void make_globals(CagVm *vm, CagModuleUnit *m) {
   size_t n = m->ast->top_count;
   m->tops = cag_calloc(n ? n : 1, sizeof *m->tops);
@@ -260,7 +259,7 @@ static void make_globals(CagVm *vm, CagModuleUnit *m) {
   m->value = cag_object(CAG_MODULE, v);
 }
 
-// Gives imported names the slots of what they stand for.
+// Assigns imported names the slots of their definitions.
 static void bind_imports(CagVm *vm, CagModuleUnit *m) {
   for (size_t i = 0; i < m->ast->count; i++) {
     CagStatement *s = m->ast->statements[i];
@@ -302,7 +301,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
     return CAG_NO_MODULE;
   }
   m->sound = vm->errors.count == before;
-  m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL rejects a whole input
+  m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL rejects an entire input
   m->state = CAG_MODULE_LOADING;
   for (size_t i = 0; i < m->ast->count; i++) {
     CagStatement *s = m->ast->statements[i];
@@ -322,7 +321,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   return sound ? m->number : CAG_NO_MODULE;
 }
 
-// --- Ways in ---
+// --- Entry points ---
 
 static void set_root(CagVm *vm, const char *real) {
   if (vm->root) return;
@@ -397,7 +396,7 @@ bool cag_vm_compile_lambda(CagVm *vm, const char *source, CagValue *out) {
   OuterNames outer = {vm, vm->outer_count};
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, restore_outer, &outer);
-  vm->outer_count = 0; // a formula sees built-in names only
+  vm->outer_count = 0; // a formula can use only built-in names
   size_t k = cag_load_text(vm, "<formula>", source, strlen(source), CAG_PARSE_REPL);
   cag_cleanup_run(&cleanup);
   if (k == CAG_NO_MODULE) return false;

@@ -1,4 +1,4 @@
-// The operators of the language beyond the loop's fast paths.
+// The operators of the language beyond the fast paths of the loop.
 
 #include <float.h>
 #include <math.h>
@@ -31,7 +31,7 @@ static bool fail_operands(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, con
 
 // --- Numbers and angles ---
 
-// Result that is no finite number: an error, unless an infinite operand was written.
+// Fails if the result is not finite, unless an operand is infinite.
 static bool check_number(CagVm *vm, CagBinaryOp op, double a, double b, double r, CagValue *result,
                          CagType type) {
   // The test for NaN comes first because, without traps, GCC 12 evaluates `finite, or infinite and
@@ -53,7 +53,7 @@ static bool check_number(CagVm *vm, CagBinaryOp op, double a, double b, double r
                      symbol(op), y);
 }
 
-// Remainder with the sign of the divisor.
+// The remainder, with the sign of the divisor.
 static double modulo(double a, double b) {
   double r = fmod(a, b);
   if (r != 0 && (r < 0) != (b < 0)) r += b;
@@ -71,8 +71,7 @@ static double apply(CagBinaryOp op, double a, double b) {
   }
 }
 
-// Operators between two numbers, two angles, or one of each; false with *known false: not such a
-// pair.
+// Operators on two numbers, two angles, or one of each. Sets *known to false for other operands.
 static bool scalars(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result,
                     bool *known) {
   *known = true;
@@ -105,16 +104,17 @@ static bool scalars(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
 
 // --- Lists ---
 
-// Vectors that are no packed numbers (angles, jets) are made without a builder.
+// Vectors that are not packed numbers (angles, jets) are made without a builder up to this length.
 #define SHORT_LIST 4
 
 static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
 
-// Loops over packed numbers ask after blocks of so many whether the run must stop.
+// Loops over packed numbers check after blocks of this size whether the run must stop.
 #define BLOCK ((size_t)1 << 16)
 static size_t block_length(size_t from, size_t n) { return n - from < BLOCK ? n - from : BLOCK; }
 
-// Sums or differences of n numbers. Returns 0, or something else if one is infinite or undefined.
+// Computes sums or differences of n numbers. Returns a nonzero value if one is infinite or
+// undefined.
 static inline double sum_of(CagBinaryOp op, const double *x, const double *y, size_t n,
                             double *out) {
   double worst = 0;
@@ -126,7 +126,7 @@ static inline double sum_of(CagBinaryOp op, const double *x, const double *y, si
   return worst;
 }
 
-// Element by element of two packed lists of one shape.
+// Adds or subtracts two packed lists of the same shape elementwise.
 static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagList *b,
                        CagValue *result) {
   double *out;
@@ -185,7 +185,7 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
   return true;
 }
 
-// A list times, or by, a number; `swapped`: the number stood first.
+// A list multiplied or divided by a number. `swapped`: the number came first.
 static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue factor, bool swapped,
                         CagValue *result) {
   CagValue x;
@@ -239,7 +239,8 @@ static bool is_scalar(CagValue v) {
   return v.type == CAG_NUMBER || v.type == CAG_ANGLE || v.type == CAG_JET;
 }
 
-// Two scalars of which one is a jet: the value as plain numbers give it, and its derivatives.
+// Operators on two scalars of which at least one is a jet: computes the value with plain numbers,
+// and its derivatives.
 static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   bool known;
   CagValue value;
@@ -249,8 +250,8 @@ static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *re
 
 // --- Others ---
 
-// Puts the top of the stack above the registers of the running frame, which the loop does not see
-// to for operators, and gives the old one: so a built-in may be called, and it the script.
+// Moves the top of the stack above the registers of the running frame, which the loop does not do
+// for operators, so that a built-in can be called, which may call the script. Returns the old top.
 static CagValue *raise_top(CagVm *vm) {
   CagValue *top = vm->top;
   if (vm->frame_count) {
@@ -260,9 +261,9 @@ static CagValue *raise_top(CagVm *vm) {
   return top;
 }
 
-// Set operations of solids and regions, by the built-in that does them: the rows of its name serve
-// the types of the first operand. A list on the right of `-` and `|` gives its elements as
-// operands; others are the union of their shapes.
+// Set operations of solids and regions, by calling the corresponding built-in, whose rows accept
+// different types of the first operand. For `-` and `|`, the elements of a list on the right become
+// operands. Other lists stand for the union of their shapes.
 static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   const char *name = op == CAG_OP_UNION          ? "union"
                      : op == CAG_OP_INTERSECTION ? "intersection"
@@ -271,7 +272,7 @@ static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *
   if (index == (size_t)-1) return fail_operands(vm, op, a, b, NULL);
   CagValue operands[2] = {a, b};
   const bool several = b.type == CAG_LIST && op != CAG_OP_INTERSECTION;
-  if (several) { // one list of them
+  if (several) { // pass all operands as one list
     const CagList *list = CAG_AS_LIST(b);
     CagBuilder *builder = cag_builder_new(vm);
     cag_builder_add(vm, builder, a);
@@ -290,7 +291,7 @@ static bool is_body(CagValue v) {
          v.type == CAG_SURFACE || v.type == CAG_GROUP;
 }
 
-// A list of bodies, or of lists of such; an empty one may be.
+// Tests for a list of bodies, or of lists of bodies. An empty list counts as one.
 static bool is_bodies(CagVm *vm, CagValue v) {
   while (v.type == CAG_LIST) {
     const CagList *list = CAG_AS_LIST(v);
@@ -305,7 +306,7 @@ static bool are_bodies(CagVm *vm, CagValue a, CagValue b) {
   return (is_body(a) && is_bodies(vm, b)) || (is_bodies(vm, a) && is_body(b));
 }
 
-// What to say to a pair that nothing joins.
+// Returns the help for operands to which the operator does not apply.
 static const char *operand_help(CagBinaryOp op, CagValue a, CagValue b) {
   if (op == CAG_OP_MULTIPLY && is_list(a) && is_list(b))
     return "write dot(a, b) or cross(a, b); multiply(A, b) of matrices";
@@ -319,7 +320,7 @@ static const char *operand_help(CagBinaryOp op, CagValue a, CagValue b) {
   return NULL;
 }
 
-// T * v. A curve by a formula is evaluated for that.
+// Computes T * v. A curve by a formula is evaluated for this.
 static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result) {
   CagValue *top = raise_top(vm);
   bool ok = vm->differentiation ? cag_jet_transform(vm, t, v, result)
@@ -383,7 +384,7 @@ bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
 
 static int compare_texts(const CagText *a, const CagText *b) {
   size_t n = a->length < b->length ? a->length : b->length;
-  int c = memcmp(a->bytes, b->bytes, n); // the order of UTF-8 is that of code points
+  int c = memcmp(a->bytes, b->bytes, n); // bytewise order of UTF-8 equals the order of code points
   return c ? c : (a->length > b->length) - (a->length < b->length);
 }
 
@@ -422,7 +423,7 @@ bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result
 
 static bool in_range(const CagRange *r, double x) {
   double low = r->start, high = r->end;
-  if (r->stepped && r->step < 0) { // a range that goes down holds the same numbers
+  if (r->stepped && r->step < 0) { // a descending range contains the same numbers
     low = r->end;
     high = r->start;
     return r->open ? x > low && x <= high : x >= low && x <= high;
@@ -480,7 +481,7 @@ bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
 
 // --- Ranges ---
 
-// A range from a number to an angle, or back: the number is taken for degrees.
+// Reports a range from a number to an angle or vice versa. The help converts the number to degrees.
 static bool fail_mixed_range(CagVm *vm, CagValue low, CagValue high) {
   char a[32], b[32];
   cag_number_text(low.as.number, a);
@@ -535,7 +536,7 @@ static bool fail_index(CagVm *vm, double at, size_t n, const char *what) {
   return false;
 }
 
-// Place of an index that may count from the end.
+// Resolves an index, which may count from the end.
 static bool resolve(CagVm *vm, double at, size_t n, const char *what, size_t *out) {
   double k = at < 0 ? at + (double)n : at;
   if (!(k >= 0 && k < (double)n && at == rint(at))) return fail_index(vm, at, n, what);
@@ -543,8 +544,8 @@ static bool resolve(CagVm *vm, double at, size_t n, const char *what, size_t *ou
   return true;
 }
 
-// Half-open part of n elements that a range of indices means: both ends in, or the upper one out;
-// negative ones count from the end.
+// Returns the half-open part of n elements that a range of indices selects. The upper end is
+// included unless the range is open. Negative indices count from the end.
 static bool resolve_part(CagVm *vm, const CagRange *r, size_t n, const char *what, size_t *from,
                          size_t *count) {
   if (r->angle)
@@ -569,7 +570,7 @@ static size_t byte_of_character(const CagText *t, size_t k) {
   return i;
 }
 
-// "abcdef"[0..4 by 2]: the characters one by one.
+// "abcdef"[0..4 by 2]: collects single characters.
 static bool text_steps(CagVm *vm, const CagText *t, const CagRange *r, CagValue *result) {
   CagString s = {0};
   size_t n, k;
@@ -599,7 +600,7 @@ static bool index_text(CagVm *vm, const CagText *t, CagValue index, CagValue *re
   return true;
 }
 
-// xs[0..10 by 2]: the elements one by one.
+// xs[0..10 by 2]: collects single elements.
 static bool index_steps(CagVm *vm, CagValue list, const CagRange *r, CagValue *result) {
   const CagList *l = CAG_AS_LIST(list);
   size_t n;
@@ -655,7 +656,8 @@ bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
     return false;
   }
   if (object.type == CAG_TEXT) return index_text(vm, CAG_AS_TEXT(object), index, result);
-  if (object.type == CAG_RANGE && index.type == CAG_NUMBER) { // one element, without the list
+  if (object.type == CAG_RANGE && index.type == CAG_NUMBER) { // one element, without making the
+                                                              // list
     const CagRange *r = CAG_AS_RANGE(object);
     size_t n, k;
     if (isinf(r->end) && index.as.number >= 0 && index.as.number == rint(index.as.number)) {
@@ -675,7 +677,7 @@ bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
 
 // --- Members ---
 
-// Names that messages can choose from; more are not looked at.
+// The maximum number of names that are searched for a suggestion, and that are listed.
 enum { NAMES_MOST = 256, NAMES_LISTED = 12 };
 
 static bool fail_field(CagVm *vm, CagValue object, const char *name) {
@@ -707,7 +709,7 @@ static bool fail_field(CagVm *vm, CagValue object, const char *name) {
 bool cag_member(CagVm *vm, CagValue object, CagValue name_value, CagValue *result) {
   const CagText *text = CAG_AS_TEXT(name_value);
   const CagValueType *type = cag_value_type(object);
-  if (object.type == CAG_RECORD) { // the most frequent one
+  if (object.type == CAG_RECORD) { // the most common case
     *result = cag_record_get_text(vm, CAG_AS_RECORD(object), text);
     if (result->type != CAG_UNSET) return true;
   } else if (type->member && type->member(vm, object, text->bytes, result)) {

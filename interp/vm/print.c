@@ -41,11 +41,11 @@ CagText *cag_intern_string(CagVm *vm, CagString *s) {
 
 // --- Numbers ---
 
-// Decimal digits (no point) of the shortest form of |x| that reads back as x, and the exponent of
-// the first digit.
+// Computes the decimal digits, without a point, of the shortest form of |x| that reads back as x,
+// and the exponent of the first digit.
 static int shortest_digits(double x, char digits[20], int *exponent) {
   char text[40];
-  // Any normal double of up to 15 digits survives 15; 17 always do.
+  // A normal double of up to 15 digits is preserved by 15 digits, and any double by 17.
   for (int precision = x < DBL_MIN ? 1 : 15; precision <= 17; precision++) {
     snprintf(text, sizeof text, "%.*e", precision - 1, x);
     if (precision == 17 || strtod(text, NULL) == x) break;
@@ -75,7 +75,7 @@ void cag_print_number(CagString *s, double x) {
     add(s, "inf");
     return;
   }
-  if (x < 1e15 && x == floor(x)) { // the common case: whole numbers
+  if (x < 1e15 && x == floor(x)) { // the common case: integers
     cag_string_printf(s, "%.0f", x);
     return;
   }
@@ -148,7 +148,7 @@ void cag_print_numbers(CagVm *vm, CagString *s, const double *x, size_t n) {
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
   const CagValueType *type = cag_value_type(v);
   const CagText *text = v.type == CAG_TEXT && !quoted ? CAG_AS_TEXT(v) : NULL;
-  if (!cag_room_on_c_stack(vm)) add(s, "..."); // nested hundreds of thousands deep
+  if (!cag_room_on_c_stack(vm)) add(s, "..."); // nested hundreds of thousands of levels deep
   else if (text) cag_string_add(s, text->bytes, text->length);
   else if (type->print) type->print(vm, s, v);
   else add(s, cag_type_name(v));

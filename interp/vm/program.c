@@ -34,7 +34,7 @@ static bool fail_unknown_param(CagVm *vm, const CagModuleUnit *m, const char *na
   return false;
 }
 
-// Value of the text of a -D: an expression of built-in names.
+// Evaluates the text of a -D, an expression that uses built-in names only.
 static bool evaluate_define(CagVm *vm, const char *name, const char *text, CagValue *out) {
   char label[128];
   snprintf(label, sizeof label, "-D %s", name);
@@ -80,7 +80,7 @@ static bool is_within(CagVm *vm, CagModuleUnit *m, const CagStatement *s, CagVal
   return false;
 }
 
-// A text may stand in quotes, as it does in a script, or be written as it is.
+// A text may be quoted, as in a script, or unquoted.
 static bool is_quoted(const char *value) {
   const size_t n = strlen(value);
   return n >= 2 && value[0] == '"' && value[n - 1] == '"';
@@ -112,14 +112,14 @@ static bool set_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, const 
   return true;
 }
 
-// The last -D of a name counts.
+// If a name is given repeatedly, the last -D counts.
 static const CagDefine *find_define(const CagDefine *defines, size_t n, const char *name) {
   for (size_t i = n; i-- > 0;)
     if (strcmp(defines[i].name, name) == 0) return &defines[i];
   return NULL;
 }
 
-// The params that every script has.
+// Sets the params that every script has.
 static bool set_time(CagVm *vm, const CagModuleUnit *m, const CagDefine *defines, size_t n,
                      double frame, double frames) {
   double values[CAG_GLOBAL_RESERVED] = {0, frame, frames};
@@ -215,7 +215,7 @@ static bool add_shown(CagVm *vm, CagModuleUnit *m, const CagExpr *e, CagValue v)
 bool cag_value_is_shown(CagVm *vm, CagValue v) {
   if (!cag_may_go_deeper(vm, "shown")) return false;
   if (v.type == CAG_LIST) {
-    // Lists of numbers and vectors are packed, and so are no shapes.
+    // Lists of numbers and vectors are packed and contain no shapes.
     const CagList *list = CAG_AS_LIST(v);
     if (list->dim != 0) return false;
     for (size_t i = 0; i < list->length; i++)
@@ -248,7 +248,8 @@ static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   return true;
 }
 
-// Asserts of the modules that m imports, theirs first; each module once.
+// Runs the asserts of the modules that m imports, those of their own imports first, each module
+// once.
 static bool run_imported_asserts(CagVm *vm, CagModuleUnit *m) {
   for (size_t i = 0; i < m->ast->count; i++) {
     const CagStatement *s = m->ast->statements[i];

@@ -1,4 +1,4 @@
-// The loop of the machine.
+// The interpreter loop of the machine.
 
 #include <float.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "interp/vm/calls.h"
 #include "interp/vm/vm.h"
 
-// The C stack must keep so much free below a nested run: the deepest built-in needs far less.
+// Free space that the C stack must have for a nested run. The deepest built-in needs far less.
 #define C_STACK_RESERVE ((ptrdiff_t)256 * 1024)
 
 bool cag_room_on_c_stack(CagVm *vm) {
@@ -53,7 +53,7 @@ bool cag_stop_answer(CagVm *vm) {
   return !known && cag_keep_going(vm);
 }
 
-// Whether two values are equal (or not). False: they nest too deep to be told.
+// Tests whether two values are equal (or not equal). Returns false if they are nested too deeply.
 static bool equal(CagVm *vm, CagValue a, CagValue b, bool negated, bool *out) {
   *out = cag_equal(vm, a, b) != negated;
   return !vm->failed;
@@ -77,7 +77,7 @@ static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
   return false;
 }
 
-// --- Pieces of the loop ---
+// --- Parts of the loop ---
 
 static CagValue make_closure(CagVm *vm, const CagProto *child, const CagFrame *f) {
   CagClosure *c = cag_alloc(vm, CAG_CLOSURE, sizeof *c + child->capture_count * sizeof(CagValue));
@@ -92,8 +92,8 @@ static CagValue make_closure(CagVm *vm, const CagProto *child, const CagFrame *f
   return cag_object(CAG_CLOSURE, c);
 }
 
-// Iterator: it[0] source, it[1] next index, it[2] count. A range that counts by 1 becomes its
-// start, a number.
+// Starts an iterator: it[0] source, it[1] next index, it[2] count. For a range with step 1, the
+// source is its start, a number.
 static bool iterate(CagVm *vm, CagValue *it, CagValue source) {
   size_t n = 0;
   it[0] = source;
@@ -122,7 +122,7 @@ static bool iterate(CagVm *vm, CagValue *it, CagValue source) {
   return true;
 }
 
-// Next element that is none of a counting range's; false at the end.
+// Returns the next element, except for a range with step 1. Returns false at the end.
 static bool next_element(CagVm *vm, CagValue *it) {
   size_t i = (size_t)it[1].as.number, n = (size_t)it[2].as.number;
   if (i >= n) return false;
@@ -135,7 +135,7 @@ static bool next_element(CagVm *vm, CagValue *it) {
     it[3] = r->angle ? cag_angle(x) : cag_number(x);
     return true;
   }
-  case CAG_TEXT: { // the index is a byte's
+  case CAG_TEXT: { // the index is a byte offset
     const CagText *t = CAG_AS_TEXT(it[0]);
     const size_t end = cag_utf8_next(t->bytes, n, i);
     it[1].as.number = (double)end;
@@ -255,7 +255,7 @@ static bool fail_assert(CagVm *vm, CagValue message, const CagValue *parts, size
     size_t before = s.length;
     s.most = before + 200;
     cag_print_value(vm, &s, parts[2 * i + 1], true);
-    if (s.length - before > 200) { // a long list tells nothing more
+    if (s.length - before > 200) { // more of a long list would not help
       s.length = cag_utf8_start(s.bytes, before + 200);
       cag_string_add(&s, " ...", 4);
     }
@@ -278,7 +278,7 @@ void cag_pay_for_values(CagVm *vm, const CagValue *end) {
   vm->paid_end += bytes / sizeof *end;
 }
 
-// Makes room for a frame of so many registers at base.
+// Makes room for a frame of `registers` registers at base.
 static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
   CagValue *end = base + registers;
   if (end > vm->high_water) {
@@ -324,7 +324,7 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
     base = f->base;                                                                                \
     constants = f->proto->constants;                                                               \
   } while (0)
-// A collection or a stop is due.
+// Checks whether a collection or a stop is due.
 #define SAFE_POINT()                                                                               \
   do {                                                                                             \
     if (vm->heap.debt >= vm->heap.threshold || *vm->interrupt || vm->stop) {                       \
@@ -335,7 +335,7 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
   } while (0)
 #define NUMBERS(x, y) ((x).type == CAG_NUMBER && (y).type == CAG_NUMBER)
 #define FINITE(x) (fabs(x) <= DBL_MAX)
-// `second` is the register or the constant of the second operand; `numbers` tells whether *x and *y
+// `second` is the register or the constant of the second operand. `numbers` is true if *x and *y
 // are both numbers.
 #define ARITHMETIC_OF(op, second, numbers, expression)                                             \
   do {                                                                                             \
@@ -352,7 +352,7 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
   } while (0)
 #define ARITHMETIC(op, expression) ARITHMETIC_OF(op, R(i.c), NUMBERS(*x, *y), expression)
 #define ARITHMETIC_K(op, expression) ARITHMETIC_OF(op, K(i.c), x->type == CAG_NUMBER, expression)
-// The comparison holds: skip the jump that follows; else take it.
+// Skips the following jump if the comparison holds, or else takes it.
 #define BRANCH(holds)                                                                              \
   do {                                                                                             \
     if (holds) pc++;                                                                               \
@@ -360,8 +360,8 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
     NEXT_INSTRUCTION;                                                                              \
   } while (0)
 
-// Runs until the frame number `entry` is done. The frames above `entry` are gone afterwards,
-// whatever happened.
+// Runs until frame number `entry` has returned. In any case, `entry` and the frames above it are
+// gone afterwards.
 static bool loop(CagVm *vm, size_t entry, CagValue *result) {
   CagFrame *f;
   const CagInstruction *pc;
@@ -433,7 +433,7 @@ next:
   CASE(DIVIDE_K) { ARITHMETIC_K(CAG_OP_DIVIDE, x->as.number / y->as.number); }
   CASE(BINARY) {
     SAVE();
-    vm->top = base + f->proto->registers; // an operator of solids may call a built-in
+    vm->top = base + f->proto->registers; // an operator on solids may call a built-in
     if (!cag_arithmetic(vm, (CagBinaryOp)i.c, R(i.a), R(i.b), &R(i.a))) goto failed;
     NEXT_INSTRUCTION;
   }
@@ -695,7 +695,7 @@ next:
       }
     }
     SAVE();
-    vm->top = base + f->proto->registers; // a module's member may be evaluated here
+    vm->top = base + f->proto->registers; // a member of a module may be evaluated here
     if (!cag_member(vm, *o, K(i.c), &R(i.a))) goto failed;
     NEXT_INSTRUCTION;
   }
@@ -711,7 +711,7 @@ next:
   }
   CASE(NEXT) {
     CagValue *it = &R(i.a);
-    if (it->type == CAG_NUMBER) { // a range that counts by 1
+    if (it->type == CAG_NUMBER) { // a range with step 1
       double k = it[1].as.number;
       if (k >= it[2].as.number) {
         pc += i.x;
@@ -753,7 +753,7 @@ failed : vm->frame_count = entry;
 return false;
 }
 
-// --- Ways in ---
+// --- Entry points ---
 
 static bool enter(CagVm *vm, const CagProto *p, CagClosure *closure, const CagInstruction *start,
                   CagValue *base, CagValue *result) {
@@ -781,7 +781,7 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
   CagValue *base = vm->top + 1;
   if (function.type != CAG_CLOSURE) {
     if (!reserve(vm, base, n + 1)) return false;
-    if (n) memcpy(base, arguments, n * sizeof *base); // no arguments: may be NULL
+    if (n) memcpy(base, arguments, n * sizeof *base); // may be NULL if there are no arguments
     CagValue *top = vm->top;
     vm->top = base + n;
     bool ok = cag_room_on_c_stack(vm)
@@ -794,7 +794,7 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
   const CagProto *p = closure->proto;
   if (!reserve(vm, base, (n > p->registers ? n : p->registers) + 1)) return false;
   base[-1] = function;
-  if (n) memcpy(base, arguments, n * sizeof *base); // no arguments: may be NULL
+  if (n) memcpy(base, arguments, n * sizeof *base); // may be NULL if there are no arguments
   const CagInstruction *start = p->code + p->body;
   if (n != p->parameter_count) {
     if (!cag_bind_closure(vm, p, base, n, NULL, 0)) return false;
@@ -803,7 +803,7 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
   return enter(vm, p, closure, start, base, result);
 }
 
-// The circle of definitions that led back to `global`: those that are running, from it on.
+// Reports the circular definition of `global`: the running definitions, starting from it.
 static bool fail_circle(CagVm *vm, size_t global) {
   CagString s = {0};
   bool within = false;

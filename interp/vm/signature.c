@@ -1,4 +1,4 @@
-// Signatures of built-ins: parsing.
+// Parsing of the signatures of built-ins.
 
 #include "interp/vm/signature.h"
 
@@ -68,7 +68,7 @@ static const char *find_outside(Part p, const char *what) {
   return p.end;
 }
 
-// The known words that the alternative begins with, the longest of them; KNOWN_COUNT: none.
+// Returns the longest known words with which the alternative starts, or KNOWN_COUNT.
 static size_t find_words(Part p) {
   size_t best = KNOWN_COUNT, length = 0;
   for (size_t i = 0; i < KNOWN_COUNT; i++) {
@@ -82,18 +82,18 @@ static size_t find_words(Part p) {
   return best;
 }
 
-// Parses a range such as " > 0", from its space on.
+// Parses a range such as " > 0", starting with its space.
 static void parse_range(CagParameterType *out, const char *range) {
   const bool within = strncmp(range, " in ", 4) == 0;
   out->ranged = true;
   out->above_low = !within && range[2] != '=';
   out->low = strtod(range + (within ? 4 : out->above_low ? 2 : 3), NULL);
-  // Of "1..5", strtod reads "1.".
+  // strtod reads "1." from "1..5".
   const char *dots = within ? strstr(range, "..") : NULL;
   out->high = dots ? strtod(dots + 2, NULL) : HUGE_VAL;
 }
 
-// Room for what types point to, after the types themselves.
+// Memory for the data of types, after the types themselves.
 typedef struct Room {
   char *at;
 } Room;
@@ -112,7 +112,7 @@ static char *copy_to_room(Part p, Room *room) {
   return text;
 }
 
-// Finds the range at the end of a type, and the number of its alternatives.
+// Finds the range at the end of a type, and counts its alternatives.
 static size_t scan_type(Part p, const char **range) {
   int depth = 0;
   bool quoted = false;
@@ -163,7 +163,7 @@ static void parse_type(CagParameterType *out, const char *words, Room *room) {
     out->kind = CAG_BIND_CHOICE;
     out->choices = choices;
   }
-  // `none` is always accepted: many parameters have it for "not given".
+  // `none` is always accepted, because it means "not given" for many parameters.
   out->accepts = any ? 0 : out->accepts | TYPE(NONE);
 }
 
@@ -193,7 +193,7 @@ static double parse_number(const char *text, const char **end) {
   char *after;
   const double x = strncmp(text, "inf", 3) == 0 ? HUGE_VAL : strtod(text, &after);
   *end = isinf(x) ? text + 3 : after;
-  // Of "0..1", strtod reads "0.".
+  // strtod reads "0." from "0..1".
   if (!isinf(x) && after > text && after[-1] == '.' && *after == '.') --*end;
   if (strncmp(*end, "deg", 3) == 0) *end += 3;
   return x;
@@ -248,7 +248,7 @@ static void parse_default(const CagSignature *s, const CagParameterTypes *types,
 
 // --- Parameters ---
 
-// The parts of a parameter. Those that it lacks are empty.
+// The parts of a parameter, empty if missing.
 typedef struct Pieces {
   Part name, type, fallback;
 } Pieces;
@@ -279,7 +279,7 @@ static const char *scan_parameter(const char *s, const char *end, Pieces *out) {
   return s;
 }
 
-// Ends a part of the copied text, where a separator follows.
+// Terminates a part of the copied text by overwriting the separator after it.
 static const char *ended(Part p) {
   p = trimmed(p);
   *(char *)p.end = 0;
@@ -301,7 +301,7 @@ static void add_parameter(CagSignature *out, const Pieces *pieces) {
                           strcmp(out->words[i], "any value") != 0;
 }
 
-// Bytes for the types of a signature and what they point to.
+// Returns the size of the types of a signature and their data.
 static size_t types_size(const CagSignature *s) {
   size_t size = sizeof(CagParameterTypes) + s->count * sizeof(CagParameterType);
   for (size_t i = 0; i < s->count; i++) {
@@ -332,7 +332,7 @@ const CagParameterTypes *cag_signature_types(const CagSignature *signature) {
   return none;
 }
 
-// The signature as documentation and messages show it.
+// Formats the signature for documentation and messages.
 static const char *plain_text(const CagSignature *s, size_t most, CagArena *arena) {
   char *text = cag_arena_alloc(arena, most + 1), *to = text;
   to = stpcpy(to, s->name);
@@ -356,7 +356,7 @@ void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena) {
   char *open = copy + (start - text);
   *open = 0;
   out->name = copy;
-  // No signature has more parameters than commas, and one.
+  // A signature has at most one parameter more than commas.
   size_t most = 1;
   for (const char *s = start; *s; s++) most += *s == ',';
   out->parameters = cag_arena_alloc(arena, most * sizeof *out->parameters);

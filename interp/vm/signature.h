@@ -5,12 +5,12 @@
 //     type      = alternative { " or " alternative } [ range ]
 //     range     = "> a" | ">= a" | "in a..b"
 //
-// An alternative is a text in quotes, which the argument may be, or words of parameter_types.def.
-// Other words are for the reader, and accept any value. Text within brackets belongs to the words:
-// "function (u, v) => point", "record {point, direction}".
+// An alternative is a quoted text, which is a possible value of the argument, or words from
+// parameter_types.def. Other words are for the reader and accept any value. Text in brackets
+// belongs to the words: "function (u, v) => point", "record {point, direction}".
 //
-// The type says how cag_bind reads an argument, and which types `cag check` accepts. Documentation
-// and messages show it as it is written.
+// The type determines how cag_bind reads an argument, and which types `cag check` accepts.
+// Documentation and messages show it as written.
 
 #ifndef CAG_INTERP_VM_SIGNATURE_H
 #define CAG_INTERP_VM_SIGNATURE_H
@@ -31,14 +31,14 @@ typedef enum CagParameterKind {
 
 typedef struct CagParameterType {
   CagParameterKind kind;
-  uint64_t accepts; // types that may be right, as bits (1 << CAG_NUMBER ...); 0: any
+  uint64_t accepts; // types that are accepted, as bits (1 << CAG_NUMBER ...); 0: any
   double low, high; // of numbers and integers
-  bool above_low;   // low itself is out of range
+  bool above_low;   // low itself is excluded
   bool ranged;
   const char *const *choices; // of CHOICE; ends with NULL
   size_t offset;              // of its field in the structure of cag_bind
-  // The value if no argument is given, from the text of the default: radians, the index of a text,
-  // coordinates, or the ends of a range. It is 0 for defaults that the function itself supplies.
+  // The value if no argument is given, parsed from the default: radians, the index of a text,
+  // coordinates, or the ends of a range. It is 0 if the function itself supplies the default.
   double fallback[3];
   const char *fallback_text; // of a text; NULL: the function supplies it
   int dimension;             // of a point
@@ -46,7 +46,7 @@ typedef struct CagParameterType {
   size_t same_as;
 } CagParameterType;
 
-// Fields of several numbers.
+// Types of fields that hold several numbers.
 typedef struct CagPoint {
   CagVec3 at; // z = 0 in the plane
   int dimension;
@@ -54,10 +54,10 @@ typedef struct CagPoint {
 typedef struct CagPoints {
   CagVec3 *items; // held by the call
   size_t count;
-  int dimension; // the highest
+  int dimension; // the highest of all points
 } CagPoints;
 typedef struct CagNumbers {
-  const double *items; // live as long as the argument
+  const double *items; // valid as long as the argument
   size_t count;
 } CagNumbers;
 typedef struct CagRangeEnds {
@@ -73,21 +73,22 @@ typedef struct CagParameterTypes {
 typedef struct CagSignature {
   const char *name;
   const char *text;          // without types: "cone(height, radius, centered = false)"
-  size_t count;              // parameters; `...` is not one of them
-  size_t required;           // parameters without default; they come first
+  size_t count;              // number of parameters, without `...`
+  size_t required;           // parameters without a default, which come first
   const char **parameters;   // names
   const char **words;        // types as written: "length > 0"
-  const char **defaults;     // the default's text, NULL where there is none
-  bool *none_is_unset;       // the default is none: giving none is like giving nothing
-  bool *positional_only;     // a single capital: by position only
+  const char **defaults;     // text of the default, NULL if there is none
+  bool *none_is_unset;       // the default is none, so that giving none has the same effect as
+                             // giving nothing
+  bool *positional_only;     // named with a single capital: by position only
   bool variadic;             // `...`: any number of further arguments by position
   CagParameterTypes *parsed; // see cag_signature_types
 } CagSignature;
 
-// Parses a signature. All that it points to is in the arena. Leaves the guard if memory runs out.
+// Parses a signature. The result is allocated in the arena. Leaves the guard if memory runs out.
 void cag_signature_parse(CagSignature *out, const char *text, CagArena *arena);
-// The types of the parameters, parsed when they are first asked for and never freed. Several
-// threads may call this. Leaves the guard if memory runs out.
+// Returns the types of the parameters, which are parsed on first use and never freed. Thread-safe.
+// Leaves the guard if memory runs out.
 const CagParameterTypes *cag_signature_types(const CagSignature *s);
 
 #endif

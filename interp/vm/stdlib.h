@@ -1,4 +1,4 @@
-// The standard library's files, compiled into the program by tools/embed.sh.
+// The files of the standard library, embedded into the program by tools/embed.sh.
 
 #ifndef CAG_INTERP_VM_STDLIB_H
 #define CAG_INTERP_VM_STDLIB_H

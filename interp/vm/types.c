@@ -69,7 +69,7 @@ const CagValueType cag_type_number = {
 const CagValueType cag_type_angle = {
     .print = print_angle, .describe = describe_angle, .equal = equal_numbers};
 
-// A jet looks like its value.
+// A jet is printed as its value.
 static void print_jet(CagVm *vm, CagString *s, CagValue v) {
   cag_print_value(vm, s, cag_plain(v), true);
 }
@@ -83,7 +83,7 @@ const CagValueType cag_type_jet = {.print = print_jet, .describe = describe_jet}
 
 // --- text ---
 
-// Longer values are described by their type and size alone.
+// Longer values are described only by type and size.
 #define DESCRIBED_MAX 40
 
 static void print_text(CagVm *vm, CagString *s, CagValue v) {
@@ -151,7 +151,7 @@ static bool equal_lists(CagVm *vm, CagValue v, CagValue w) {
   if (!cag_may_go_deeper(vm, "compared")) return false;
   if (a == b) return true;
   if (a->length != b->length) return false;
-  if (a->dim != b->dim) // alike only where one holds jets, which are equal by their values
+  if (a->dim != b->dim) // they can be equal only if one contains jets, which compare by value
     return vm->differentiation && a->dim + b->dim > 0 && (a->dim == 0 || b->dim == 0) &&
            equal_items(vm, a, b);
   if (a->dim == 0) return equal_items(vm, a, b);
@@ -266,7 +266,7 @@ const CagValueType cag_type_range = {.print = print_range,
 
 // --- record ---
 
-// Whether a field's name can stand without quotes.
+// Tests whether a field's name can be written without quotes.
 static bool is_word(const CagText *t) {
   if (t->length == 0 || (t->bytes[0] >= '0' && t->bytes[0] <= '9')) return false;
   for (size_t i = 0; i < t->length; i++) {
@@ -400,7 +400,7 @@ const CagValueType cag_type_module = {.print = print_module,
                                       .member = module_member,
                                       .member_name = module_member_name};
 
-// --- Objects of the machine: builders and layouts, which their flags tell apart ---
+// --- Internal objects: builders and layouts, distinguished by their flags ---
 
 static void print_nothing(CagVm *vm, CagString *s, CagValue v) {
   (void)vm, (void)v;

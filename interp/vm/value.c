@@ -1,4 +1,4 @@
-// Making values: texts, ranges, records, transforms and shapes. Lists have a file of their own.
+// Constructors of values: texts, ranges, records, transforms, and shapes. Lists are in list.c.
 
 #include "interp/vm/value.h"
 
@@ -31,11 +31,11 @@ const char *cag_type_article(CagValue v) {
 
 // --- Text ---
 
-// Bytes of a text that are copied between two looks at the stop flag.
+// Bytes of a text that are copied between two checks of the stop flag.
 #define BLOCK ((size_t)1 << 20)
 
-// Appends bytes to a text, whose length is how far it has come. The end of a text that is not
-// completed because the run must stop is zeros.
+// Appends bytes to a text and increases its length accordingly. If the run must stop, the text
+// stays incomplete, and its end is filled with zeros.
 static void append_bytes(CagVm *vm, CagText *t, const char *bytes, size_t length) {
   char *to = t->bytes + t->length;
   t->length += length;
@@ -114,12 +114,13 @@ CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool an
   return cag_object(CAG_RANGE, r);
 }
 
-// A step ends on the end when it comes so near, in steps (language, section 2).
+// If the last step is this close to the end, as a fraction of a step, it is moved to the end
+// (language, section 2).
 #define STEP_SLACK 1e-9
-// More elements than any list can have.
+// More than any list can have.
 #define RANGE_MAX 1e15
 
-// Number of steps from start to end, and whether the last one meets the end.
+// Returns the number of steps from start to end. Sets *meets if the last one meets the end.
 static double range_steps(const CagRange *r, bool *meets) {
   double q = (r->end - r->start) / r->step;
   double whole = floor(q + STEP_SLACK);
@@ -155,7 +156,7 @@ double cag_range_element(const CagRange *r, size_t k, size_t count) {
 
 // --- Record ---
 
-#define INDEXED_FROM 9 // layouts with fewer fields are searched one by one
+#define INDEXED_FROM 9 // smaller layouts are searched linearly
 
 static void index_layout(CagVm *vm, CagLayout *l) {
   size_t size = 16;
@@ -249,7 +250,7 @@ static CagShape *shape_new(CagVm *vm, CagType type) {
   return s;
 }
 
-// Makes a shape that takes over its geometry, and releases the geometry if memory runs out.
+// Makes a shape that takes over its geometry, which is released if memory runs out.
 static CagShape *shape_of(CagVm *vm, CagType type, void (*release)(void *), void *owned) {
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, release, owned);

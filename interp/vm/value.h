@@ -1,11 +1,11 @@
 // Values of the language.
 //
-// A CagValue is a tag and either an immediate (none, bool, number, angle) or a pointer to an object
-// of the heap. Everything is immutable once it is reachable from a script. Objects begin with a
-// CagObject header and are collected (see heap.h): memory is never reclaimed while C code runs
-// between two safe points, so a built-in that does not call back into the script may keep values in
-// plain C variables. One that calls back (cag_call) must keep what it still needs afterwards on the
-// root stack (cag_root_push / cag_root_pop).
+// A CagValue is a tag and either an immediate value (none, bool, number, angle) or a pointer to an
+// object on the heap. Values are immutable once a script can reach them. Objects start with a
+// CagObject header and are garbage-collected (see heap.h). Memory is reclaimed only at safe points,
+// so a built-in that does not call back into the script may keep values in plain C variables. One
+// that calls back (cag_call) must keep values that it needs afterwards on the root stack
+// (cag_root_push / cag_root_pop).
 
 #ifndef CAG_INTERP_VM_VALUE_H
 #define CAG_INTERP_VM_VALUE_H
@@ -27,7 +27,7 @@
 typedef struct CagVm CagVm;
 typedef struct CagObject CagObject;
 
-// X(tag, name in type_of and in messages with its article)
+// X(tag, name in type_of, name with its article in messages)
 #define CAG_VALUE_TYPES(X)                                                                         \
   X(NONE, "none", "none")                                                                          \
   X(BOOL, "bool", "a bool")                                                                        \
@@ -63,29 +63,30 @@ typedef enum CagType {
   CAG_VALUE_TYPES(X)
 #undef X
       CAG_TYPE_COUNT,
-  // Internal tags that no script sees.
+  // Internal tags, which scripts never see.
   CAG_UNSET = CAG_TYPE_COUNT, // an argument that was not given
   CAG_INTERNAL                // an object of the machine (list builder, iterator ...)
 } CagType;
 
-// From here on a value has an object behind it.
+// Values of this and all following types have an object.
 #define CAG_FIRST_OBJECT CAG_JET
 
 typedef struct CagValue {
   CagType type;
   union {
     bool boolean;
-    double number; // also degrees of an angle
+    double number; // an angle is in degrees
     CagObject *object;
   } as;
 } CagValue;
 
 struct CagObject {
   uint8_t type;  // CagType
-  uint8_t mark;  // of the last collection, and how deep in geometry it was made: see heap.c
+  uint8_t mark;  // mark of the last collection, and the depth of geometry callbacks in which it was
+                 // made: see heap.c
   uint8_t small; // size class; 0: from malloc
   uint8_t flags;
-  uint32_t hash;   // free for the object's use
+  uint32_t hash;   // depends on the type
   CagObject *next; // list of large objects, or free list
 };
 
@@ -99,17 +100,18 @@ typedef struct CagText {
 } CagText;
 
 // --- List ---
-// dim 0: items are CagValues. dim 1: numbers, packed. dim d >= 2: vectors of d numbers each, packed
-// (element k is numbers[k * d .. k * d + d)). An empty list has dim 0. A list of numbers always has
-// dim 1, so a vector is a list with dim 1; a list of number lists of one length 2..16 always has
-// that dim. Data are inline, malloc'd, or a part of another list's (`owner`).
+// dim 0: items are CagValues. dim 1: packed numbers. dim d >= 2: packed vectors of d numbers each
+// (element k is numbers[k * d .. k * d + d)). The representation is canonical: a list of numbers
+// always has dim 1, so a vector is a list with dim 1; a list of number lists that all have the same
+// length 2..16 always has that length as dim; an empty list has dim 0. Data are inline, from
+// malloc, or a part of another list's data (`owner`).
 #define CAG_MAX_PACKED 16
 typedef struct CagList {
   CagObject head;
   size_t length;
   uint32_t dim;
-  bool allocated;        // data are ours and from malloc
-  struct CagList *owner; // whose data these are; NULL: ours
+  bool allocated;        // the list owns its data, which are from malloc
+  struct CagList *owner; // the list that owns the data; NULL: this one
   union {
     CagValue *items;
     double *numbers;
@@ -117,19 +119,19 @@ typedef struct CagList {
   } as;
 } CagList;
 
-// Whether the representation is sound: a list that shows a part of another's data has no data of its
-// own, and that one has some, in the same form. For CAG_ASSERT and tests.
+// Checks the invariants: a list that refers to a part of another's data has no data of its own, and
+// the other list has data, in the same representation. For CAG_ASSERT and tests.
 bool cag_check_list(const CagList *l);
 
 // --- Range ---
 typedef struct CagRange {
   CagObject head;
-  double start, end, step;   // degrees when angle
-  bool angle, open, stepped; // stepped: `by` was written
+  double start, end, step;   // in degrees if `angle`
+  bool angle, open, stepped; // stepped: it has a `by`
 } CagRange;
 
-// --- Record: fields keep their order. Layouts (the names) are shared between records made at one
-// place. ---
+// --- Record ---
+// Fields keep their order. Records made at one location share their layout (the names).
 typedef struct CagLayout {
   CagObject head; // CAG_INTERNAL
   size_t count;
@@ -143,7 +145,8 @@ typedef struct CagRecord {
   CagValue fields[];
 } CagRecord;
 
-// --- Functions: a closure holds copies of what it captured (values never change) ---
+// --- Functions ---
+// A closure holds copies of the values that it captured, which never change.
 struct CagProto;
 typedef struct CagClosure {
   CagObject head;
@@ -166,8 +169,9 @@ typedef struct CagPlaneValue {
   CagPlane plane;
 } CagPlaneValue;
 
-// --- Shapes: geometry (one reference held) and its attributes. Copied when an attribute or the
-// placement changes. ---
+// --- Shapes ---
+// A reference to the geometry, and attributes. A shape is copied to change an attribute or the
+// placement.
 
 // A text at a point.
 typedef struct CagLabelText {
@@ -181,7 +185,7 @@ typedef struct CagLabelText {
 // How curves are drawn.
 typedef struct CagLineStyle {
   bool set;            // line_style was called
-  double radius, dash; // 0: not stated
+  double radius, dash; // 0: not set
 } CagLineStyle;
 
 typedef struct CagShape {
@@ -195,25 +199,25 @@ typedef struct CagShape {
     CagLabelText *label;
     CagList *items; // GROUP: list of shapes (dim 0)
   } as;
-  CagTransform placement;      // REGION only: where the plane of the region lies (identity: z = 0);
-                               // others are moved themselves
-  CagRecord *material;         // NULL: not stated
-  CagText *name;               // NULL: not stated
+  CagTransform placement;      // REGION only: from z = 0 to the plane of the region; other
+                               // shapes are transformed themselves
+  CagRecord *material;         // NULL: not set
+  CagText *name;               // NULL: not set
   CagLineStyle line;           // of curves
-  double tolerance;            // 0: not stated
+  double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
 } CagShape;
 
-// --- Camera, light, setting (sky, background, ground): plain records with a kind, checked at
-// construction ---
+// --- Cameras, lights, and settings (sky, background, ground) ---
+// Records with a kind, checked when they are made.
 typedef struct CagSceneValue {
   CagObject head;
   const char *kind;  // "perspective", "sun", "point", "spot", "area", "sky", "background", "ground"
-  CagRecord *fields; // all arguments by name, defaults filled in; colors as [r, g, b] linear
-  CagTransform
-      placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
-  bool mirrored; // a camera that an odd number of mirrors has moved: it gives the mirrored picture
+  CagRecord *fields; // all arguments by name, including defaults; colors as [r, g, b] in linear
+                     // light
+  CagTransform placement; // the scene builder applies it to eye, target, direction ...
+  bool mirrored; // a camera transformed by an odd number of reflections: its picture is mirrored
 } CagSceneValue;
 
 // --- Robots ---
@@ -224,17 +228,17 @@ typedef struct CagLinkValue {
 } CagLinkValue;
 typedef struct CagRobotValue {
   CagObject head;
-  CagRobot *robot; // one reference held
+  CagRobot *robot; // holds one reference
   CagText *name;   // may be empty
   CagList *links;  // of link values
 } CagRobotValue;
 
 typedef struct CagModuleValue {
   CagObject head;
-  size_t module; // number in the program
+  size_t module; // index in the program
 } CagModuleValue;
 
-// --- Constructors of values ---
+// --- Constructors ---
 static inline CagValue cag_none(void) { return (CagValue){CAG_NONE, {.number = 0}}; }
 static inline CagValue cag_bool(bool b) { return (CagValue){CAG_BOOL, {.boolean = b}}; }
 static inline CagValue cag_number(double x) { return (CagValue){CAG_NUMBER, {.number = x}}; }
@@ -267,23 +271,24 @@ CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF
 CagValue cag_text_joined(CagVm *vm, const CagText *a, const CagText *b);
 CagValue cag_text_c(CagVm *vm, const char *s);
 CagText *cag_intern(CagVm *vm, const char *bytes,
-                    size_t length); // the one text of these bytes; lives as long as the machine
+                    size_t length); // interned: one text for equal bytes, which lives as long as
+                                    // the machine
 
-// List of n numbers (dim 1); the numbers are unset and to be filled in at once.
+// Makes a list of n numbers (dim 1). The caller must set the numbers immediately.
 CagValue cag_list_numbers(CagVm *vm, size_t n, double **numbers);
-// List of n vectors of d numbers, d in 2..CAG_MAX_PACKED.
+// Makes a list of n vectors of d numbers, d in 2..CAG_MAX_PACKED.
 CagValue cag_list_vectors(CagVm *vm, size_t n, size_t d, double **numbers);
-// List of n values in any representation; packs them when they are all numbers or vectors of one
-// length. Copies.
+// Makes a list of n values, which are copied, and packs it if all are numbers, or vectors of the
+// same length.
 CagValue cag_list_values(CagVm *vm, const CagValue *values, size_t n);
 CagValue cag_vector(CagVm *vm, const double *x, size_t n);
 CagValue cag_point(CagVm *vm, CagVec3 p, int dimension);                      // [x, y] or [x, y, z]
 CagValue cag_list_slice(CagVm *vm, CagValue list, size_t from, size_t count); // shares the data
-// Element i (not checked) of a list in any representation.
+// Returns element i, without a check of the index, of a list in any representation.
 CagValue cag_list_get(CagVm *vm, const CagList *l, size_t i);
 
-// Growing list: add values, then finish (packs). Rooted by the caller if the script is called in
-// between (cag_builder_value).
+// A growing list: add values, then finish it, which packs it. If the script is called in between,
+// the caller must root it (cag_builder_value).
 typedef struct CagBuilder {
   CagObject head; // CAG_INTERNAL
   size_t length, capacity;
@@ -292,19 +297,19 @@ typedef struct CagBuilder {
   void *data;
 } CagBuilder;
 CagBuilder *cag_builder_new(CagVm *vm);
-// Returns false, with the error set, if the run must stop; every so often it is asked. If memory
-// runs out, a jump ends the run.
+// Returns false, with the error set, if the run must stop, which is checked every so often. If
+// memory runs out, the run ends by a long jump.
 bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v);
 CagValue cag_builder_finish(CagVm *vm, CagBuilder *b);
 static inline CagValue cag_builder_value(CagBuilder *b) { return cag_object(CAG_INTERNAL, b); }
 
 CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool angle, bool open,
                        bool stepped);
-// Number of elements as a list; fails (false, error set) for an endless one.
+// Counts the elements as a list. Returns false, with the error set, for an unbounded range.
 bool cag_range_count(CagVm *vm, const CagRange *r, size_t *count);
 double cag_range_element(const CagRange *r, size_t k, size_t count);
 
-// Record with these names (C strings) and values.
+// Makes a record with these names (C strings) and values.
 CagValue cag_record_new(CagVm *vm, const char *const *names, const CagValue *values, size_t n);
 CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values,
                                size_t n); // names distinct
@@ -312,13 +317,13 @@ CagLayout *cag_layout_new(CagVm *vm, CagText *const *names,
                           size_t n);                                 // names interned and distinct
 size_t cag_layout_find(const CagLayout *l, const CagText *interned); // (size_t)-1: none
 CagValue cag_record_with_layout(CagVm *vm, CagLayout *l, const CagValue *values);
-// Value of a field, or CAG_UNSET.
+// Returns the value of a field, or CAG_UNSET.
 CagValue cag_record_get(const CagRecord *r, const char *name);
 CagValue cag_record_get_text(CagVm *vm, const CagRecord *r, const CagText *name);
 
 CagValue cag_transform_value(CagVm *vm, const CagTransform *t);
 CagValue cag_plane_value(CagVm *vm, const CagPlane *p);
-// Shapes take over the reference that is given.
+// The shape takes over the caller's reference.
 CagValue cag_curve_value(CagVm *vm, CagCurve *c);
 CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement); // NULL: identity
 CagValue cag_surface_value(CagVm *vm, CagSurface *s);
@@ -326,37 +331,38 @@ CagValue cag_solid_value(CagVm *vm, CagSolid *s);
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
 CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
-CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to
-                                                    // be changed before anybody sees it
+CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the
+                                                    // caller may change the copy
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);
 CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape);
-// Takes over the reference that is given; `links` is a list of link values.
+// Takes over the caller's reference. `links` is a list of link values.
 CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links);
 
-// --- Questions ---
+// --- Queries ---
 const char *cag_type_name(CagValue v);             // "number"
 const char *cag_type_article(CagValue v);          // "a number"
 bool cag_equal(CagVm *vm, CagValue a, CagValue b); // ==
 
-// A list or vector of exactly / at least n numbers as doubles.
+// Reads a list of numbers as doubles.
 bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 1 (not empty)
-// A range or list as a list value (materializes ranges; a text or record is not one). False: error
-// set.
+// Converts a range to a list; lists are returned unchanged. Texts and records are rejected. Returns
+// false if an error was set.
 bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 
 // --- Printed form (language, section 7) ---
-// Leaves the run if the string has failed.
+// Ends the run if the string has failed.
 void cag_string_check(CagVm *vm, CagString *s);
 CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 CagText *cag_intern_string(CagVm *vm, CagString *s);    // frees s
 // Tests whether a text fits in the machine's memory, and sets the error if it does not. Call this
-// while a text grows: the printed form of a value with shared parts may be much longer than it.
+// while a text grows: the printed form of a value with shared parts may be much longer than the
+// value.
 bool cag_string_fits(CagVm *vm, const CagString *s);
 void cag_print_number(CagString *s, double x);
-// quoted: texts in quotes (inside lists and records).
+// `quoted`: prints texts in quotes, as inside lists and records.
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted);
-// For messages: the type and, where short, the value: "the number 30", "the text \"a\"", "a list of
-// 3 elements".
+// Adds the type and, if it is short, the value, for messages: "the number 30", "the text \"a\"", "a
+// list of 3 elements".
 void cag_describe_value(CagVm *vm, CagString *s, CagValue v);
 
 #endif

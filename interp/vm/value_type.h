@@ -1,8 +1,8 @@
-// The types of values: one row for each, with what the machine does with a value of the type.
+// The types of values: one row for each type, with the operations of the machine on its values.
 //
 // The rows of the language's own types are in types.c. Those of geometry, scenes, and robots are in
-// interp/builtin (files types_*.c), which also has the table. A NULL stands for the ordinary case
-// that the comment of the field states.
+// interp/builtin (files types_*.c), which also contains the table. NULL means the default that the
+// comment of the field states.
 
 #ifndef CAG_INTERP_VM_VALUE_TYPE_H
 #define CAG_INTERP_VM_VALUE_TYPE_H
@@ -15,29 +15,28 @@ typedef struct CagHeap CagHeap;
 typedef struct CagValueType {
   // Adds the printed form (language, section 7). Texts are printed in quotes.
   void (*print)(CagVm *vm, CagString *s, CagValue v); // NULL: the name of the type
-  // Adds what messages call the value, such as "the number 30".
+  // Adds the description of a value in messages, such as "the number 30".
   void (*describe)(CagVm *vm, CagString *s, CagValue v); // NULL: the name with its article
   // Compares two values of the type.
   bool (*equal)(CagVm *vm, CagValue a, CagValue b); // NULL: an object is equal to itself only
-  // Marks what an object refers to, with the functions below.
+  // Marks the objects that an object refers to, with the functions below.
   void (*scan)(CagHeap *h, CagObject *o); // NULL: nothing
-  // Holds once more, or releases, what the object has outside of the heap. cag_shape_copy uses
-  // `retain`.
+  // Retain and release what the object holds outside of the heap. cag_shape_copy uses `retain`.
   void (*retain)(CagObject *o);  // NULL: nothing
   void (*destroy)(CagObject *o); // NULL: nothing
   // Looks up `v.name`. Returns false if there is no such member, or if an error was set.
   bool (*member)(CagVm *vm, CagValue v, const char *name, CagValue *out); // NULL: no members
-  // The name of member i; NULL after the last one.
+  // Returns the name of member i, or NULL after the last one.
   const char *(*member_name)(CagVm *vm, CagValue v, size_t i); // NULL: no members
-  // Calls the value: v(arguments). False: the error is set.
+  // Calls the value: v(arguments). Returns false if an error was set.
   bool (*call)(CagVm *vm, CagValue v, const CagValue *arguments, size_t n,
                CagValue *result); // NULL: the value cannot be called
-  // Returns the image under a transform, T * v. False: the error is set.
+  // Computes T * v. Returns false if an error was set.
   bool (*transform)(CagCall *call, const CagTransform *t, CagValue v,
                     CagValue *result); // NULL: the value cannot be moved
 } CagValueType;
 
-// By CagType; also for CAG_UNSET and CAG_INTERNAL.
+// Indexed by CagType; includes CAG_UNSET and CAG_INTERNAL.
 extern const CagValueType *const cag_value_types[];
 static inline const CagValueType *cag_value_type(CagValue v) { return cag_value_types[v.type]; }
 
@@ -50,7 +49,7 @@ void cag_mark_values(CagHeap *h, const CagValue *v, size_t n);
 // --- For `print` and `describe` ---
 void cag_print_quoted(CagString *s, const CagText *t);
 void cag_print_numbers(CagVm *vm, CagString *s, const double *x, size_t n); // [1, 2, 3]
-// Tests whether printing must end: the run must stop, or the text is long enough.
+// Returns whether printing must end because the run must stop or the text is long enough.
 bool cag_print_is_cut(CagVm *vm, const CagString *s);
 
 // --- For `member_name`: name i of an array that ends with NULL ---

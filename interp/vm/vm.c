@@ -1,4 +1,4 @@
-// The machine's beginning and end.
+// Creating and freeing the machine.
 
 #include "interp/vm/vm.h"
 
@@ -9,8 +9,8 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Values that the stack can hold: reserved address space, of which only what is used costs memory.
-// Frames of ordinary size fit in frame_limit times.
+// The number of values for which the stack reserves address space. Only the used part takes memory.
+// It is large enough for frame_limit frames of ordinary size.
 #define STACK_VALUES_MIN ((size_t)16 << 20)
 #define STACK_VALUES_PER_FRAME 64
 
@@ -31,7 +31,7 @@ static size_t tail_bytes(const CagVm *vm) {
   return vm->frame_limit * CAG_TAIL_KEPT * sizeof(CagTailPlace);
 }
 
-// One function value, or the constant, of each built-in name.
+// Makes the function value or constant of each built-in name.
 static void make_builtins(CagVm *vm) {
   size_t n = cag_builtin_count();
   CagValue *values = cag_calloc(n ? n : 1, sizeof *values);

@@ -1,14 +1,15 @@
-// The machine: what a running program consists of.
+// The machine: the state of a running program.
 //
-// A program is a set of modules. Each top-level definition has a slot in `globals`, evaluated when
-// first needed by running its initializer. Functions are register code (see opcodes.def): a frame's
-// registers are a window of one value stack; instruction operands a, b, c number them. Since values
-// never change, closures copy what they capture.
+// A program is a set of modules. Each top-level definition has a slot in `globals`, which is
+// evaluated on first use by running its initializer. Functions are compiled to register code (see
+// opcodes.def): a frame's registers are a window of one stack of values, and the operands a, b, and
+// c of an instruction are register numbers. Since values never change, closures copy what they
+// capture.
 //
-// Invariants: `frames[0 .. frame_count)` are the active calls, also across built-ins that call
-// back, and every frame below the top has its pc saved just behind the call it waits for. All
-// values in stack[0 .. top) are valid (live or kept by the last collection), so the collector may
-// mark them all.
+// Invariants: `frames[0 .. frame_count)` are the active calls, including those below built-ins that
+// call back. The saved pc of every frame below the top is just after the call that it waits for.
+// All values in stack[0 .. top) are valid (live or kept by the last collection), so the collector
+// may mark all of them.
 
 #ifndef CAG_INTERP_VM_VM_H
 #define CAG_INTERP_VM_VM_H
@@ -28,7 +29,7 @@
 // One value of a `show` statement, in the order of the file.
 typedef struct CagShown {
   CagValue value;
-  const CagExpr *expr; // NULL: not of a script
+  const CagExpr *expr; // NULL: not shown by a script
   const CagSource *source;
   CagSpan span;
 } CagShown;
@@ -46,14 +47,14 @@ typedef struct CagInstruction {
     struct {
       uint16_t b, c;
     };
-    int32_t x; // jump distance, or number of a constant, global or child
+    int32_t x; // jump distance, or index of a constant, global, or child
   };
 } CagInstruction;
 
-// Where the arguments of a call stand in the source, for messages; in order of `pc`.
+// The locations of a call's arguments in the source, for messages; sorted by `pc`.
 typedef struct CagCallSite {
   uint32_t pc;
-  uint32_t first, count; // in the proto's argument spans; the first span is the callee's
+  uint32_t first, count; // in the proto's argument spans; the first span is that of the callee
 } CagCallSite;
 
 typedef struct CagProto {
@@ -62,7 +63,7 @@ typedef struct CagProto {
   const CagSource *source;
   size_t parameter_count, required_count;
   const char **parameters; // NUL-terminated names, compared by strcmp
-  uint32_t body;           // pc of the body, behind the defaults
+  uint32_t body;           // pc of the body, after the defaults
   uint32_t registers;
   CagInstruction *code;
   CagSpan *spans;
@@ -72,23 +73,23 @@ typedef struct CagProto {
   struct CagProto **children;
   size_t child_count, child_capacity;
   struct CagCapture {
-    bool local;     // a register of the function around; else one of its captures
-    uint16_t index; // CAG_CAPTURE_SELF: the closure around itself
+    bool local;     // a register of the enclosing function; else one of its captures
+    uint16_t index; // CAG_CAPTURE_SELF: the enclosing closure itself
   } * captures;
   size_t capture_count, capture_capacity;
   CagCallSite *sites;
   size_t site_count, site_capacity;
   CagSpan *site_spans;
   size_t site_span_count, site_span_capacity;
-  const char ***names; // argument names of calls that name some: one array per such call
+  const char ***names; // argument names of calls with named arguments: one array per such call
   size_t *name_counts;
   size_t names_count, names_capacity;
   struct CagProto *next; // all protos of the machine
 } CagProto;
 
 #define CAG_CAPTURE_SELF 0xffff
-// One frame has at most so many registers: operands are 16 bits, and the last numbers are kept for
-// marks.
+// The maximum number of registers of a frame. Operands have 16 bits, and the highest numbers are
+// reserved as markers.
 #define CAG_MAX_REGISTERS 60000
 
 struct CagModuleUnit;
@@ -103,10 +104,10 @@ typedef struct CagGlobal {
   struct CagModuleUnit *unit;
   const char *name;
   CagSpan span; // of the name
-  bool given;   // a param whose value comes from outside: it stays when others are forgotten
+  bool given;   // a param whose value was set from outside; it is kept when others are forgotten
 } CagGlobal;
 
-// A call in tail position leaves its place here: the last CAG_TAIL_KEPT of each frame.
+// The locations of calls in tail position, of which the last CAG_TAIL_KEPT of each frame are kept.
 #define CAG_TAIL_KEPT 16
 typedef struct CagTailPlace {
   const CagProto *proto;
@@ -118,25 +119,26 @@ typedef struct CagFrame {
   CagClosure *closure;
   const CagInstruction *pc; // next instruction
   CagValue *base;
-  uint64_t tail_count; // calls in tail position made by this frame; places in vm->tails
+  uint64_t tail_count; // calls in tail position made by this frame; their locations are in
+                       // vm->tails
 } CagFrame;
 
 typedef struct CagModuleUnit {
   size_t number;
-  char *name; // "std.materials", or the path as shown
+  char *name; // "std.materials", or the path as shown in messages
   char *path; // real path of the file; NULL: standard library, REPL, text
   CagSource *source;
   CagModuleAst *ast;
-  size_t *tops;   // globals of the tops, by CagDecl.index
+  size_t *tops;   // indices of globals, by CagDecl.index
   CagValue value; // the module as a value
   // LOST means that memory ran out while loading; the next import loads the module again.
   enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED, CAG_MODULE_LOST } state;
   bool sound;         // it has no syntax errors
-  bool resolved;      // its known names are bound
-  size_t first_error; // where the errors of its names begin in those of the machine
+  bool resolved;      // its names are bound, except for unknown ones
+  size_t first_error; // index in the machine's errors of the first error of its names
   bool asserted;      // its asserts have run
-  bool adopted;       // its definitions are those of the interactive session
-  size_t *imports;    // module number of each import statement, in order
+  bool adopted;       // its definitions belong to the interactive session
+  size_t *imports;    // module index of each import statement, in order
   size_t import_count;
   struct CagPublicName {
     const char *name;
@@ -157,31 +159,32 @@ typedef struct CagHeap {
   CagObject *free_lists[CAG_SMALL_CLASSES];
   CagPage *pages;
   CagObject *large; // list of objects from cag_malloc
-  size_t objects;   // that there are: live ones after a collection
+  size_t objects;   // number of objects; after a collection, of live ones
   size_t debt;      // bytes allocated since the last collection
   size_t threshold; // debt at which the next collection is due
-  size_t seen;      // used bytes of the account when the debt was last brought up to date
+  size_t seen;      // used bytes of the account when the debt was last updated
   uint8_t mark;     // mark of live objects in the last collection: 1 or 2
-  uint8_t depth;    // of calls of the script by geometry: what is older is not collected (heap.c)
+  uint8_t depth;    // of geometry callbacks into the script; older objects are not collected
+                    // (heap.c)
   CagObject **gray; // marked objects with unmarked references; NULL: gray_first
   size_t gray_count, gray_capacity;
   CagObject *gray_first[CAG_GRAY_FIRST];
-  size_t values_marked; // in lists and the like, by the last collection
+  size_t values_marked; // in lists and the like, during the last collection
   bool gray_lost;       // memory ran out for the list, so marked objects must be scanned again
   size_t scans;         // objects scanned in all collections
   bool unfinished; // the last collection was stopped: marks are mixed, and some garbage remains
   size_t collections;
 } CagHeap;
 
-// A built-in that is being run: tells which argument of the call in the source each parameter came
-// from.
+// A running built-in. `order` tells from which argument of the call in the source each parameter
+// came.
 typedef struct CagNative {
   struct CagNative *outer;
-  size_t frame_count; // frames when it was called
+  size_t frame_count; // number of frames when it was called
   bool direct;        // called by the instruction of the top frame, not by another built-in
-  bool probed;        // a formula that geometry called has failed
+  bool probed;        // a formula called by geometry has failed
   const uint16_t
-      *order; // argument (as written) of each parameter, 0xffff: none; NULL: as they come
+      *order; // index of the argument, as written, of each parameter, 0xffff: none; NULL: in order
   size_t order_count;
 } CagNative;
 
@@ -197,18 +200,18 @@ struct CagVm {
   CagValue *roots;
   size_t root_count, root_capacity;
   CagError core_error; // CagCall.err of all calls
-  // Values that geometry refers to, in slots that keep their numbers; free ones are CAG_UNSET and
-  // hold the next free one + 1.
+  // Values that geometry refers to. Slots keep their numbers; free slots are CAG_UNSET and hold the
+  // number of the next free one + 1.
   CagValue *kept;
   size_t kept_count, kept_capacity, kept_free;
   CagHashIndex kept_materials; // slots of the records that are materials of operands
-  // What the built-ins that are running hold, the innermost last (builtin.h).
+  // Resources held by running built-ins, the innermost last (builtin.h).
   struct CagHeld {
     void (*release)(void *what);
     void *what;
   } * held;
   size_t held_count, held_capacity;
-  uint32_t differentiation; // level of the jets that are being computed with, 0: none
+  uint32_t differentiation; // level of the jets in use; 0: none
   CagText **interned;
   size_t interned_count, interned_size;
   CagGlobal *globals;
@@ -219,18 +222,18 @@ struct CagVm {
   CagValue *builtin_values; // one function value per built-in name
   char *stack_low;          // lowest address that the C stack may reach
   // Both stacks are charged to the account as far as they have been used: the C stack down to
-  // stack_paid, the values up to paid_end.
+  // stack_paid, the stack of values up to paid_end.
   char *stack_paid;
   CagValue *paid_end;
 
-  // The error of the run: `failed` says that errors.items[0] is set.
+  // The error of the run: `failed` means that errors.items[0] is set.
   CagDiagnostics errors;
   bool failed;
-  // Set if memory ran out while making a printed value, a message, or a path, which is then
+  // Set if memory ran out while a printed value, a message, or a path was made, which is then
   // incomplete. The run ends with that error.
   bool starved;
 
-  // Definitions of earlier texts of the REPL, oldest first.
+  // Definitions of earlier inputs of the REPL, oldest first.
   const char **outer_names;
   size_t *outer_globals;
   size_t outer_count, outer_capacity;
@@ -239,35 +242,36 @@ struct CagVm {
   CagShown *shown;
   size_t shown_count, shown_capacity;
 
-  // Outside
+  // The environment.
   FILE *out, *trace;
   const volatile int *interrupt; // never NULL
-  volatile int stop; // set by who watches the run, when it was interrupted or its time is over
+  volatile int stop; // set by the watcher of the run, after an interrupt or when its time is over
   double max_time;   // seconds; 0: none
   struct timespec started;
   size_t max_triangles;
   bool loop; // time is frame/frames
   double tolerance;
-  char *root;     // real path of the folder of the main script; NULL: none (no file may be read)
+  char *root;     // real path of the folder of the main script; NULL: none, so no file may be read
   char **include; // real paths of the module path
   size_t include_count;
 };
 
-// What long geometry without calls of the script looks at, to end when it is not 0.
+// The stop flag for long geometry computations that do not call the script. They end when it is
+// nonzero.
 static inline const volatile int *cag_vm_stop(const CagVm *vm) { return &vm->stop; }
 
-// Stacks are charged in steps of so many bytes.
+// The stacks are charged in steps of this many bytes.
 #define CAG_STACK_STEP ((size_t)64 << 10)
 
 // Reserved globals.
 enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED };
 
 // --- compile.c: syntax tree to code ---
-// Code of an expression as the body of a parameterless unit named `name` (a definition) or nameless
-// (a statement). `tops` and the module give globals their numbers. NULL: too large for one function
-// (an error is added).
+// Compiles an expression to a unit without parameters, called `name` (a definition) or unnamed (a
+// statement). `tops` and the module provide the numbers of globals. Returns NULL, with an error, if
+// it is too large for one function.
 CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, const char *name);
-// Code of an assert: gives true or fails.
+// Compiles an assert. Its code returns true or fails.
 CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s);
 void cag_proto_free(CagProto *p);
 
@@ -277,33 +281,34 @@ bool cag_vm_force(CagVm *vm, size_t global, CagValue *result);
 // Runs `work` in a guard against exhausted memory (base/guard.h). Returns false with the error set
 // if memory ran out. Every run must start here.
 bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
-// Whether the run must stop (interrupt, time, memory): sets the error and gives false. Collects
-// when due.
+// Returns false, with the error set, if the run must stop (interrupt, time, memory). Collects
+// garbage if it is due.
 bool cag_safe_point(CagVm *vm);
-// Whether the C stack has room for more recursion: deep values are walked only so far.
+// Returns whether the C stack has room for deeper recursion. The depth to which nested values are
+// processed is limited.
 bool cag_room_on_c_stack(CagVm *vm);
-// Charges the stack of values up to `end`, which is beyond paid_end. Leaves the run if memory is
-// out.
+// Charges the stack of values up to `end`, which is after paid_end. Ends the run if memory is out.
 void cag_pay_for_values(CagVm *vm, const CagValue *end);
-// The same, with an error where there is none, or where the run must stop: values that share their
-// parts take endlessly long to walk. `done` tells what is done to the values.
+// Like cag_room_on_c_stack, but sets an error if there is no room. It also fails if the run must
+// stop, because values that share parts may take extremely long to process. `done` is what is done
+// to the values, for the message.
 bool cag_may_go_deeper(CagVm *vm, const char *done);
-// Whether a value can be shown: a shape, camera, light, setting, robot, or a list of these.
+// Returns whether a value can be shown: a shape, camera, light, setting, robot, or a list of these.
 bool cag_value_is_shown(CagVm *vm, CagValue v);
 
-// Releases what built-ins hold, down to a count.
+// Releases the resources of built-ins, down to a count.
 void cag_vm_release_held(CagVm *vm, size_t count);
 
 // --- callback.c: calls of the script from geometry ---
-// Keeps a value alive until it is let go.
+// Keeps a value alive until cag_vm_let_go. Returns its slot.
 size_t cag_vm_keep(CagVm *vm, CagValue v);
 void cag_vm_let_go(CagVm *vm, size_t slot);
-// Runs `work`, which may call the script, from geometry code: a limit that is crossed gives false
-// with the error set, and nothing that is held outside is collected. After an error all further
-// calls give false at once.
+// Runs `work`, which may call the script, from geometry code. Returns false, with the error set, if
+// a limit is exceeded. Objects made before the call are not collected. After an error, all further
+// calls return false at once.
 bool cag_vm_call_back(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
 
-// --- operators.c: everything that is no fast path of the loop ---
+// --- operators.c: operators beyond the fast paths of the loop ---
 bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
 bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result);
 bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result);
@@ -314,21 +319,21 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
                     CagValue *result);
 
 // --- failure.c ---
-// Where the running call stands; false: nowhere.
+// Returns the location of the running call, or false if there is none.
 bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span);
-// Sets the error at the current instruction of the top frame (or without place when there is none),
-// with the chain of calls.
+// Sets the error at the current instruction of the top frame (or without a location if there is
+// none), with the chain of calls. Returns false.
 bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-// The same with the place within the function, which has been left: what it gave is wrong.
+// The same, with a location within the function, which has already returned a wrong result.
 bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-// The same, underlining argument `argument` (0 .. ) of the current call; -1: the callee.
+// The same, underlining argument `argument` (from 0) of the current call; -1: the callee.
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void cag_vm_clear_error(CagVm *vm);
-// Whether the error is a limit of the run, which passes through `attempt`; so does one without a
-// message.
+// Returns whether the error is a limit of the run, which `attempt` does not catch. An error without
+// a message counts as one.
 bool cag_vm_at_limit(const CagVm *vm);
 // Sets the error of the memory limit and leaves the innermost cag_vm_protect.
 _Noreturn void cag_vm_out_of_memory(CagVm *vm);
@@ -337,24 +342,24 @@ bool cag_vm_fail_memory(CagVm *vm);
 
 // --- modules.c ---
 #define CAG_NO_MODULE ((size_t)-1)
-// Loads a module and what it imports: parses all, then resolves all, then gives slots. Errors go to
-// vm->errors; CAG_NO_MODULE then.
+// Loads a module and its imports: parses all, then resolves all, then assigns slots. Returns
+// CAG_NO_MODULE, with errors in vm->errors, on failure.
 size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
 size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
                      CagParseMode mode);
-// The source of a script that is not to be run; it lives as long as the machine. NULL: it is no
-// text.
+// Returns the source of a script that is not to be run, which lives as long as the machine, or NULL
+// if it is not text.
 const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, size_t length);
-// Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
-// errors.
+// Parses a script that is not to be run. Returns its tree, which lives as long as the machine, or
+// NULL if it has errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
-// Returns the absolute path, which the caller frees. NULL: the file does not exist, or memory ran
-// out, which is recorded.
+// Returns the absolute path, which the caller frees, or NULL if the file does not exist or memory
+// ran out, which is recorded.
 char *cag_vm_real_path(CagVm *vm, const char *path);
-// Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
-// NULL with the reason in message.
+// Returns the real path of a file (from malloc) if it may be read, which means that it is below the
+// root or the module path. Otherwise writes the reason to message and returns NULL.
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);
-// Reads a whole file. NULL: *why is what went wrong (static or strerror text).
+// Reads a whole file. Returns NULL, with the reason in *why (static or from strerror), on failure.
 extern const char cag_file_out_of_memory[]; // a value of *why
 char *cag_read_whole_file(const char *path, size_t *length, const char **why);
 
