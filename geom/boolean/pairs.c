@@ -25,10 +25,8 @@ static bool boxes_meet(const CagBounds *a, const CagBounds *b) {
          b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
-static double least(double a, double b) {
-  return a < b ? a : b;
-} // for numbers other than NaN;
-  // fmin is slower
+// For numbers other than NaN; fmin and fmax are slower.
+static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
 
 static void add_box(CagBounds *all, const CagBounds *b) {

@@ -82,7 +82,7 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
                       AT(cut_ac ? AT_THIRD : AT_TWO_THIRDS, AT_TWO_THIRDS)};
   CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
   for (int k = 0; k < 3; k++) {
-    // The last of them lie over the other triangle.
+    // The last of them lies over the other triangle.
     bool first = k < 2;
     double off = first ? cag_distance_to_triangle(tried[k], a, b, end)
                        : cag_distance_to_triangle(tried[k], start, c, d);
