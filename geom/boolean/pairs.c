@@ -69,11 +69,8 @@ static uint64_t grid_step(double x, double low, double high) {
 
 // A stable sort by code; needs n more items of scratch space after p.
 static void sort_places(Place *p, size_t n) {
-  enum {
-    BITS = 11,
-    DIGITS = 6
-  };  // 66 bits: an even number of passes, so that the result ends up
-      // in p
+  // 66 bits: an even number of passes, so that the result ends up in p.
+  enum { BITS = 11, DIGITS = 6 };
   // Before each pass p holds a permutation, which remains if the work is canceled.
   for (int digit = 0; digit < DIGITS && !cag_stopped(); digit++) {
     size_t start[(1 << BITS) + 1] = {0};

@@ -270,9 +270,8 @@ static bool even_knots_suit(Design *a, CagError *scratch) {
     span = cag_knots_span(a->knots, a->count, a->p, a->u[i], false, (size_t)a->p);
     cag_bspline_basis(a->knots, a->p, span, a->u[i], best);
     const size_t first = span - (size_t)a->p;
-    if (best[i - first] < WELL_PLACED * largest)
-      return false;                  // i is one of them: see
-                                     // check_support
+    // i is one of them: see check_support.
+    if (best[i - first] < WELL_PLACED * largest) return false;
     if (cag_stopped()) return false; // fill_basis reports it
   }
   return true;
@@ -334,8 +333,8 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
                                 CagCurve **out, CagError *err) {
   if (tangents && tangent_count != 2 && tangent_count != d->n)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_count, "tangents", -1,
-                    "there are 2 tangents, for the ends, or one for each of the %zu points; these "
-                    "are %zu",
+                    "expected 2 tangents for the ends, or one for each of the %zu points, "
+                    "found %zu",
                     d->n, tangent_count);
   const size_t count = d->n + (tangents ? tangent_count : 0);
   CagStatus status = check_data(d, count, err);
@@ -407,7 +406,7 @@ static CagStatus back_substitute(const Triangle *t, size_t offset, CagVec3 *out,
     if (!(r[0] > RANK_LOST * largest))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)(i + offset),
                       "the data say nothing about control point %zu: no parameter lies where it "
-                      "acts; ask for fewer control points or take \"averaged\" knots",
+                      "support; use fewer control points or \"averaged\" knots",
                       i + offset);
     CagVec3 sum = t->right[i];
     for (size_t j = 1; j < t->width && i + j < t->n; j++) sum = cag_madd(sum, -r[j], out[i + j]);
