@@ -181,7 +181,8 @@ static CagStatus find_values(Draft *d, const CagTessellation *how, CagError *err
     d->origin[v] = (uint32_t)v;
     d->next[v] = UINT32_MAX;
     if (v % look_up == 0 && how->interrupt && *how->interrupt)
-      status = cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the mesh was stopped");
+      status =
+          cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the meshing was interrupted");
     else if (!on_break(&breaks, uv))
       status = value_at(d->s, d->kind, uv[0], uv[1], &found, &d->values[v], err);
     d->known[v] = found;

@@ -58,7 +58,7 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
   t->size = cag_norm(cag_sub(bounds->max, bounds->min));
   if (!isfinite(t->size))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_unbounded, "", -1,
-                    "only a bounded surface can be tessellated; this one reaches infinity");
+                    "only bounded surfaces can be tessellated, found an unbounded one");
   t->noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
   t->is_point = t->size <= t->noise;

@@ -74,7 +74,7 @@ static void bad_holes_are_named(void **state) {
   FAILS_AT(cag_region_new(outer, nested, 2, &r, &err), "region-crossing", 1);
   CagCurve *const twice[2] = {in, in};
   FAILS_AT(cag_region_new(outer, twice, 2, &r, &err), "region-crossing", 1); // the second
-  assert_string_equal(err.message, "holes[0] and holes[1] are one curve; leave one of them out");
+  assert_string_equal(err.message, "holes[0] and holes[1] are the same curve; omit one of them");
   FAILS_AT(cag_region_new(outer, &outer, 1, &r, &err), "hole-outside", 0);
   // Behind a hole that is good.
   CagCurve *const fine = circle(0.5, -4, -4);
