@@ -215,7 +215,7 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
       if (!status && (a || b))
         status =
             cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, "holes", (long)i - 1,
-                     "holes[%zu] and holes[%zu] overlap; holes must be disjoint", k - 1, i - 1);
+                     "holes[%zu] and holes[%zu] are nested; holes must be disjoint", k - 1, i - 1);
     }
   }
   if (status) cag_region_release(r);
