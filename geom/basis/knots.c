@@ -59,16 +59,16 @@ void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots) {
 CagStatus cag_degree_check(size_t n, int p, CagError *err) {
   if (n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "a curve needs at least 2 control points; these are %zu", n);
+                    "expected at least 2 control points, found %zu", n);
   if (p < 1)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "the degree is at least 1; this is %d", p);
+                    "the degree must be at least 1, found %d", p);
   if ((size_t)p > n - 1)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "degree %d needs at least %d control points; these are %zu", p, p + 1, n);
+                    "degree %d needs at least %d control points, found %zu", p, p + 1, n);
   if (p > CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "the degree is at most %d; this is %d", CAG_MAX_DEGREE, p);
+                    "the degree must be at most %d, found %d", CAG_MAX_DEGREE, p);
   return CAG_OK;
 }
 

@@ -32,7 +32,7 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
   if (status) return status;
   if (distinct >= needed) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_underdetermined, "points", -1,
-                  "%zu coefficients need as many points of different x; these have %zu", needed,
+                  "%zu coefficients need as many points with different x, found %zu", needed,
                   distinct);
 }
 
@@ -84,7 +84,7 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
 
 static CagStatus fail_sign(const char *what, size_t i, CagError *err) {
   return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "points", (long)i,
-                  "%s: `points`[%zu] is not so, and has no logarithm", what, i);
+                  "%s: `points`[%zu] is not, so its logarithm is undefined", what, i);
 }
 
 // The line through the logarithms.
@@ -95,9 +95,9 @@ static CagStatus fit_logarithm(const double *x, const double *y, size_t n, bool 
   const double sign = n > 0 && y[0] < 0 && !power ? -1 : 1;
   for (size_t i = 0; !status && i < n; i++) {
     if (power && !(x[i] > 0 && y[i] > 0))
-      status = fail_sign("a power law fits points of positive x and y", i, err);
+      status = fail_sign("a power law needs points with positive x and y", i, err);
     else if (!(sign * y[i] > 0))
-      status = fail_sign("an exponential fits points whose y have one sign", i, err);
+      status = fail_sign("an exponential needs points whose y all have the same sign", i, err);
     else {
       u[i] = power ? log(x[i]) : x[i];
       v[i] = log(sign * y[i]);

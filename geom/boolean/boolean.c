@@ -64,11 +64,12 @@ static CagStatus open_at(BoolWork *w, const Operand *o, const CagMeshEdge *e, si
                          size_t back) {
   const CagVec3 p = w->points.at[e->low], q = w->points.at[e->high];
   char name[64];
-  return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, o->argument,
-                  o->index < 0 ? (long)cag_mesh_edge_triangle(e) : o->index,
-                  "the mesh of %s must be closed, each edge run once in each sense: the edge from "
-                  "[%g, %g, %g] to [%g, %g, %g] is run %zu times that way and %zu times back",
-                  name_of(o, name), p.x, p.y, p.z, q.x, q.y, q.z, ahead, back);
+  return cag_fail(
+      w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, o->argument,
+      o->index < 0 ? (long)cag_mesh_edge_triangle(e) : o->index,
+      "the mesh of %s must be closed, with each edge run once in each direction: the edge from "
+      "[%g, %g, %g] to [%g, %g, %g] is run %zu times that way and %zu times back",
+      name_of(o, name), p.x, p.y, p.z, q.x, q.y, q.z, ahead, back);
 }
 
 static CagStatus check_closed(BoolWork *w, const Operand *o, const uint32_t *triangles) {

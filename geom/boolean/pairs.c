@@ -25,10 +25,8 @@ static bool boxes_meet(const CagBounds *a, const CagBounds *b) {
          b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
-static double least(double a, double b) {
-  return a < b ? a : b;
-} // for numbers other than NaN;
-  // fmin is slower
+// For numbers other than NaN; fmin and fmax are slower.
+static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
 
 static void add_box(CagBounds *all, const CagBounds *b) {
@@ -71,11 +69,8 @@ static uint64_t grid_step(double x, double low, double high) {
 
 // A stable sort by code; needs n more items of scratch space after p.
 static void sort_places(Place *p, size_t n) {
-  enum {
-    BITS = 11,
-    DIGITS = 6
-  };  // 66 bits: an even number of passes, so that the result ends up
-      // in p
+  // 66 bits: an even number of passes, so that the result ends up in p.
+  enum { BITS = 11, DIGITS = 6 };
   // Before each pass p holds a permutation, which remains if the work is canceled.
   for (int digit = 0; digit < DIGITS && !cag_stopped(); digit++) {
     size_t start[(1 << BITS) + 1] = {0};

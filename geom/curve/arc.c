@@ -74,7 +74,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
   CagStatus status = cag_curve_check_number(r, name, err);
   if (status || r > 0) return status;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, name, -1,
-                  "`%s` must be positive; this is %s", name, cag_number_text(r, text));
+                  "`%s` must be positive, found %s", name, cag_number_text(r, text));
 }
 
 CagStatus cag_curve_arc(double a, double b, double start, double end, const CagTransform *frame,
@@ -97,7 +97,7 @@ CagStatus cag_curve_arc(double a, double b, double start, double end, const CagT
                         "the arc's frame has an entry that is not a finite number");
   if (!cag_transform_is_affine(frame))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
-                    "the arc's frame must be affine; this one projects");
+                    "the arc's frame must be affine, found a projection");
   return make(a, b, frame, start, end, 0, 1, frame->planar ? 2 : 3, out, err);
 }
 

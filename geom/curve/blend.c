@@ -94,8 +94,7 @@ static CagStatus check_ratios(const double *ratios, size_t n, CagError *err) {
   for (size_t i = 0; i < n; i++)
     if (!(ratios[i] > 0 && ratios[i] < 1))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_blend_parameter, "alpha", (long)i,
-                      "a parabola passes its middle point between 0 and 1: alpha = %s",
-                      cag_number_text(ratios[i], text));
+                      "alpha must be between 0 and 1, found %s", cag_number_text(ratios[i], text));
   return CAG_OK;
 }
 
@@ -121,7 +120,7 @@ CagStatus cag_curve_parabolic_blend(const CagVec3 *points, size_t n, const doubl
   const size_t least = ends == CAG_BLEND_OPEN ? 4 : 3;
   if (n < least)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "a parabolic blend %s needs at least %zu points; these are %zu",
+                    "a parabolic blend %s needs at least %zu points, found %zu",
                     ends == CAG_BLEND_OPEN       ? "with open ends"
                     : ends == CAG_BLEND_PARABOLA ? "with arcs at its ends"
                                                  : "that is closed",

@@ -195,7 +195,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
   bool ring;
   if (!isfinite(cag_norm(cag_sub(box.max, box.min))))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, "", -1,
-                    "the curve is too large to compute with");
+                    "the curve is out of range");
   // Hulls of these kinds are tight.
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate) || cag_curve_vertices(c, &points, &n, &ring)) {
     *out = box;

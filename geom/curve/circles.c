@@ -25,7 +25,7 @@ static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
 static CagStatus no_circle(CagError *err, const char *why) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_tangent_circle, "", -1,
-                  "no circle of this radius touches both as asked: %s", why);
+                  "no circle of this radius touches both in this way: %s", why);
 }
 
 static CagVec3 foot(const CagTouched *line, CagVec3 p) {
@@ -75,7 +75,7 @@ static CagStatus touch_circles(const CagTouched *a, const CagTouched *b, double 
                                CagTouchChoice choice, CagVec3 *center, CagError *err) {
   const CagVec3 between = cag_sub(b->p, a->p), e = cag_unit(between);
   const double d = cag_norm(between);
-  if (!(d > 0)) return no_circle(err, "the circles have one center");
+  if (!(d > 0)) return no_circle(err, "the circles are concentric");
   const double ra = reach(a->radius, radius, choice.inside[0]);
   const double rb = reach(b->radius, radius, choice.inside[1]);
   const double x = (d * d + (ra - rb) * (ra + rb)) / (2 * d);
@@ -100,11 +100,11 @@ CagStatus cag_tangent_circle(const CagTouched *a, const CagTouched *b, double ra
   CagStatus status;
   if (!(radius > 0) || !isfinite(radius))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, "radius", -1,
-                    "`radius` must be positive; this is %s", cag_number_text(radius, text));
+                    "`radius` must be positive, found %s", cag_number_text(radius, text));
   for (int i = 0; i < 2; i++) {
     const CagTouched *t = i == 0 ? a : b;
     if (t->radius == 0 && cag_norm(t->d) == 0)
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", i, "a line has no length");
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", i, "a line has zero length");
   }
   if (a->radius == 0 && b->radius == 0) status = touch_lines(a, b, radius, choice, center, err);
   else if (a->radius == 0)

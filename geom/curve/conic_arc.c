@@ -59,7 +59,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
   CagStatus status = cag_curve_check_number(r, name, err);
   if (status || r > 0) return status;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, name, -1,
-                  "`%s` must be positive; this is %s", name, cag_number_text(r, text));
+                  "`%s` must be positive, found %s", name, cag_number_text(r, text));
 }
 
 // The index of the interval between two poles that contains the angle.
@@ -94,7 +94,7 @@ static CagStatus check_range(CagConicForm form, double start, double end, CagErr
 static CagStatus read_frame(const CagTransform *frame, CagOpenConic *d, CagError *err) {
   if (!cag_transform_is_affine(frame))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
-                    "the conic's frame must be affine; this one projects");
+                    "the conic's frame must be affine, found a projection");
   CagVec3 columns[4];
   for (int j = 0; j < 4; j++) {
     columns[j] =

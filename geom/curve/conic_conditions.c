@@ -126,11 +126,11 @@ static CagStatus null_vector(double *matrix, size_t m, int k, double *v, CagErro
                     "the singular values of the conditions could not be found");
   if (values[k - 2] <= DEPENDENT * values[0])
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_conditions_dependent, "points", -1,
-                    "the conditions depend on each other: more than one conic fulfils them (points "
+                    "the conditions are dependent: more than one conic satisfies them (points "
                     "are repeated, or too many lie on one line)");
   if (rows >= k && values[k - 1] > DISAGREE * values[0])
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_conditions_contradict, "points", -1,
-                    "the conditions contradict each other: no conic of this kind fulfils all of "
+                    "the conditions are contradictory: no conic of this kind satisfies all of "
                     "them");
   for (int i = 0; i < k; i++) v[i] = vt[(size_t)(k - 1) * (size_t)k + (size_t)i];
   return CAG_OK;
@@ -198,7 +198,7 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
   const size_t count = status ? 0 : gather(points, n, tangents, m, all);
   if (!status && count + m < needed)
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_conditions, "points", -1,
-                      "%zu conditions are needed, each point and each tangent being one; these are "
+                      "expected %zu conditions (each point and each tangent is one), found "
                       "%zu",
                       needed, count + m);
   if (!status) status = solve(all, count, tangents, m, shape, matrix, out, err);
@@ -223,7 +223,7 @@ CagStatus cag_conic_arc(CagVec3 p, CagVec3 apex, CagVec3 q, double weight, int d
   char text[32];
   if (!(weight >= 0) || !isfinite(weight))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
-                    "the weight of the apex must be finite and 0 or more; this is %s",
+                    "the weight of the apex must be finite and not negative, found %s",
                     cag_number_text(weight, text));
   CagStatus status = check_triangle(p, apex, q, err);
   // With weight 0 the apex has no effect: the arc is its chord.

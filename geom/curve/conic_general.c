@@ -498,8 +498,7 @@ CagStatus cag_conic_segment(const CagConic *c, double from, double to, bool uppe
   CagCurve *forward = NULL;
   CagStatus status = cag_conic_classify(c, &k, err);
   if (!status && from == to)
-    status =
-        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "x", -1, "the range of x has no length");
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "x", -1, "the range of x is empty");
   if (!status) status = cag_conic_point_at(c, from, upper, &p, err);
   if (!status) status = cag_conic_point_at(c, to, upper, &q, err);
   if (status) return status;
@@ -541,7 +540,8 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
   if (status) return status;
   const double dd = cag_dot(d, d);
   if (!(dd > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", -1, "the line has no direction");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", -1,
+                    "the direction of the line is zero");
   // Relative to the center, and from the line's point nearest to it, the numbers stay small; the
   // shift adds only the rounding of its terms.
   const CagVec3 m = k.center;

@@ -15,7 +15,7 @@
 static CagStatus check_count(size_t n, CagError *err) {
   if (n >= 2) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                  "a curve through points needs at least 2 of them; these are %zu", n);
+                  "expected at least 2 points, found %zu", n);
 }
 
 CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spacing, double *out,
@@ -34,10 +34,11 @@ CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spa
                       "the points are so far apart that their distances overflow");
     // A step lost in the rounding of the sum counts as zero.
     if (!(out[i] > out[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)i,
-                      "points[%zu] and points[%zu] coincide, so the parameter cannot grow by their "
-                      "distance; drop one of them or space the parameter uniformly",
-                      i - 1, i);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)i,
+          "points[%zu] and points[%zu] coincide, so the parameter cannot increase by their "
+          "distance; drop one of them or space the parameter uniformly",
+          i - 1, i);
   }
   return CAG_OK;
 }
@@ -49,11 +50,11 @@ CagStatus cag_parameters_check(const double *parameters, size_t n, CagError *err
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "parameters", (long)i,
                       "parameters[%zu] is not a finite number", i);
     if (i > 0 && !(parameters[i] > parameters[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "parameters", (long)i,
-                      "the parameter must grow from point to point: it is %s at point %zu and %s "
-                      "at point %zu",
-                      cag_number_text(parameters[i - 1], a), i - 1,
-                      cag_number_text(parameters[i], b), i);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "parameters", (long)i,
+          "the parameter must increase from point to point: it is %s at point %zu and %s "
+          "at point %zu",
+          cag_number_text(parameters[i - 1], a), i - 1, cag_number_text(parameters[i], b), i);
   }
   return CAG_OK;
 }
@@ -220,7 +221,7 @@ CagStatus cag_cubic_tangents(const CagVec3 *points, size_t n, const double *para
   for (size_t i = 0; tension && i + 2 < n; i++)
     if (!(tension[i] >= 0) || !isfinite(tension[i]))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_tension, "tension", (long)i,
-                      "a tension is 0 or more: tension[%zu] = %s", i,
+                      "tensions must not be negative: tension[%zu] = %s", i,
                       cag_number_text(tension[i], text));
   const Spline s = {points, n, parameters, tension};
   if (ends->closing == CAG_CUBIC_ENDS) return solve_open(&s, ends, out, err);

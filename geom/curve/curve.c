@@ -61,8 +61,7 @@ CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *na
                       "%s[%zu] has a coordinate that is not a finite number", name, i);
     else if (cag_curve_size(points + i, 1) > LARGEST)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, (long)i,
-                      "%s[%zu] has a coordinate beyond %g, too large to compute with", name, i,
-                      LARGEST);
+                      "%s[%zu] has a coordinate beyond the limit of %g", name, i, LARGEST);
     else if (i % BLOCK == BLOCK - 1 && cag_stop_check(err)) return err->status;
   return CAG_OK;
 }
@@ -71,7 +70,7 @@ CagStatus cag_curve_check_number(double x, const char *name, CagError *err) {
   if (fabs(x) <= LARGEST) return CAG_OK;
   if (isfinite(x))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, -1,
-                    "`%s` is beyond %g, too large to compute with", name, LARGEST);
+                    "`%s` is beyond the limit of %g", name, LARGEST);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, -1, "`%s` is not a finite number",
                   name);
 }
@@ -112,7 +111,7 @@ static CagStatus snap(const CagCurve *c, double *t, const char *name, CagError *
 static CagStatus check_order(int order, CagError *err) {
   if (order >= 0 && order <= CAG_MAX_DERIVATIVE) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_derivative_order, "order", -1,
-                  "the order of a derivative is 0 to %d; this is %d", CAG_MAX_DERIVATIVE, order);
+                  "the order of a derivative must be 0 to %d, found %d", CAG_MAX_DERIVATIVE, order);
 }
 
 // --- Evaluation ---

@@ -41,7 +41,7 @@ static bool vanishes(const CagCurve *c, CagVec3 d, int k, double size) {
 static CagStatus fail_tangent(CagError *err, double t) {
   char text[32];
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_tangent_undefined, "t", -1,
-                  "the curve stands still at t = %s: all its derivatives are 0 there, so that it "
+                  "the curve is stationary at t = %s: all its derivatives are 0 there, so it "
                   "has no tangent",
                   cag_number_text(t, text));
 }

@@ -32,7 +32,7 @@ typedef struct Output {
 
 static CagStatus fail_count(CagError *err) {
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "tolerance", -1,
-                  "the tolerance asks for more than %d points on one curve; make it larger",
+                  "the tolerance requires more than %d points on one curve; use a larger one",
                   MOST_POINTS);
 }
 
@@ -160,10 +160,10 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   if (cag_curve_resting_view(c, NULL)) return cag_curve_cuts(c, out, n, err);
   if (!(tolerance > 0))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_tolerance_not_positive, "tolerance", -1,
-                    "`tolerance` must be positive; this is %s", cag_number_text(tolerance, text));
+                    "`tolerance` must be positive, found %s", cag_number_text(tolerance, text));
   if (!(angle > 0))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_angle_not_positive, "angle", -1,
-                    "`angle` must be positive; this is %.12gdeg", angle * (180 / M_PI));
+                    "`angle` must be positive, found %.12gdeg", angle * (180 / M_PI));
   double *cuts;
   size_t count;
   CagStatus status = cag_curve_cuts(c, &cuts, &count, err);

@@ -35,7 +35,7 @@ static CagStatus check_radius(double radius, CagError *err) {
   char text[32];
   if (radius > 0 && isfinite(radius)) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, "radius", -1,
-                  "`radius` must be positive; this is %s", cag_number_text(radius, text));
+                  "`radius` must be positive, found %s", cag_number_text(radius, text));
 }
 
 // A parallel of a curve: its point, its derivative, and the foot point on the curve.
@@ -153,7 +153,7 @@ static CagStatus find_corner(const CagCurve *a, const CagCurve *b, Corner *out, 
     status = cag_curve_intersect(a, b, &meetings, &n, err);
     if (!status && n == 0)
       status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_curves_do_not_meet, "", -1,
-                        "the two curves do not meet: there is no corner to round");
+                        "the two curves do not intersect: there is no corner to round");
     if (!status) {
       out->ta = meetings[n - 1].t;
       out->tb = meetings[n - 1].t2;
@@ -167,7 +167,7 @@ static CagStatus find_corner(const CagCurve *a, const CagCurve *b, Corner *out, 
   out->side = cross2(ta, tb) >= 0 ? 1 : -1;
   if (out->turn <= SMOOTH || out->turn >= M_PI - SMOOTH)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_corner, "", -1,
-                    "the two curves have one tangent where they meet: there is no corner to round");
+                    "the two curves are tangent where they meet: there is no corner to round");
   return CAG_OK;
 }
 
@@ -400,6 +400,6 @@ CagStatus cag_curve_rounded(const CagCurve *c, double radius, CagCurve **out, Ca
     return round_polyline(c, p, n, closed, radius, out, err);
   if (c->dimension != 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
-                    "of space curves only polylines can be rounded");
+                    "in space only polylines can be rounded");
   return round_curve(c, radius, out, err);
 }

@@ -39,7 +39,7 @@ static CagStatus spaced(const CagFitData *d, double from, double to, double *out
   if (!(sum > 0) || !isfinite(sum))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_chord_total, "points", -1,
                     sum > 0 ? "the distances of the points overflow"
-                            : "all points coincide, so they give the parameter no length");
+                            : "all points coincide, so the parameter has no range");
   for (size_t i = 0; i < d->n; i++) out[i] = from + (to - from) * (out[i] / sum);
   out[d->n - 1] = to;
   return CAG_OK;
@@ -172,15 +172,15 @@ static CagStatus make_curve(const Design *a, const CagVec3 *control, int dimensi
 static CagStatus check_data(const CagFitData *d, size_t count, CagError *err) {
   if (d->n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "a curve through points needs at least 2 of them; these are %zu", d->n);
+                    "expected at least 2 points, found %zu", d->n);
   CagStatus status = cag_curve_check_points(d->points, d->n, "points", err);
   if (status) return status;
   if (d->degree < 1 || d->degree > CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, d->degree);
+                    "the degree must be 1 to %d, found %d", CAG_MAX_DEGREE, d->degree);
   if ((size_t)d->degree >= count)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "degree %d needs at least %d control points; these are %zu", d->degree,
+                    "degree %d needs at least %d control points, found %zu", d->degree,
                     d->degree + 1, count);
   if (d->kind == CAG_FIT_GIVEN) return cag_knots_check(d->knots, count, d->degree, err);
   return CAG_OK;
@@ -246,11 +246,12 @@ static CagStatus check_support(const Design *a, CagError *err) {
     if ((u == start && i > 0 && a->u[i - 1] == u && a->order[i] > 0 && lo == start && u < hi) ||
         (u == end && i + 1 < a->count && a->u[i + 1] == u && hi == end && u > lo))
       continue;
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)i,
-                    "no curve with these knots passes all points: parameter %s of condition %zu is "
-                    "not inside of the knots %s..%s where its control point acts; take other knots "
-                    "(\"averaged\" ones always suit) or parameters that grow",
-                    cag_number_text(u, t), i, cag_number_text(lo, x), cag_number_text(hi, y));
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)i,
+        "no curve with these knots passes through all points: parameter %s of condition %zu is "
+        "not inside the support %s..%s of its control point; use other knots "
+        "(\"averaged\" ones always work) or increasing parameters",
+        cag_number_text(u, t), i, cag_number_text(lo, x), cag_number_text(hi, y));
   }
   return CAG_OK;
 }
@@ -270,9 +271,8 @@ static bool even_knots_suit(Design *a, CagError *scratch) {
     span = cag_knots_span(a->knots, a->count, a->p, a->u[i], false, (size_t)a->p);
     cag_bspline_basis(a->knots, a->p, span, a->u[i], best);
     const size_t first = span - (size_t)a->p;
-    if (best[i - first] < WELL_PLACED * largest)
-      return false;                  // i is one of them: see
-                                     // check_support
+    // i is one of them: see check_support.
+    if (best[i - first] < WELL_PLACED * largest) return false;
     if (cag_stopped()) return false; // fill_basis reports it
   }
   return true;
@@ -319,9 +319,10 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
     bool singular;
     status = cag_band_solve(band, n, kl, ku, right, 3, &singular, err);
     if (!status && singular)
-      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", -1,
-                        "no curve with these knots passes all points: the equations are singular; "
-                        "take \"averaged\" knots");
+      status = cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", -1,
+          "no curve with these knots passes through all points: the equations are singular; "
+          "take \"averaged\" knots");
     for (size_t r = 0; !status && r < n; r++)
       control[r] = cag_vec3(right[r], right[n + r], right[2 * n + r]);
   }
@@ -334,8 +335,8 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
                                 CagCurve **out, CagError *err) {
   if (tangents && tangent_count != 2 && tangent_count != d->n)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_count, "tangents", -1,
-                    "there are 2 tangents, for the ends, or one for each of the %zu points; these "
-                    "are %zu",
+                    "expected 2 tangents for the ends, or one for each of the %zu points, "
+                    "found %zu",
                     d->n, tangent_count);
   const size_t count = d->n + (tangents ? tangent_count : 0);
   CagStatus status = check_data(d, count, err);
@@ -351,10 +352,11 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
   if (!status) status = find_parameters(d, count, u, err);
   for (size_t i = 1; !status && i < d->n; i++)
     if (!(u[i] > u[i - 1]))
-      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "points", (long)i,
-                        "points %zu and %zu have the same parameter, so no curve passes both in "
-                        "turn; drop one of them",
-                        i - 1, i);
+      status =
+          cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "points", (long)i,
+                   "points %zu and %zu have the same parameter, so no curve passes through both in "
+                   "turn; drop one of them",
+                   i - 1, i);
   if (!status) {
     fill_conditions(d, u, tangents, tangent_count, &a);
     status = choose_knots(d, &a, err);
@@ -406,8 +408,8 @@ static CagStatus back_substitute(const Triangle *t, size_t offset, CagVec3 *out,
     const double *r = t->r + i * t->width;
     if (!(r[0] > RANK_LOST * largest))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)(i + offset),
-                      "the data say nothing about control point %zu: no parameter lies where it "
-                      "acts; ask for fewer control points or take \"averaged\" knots",
+                      "the data do not determine control point %zu: no parameter lies in its "
+                      "support; use fewer control points or \"averaged\" knots",
                       i + offset);
     CagVec3 sum = t->right[i];
     for (size_t j = 1; j < t->width && i + j < t->n; j++) sum = cag_madd(sum, -r[j], out[i + j]);
@@ -498,10 +500,11 @@ static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double 
     *worst = fmax(*worst, fabs(gap));
     if (fabs(gap) <= slack) continue;
     if (speed == 0)
-      return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
-                      "the coordinate stands still at point %zu, so its parameter cannot be found; "
-                      "the coordinate must grow or fall all along the data",
-                      i);
+      return cag_fail(
+          err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
+          "the coordinate is stationary at point %zu, so its parameter is undetermined; "
+          "the coordinate must increase or decrease throughout the data",
+          i);
     a->u[i] = fmin(fmax(a->u[i] + gap / speed, c->start), c->end);
   }
   for (size_t i = 1; i < a->rows; i++)
@@ -559,13 +562,13 @@ CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int a
                         CagCurve **out, CagFitReport *report, CagError *err) {
   if (count > d->n)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_underdetermined, "count", -1,
-                    "%zu points cannot say where %zu control points lie; ask for %zu at most", d->n,
-                    count, d->n);
+                    "%zu points cannot determine %zu control points; use at most %zu", d->n, count,
+                    d->n);
   keep_ends = keep_ends || axis >= 0;
   CagStatus status = check_data(d, count, err);
   if (!status && axis >= d->dimension)
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "fixed", -1,
-                      "points of the plane have no z that could be held");
+                      "plane points have no z coordinate to hold");
   Design a;
   if (!status) status = design_new(d->n, count, d->degree, &a, err);
   if (status) return status;

@@ -20,7 +20,7 @@ CagStatus cag_frenet_of(const CagVec3 d[3], double *speed, CagFrenet *out, CagEr
   *speed = cag_norm(d[0]);
   if (!(*speed > 0))
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "derivatives", 0,
-                    "the first derivative is 0: the curve stands still, so that it has no frame");
+                    "the first derivative is 0, so the frame is undefined");
   const CagVec3 cross = cag_cross(d[0], d[1]);
   const double area = cag_norm(cross);
   out->tangent = cag_scaled(d[0], 1 / *speed);

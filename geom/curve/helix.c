@@ -63,7 +63,7 @@ CagStatus cag_curve_helix(double radius, double pitch, double turns, double tape
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive,
                     radius > 0 ? "taper" : "radius", -1,
                     radius > 0 ? "the taper takes the radius below 0: after all turns it is %s"
-                               : "`radius` must be positive; this is %s",
+                               : "`radius` must be positive, found %s",
                     cag_number_text(radius > 0 ? last : radius, text));
   if (turns == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "turns", -1,

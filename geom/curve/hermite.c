@@ -21,7 +21,7 @@ CagStatus cag_curve_polynomial(const CagVec3 *coefficients, size_t n, double len
                     "the degree is at most %d; these are %zu coefficients", CAG_MAX_DEGREE, n);
   if (!(length > 0) || !isfinite(length))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "length", -1,
-                    "the length of a segment is positive and finite; this is %s",
+                    "the length of a segment must be positive and finite, found %s",
                     cag_number_text(length, text));
   // b_i = sum over k <= i of binomial(i, k) / binomial(degree, k) c_k h^k
   const int p = (int)n - 1;
@@ -127,7 +127,7 @@ CagStatus cag_hermite_shape(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, CagHer
   CagHermiteShape s = {.chord = cag_norm(d)};
   if (!(s.chord > CAG_CURVE_SAME * cag_curve_size(ends, 2)))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "Q", -1,
-                    "both ends of the segment coincide, so nothing can be measured in chords");
+                    "both ends of the segment coincide, so its chord is zero");
   for (int i = 0; i < 2; i++) {
     s.speed[i] = cag_norm(tangents[i]);
     s.ratio[i] = s.speed[i] / s.chord;
@@ -236,14 +236,14 @@ CagStatus cag_bezier_join(const CagCurve *c, int m, int order, double ratio, Cag
   char text[32];
   if (order < 0 || order > 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "order", -1,
-                    "curves are joined with order 0, 1 or 2; this is %d", order);
+                    "the order of a join must be 0, 1, or 2, found %d", order);
   if (m < 1 || m < order)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "degree", -1,
-                    "a curve of degree %d cannot carry on a derivative of order %d", m,
+                    "a curve of degree %d cannot continue a derivative of order %d", m,
                     order < 1 ? 1 : order);
   if (!(ratio > 0) || !isfinite(ratio))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter, "ratio", -1,
-                    "the ratio of the speeds is positive and finite; this is %s",
+                    "the ratio of the speeds must be positive and finite, found %s",
                     cag_number_text(ratio, text));
   CagVec3 d[3];
   CagStatus status = cag_curve_eval(c, c->end, order, CAG_SIDE_LEFT, d, err);

@@ -107,7 +107,7 @@ CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, C
   if (a > b) {
     char x[32], y[32];
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "over", -1,
-                    "the range %s..%s runs backwards; its start must be less than its end",
+                    "the range %s..%s is reversed; its start must be less than its end",
                     cag_number_text(a, x), cag_number_text(b, y));
   }
   double *cuts, total = 0, part;

@@ -237,8 +237,7 @@ CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
   char text[32];
   if (!(length > 0) || !isfinite(length))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_length_not_positive, "length", -1,
-                    "`length` must be a positive length; this is %s",
-                    cag_number_text(length, text));
+                    "`length` must be a positive length, found %s", cag_number_text(length, text));
   Frame start;
   CagStatus status = read_frame(frame, &start, err);
   if (status) return status;

@@ -94,7 +94,7 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     char text[32];
     if (!(w > 0))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_denominator, "weights", -1,
-                      "all control points that act at t = %s have the weight 0, so the curve is "
+                      "all control points that influence t = %s have the weight 0, so the curve is "
                       "0/0 there; make one of these weights positive",
                       cag_number_text(c->cuts[i], text));
   }
@@ -250,10 +250,11 @@ CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, s
                                  int dimension, CagCurve **out, CagError *err) {
   if (n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "a closed curve needs at least 2 control points; these are %zu", n);
+                    "a closed curve needs at least 2 control points, found %zu", n);
   if (degree < 1 || degree > CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "the degree of a closed curve is 1 to %d; this is %d", CAG_MAX_DEGREE, degree);
+                    "the degree of a closed curve must be 1 to %d, found %d", CAG_MAX_DEGREE,
+                    degree);
   const size_t stored = n + (size_t)degree;
   double *h, *knots = cag_malloc(sizeof(double) * (stored + (size_t)degree + 1));
   if (!knots) return cag_fail_memory(err);

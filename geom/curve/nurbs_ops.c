@@ -109,7 +109,7 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
 CagStatus cag_curve_elevate(const CagCurve *c, int times, CagCurve **out, CagError *err) {
   if (times < 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "times", -1,
-                    "`times` must not be negative; this is %d", times);
+                    "`times` must not be negative, found %d", times);
   CagCurve *now, *next;
   CagStatus status = clamped(c, &now, err);
   for (int i = 0; !status && i < times; i++) {

@@ -183,7 +183,7 @@ CagStatus cag_curve_remove_knot(const CagCurve *c, double t, int times, double t
       double d = remove_once(&s, r, m, tolerance - moved, &chain);
       moved += d;
       if (!(moved <= tolerance))
-        status = fail_tolerance(moved, tolerance, "taking the knot away", err);
+        status = fail_tolerance(moved, tolerance, "removing the knot", err);
     }
   }
   if (!status) status = spline_curve(&s, c, out, err);

@@ -71,7 +71,7 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
   const size_t least = closed ? 3 : 2;
   if (n < least)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "%s polyline needs at least %zu different points; these are %zu",
+                    "%s polyline needs at least %zu different points, found %zu",
                     closed ? "a closed" : "a", least, n);
   const size_t stored = n + closed;
   CagVec3 *all = cag_malloc(sizeof *all * stored);

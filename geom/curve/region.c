@@ -213,9 +213,9 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
       status = loop_within(r->loops[i], r->loops[k], &a, err);
       if (!status) status = loop_within(r->loops[k], r->loops[i], &b, err);
       if (!status && (a || b))
-        status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, "holes", (long)i - 1,
-                          "holes[%zu] and holes[%zu] lie one in the other; holes must be apart",
-                          k - 1, i - 1);
+        status =
+            cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, "holes", (long)i - 1,
+                     "holes[%zu] and holes[%zu] are nested; holes must be disjoint", k - 1, i - 1);
     }
   }
   if (status) cag_region_release(r);
@@ -278,7 +278,7 @@ static CagStatus check_positive(double x, const char *name, CagError *err) {
   CagStatus status = cag_curve_check_number(x, name, err);
   if (status || x > 0) return status;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, -1,
-                  "`%s` must be positive; this is %s", name, cag_number_text(x, text));
+                  "`%s` must be positive, found %s", name, cag_number_text(x, text));
 }
 
 // Sides and quarter circles, counter-clockwise from the start of the lower side.
@@ -318,10 +318,10 @@ CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **ou
   if (status) return status;
   if (radius < 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "radius", -1,
-                    "`radius` must not be negative; this is %s", cag_number_text(radius, text));
+                    "`radius` must not be negative, found %s", cag_number_text(radius, text));
   if (radius > fmin(w, h) / 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_too_large, "radius", -1,
-                    "`radius` is at most half the shorter side, %s; this is %s",
+                    "`radius` must be at most half the shorter side, %s, found %s",
                     cag_number_text(fmin(w, h) / 2, most), cag_number_text(radius, text));
   CagCurve *loop;
   if (radius > 0 && radius == w / 2 && radius == h / 2) {
@@ -363,7 +363,7 @@ CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, C
   CagVec3 moment = {0, 0, 0};
   if (centroid && cag_region_is_empty(r))
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
-                    "the region is empty: it has no centroid");
+                    "the region is empty, so its centroid is undefined");
   for (size_t i = 0; i < r->count; i++) {
     double a;
     CagVec3 c;
@@ -394,7 +394,7 @@ CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   if (cag_region_is_empty(r))
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
-                    "the region is empty: it has no bounds");
+                    "the region is empty, so its bounds are undefined");
   for (size_t i = 0; i < r->count; i++) {
     CagBounds part;
     CagStatus status = cag_curve_bounds(r->loops[i], &part, err);

@@ -211,7 +211,7 @@ static CagStatus check_hole(const Loops *l, const Pair *p, CagError *err) {
   status = leaves(CAG_REGION_DIFFERENCE, l->items[0], l->items[hole], &rest, err);
   if (status || rest) return status;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", (long)hole - 1,
-                  "holes[%zu] and the outer boundary are one curve: nothing lies between them",
+                  "holes[%zu] and the outer boundary are the same curve: nothing lies between them",
                   hole - 1);
 }
 
@@ -230,9 +230,9 @@ static CagStatus check_pair(const Loops *l, const Pair *p, CagError *err) {
   status = leaves(CAG_REGION_DIFFERENCE, a, b, &of_a, err);
   if (!status) status = leaves(CAG_REGION_DIFFERENCE, b, a, &of_b, err);
   if (status) return status;
-  if (!of_a && !of_b) return fail_overlap(l, p, "are one curve; leave one of them out", err);
+  if (!of_a && !of_b) return fail_overlap(l, p, "are the same curve; omit one of them", err);
   if (of_a && of_b && p->cross) return fail_crossing(l, p, err);
-  if (l->holes) return fail_overlap(l, p, "overlap; holes must be apart: unite them first", err);
+  if (l->holes) return fail_overlap(l, p, "overlap; holes must be disjoint: unite them first", err);
   if (!of_a || !of_b) return CAG_OK; // one lies inside the other
   return fail_overlap(l, p, "overlap; one must lie within the other, or apart from it", err);
 }

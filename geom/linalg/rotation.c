@@ -114,7 +114,7 @@ static CagStatus rotation_part(const CagTransform *t, double r[3][3], CagError *
   }
   if (cag_transform_mirrors(t))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_a_rotation, "T", -1,
-                    "the transform mirrors, so that it holds no rotation");
+                    "the transform contains a reflection, so it has no rotation part");
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) r[i][j] = scale * w == 1 ? t->m[i][j] : t->m[i][j] / (scale * w);
   return CAG_OK;

@@ -65,7 +65,7 @@ typedef struct Search {
 
 static CagStatus fail_overlap(CagError *err) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_overlap, "", -1,
-                  "the curve runs within the surface: they share more than single points");
+                  "the curve lies in the surface: they share more than isolated points");
 }
 
 // --- Parts and cells ---

@@ -1,11 +1,11 @@
-// Curves on which a function of a surface is 0, traced in the parameter plane.
+// Traces the zero curves of a function on a surface in the parameter plane.
 //
-// The crossings of a grid (section_grid.h) are linked cell by cell. Between two crossings points
-// are added until Hermite cubics are within the tolerance; points that coincide in space are
+// The crossings of a grid (section_grid.h) are linked cell by cell. Points are added between two
+// crossings until Hermite cubics are within the tolerance; points that coincide in space are
 // dropped.
 //
-// Functions that jump at breaks are traced patch by patch between them; runs that go on smoothly
-// from patch to patch are joined.
+// Functions that jump at breaks are traced patch by patch; runs that continue smoothly from patch
+// to patch are joined.
 
 #include <float.h>
 #include <math.h>
@@ -20,30 +20,31 @@
 #include "geom/surface/family.h"
 #include "geom/surface/trimmed.h"
 
-// Cells along the whole of a direction, and at least so many on a patch.
+// Number of cells along a whole direction, and minimum number on a patch.
 #define CELLS 40
 #define CELLS_OF_PATCH 4
 #define CELLS_OF_SIDED_PATCH 10
-// Halvings between two crossings, and places looked for there where branches cross, each of which
-// may be followed by half as many halvings.
+// Maximum depth of halvings between two crossings, and maximum number of branch points searched
+// there, each of which may be followed by half as many halvings.
 #define DEPTH_MOST 12
 #define BRANCHINGS_MOST 4
-// A run that crosses fewer edges than this is halved so often whatever the error, so that there are
-// points to judge its kind by.
+// A run that crosses fewer edges than this is halved this often for any error, so that there are
+// enough points to recognize its kind.
 #define SHORT_RUN 4
 #define SHORT_RUN_DEPTH 2
-// cos 30 degrees: a tangent turns by no more from one point to the next.
+// cos 30 degrees: maximum turn of the tangent between points.
 #define TURN_COSINE 0.866
-// Parts of the size below which points are one.
+// Points closer than this fraction of the size coincide.
 #define SAME 1e-10
-// Part of the size up to which a run beside an area where the function is 0 is what rounding left.
+// A run up to this fraction of the size next to an area where the function is 0 is a rounding
+// artifact.
 #define BESIDE_LOST 1e-3
-// A function that is this many roundings at most is 0 throughout.
+// A function of at most this many rounding errors is 0 throughout.
 #define CONSTANT_ROUNDINGS 100
-// Part of the way between two points below which a third is one of them.
+// A point closer to one of two others than this fraction of their distance coincides with it.
 #define SLID 1e-5
-// A point between two others tells of the cubic's middle only if it is not nearer to one of them
-// than this part of the way: by a pole the middle of the parameters may be.
+// A point between two others measures the cubic's middle only if it is at least this fraction of
+// the way from both: at a pole the midpoint of the parameters may not be.
 #define LOPSIDED 0.2
 #define NEWTON_ROUNDS 12
 
@@ -71,7 +72,7 @@ static double contour_value(const CagLevel *l, const CagVec3 *d, int n, double *
   CagVec3 su = d[cag_partial(n, 1, 0)], sv = d[cag_partial(n, 0, 1)], normal = cag_cross(su, sv);
   CagVec3 sight = l->central ? cag_sub(d[0], l->point) : l->direction;
   if (gradient) {
-    // The line of sight changes within the tangent plane: only the normal counts.
+    // The line of sight changes within the tangent plane, so only the change of the normal matters.
     CagVec3 suu = d[cag_partial(n, 2, 0)], suv = d[cag_partial(n, 1, 1)],
             svv = d[cag_partial(n, 0, 2)];
     gradient[0] = cag_dot(cag_add(cag_cross(suu, sv), cag_cross(su, suv)), sight);
@@ -105,8 +106,8 @@ static bool add_check(CagTracer *t, CagVec3 p) {
 
 static double clamped(double x, double lo, double hi) { return fmin(fmax(x, lo), hi); }
 
-// The place of the curve near the middle of two others; false where Newton's method does not lead
-// there.
+// The point of the curve near the middle of two others; false if Newton's method does not converge
+// to it.
 static bool middle_by_newton(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b,
                              CagTraceNode *out) {
   const double *lo = t->patch.lo, *hi = t->patch.hi;
@@ -132,8 +133,8 @@ static bool middle_by_newton(CagTracer *t, const CagTraceNode *a, const CagTrace
   return false;
 }
 
-// The same where that fails, as by a pole, where the curve may turn sharply in the parameters: the
-// crossing nearest to the middle on the line perpendicular to the way from a to b.
+// The same if that fails, as at a pole, where the curve may turn sharply in the parameters: the
+// crossing nearest to the middle on the line perpendicular to the segment from a to b.
 static bool middle_across(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b,
                           CagTraceNode *out) {
   const int places = 16;
@@ -156,7 +157,8 @@ static bool middle_across(CagTracer *t, const CagTraceNode *a, const CagTraceNod
   return false;
 }
 
-// By a pole Newton's method may slide into it, to rounding: that is not a point between the two.
+// At a pole Newton's method may converge to the pole itself, to rounding: that is not a point
+// between the two.
 static bool is_between(const CagTraceNode *a, const CagTraceNode *m, const CagTraceNode *b,
                        double same) {
   double h = cag_norm(cag_sub(b->p, a->p));
@@ -175,13 +177,13 @@ static CagVec3 aligned(CagVec3 tangent, CagVec3 chord) {
   return cag_dot(tangent, chord) < 0 ? cag_scaled(tangent, -1) : tangent;
 }
 
-// Whether the Hermite cubic from a to b is good: m is a point of the curve between them.
+// Whether the Hermite cubic from a to b is accurate; m is a point of the curve between them.
 static bool is_good(const CagTracer *t, const CagTraceNode *a, const CagTraceNode *m,
                     const CagTraceNode *b) {
   CagVec3 chord = cag_sub(b->p, a->p);
   double h = cag_norm(chord);
-  // Where there is no tangent, the one it will get: that of the other end mirrored, or of the
-  // parabola through the three.
+  // A missing tangent gets the value that it will have later: the reflected tangent of the other
+  // end, or that of the parabola through the three.
   CagVec3 along_chord = cag_scaled(chord, 1 / h);
   CagVec3 first = cag_sub(cag_sub(cag_scaled(m->p, 4), cag_scaled(a->p, 3)), b->p);
   CagVec3 last = cag_sub(cag_add(cag_scaled(b->p, 3), a->p), cag_scaled(m->p, 4));
@@ -197,14 +199,14 @@ static bool is_good(const CagTracer *t, const CagTraceNode *a, const CagTraceNod
   CagVec3 off = cag_sub(m->p, middle);
   off = cag_madd(off, -cag_dot(off, along), along);
   if (cag_norm(off) > t->tolerance / 2) return false;
-  // An error that changes its sign there, as x (1 - x^2)^2 over -1..1 does, shows in the slope.
-  const double largest = 0.1431; // where x is 1 / sqrt(5), of a slope of 1 and a length of 1
+  // An error that changes its sign there, like x (1 - x^2)^2 on -1..1, is visible in the slope.
+  const double largest = 0.1431; // at x = 1 / sqrt(5), for a slope of 1 and a length of 1
   const double slope = m->regular ? cag_norm(cag_cross(m->t, along)) : 0;
   return largest * slope * h <= t->tolerance / 2;
 }
 
-// Where two branches of the curve cross between a and b: the gradient vanishes there, and the value
-// to the rounding of that.
+// A point between a and b at which two branches of the curve cross: the gradient vanishes there,
+// and the value up to the corresponding rounding.
 static bool find_branching(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b,
                            CagTraceNode *out) {
   const double roundings = 100, reach = 2;
@@ -220,7 +222,7 @@ static bool find_branching(CagTracer *t, const CagTraceNode *a, const CagTraceNo
   return !t->status && fabs(f) <= roundings * cag_tracer_zero(t, out->u, out->v);
 }
 
-// Adds the points after a, b the last of them.
+// Adds the points after a up to and including b.
 static bool refine(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b, int depth,
                    int at_least) {
   CagTraceNode m;
@@ -241,7 +243,7 @@ static bool refine(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b, i
            refine(t, &branching, b, depth / 2, at_least);
   }
   if (stuck) {
-    // A way across where there is no curve: the cells are too large.
+    // A jump to another part of the curve: the cells are too large.
     double h = cag_norm(cag_sub(b->p, a->p));
     t->torn = t->torn || (h > t->tolerance && a->regular && b->regular);
     return add_node(t, b);
@@ -257,7 +259,7 @@ static bool add_trace(CagTraces *out, const CagTrace *trace) {
   return true;
 }
 
-// Nodes as a trace.
+// Stores nodes as a trace.
 static bool keep_nodes(const CagTraceNode *nodes, size_t n, const CagVec3 *checks,
                        size_t check_count, CagTraces *out) {
   if (n < 2) return true;
@@ -287,8 +289,8 @@ static bool belongs(CagTracer *t, const CagTraceNode *node) {
   return inside;
 }
 
-// Where the curve passes the border of the region between a node that belongs and one that does
-// not.
+// The intersection of the curve with the border of the region, between a node inside and one
+// outside.
 static CagTraceNode border_between(CagTracer *t, CagTraceNode in, CagTraceNode off) {
   const int halvings = 50;
   for (int i = 0; i < halvings && !t->status; i++) {
@@ -300,7 +302,7 @@ static CagTraceNode border_between(CagTracer *t, CagTraceNode in, CagTraceNode o
   return in;
 }
 
-// The parts of a run of a trimmed surface that belong to it.
+// Keeps the parts of a run that are inside a trimmed surface.
 static bool keep_trimmed(CagTracer *t, size_t from, size_t to, CagTraces *out) {
   CagTraceNode *part = cag_malloc((to - from + 3) * sizeof *part);
   if (!part) return false;
@@ -323,7 +325,8 @@ static bool keep_trimmed(CagTracer *t, size_t from, size_t to, CagTraces *out) {
   return ok;
 }
 
-// Nodes [from, to] of the run. A run in several parts is judged by its points alone.
+// Keeps nodes [from, to] of the run. The kind of a run in several parts is determined from its
+// points only.
 static bool keep_run(CagTracer *t, size_t from, size_t to, CagTraces *out) {
   if (t->region) return keep_trimmed(t, from, to, out);
   bool whole = from == 0 && to + 1 == t->run_count;
@@ -337,13 +340,13 @@ static bool is_corner(const CagTracer *t, size_t i) {
   return cag_dot(before, after) < CAG_TRACE_CORNER;
 }
 
-// Where a sided function is 0 over an area, to rounding, it has no curve there, or any.
+// Where a sided function is 0 over an area, to rounding, its zero curves are undefined.
 static bool is_lost(const CagTracer *t, size_t i) {
   return t->level->sided && t->run[i].flat && t->run[i + 1].flat;
 }
 
-// Nodes [from, to], unless they are a speck beside a lost one: what rounding leaves about such an
-// area.
+// Keeps nodes [from, to], unless they are a tiny run next to such an area, which is a rounding
+// artifact.
 static bool keep_piece(CagTracer *t, size_t from, size_t to, CagTraces *out) {
   bool beside = (from > 0 && is_lost(t, from - 1)) || (to + 1 < t->run_count && is_lost(t, to));
   double reach = 0;
@@ -391,7 +394,7 @@ static bool walk_all(CagTracer *t, CagTraces *out) {
   bool *seen = cag_calloc(t->edge_count, sizeof *seen);
   int32_t *path = cag_malloc((t->edge_count + 1) * sizeof *path);
   bool ok = seen && path;
-  // Runs that begin at the border first, then those that come back.
+  // Runs that begin at the border first, then closed ones.
   for (int inner = 0; inner < 2; inner++)
     for (size_t e = 0; ok && e < t->edge_count; e++)
       if (!seen[e] && t->links[e][0] >= 0 && (inner || t->links[e][1] < 0))
@@ -418,15 +421,16 @@ static void tracer_free(CagTracer *t) {
 
 // --- Patches ---
 
-// Whether the values are rounding: half of them below that away from the edges, all below the
-// most.
+// Whether the values are only rounding: half of them below the bound away from the edges, all below
+// the largest bound.
 static bool is_constant(const CagTracer *t, double inner, double most) {
   size_t n = t->n[0] * t->n[1], small = 0;
   for (size_t k = 0; k < n; k++) small += fabs(t->values[k]) <= CONSTANT_ROUNDINGS * inner;
   return 2 * small >= n && cag_tracer_largest(t) <= CONSTANT_ROUNDINGS * most;
 }
 
-// The largest value that a contour's function could have on the patch: normals seen from the front.
+// The largest value that a contour's function could have on the patch: for normals parallel to the
+// line of sight.
 static double contour_scale(CagTracer *t) {
   enum { TRIED = 5 };
   double largest = 0;
@@ -443,7 +447,7 @@ static double contour_scale(CagTracer *t) {
   return largest;
 }
 
-// Sets what counts as 0 on this patch; false where all of it does.
+// Sets the bound below which values are 0 on this patch; returns false if all are.
 static bool set_patch_zero(CagTracer *t, CagLevel *own) {
   const double rounding = 1e-13;
   if (own->zero > 0) return true;
@@ -469,7 +473,7 @@ static bool trace_grid(CagTracer *t, CagLevel *own, size_t finer, CagTraces *out
   return ok;
 }
 
-// Traced once more with finer cells while runs have gaps.
+// Traces again with finer cells as long as runs have gaps.
 static bool trace_patch(CagTracer *t, CagLevel *own, CagTraces *out, bool *constant) {
   size_t first = out->count;
   for (size_t finer = 1;; finer = 2 * t->finer) {

@@ -2,8 +2,8 @@
 //
 // The mesh comes from tessellation, which keeps the parameters of each vertex. At an ordinary
 // vertex the value is that of the surface there. At a break or a pole it depends on the side, so
-// each corner of a triangle asks a little inside its triangle, and corners that differ become
-// vertices of their own, welded to the first.
+// each corner of a triangle is evaluated slightly inside its triangle, and corners with different
+// values become separate vertices, welded to the first.
 
 #include "geom/meet/value_map.h"
 
@@ -21,11 +21,11 @@ const char *const cag_surface_values[] = {CAG_SURFACE_VALUES(X) NULL};
 
 static const double DEGREES = 57.29577951308232;
 
-// So far inside its triangle a corner at a break or a pole asks.
+// Fraction of a triangle by which a corner at a break or a pole is moved inside for evaluation.
 #define INWARD 1e-3
-// Values at one vertex that differ by this part of the larger are two.
+// Relative difference above which two values at one vertex are distinct.
 #define JUMP 1e-2
-// A parameter this near to a break, in lengths of the domain, is on it.
+// A parameter closer to a break than this fraction of the domain is on it.
 #define ON_BREAK CAG_COINCIDENT
 
 static CagStatus value_at(const CagSurface *s, CagSurfaceValue kind, double u, double v,
@@ -95,12 +95,12 @@ typedef struct Draft {
   const CagSurface *s;
   CagSurfaceValue kind;
   const CagMesh *plain;
-  bool *sided;       // per vertex of plain: its value depends on the side
-  double *values;    // per vertex of the draft
+  bool *sided;       // for each vertex of plain: its value depends on the side
+  double *values;    // for each vertex of the draft
   uint32_t *origin;  // vertex of plain
   uint32_t *next;    // another vertex of the same origin; UINT32_MAX: none
   bool *known;       // has a value
-  uint32_t *corners; // as CagMesh.triangles
+  uint32_t *corners; // like CagMesh.triangles
   size_t count, capacity;
 } Draft;
 
@@ -114,10 +114,10 @@ static bool make_room(Draft *d) {
   return true;
 }
 
-// The vertex of the same place with this value: one that is there, or a new one.
+// The vertex at the same position with this value: an existing one, or a new one.
 static bool take_vertex(Draft *d, uint32_t first, bool found, double value, uint32_t *out) {
   uint32_t k = first;
-  if (!found) { // whatever its neighbors say
+  if (!found) { // regardless of its neighbors
     *out = first;
     return true;
   }
@@ -157,7 +157,7 @@ static CagStatus take_corner(Draft *d, size_t triangle, int corner, CagError *er
   return ok ? CAG_OK : cag_fail_memory(err);
 }
 
-// Vertices that no side gave a value (the surface has no normal all around) take a neighbor's.
+// Vertices without a value from any side (the surface has no normal all around) take a neighbor's.
 static void fill_unknown(Draft *d) {
   for (size_t t = 0; t < d->plain->triangle_count; t++) {
     const uint32_t *k = d->corners + 3 * t;
@@ -171,7 +171,7 @@ static void fill_unknown(Draft *d) {
 }
 
 static CagStatus find_values(Draft *d, const CagTessellation *how, CagError *err) {
-  const size_t look_up = 1024; // vertices between two looks whether to stop
+  const size_t look_up = 1024; // vertices between checks of the stop flag
   const CagMesh *m = d->plain;
   Breaks breaks;
   CagStatus status = read_breaks(d->s, &breaks) ? CAG_OK : cag_fail_memory(err);
@@ -181,7 +181,8 @@ static CagStatus find_values(Draft *d, const CagTessellation *how, CagError *err
     d->origin[v] = (uint32_t)v;
     d->next[v] = UINT32_MAX;
     if (v % look_up == 0 && how->interrupt && *how->interrupt)
-      status = cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the mesh was stopped");
+      status =
+          cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the meshing was interrupted");
     else if (!on_break(&breaks, uv))
       status = value_at(d->s, d->kind, uv[0], uv[1], &found, &d->values[v], err);
     d->known[v] = found;
@@ -243,18 +244,18 @@ static CagStatus values_of(const CagSurface *s, CagSurfaceValue kind, const CagM
   return status;
 }
 
-// --- How fine ---
+// --- Refinement ---
 
-// Parts of the diagonal of the bounds that an edge of the first mesh may have, radians that the
-// normal may turn along it, and the part of all values that one edge may span before the mesh is
-// made finer, at most so often and up to so many triangles.
+// Maximum length of an edge of the first mesh as a fraction of the diagonal of the bounds, maximum
+// turn of the normal along it in radians, maximum fraction of all values that one edge may span
+// before the mesh is refined, and limits on the number of refinements and triangles.
 #define EDGE_PART 0.02
 #define EDGE_TURN 0.07
 #define EDGE_SPAN 0.05
 #define ROUNDS 3
 #define TRIANGLES_FINE 250000
 
-// Share of the triangles whose values span more than an edge may.
+// Fraction of the triangles whose values span more than an edge may.
 static double coarse_share(const CagMesh *m) {
   double from, to;
   size_t coarse = 0;
@@ -289,7 +290,7 @@ CagStatus cag_surface_value_mesh(const CagSurface *s, CagSurfaceValue value,
     if (status) break;
     cag_mesh_release(*out);
     *out = finer;
-    // The next mesh has four times as many.
+    // The next mesh has four times as many triangles.
     if (4 * finer->triangle_count > TRIANGLES_FINE ||
         4 * finer->triangle_count > how->max_triangles || coarse_share(finer) <= coarse_most)
       break;
@@ -312,7 +313,7 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// A tail that reaches farther than this part of the rest is cut off.
+// A tail that extends farther than this fraction of the rest is cut off.
 #define TAIL_AREA 0.02
 #define TAIL_REACH 0.5
 
@@ -356,7 +357,8 @@ void cag_mesh_value_span(CagMesh *const *meshes, size_t n, double least, double 
   qsort(s, at, sizeof *s, by_value);
   span_of_samples(s, at, from, to);
   cag_free(s);
-  const double same = 1e-6; // of the value: differences below are rounding of second derivatives
+  const double same = 1e-6; // relative to the value: smaller differences are rounding of second
+                            // derivatives
   double large = fmax(fabs(*from), fabs(*to));
   if (*to - *from > fmax(same * large, least)) return;
   double around = large > least ? large / 2 : 1;

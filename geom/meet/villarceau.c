@@ -1,8 +1,7 @@
-// Sections of tori by planes through their center that touch them twice: the Villarceau circles
-// (1848).
+// Sections of tori by bitangent planes through their center: the Villarceau circles (1848).
 //
-// The section branches where the plane touches, so tracing cannot find it to rounding accuracy. The
-// torus is recognized in any form: as a torus, possibly moved or stretched, or by its circular
+// The section branches at the points of contact, so tracing cannot find it to rounding accuracy.
+// The torus is recognized in any form: as a torus, possibly moved or stretched, or by its circular
 // parameter lines, as in a revolution, a NURBS surface, or a tube. On a part of a torus, the
 // circles are cut where they cross its edges.
 
@@ -21,8 +20,8 @@
 // the surface.
 #define ON_TORUS 1e-11
 #define ON_SURFACE 1e-10
-// The plane may miss the center by this fraction of the larger radius, and the sine of its slope
-// may differ by as much.
+// The plane may miss the center by this fraction of the larger radius, and the sine of its
+// inclination may differ by as much.
 #define ROUNDING CAG_ROUNDING
 
 static const double FULL_TURN = 6.283185307179586;
@@ -114,7 +113,7 @@ static bool find_torus(const CagSurface *s, TorusForm *out) {
 // --- The circles ---
 
 // The frame of the plane in the coordinates of the torus, with x along its horizontal line. Returns
-// false if the plane does not touch twice.
+// false if the plane is not bitangent.
 static bool touches_twice(const TorusForm *form, const CagPlane *plane, CagVec3 axes[3]) {
   const CagTransform *map = &form->map;
   const CagVec3 n = plane->normal, o = cag_vec3(map->m[0][3], map->m[1][3], map->m[2][3]);

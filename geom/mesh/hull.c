@@ -30,7 +30,7 @@ static CagStatus check(const CagVec3 *points, size_t n, size_t least, CagError *
   if (n >= least && n < NONE) return cag_curve_check_points(points, n, "points", err);
   if (n >= NONE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "points", -1,
-                    "`points` may hold less than %u points, found %zu", NONE, n);
+                    "`points` must have fewer than %u points, found %zu", NONE, n);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                   "`points` must hold at least %zu points for a hull, found %zu", least, n);
 }

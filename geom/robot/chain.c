@@ -77,7 +77,7 @@ static CagStatus check_link(const CagRobotLink *l, long index, long joint, CagEr
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i]))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_link_number, "links", index,
-                      "links[%ld] has a number that is infinite or none", index);
+                      "links[%ld] has a number that is not finite", index);
   return check_limits(l, joint, err);
 }
 
@@ -244,7 +244,7 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
   for (size_t i = 0; i < n * n; i++)
     if (!isfinite(r->coupling[i]) || !isfinite(r->coupling_offset[i / n]))
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coupling_singular, "coupling", (long)(i / n),
-                      "row %zu of the coupling has a number that is infinite or none", i / n + 1);
+                      "row %zu of the coupling has a number that is not finite", i / n + 1);
   double *work = cag_malloc(n * n * sizeof *work);
   if (!work) return cag_fail_memory(err);
   memcpy(work, r->coupling, n * n * sizeof *work);
@@ -287,7 +287,7 @@ static CagStatus check_spec(const CagRobotSpec *spec, size_t *joints, CagError *
   }
   if (*joints > CAG_ROBOT_JOINTS_MAX)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_joints, "links", -1,
-                    "a robot may have %d joints, found %zu", CAG_ROBOT_JOINTS_MAX, *joints);
+                    "a robot can have at most %d joints, found %zu", CAG_ROBOT_JOINTS_MAX, *joints);
   CagStatus status = check_rigid(&spec->base, "base", -1, err);
   return status ? status : check_rigid(&spec->tool, "tool", -1, err);
 }

@@ -281,9 +281,8 @@ static bool is_nothing(const InverseChain *c, double length) {
 bool cag_inverse_arm_is_solvable(const InverseChain *c, CagVec3 point) {
   const InverseRow *r = c->row;
   const CagVec3 e = behind_joint3(c, point);
-  if (r[2].turns && is_nothing(c, inverse_length(e.x, e.y)))
-    return false; // joint 3 does not move
-                  // the point
+  // Joint 3 must move the point.
+  if (r[2].turns && is_nothing(c, inverse_length(e.x, e.y))) return false;
   if (!r[0].turns || !r[1].turns) return false;
   const bool parallel12 = fabs(r[0].sine) < INVERSE_PARALLEL;
   const bool parallel23 = fabs(r[1].sine) < INVERSE_PARALLEL;

@@ -78,13 +78,13 @@ static CagStatus check_branches(const CagRobot *r, const CagRobotGoal *goal, boo
       return cag_fail(
           err, CAG_E_UNSUPPORTED, CAG_ERR_no_closed_form, "config", -1,
           goal->position_only && cag_robot_has_inverse(r)
-              ? "a point leaves the tool's orientation open, so that the branches have "
-                "no names; give a pose, or choose by `near`"
-              : "the arm has no closed form, so that its branches have no names; choose "
-                "by `near`");
+              ? "a point does not determine the tool's orientation, so its branches are "
+                "undefined; give a pose, or choose by `near`"
+              : "the arm has no closed form, so its branches are undefined; choose by "
+                "`near`");
     if (!there[i])
       return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_closed_form, "config", -1,
-                      "the arm has no choice of `%s`; `ik_all` tells its branches", names[i]);
+                      "the arm has no choice of `%s`; `ik_all` lists its branches", names[i]);
   }
   return CAG_OK;
 }
@@ -117,7 +117,7 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
   *found = cag_robot_search(r, target, &search, q);
   if (branch && found->solved)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_unreachable, "config", -1,
-                    "the pose is reached, but not in this branch within the limits; `ik_all` tells "
+                    "the pose is reached, but not in this branch within the limits; `ik_all` lists "
                     "the branches");
   return found->solved ? CAG_OK : fail_unreachable(found, goal->position_only, err);
 }
@@ -248,8 +248,7 @@ static CagStatus fail_singular(size_t step, bool between, CagError *err) {
 }
 
 static CagStatus fail_stopped(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1,
-                  "the path was not finished");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the path was interrupted");
 }
 
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,

@@ -66,7 +66,7 @@ CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *er
   if (status) return status;
   if (f.class_id == CAG_QUADRIC_EMPTY)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_imaginary, "coefficients", -1,
-                    "the form does not depend on x, y or z: it has no side");
+                    "the form does not depend on x, y, or z: it has no inside");
   bool flat = f.class_id == CAG_QUADRIC_PLANE;
   status = block(flat ? CAG_SOLID_HALF_SPACE : CAG_SOLID_QUADRIC, 0, &s, err);
   if (status) return status;

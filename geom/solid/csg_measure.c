@@ -51,7 +51,7 @@ static CagStatus fail_empty(const CagSolid *s, CagError *err) {
   char first[80], second[80];
   if (!s->core->count)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
-                    s->kind == CAG_SOLID_UNION ? "the solid is empty: it has no bounds"
+                    s->kind == CAG_SOLID_UNION ? "the solid is empty, so its bounds are undefined"
                                                : "the form is nowhere negative");
   cag_solid_describe_form(s->core->operands[0], first, sizeof first);
   if (s->core->count < 2)

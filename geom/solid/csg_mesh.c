@@ -246,11 +246,11 @@ static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err
 static CagStatus unbounded(const CagSolid *s, CagError *err) {
   if (!is_operation(s))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
-                    "the %s reaches to infinity: intersect it with a solid that bounds it, as in "
+                    "the %s is unbounded: intersect it with a solid that bounds it, as in "
                     "`sphere(10) & half_space(plane(origin, Z))`, or take it away from one",
                     s->kind == CAG_SOLID_HALF_SPACE ? "half space" : "side of the quadric");
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
-                  "the %s reaches to infinity: one of its %zu operands is a half space or quadric "
+                  "the %s is unbounded: one of its %zu operands is a half space or quadric "
                   "that the others do not bound; intersect it with a solid that does",
                   cag_solid_kind_name(s->kind), s->core->count);
 }

@@ -1,17 +1,18 @@
 // Tessellation: chords of borders and creases of a face.
 //
-// Inside a face only what a triangle is off along the normal counts. At its border the curve must
-// be followed too: the rim of a flat ring is round, though the ring is flat. Likewise at a crease,
-// where a point may be near to both planes and yet far from where they meet.
+// Inside a face only the distance along the normal matters. At its border the curve must be
+// followed too: the rim of a flat ring is round, although the ring is flat. The same holds at a
+// crease, where a point may be close to both tangent planes and yet far from their intersection.
 
 #include "geom/mesh/distance.h"
 #include "geom/tessellate/tessellation.h"
 
-enum { CHORDS = 32 }; // of an atom that are looked at
+enum { CHORDS = 32 }; // maximum number of chords of an atom that are measured
 
 static const double highest_use = 0.9, aimed_use = 0.84; // see plan.c
 
-// Largest distance of the middles and thirds of some of the n chords of [from, to] from them.
+// Largest distance from some of the n chords of [from, to] to the curve, at their midpoints and
+// thirds.
 static CagStatus chord_distance(const Tessellator *t, const Line *line, double from, double to,
                                 double n, double *distance, CagError *err) {
   enum { PLACES = 5 };
@@ -54,11 +55,11 @@ static CagStatus normal_on(const CagSurface *s, const Line *line, double at, boo
   return status;
 }
 
-// Does the normal jump across the line? Looked at in two places of the atom.
+// Whether the normal jumps across the line, tested at two points of the atom.
 static CagStatus is_crease(const Tessellator *t, const Line *line, const Atom *atom, bool *out,
                            CagError *err) {
   const double jump = 1e-3;                        // radians
-  static const double place[2] = {0.3819, 0.8541}; // anywhere, but not where things are symmetric
+  static const double place[2] = {0.3819, 0.8541}; // arbitrary, but not at points of symmetry
   *out = false;
   for (int k = 0; k < 2 && !*out; k++) {
     double at = atom->from + (atom->to - atom->from) * place[k];

@@ -1,16 +1,18 @@
-// Tessellation, between lines and nodes: thin steps get the counts of their neighbors.
+// Tessellation, between lines and nodes: thin leaves get the step counts of their neighbors.
 //
-// Where a leaf's side has other nodes than its grid, the band between them is sewn. A triangle of
-// the band is as high as a step across it; its base bulges over its middle by what the surface
-// bends along the band. At the leading edge of a twisted blade the steps across are short and those
-// along it are long: such a triangle would stand on edge, though all is within the tolerance. There
-// the leaf takes the finest steps on its sides for its own, so that all is a grid, and the lines
-// are made anew: the leaf's other side may have become finer by that than the next leaf's grid.
+// If a leaf's side has other nodes than its grid, the band between them is stitched. The height of
+// a triangle in the band is a step across it; the surface bulges over the middle of its base by its
+// bend along the band. At the leading edge of a twisted blade the steps across are short and those
+// along it are long: such a triangle would stand on edge, although everything is within the
+// tolerance. There the leaf uses the finest steps on its sides for its own grid, so that no
+// stitching is needed, and the lines are rebuilt, since the leaf's other side may now be finer than
+// the next leaf's grid.
 
 #include "geom/linalg/tolerance.h"
 #include "geom/tessellate/tessellation.h"
 
-// Height of the bulge by that of the triangle: the tangent of the angle by which it leans.
+// Ratio of the height of the bulge to that of the triangle: the tangent of the angle by which it
+// leans.
 static const double leaning = 0.1;
 enum { ROUNDS = 32, MOST_RAISED = 8 };
 
@@ -24,7 +26,7 @@ static size_t first_atom(const Tessellator *t, const Line *line, double from) {
   return low;
 }
 
-// Steps along a side of a leaf at the finest of what is found on its line.
+// Steps along a side of a leaf at the finest spacing found on its line.
 static double finest_steps(const Tessellator *t, const Leaf *leaf, int side) {
   const Line *line = &t->lines[leaf->line[side]];
   const int along = 1 - side / 2;
@@ -50,7 +52,7 @@ static CagStatus point_at(const CagSurface *s, const double at[2], int along, do
                     : cag_surface_point(s, at[0], at[1] + step, out, err);
 }
 
-// Would triangles of a band on this side lean?
+// Whether triangles of a band on this side would lean.
 static CagStatus is_thin(const Tessellator *t, const Leaf *leaf, int side, bool *thin,
                          CagError *err) {
   enum { LOOKS = 4 };

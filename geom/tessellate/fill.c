@@ -1,10 +1,10 @@
 // Tessellation, step 4: leaves become triangles.
 //
-// Where the nodes around a leaf are those of its grid, all is a grid. Elsewhere the grid keeps away
-// from the sides by one step, and each side's band between its nodes and the outermost row of the
-// grid is sewn up: of the two next edges across it the shorter one is taken, if it does not lean by
-// more than a step. So no triangle of a band is wider than a step of the grid, and the bound of
-// plan.c holds for it too.
+// If the nodes around a leaf are those of its grid, the leaf is a plain grid. Otherwise the grid
+// stays one step away from the sides, and the band between each side's nodes and the outermost row
+// of the grid is stitched: of the two next edges across the band the shorter one is used, unless it
+// leans by more than a step. So no triangle of a band is wider than a step of the grid, and the
+// bound of plan.c holds for it too.
 
 #include <string.h>
 
@@ -17,7 +17,7 @@
 typedef struct Fill {
   Tessellator *t;
   CagMesh *mesh;
-  size_t vertices, triangles; // filled so far
+  size_t vertices, triangles; // number filled so far
   double *us, *vs;            // room for the parameters of the largest leaf
   size_t grid_room;           // points
 } Fill;
@@ -31,7 +31,7 @@ typedef struct Chain {
   uint32_t first;
   uint32_t stride;
   size_t segments;
-  bool ends; // with the last node the leaf's side ends too
+  bool ends; // the last node is also the end of the leaf's side
 } Chain;
 
 static uint32_t chain_vertex(const Tessellator *t, const Chain *c, size_t k) {
@@ -69,7 +69,7 @@ static bool one_point(const Fill *f, uint32_t a, uint32_t b) {
   return a < t->vertex_count && b < t->vertex_count && t->weld[a] == t->weld[b];
 }
 
-// Leaves out triangles at poles that have shrunk to an edge.
+// Skips triangles at poles that have collapsed to an edge.
 static void add_triangle(Fill *f, uint32_t a, uint32_t b, uint32_t c) {
   if (one_point(f, a, b) || one_point(f, b, c) || one_point(f, c, a)) return;
   uint32_t *to = f->mesh->triangles + 3 * f->triangles++;
@@ -94,13 +94,14 @@ static void add_quad(Fill *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   }
 }
 
-// Is the edge across the band that takes the next segment of `low` better than that which takes the
-// next of `high`? x, y: the parameters at both ends of these segments.
+// Whether to use the edge across the band that takes the next segment of `low`, rather than that
+// which takes the next of `high`. x, y: the parameters at both ends of these segments.
 static bool is_low_better(const Fill *f, const double x[2], const double y[2], uint32_t a,
                           uint32_t b, uint32_t c, uint32_t d) {
   const double rounding = CAG_COINCIDENT; // of a step
   double step = fmax(x[1] - x[0], y[1] - y[0]) * (1 + rounding);
-  // Only one of them can lean forward by more than a step, and where one leans back the other does.
+  // Only one of them can lean forward by more than a step; if one leans back, the other leans
+  // forward.
   if (y[1] - x[0] > step) return true;
   if (x[1] - y[0] > step) return false;
   if (one_point(f, a, b)) return false;
@@ -109,7 +110,7 @@ static bool is_low_better(const Fill *f, const double x[2], const double y[2], u
   return !tess_cut_ac(p[a], p[b], p[c], p[d]);
 }
 
-// Sews up the band between two chains, `low` on the right hand of `high` (so that a triangle low,
+// Stitches the band between two chains, with `low` on the right of `high` (so that a triangle low,
 // next low, high is counter-clockwise).
 static void sew(Fill *f, const Chain *low, const Chain *high) {
   const Tessellator *t = f->t;
@@ -139,7 +140,7 @@ static void sew(Fill *f, const Chain *low, const Chain *high) {
 
 // --- Vertices inside a leaf ---
 
-// Normals that the partials do not give.
+// Normals that the partials do not determine.
 static void limit_normals(Fill *f, const CagSurface *s, size_t first, size_t n) {
   CagMesh *m = f->mesh;
   for (size_t v = first; v < first + n; v++) {
@@ -220,9 +221,9 @@ static void fill_regular(Fill *f, const Leaf *leaf, uint32_t first) {
 #undef VERTEX
 }
 
-// The quadrilaterals at the corners of a leaf, which belong to two bands each: made by themselves
-// they may be cut either way. Each lies between a corner, the nodes beside it and the grid's
-// corner.
+// The quadrilaterals at the corners of a leaf belong to two bands each and are made separately,
+// because they can be cut either way. Each lies between a corner, its adjacent nodes, and the
+// grid's corner.
 static void add_corners(Fill *f, const Leaf *leaf, uint32_t first) {
   const Tessellator *t = f->t;
   uint32_t nu = leaf->n[0] - 2, nv = leaf->n[1] - 2, stride = nv + 1;
@@ -310,8 +311,8 @@ static bool is_low_along(const Fill *f, const Leaf *leaf, const Rail *low, size_
                       p[high->vertices[j]]);
 }
 
-// Sews the rails, with `low` on the right. The rails share both ends. There both advance at once,
-// because a triangle with all corners on one side would be degenerate.
+// Stitches the rails, with `low` on the right. The rails share both ends. There both advance at
+// once, because a triangle with all corners on one side would be degenerate.
 static void sew_rails(Fill *f, const Leaf *leaf, const Rail *low, const Rail *high) {
   const size_t last_low = low->segments - 1, last_high = high->segments - 1;
   const uint32_t *a = low->vertices, *b = high->vertices;
@@ -378,7 +379,7 @@ static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {
   return CAG_OK;
 }
 
-// Nodes on the leaf's sides, and what kind of filling they allow.
+// Determines the nodes on the leaf's sides, and the kind of filling they allow.
 static void look_at_sides(Tessellator *t, Leaf *leaf) {
   leaf->regular = true;
   for (int side = 0; side < 4; side++) {
@@ -406,7 +407,7 @@ static void look_at_sides(Tessellator *t, Leaf *leaf) {
   const uint32_t *s = leaf->segments;
   bool strip_u = leaf->n[1] == 1 && s[SIDE_U0] == 1 && s[SIDE_U1] == 1,
        strip_v = leaf->n[0] == 1 && s[SIDE_V0] == 1 && s[SIDE_V1] == 1;
-  // Neither: the grid needs a point inside to sew to.
+  // Neither: the grid needs an interior point to stitch to.
   for (int d = 0; d < 2 && !strip_u && !strip_v; d++)
     if (leaf->n[d] < 2) leaf->n[d] = 2;
 }
@@ -422,7 +423,7 @@ static size_t triangles_of(const Leaf *leaf) {
 
 // --- The mesh ---
 
-// Vertices of one point take the first's position, and point to it in `weld`.
+// Welded vertices take the position of the first, and point to it in `weld`.
 static void finish_weld(Tessellator *t) {
   for (uint32_t k = 0; k < t->vertex_count; k++) {
     uint32_t root = cag_tess_find(t, k);
@@ -436,7 +437,7 @@ static uint32_t root_of(uint32_t *weld, uint32_t k) {
   return k;
 }
 
-// Are two corners of triangle k one point? Then they are welded, so that its neighbors meet.
+// Whether two corners of triangle k coincide. They are then welded, so that its neighbors meet.
 static bool weld_shrunk(CagMesh *m, const uint32_t *k, double noise) {
   bool shrunk = false;
   for (int j = 0; j < 3; j++) {
@@ -450,8 +451,8 @@ static bool weld_shrunk(CagMesh *m, const uint32_t *k, double noise) {
   return shrunk;
 }
 
-// Leaves out triangles that have shrunk to an edge or a point where nothing told of it before: a
-// part of a net may lie in one point that is no pole.
+// Drops triangles that have collapsed to an edge or a point without a flag: a part of a net may lie
+// in one point that is not a pole.
 static void drop_shrunk(CagMesh *m, double noise) {
   size_t kept = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -463,12 +464,12 @@ static void drop_shrunk(CagMesh *m, double noise) {
   if (kept == m->triangle_count) return;
   m->triangle_count = kept;
   for (uint32_t v = 0; v < m->vertex_count; v++) {
-    m->weld[v] = m->weld[m->weld[v]]; // the root's is set already: it comes first
+    m->weld[v] = m->weld[m->weld[v]]; // the root's is set already, since it comes first
     m->positions[v] = m->positions[m->weld[v]];
   }
 }
 
-// Mean of the triangles around a vertex where the surface has no normal.
+// Sets the normal of a vertex at which the surface has none to the mean of the triangles around it.
 static void complete_normals(CagMesh *m) {
   unsigned char *missing = cag_calloc(m->vertex_count + 1, 1);
   if (!missing) return cag_note_memory();
@@ -491,7 +492,7 @@ static void complete_normals(CagMesh *m) {
 }
 
 static CagStatus begin_fill(Fill *f, CagError *err) {
-  enum { CHUNK = 4096 }; // points evaluated at once: what is made of them stays in the cache
+  enum { CHUNK = 4096 }; // points evaluated together: their data stay in the cache
   Tessellator *t = f->t;
   size_t vertices = t->vertex_count, triangles = 0, longest = 1;
   for (size_t k = 0; k < t->leaf_count; k++) {

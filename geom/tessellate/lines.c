@@ -18,7 +18,7 @@
 typedef struct LeafSide {
   uint32_t leaf;
   int side, fixed;
-  double coordinate; // at a seam that of the lower end of the domain
+  double coordinate; // at a seam, that of the lower end of the domain
   double from, to;
   double n;
   double slant, spacing; // slants meet the side at slant + k * spacing; spacing is 0 without slants
@@ -171,13 +171,13 @@ static size_t atom_at(const Tessellator *t, const Line *line, double from) {
   return low;
 }
 
-// Steps of an atom; what is a whole number but for rounding is that number.
+// Number of steps of an atom; rounded to an integer that it equals up to rounding.
 static uint32_t steps(double needed) {
   double n = ceil(needed - 1e-9 * (1 + needed));
   return n < 1 ? 1 : (uint32_t)n;
 }
 
-// Atoms of the line on which `count` sides lie.
+// Makes the atoms of the line on which `count` sides lie.
 static CagStatus cut_line(Tessellator *t, Line *line, const LeafSide *sides, size_t count,
                           Marks *marks, CagError *err) {
   CagStatus status = find_marks(marks, sides, count, err);
@@ -267,7 +267,7 @@ uint32_t cag_tess_side_line(const Tessellator *t, uint32_t face, int side) {
 
 // --- Joining ---
 
-// Parameters of one line as parameters of the other: affine where that is right, else by the
+// Maps parameters of one line to parameters of the other: affinely if that is correct, else by the
 // nearest point.
 typedef struct Match {
   const Tessellator *t;
@@ -294,8 +294,8 @@ static double affine_image(const Match *m, int of, double t) {
   return m->reversed ? b + (a - b) * x : a + (b - a) * x;
 }
 
-// Parameter of the other line's point nearest to that at t: the nearest sample, then sections of
-// the steps beside it.
+// Parameter of the other line's point nearest to that at t: the nearest sample, refined by section
+// search on the adjacent steps.
 static CagStatus nearest_image(const Match *m, int of, double t, double *out, CagError *err) {
   int other = 1 - of;
   CagVec3 p, q;
@@ -331,7 +331,7 @@ static CagStatus image(const Match *m, int of, double t, double *out, CagError *
 }
 
 static CagStatus begin_match(Match *m, CagError *err) {
-  const double same = 1e-7; // of the size: edges of solids are matched to 1e-6
+  const double same = 1e-7; // relative to the size: edges of solids are matched to 1e-6
   enum { TRIALS = 16 };
   m->affine = true;
   for (size_t k = 1; k < TRIALS && m->affine; k++) {
@@ -364,10 +364,10 @@ static int by_master(const void *a, const void *b) {
   return compare(((const Cut *)a)->t[0], ((const Cut *)b)->t[0]);
 }
 
-// Cuts of both lines in the master's order; those at the same place become one.
+// Cuts of both lines in the master's order; coinciding cuts are merged.
 static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError *err) {
   const double thin =
-      CAG_COINCIDENT; // of the domain: the rounding of the map and of the nearest point
+      CAG_COINCIDENT; // fraction of the domain: rounding of the map and of the nearest point
   size_t n = 0;
   for (int of = 0; of < 2; of++)
     for (size_t a = 0; a < m->lines[of]->atom_count; a++) {
@@ -375,11 +375,11 @@ static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError 
       Cut *cut = &cuts[n++];
       cut->t[of] = atom->from;
       cut->corner[of] = atom->corner;
-      cut->corner[1 - of] = a == 0; // where one line begins the other begins or ends
+      cut->corner[1 - of] = a == 0; // the start of one line is the start or the end of the other
       CagStatus status = image(m, of, atom->from, &cut->t[1 - of], err);
       if (status) return status;
     }
-  // Of lines that run against each other, first atoms begin at both ends.
+  // For lines in opposite directions, first atoms begin at both ends.
   if (!m->reversed) cuts[n++] = (Cut){{m->to[0], m->to[1]}, {true, true}};
   qsort(cuts, n, sizeof *cuts, by_master);
   size_t kept = 0;
@@ -390,7 +390,7 @@ static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError 
       cuts[++kept] = cuts[k];
       continue;
     }
-    // Each line keeps its own number for its own corner.
+    // Each line keeps the exact parameter of its own corner.
     for (int w = 0; w < 2; w++)
       if (cuts[k].corner[w] && !last->corner[w]) last->t[w] = cuts[k].t[w], last->corner[w] = true;
   }
@@ -411,7 +411,7 @@ static CagStatus write_atoms(Tessellator *t, const Match *m, const Cut *cuts, si
   for (int w = 0; w < 2; w++) {
     first[w] = t->atom_count;
     for (size_t k = 0; k < atoms; k++) {
-      // The slave may run against the master; its atoms ascend like every line's.
+      // The slave may be reversed; its atoms ascend like those of every line.
       bool backwards = w == 1 && m->reversed;
       size_t from = backwards ? atoms - k : k, to = backwards ? from - 1 : from + 1;
       CagStatus status = push_atom(t, cuts[from].t[w], cuts[to].t[w], err);
@@ -430,7 +430,7 @@ static CagStatus write_atoms(Tessellator *t, const Match *m, const Cut *cuts, si
   return CAG_OK;
 }
 
-// Parameters of the slave's nodes where the map is not affine: images of the master's.
+// Parameters of the slave's nodes if the map is not affine: images of the master's.
 static CagStatus write_own_parameters(Tessellator *t, const Match *m, uint32_t slave,
                                       CagError *err) {
   Line *line = &t->lines[slave];

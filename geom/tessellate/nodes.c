@@ -1,9 +1,9 @@
 // Tessellation, step 3: the nodes of lines become vertices.
 //
-// A node is one point, but not always one vertex: at a seam the parameters differ from side to
-// side, at a crease the normals. Leaf corners lie on two lines and so have four quadrants, each
-// with its vertex. Vertices of one point are united in `weld`; in the end all take the position of
-// the first of them.
+// A node is one point, but not always one vertex: at a seam the parameters differ between the
+// sides, at a crease the normals. Leaf corners lie on two lines and so have four quadrants, each
+// with its vertex. Vertices at one point are united in `weld`; in the end all of them get the
+// position of the first.
 
 #include <string.h>
 
@@ -12,7 +12,7 @@
 #include "geom/surface/frames.h"
 #include "geom/tessellate/tessellation.h"
 
-// Normals that differ by less than this are one: they are the same limit computed in two ways.
+// Normals that differ by less than this are equal: they are the same limit computed in two ways.
 static const double same_normal = 1e-6;
 
 // --- Vertices ---
@@ -65,8 +65,8 @@ static bool cross_normal(const CagSurface *s, const CagVec3 d[4], CagVec3 *out) 
   return cag_normal_of_partials(s, d[0], d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)], out);
 }
 
-// Normal where the partials are no help: the surface's own limit, else that a little further
-// inside, else zero (the mean of the triangles is put there in the end).
+// Normal if the partials do not determine it: the surface's own limit, else that a little further
+// inside, else zero (replaced by the mean of the triangles in the end).
 //
 // Before a break inside the domain, the surface's own limit is the one after the break. There this
 // function evaluates the normal a little before the break instead.
@@ -108,7 +108,7 @@ static bool alike(CagVec3 a, CagVec3 b) { return cag_norm(cag_sub(a, b)) <= same
 
 static size_t corner_slot(const Tessellator *t, uint32_t face, double u, double v) {
   uint64_t a, b;
-  u += 0.0, v += 0.0; // one zero
+  u += 0.0, v += 0.0; // merges the two zeros
   memcpy(&a, &u, sizeof a);
   memcpy(&b, &v, sizeof b);
   uint64_t h = (a ^ face) * 0x9e3779b97f4a7c15u; // golden ratio, as in Fibonacci hashing
@@ -134,7 +134,7 @@ static bool is_closed_break(const Face *f, int direction, double at) {
   return false;
 }
 
-// Vertices of the four quadrants of the corner at (u, v), each new one united with the first.
+// Makes vertices for the four quadrants of the corner at (u, v), each united with the first.
 static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
   const Face *f = &t->faces[c->face];
   const CagSurface *s = f->surface;
@@ -142,7 +142,7 @@ static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
   bool split_u = is_closed_break(f, 0, c->u), split_v = is_closed_break(f, 1, c->v);
   for (int q = 3; q >= 0; q--) {
     bool after_u = q & 1, after_v = q & 2;
-    // Where the surface is smooth across the corner one quadrant speaks for both.
+    // If the surface is smooth across the corner, two quadrants share a vertex.
     int twin = q | (split_u ? 0 : 1) | (split_v ? 0 : 2);
     if (twin != q) {
       c->quadrant[q] = c->quadrant[twin];
@@ -167,8 +167,8 @@ static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
   return CAG_OK;
 }
 
-// The corner at canonical (u, v) of a face, made when it is asked for first. `vertex`: its vertex,
-// when it is known (at poles).
+// The corner at canonical (u, v) of a face, created on demand. `vertex`: its vertex, if known (at
+// poles).
 static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, uint32_t vertex,
                            uint32_t *out, CagError *err) {
   const CagSurface *s = t->faces[face].surface;
@@ -192,7 +192,8 @@ static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, ui
 uint32_t cag_tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
                               bool node_is_end) {
   if (node->corner == NO_INDEX) return node->vertex[after];
-  // The leaf lies before a node that ends its side, after one that begins it (or lies within it).
+  // The leaf lies before a node that ends its side, and after one that begins it (or lies within
+  // it).
   bool after_u = line->fixed == 0 ? after : !node_is_end,
        after_v = line->fixed == 0 ? !node_is_end : after;
   return t->corners[node->corner].quadrant[2 * after_v + after_u];
@@ -207,7 +208,7 @@ static void place_nodes(Tessellator *t, Line *line) {
     for (size_t k = 0; k < atom->n; k++, at++) {
       double x = line->own_parameters ? line->own_parameters[at]
                                       : tess_mix(atom->from, atom->to, k, atom->n);
-      // corner: 0 marks one for the next step.
+      // corner: 0 marks a corner for the next step.
       *node++ = (Node){x, {NO_INDEX, NO_INDEX}, k == 0 && atom->corner ? 0 : NO_INDEX};
     }
     if (a + 1 == line->atom_count) *node = (Node){atom->to, {NO_INDEX, NO_INDEX}, 0};
@@ -220,13 +221,14 @@ static void node_parameters(const Line *line, double t, bool after, double *u, d
   *v = line->fixed == 0 ? t : at;
 }
 
-// All vertices of a pole line are one point. Where the normal has a limit they are one vertex too;
-// else (the tip of a cone) each triangle has its own, with the normal at its middle: that is the
-// vertex of the node where the triangle's base begins.
+// All vertices of a pole line are one point. If the normal has a limit they are also one vertex;
+// otherwise (at the tip of a cone) each triangle has its own, with the normal at its middle: the
+// vertex of the node at which the triangle's base begins.
 static CagStatus pole_nodes(Tessellator *t, Line *line, CagError *err) {
   enum { TRIALS = 5 };
-  const double same_limit = 1e-4; // limits are found by small steps, not in closed form
-  const double beside = 1e-5;     // of the domain: where the normal of a cone's side is taken
+  const double same_limit = 1e-4; // limits are computed by small steps, not in closed form
+  const double beside = 1e-5;     // of the domain: offset at which the normal of a cone's side is
+                                  // evaluated
   const CagSurface *s = t->faces[line->face].surface;
   Node *nodes = t->nodes + line->node;
   size_t last = line->node_count - 1;
@@ -263,7 +265,7 @@ static CagStatus pole_nodes(Tessellator *t, Line *line, CagError *err) {
     if (nodes[k].corner == NO_INDEX) continue;
     node_parameters(line, nodes[k].t, true, &u, &v);
     status = corner_at(t, line->face, u, v, nodes[k].vertex[0], &nodes[k].corner, err);
-    // The corner of a closed pole line was made at its other end; each end keeps its own vertex.
+    // The corner of a closed pole line was created at its other end; each end keeps its own vertex.
     nodes[k].corner = NO_INDEX;
   }
   return status;
@@ -286,7 +288,7 @@ typedef struct Row {
   CagVec3 *points, *du, *dv;
 } Row;
 
-// Vertices of the nodes that are no corners, as leaves after (before) the line see them.
+// Makes vertices for the nodes that are not corners, for the leaves after (before) the line.
 static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row *row,
                               CagError *err) {
   const CagSurface *s = t->faces[line->face].surface;
@@ -313,19 +315,19 @@ static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row 
   return status;
 }
 
-// Gives the nodes a vertex of their own for the leaves before an interior break where the normal
-// there is another.
+// Makes separate vertices for the leaves before an interior break, if the normal there is
+// different.
 static CagStatus crease_nodes(Tessellator *t, Line *line, bool only_look, bool *found,
                               CagError *err) {
   const CagSurface *s = t->faces[line->face].surface;
   Node *nodes = t->nodes + line->node;
-  // Looking at some nodes tells whether there is a crease: it is a matter of the whole line, but
-  // for surfaces made to deceive.
+  // Testing some nodes suffices to detect a crease, which extends along the whole line except on
+  // contrived surfaces.
   enum { LOOKS = 16 };
   size_t stride = only_look && line->node_count > LOOKS ? line->node_count / LOOKS : 1, step;
   for (size_t k = 0; k < line->node_count; k += step) {
     Node *node = &nodes[k];
-    step = node->corner != NO_INDEX ? 1 : stride; // corners are not looked at
+    step = node->corner != NO_INDEX ? 1 : stride; // corners are skipped
     if (node->corner != NO_INDEX) continue;
     double u, v;
     CagVec3 point, normal;
@@ -356,7 +358,7 @@ static CagStatus line_nodes(Tessellator *t, Line *line, const Row *row, CagError
   return !status && crease ? crease_nodes(t, line, false, &crease, err) : status;
 }
 
-// Any vertex of the node: all are one point.
+// Any vertex of the node, since all are one point.
 static uint32_t some_vertex(const Tessellator *t, const Node *node) {
   return node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
 }
@@ -400,7 +402,7 @@ static CagStatus begin_nodes(Tessellator *t, Row *row, CagError *err) {
 CagStatus cag_tess_make_nodes(Tessellator *t, CagError *err) {
   Row row = {0};
   CagStatus status = begin_nodes(t, &row, err);
-  // Poles first: lines that end there take the pole's vertex for their corner.
+  // Poles first: lines that end there use the pole's vertex for their corner.
   for (int poles = 1; poles >= 0; poles--)
     for (size_t k = 0; !status && k < t->line_count; k++) {
       if (t->lines[k].pole != (poles == 1)) continue;

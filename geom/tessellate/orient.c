@@ -1,10 +1,10 @@
-// Turning the closed parts of a mesh outward.
+// Orients the closed parts of a mesh outward.
 //
-// Edges tie triangles into parts: a union-find forest in which each triangle knows whether it runs
-// against its root. The signed volume of a part tells which way it looks, and the number of other
-// parts around it which way it should. Whether a part is within another is asked at points of the
-// one by rays upward through the other, with exact predicates, so that triangles that share an edge
-// or a corner count once.
+// Edges connect triangles into parts: a union-find forest in which each triangle stores whether it
+// is oriented against its root. The sign of a part's volume gives its current orientation, and the
+// number of other parts around it the required one. Whether a part is inside another is tested at
+// points of it by vertical rays through the other, with exact predicates, so that triangles that
+// share an edge or a corner count once.
 
 #include "geom/tessellate/orient.h"
 
@@ -18,27 +18,29 @@
 #include "geom/mesh/predicates.h"
 #include "geom/tessellate/tessellate.h"
 
-// A part whose volume is below this fraction of the cube of its size is flat but for rounding.
+// A part whose volume is below this fraction of the cube of its size is flat up to rounding.
 #define FLAT 1e-14
-// Points of a part at which its nesting is asked: on the other part's surface they decide nothing.
+// Number of points of a part at which nesting is tested; points on the other part's surface are
+// inconclusive.
 #define PROBES 7
 #define PROBES_DECISIVE 3
 
 typedef struct Part {
   bool closed;
-  double volume; // signed, as the parts' roots run
+  double volume; // signed, with the orientation of the parts' roots
   CagBounds box;
   size_t first, count; // in Work.order
-  bool turn;           // against the root
+  bool turn;           // opposite to the root
 } Part;
 
 typedef struct Work {
   const CagMesh *mesh;
-  uint32_t *parent; // forest of triangles
-  bool *against;    // the triangle runs against its parent; after `settle`, against its root
-  bool *open;       // of roots: the part is open or one-sided
-  uint32_t *part;   // of each triangle; UINT32_MAX: an edge or a point of the welded mesh
-  uint32_t *order;  // triangles, those of one part side by side
+  uint32_t *parent; // union-find forest of triangles
+  bool *against;    // the triangle is oriented against its parent; after `settle`, against its root
+  bool *open;       // for roots: the part is open or one-sided
+  uint32_t *part;   // for each triangle; UINT32_MAX: collapsed to an edge or a point of the welded
+                    // mesh
+  uint32_t *order;  // triangles, sorted by part
   Part *parts;
   size_t part_count;
 } Work;
@@ -64,7 +66,7 @@ static bool has_area(const CagMesh *m, size_t t) {
 
 // --- Parts ---
 
-// Root of a triangle, and whether the triangle runs against it; shortens the way.
+// Root of a triangle, and whether the triangle is oriented against it; with path compression.
 static uint32_t find_root(Work *w, uint32_t t, bool *against) {
   uint32_t root = t;
   bool turned = false;
@@ -81,7 +83,7 @@ static uint32_t find_root(Work *w, uint32_t t, bool *against) {
   return root;
 }
 
-// agree: the two triangles should keep their senses relative to each other. False: they cannot.
+// agree: the two triangles must keep their relative orientation. False: they cannot.
 static bool tie(Work *w, uint32_t a, uint32_t b, bool agree) {
   bool against_a, against_b;
   uint32_t root_a = find_root(w, a, &against_a), root_b = find_root(w, b, &against_b);
@@ -102,8 +104,8 @@ static void mark_open(Work *w, uint32_t t) {
   w->open[find_root(w, t, &against)] = true;
 }
 
-// The uses of one edge. Where more than two triangles meet, their own senses stand: which belongs
-// to which is not to be told from them.
+// Ties the triangles at one edge. If more than two meet, their own orientations are kept, since
+// pairs cannot be determined.
 static void tie_uses(Work *w, const CagMeshEdge *use, size_t n) {
   const uint32_t first = (uint32_t)cag_mesh_edge_triangle(&use[0]);
   size_t forward = cag_mesh_edge_forward(&use[0]);
@@ -116,7 +118,7 @@ static void tie_uses(Work *w, const CagMeshEdge *use, size_t n) {
   if (n == 1 || !fits || (n > 2 && 2 * forward != n)) mark_open(w, first);
 }
 
-// Without the uses of triangles that have no area: their neighbors then share an edge.
+// Drops uses by triangles without area: their neighbors then share an edge.
 static size_t drop_degenerate(const CagMesh *m, CagMeshEdge *edges, size_t n) {
   size_t kept = 0;
   for (size_t i = 0; i < n; i++)
@@ -124,7 +126,7 @@ static size_t drop_degenerate(const CagMesh *m, CagMeshEdge *edges, size_t n) {
   return kept;
 }
 
-// Edges of the welded mesh, and their number; NULL: memory is out, or the work is to end.
+// Edges of the welded mesh, and their number; NULL: out of memory, or canceled.
 static CagMeshEdge *edges_of(const CagMesh *m, size_t *n) {
   CagMeshEdge *edges = cag_mesh_edges(m->triangles, m->triangle_count, m->weld, m->vertex_count, n);
   if (edges && m->weld) *n = drop_degenerate(m, edges, *n);
@@ -179,10 +181,10 @@ static bool make_parts(Work *w) {
 }
 
 static bool runs_against(const Work *w, uint32_t t) {
-  return w->parent[t] != t && w->against[t]; // ways are short after make_parts
+  return w->parent[t] != t && w->against[t]; // paths are short after make_parts
 }
 
-// Volume from a corner of the part's own, which keeps the terms small, and bounds.
+// Volume relative to a vertex of the part, which keeps the terms small, and bounds.
 static void measure(Work *w, Part *p) {
   const CagMesh *m = w->mesh;
   const CagVec3 tip = m->positions[m->triangles[3 * (size_t)w->order[p->first]]];
@@ -208,8 +210,8 @@ static bool holds(const CagBounds *a, const CagBounds *b) {
          a->max.x >= b->max.x && a->max.y >= b->max.y && a->max.z >= b->max.z;
 }
 
-// How often the outline of a triangle, seen from above, winds around p. Each edge is looked at from
-// its lower end, so that the two triangles at it agree, and contains that end but not the other.
+// Winding number about p of the outline of a triangle seen from above. Each edge is processed from
+// its lower end, so that both of its triangles agree, and includes that end but not the other.
 static int winding_from_above(const CagVec3 c[3], CagVec3 p) {
   int winding = 0;
   for (int j = 0; j < 3; j++) {
@@ -222,7 +224,7 @@ static int winding_from_above(const CagVec3 c[3], CagVec3 p) {
   return winding;
 }
 
-// How often a part winds around p; *on: p lies on it.
+// Winding number of a part about p; *on: p lies on it.
 static int part_winding(const Work *w, const Part *p, CagVec3 at, bool *on) {
   const CagMesh *m = w->mesh;
   int winding = 0;
@@ -236,7 +238,7 @@ static int part_winding(const Work *w, const Part *p, CagVec3 at, bool *on) {
       continue;
     const int around = winding_from_above(c, at);
     if (around == 0) continue;
-    // A triangle that runs counter-clockwise seen from above has p below it on its negative side.
+    // If a triangle is counter-clockwise from above, p below it is on its negative side.
     const int side = cag_side_of_plane(c[0], c[1], c[2], at);
     *on |= side == 0;
     if (side * around < 0) winding += runs_against(w, w->order[i]) ? -around : around;
@@ -244,7 +246,7 @@ static int part_winding(const Work *w, const Part *p, CagVec3 at, bool *on) {
   return winding;
 }
 
-// True when the first probes of a part that are not on the other are all within it.
+// Returns true if the first probes of a part that are not on the other are all inside it.
 static bool is_within(const Work *w, const Part *inner, const Part *outer) {
   size_t asked = inner->count < PROBES ? inner->count : PROBES, within = 0;
   for (size_t i = 0; i < asked && within < PROBES_DECISIVE; i++) {
@@ -260,7 +262,7 @@ static bool is_within(const Work *w, const Part *inner, const Part *outer) {
   return within > 0;
 }
 
-// By where they begin in x; of those that begin together, larger ones first.
+// Sorts by start in x; for equal starts, larger ones first.
 static int by_start(const void *a, const void *b) {
   const Part *p = *(Part *const *)a, *q = *(Part *const *)b;
   if (p->box.min.x != q->box.min.x) return p->box.min.x < q->box.min.x ? -1 : 1;
@@ -269,8 +271,8 @@ static int by_start(const void *a, const void *b) {
   return p < q ? -1 : p > q;
 }
 
-// Sweeps along x. `near`: the parts that began before and have not ended, which may be around the
-// next one.
+// Sweeps along x. `near`: the parts that have started and not ended, which may contain the next
+// one.
 static CagStatus choose_turns(Work *w, CagError *err) {
   size_t n = 0, near_count = 0;
   Part **sorted = cag_malloc((w->part_count + 1) * sizeof(Part *));
@@ -310,8 +312,8 @@ static bool turns(const Work *w, size_t t) {
 
 enum { KEPT = 1, TURNED = 2 };
 
-// A vertex with a normal that triangles of both kinds share stands twice afterwards. second[v]: the
-// number of the other one.
+// A vertex with a normal that is shared by reversed and other triangles is duplicated. second[v]:
+// index of the copy.
 static CagStatus copy_turned(const Work *w, unsigned char *kinds, uint32_t *second, CagMesh **out,
                              CagError *err) {
   const CagMesh *m = w->mesh;
@@ -394,7 +396,7 @@ CagStatus cag_mesh_outward(const CagMesh *m, CagMesh **out, CagError *err) {
   return status;
 }
 
-// Six times the signed volume, from a vertex of the mesh, which keeps the terms small.
+// Six times the signed volume, relative to a vertex of the mesh, which keeps the terms small.
 static double signed_six(const CagMesh *m) {
   double six = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {

@@ -2,10 +2,10 @@
 //
 // A linear triangle whose corners lie within a box of hu x hv parameters is off the surface by at
 // most (hu^2 |S_uu| + 2 hu hv |S_uv| + hv^2 |S_vv|) / 8 (Filip, Magedson and Markot 1986). Only the
-// components along the normal count, so that flat pieces take two triangles whatever their
-// parametrization. The second partials are taken from differences of first ones on a dense grid.
-// Then the choice is tried out: distances from the surface to the triangles are measured, and the
-// bound is scaled by what was found, until the distance is under the tolerance and near to it.
+// components along the normal count, so that flat pieces need two triangles for any
+// parametrization. The second partials are computed from differences of first ones on a dense grid.
+// The choice is then tested: distances from the surface to the triangles are measured, and the
+// bound is scaled by the result, until the distance is below the tolerance and close to it.
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 #include "geom/tessellate/trial.h"
 
 enum {
-  STEPS = 8, // of the sampling grid of a leaf; even, so that halves are known as well
+  STEPS = 8, // of the sampling grid of a leaf; even, so that halves are sampled as well
   SIDE = STEPS + 1,
   SAMPLES = SIDE * SIDE,
   MAX_DEPTH = 24,     // of halving: features of a 4000th of the domain, in both directions
@@ -25,24 +25,25 @@ enum {
   MAX_CORRECTIONS = 8
 };
 
-// The sampling grid stays this far (of the leaf) inside, so that one-sided derivatives of the
-// leaf's own piece are seen, and poles have normals.
+// The sampling grid stays this far (as a fraction of the leaf) inside, so that one-sided
+// derivatives are those of the leaf's piece, and poles have normals.
 static const double inset = 1e-6;
-// Distances found on samples may be this much of the tolerance; the rest is for the points between.
+// Distances measured on samples may be this fraction of the tolerance; the rest is a margin for the
+// points between.
 static const double highest_use = 0.9, aimed_use = 0.84, lowest_use = 0.68;
 
 typedef struct Range {
-  int u0, u1, v0, v1; // sample indices, both ends in
+  int u0, u1, v0, v1; // sample indices, including both ends
 } Range;
 
-// Needs of a leaf in parameters of 0..1: triangles of 1/nu x 1/nv are off by
+// Requirements of a leaf in parameters 0..1: triangles of 1/nu x 1/nv are off by
 // uu/nu^2 + uv/(nu nv) + vv/nv^2.
 typedef struct Needs {
   double uu, uv, vv;
   double turn[2];   // of the normal
-  double bend[2];   // the same, but for where it turns at once, at cusps
-  double both;      // of bends, about the same axis
-  double diagonal;  // the same along the diagonal that is cut: negative where they cancel there
+  double bend[2];   // the same, excluding jumps at cusps
+  double both;      // of bends about the same axis
+  double diagonal;  // the same along the diagonal of the cut: negative if they cancel there
   double length[2]; // of lines
 } Needs;
 
@@ -53,15 +54,15 @@ typedef struct Sampled {
   bool has_normal[SAMPLES];
   double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
   double turn[2][SAMPLES];  // of the normal on the way to the next sample
-  double both[SAMPLES];     // the product of both turns where they have the same axis, else less
-  double diagonal[SAMPLES]; // of that sign which it has along the shorter diagonal, which is cut
+  double both[SAMPLES];     // the product of both turns if they have the same axis, else less
+  double diagonal[SAMPLES]; // with the sign for the shorter diagonal, along which is cut
 } Sampled;
 
 // --- Sampling ---
 
 static void find_lengths_and_normals(Sampled *s) {
-  // Where the partials are nearly parallel the cross product is rounding, where one of them is as
-  // short as that, it is rounding itself.
+  // If the partials are nearly parallel the cross product is rounding; if one of them is that
+  // short, it is rounding itself.
   const double parallel = CAG_PARALLEL;
   for (int k = 0; k < SAMPLES; k++) {
     CagVec3 n = cag_cross(s->du[k], s->dv[k]);
@@ -115,8 +116,8 @@ static void find_turns(Sampled *s) {
       }
 }
 
-// Along a diagonal the turns add up where they have the same axis, or cancel. Where the lines of
-// the grid cross aslant, as on twisted bodies, one diagonal is clearly the shorter one.
+// Along a diagonal the turns add up if they have the same axis, or cancel. If the lines of the grid
+// are oblique, as on twisted bodies, one diagonal is clearly shorter.
 static void find_common_turns(Sampled *s) {
   const double aslant = 0.1; // cosine of the angle between the lines
   for (int i = 0; i < STEPS; i++)
@@ -154,10 +155,10 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   return CAG_OK;
 }
 
-// Radians between two samples: where the normal turns more, they do not tell how.
+// Radians between two samples above which the samples do not determine how the normal turns.
 static const double turned_away = 1;
 
-// Points may be spread well about a rim where the normal turns at once. Smaller ones are left to
+// Points can be distributed well around a rim at which the normal jumps. Smaller rims are left to
 // the trial.
 static bool are_turns_resolved(const CagTessellation *how, const Sampled *s, int direction) {
   const double small = 4; // tolerances
@@ -169,9 +170,9 @@ static bool are_turns_resolved(const CagTessellation *how, const Sampled *s, int
   return true;
 }
 
-// Do the samples along a direction tell the whole story? If the mean of the derivatives at the ends
-// of a step is far from the step made, the surface does something between them (the turns of a
-// helix). At half turns both vanish, and the lengths tell.
+// Whether the samples along a direction are dense enough. If the mean of the derivatives at the
+// ends of a step differs much from the step itself, the surface has features between them (such as
+// the turns of a helix). At half turns both vanish, and the lengths decide.
 static bool is_resolved(const CagTessellation *how, const Sampled *s, int direction) {
   const double far = 0.07; // of the longest step: an arc of 50 degrees, a sixth of a wave
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
@@ -188,12 +189,12 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
       worst = tess_larger(worst, cag_norm(cag_sub(step, mean)));
       worst = tess_larger(worst, fabs(length - cag_norm(step)));
     }
-  // Within the tolerance it does not matter, and of a point all is rounding.
+  // Within the tolerance it does not matter, and if the surface is a point everything is rounding.
   return worst <= tess_larger(far * longest, how->tolerance) &&
          are_turns_resolved(how, s, direction);
 }
 
-// --- Needs and counts ---
+// --- Requirements and counts ---
 
 static Needs needs_of(const Sampled *s, Range r) {
   Needs n = {.diagonal = -INFINITY};
@@ -230,7 +231,7 @@ static Needs needs_of(const Sampled *s, Range r) {
   return n;
 }
 
-// Least n >= 1 with a/n^2 + b/n <= limit; infinite where there is none.
+// Smallest n >= 1 with a/n^2 + b/n <= limit; infinite if there is none.
 static double least_count(double a, double b, double limit) {
   if (!(limit > 0)) return INFINITY;
   if (a <= 0 && b <= 0) return 1;
@@ -243,8 +244,8 @@ typedef struct Form {
   double uu, uv, vv, limit;
 } Form;
 
-// Takes the counts with nu (which: 0) or nv (1) fixed, the other following, where their product is
-// clearly smaller than that of the best so far.
+// Tries the counts with nu (which: 0) or nv (1) fixed and the other derived; accepts them if their
+// product is clearly smaller than the best so far.
 static void try_counts(const Form *f, int which, double fixed, double n[2], double *best) {
   const double clearly = 0.9;
   double own = which == 0 ? f->uu : f->vv, others = which == 0 ? f->vv : f->uu;
@@ -255,9 +256,9 @@ static void try_counts(const Form *f, int which, double fixed, double n[2], doub
   n[1 - which] = other;
 }
 
-// Counts with a small product. On the boundary of what is allowed, nu nv = (uu r + uv + vv/r) /
-// limit for the ratio r = nv/nu. Among the ratios that are nearly best the one nearest to square
-// quadrilaterals is taken; single rows and columns only where they are clearly better.
+// Counts with a small product. On the boundary of the admissible range, nu nv = (uu r + uv + vv/r)
+// / limit for the ratio r = nv/nu. Among nearly optimal ratios the one closest to square
+// quadrilaterals is chosen; single rows and columns only if they are clearly better.
 static void best_counts(const Form *f, double square_ratio, double n[2]) {
   const double nearly = 1.1;
   double sum = nearly * (2 * sqrt(f->uu * f->vv) + f->uv) - f->uv, ratio = square_ratio;
@@ -281,16 +282,17 @@ static void best_counts(const Form *f, double square_ratio, double n[2]) {
   try_counts(f, 1, 1, n, &best);
 }
 
-// Of the angle: where grids of unlike fineness are sewn edges lie elsewhere than in the grid.
+// Fraction of the angle: where grids of different fineness are stitched, edges differ from those of
+// the grid.
 static const double closely = 0.95;
-// Of the tolerance. Edges need not be shorter than that for the angle: at a cusp the normal turns
-// at once.
+// Fraction of the tolerance. Edges need not be shorter than that because of the angle: at a cusp
+// the normal jumps.
 static const double shortest_edge = 0.2;
 
 // Counts for a leaf; correction scales the bound on the distance.
 static void counts_for(const CagTessellation *how, const Needs *needs, double correction,
                        double n[2]) {
-  // Values below are rounding of zero; they would only make stripes.
+  // Smaller values are rounding of zero, and would only produce stripes.
   double nothing = how->tolerance * 1e-6;
   double uu = needs->uu > nothing ? needs->uu * correction : 0,
          uv = needs->uv > nothing ? needs->uv * correction : 0,
@@ -304,10 +306,9 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
            b = needs->bend[1] > no_turn ? needs->bend[1] : 0,
            limit = closely * closely * how->angle * how->angle;
-    // Where turns cancel along the diagonals, both sides of a quadrilateral may have the whole
-    // angle.
-    const double canceled = -0.5; // of what they would be about one axis
-    const double sewn = 0.9;      // where bands are sewn, edges lean slightly more
+    // If turns cancel along the diagonals, both sides of a quadrilateral may use the whole angle.
+    const double canceled = -0.5; // fraction of the value for a common axis
+    const double sewn = 0.9;      // where bands are stitched, edges lean slightly more
     if (needs->diagonal < canceled * a * b) {
       most[0] = tess_larger(1, ceil(a / (sewn * closely * how->angle)));
       most[1] = tess_larger(1, ceil(b / (sewn * closely * how->angle)));
@@ -321,8 +322,8 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     }
   }
   if (how->max_edge > 0) {
-    // A triangle's edge is at most as long as two sides of a quadrilateral, and lines may be a
-    // little longer between the samples.
+    // A triangle's edge is at most as long as two sides of a quadrilateral, and lines may be
+    // slightly longer between the samples.
     const double between = 1.05;
     double a = between * needs->length[0], b = between * needs->length[1];
     best_counts(&(Form){a * a, 2 * a * b, b * b, how->max_edge * how->max_edge}, square_ratio,
@@ -331,7 +332,7 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
   }
 }
 
-// --- Settling ---
+// --- Trials ---
 
 static int longer_way(const Needs *needs) { return needs->length[0] >= needs->length[1] ? 0 : 1; }
 
@@ -342,14 +343,13 @@ static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double
   return cag_tess_try_distance(trial, sine, distance, err);
 }
 
-// Finds counts whose measured distance lies under the tolerance and not far under it. `surprise`:
-// not NULL where the leaf may be halved instead; set where the samples were blind to what is
-// between them.
+// Finds counts whose measured distance is below the tolerance and not far below it. `halved`: not
+// NULL if the leaf may be halved instead; set if the samples missed features between them.
 static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs needs, int *halved,
                                  CagError *err) {
-  const double surprising = 3; // times the tolerance, where the bound promised less than it
-  const double blind = 4;      // times as many as the samples told: they did not see what is there
-  // Strips that are twisted may be sewn to other nodes than those that are tried.
+  const double surprising = 3; // multiple of the tolerance, if the bound predicted less
+  const double blind = 4;      // multiple of the predicted count: the samples missed features
+  // Twisted strips may be stitched to other nodes than those that are tested.
   const double sewn = 1.15, twisted = 0.05;
   double tolerance = t->how.tolerance, correction = 1, limit = (double)t->how.max_triangles;
   double smallest = INFINITY, best[2] = {1, 1}, told = 0, *n = trial->n;
@@ -381,7 +381,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
       memcpy(best, n, sizeof best);
       if (use >= lowest_use || quads <= 1) break;
     }
-    // Differences are blind to what happens between samples: then the counts themselves grow.
+    // Differences miss features between samples: then the counts themselves grow.
     double largest = tess_larger(needs.uu, tess_larger(needs.uv, needs.vv));
     if (use > highest_use && largest * correction < tolerance * 0.5) {
       needs.uu = tess_larger(needs.uu, tolerance);
@@ -393,7 +393,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     memcpy(n, best, sizeof best);
     return CAG_OK;
   }
-  // Corrections did not settle it; doubling does.
+  // If corrections do not converge, doubling does.
   for (double distance = INFINITY; distance > highest_use * tolerance;) {
     n[0] *= 2;
     n[1] *= 2;
@@ -404,12 +404,12 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
   return CAG_OK;
 }
 
-// Raises counts until the edges keep the angle and the length: between samples the normal turns
-// faster than from one to the next. Looked at only where the samples come near to what is allowed.
+// Raises counts until the edges respect the angle and the length: between samples the normal may
+// turn faster than on average. Tested only if the samples come close to the limits.
 static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Needs *needs,
                               int *halved, CagError *err) {
   const double near = 0.6, slight = 0.05, few = 4;
-  const double surprising = 1.25; // more than that is needed in some part of the leaf only
+  const double surprising = 1.25; // more is needed only in some part of the leaf
   const CagTessellation *how = &t->how;
   const double free = shortest_edge * how->tolerance;
   double *n = trial->n;
@@ -435,7 +435,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
       return CAG_OK;
     }
     for (int d = 0; d < 2; d++) {
-      // A direction that has next to no share in a diagonal does not mend it.
+      // Refining a direction with almost no component in a diagonal does not help.
       bool shares = turn[d] > slight * turn[1 - d] || length[d] > slight * length[1 - d];
       double by = tess_larger(found.along[d], shares ? found.diagonal : 0);
       double more = tess_smaller(ceil(n[d] * by), tess_larger(n[d], ceil(needs->length[d] / free)));
@@ -477,13 +477,13 @@ static double cost_of(const CagTessellation *how, const Sampled *s, Range r) {
   return n[0] * n[1];
 }
 
-// The triangles of a leaf at a pole come together in a point: is the leaf so finely divided around
-// it that they are slivers, and would it be divided less nearer to the pole?
+// The triangles of a leaf at a pole meet in a point: whether the leaf is divided so finely around
+// it that they are slivers, and would be divided less near the pole.
 static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int direction, bool end) {
-  const double slim = 0.15; // base by height: 9 degrees at the tip
+  const double slim = 0.15; // ratio of base to height: 9 degrees at the tip
   const double gain = 0.9;
-  const double small = 50; // tolerances: a leaf that is no higher is near enough to the tip
-  // A leaf may reach from pole to pole: its half is as wide as all of it.
+  const double small = 50; // tolerances: a leaf this low is close enough to the tip
+  // A leaf may extend from pole to pole: its half is as wide as the whole.
   int quarter = STEPS / 4, stride = direction == 0 ? SIDE : 1, other = direction == 0 ? 1 : SIDE;
   Range all = {0, STEPS, 0, STEPS}, near = all;
   if (direction == 0) *(end ? &near.u0 : &near.u1) = end ? STEPS - quarter : quarter;
@@ -493,7 +493,8 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
   counts_for(how, &needs, 1, n);
   if (n[direction] < 2) return false;
   counts_for(how, &fewer, 1, less);
-  // The parallels grow with the distance from the pole: the first one by the first sample.
+  // The parallels grow with the distance from the pole: the first one is estimated from the first
+  // sample.
   for (int i = 0; i < SIDE; i++) {
     int k = i * other + (end ? STEPS - 1 : 1) * stride;
     base = tess_larger(base, s->speed[1 - direction][k] * STEPS);
@@ -503,10 +504,10 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
          less[1 - direction] < gain * n[1 - direction];
 }
 
-// Direction in which the leaf is better halved; -1: none.
+// Direction in which halving the leaf pays off; -1: none.
 static int halving(const CagTessellation *how, const CagSurface *surface, const Sampled *s,
                    int depth) {
-  const double gain = 0.8; // halving makes seams of small triangles: it must save more
+  const double gain = 0.8; // halving adds seams of small triangles, so it must save more
   if (depth >= MAX_DEPTH) return -1;
   for (int d = 0; d < 2; d++)
     if (!is_resolved(how, s, d)) return d;
@@ -527,8 +528,8 @@ static int halving(const CagTessellation *how, const CagSurface *surface, const 
   return by_u <= by_v ? 0 : 1;
 }
 
-// Steps of a part of the domain that keep a shape which is smaller than the tolerance from
-// vanishing: around a closed one three in all, from pole to pole two.
+// Minimum number of steps of a part of the domain, which keeps shapes smaller than the tolerance
+// from vanishing: three in total around a closed one, two from pole to pole.
 static uint32_t least_steps(const CagSurface *s, int direction, double from, double to) {
   bool closed = direction == 0 ? s->closed_u : s->closed_v;
   bool poles = direction == 0 ? s->pole_u0 && s->pole_u1 : s->pole_v0 && s->pole_v1;
@@ -550,12 +551,12 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
     uint32_t least = least_steps(t->faces[face].surface, d, s->from[d], s->to[d]);
     if (leaf->n[d] < least && !t->is_point) leaf->n[d] = least;
   }
-  // Those at poles become one triangle, all others two.
+  // Quadrilaterals at poles become one triangle, all others two.
   t->quads += n[0] * n[1];
   return t->quads > (double)t->how.max_triangles ? cag_tess_limit(t, 2 * t->quads, err) : CAG_OK;
 }
 
-// The halves of a leaf, lower one first. suspect: see TessTrial.
+// Plans the halves of a leaf, lower one first. suspect: see TessTrial.
 static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], const double to[2],
                            int depth, bool suspect, CagError *err) {
   CagStatus status = cag_tess_interrupted(t, err);
@@ -591,7 +592,7 @@ static CagStatus find_breaks(Face *f, int direction, CagError *err) {
   CagStatus status = cag_surface_cuts(s, direction, &all, &n, err);
   if (status) return status;
   const double from = all[0], to = all[n];
-  // Breaks nearer to each other than this are one: no cell is that thin but by rounding.
+  // Breaks closer than this are merged: thinner cells are rounding.
   double thin = 1e-12 * (to - from);
   for (size_t k = 1; k < n; k++)
     if (all[k] > all[count - 1] + thin && all[k] < to - thin) all[count++] = all[k];

@@ -1,8 +1,8 @@
-// Tessellation of plane trimmed faces: their loops as points, the points as triangles.
+// Tessellation of planar trimmed faces: their loops as points, the points as triangles.
 //
-// Where a loop is the edge of other faces of a solid it takes the nodes of their sides, exactly;
-// where it meets other plane faces its edges are straight, and their corners are united in the end.
-// Flat as it is, nothing is added inside.
+// Where a loop is the edge of other faces of a solid, it uses exactly the nodes of their sides;
+// where it meets other planar faces its edges are straight, and their corners are united in the
+// end. No interior points are added, since the face is flat.
 
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +70,7 @@ static bool is_same(Tessellator *t, uint32_t a, uint32_t b) {
 }
 
 // Appends the nodes of a piece, from its start or from its end; the last one is left to the next
-// piece when that begins there.
+// piece if that begins there.
 static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Line *line,
                               bool backwards, CagError *err) {
   for (size_t k = 0; k < line->node_count; k++) {
@@ -86,8 +86,8 @@ static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Li
   return CAG_OK;
 }
 
-// Pieces one after the other: each time the one with an end nearest to where the last ended. Ends
-// that only rounding parts become one point.
+// Chains the pieces: each time the one with an end nearest to the current end. Ends that differ
+// only by rounding are merged.
 static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, size_t n,
                                    CagError *err) {
   const double rounding = 1e-7; // of the size
@@ -120,7 +120,7 @@ static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, si
   return status;
 }
 
-// Whether the ends of the pieces meet, each with that of another.
+// Whether the ends of the pieces meet in pairs.
 static bool do_chain(Tessellator *t, const Piece *pieces, size_t n, double slack) {
   for (size_t i = 0; i < 2 * n; i++) {
     const CagVec3 p = t->positions[node_root(t, pieces[i / 2].line, i % 2)];
@@ -138,7 +138,7 @@ static CagVec3 second_point(const Tessellator *t, const Line *line, bool backwar
   return t->positions[node_vertex(t, line->node + (backwards ? line->node_count - 2 : 1))];
 }
 
-// The piece that begins (*backwards: ends) at p and is not used yet.
+// The unused piece that begins (*backwards: ends) at p.
 static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, double slack,
                          bool *backwards) {
   for (size_t k = 0; k < n; k++)
@@ -151,7 +151,7 @@ static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, dou
   return NULL;
 }
 
-// A loop and its corners: where it begins, its breaks, and its end.
+// A loop and its corners: its start, its breaks, and its end.
 typedef struct Loop {
   const CagCurve *curve;
   CagTransform frame, back;
@@ -160,9 +160,9 @@ typedef struct Loop {
   size_t n;
 } Loop;
 
-// The piece that begins (*backwards: ends) at a corner of the loop, runs along the loop from there,
-// and is not used yet; NULL if there is none. At an acute corner the side before it has nearly the
-// same direction, so that the place on the loop decides.
+// The unused piece that begins (*backwards: ends) at a corner of the loop and runs along the loop
+// from there; NULL if there is none. At an acute corner the previous side has nearly the same
+// direction, so the position on the loop decides.
 static CagStatus piece_at(Tessellator *t, Piece *pieces, size_t n, const Loop *loop, size_t corner,
                           double slack, Piece **out, bool *backwards, CagError *err) {
   *out = NULL;
@@ -251,8 +251,8 @@ static CagStatus find_corners(Loop *loop, CagError *err) {
   return status;
 }
 
-// Steps from one point to another that keep edges short enough. Both faces beside a straight edge
-// find the same number.
+// Number of steps between two points that keeps edges short enough. Both faces at a straight edge
+// compute the same number.
 static size_t steps_between(const Tessellator *t, CagVec3 p, CagVec3 q) {
   const double rounding = CAG_COINCIDENT;
   if (!(t->how.max_edge > 0)) return 1;
@@ -278,7 +278,7 @@ static CagStatus append_edge(const Tessellator *t, Outline *o, size_t first, Cag
   return status;
 }
 
-// Along the loop: pieces where they begin, else its own straight edges.
+// Follows the loop: pieces where they begin, else its own straight edges.
 static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *curve,
                                  const CagTransform *frame, Piece *pieces, size_t n, double slack,
                                  CagError *err) {
@@ -305,9 +305,9 @@ static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *cur
   return status;
 }
 
-// --- Loops of their own ---
+// --- Loops without adjacent faces ---
 
-// How much the frame lengthens at most: the greater singular value of its x and y.
+// The largest factor by which the frame lengthens: the larger singular value of its x and y.
 static double largest_scale(const CagTransform *frame) {
   const CagVec3 x = cag_vec3(frame->m[0][0], frame->m[1][0], frame->m[2][0]),
                 y = cag_vec3(frame->m[0][1], frame->m[1][1], frame->m[2][1]);
@@ -316,7 +316,7 @@ static double largest_scale(const CagTransform *frame) {
   return scale > 0 ? scale : 1;
 }
 
-// The last point of a closed curve is its first one again, and is left out.
+// The last point of a closed curve equals the first one, and is left out.
 static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCurve *curve,
                                   const CagTransform *frame, CagError *err) {
   double *at;
@@ -359,8 +359,8 @@ static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size
   return status;
 }
 
-// Vertices of the face's own for the outline's points (its normal is another than its neighbors'),
-// with x and y of the region as parameters.
+// Makes separate vertices for the outline's points (their normal differs from that of the
+// neighbors), with x and y of the region as parameters.
 static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransform *frame,
                               double *xy, uint32_t *vertices, CagError *err) {
   CagTransform back;
@@ -409,8 +409,8 @@ CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagFaces *fa
   for (size_t l = 0; !status && l < region->count; l++) {
     size_t before = o.count;
     status = outline_of_loop(t, &o, face, l, faces, region->loops[l], &frame, err);
-    // Between the two pieces of a loop that is smaller than the tolerance there is nothing: they
-    // are one edge of the faces beside it.
+    // Between the two pieces of a loop smaller than the tolerance there is nothing: they are one
+    // edge of the adjacent faces.
     if (o.count - before < 3) o.count = before;
     else counts[loops++] = o.count - before;
   }
@@ -421,7 +421,7 @@ CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagFaces *fa
   return status;
 }
 
-// --- Corners between plane faces ---
+// --- Corners between planar faces ---
 
 typedef struct Place {
   CagVec3 at;

@@ -1,6 +1,7 @@
-// Vertices for corners of triangles whose normal is that of another side of a crease or cusp.
+// Separate vertices for corners of triangles whose normal belongs to another side of a crease or
+// cusp.
 //
-// A corner is looked at only if its normal leans away from the triangle. It gets the limit of the
+// A corner is tested only if its normal leans away from the triangle. It gets the limit of the
 // surface's normal from within the triangle, or the opposite of its own normal beyond a cusp.
 
 #include "geom/tessellate/sides.h"
@@ -10,19 +11,19 @@
 
 #include "base/stop.h"
 
-// The limit of the normal at a corner is taken at this fraction of the way to the middle of the
-// triangle: normals turn little over it, and partial derivatives that vanish at the corner are
+// The limit of the normal at a corner is evaluated at this fraction of the way to the middle of the
+// triangle: normals change little over it, and partial derivatives that vanish at the corner are
 // above rounding.
 static const double within = 1e-3;
-// Limits that differ by less are one.
+// Limits that differ by less are equal.
 static const double same_direction = 1 - 1e-6;
 
 typedef struct Sides {
   CagMesh *m;
   const CagSurface *surface;
-  double least; // cosine of the angle by which corners may lean
+  double least; // cosine of the maximum angle by which corners may lean
   double noise;
-  uint32_t *copy; // of vertices: the last copy of a vertex, of a copy: the one before it
+  uint32_t *copy; // for vertices: the last copy of a vertex; for a copy: the previous one
   size_t capacity;
 } Sides;
 
@@ -49,7 +50,8 @@ static bool normal_towards(const Sides *s, size_t t, uint32_t j, const double to
                              from[1] + part * (to[1] - from[1]), out, &ignored);
 }
 
-// Tests whether the normal is reversed at once between corners j and i. At a narrow rim it turns.
+// Tests whether the normal is reversed abruptly between corners j and i. At a narrow rim it turns
+// continuously.
 static bool is_reversed_between(const Sides *s, size_t t, uint32_t j, uint32_t i) {
   enum { HALVINGS = 30 };
   const uint32_t *k = s->m->triangles + 3 * t;
@@ -84,8 +86,8 @@ static bool normal_within(const Sides *s, size_t t, uint32_t j, CagVec3 *out) {
   return normal_towards(s, t, j, middle, within, out);
 }
 
-// Gives the limit at a corner from within the triangle, if it is another one than that of its
-// vertex, and nearer to the normal n of the triangle.
+// Returns the limit at a corner from within the triangle, if it differs from the normal of its
+// vertex and is closer to the normal n of the triangle.
 static bool find_limit(const Sides *s, size_t t, uint32_t j, CagVec3 n, CagVec3 *out) {
   const CagVec3 own = s->m->normals[s->m->triangles[3 * t + j]];
   if (normal_within(s, t, j, out) && cag_dot(*out, own) < s->least &&

@@ -1,9 +1,9 @@
-// Triangles divided until no edge is longer than a limit.
+// Subdivides triangles until no edge is longer than a limit.
 //
-// In each pass all long edges get their middle as a vertex, and each triangle with n such edges
-// becomes n + 1. An edge belongs to both its triangles, so they agree on it; vertices that stand
-// once per face are halved once per face, at the same place to the last bit, and are welded like
-// the ends of their edges.
+// In each pass the midpoints of all long edges become vertices, and each triangle with n such edges
+// becomes n + 1. Both triangles of an edge use the same midpoint. Vertices that are duplicated for
+// several faces are halved once per face, at the identical position, and are welded like the ends
+// of their edges.
 
 #include "geom/tessellate/split.h"
 
@@ -14,7 +14,7 @@
 #include "base/stop.h"
 #include "geom/linalg/tolerance.h"
 
-// Edges of just the limit are not halved for rounding.
+// Edges at exactly the limit are not halved because of rounding.
 #define ROUNDING CAG_ROUNDING
 
 // An edge of a triangle that is halved: its ends, lower first, and its corner.
@@ -29,7 +29,7 @@ typedef struct Splitter {
   double longest;
   Half *halves;
   size_t n;
-  size_t vertices; // with the new ones
+  size_t vertices; // including the new ones
 } Splitter;
 
 static int by_ends(const void *a, const void *b) {
@@ -71,7 +71,7 @@ static void middle_vertex(const CagMesh *m, const Half *h, CagMesh *out) {
     out->uv[2 * at + k] = (m->uv[2 * a + k] + m->uv[2 * b + k]) / 2;
 }
 
-// Middles are one point of the closed surface where their edges are one.
+// Midpoints are one point of the closed surface if their edges are one edge.
 static CagStatus weld_middles(const Splitter *s, CagMesh *out, CagError *err) {
   const uint32_t *weld = s->m->weld;
   Half *welded = cag_malloc((s->n + 1) * sizeof *welded);
@@ -90,8 +90,8 @@ static CagStatus weld_middles(const Splitter *s, CagMesh *out, CagError *err) {
   return status;
 }
 
-// The triangles that corners v and middles w (opposite them: w[k] between v[k] and v[k + 1], or
-// none) divide one into.
+// The triangles into which corners v and midpoints w (w[k] between v[k] and v[k + 1], or none)
+// divide one.
 static size_t divide_triangle(const CagMesh *out, const uint32_t v[3], const uint32_t w[3],
                               const bool has[3], uint32_t *to) {
   const int count = has[0] + has[1] + has[2];
@@ -106,7 +106,7 @@ static size_t divide_triangle(const CagMesh *out, const uint32_t v[3], const uin
     memcpy(to, all, sizeof all);
     return 4;
   }
-  // Turned so that edge 0 is halved and, of two, edge 1 as well.
+  // Rotated so that edge 0 is halved and, if there are two, edge 1 as well.
   int k = 0;
   while (!(has[k] && (count == 1 || has[(k + 1) % 3]))) k++;
   const uint32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3], ab = w[k];

@@ -1,7 +1,8 @@
-// Tessellation of surfaces and faces: the steps of tessellation.h in their order.
+// Tessellation of surfaces and faces: runs the steps of tessellation.h in order.
 //
-// All runs on the caller's thread, and in one order: a surface may call the script, which has one
-// thread only, and a million triangles take less than a tenth of a second, most of it new memory.
+// Everything runs on the caller's thread and in a fixed order: a surface may call the script, which
+// is single-threaded, and a million triangles take less than a tenth of a second, mostly for memory
+// allocation.
 
 #include "geom/tessellate/tessellate.h"
 
@@ -51,13 +52,13 @@ static void release(Tessellator *t) {
 static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBounds *bounds,
                        CagSurface *const *faces, size_t n, CagError *err) {
   const double default_share = 1e-3; // of the diagonal
-  // Of the largest coordinate: a surface that is smaller is a point, its normals are rounding.
+  // Relative to the largest coordinate: a smaller surface is a point, and its normals are rounding.
   const double rounding = 64 * DBL_EPSILON;
   *t = (Tessellator){.how = how ? *how : CAG_TESSELLATION_DEFAULT};
   t->size = cag_norm(cag_sub(bounds->max, bounds->min));
   if (!isfinite(t->size))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_unbounded, "", -1,
-                    "only a bounded surface can be tessellated; this one reaches infinity");
+                    "only bounded surfaces can be tessellated, found an unbounded one");
   t->noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
   t->is_point = t->size <= t->noise;
@@ -75,7 +76,7 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
   return CAG_OK;
 }
 
-// Sides that two faces share get the same division.
+// Sides shared by two faces get the same division.
 static CagStatus join_edges(Tessellator *t, const CagFaces *faces, CagError *err) {
   for (size_t e = 0; e < faces->edge_count; e++) {
     const CagFaceEdge *edge = &faces->edges[e];

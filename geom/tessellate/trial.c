@@ -1,7 +1,8 @@
-// Tessellation, step 1: counts are tried out on the surface.
+// Tessellation, step 1: measures counts on the surface.
 //
-// Of a leaf's grid some quadrilaterals are taken, spread from its first to its last, and what their
-// triangles are off the surface, or their edges are long and turn the normal, is measured.
+// For some quadrilaterals of a leaf's grid, spread from the first to the last, measures the
+// distance of their triangles from the surface, and the length of their edges and the turn of the
+// normal along them.
 
 #include "geom/tessellate/trial.h"
 
@@ -14,8 +15,8 @@
 
 enum {
   TRIED = 8,       // quadrilaterals measured along each direction of a leaf
-  TRIED_WELL = 12, // of so few as this that is enough
-  TRIED_LAST = 16, // in the last check, of their middles alone
+  TRIED_WELL = 12, // with so few, that suffices
+  TRIED_LAST = 16, // in the last check, only at their midpoints
   EDGES = 24       // whose edges are measured along each direction
 };
 
@@ -72,9 +73,9 @@ enum { AT_0, AT_THIRD, AT_HALF, AT_TWO_THIRDS, AT_1, PLACES };
 static const double place[PLACES] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1};
 
 #define AT(i, j) at[(i)*stride + (j)]
-// Largest measured distance from points of the surface over one quadrilateral to its triangles, cut
-// one way. A point may lie over either: parameters are not evenly spread.
-// worst: what was found before; smaller ones are of no interest.
+// Largest distance from points of the surface over one quadrilateral to its triangles, for one cut.
+// A point may lie over either, since parameters are not equally spaced. worst: the previous
+// maximum; smaller distances are ignored.
 static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   CagVec3 tried[3] = {AT(AT_HALF, AT_HALF), AT(cut_ac ? AT_TWO_THIRDS : AT_THIRD, AT_THIRD),
@@ -93,9 +94,9 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
   return worst;
 }
 
-// How far p, over the middle of the edge a b of a triangle a b c, lies off the mesh. Beside the
-// edge the neighbor takes over, whose plane is turned by up to that angle; at the border of a face
-// chords.c cares.
+// Distance off the mesh of p, which lies over the middle of the edge a b of a triangle a b c.
+// Beside the edge the neighbor counts, whose plane is rotated by up to that angle; chords.c handles
+// the border of a face.
 static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
   CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
   if (cag_triangle_is_thin(a, ab, ac, n)) return cag_distance_to_triangle(p, a, b, c);
@@ -106,8 +107,8 @@ static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) 
   return tess_smaller(off + outside * sine, sqrt(off * off + outside * outside));
 }
 
-// At the border of a leaf triangles may be cut either way when they are sewn to their neighbors.
-// sine: of the angle between neighbors along u and v.
+// At the border of a leaf triangles may be cut either way when they are stitched to their
+// neighbors. sine: of the angle between neighbors along u and v.
 static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border,
                             double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
@@ -127,12 +128,12 @@ typedef struct Grid {
   CagVec3 points[TRIED_LAST * TRIED_LAST * 9]; // also room for TRIED and PLACES
 } Grid;
 
-// Points of the surface over some quadrilaterals of a leaf: of each, those at the places given.
+// Points of the surface over some quadrilaterals of a leaf, at the given positions in each.
 static CagStatus evaluate_places(const TessTrial *t, int most, const double *places,
                                  int place_count, Grid *grid, CagError *err) {
   double ts[2][TRIED_LAST * TRIED_LAST * 3], chosen[TRIED_LAST * TRIED_LAST];
   for (int d = 0; d < 2; d++) {
-    // Of strips as many more along them as are not needed across.
+    // Strips get additional samples along them for those not needed across.
     int across = t->n[1 - d] < most ? (int)t->n[1 - d] : most;
     grid->count[d] = spread(t->n[d], most * most / across, chosen);
     for (int k = 0; k < grid->count[d]; k++)
@@ -206,10 +207,10 @@ static double excess_of(const EdgeLimits *most, const CagVec3 *p, const CagVec3 
   return turn > turned_at_once ? excess : tess_larger(excess, turn / most->angle);
 }
 
-// Parameters of the corners of at most EDGES quadrilaterals along direction d: `step` is from one
-// of them to the next.
+// Parameters of the corners of at most EDGES quadrilaterals along direction d; `step` is the offset
+// from one to the next.
 static size_t corners_along(const TessTrial *t, int d, double *out, size_t *step) {
-  // Normals at breaks are those of either side.
+  // Normals at breaks are those of the inner side.
   const double inside = 1e-6; // of the leaf
   double chosen[EDGES], length = t->to[d] - t->from[d];
   int count = spread(t->n[d], EDGES, chosen);
@@ -261,9 +262,9 @@ bool cag_tess_is_known_by_points(const CagSurface *s) {
   return !s->kind->to_nurbs && !cag_surface_trimmed_view(s, NULL, NULL);
 }
 
-// SCATTERED rows of points over the domain, each with SCATTERED_ALONG of them. From row to row they
-// are moved by the golden section of their distance, so that no two rows look at the same v, and
-// lines that run along u are met as well.
+// SCATTERED rows of points over the domain, each with SCATTERED_ALONG of them. Consecutive rows are
+// shifted by the golden section of the spacing, so that no two rows use the same v, and lines along
+// u are found as well.
 enum { SCATTERED = 128, SCATTERED_ALONG = 32 };
 
 typedef struct Scatter {
@@ -272,8 +273,8 @@ typedef struct Scatter {
   CagVec3 *corners; // of all quadrilaterals: (n[0] + 1) x (n[1] + 1)
 } Scatter;
 
-// Nearest of the quadrilaterals around the cell (i, j), but of that one alone where it is near
-// enough.
+// Distance to the nearest of the quadrilaterals around the cell (i, j), or to that one only if it
+// is close enough.
 static double distance_to_cells(const Scatter *s, size_t i, size_t j, CagVec3 p, double enough) {
   size_t stride = s->n[1] + 1;
   double least = INFINITY;
@@ -297,7 +298,7 @@ static size_t cell_of(const TessTrial *t, int d, double x) {
 }
 
 static CagStatus evaluate_corners(const Scatter *s, CagError *err) {
-  // As many quadrilaterals may be in one row as there are points.
+  // A row may have as many quadrilaterals as there are points.
   enum { MOST = 4 * SCATTERED * SCATTERED_ALONG + 1 };
   double us[MOST], vs[MOST];
   double *at[2] = {us, vs};

@@ -1,11 +1,11 @@
 // Tessellation of trimmed surfaces: a Delaunay triangulation of the parameter plane within the
-// loops, refined until its triangles keep the tolerance.
+// loops, refined until its triangles are within the tolerance.
 //
-// The loops are discretized first, as curves in space, and triangulated; their edges are never
-// divided again. The vertices of the inner surface's own mesh over the region's box are then put in
-// (Lawson's insertion), which brings the triangles near their final size; last come points in the
-// triangles that still miss the tolerance. The plane is scaled so that lengths in it are about
-// those on the surface.
+// The loops are discretized first, as curves in space, and triangulated; their edges are not
+// divided again. The vertices of the inner surface's own mesh over the region's box are then
+// inserted (Lawson), which brings the triangles near their final size; finally points are added in
+// triangles that exceed the tolerance. The plane is scaled so that its lengths approximate those on
+// the surface.
 //
 // Invariant of Plane: triangle t has corners corner[3t..] counter-clockwise; across[3t + k] is the
 // triangle beyond the edge from corner k to corner k + 1, NO_TRIANGLE at the outline.
@@ -26,30 +26,32 @@
 
 #define NO_TRIANGLE UINT32_MAX
 
-// Share of the tolerance for the mesh whose vertices are put in: its triangles fit the surface, and
-// those between them and the outline have room.
+// Fraction of the tolerance for the mesh whose vertices are inserted: its triangles fit the
+// surface, with a margin for those between them and the outline.
 #define INNER_SHARE 0.7
-// Points nearer to an outline's edge than this part of its length are left out: slivers.
+// Points closer to an edge of the outline than this fraction of its length are skipped, because
+// they would cause slivers.
 #define KEEP_OFF 0.3
-// An in-circle determinant below this part of its terms is rounding, and flips nothing.
+// An in-circle determinant below this fraction of its terms is rounding, and causes no flip.
 #define ROUNDING CAG_ROUNDING
-// Passes over all triangles; each divides what misses the tolerance about by two.
+// Maximum number of passes over all triangles; each roughly halves those that exceed the tolerance.
 #define MOST_PASSES 40
-// Edges shorter than this part of the tolerance are not divided for an angle: it may be a cusp.
+// Edges shorter than this fraction of the tolerance are not divided because of the angle: there may
+// be a cusp.
 #define SHORT_EDGE 0.2
 
 typedef struct Plane {
   const CagSurface *inner;
-  double scale[2]; // of u and v to the plane
+  double scale[2]; // from u and v to the plane
   double *xy;      // scaled
   CagVec3 *positions, *normals;
   size_t outline; // the first vertices are those of the loops
   size_t vertex_count, vertex_capacity;
   uint32_t *corner, *across;
-  unsigned char *checked; // the triangle keeps the tolerance
+  unsigned char *checked; // the triangle is within the tolerance
   size_t triangle_count, triangle_capacity;
   uint32_t hint;
-  uint32_t *stack; // triangles whose side 0, between corners 0 and 1, is to be looked at
+  uint32_t *stack; // triangles whose side 0, between corners 0 and 1, must be tested
   size_t depth, stack_capacity;
 } Plane;
 
@@ -105,7 +107,7 @@ static CagStatus push(Plane *p, uint32_t triangle, CagError *err) {
 
 // --- The outline ---
 
-// How far the normals of the surface turn from t0 to t1 of an outline, in steps of the way.
+// Total turn of the surface's normal from t0 to t1 of an outline, summed over steps.
 static CagStatus turn_along(const Plane *p, const CagCurve *loop, double t0, double t1,
                             double *turn, CagError *err) {
   enum { STEPS = 4 };
@@ -121,8 +123,8 @@ static CagStatus turn_along(const Plane *p, const CagCurve *loop, double t0, dou
   return CAG_OK;
 }
 
-// Parts of a chord of the outline, so that the normals of the surface turn by no more than the
-// angle along each that is not short.
+// Number of parts of a chord of the outline such that the normal turns by at most the angle along
+// each part that is not short.
 static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double from, double to,
                                 double length, const CagTessellation *how, size_t *parts,
                                 CagError *err) {
@@ -146,7 +148,7 @@ static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double fro
   return CAG_OK;
 }
 
-// Discretizes a loop in space; the last point of it is the first one again and is left out.
+// Discretizes a loop in space; its last point equals the first and is left out.
 static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
                               const CagTessellation *how, size_t *count, CagError *err) {
   const CagRegion *region;
@@ -186,7 +188,7 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
   return status;
 }
 
-// Lengths on the surface by lengths in the parameters: the means of a few places.
+// Ratio of lengths on the surface to lengths in the parameters: the mean over some points.
 static CagStatus find_scale(Plane *p, const CagSurface *s, CagError *err) {
   const int PLACES = 5;
   double sum[2] = {0, 0};
@@ -252,7 +254,7 @@ static double side_of(const double *a, const double *b, const double *c) {
 
 static const double *at(const Plane *p, uint32_t vertex) { return p->xy + 2 * vertex; }
 
-// d lies inside of the circle through a, b, c (counter-clockwise), by more than rounding.
+// Whether d lies inside the circle through a, b, c (counter-clockwise), by more than rounding.
 static bool in_circle(const double *a, const double *b, const double *c, const double *d) {
   double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1];
   double cx = c[0] - d[0], cy = c[1] - d[1];
@@ -286,9 +288,9 @@ static int side_towards(const Plane *p, uint32_t t, uint32_t other) {
   return -1;
 }
 
-// Exchanges the diagonal between t, whose corner 2 is the new vertex, and the triangle beyond its
-// side 0 where that makes them Delaunay. On success the two outer edges of what was the other
-// triangle are to be looked at.
+// Flips the edge between t, whose corner 2 is the new vertex, and the triangle beyond its side 0 if
+// that makes them Delaunay. After a flip the two outer edges of the former other triangle must be
+// tested.
 static CagStatus legalize(Plane *p, uint32_t t, CagError *err) {
   uint32_t o = p->across[3 * t];
   if (o == NO_TRIANGLE) return CAG_OK;
@@ -315,7 +317,7 @@ static CagStatus legalize_all(Plane *p, CagError *err) {
   return status;
 }
 
-// Triangle t becomes three around the vertex.
+// Splits triangle t into three around the vertex.
 static CagStatus split_triangle(Plane *p, uint32_t t, uint32_t v, CagError *err) {
   CagStatus status = room_for_triangles(p, p->triangle_count + 2, err);
   if (status) return status;
@@ -334,7 +336,8 @@ static CagStatus split_triangle(Plane *p, uint32_t t, uint32_t v, CagError *err)
   return status ? status : legalize_all(p, err);
 }
 
-// The edge between t and the triangle beyond its side is divided at the vertex: two become four.
+// Splits the edge between t and the triangle beyond its side at the vertex: two triangles become
+// four.
 static CagStatus split_edge(Plane *p, uint32_t t, int side, uint32_t v, CagError *err) {
   CagStatus status = room_for_triangles(p, p->triangle_count + 2, err);
   if (status) return status;
@@ -370,14 +373,14 @@ static bool holds(const Plane *p, uint32_t t, const double *q) {
   return true;
 }
 
-// The triangle around a point: a walk towards it, and where the outline is in the way a look at all
-// of them.
+// The triangle that contains a point: a walk towards it, and a search of all triangles if the
+// outline is in the way.
 static uint32_t locate(Plane *p, const double *q) {
   uint32_t t = p->hint < p->triangle_count ? p->hint : 0;
   for (size_t steps = 0; steps < p->triangle_count; steps++) {
     int leave = -1;
     for (int k = 0; k < 3 && leave < 0; k++) {
-      int side = (int)((steps + (size_t)k) % 3); // not always the same first: no circles
+      int side = (int)((steps + (size_t)k) % 3); // vary the first side to avoid cycles
       if (side_of(at(p, p->corner[3 * t + (uint32_t)side]),
                   at(p, p->corner[3 * t + (uint32_t)(side + 1) % 3]), q) < 0)
         leave = side;
@@ -393,7 +396,7 @@ static uint32_t locate(Plane *p, const double *q) {
 
 static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
 
-// Whether a point of triangle t keeps its distance from the outline and from vertices.
+// Whether a point of triangle t is far enough from the outline and from vertices.
 static bool is_clear(const Plane *p, uint32_t t, const double *q) {
   for (int k = 0; k < 3; k++) {
     const double *a = at(p, p->corner[3 * t + (uint32_t)k]);
@@ -402,19 +405,19 @@ static bool is_clear(const Plane *p, uint32_t t, const double *q) {
     if (p->across[3 * t + (uint32_t)k] == NO_TRIANGLE &&
         side_of(a, b, q) < KEEP_OFF * length * length)
       return false;
-    // A vertex in the way: of the shortest edge the point would halve.
+    // Too close to a vertex, relative to the shortest edge that the point would halve.
     if (apart(a, q) < ROUNDING * length) return false;
   }
   return true;
 }
 
-// The side of t that a point lies on, -1: none.
+// The side of t that contains the point, -1: none.
 static int on_side(const Plane *p, uint32_t t, const double *q) {
   for (int k = 0; k < 3; k++) {
     const double *a = at(p, p->corner[3 * t + (uint32_t)k]);
     const double *b = at(p, p->corner[3 * t + (uint32_t)(k + 1) % 3]);
     double length = apart(a, b);
-    const double flat = 1e-7; // of the edge: a triangle as flat as that has no shape
+    const double flat = 1e-7; // relative to the edge: a triangle this flat is degenerate
     if (side_of(a, b, q) < flat * length * length) return k;
   }
   return -1;
@@ -472,8 +475,8 @@ static double from_line(CagVec3 a, CagVec3 b, CagVec3 q) {
   return cag_norm(cag_cross(d, cag_sub(q, a))) / length;
 }
 
-// Whether a triangle misses the tolerance, and where to divide it: in the middle of its longest
-// inner edge, or (`*side` -1) in its own.
+// Whether a triangle exceeds the tolerance, and where to divide it: at the middle of its longest
+// inner edge, or (`*side` -1) at its center.
 static CagStatus judge(const Plane *p, uint32_t t, const CagTessellation *how, bool *bad, int *side,
                        CagError *err) {
   const uint32_t *c = p->corner + 3 * t;
@@ -566,8 +569,8 @@ static int by_place(const void *a, const void *b) {
   return x->vertex < y->vertex ? -1 : 1;
 }
 
-// Points of the outline that rounding alone parts, at poles and seams, get one position; `weld`
-// then tells that they are one point.
+// Points of the outline that differ only by rounding, at poles and seams, get one position; `weld`
+// then marks them as one point.
 static CagStatus weld_outline(Plane *p, uint32_t *weld, CagError *err) {
   const double same = 1e-11; // of the size
   Place *places = cag_malloc((p->outline + 1) * sizeof *places);
@@ -608,7 +611,7 @@ static CagStatus to_mesh(Plane *p, CagMesh **out, CagError *err) {
   size_t n = 0;
   for (size_t t = 0; t < p->triangle_count; t++) {
     const uint32_t *c = p->corner + 3 * t, *w = m->weld;
-    // At a pole two corners are one point: nothing lies between.
+    // At a pole two corners are one point: the triangle is empty.
     if (w[c[0]] == w[c[1]] || w[c[1]] == w[c[2]] || w[c[2]] == w[c[0]]) continue;
     memcpy(m->triangles + 3 * n++, c, 3 * sizeof *c);
   }
@@ -619,7 +622,7 @@ static CagStatus to_mesh(Plane *p, CagMesh **out, CagError *err) {
     m->uv[2 * k] = p->xy[2 * k] / p->scale[0];
     m->uv[2 * k + 1] = p->xy[2 * k + 1] / p->scale[1];
   }
-  // Vertices without normal take those of their triangles.
+  // Vertices without a normal take those of their triangles.
   for (size_t t = 0; t < n; t++)
     for (int k = 0; k < 3; k++) {
       uint32_t v = m->triangles[3 * t + (size_t)k];

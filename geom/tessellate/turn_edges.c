@@ -1,11 +1,11 @@
 // Tessellation, step 5: edges are flipped where triangles lean away from the surface.
 //
-// Where bands are sewn, for example at a sharp leading edge, a triangle may be much thinner than it
-// is long. Its base departs from the surface by less than the tolerance, but by as much as the
-// triangle's height, so that the triangle is nearly perpendicular to the surface. Its points are
-// correct, but it appears as a dark speck in a picture: it is in shadow while its normals face the
-// light. Even counts (even.c) avoid most of these triangles. The edge between two of the others is
-// flipped to the other diagonal of their quadrilateral if that reduces the larger of their two
+// Where bands are stitched, for example at a sharp leading edge, a triangle may be much thinner
+// than it is long. Its base departs from the surface by less than the tolerance, but by as much as
+// the triangle's height, so that the triangle is nearly perpendicular to the surface. Its points
+// are correct, but it appears as a dark speck in a picture: it is in shadow while its normals face
+// the light. Even counts (even.c) avoid most of these triangles. The edge between two of the others
+// is flipped to the other diagonal of their quadrilateral if that reduces the larger of their two
 // angles to the surface. Points do not move, and edges at which normals change (seams and creases)
 // are not flipped.
 
@@ -15,11 +15,12 @@
 #include "base/stop.h"
 #include "geom/tessellate/tessellation.h"
 
-// Of the angle that the normal may turn along an edge: what leans less is as it has to be.
+// Fraction of the angle that the normal may turn along an edge: a triangle that leans less is
+// normal.
 static const double leaning = 0.5;
-// Of the tolerance, as in the trial of plan.c.
+// Fraction of the tolerance, as in the trial of plan.c.
 static const double highest_use = 0.9;
-static const double clearly = 1e-3; // radians: turning an edge gains at least so much
+static const double clearly = 1e-3; // radians: minimum gain of a flip
 
 enum { MAX_PASSES = 24 };
 static const uint32_t next_corner[] = {1, 2, 0};
@@ -38,18 +39,18 @@ static double angle_between(CagVec3 a, CagVec3 b) {
 static double lean(const CagMesh *m, uint32_t a, uint32_t b, uint32_t c) {
   const CagVec3 *p = m->positions;
   const CagVec3 n = cag_cross(cag_sub(p[b], p[a]), cag_sub(p[c], p[a]));
-  if (cag_dot(n, n) == 0) return 4; // more than any angle
+  if (cag_dot(n, n) == 0) return 4; // larger than any angle
   return fmax(angle_between(n, m->normals[a]),
               fmax(angle_between(n, m->normals[b]), angle_between(n, m->normals[c])));
 }
 
-// How far the surface bulges over an edge: that of the arc with the normals of its ends.
+// Height of the surface over an edge: that of the arc with the normals of its ends.
 static double bulge(const CagMesh *m, uint32_t a, uint32_t b) {
   const CagVec3 e = cag_sub(m->positions[b], m->positions[a]);
   return fabs(cag_dot(e, cag_sub(m->normals[b], m->normals[a]))) / 8;
 }
 
-// A height that is quadratic in the triangle is at most this at its middle.
+// Bound of a height that is quadratic in the triangle, at its middle.
 static double middle_bulge(const CagMesh *m, uint32_t a, uint32_t b, uint32_t c) {
   return 4.0 / 9 * (bulge(m, a, b) + bulge(m, b, c) + bulge(m, c, a));
 }
@@ -59,11 +60,12 @@ static double uv_area(const CagMesh *m, uint32_t a, uint32_t b, uint32_t c) {
   return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-// May the edge a c of the triangles a b c and a c d become b d, as to tolerance, angle and length?
+// Whether the edge a c of the triangles a b c and a c d may become b d with respect to tolerance,
+// angle, and length.
 static bool may_turn(const Turner *t, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   const CagMesh *m = t->m;
   if (m->weld[b] == m->weld[d]) return false;
-  // Convex in the parameters, too; both ways round, as the face may be turned over.
+  // Convex in the parameters, too; in either orientation, since the face may be flipped.
   const double way = uv_area(m, a, b, c);
   if (!(way * uv_area(m, a, c, d) > 0 && way * uv_area(m, a, b, d) > 0 &&
         way * uv_area(m, b, c, d) > 0))
@@ -76,7 +78,7 @@ static bool may_turn(const Turner *t, uint32_t a, uint32_t b, uint32_t c, uint32
   return off <= highest_use * t->how->tolerance;
 }
 
-// The corner of triangle t whose edge lies beside triangle `other`.
+// The corner of triangle t whose edge borders triangle `other`.
 static uint32_t corner_beside(const Turner *t, uint32_t triangle, uint32_t other) {
   for (uint32_t k = 0; k < 3; k++)
     if (t->beside[3 * triangle + k] == other) return k;
@@ -89,7 +91,7 @@ static void set_beside(Turner *t, uint32_t triangle, uint32_t was, uint32_t is) 
   if (k < 3) t->beside[3 * triangle + k] = is;
 }
 
-// Turns the edge at corner k of the triangle `low` where that is better.
+// Flips the edge at corner k of the triangle `low` if that is better.
 static bool turn(Turner *t, uint32_t low, uint32_t k) {
   const uint32_t high = t->beside[3 * low + k];
   if (high == NO_INDEX) return false;

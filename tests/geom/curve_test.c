@@ -545,8 +545,7 @@ static void bad_data_are_named(void **state) {
   FAILS(cag_curve_polyline(six, 2, true, 3, &c, &err), "too-few-points");
   const CagVec3 same[3] = {{1, 2, 0}, {1, 2, 0}, {1, 2, 0}};
   FAILS(cag_curve_polyline(same, 3, true, 3, &c, &err), "too-few-points");
-  assert_string_equal(err.message,
-                      "a closed polyline needs at least 3 different points; these are 1");
+  assert_string_equal(err.message, "a closed polyline needs at least 3 different points, found 1");
   CagTransform frame = cag_transform_identity();
   FAILS(cag_curve_arc(-1, -1, 0, 1, &frame, &c, &err), "radius-not-positive");
   assert_string_equal(err.argument, "radius");
@@ -703,7 +702,7 @@ static void curves_have_at_most_the_greatest_degree(void **state) {
   }
   cag_curve_release(c);
   FAILS(cag_curve_bezier(p, NULL, N, 2, &c, &err), "order-range");
-  assert_string_equal(err.message, "the degree is at most 1000; this is 1001");
+  assert_string_equal(err.message, "the degree must be at most 1000, found 1001");
 }
 
 int main(void) {

@@ -74,7 +74,7 @@ static void bad_holes_are_named(void **state) {
   FAILS_AT(cag_region_new(outer, nested, 2, &r, &err), "region-crossing", 1);
   CagCurve *const twice[2] = {in, in};
   FAILS_AT(cag_region_new(outer, twice, 2, &r, &err), "region-crossing", 1); // the second
-  assert_string_equal(err.message, "holes[0] and holes[1] are one curve; leave one of them out");
+  assert_string_equal(err.message, "holes[0] and holes[1] are the same curve; omit one of them");
   FAILS_AT(cag_region_new(outer, &outer, 1, &r, &err), "hole-outside", 0);
   // Behind a hole that is good.
   CagCurve *const fine = circle(0.5, -4, -4);
@@ -86,10 +86,10 @@ static void bad_holes_are_named(void **state) {
   } ROWS[] = {
       {{fine, out}, 2, 1, "holes[1] does not lie within the outer boundary"},
       {{fine, across}, 2, 1, "holes[1] crosses the outer boundary near [5, "},
-      {{fine, outer}, 2, 1, "holes[1] and the outer boundary are one curve"},
+      {{fine, outer}, 2, 1, "holes[1] and the outer boundary are the same curve"},
       {{fine, in, near}, 3, 2, "holes[1] and holes[2] cross near [0.75, "},
-      {{fine, in, within}, 3, 2, "holes[1] and holes[2] lie one in the other"},
-      {{fine, in, in}, 3, 2, "holes[1] and holes[2] are one curve"},
+      {{fine, in, within}, 3, 2, "holes[1] and holes[2] are nested"},
+      {{fine, in, in}, 3, 2, "holes[1] and holes[2] are the same curve"},
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     assert_int_not_equal(cag_region_new(outer, ROWS[i].holes, ROWS[i].n, &r, &err), CAG_OK);
