@@ -103,22 +103,57 @@ function parameter_kind(type,    i, c, depth, in_text, alternatives, texts, star
   return alternatives > 1 ? "VALUE" : kind_of(type)
 }
 
-# The field of a structure for one parameter.
-function field(parameter,    name, type, kind) {
+# The index of a text among the alternatives of a type.
+function choice_index(type, text,    n, i, parts) {
+  n = split(type, parts, / or /)
+  for (i = 1; i <= n; i++)
+    if (parts[i] == text) return i - 1
+  fail("the default " text " is not among the alternatives: " type)
+}
+
+# The default of a field in C, where it is simple.
+function default_in_c(kind, type, text) {
+  if (kind == "BOOL" && text ~ /^(true|false)$/) return text
+  if (kind == "CHOICE" && text ~ /^"/) return choice_index(type, text)
+  if (kind ~ /^(NUMBER|FINITE|INTEGER)$/ && text ~ /^-?[0-9]+(\.[0-9]+)?$/) return text
+  if (text == "none" && kind ~ /^(NUMBER|FINITE|INTEGER|ANGLE|BOOL|CHOICE)$/) return 0
+  return ""
+}
+
+# The statement that reads argument `i` into its field.
+function read_field(i, name, kind, type, fallback,    read) {
+  if (kind == "VALUE") return "  a." name " = call->values[" i "];\n"
+  read = "cag_bind_field(call, " i ", &a)"
+  if (kind in simple_readers && type !~ / (>|in)/)
+    read = simple_readers[kind] "(call, " i ", &a." name ")"
+  if (fallback == "") return "  if (!" read ") return false;\n"
+  if (default_in_c(kind, type, fallback) == "")
+    return "  if (!cag_bind_field(call, " i ", &a)) return false;\n"
+  return "  if (!cag_given(call, " i ")) a." name " = " default_in_c(kind, type, fallback) ";\n" \
+    "  else if (!" read ") return false;\n"
+}
+
+# Adds a parameter: its field to `structure`, and the reading of its argument to `reading`.
+function add_field(parameter,    name, type, kind, fallback) {
   name = type = parameter
   sub(/:.*/, "", name)
   sub(/^[^:]*: */, "", type)
-  sub(/ = .*/, "", type)
+  if (match(type, / = /)) {
+    fallback = substr(type, RSTART + 3)
+    type = substr(type, 1, RSTART - 1)
+  }
   sub(/^ */, "", name)
   kind = parameter_kind(type)
   if (name ~ /^(break|case|char|const|default|do|double|else|enum|float|for|goto|if|int|long|short|switch|void|while)$/)
     name = name "_"
-  type = type_of_kind[kind]
-  return "  " type (type ~ /\*$/ ? "" : " ") name ";\n"
+  structure = structure "  " type_of_kind[kind] (type_of_kind[kind] ~ /\*$/ ? "" : " ") name ";\n"
+  reading = reading read_field(field_count++, name, kind, type, fallback)
 }
 
-# The fields for all parameters but `...`.
-function fields(signature,    out, i, c, depth, in_text, start) {
+# Adds all parameters but `...`.
+function add_fields(signature,    i, c, depth, in_text, start) {
+  structure = reading = ""
+  field_count = 0
   start = index(signature, "(") + 1
   for (i = start; i < length(signature); i++) {
     c = substr(signature, i, 1)
@@ -127,33 +162,35 @@ function fields(signature,    out, i, c, depth, in_text, start) {
     if (c ~ /[[({]/) depth++
     else if (c ~ /[])}]/) depth--
     if (depth > 0 || c != ",") continue
-    out = out field(substr(signature, start, i - start))
+    add_field(substr(signature, start, i - start))
     start = i + 1
   }
   if (start < i && substr(signature, start) !~ /^ *\.\.\.\)$/)
-    out = out field(substr(signature, start, i - start))
-  return out
+    add_field(substr(signature, start, i - start))
 }
 
 # Declares a function, or defines the one that binds its arguments. Returns what the table calls.
-function declare(own, structure) {
-  if (own in declared) {
-    if (declared[own] != structure) fail("the rows of " own " have different parameters")
-    return structure == "" ? own : "bind_" own
-  }
-  declared[own] = structure
+function declare(own, signature,    binder) {
+  structure = ""
+  if (!unbound) add_fields(signature)
+  if (own in declared && declared[own] != structure)
+    fail("the rows of " own " have different parameters")
   if (structure == "") {
-    if (header) print "bool " own "(CagCall *call, CagValue *result);"
+    if (header && !(own in declared)) print "bool " own "(CagCall *call, CagValue *result);"
+    declared[own] = structure
     return own
   }
-  if (header) {
+  if (header && !(own in declared)) {
     print "struct " own " {\n" structure "};"
     print "bool " own "(CagCall *call, const struct " own " *a, CagValue *result);"
-  } else {
-    print "static bool bind_" own "(CagCall *call, CagValue *result) {\n  struct " own " a;"
-    print "  return cag_bind(call, &a, sizeof a) && " own "(call, &a, result);\n}"
   }
-  return "bind_" own
+  declared[own] = structure
+  binder = "bind_" ++binders "_" own
+  if (!header)
+    print "static bool " binder "(CagCall *call, CagValue *result) {\n  struct " own " a;\n" \
+      "  CAG_ASSERT(cag_bind_fits(call, sizeof a));\n" reading \
+      "  return " own "(call, &a, result);\n}"
+  return binder
 }
 
 function finish_row(    name) {
@@ -166,7 +203,7 @@ function finish_row(    name) {
   name = signature
   sub(/\(.*/, "", name)
   if (signature !~ /\(/) own = "NULL"
-  else own = declare(own == "" ? prefix name : own, unbound ? "" : fields(signature))
+  else own = declare(own == "" ? prefix name : own, signature)
   rows = rows "    {" quoted(signature) ", " own ", " quoted(result) ", " quoted(summary) ", " \
     quoted(example) ", " (first == "" ? "0" : first) ", " quoted(heading) "},\n"
   unbound = 0
@@ -175,7 +212,13 @@ function finish_row(    name) {
 
 BEGIN {
   if (header) print "#ifndef CAG_BUILTIN_FUNCTIONS_H\n#define CAG_BUILTIN_FUNCTIONS_H"
-  else print "#include \"interp/builtin/support.h\"\n"
+  else print "#include \"base/assert.h\"\n#include \"interp/builtin/support.h\"\n"
+  simple_readers["NUMBER"] = "cag_arg_number"
+  simple_readers["TEXT"] = "cag_arg_text"
+  simple_readers["LIST"] = "cag_arg_list"
+  simple_readers["TRANSFORM"] = "cag_arg_transform"
+  simple_readers["CURVE"] = "cag_arg_curve"
+  simple_readers["SURFACE"] = "cag_arg_surface"
 }
 
 /^CAG_PARAMETER_TYPE/ {

@@ -127,18 +127,18 @@ static void set_default(const CagParameterTypes *types, const CagParameterType *
   }
 }
 
-bool cag_bind(CagCall *call, void *out, size_t size) {
-  const CagSignature *s = cag_builtin_signature_of(call->builtin);
-  const CagParameterTypes *types = cag_signature_types(s);
-  // The structure may end with padding.
-  if (size < types->size || size >= types->size + _Alignof(max_align_t))
-    return cag_fail_call(call, -1, CAG_ERR_internal, "has a structure of %zu bytes, not %zu", size,
-                         types->size);
-  memset(out, 0, size);
-  for (size_t i = 0; i < s->count; i++) {
-    const CagParameterType *type = &types->items[i];
-    if (!cag_given(call, (int)i)) set_default(types, type, out);
-    else if (!bind_argument(call, (int)i, type, (char *)out + type->offset)) return false;
-  }
+bool cag_bind_field(CagCall *call, int argument, void *structure) {
+  const CagParameterTypes *types = cag_signature_types(cag_builtin_signature_of(call->builtin));
+  const CagParameterType *type = &types->items[argument];
+  char *field = (char *)structure + type->offset;
+  if (cag_given(call, argument)) return bind_argument(call, argument, type, field);
+  memset(field, 0, type->size);
+  set_default(types, type, structure);
   return true;
+}
+
+bool cag_bind_fits(const CagCall *call, size_t size) {
+  const CagParameterTypes *types = cag_signature_types(cag_builtin_signature_of(call->builtin));
+  // The structure may end with padding.
+  return size >= types->size && size < types->size + _Alignof(max_align_t);
 }

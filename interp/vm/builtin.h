@@ -114,13 +114,15 @@ bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
 bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 
-// Reads all arguments into a structure that tools/rows.awk has generated from the signature. The
-// types of its fields are in parameter_kinds.def.
+// Reads an argument into its field of the structure that tools/rows.awk has generated from the
+// signature; parameter_kinds.def has the types of the fields. For generated code.
 //
-// Optional arguments that are not given get their default. If the function itself supplies the
+// An optional argument that is not given gets its default. If the function itself supplies the
 // default (such as `none`), the field is zero, and cag_given(call, i) is false. Returns false, with
-// the error set, if an argument has the wrong type or is out of range.
-bool cag_bind(CagCall *call, void *out, size_t size);
+// the error set, if the argument has the wrong type or is out of range.
+bool cag_bind_field(CagCall *call, int argument, void *structure);
+// Whether the structure has the size that the signature of the call states.
+bool cag_bind_fits(const CagCall *call, size_t size);
 
 // --- Resources of a built-in ---
 // Any allocation of a value may end a built-in by a long jump. Therefore the machine releases what

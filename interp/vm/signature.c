@@ -169,7 +169,7 @@ static void parse_type(CagParameterType *out, const char *words, Room *room) {
 
 // --- Parameters ---
 
-// --- Fields of the structure of cag_bind ---
+// --- Fields of the structure of arguments ---
 
 static void add_field(CagParameterTypes *types, CagParameterType *type) {
   static const struct {
@@ -181,7 +181,8 @@ static void add_field(CagParameterTypes *types, CagParameterType *type) {
   };
   const size_t align = fields[type->kind].align;
   type->offset = (types->size + align - 1) / align * align;
-  types->size = type->offset + fields[type->kind].size;
+  type->size = fields[type->kind].size;
+  types->size = type->offset + type->size;
 }
 
 // --- Defaults ---

@@ -9,7 +9,7 @@
 // parameter_types.def. Other words are for the reader and accept any value. Text in brackets
 // belongs to the words: "function (u, v) => point", "record {point, direction}".
 //
-// The type determines how cag_bind reads an argument, and which types `cag check` accepts.
+// The type determines how an argument is read, and which types `cag check` accepts.
 // Documentation and messages show it as written.
 
 #ifndef CAG_INTERP_VM_SIGNATURE_H
@@ -36,7 +36,7 @@ typedef struct CagParameterType {
   bool above_low;   // low itself is excluded
   bool ranged;
   const char *const *choices; // of CHOICE; ends with NULL
-  size_t offset;              // of its field in the structure of cag_bind
+  size_t offset, size;        // of its field in the structure of arguments
   // The value if no argument is given, parsed from the default: radians, the index of a text,
   // coordinates, or the ends of a range. It is 0 if the function itself supplies the default.
   double fallback[3];
@@ -66,7 +66,7 @@ typedef struct CagRangeEnds {
 } CagRangeEnds;
 
 typedef struct CagParameterTypes {
-  size_t size; // of the structure of cag_bind
+  size_t size; // of the structure of arguments
   CagParameterType items[];
 } CagParameterTypes;
 

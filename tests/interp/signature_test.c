@@ -1,4 +1,4 @@
-// Signatures of built-ins: what they say of parameters, and how the fields of cag_bind lie.
+// Signatures of built-ins: what they say of parameters, and the fields of their structures.
 
 #include <setjmp.h>
 #include <stdarg.h>
