@@ -73,8 +73,8 @@ static char *text_of(CagUrdf *u, const char *text) {
   return cag_arena_copy(&u->arena, text, strlen(text));
 }
 
-// Letters, digits, - . and _: what every reader takes, also as a file's name; letters beyond ASCII
-// stay. The first is no . or -.
+// Makes a name of letters, digits, - . and _, which every reader accepts, also in file names.
+// Letters beyond ASCII are kept. The first character is neither . nor -.
 static char *plain_name(CagUrdf *u, const char *text) {
   char *name = text_of(u, text);
   for (char *c = name; *c; c++) {
