@@ -1,7 +1,8 @@
-// cag batch JOBS: the rows of a table as renders and exports.
+// cag batch JOBS: renders and exports the rows of a table.
 //
-// The rows are read and looked at as a whole; then the journal says what an earlier call did, and
-// the rest is run here or handed to a queue. batch.h tells how rows become tasks.
+// All rows are read and checked first. Tasks that the journal records as done by an earlier call
+// are skipped. The others are run here or submitted to a queue. See batch.h for how rows become
+// tasks.
 
 #include "cli/batch.h"
 
@@ -21,7 +22,7 @@ static bool has_ending(const char *path, const char *ending) {
   return n > m && strcasecmp(path + n - m, ending) == 0;
 }
 
-// The path in full, as processes in another folder need it.
+// Returns the absolute path, because processes run in another folder.
 static char *full_path(const char *path) {
   char here[PATH_MAX], *out = NULL;
   if (*path == '/') return strdup(path);
@@ -34,7 +35,7 @@ static char *with_ending(const char *path, size_t length, const char *ending) {
   return asprintf(&out, "%.*s%s", (int)length, path, ending) < 0 ? NULL : out;
 }
 
-// Finds all places: of the jobs, of what is kept beside them, and of this program.
+// Determines all paths: of the job file, of the files beside it, and of this program.
 static bool find_places(CagBatch *b) {
   char program[PATH_MAX];
   char *jobs = full_path(b->path);
@@ -43,7 +44,7 @@ static bool find_places(CagBatch *b) {
   b->folder = strndup(jobs, (size_t)(strrchr(jobs, '/') - jobs));
   b->journal_path = with_ending(jobs, n, ".journal");
   b->tiles_folder = with_ending(jobs, n, ".tiles");
-  // The renderer would take a % for a frame's place.
+  // The renderer would interpret a % as the frame number.
   for (char *at = b->tiles_folder ? strrchr(b->tiles_folder, '/') : NULL; at && *at; at++)
     if (*at == '%') *at = '_';
   b->queue_folder = with_ending(jobs, n, ".slurm");
@@ -56,7 +57,7 @@ static bool find_places(CagBatch *b) {
          b->program;
 }
 
-// Rows run in the folder of the jobs, so folders of -I are named in full.
+// Rows run in the folder of the job file, so folders of -I are made absolute.
 static bool settle_module_path(CagBatch *b) {
   CagTool *t = b->tool;
   const char **path = (const char **)(size_t)t->session.module_path;
@@ -68,7 +69,7 @@ static bool settle_module_path(CagBatch *b) {
 static void settle_workers(CagBatch *b) {
   const long processors = sysconf(_SC_NPROCESSORS_ONLN);
   const size_t n = processors > 0 ? (size_t)processors : 1;
-  // More than any machine has; a bound for what is allocated by it.
+  // More than on any machine; limits an allocation.
   enum { WORKERS_MAX = 4096 };
   b->workers = b->tool->jobs ? b->tool->jobs : n;
   if (b->workers > WORKERS_MAX) b->workers = WORKERS_MAX;
@@ -86,7 +87,7 @@ static int read_jobs(CagBatch *b) {
   if (!text) return CAG_STATUS_FILE;
   bool ok = cag_jobs_read(&b->jobs, text, length, has_ending(b->path, ".json"));
   free(text);
-  // Of a table without its columns there is nothing more to say.
+  // If columns are missing, other errors would be misleading.
   if (ok && b->jobs.count) ok = cag_batch_check(b);
   if (!ok) return cag_tool_fail(b->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
   if (!b->jobs.problem_count) return CAG_STATUS_OK;
@@ -100,7 +101,7 @@ static bool has_film(const CagBatch *b) {
   return false;
 }
 
-// Runs what is missing; gives the status of the program.
+// Runs the missing tasks. Returns the exit status of the program.
 static int run_missing(CagBatch *b) {
   CagError err;
   cag_batch_recall(b);
@@ -123,7 +124,7 @@ static int run(CagBatch *b) {
     return cag_tool_fail(b->tool, CAG_STATUS_USAGE,
                          "add a column `frames` with values such as 0..47",
                          "--loop applies to films, but no row has frames");
-  // The report is written at the end; that it cannot be is said before.
+  // The report is written at the end, but an unwritable path is reported at the start.
   const int place = cag_tool_check_output(b->tool, b->report_path);
   if (place != CAG_STATUS_OK) return place;
   if (!cag_batch_make_keys(b))

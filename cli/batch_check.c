@@ -1,7 +1,7 @@
-// The rows of a batch, looked at before anything runs, and cut into tasks.
+// Checks the rows of a batch before anything runs, and divides them into tasks.
 //
-// Values are tried on a scratch command line, by the functions that read the real one, so a column
-// takes exactly what its option takes.
+// Values are set on a temporary command line by the functions for the real one, so a column accepts
+// exactly the values of its option.
 
 #include <errno.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@
 #define CODE_PLACE "E0915"
 #define CODE_FORMAT "E0916"
 
-// The most tasks of a batch: films of a million frames are slips of the pen.
+// The maximum number of tasks of a batch. More are probably a typing error.
 #define TASKS_MAX 1000000
 
 char *cag_batch_path(const CagBatch *b, const char *path) {
@@ -86,7 +86,7 @@ static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
   return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help, "unknown format '.%s'", format);
 }
 
-// Tries the fields on a scratch command line, which keeps what they say.
+// Sets the fields on a temporary command line, which stores their values.
 static bool check_values(CagBatch *b, const CagJob *job, const CagBatchRow *row, CagTool *scratch) {
   static const CagJobColumn PICTURES[] = {CAG_JOB_frames, CAG_JOB_size,   CAG_JOB_quality,
                                           CAG_JOB_engine, CAG_JOB_camera, CAG_JOB_tiles};
@@ -106,7 +106,7 @@ static bool check_values(CagBatch *b, const CagJob *job, const CagBatchRow *row,
   return ok;
 }
 
-// A film needs a place for the number in its output, anything else must have none.
+// The output of a film must contain a placeholder for the frame number; other outputs must not.
 static bool check_pattern(CagBatch *b, const CagJob *job, const CagBatchRow *row) {
   static const char HELP[] = "write the number as %04d, such as film.%04d.png, and a % as %%";
   const char *output = job->cells[CAG_JOB_output];
@@ -148,7 +148,7 @@ static bool check_tiles(CagBatch *b, const CagJob *job, CagBatchRow *row, const 
                           tiles, row->width, row->height, CAG_TILE_STEP);
 }
 
-// The film that -D frames=N says, for all rows.
+// Checks the length of films given by -D frames=N for all rows.
 static bool check_length(CagBatch *b, const CagJob *job, const CagBatchRow *row) {
   for (size_t i = 0; row->film && i < b->tool->define_count; i++) {
     const CagToolDefine *d = &b->tool->defines[i];
@@ -220,7 +220,7 @@ static bool make_tasks(CagBatch *b, size_t i) {
 // --- Outputs ---
 
 typedef struct {
-  char *path; // absolute, of the folder as it really is
+  char *path; // absolute, with links in its folder resolved
   size_t row, order;
 } Output;
 
@@ -230,8 +230,8 @@ static int by_path(const void *a, const void *b) {
   return order ? order : (p->order > q->order) - (p->order < q->order);
 }
 
-// The path with its links resolved, or those of its folder where nothing stands yet, so that two
-// ways to one file are seen as one.
+// Returns the path with links resolved, at least those of its folder if the file does not exist, so
+// that two paths of the same file are detected.
 static char *real_output(const CagBatch *b, const char *name) {
   char *path = cag_batch_path(b, name);
   char *out = path ? realpath(path, NULL) : NULL, *slash = path ? strrchr(path, '/') : NULL;
@@ -248,7 +248,7 @@ static char *real_output(const CagBatch *b, const char *name) {
   return out;
 }
 
-// The files that the batch itself reads and writes, and scripts, are no outputs.
+// Outputs must not be scripts or files that the batch itself reads and writes.
 static bool add_reserved(CagBatch *b, Output *outputs, size_t *count) {
   const char *own[] = {b->journal_path, b->report_path};
   for (size_t i = 0; i < 2; i++)
@@ -284,7 +284,7 @@ static bool check_outputs(CagBatch *b) {
     ok = outputs[count++].path != NULL;
   }
   if (ok) qsort(outputs, count, sizeof *outputs, by_path);
-  size_t told = SIZE_MAX; // a film that meets another is told once
+  size_t told = SIZE_MAX; // conflicts of a film are reported once
   for (size_t i = 1; ok && i < count; i++) {
     if (outputs[i].row == SIZE_MAX || outputs[i].row == told ||
         strcmp(outputs[i].path, outputs[i - 1].path) != 0)
@@ -297,7 +297,7 @@ static bool check_outputs(CagBatch *b) {
   return ok;
 }
 
-// Tries the place of a row's first output.
+// Tests whether a row's first output can be written.
 static bool check_place(CagBatch *b, size_t i) {
   const CagBatchRow *row = &b->rows[i];
   const CagJob *job = &b->jobs.rows[i];

@@ -1,4 +1,4 @@
-// The processes of a batch. What is promised stands in batch_child.h.
+// Child processes of a batch (see batch_child.h).
 
 #include "cli/batch_child.h"
 
@@ -15,19 +15,19 @@
 
 #include "base/clock.h"
 
-// Seconds from asking a process to end until it is killed. The program ends itself after two when
-// it can (see main.c), with its temporaries removed.
+// Seconds between asking a process to end and killing it. If it can, the program ends by itself
+// after two seconds and removes its temporary files (see main.c).
 static const double PATIENCE = 4;
 
 // Exit status of a child whose exec failed.
 #define EXEC_FAILED 127
 
-// Milliseconds between looks of cag_child_run.
+// Milliseconds between checks by cag_child_run.
 #define LOOK_INTERVAL 20
 
 // --- Starting ---
 
-// In the child, after fork: what is inherited and is not its business is put right.
+// Runs in the child after fork: resets inherited state.
 static bool reset_child(int output, bool whole, const char *folder, pid_t parent) {
   static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
   sigset_t none;
@@ -36,15 +36,15 @@ static bool reset_child(int output, bool whole, const char *folder, pid_t parent
   sigprocmask(SIG_SETMASK, &none, NULL);
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) return false; // killed before it could be asked
+  if (getppid() != parent) return false; // the parent died before the death signal was set
   const int null = open("/dev/null", O_RDWR);
   return null >= 0 && dup2(null, STDIN_FILENO) >= 0 &&
          dup2(whole ? output : null, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0 &&
          (!folder || chdir(folder) == 0);
 }
 
-// Forks. In the child, which is settled, *c is not to be used; it gives 0, in the parent 1, -1 with
-// errno when there is no child.
+// Forks. Returns 0 in the child, where *c must not be used, 1 in the parent, and -1, with errno, if
+// there is no child.
 static int begin(CagChild *c, const char *folder, double limit, bool whole) {
   int ends[2];
   *c = (CagChild){.said = -1, .limit = limit, .begun = cag_clock_seconds()};
@@ -64,7 +64,7 @@ static int begin(CagChild *c, const char *folder, double limit, bool whole) {
     cag_child_free(c);
     return errno = code, -1;
   }
-  setpgid(c->pid, c->pid); // on both sides, so that no signal comes too early
+  setpgid(c->pid, c->pid); // in both processes, so that a signal never comes too early
   fcntl(c->said, F_SETFL, O_NONBLOCK);
   return 1;
 }
@@ -85,9 +85,9 @@ bool cag_child_start_work(CagChild *c, int (*work)(void *context), void *context
   return side > 0;
 }
 
-// --- Following ---
+// --- Watching ---
 
-// Keeps the end of what it says: the beginning of a flood goes.
+// Keeps the end of its output, and drops the beginning of a long one.
 static void keep(CagChild *c, const char *bytes, size_t n) {
   if (c->length + n > 2 * CAG_CHILD_TEXT_MAX) {
     const size_t drop = c->length - CAG_CHILD_TEXT_MAX;
@@ -142,11 +142,11 @@ bool cag_child_look(CagChild *c) {
     see_to_limits(c);
     return false;
   }
-  kill(-c->pid, SIGKILL); // whatever it left
+  kill(-c->pid, SIGKILL); // kills its own children, too
   take_text(c);
   c->seconds = cag_clock_seconds() - c->begun;
   c->memory = done > 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
-  if (done < 0) c->status = EXEC_FAILED << 8; // somebody else waited for it
+  if (done < 0) c->status = EXEC_FAILED << 8; // other code has waited for it
   return true;
 }
 

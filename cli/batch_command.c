@@ -1,4 +1,4 @@
-// The command line of a task's process: `cag render` or `cag export` of this same program.
+// The command line of a task's process: `cag render` or `cag export` of this program.
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "cli/batch.h"
 #include "cli/tiles.h"
 
-// Words one after the other, each with its zero.
+// A sequence of words, each terminated by a zero.
 typedef struct {
   FILE *out;
   size_t count;
@@ -23,12 +23,12 @@ static void add(Words *w, const char *format, ...) {
   w->count++;
 }
 
-// A path that cannot be taken for an option or standard input.
+// Adds a path in a form that is neither an option nor standard input.
 static void add_path(Words *w, const char *before, const char *path) {
   add(w, "%s%s%s", before, *path == '-' ? "./" : "", path);
 }
 
-// The output of a frame goes through the pattern's reading once more, where % is written %%.
+// The output of a frame is parsed as a pattern again, so a % is written as %%.
 static void add_output(Words *w, const char *path, bool film) {
   fputs("-o=", w->out);
   if (*path == '-') fputs("./", w->out);
@@ -64,7 +64,7 @@ static void add_picture(const CagBatch *b, const CagTask *task, int threads, Wor
   add(w, "--threads=%d", threads);
 }
 
-// Numbers with all their digits.
+// Adds numbers with all their digits.
 static void add_limits(const CagTool *t, Words *w) {
   const CagSessionOptions *o = &t->session;
   add(w, "--max-memory=%zu", o->max_memory);

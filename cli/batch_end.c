@@ -1,4 +1,4 @@
-// The ends of tasks: what is kept of them, what an earlier call kept, and sums over rows.
+// The results of tasks: recording them, restoring those of earlier calls, and totals of rows.
 
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +6,8 @@
 
 #include "cli/batch.h"
 
-// A task is done when the journal says so and its output is there. Of a picture that is done, the
-// tiles are gone.
+// A task is done if the journal says so and its output exists. The tiles of a finished picture have
+// been removed.
 void cag_batch_recall(CagBatch *b) {
   for (size_t i = 0; i < b->task_count; i++) {
     CagTask *task = &b->tasks[i];

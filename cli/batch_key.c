@@ -1,8 +1,9 @@
-// The keys of tasks: hashes of all that an output depends on.
+// The keys of tasks: hashes of everything on which an output depends.
 //
-// What a script reads is found in its text without understanding it: whatever stands in quotes, or
-// behind `import`, and is the name of a file counts, and scripts among these are looked at in the
-// same way. A name too many only makes a row run again. Names that a script computes are not seen.
+// The files that a script reads are found in its text without parsing it. Every quoted text and
+// every word after `import` counts if it is the name of a file, and scripts among these are
+// searched in the same way. A name too many only causes an unnecessary rerun. Names that a script
+// computes are not found.
 
 #include <limits.h>
 #include <stdlib.h>
@@ -11,16 +12,16 @@
 
 #include "cli/batch.h"
 
-// FNV-1a with 128 bits (Fowler, Noll, Vo): offset 6c62272e07bb014262b821756295c58d, prime
-// 2^88 + 0x13b. It is no defence against a forger; none is needed here.
+// FNV-1a with 128 bits (Fowler, Noll, Vo): offset 6c62272e07bb014262b821756295c58d, prime 2^88 +
+// 0x13b. It is not cryptographically secure, which is not needed here.
 typedef unsigned __int128 Hash;
 
 #define HASH_START ((Hash)0x6c62272e07bb0142 << 64 | 0x62b821756295c58d)
 #define HASH_PRIME ((Hash)1 << 88 | 0x13b)
 
-// Larger files count by their size and time of change.
+// Of larger files, only size and modification time are hashed.
 #define READ_MAX ((size_t)64 << 20)
-// Longer texts in quotes are no names of files.
+// Longer quoted texts are not file names.
 #define NAME_LENGTH_MAX 255
 
 static void add_bytes(Hash *h, const void *bytes, size_t n) {
@@ -28,7 +29,8 @@ static void add_bytes(Hash *h, const void *bytes, size_t n) {
   for (size_t i = 0; i < n; i++) *h = (*h ^ at[i]) * HASH_PRIME;
 }
 
-// A text with its end, so that "ab" "c" and "a" "bc" differ; NULL is not the empty text.
+// Adds a text with its terminator, so that "ab" "c" and "a" "bc" differ. NULL differs from the
+// empty text.
 static void add_text(Hash *h, const char *text) {
   if (text) add_bytes(h, text, strlen(text) + 1);
   else add_bytes(h, "\1", 1);
@@ -42,7 +44,7 @@ static void write_key(Hash h, char key[CAG_JOURNAL_KEY_SIZE]) {
 // --- Files ---
 
 typedef struct Files {
-  char **paths; // that are in the hash already
+  char **paths; // already in the hash
   size_t count;
   const CagBatch *batch;
 } Files;
@@ -54,7 +56,7 @@ static bool is_script(const char *path) {
   return n > 4 && strcmp(path + n - 4, ".cag") == 0;
 }
 
-// The file of that name in the script's folder or one of the module path.
+// Adds the file of that name in the script's folder or on the module path.
 static bool add_named(Files *f, Hash *h, const char *folder, const char *name) {
   const CagSessionOptions *o = &f->batch->tool->session;
   char path[PATH_MAX];
@@ -69,7 +71,7 @@ static bool add_named(Files *f, Hash *h, const char *folder, const char *name) {
   return true;
 }
 
-// Behind `import`: parts.gripper is parts/gripper.cag.
+// After `import`: parts.gripper is parts/gripper.cag.
 static bool add_import(Files *f, Hash *h, const char *folder, const char *at) {
   char name[NAME_LENGTH_MAX + 1];
   at += strspn(at, " \t");
@@ -88,14 +90,14 @@ static bool add_quoted(Files *f, Hash *h, const char *folder, const char *start,
   return add_named(f, h, folder, name);
 }
 
-// Looks through a text for names of files.
+// Searches a text for names of files.
 static bool add_names(Files *f, Hash *h, const char *folder, const char *text) {
   static const char WORD[] = "import";
   bool ok = true;
   for (const char *at = text; ok && (at = strstr(at, WORD)); at += sizeof WORD - 1)
     ok = add_import(f, h, folder, at + sizeof WORD - 1);
-  // Each quote begins a text or ends one; both readings are tried, so that a lone quote in a
-  // comment hides nothing.
+  // Each quote may start or end a text. Both are tried, because a comment may contain a single
+  // quote.
   for (const char *at = text; ok && (at = strchr(at, '"')); at++) {
     const size_t n = strcspn(at + 1, "\"\n");
     if (at[1 + n] == '"') ok = add_quoted(f, h, folder, at + 1, n);
@@ -172,10 +174,10 @@ static bool hash_script(const CagBatch *b, const char *name, Hash *h) {
   return ok;
 }
 
-// The hash of a script, which is made once.
+// Returns the hash of a script, which is computed once.
 static bool find_script(const CagBatch *b, Script *scripts, size_t *count, const char *name,
                         Hash *h) {
-  // Rows of one script mostly follow each other.
+  // Rows of the same script are usually adjacent.
   for (size_t i = *count; i-- > 0;)
     if (strcmp(scripts[i].name, name) == 0) {
       *h = scripts[i].hash;
@@ -188,7 +190,7 @@ static bool find_script(const CagBatch *b, Script *scripts, size_t *count, const
 
 // --- Keys ---
 
-// Files that values of params name, seen from the script's folder.
+// Adds files that values of params name, relative to the script's folder.
 static bool add_params(const CagBatch *b, Hash *h, const CagJob *job) {
   Files f = {.batch = b};
   char *script = cag_batch_path(b, job->cells[CAG_JOB_script]);
@@ -208,7 +210,7 @@ static bool add_params(const CagBatch *b, Hash *h, const CagJob *job) {
   return ok;
 }
 
-// What the row and the command line say.
+// Adds the fields of the row and the options of the command line.
 static bool hash_row(const CagBatch *b, size_t i, Hash script, Hash *h) {
   const CagTool *t = b->tool;
   const CagJob *job = &b->jobs.rows[i];
@@ -240,8 +242,8 @@ static void task_key(const CagBatch *b, const CagBatchRow *row, CagTask *task, c
   write_key(h, task->key);
 }
 
-// A tile's place is beside the journal, under its key; seen from there, since a % in the name of an
-// outer folder would be a frame's place to the renderer.
+// A tile is in a folder beside the journal, with its key as its name. The path is relative, because
+// the renderer would interpret a % in an outer folder as the frame number.
 static bool place_tile(const CagBatch *b, CagTask *task) {
   if (task->tile < 0) return true;
   return asprintf(&task->output, "%s/%s.exr", strrchr(b->tiles_folder, '/') + 1, task->key) >= 0;
@@ -259,7 +261,7 @@ bool cag_batch_make_keys(CagBatch *b) {
          hash_row(b, i, script, &h);
     for (size_t k = 0; ok && k < row->task_count; k++) {
       CagTask *task = &b->tasks[row->task + k];
-      // The tasks of a picture are its tiles and what joins them.
+      // The tasks of a picture are its tiles and the task that joins them.
       const CagTask *whole = &b->tasks[row->task + k / (tiles + 1) * (tiles + 1) + tiles];
       task_key(b, row, task, whole, h);
       ok = place_tile(b, task);

@@ -1,4 +1,4 @@
-// What /proc says of the machine, and what follows for the number of processes.
+// Reads the state of the machine from /proc, and derives the number of processes from it.
 
 #include "cli/batch_load.h"
 
@@ -16,28 +16,29 @@
 #include "base/clock.h"
 #include "cli/batch_child.h"
 
-// Seconds between looks for an idle processor; and between looks at the shares of time, which are
-// fifteen ticks of the kernel's clock for each processor.
+// Seconds between checks for an idle processor, and between measurements of the fractions of time,
+// which take fifteen ticks of the kernel's clock per processor.
 static const double LOOK_INTERVAL = 0.008, SHARE_INTERVAL = 0.15;
 
-// Below this share of their time the processors count as idle.
+// Processors count as idle if they are busy for less than this fraction of the time.
 static const double BUSY = 0.95;
 
-// How many processes more may run than do when a processor is idle, for each of them; one at least.
+// If a processor is idle, the number of processes may grow by this fraction of the number of
+// processors, and by at least one.
 static const double GROWTH = 0.125;
 
-// How many processes fewer may run after a second without an idle processor.
+// The number of processes by which the limit decreases per second without an idle processor.
 static const double SINK = 0.5;
 
-// The most for each processor until one has ended.
+// The maximum per processor until one has ended.
 static const double MOST_UNKNOWN = 6;
 
-// Where so many processes keep a processor busy, they sleep: what waits at the end of a batch is
-// then begun at once, when it is no more than may run.
+// If this many processes per processor are needed to keep it busy, they sleep. At the end of a
+// batch, all waiting ones are then started at once, if they are not more than may run.
 static const double SLEEPERS = 2;
 
-// Memory that must be free, of all there is, before further processes are begun; and what processes
-// like the largest might take of it together.
+// The fraction of memory that must be free before more processes are started, and the fraction that
+// all processes may use if they become as large as the largest one.
 static const double FREE_MEMORY = 0.25, USED_MEMORY = 0.75;
 
 static FILE *open_file(const char *proc, const char *name) {
@@ -46,7 +47,7 @@ static FILE *open_file(const char *proc, const char *name) {
   return n > 0 && (size_t)n < sizeof path ? fopen(path, "re") : NULL;
 }
 
-// Reads the ticks of all processors. False where there is no such file.
+// Reads the ticks of all processors. Returns false if there is no such file.
 static bool read_ticks(const char *proc, double *busy, double *total) {
   unsigned long long t[8] = {0}; // user, nice, system, idle, iowait, irq, softirq, steal
   FILE *f = open_file(proc, "stat");
@@ -57,12 +58,12 @@ static bool read_ticks(const char *proc, double *busy, double *total) {
   *total = 0;
   for (int i = 0; i < n; i++) *total += (double)t[i];
   *busy = *total - (double)t[3] - (double)t[4];
-  // What runs at a lower priority than we do gives way.
+  // Processes with a lower priority than ours yield to us, so they count as idle.
   if (getpriority(PRIO_PROCESS, 0) <= 0) *busy -= (double)t[1];
   return n >= 4;
 }
 
-// Whether one process more than `running` has room.
+// Tests whether there is memory for one more process than `running`.
 static bool has_memory(const CagLoad *l, size_t running) {
   char line[128];
   double total = 0, available = 0;
@@ -76,7 +77,7 @@ static bool has_memory(const CagLoad *l, size_t running) {
          (double)l->largest * (double)(running + 1) < USED_MEMORY * total;
 }
 
-// How many threads of the machine compute or could, without this one; SIZE_MAX where nothing says.
+// Counts the runnable threads of the machine, except this one. Returns SIZE_MAX if it is unknown.
 static size_t count_runnable(const char *proc) {
   size_t n = 0;
   FILE *f = open_file(proc, "loadavg");
@@ -92,8 +93,8 @@ void cag_load_begin(CagLoad *l, size_t workers, const char *proc) {
   read_ticks(proc, &l->busy, &l->total);
 }
 
-// Whether the shares of time, taken over a while, say that a processor is idle. They know what runs
-// at a lower priority, which a count of threads does not.
+// Tests whether a processor is idle according to the measured fractions of time. Unlike a count of
+// threads, they account for processes with lower priority.
 static bool was_idle(CagLoad *l, double now) {
   double busy, total;
   if (now - l->seen < SHARE_INTERVAL || !read_ticks(l->proc, &busy, &total) || total <= l->total)
@@ -112,7 +113,7 @@ static void measure_load(CagLoad *l, size_t running) {
   l->looked = now;
   const bool idle = was_idle(l, now);
   const bool has_room = idle || count_runnable(l->proc) < l->workers;
-  // A few more than run are enough: what was allowed and not used says nothing.
+  // Only a few more than are running, because a limit that was not reached is meaningless.
   const double more = (double)running + fmax(1, floor(GROWTH * (double)l->workers));
   l->limit = has_room ? fmax(l->limit, more) : l->limit - SINK * passed;
   const double least = (double)l->workers;
@@ -136,8 +137,8 @@ void cag_load_ended(CagLoad *l, size_t memory) {
 
 void cag_load_refused(CagLoad *l, size_t running) { l->limit = (double)running; }
 
-// Takes parent and pages in memory of a process from /proc/N/stat, whose second field is a name in
-// parentheses that may hold anything.
+// Reads the parent and the resident pages of a process from /proc/N/stat. Its second field is a
+// name in parentheses that may contain any characters.
 static bool read_process(const char *proc, const char *number, long *parent, long *pages) {
   char name[32], text[1024];
   snprintf(name, sizeof name, "%.20s/stat", number);
@@ -146,7 +147,7 @@ static bool read_process(const char *proc, const char *number, long *parent, lon
   if (f) fclose(f);
   text[n] = '\0';
   const char *at = strrchr(text, ')');
-  // state, parent, then 19 fields up to the 24th, the pages
+  // state, parent, and 19 fields before field 24, the pages
   return at &&
          sscanf(at + 1,
                 " %*c %ld %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "

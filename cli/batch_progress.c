@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "cli/batch_child.h"
 
-// Columns beside the bar, and the widest bar.
+// Columns beside the bar, and the maximum width of the bar.
 #define BESIDE 60
 #define WIDEST 30
 
@@ -44,7 +44,7 @@ static int bar_width(void) {
   return room < 0 ? 0 : room > WIDEST ? WIDEST : room;
 }
 
-// How long it takes still, when it goes on as it did.
+// Writes the estimated remaining time, at the current pace.
 static void write_rest(const CagBatchProgress *p, const Counts *c) {
   const size_t ended = p->left - (c->waiting < p->left ? c->waiting : p->left);
   if (!ended || !c->waiting) return;

@@ -1,4 +1,4 @@
-// What a batch says: its problems, its failed rows, the report, and the closing line.
+// The messages of a batch: its problems, its failed rows, the report, and the summary line.
 
 #include <cJSON.h>
 #include <stdlib.h>
@@ -8,7 +8,8 @@
 #include "base/atomic_file.h"
 #include "cli/batch.h"
 
-// Problems that are told; a table with the wrong separator has one in each row.
+// The maximum number of problems that are reported; a table with the wrong separator has one in
+// each row.
 #define PROBLEMS_TOLD 50
 
 // --- Problems ---
@@ -29,7 +30,7 @@ static void tell_json(const CagBatch *b, size_t row, size_t line, const char *co
   cJSON_Delete(object);
 }
 
-// "jobs.csv:5: E0913: row 4: the script ..."
+// Writes "jobs.csv:5: E0913: row 4: the script ...".
 static void report_problem(const CagBatch *b, size_t row, size_t line, const char *code,
                            const char *message, const char *help) {
   if (b->tool->style == CAG_STYLE_JSON) {
@@ -44,7 +45,7 @@ static void report_problem(const CagBatch *b, size_t row, size_t line, const cha
   if (help) fprintf(stderr, "  %s\n", help);
 }
 
-// In the order of the rows; of one row, in any order.
+// Compares by row. The order of problems of one row is unspecified.
 static int by_row(const void *a, const void *b) {
   const CagJobProblem *p = a, *q = b;
   return (p->row > q->row) - (p->row < q->row);
@@ -69,7 +70,7 @@ void cag_batch_tell_row(const CagBatch *b, size_t row, const char *code, const c
 
 // --- The report ---
 
-// A field of CSV: in quotes where it must be.
+// Writes a field of CSV, quoted if necessary.
 static void write_field(CagAtomicFile *f, const char *text) {
   if (!text) return;
   if (!strpbrk(text, ",\"\n\r;\t")) {
@@ -112,7 +113,7 @@ bool cag_batch_write_report(const CagBatch *b, CagError *err) {
 int cag_batch_close(const CagBatch *b, bool interrupted) {
   size_t counts[4] = {0};
   for (size_t i = 0; i < b->jobs.count; i++) counts[cag_batch_sum(b, i).state]++;
-  rmdir(b->tiles_folder); // when it is empty
+  rmdir(b->tiles_folder); // if it is empty
   if (!b->tool->quiet) {
     printf("%zu done, %zu failed, %zu left out (already done)", counts[CAG_ROW_DONE],
            counts[CAG_ROW_FAILED], counts[CAG_ROW_KEPT]);

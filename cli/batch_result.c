@@ -1,4 +1,4 @@
-// The end of a process in words: the first error of its diagnostics, or how it was ended.
+// Describes the exit of a process: the first error of its diagnostics, or how it was ended.
 
 #include "cli/batch_result.h"
 
@@ -11,10 +11,10 @@
 
 #include "cag.h"
 
-// Longest message kept of a process.
+// The maximum length of a message of a process.
 #define MESSAGE_MAX 600
 
-// "ball.cag:3:5: E0310: ..." of a diagnostic; NULL where the line is none, or a warning.
+// Returns the "ball.cag:3:5: E0310: ..." of a diagnostic, or NULL for other lines and for warnings.
 static char *read_diagnostic(const char *line, size_t length) {
   cJSON *object = cJSON_ParseWithLength(line, length);
   const char *severity = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, "severity"));
@@ -32,7 +32,7 @@ static char *read_diagnostic(const char *line, size_t length) {
   return text;
 }
 
-// The first error that the process told, or else the last line that it said.
+// Returns the first error that the process reported, or else its last line of output.
 static char *told(const char *text) {
   const char *last = "";
   size_t last_length = 0;
@@ -46,7 +46,7 @@ static char *told(const char *text) {
   return last_length ? strndup(last, last_length < MESSAGE_MAX ? last_length : MESSAGE_MAX) : NULL;
 }
 
-// A message is a line of the report.
+// Makes a message fit on one line of the report.
 static void make_line(char *text) {
   for (; text && *text; text++)
     if (*text == '\n' || *text == '\r') *text = ' ';

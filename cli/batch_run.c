@@ -1,8 +1,8 @@
-// The tasks of a batch, run here.
+// Runs the tasks of a batch on this machine.
 //
-// One thread does everything: it starts processes while there is room, waits until one says
-// something or ends, and takes what has ended to the journal. A task that fails is put back as long
-// as it may be tried again, behind the others.
+// A single thread starts processes while there is room, waits until one writes something or ends,
+// and records the results in the journal. A failed task is queued again, after the others, as long
+// as retries are left.
 
 #include <errno.h>
 #include <poll.h>
@@ -18,19 +18,21 @@
 #include "cli/batch_result.h"
 #include "cli/tiles.h"
 
-// Milliseconds between looks at everything; while further processes may be begun; and while a
-// process whose output is closed is about to end.
+// Milliseconds between checks of everything: normally, while more processes may be started, and
+// while a process with closed output is about to end.
 #define LOOK_INTERVAL 50
 #define LOOK_INTERVAL_WAITING 10
 #define LOOK_INTERVAL_CLOSED 1
 
-// Seconds between looks at memory.
+// Seconds between checks of memory.
 static const double MEMORY_INTERVAL = 0.5;
 
-// What a row's processes may take beyond --max-memory, which is about the values of its script.
+// Memory that a row's processes may use in addition to --max-memory, which limits the values of its
+// script.
 #define MEMORY_BESIDE ((size_t)64 << 20)
 
-// A process sees to --max-time itself, and tells where it stood. Only one that does not is stopped.
+// A process enforces --max-time itself, and reports where it was. It is stopped only if it does
+// not.
 static const double TIME_FACTOR = 1.1, TIME_BESIDE = 1;
 
 typedef struct {
@@ -42,18 +44,18 @@ typedef struct {
   CagBatch *batch;
   Slot *slots;
   size_t running, capacity;
-  size_t next;    // tasks before it are not waiting, but for those put back
+  size_t next;    // tasks before it are not waiting, except for those queued again
   bool again;     // there may be some of these
-  bool joins;     // run only what joins tiles
-  size_t waiting; // tasks that are to be begun
+  bool joins;     // run only tasks that join tiles
+  size_t waiting; // number of tasks to start
   CagLoad load;
   CagBatchProgress progress;
-  size_t limit_memory; // of a row's processes; 0: none
+  size_t limit_memory; // of a row's processes; 0: unlimited
   double memory_seen;
   int status;
 } Run;
 
-// --- Choosing ---
+// --- Selecting tasks ---
 
 static bool is_ready(const Run *r, const CagTask *task) {
   if (task->state != CAG_TASK_WAITING || (r->joins && !task->joins)) return false;
@@ -73,7 +75,7 @@ static CagTask *choose(Run *r) {
   }
 }
 
-// --- Joining tiles, in a process of its own ---
+// --- Joining tiles, in a separate process ---
 
 typedef struct {
   const CagBatch *batch;
@@ -114,7 +116,7 @@ static double hard_limit(const CagTool *t) {
   return t->session.max_time > 0 ? TIME_FACTOR * t->session.max_time + TIME_BESIDE : 0;
 }
 
-// Ends a task without a process.
+// Ends a task that could not be started.
 static void fail_start(Run *r, CagTask *task, const char *why) {
   task->state = CAG_TASK_FAILED;
   task->status = CAG_STATUS_LIMIT;
@@ -123,7 +125,7 @@ static void fail_start(Run *r, CagTask *task, const char *why) {
   r->status = cag_batch_end_task(r->batch, task);
 }
 
-// False: the system has no process for now, and the task waits.
+// Returns false if the system cannot create a process now; the task then waits.
 static bool start(Run *r, CagTask *task) {
   CagBatch *b = r->batch;
   Slot *slot = &r->slots[r->running];
@@ -152,7 +154,7 @@ static bool start(Run *r, CagTask *task) {
   return true;
 }
 
-// What has ended goes to the journal, or back to what waits.
+// Records the result of a task in the journal, or queues the task again.
 static void end(Run *r, Slot *slot) {
   CagBatch *b = r->batch;
   CagTask *task = slot->task;
@@ -163,7 +165,7 @@ static void end(Run *r, Slot *slot) {
   task->status =
       cag_child_result(&slot->child, b->tool->session.max_time, r->limit_memory, &task->message);
   cag_child_free(&slot->child);
-  r->again = true; // what joins this tile, or this one once more
+  r->again = true; // the task that joins this tile, or this task again
   if (task->status != CAG_STATUS_OK && (size_t)task->attempts <= b->tool->retries) {
     task->state = CAG_TASK_WAITING;
     r->waiting++;
@@ -189,7 +191,7 @@ static void check_children(Run *r) {
   }
 }
 
-// Stops what takes too much memory.
+// Stops processes that use too much memory.
 static void see_to_memory(Run *r) {
   const double now = cag_clock_seconds();
   if (!r->limit_memory || !r->running || now - r->memory_seen < MEMORY_INTERVAL) return;
@@ -219,7 +221,7 @@ static void wait_for_news(Run *r, struct pollfd *waiting) {
   poll(waiting, r->running, interval);
 }
 
-// After Ctrl-C: all processes end, and what they did not finish waits for the next call.
+// After Ctrl-C: stops all processes. Unfinished tasks wait for the next call.
 static void stop_all(Run *r, struct pollfd *waiting) {
   for (size_t i = 0; i < r->running; i++) cag_child_stop(&r->slots[i].child, CAG_CHILD_STOP_ASKED);
   while (r->running) {
@@ -265,7 +267,7 @@ static void run_all(Run *r, struct pollfd *waiting) {
     if (!r->running) return;
     wait_for_news(r, waiting);
     check_children(r);
-    begin_more(r); // processes first: the disk takes its time
+    begin_more(r); // before the journal is written, which takes time
     sync_journal(r);
     see_to_memory(r);
     cag_batch_progress_show(&r->progress, r->batch, r->running);

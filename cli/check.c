@@ -1,10 +1,10 @@
-// cag check PATH ...: errors of scripts, found without running them.
+// cag check PATH ...: reports errors of scripts without running them.
 
 #include "cli/scripts.h"
 
 typedef struct Checking {
   CagTool *tool;
-  int status; // the worst that happened
+  int status; // the worst so far
 } Checking;
 
 static int check_script(void *context, const char *path) {

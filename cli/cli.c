@@ -1,8 +1,9 @@
-// The command line, read by its tables.
+// Parses the command line by tables.
 //
-// Options may stand before, between and behind the operands, up to `--`. The first operand is the
-// command; an option before it waits until the command is known, so reading goes through argv
-// twice: once for the command, once for the rest. Operands are moved to the front of argv.
+// Options can be before, between, and after the operands, up to `--`. The first operand is the
+// command. An option before it can be interpreted only after the command is known, so argv is
+// parsed twice: once for the command, and once for the rest. Operands are moved to the front of
+// argv.
 
 #include "cli/cli.h"
 
@@ -38,7 +39,7 @@ static bool reject(const CagTool *t, const char *help, const char *option, const
   return false;
 }
 
-// Reads a number that the whole text is, up to a `suffix` that may follow (NULL: none).
+// Parses a number that must be the whole text, except for an optional `suffix` (NULL: none).
 static bool read_number(const char *text, const char *suffix, double *out) {
   char *end;
   if (!*text || strchr(" \t\n", *text)) return false;
@@ -47,7 +48,7 @@ static bool read_number(const char *text, const char *suffix, double *out) {
   return end != text && !*end && isfinite(*out);
 }
 
-// Reads a whole number of plain digits; `end` is where it ends.
+// Parses an integer of plain digits. `end` is set to its end.
 static bool read_whole(const char *text, const char **end, long *out) {
   char *stop;
   if (*text < '0' || *text > '9') return false;
@@ -57,7 +58,7 @@ static bool read_whole(const char *text, const char **end, long *out) {
   return errno == 0;
 }
 
-// Numbers beyond this are not counts that a double or the machine can hold.
+// The largest count that is accepted.
 static const double COUNT_MAX = 1e15;
 
 static bool read_count(const CagTool *t, const char *option, const char *value, size_t *out) {
@@ -165,7 +166,7 @@ static bool set_filter(CagTool *t, const char *value) {
   return true;
 }
 
-// Makes room for one more in an array that grows one by one: command lines are short.
+// Makes room for one more item. Growing one by one is sufficient for command lines.
 static void *grow(void *array, size_t count, size_t size) {
   void *larger = realloc(array, (count + 1) * size);
   if (larger) return larger;
@@ -240,7 +241,7 @@ static bool set_diagnostics(CagTool *t, const char *value) {
 }
 
 static bool set_color(CagTool *t, const char *value) {
-  static const char *const CHOICES[] = {"auto", "always", "never"}; // as CagToolColor
+  static const char *const CHOICES[] = {"auto", "always", "never"}; // in the order of CagToolColor
   size_t i;
   if (!one_of(t, "--color", value, CHOICES, 3, "there are auto, always and never", &i))
     return false;
@@ -248,7 +249,7 @@ static bool set_color(CagTool *t, const char *value) {
   return true;
 }
 
-// Flags get no value.
+// Flags have no value.
 static bool set_update(CagTool *t, const char *value) {
   (void)value;
   return t->update = true;
@@ -390,13 +391,13 @@ const CagToolOption cag_tool_options[] = {
 };
 const size_t cag_tool_option_count = sizeof cag_tool_options / sizeof *cag_tool_options;
 
-// --- Reading ---
+// --- Parsing ---
 
-// One option as it stands in argv.
+// An option as it is written in argv.
 typedef struct {
-  const CagToolOption *option; // NULL: there is none of this name
-  char shown[64];              // as the user knows it: "--size", "-o"
-  const char *value;           // behind its = or its letter; NULL: none
+  const CagToolOption *option; // NULL: unknown
+  char shown[64];              // as the user wrote it: "--size", "-o"
+  const char *value;           // after its = or its letter; NULL: none
 } Given;
 
 static bool takes(const CagToolCommand *c, const CagToolOption *o) {
@@ -415,7 +416,7 @@ static Given find_long(const char *word) {
   return g;
 }
 
-// The option of the letter at `at`; a value may follow at once: -Dname=value.
+// Returns the option with the letter at `at`. A value may follow directly: -Dname=value.
 static Given find_short(const char *at) {
   Given g = {0};
   snprintf(g.shown, sizeof g.shown, "-%c", *at);
@@ -425,7 +426,7 @@ static Given find_short(const char *at) {
   return g;
 }
 
-// The name of an option of this command that is like what was written, or NULL.
+// Returns the name of an option of this command that is similar to what was written, or NULL.
 static const char *nearest_option(const CagToolCommand *command, const char *shown) {
   const char *names[64];
   size_t count = 0;
@@ -448,8 +449,8 @@ static bool reject_option(const CagTool *t, const Given *g) {
   return false;
 }
 
-// Keeps one option; its value may be the next word. Gives back how many further words it took, or
-// -1.
+// Sets one option, whose value may be the next word. Returns the number of additional words used,
+// or -1.
 static int apply(CagTool *t, const Given *g, const char *next) {
   const CagToolOption *o = g->option;
   if (!o || !takes(t->command, o)) return reject_option(t, g), -1;
@@ -457,7 +458,7 @@ static int apply(CagTool *t, const Given *g, const char *next) {
     cag_tool_fail(t, CAG_STATUS_USAGE, NULL, "%s takes no value", g->shown);
     return -1;
   }
-  // A word like --size is not the value of the option before it, but a sign that one was forgotten.
+  // If a word such as --size follows, the value was forgotten.
   const bool missing = o->argument && !g->value && (!next || !strncmp(next, "--", 2));
   if (missing) {
     char help[128];
@@ -469,7 +470,7 @@ static int apply(CagTool *t, const Given *g, const char *next) {
   return o->argument && !g->value;
 }
 
-// Keeps the options of one word, which are several for letters in a row. The count is as above.
+// Sets the options of one word, which may be several letters in a row. Returns the count as above.
 static int apply_word(CagTool *t, char *word, const char *next) {
   if (word[1] == '-') {
     const Given g = find_long(word);
@@ -483,13 +484,14 @@ static int apply_word(CagTool *t, char *word, const char *next) {
   return 0;
 }
 
-// A lone - is standard input; what has no letter behind its - is an expression: cag eval '-2^2'.
+// A single - is standard input. A - that is not followed by a letter starts an expression: cag eval
+// '-2^2'.
 static bool is_option(const char *word) {
   const char c = word[0] == '-' ? word[1] : 0;
   return c == '-' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-// Whether this word is an option whose value is the next word.
+// Tests whether this word is an option whose value is the next word.
 static bool takes_next(const char *word) {
   if (word[1] == '-') {
     const Given g = find_long(word);
@@ -502,7 +504,7 @@ static bool takes_next(const char *word) {
   return false;
 }
 
-// The index of the first operand, which is the command; argc when there is none.
+// Returns the index of the first operand, which is the command, or argc if there is none.
 static int find_command(int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
     if (!strcmp(argv[i], "--")) return i + 1 < argc ? i + 1 : argc;
@@ -567,7 +569,7 @@ static bool check_operands(const CagTool *t, int count, char **operands) {
   return true;
 }
 
-// The style that --diagnostics and --color, or the terminal, ask for.
+// Determines the style from --diagnostics, --color, and the terminal.
 static void settle_style(CagTool *t) {
   const char *terminal = getenv("TERM"), *none = getenv("NO_COLOR");
   const bool colorful =
@@ -582,12 +584,12 @@ bool cag_tool_read(CagTool *t, int argc, char **argv, int *operand_count) {
   cag_session_options_init(&t->session);
   t->session.interrupt = &cag_tool_interrupt;
 
-  // The command, the REPL without one.
+  // The command; without one, the REPL.
   const int command_at = find_command(argc, argv);
   t->command = &cag_tool_commands[CAG_TOOL_repl];
   if (command_at < argc && !choose_command(t, argv[command_at])) return false;
 
-  // Options, and what is left of argv.
+  // The options, and the rest of argv.
   int count = 0;
   bool options = true;
   for (int i = 1; i < argc; i++) {

@@ -1,4 +1,4 @@
-// cag compare A B: how far two pictures differ.
+// cag compare A B: reports how much two pictures differ.
 
 #include <string.h>
 #include <strings.h>
@@ -37,12 +37,12 @@ static int check_heatmap(const CagTool *t) {
   return cag_tool_check_output(t, t->heatmap);
 }
 
-// Compares two pictures that were read.
+// Compares two pictures in memory.
 static bool compare(const CagTool *t, char **names, const CagImage *a, const CagImage *b,
                     bool *differ, CagError *err) {
   CagCompareReport report;
   if (!cag_compare_images(a, names[0], b, names[1], t->threshold, &report, err)) return false;
-  // The figures give way to a heatmap on standard output.
+  // A heatmap on standard output replaces the numbers.
   if (!t->quiet)
     cag_compare_print(&report, t->heatmap && !strcmp(t->heatmap, "-") ? stderr : stdout);
   *differ = report.differing_pixels > 0;

@@ -1,5 +1,5 @@
 // The difference of two texts by Myers's greedy algorithm ("An O(ND) difference algorithm and its
-// variations", 1986), after the lines that both begin and end with are taken off.
+// variations", 1986), after common lines at the start and the end are removed.
 
 #include "cli/diff.h"
 
@@ -8,12 +8,12 @@
 #include <string.h>
 
 #define CONTEXT 3
-// Beyond so many differing lines the middle is shown as replaced as a whole.
+// With more differing lines, the middle is shown as replaced as a whole.
 #define MOST_EDITS 3000
 
 typedef struct Line {
   const char *text;
-  size_t length; // with its newline, where it has one
+  size_t length; // including its newline, if it has one
 } Line;
 
 typedef struct Lines {
@@ -21,7 +21,7 @@ typedef struct Lines {
   size_t count;
 } Lines;
 
-// keep[i]: line i of a stays; the same of b.
+// keep[i]: line i of a is unchanged; likewise for b.
 typedef struct Diff {
   Lines a, b;
   bool *keep_a, *keep_b;
@@ -45,8 +45,8 @@ static bool same(Line a, Line b) {
   return a.length == b.length && memcmp(a.text, b.text, a.length) == 0;
 }
 
-// Marks a longest common part of a[from_a, from_a + n) and b[from_b, from_b + m) as kept. False: it
-// differs too much, or memory is out.
+// Marks a longest common part of a[from_a, from_a + n) and b[from_b, from_b + m) as kept. Returns
+// false if they differ too much or memory ran out.
 static bool match_middle(Diff *d, size_t from_a, long n, size_t from_b, long m) {
   const long most = n + m < MOST_EDITS ? n + m : MOST_EDITS, width = 2 * most + 3;
   long *rows = malloc(sizeof *rows * (size_t)width),
@@ -69,7 +69,7 @@ static bool match_middle(Diff *d, size_t from_a, long n, size_t from_b, long m) 
     if (ok) memcpy(kept[e], v - e - 1, sizeof **kept * (size_t)(2 * e + 3));
   }
   long x = n, y = m;
-  for (long e = edits; ok && e >= 0; e--) { // back along the way
+  for (long e = edits; ok && e >= 0; e--) { // back along the path
     long start_x = 0, start_y = 0;
     if (e > 0) {
       const long *before = kept[e - 1] + e; // before[k]: furthest x on diagonal k
@@ -111,8 +111,8 @@ static void write_line(FILE *out, char sign, Line line) {
     fputs("\n\\ No newline at end of file\n", out);
 }
 
-// The end of the hunk that begins at (i, j): behind the last difference that is followed by more
-// than twice the context of equal lines.
+// Returns the end of the hunk that starts at (i, j): the end of the last difference that is
+// followed by more than twice the context of equal lines.
 static void hunk_end(const Diff *d, size_t *i, size_t *j) {
   size_t equal = 0, end_i = *i, end_j = *j;
   while (*i < d->a.count || *j < d->b.count) {

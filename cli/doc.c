@@ -1,5 +1,5 @@
-// cag doc [NAME|PATH ...]: documentation on a terminal, or as a site with --html DIR, which scripts
-// can be added to.
+// cag doc [NAME|PATH ...]: documentation on a terminal, or, with --html DIR, as a site, to which
+// scripts can be added.
 
 #include <errno.h>
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static int reject(CagTool *t, CagSession *s, const char *name) {
   return status;
 }
 
-// --- What is asked for ---
+// --- Operands ---
 
 static bool is_path(const char *operand) {
   const size_t n = strlen(operand);
@@ -93,7 +93,7 @@ static int reject_operand(CagTool *t, const char *operand) {
                        "the site has all functions and modules, found '%s'", operand);
 }
 
-// Names have their pages anyhow; scripts and folders are added.
+// Names always have pages, so only scripts and folders are added.
 static bool is_site_path(const char *operand) {
   struct stat st;
   return strcmp(operand, "-") != 0 && (is_path(operand) || stat(operand, &st) == 0);

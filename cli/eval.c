@@ -1,20 +1,21 @@
 // cag eval 'EXPR' ...: prints the value of each expression.
 //
-// The expressions are the inputs of an interactive session, so that each sees the definitions
-// before it; -D makes such definitions. The first error ends the command.
+// The expressions are inputs of an interactive session, so each can use the definitions before it.
+// -D adds such definitions. The first error ends the command.
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/tool.h"
 
-// Writes a quoted text as `print` does, bare: the session gives it with the escapes of a script.
+// Writes a quoted text without quotes, as `print` does. The session returns it with the escapes of
+// a script.
 static void write_bare(const char *quoted, FILE *out) {
   const char *end = quoted + strlen(quoted) - 1;
   for (const char *at = quoted + 1; at < end; at++) {
     if (*at != '\\') {
       fputc(*at, out);
-    } else if (*++at == 'u') { // control characters only are written so
+    } else if (*++at == 'u') { // only control characters have this form
       char *stop;
       fputc((int)strtol(at + 2, &stop, 16), out);
       at = stop;

@@ -1,4 +1,4 @@
-// cag explain [CODE]: an error code at length, or all of them.
+// cag explain [CODE]: explains an error code, or lists all of them.
 
 #include "base/diagnostic.h"
 #include "cli/tool.h"

@@ -1,11 +1,11 @@
-// cag export FILE -o OUT: writes what a script shows in the format of the output's ending.
+// cag export FILE -o OUT: writes the shapes of a script in the format of the output's extension.
 
 #include <string.h>
 #include <strings.h>
 
 #include "cli/tool.h"
 
-// The ending of a path without its point, or NULL.
+// Returns the extension of a path without its point, or NULL.
 static const char *ending(const char *path) {
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
   const char *point = strrchr(name, '.');
@@ -28,7 +28,7 @@ static int reject_format(const CagTool *t, const char *format) {
   return cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown format '.%s'", format);
 }
 
-// Checks the command line before anything runs: 0, or the status after a message.
+// Checks the command line before anything runs. Returns 0, or the status after a message.
 static int check(const CagTool *t) {
   if (!t->output)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "say where to with -o OUT, such as -o vase.stl",

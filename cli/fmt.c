@@ -1,7 +1,7 @@
 // cag fmt [--check] [--diff] PATH ...: formats scripts.
 //
-// A script that has errors stays as it is. A file is written only when its layout changes, and
-// appears whole or not at all.
+// A script with errors is not changed. A file is written only if its layout changes, and
+// atomically.
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 typedef struct Formatting {
   CagTool *tool;
   size_t changed;
-  int status; // the worst that happened
+  int status; // the worst so far
 } Formatting;
 
 static void remember(Formatting *f, int status) {
@@ -24,7 +24,7 @@ static void remember(Formatting *f, int status) {
 static void write_back(Formatting *f, const char *path, const char *text, size_t length) {
   CagError err = {0};
   struct stat st;
-  if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) { // what was read from a pipe is gone
+  if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) { // a pipe cannot be read again
     remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE,
                               "`-` reads standard input and writes standard output",
                               "cannot write %s anew: it is not a regular file", path));
@@ -39,7 +39,7 @@ static void write_back(Formatting *f, const char *path, const char *text, size_t
   remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE, err.help, "%s", err.message));
 }
 
-// What is done with a script whose layout is `out`.
+// Writes, compares, or checks the formatted text `out` of a script.
 static void finish(Formatting *f, const char *path, const char *text, size_t length,
                    const char *out, size_t out_length) {
   const bool input = strcmp(path, "-") == 0;

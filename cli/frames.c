@@ -1,15 +1,15 @@
-// Patterns of file names with a place for the frame's number.
+// File name patterns with a placeholder for the frame number.
 //
-// The pattern comes from the user and so never reaches printf: the one conversion is read here.
+// A pattern is user input and never passed to printf. Its conversion is parsed here.
 
 #include "cli/frames.h"
 
 #include <stdio.h>
 #include <string.h>
 
-// What stands at a percent sign.
+// The conversion at a percent sign.
 typedef struct {
-  size_t length; // of the conversion in the pattern; 0: none that is known
+  size_t length; // in the pattern; 0: unknown conversion
   bool percent;  // it is %%
   bool zeros;
   int digits;

@@ -1,14 +1,14 @@
-// The texts of --help, from the tables of commands and options.
+// The output of --help, from the tables of commands and options.
 
 #include <string.h>
 
 #include "cli/cli.h"
 
-// Columns where the second part of a line begins, and where it ends.
+// The columns where the second part of a line starts and where it ends.
 #define TEXT_COLUMN 26
 #define LAST_COLUMN 100
 
-// Writes the text, wrapped at words, from column `at` on; further lines begin at `indent`.
+// Writes text, wrapped at words, from column `at` on. Further lines start at `indent`.
 static void write_wrapped(const char *text, size_t at, size_t indent, FILE *out) {
   while (*text) {
     const size_t word = strcspn(text, " ");
@@ -32,7 +32,7 @@ static void write_row(const char *left, const char *right, FILE *out) {
   write_wrapped(right, TEXT_COLUMN, TEXT_COLUMN, out);
 }
 
-// How an option is written: "-o OUT", "-h, --help", "--size WxH".
+// Formats the usage of an option: "-o OUT", "-h, --help", "--size WxH".
 static void option_usage(const CagToolOption *o, char *text, size_t size) {
   const char letter[] = {'-', o->letter, 0};
   snprintf(text, size, "%s%s%s%s%s%s", o->letter ? letter : "", o->letter && o->name ? ", " : "",
@@ -40,11 +40,11 @@ static void option_usage(const CagToolOption *o, char *text, size_t size) {
            o->argument ? o->argument : "");
 }
 
-// Writes the options that `chosen` of the commands take; every command's own, or those of several.
+// Writes the options of the commands in `mask`: those that several commands share, or the others.
 static void write_options(unsigned mask, bool shared, FILE *out) {
   for (size_t i = 0; i < cag_tool_option_count; i++) {
     const CagToolOption *o = &cag_tool_options[i];
-    const unsigned shared_by = 1u << CAG_TOOL_run; // shared options are those that run takes
+    const unsigned shared_by = 1u << CAG_TOOL_run; // shared options are those of `run`
     if (!(o->commands & mask) || (o->commands & shared_by ? !shared : shared)) continue;
     char usage[64];
     option_usage(o, usage, sizeof usage);
@@ -52,7 +52,7 @@ static void write_options(unsigned mask, bool shared, FILE *out) {
   }
 }
 
-// Whether the command has options that not all scripts take.
+// Tests whether the command has options that not all script commands have.
 static bool has_own_options(unsigned mask) {
   for (size_t i = 0; i < cag_tool_option_count; i++)
     if (cag_tool_options[i].commands & mask && !(cag_tool_options[i].commands >> CAG_TOOL_run & 1))

@@ -1,4 +1,4 @@
-// cag info: what this program is made of, and what it found.
+// cag info: shows the versions of the program and its libraries, and what was found on the machine.
 
 #include <cJSON.h>
 #include <lapacke.h>
@@ -34,7 +34,7 @@ static void write_formats(void) {
   printf("\nrender     .exr .png, by POV-Ray\n");
 }
 
-// A size in the largest unit that divides it.
+// Writes a size in the largest unit that divides it.
 static void write_bytes(size_t bytes) {
   static const char UNITS[] = " KMGT";
   size_t unit = 0;

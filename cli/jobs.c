@@ -1,8 +1,8 @@
-// The file of a batch's jobs, read.
+// Parser of job files.
 //
-// CSV is that of RFC 4180: fields in quotes may hold separators, newlines, and quotes written
-// twice. The separator is the comma, or the semicolon or tabulator where the line of names has one
-// of these and no comma, as spreadsheets of many countries write. Empty lines are passed over.
+// CSV is as in RFC 4180: quoted fields may contain separators, newlines, and doubled quotes. The
+// separator is a comma, or a semicolon or tab if the header line contains one of these and no
+// comma, as spreadsheets write in many countries. Empty lines are skipped.
 
 #include "cli/jobs.h"
 
@@ -48,7 +48,7 @@ static CagJob *add_row(CagJobs *jobs, size_t line) {
   return row;
 }
 
-// Without the blanks around it, malloc'd; NULL when memory is out.
+// Returns the text without surrounding blanks, allocated with malloc, or NULL if memory ran out.
 static char *trimmed(const char *text) {
   text += strspn(text, " \t\r\n");
   size_t length = strlen(text);
@@ -56,7 +56,8 @@ static char *trimmed(const char *text) {
   return strndup(text, length);
 }
 
-// Gives the row a field under the column's name; blanks are none. False when memory is out.
+// Sets a field of the row by the column's name. Blanks count as empty. Returns false if memory ran
+// out.
 static bool set_field(CagJob *row, const char *column, const char *text) {
   if (!text[strspn(text, " \t\r\n")]) return true;
   char *value = trimmed(text);
@@ -104,7 +105,7 @@ void cag_jobs_free(CagJobs *jobs) {
 
 // --- The columns ---
 
-// Looks at the names of the columns: script and output must be there, and none twice.
+// Checks the names of the columns: script and output are required, and duplicates are not allowed.
 static bool check_columns(CagJobs *jobs, char *const *names, size_t count) {
   static const CagJobColumn NEEDED[] = {CAG_JOB_script, CAG_JOB_output};
   bool ok = true;
@@ -138,7 +139,7 @@ typedef struct {
 typedef struct {
   char **fields;
   size_t count, capacity;
-  bool open_quote; // a quote that nothing closes
+  bool open_quote; // an unclosed quote
 } Record;
 
 static void free_record(Record *r) {
@@ -182,7 +183,7 @@ static char *read_field(Csv *c, Record *r) {
   return fitting ? fitting : text;
 }
 
-// record = field { separator field } newline; false when memory is out.
+// record = field { separator field } newline. Returns false if memory ran out.
 static bool read_record(Csv *c, Record *r) {
   do {
     if (!add_field(r, read_field(c, r))) return false;
@@ -204,7 +205,7 @@ static char find_separator(const char *text, size_t length) {
   return memchr(text, ';', n) ? ';' : memchr(text, '\t', n) ? '\t' : ',';
 }
 
-// Takes the names of the columns from the first record, without blanks around them.
+// Reads the names of the columns from the first record, without surrounding blanks.
 static bool take_names(CagJobs *jobs, Record *names) {
   bool ok = true;
   for (size_t i = 0; ok && i < names->count; i++) {
@@ -213,7 +214,7 @@ static bool take_names(CagJobs *jobs, Record *names) {
     names->fields[i] = name;
     ok = name != NULL;
   }
-  // Spreadsheets leave empty columns at the end of each line.
+  // Spreadsheets write empty columns at the end of each line.
   return ok && check_columns(jobs, names->fields, names->count);
 }
 
@@ -247,7 +248,7 @@ static bool read_csv(CagJobs *jobs, const char *text, size_t length) {
       names = record;
       ok = take_names(jobs, &names);
     } else {
-      // Without its columns a row means nothing.
+      // Without valid columns, rows are meaningless.
       if (!jobs->problem_count || jobs->count) ok = take_row(jobs, &names, &record, line);
       free_record(&record);
     }
@@ -262,7 +263,7 @@ static bool read_csv(CagJobs *jobs, const char *text, size_t length) {
 
 // --- JSON ---
 
-// The value of a field as text: lists stand as the language writes them.
+// Converts a value to text: lists are written as in the language.
 static char *value_text(const cJSON *value) {
   if (cJSON_IsString(value)) return strdup(value->valuestring);
   return cJSON_PrintUnformatted(value);
@@ -301,7 +302,7 @@ static size_t line_of(const char *text, const char *at) {
   return line;
 }
 
-// The first \u0000 of a text, where it would end early; NULL: there is none.
+// Returns the first \u0000 in a text, where it would end early, or NULL.
 static const char *find_zero(const char *text, size_t length) {
   for (const char *at = text; (at = memchr(at, '\\', (size_t)(text + length - at))); at += 2) {
     if (text + length - at < 6) break;
@@ -316,7 +317,7 @@ static bool read_json(CagJobs *jobs, const char *text, size_t length) {
     return cag_jobs_problem(jobs, NULL, CODE_FILE, "leave the character out",
                             "line %zu: expected texts without \\u0000", line_of(text, zero));
   const char *stopped = text;
-  // The zero behind the text makes cJSON look that nothing else follows.
+  // The zero after the text makes cJSON check that nothing else follows.
   cJSON *list = cJSON_ParseWithLengthOpts(text, length + 1, &stopped, true);
   bool ok = true;
   if (!list)

@@ -1,4 +1,4 @@
-// The journal of a batch. What its lines mean stands in journal.h.
+// The journal of a batch (see journal.h for the meaning of its lines).
 
 #include "cli/journal.h"
 
@@ -15,7 +15,7 @@
 static const char *const WHATS[] = {"done", "failed", "submitted", "collected"};
 #define WHAT_COUNT (sizeof WHATS / sizeof *WHATS)
 
-// The longest line that cag_journal_add writes.
+// The maximum length of a line that cag_journal_add writes.
 #define LINE_MAX_BYTES 256
 
 static bool fail(const CagJournal *j, const char *help, const char *problem, CagError *err) {
@@ -24,7 +24,7 @@ static bool fail(const CagJournal *j, const char *help, const char *problem, Cag
 
 // --- Reading ---
 
-// A line as an entry; false where it is none, which a torn one is.
+// Parses a line. Returns false if it is invalid, for example incomplete.
 static bool read_entry(const char *line, size_t length, CagJournalEntry *e) {
   cJSON *object = cJSON_ParseWithLength(line, length);
   const char *what = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, "what"));
@@ -61,14 +61,15 @@ static bool keep_entry(CagJournal *j, size_t *capacity, const CagJournalEntry *e
   return true;
 }
 
-// Whether a line begins as ours do, as far as it goes: a torn one does.
+// Tests whether a line starts like those of a journal, as far as it goes; an incomplete one may be
+// short.
 static bool begins_as_ours(const char *line, size_t length) {
   static const char START[] = "{\"what\":\"";
   return memcmp(line, START, length < sizeof START - 1 ? length : sizeof START - 1) == 0;
 }
 
-// Takes the whole lines of the text. A file that has no line of ours and something that could not
-// become one is somebody else's.
+// Reads the complete lines of the text. A file without a valid line, which contains something that
+// is not the start of one, is not a journal.
 static bool read_lines(CagJournal *j, const char *text, size_t length, CagError *err) {
   size_t capacity = 0, others = 0, ours = 0;
   for (const char *at = text, *end = text + length; at < end;) {
@@ -101,8 +102,8 @@ static char *read_file(int fd, size_t *length) {
   return text;
 }
 
-// By key, and of one key the newest first: entries stand in the order of the lines, which the sort
-// would not keep, so their number is part of the order.
+// Sorts by key, and for each key, the newest entry first. The sort is not stable, so the entry's
+// number is part of the order.
 typedef struct {
   CagJournalEntry entry;
   size_t number;
@@ -114,7 +115,7 @@ static int by_key_newest_first(const void *a, const void *b) {
   return order ? order : (p->number < q->number) - (p->number > q->number);
 }
 
-// Leaves the newest entry of each key, in the order of keys.
+// Keeps the newest entry of each key, sorted by key.
 static bool sort_entries(CagJournal *j) {
   Numbered *all = malloc((j->count + 1) * sizeof *all);
   if (!all) return false;
@@ -145,7 +146,7 @@ static bool read_journal(CagJournal *j, CagError *err) {
   char *text = read_file(j->fd, &length);
   if (!text) return fail(j, NULL, strerror(errno), err);
   bool ok = read_lines(j, text, length, err);
-  // What is added is not to become part of a torn line.
+  // Do not append to an incomplete line.
   if (ok && length && text[length - 1] != '\n' && write(j->fd, "\n", 1) != 1)
     ok = fail(j, NULL, strerror(errno), err);
   if (ok && !sort_entries(j)) ok = cag_fail_io(err, CAG_E_LIMIT, NULL, "out of memory");
@@ -198,7 +199,8 @@ bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagError *err) {
                          "{\"what\":\"%s\",\"key\":\"%s\",\"seconds\":%.3f,\"memory\":%zu,"
                          "\"attempts\":%d}\n",
                          WHATS[e->what], e->key, e->seconds, e->memory, e->attempts);
-  // One call for the line: what a kill leaves is none of it, or all, or a part that is passed over.
+  // A single call, so that after a kill, either nothing, the whole line, or an incomplete line that
+  // is ignored has been written.
   const ssize_t written = write(j->fd, line, (size_t)n);
   j->unsynced = true;
   if (written == n) return true;

@@ -1,4 +1,4 @@
-// Reports of tests as JUnit XML: testsuites, a testsuite for each script, a testcase for each run.
+// Test reports as JUnit XML: testsuites, a testsuite for each script, and a testcase for each run.
 
 #include "cli/junit.h"
 
@@ -6,8 +6,8 @@
 
 #include "base/atomic_file.h"
 
-// Text as XML takes it: five characters are named, and control characters, which XML 1.0 cannot
-// hold, become spaces.
+// Writes text as XML. Five characters are escaped, and control characters, which XML 1.0 does not
+// allow, become spaces.
 static void write_escaped(CagAtomicFile *f, const char *text) {
   for (; *text; text++) {
     const char *entity = NULL;

@@ -1,4 +1,4 @@
-// Reports of tests as JUnit XML, which continuous integration reads.
+// Test reports as JUnit XML, for continuous integration.
 
 #ifndef CAG_CLI_JUNIT_H
 #define CAG_CLI_JUNIT_H
@@ -11,8 +11,8 @@
 typedef struct CagJunitCase {
   char *name;
   double seconds;
-  char *failure; // what was not as expected; NULL: passed
-  char *skipped; // why it did not run; NULL: it did
+  char *failure; // the failed expectation; NULL: passed
+  char *skipped; // why it was skipped; NULL: it was not
 } CagJunitCase;
 
 typedef struct CagJunitSuite {
@@ -21,7 +21,7 @@ typedef struct CagJunitSuite {
   size_t count;
 } CagJunitSuite;
 
-// Writes the file whole or not at all. False with the reason in `err`.
+// Writes the file atomically. Returns false, with the reason in `err`, on failure.
 bool cag_junit_write(const char *path, const CagJunitSuite *suites, size_t count, CagError *err);
 
 #endif

@@ -1,9 +1,10 @@
-// The program `cag`: reads the command line, calls the command, and ends with its status.
+// The program `cag`: parses the command line, calls the command, and exits with its status.
 //
-// Signals: the first Ctrl-C (or SIGTERM, SIGHUP, SIGXCPU) asks what runs to stop, which leaves
-// nothing half written. A second one, or an alarm where that takes too long (a single long step of
-// geometry does not look up), ends the program at once, after the temporaries of output files are
-// removed. A standard output that nobody reads shows as a failed write, not as a signal.
+// Signals: the first Ctrl-C (or SIGTERM, SIGHUP, SIGXCPU) asks the work to stop, which leaves no
+// partial output. A second one ends the program at once, after the temporary files of outputs are
+// removed. So does an alarm if stopping takes too long, because a single long step of geometry does
+// not check the flag. If the reader of standard output closes it, writes fail instead of raising a
+// signal.
 
 #include <fcntl.h>
 #include <locale.h>
@@ -15,11 +16,12 @@
 
 volatile int cag_tool_interrupt;
 
-// Signals that come this soon (in seconds) after the first are the same wish, such as a shell and a
-// `timeout` that both send one: what was asked to stop gets the time to clean up.
+// Signals within this time, in seconds, after the first one count as the same request, for example
+// if both a shell and `timeout` send one. The work then still has time to clean up.
 static const double SAME_WISH = 0.3;
 
-// Seconds that what runs has to stop by itself: renderers, their folders and the script need less.
+// The time, in seconds, that the work has to stop. Renderers, their folders, and the script need
+// less.
 static const unsigned PATIENCE = 2;
 
 static void end_now(void) {
@@ -42,20 +44,21 @@ static void on_signal(int number) {
 
 static void catch_signals(void) {
   static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGXCPU};
-  // A write beyond the limit of a file's size (ulimit -f) fails as one on a full disk does.
+  // A write beyond the file size limit (ulimit -f) then fails like one on a full disk.
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
   for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) {
-    struct sigaction action = {.sa_handler = on_signal}, before; // reads are to end, not to resume
+    struct sigaction action = {.sa_handler = on_signal}, before; // system calls are interrupted,
+                                                                 // not restarted
     sigemptyset(&action.sa_mask);
-    // Who started the program may have asked for a signal to be ignored, as nohup does.
+    // The parent may have set a signal to be ignored, as nohup does.
     if (sigaction(SIGNALS[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(SIGNALS[i], &action, NULL);
   }
 }
 
-// Fills closed standard files, so that no file opened later gets their numbers and what is meant
-// for standard output ends in it. They are opened the wrong way round: their use is an error.
+// Opens closed standard files, so that no other file gets their numbers and receives standard
+// output. They are opened in the wrong direction, so that their use is an error.
 static void fill_standard_files(void) {
   bool filled = true;
   for (int fd = STDIN_FILENO; filled && fd <= STDERR_FILENO; fd++)
@@ -68,7 +71,7 @@ int main(int argc, char **argv) {
   int count, status = CAG_STATUS_USAGE;
   fill_standard_files();
   catch_signals();
-  setlocale(LC_CTYPE, ""); // for line editing; numbers stay as C writes them
+  setlocale(LC_CTYPE, ""); // for line editing; numbers keep the C format
   if (cag_tool_read(&t, argc, argv, &count)) {
     if (t.wants_help) cag_tool_help(t.command, stdout), status = CAG_STATUS_OK;
     else if (t.wants_version) status = printf("cag %s\n", cag_version()) < 0;

@@ -1,4 +1,4 @@
-// What the program itself says, on standard error.
+// Messages of the program on standard error.
 
 #include <cJSON.h>
 #include <errno.h>
@@ -10,7 +10,7 @@
 
 #include "cli/tool.h"
 
-// The message as one JSON object, with the fields that diagnostics of scripts have too.
+// Writes the message as one JSON object with the same fields as diagnostics of scripts.
 static void write_json(const char *message, const char *help) {
   cJSON *object = cJSON_CreateObject();
   cJSON_AddStringToObject(object, "severity", "error");
@@ -32,7 +32,7 @@ int cag_tool_fail(const CagTool *t, int status, const char *help, const char *fo
   const char *shown = n < 0 ? "out of memory" : message;
   const char *name = t->command ? t->command->name : NULL;
   if (help && !*help) help = NULL;
-  fflush(stdout); // what was printed before stands before
+  fflush(stdout); // earlier output comes first
   if (t->style == CAG_STYLE_JSON) {
     write_json(shown, help);
   } else {

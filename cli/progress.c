@@ -1,5 +1,5 @@
-// A bar on one line of the terminal, drawn over itself; or, asked for by --progress, lines for
-// where there is no terminal. Both tell how long what is left will take, at the pace so far.
+// A bar on one line of the terminal, or, with --progress, lines without a terminal. Both show the
+// estimated time left at the current pace.
 
 #include "cli/progress.h"
 
@@ -9,12 +9,13 @@
 
 #include "base/clock.h"
 
-// Columns beside the bar, for the frame, the percentage and the phase; and the widest bar.
+// Columns beside the bar for the frame, the percentage, and the phase; and the maximum width of the
+// bar.
 #define BESIDE 64
 #define WIDEST 40
-// Seconds of a picture before its pace tells anything.
+// Seconds of a picture after which its pace is meaningful.
 #define PACE_TIME 1.0
-// Percent between two lines, and seconds.
+// Minimum percentage between two lines, and minimum seconds.
 #define LINE_PERCENT 10
 #define LINE_TIME 10.0
 

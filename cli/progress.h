@@ -1,4 +1,4 @@
-// The progress bar of a renderer, on a terminal; on a pipe lines, when asked for.
+// The progress of a renderer: a bar on a terminal, or, on request, lines on a pipe.
 
 #ifndef CAG_CLI_PROGRESS_H
 #define CAG_CLI_PROGRESS_H
@@ -6,7 +6,7 @@
 #include "cli/tool.h"
 
 typedef struct CagProgress {
-  bool shown; // standard error is a terminal, and is to be used
+  bool shown; // standard error is a terminal, and progress is wanted
   long frame, first, last;
   bool dirty;        // whether the bar is on the screen
   int tenths;        // shown value in tenths; the bar is redrawn only when it changes; -1: nothing
@@ -21,7 +21,7 @@ typedef struct CagProgress {
 void cag_progress_begin(CagProgress *p, const CagTool *t);
 // For CagRenderOptions; the context is the CagProgress.
 void cag_progress_show(void *context, double percent, const char *phase);
-// Takes the bar away.
+// Clears the bar.
 void cag_progress_end(CagProgress *p);
 
 #endif

@@ -1,7 +1,7 @@
-// cag render FILE -o OUT: makes a picture, or the pictures of a film.
+// cag render FILE -o OUT: renders a picture, or the pictures of a film.
 //
-// The frames of a film are runs of the script of their own, each with its frame and frames. The
-// first that fails ends the command; those before it are whole.
+// Each frame of a film is a separate run of the script, with its own frame and frames. The first
+// failure ends the command. Earlier frames remain complete.
 
 #include <limits.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "cli/progress.h"
 #include "cli/tool.h"
 
-// A script that came from standard input is kept: each frame runs it.
+// A script from standard input is stored, because each frame runs it.
 typedef struct {
   const char *path;
   char *text; // NULL: read from path
@@ -78,7 +78,7 @@ static int check_pattern(const CagTool *t) {
   return CAG_STATUS_OK;
 }
 
-// Finds the length of the film: --frames A..B says B+1, unless -D frames=N says more.
+// Determines the length of the film: B+1 for --frames A..B, unless -D frames=N is larger.
 static int find_length(const CagTool *t, double *frames) {
   *frames = (double)t->last_frame + 1;
   for (size_t i = 0; i < t->define_count; i++) {
@@ -116,7 +116,7 @@ static int check(const CagTool *t, double *frames) {
 
 // --- Rendering ---
 
-// Reads a script from standard input, whole.
+// Reads a script from standard input.
 static bool read_input(Script *s) {
   size_t capacity = 0;
   char *text = NULL;
@@ -140,8 +140,7 @@ static int run_script(Film *f) {
                  : cag_session_run_file(f->session, s->path);
 }
 
-// Renders what was shown to standard output, by way of a file: the ending of its name says the
-// format.
+// Renders to standard output through a temporary file, whose extension determines the format.
 static int render_to_output(Film *f) {
   const char *base = getenv("TMPDIR");
   char folder[PATH_MAX], path[PATH_MAX + 16], bytes[65536];
@@ -154,7 +153,7 @@ static int render_to_output(Film *f) {
   FILE *picture = status == CAG_STATUS_OK ? fopen(path, "rbe") : NULL;
   size_t n;
   while (picture && (n = fread(bytes, 1, sizeof bytes, picture)) > 0)
-    if (fwrite(bytes, 1, n, stdout) != n) break; // main.c says so at the end
+    if (fwrite(bytes, 1, n, stdout) != n) break; // main.c reports it at the end
   if (picture) fclose(picture);
   unlink(path);
   rmdir(folder);
@@ -174,7 +173,7 @@ static int render_frame(Film *f, long frame) {
   if (t->has_frames) cag_session_set_frame(f->session, (double)frame, f->frames);
   f->progress.frame = frame;
   status = run_script(f);
-  fflush(stdout); // prints stand before what is said of the picture
+  fflush(stdout); // prints come before messages about the picture
   if (status == CAG_STATUS_OK) {
     cag_tool_make_folder(path);
     status =

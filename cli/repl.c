@@ -1,6 +1,6 @@
-// cag repl [FILE]: reads texts, evaluates them, and prints their values as `VALUE : TYPE`.
+// cag repl [FILE]: reads inputs, evaluates them, and prints their values as `VALUE : TYPE`.
 //
-// A text that is not complete asks for another line. Lines that begin with `:` are commands
+// An incomplete input continues on the next line. Lines that start with `:` are commands
 // (repl_commands.c).
 
 #include "cli/repl.h"
@@ -30,7 +30,7 @@ void cag_repl_fail(CagRepl *repl, int status, const char *format, ...) {
 void cag_repl_finish(CagRepl *repl, int status) {
   fflush(stdout);
   if (status == CAG_STATUS_OK) return;
-  // The terminal has written ^C, and its cursor stands behind it.
+  // The terminal has written ^C, and the cursor is after it.
   if (status == CAG_STATUS_INTERRUPTED)
     fputs(repl->interactive ? "\ninterrupted\n" : "interrupted\n", stderr);
   else cag_session_write_diagnostics(repl->session, repl->tool->style, stderr);
@@ -62,9 +62,9 @@ void cag_repl_load(CagRepl *repl, const char *path) {
   cag_repl_finish(repl, cag_session_input_file(repl->session, path));
 }
 
-// --- Texts ---
+// --- Inputs ---
 
-// Words and signs that go on with the text of the line before.
+// Tests whether a line starts with a word or sign that continues the previous line.
 static bool goes_on(const char *line) {
   static const char *const signs[] = {
       "|", ".", "+", "*", "%", "&", "^", "==", "!=", "<", ">", "=", ",", ")", "]", "}"};
@@ -103,13 +103,13 @@ static void clear_text(Text *t) {
 }
 
 static const char *last_line(const Text *t) {
-  const char *at = t->bytes + t->length - 1; // behind it stands the newline
+  const char *at = t->bytes + t->length - 1; // the newline is after it
   while (at > t->bytes && at[-1] != '\n') at--;
   return at + strspn(at, " \t");
 }
 
-// Whether another line belongs to the text. `///` documents what follows it. Without a terminal the
-// line to come can be looked at.
+// Tests whether another line belongs to the input. `///` documents the following line. Without a
+// terminal, the next line can be examined.
 static bool wants_more(CagRepl *repl, const Text *t) {
   if (cag_input_is_incomplete(t->bytes, t->length)) return true;
   if (strncmp(last_line(t), "///", 3) == 0) return true;
@@ -119,7 +119,7 @@ static bool wants_more(CagRepl *repl, const Text *t) {
 
 static bool is_blank(const char *line) { return line[strspn(line, " \t")] == 0; }
 
-// The command that a word alone means, as in other programs, where nothing of this name is defined.
+// Returns the command that a single word means, as in other programs, if the name is not defined.
 static const char *plain_command(const CagRepl *repl, const char *line) {
   static const struct {
     const char *word, *command;
@@ -157,7 +157,7 @@ static void take_line(CagRepl *repl, Text *t, char *line) {
 
 // --- Ctrl-C ---
 
-// Set by Ctrl-C, and by no other signal.
+// Set only by Ctrl-C, not by other signals.
 static volatile sig_atomic_t keyboard;
 
 static void on_keyboard(int number) {
@@ -172,7 +172,7 @@ static void catch_keyboard(void) {
   sigaction(SIGINT, &action, NULL);
 }
 
-// Forgets a Ctrl-C. False when the program was asked to end in another way.
+// Resets Ctrl-C. Returns false if the program was asked to end by another signal.
 static bool go_on(CagRepl *repl) {
   if (!cag_tool_interrupt) return true;
   if (!repl->interactive || !keyboard) return false;
@@ -181,7 +181,7 @@ static bool go_on(CagRepl *repl) {
   return true;
 }
 
-// Ctrl-C drops a text that is not complete; the history keeps it.
+// Ctrl-C discards an incomplete input, but the history keeps it.
 static void drop_text(CagRepl *repl, Text *t) {
   if (t->bytes) cag_repl_remember(repl->input, t->bytes, t->length);
   clear_text(t);
@@ -197,7 +197,7 @@ static void read_texts(CagRepl *repl) {
     if (read == CAG_REPL_INTERRUPTED) drop_text(repl, &text);
     else take_line(repl, &text, line);
   }
-  // What the end of the input cut off says so itself.
+  // An input that is cut off by the end of the file reports its own error.
   if (text.bytes && !cag_tool_interrupt) cag_repl_evaluate(repl, text.bytes, text.length);
   clear_text(&text);
 }

@@ -1,4 +1,4 @@
-// The `:` commands of the REPL. A unique beginning of a name will do: `:q`.
+// The `:` commands of the REPL. Unique prefixes are accepted: `:q`.
 
 #include <ctype.h>
 #include <errno.h>
@@ -58,7 +58,7 @@ bool cag_repl_command_row(size_t i, const char **name, const char **operand, con
   return true;
 }
 
-// The command of this name or of this beginning; `several` counts those that begin so.
+// Returns the command with this name or prefix. `several` counts the matches.
 static const struct Command *find_command(const char *name, size_t *several) {
   const struct Command *found = NULL;
   *several = 0;
@@ -113,8 +113,8 @@ void cag_repl_command(CagRepl *repl, char *line) {
 
 // --- Help ---
 
-// Where the stories of commands begin (below the name in a narrow window), and the columns of a
-// line without a terminal.
+// The column where descriptions of commands start (in a narrow window, they are below the name),
+// and the line width without a terminal.
 #define STORY_COLUMN 16
 #define NARROW_COLUMN 4
 #define NARROW 48
@@ -126,7 +126,7 @@ static size_t terminal_width(void) {
   return known && size.ws_col < WIDTH ? size.ws_col : WIDTH;
 }
 
-// Words of a text behind column `at`; further lines begin at `indent`.
+// Writes wrapped text from column `at` on. Further lines start at `indent`.
 static void print_wrapped(const char *text, size_t at, size_t indent) {
   const size_t width = terminal_width();
   for (bool first = true; *text; first = false) {
@@ -160,7 +160,7 @@ static void list_commands(void) {
                 0, 0);
 }
 
-// All built-in functions under the headings of their families.
+// Lists all built-in functions by family.
 static void list_builtins(void) {
   const size_t width = terminal_width();
   const char *signature, *family, *heading = "";
@@ -212,8 +212,8 @@ static const char *nearest_name(const CagRepl *repl, const char *name) {
   return nearest;
 }
 
-// What `cag doc` tells of a name, or of what was imported under it from the library. It reads
-// modules with a session of its own: this one keeps its definitions.
+// Writes the output of `cag doc` for a name, including names imported from the library. Uses a
+// separate session, because reading modules would drop this one's definitions.
 static bool document(const CagRepl *repl, const char *name) {
   char whole[256];
   const bool imported = cag_session_library_name(repl->session, name, whole, sizeof whole);
@@ -259,7 +259,7 @@ static void take_value(void *context, const char *text, const char *type) {
   else printf("%s : %s\n", text, type);
 }
 
-// Evaluates an expression; false when it failed or is none.
+// Evaluates an expression. Returns false if it failed or is missing.
 static bool evaluate_operand(CagRepl *repl, const char *command, const char *text, bool only_type) {
   Answer answer = {.only_type = only_type};
   int status = cag_session_input(repl->session, text, strlen(text), take_value, &answer);
@@ -307,7 +307,7 @@ static void hide(CagRepl *repl, char *operand) {
   cag_repl_fail(repl, CAG_STATUS_USAGE, "`%s` is not shown; :scene lists what is", operand);
 }
 
-// A path that begins with ~/ is below the user's folder. To be freed.
+// Replaces ~/ at the start of a path by the user's home folder. The caller frees the result.
 static char *expand(const char *path) {
   const char *home = getenv("HOME");
   char *out;
@@ -342,7 +342,7 @@ static void quit(CagRepl *repl, char *operand) {
   repl->quit = true;
 }
 
-// Writes under a temporary name first: what stood there stays until the new file is whole.
+// Writes to a temporary file first, so that an existing file remains until the new one is complete.
 static bool write_script(CagRepl *repl, const char *path) {
   char *beside = NULL;
   if (asprintf(&beside, "%s.tmp", path) < 0) return false;
@@ -366,7 +366,7 @@ static void save(CagRepl *repl, char *operand) {
 
 // --- Editing ---
 
-// Runs the user's editor on a file. Ctrl-C is the editor's meanwhile.
+// Runs the user's editor on a file. Meanwhile, Ctrl-C goes to the editor.
 static bool run_editor(CagRepl *repl, const char *path) {
   const char *editor = getenv("VISUAL");
   if (!editor || !*editor) editor = getenv("EDITOR");
@@ -392,7 +392,7 @@ static bool run_editor(CagRepl *repl, const char *path) {
   return false;
 }
 
-// Edits the definitions themselves: they are written to a file, and what comes back replaces them.
+// Edits the definitions: they are written to a file, whose edited contents replace them.
 static void edit_definitions(CagRepl *repl) {
   const char *root = getenv("TMPDIR");
   char *path;
@@ -429,7 +429,7 @@ static void edit(CagRepl *repl, char *operand) {
 
 // --- Outputs ---
 
-// The picture's name where none is said: that of the script loaded last.
+// Returns the default name of a picture, derived from the script loaded last.
 static char *default_picture(const CagRepl *repl) {
   char *path;
   const char *script = repl->loaded_count ? repl->loaded[repl->loaded_count - 1] : "scene.cag";

@@ -1,6 +1,6 @@
-// What Tab proposes: commands behind `:`, files behind the commands that take one and in the texts
-// of functions that read one, else members behind a `.`, the named arguments of the call that the
-// cursor is in, and names.
+// Completion with Tab: commands after `:`, files after the commands that take one and in the texts
+// of functions that read files, members after a `.`, named arguments of the enclosing call, and
+// names.
 
 #include <ctype.h>
 #include <glob.h>
@@ -9,7 +9,7 @@
 
 #include "cli/repl.h"
 
-// Each text once; the name of an argument that is proposed as `name: ` is not proposed again.
+// Each text is added once. The name of an argument that is proposed as `name: ` is not added again.
 void cag_repl_propose_text(CagReplProposals *p, const char *text, size_t length,
                            const char *prefix) {
   if (length < p->length || strncmp(text, prefix, p->length) != 0) return;
@@ -31,7 +31,7 @@ void cag_repl_proposals_free(CagReplProposals *p) {
   *p = (CagReplProposals){0};
 }
 
-// Letters of other alphabets are bytes from 128 on.
+// Bytes from 128 on belong to letters of other alphabets.
 static bool is_word(char c) { return isalnum((unsigned char)c) || c == '_' || (c & 0x80); }
 
 const char *cag_repl_word(const char *text, const char *end) {
@@ -83,12 +83,12 @@ static void take_member(void *context, const char *name) {
   cag_repl_propose_text(m->proposals, name, strlen(name), m->prefix);
 }
 
-// --- Where the cursor is ---
+// --- The context of the cursor ---
 
-// Brackets that nest deeper are not looked into.
+// Deeper brackets are ignored.
 #define DEPTH_MAX 64
 
-// What is open at the end of a text: brackets, texts and the { } within them, innermost last.
+// The brackets, texts, and { } in texts that are open at the end of a text, innermost last.
 typedef struct Open {
   char kinds[DEPTH_MAX]; // ( [ { " ` and $ for the { of a text
   const char *places[DEPTH_MAX];
@@ -103,7 +103,7 @@ static void enter(Open *o, char kind, const char *at) {
 
 static char innermost(const Open *o) { return o->count ? o->kinds[o->count - 1] : 0; }
 
-// Takes a character of a text; gives back the last one that belongs to it.
+// Scans a character of a text. Returns the last character that belongs to it.
 static const char *scan_text(Open *o, const char *at) {
   const char quote = innermost(o);
   if (*at == quote) o->count--;
@@ -116,14 +116,14 @@ static const char *scan_text(Open *o, const char *at) {
 
 static bool is_comment(const char *at) { return *at == '/' && (at[1] == '/' || at[1] == '*'); }
 
-// The last character of the comment at `at`, which ends with its line or at */.
+// Returns the last character of the comment at `at`, which ends with its line or at */.
 static const char *end_of_comment(const char *at) {
   if (at[1] == '/') return at + strcspn(at, "\n") - 1;
   const char *end = strstr(at + 2, "*/");
   return end ? end + 1 : at + strlen(at) - 1;
 }
 
-// Takes a character, or a comment up to its last character; gives back the last one taken.
+// Scans a character or a comment. Returns the last character scanned.
 static const char *scan_one(Open *o, const char *at) {
   const char in = innermost(o);
   if (in == '"' || in == '`') return scan_text(o, at);
@@ -139,7 +139,8 @@ static Open scan(const char *text) {
   return o;
 }
 
-// The name before the parenthesis that is the innermost bracket but texts, to be freed; NULL: none.
+// Returns the name before the innermost open bracket (ignoring texts) if it is a parenthesis, to be
+// freed, or NULL.
 static char *find_call(const char *text, const Open *o) {
   size_t i = o->count;
   while (i > 0 && strchr("\"`", o->kinds[i - 1])) i--;
@@ -150,7 +151,7 @@ static char *find_call(const char *text, const Open *o) {
 
 static bool reads_file(const char *function) { return strncmp(function, "read_", 5) == 0; }
 
-// Files in the open text of a call that reads one, or of an import.
+// Proposes files in the open text of a call that reads one, or of an import.
 static void propose_in_text(CagReplProposals *p, const char *text, const Open *o) {
   const char *quote = o->places[o->count - 1];
   char *function = find_call(text, o);
@@ -219,7 +220,7 @@ static void propose_words(CagRepl *repl, CagReplProposals *p, const char *text) 
   if (p->length > 0) propose_names(repl, p, word);
 }
 
-// A line that goes on with the lines before it.
+// Proposes completions for a line that continues an input.
 static void propose_further(CagRepl *repl, CagReplProposals *p, const char *line) {
   char *text = NULL;
   if (asprintf(&text, "%s%s", repl->before, line) < 0) return;
@@ -238,7 +239,7 @@ CagReplProposals cag_repl_propose(CagRepl *repl, const char *text) {
   } else if (!text[n]) {
     propose_commands(&p, text);
   } else {
-    char command[32]; // holds every command whole
+    char command[32]; // large enough for every command
     snprintf(command, sizeof command, "%.*s", (int)n, text);
     const char *rest = text + n + strspn(text + n, " \t");
     if (cag_repl_command_takes_file(command)) propose_files(&p, rest);

@@ -1,6 +1,5 @@
-// What Tab proposes behind `import`: modules of the library, scripts and folders beside and on the
-// module path, and behind a
-// `:` the names of the module.
+// Completion after `import`: modules of the library, scripts and folders beside the file and on the
+// module path, and, after a `:`, the names of the module.
 
 #include <ctype.h>
 #include <glob.h>
@@ -11,8 +10,8 @@
 
 // --- Modules ---
 
-// A path as import writes it: points for slashes, without the ending of a script. False for other
-// files.
+// Converts a path to the form of an import: with points for slashes, without the extension of a
+// script. Returns false for other files.
 static bool dotted(char *path) {
   size_t n = strlen(path);
   if (n > 4 && strcmp(path + n - 4, ".cag") == 0) path[n - 4] = 0;
@@ -21,7 +20,8 @@ static bool dotted(char *path) {
   return true;
 }
 
-// Scripts and folders whose path in `folder` ("" or with a / at its end) begins as what is written.
+// Proposes scripts and folders whose path in `folder` ("" or ending with /) starts with the written
+// text.
 static void propose_scripts(CagReplProposals *p, const char *folder, const char *written) {
   glob_t found = {0};
   char *pattern = NULL;
@@ -62,7 +62,7 @@ static void take_name(void *context, const char *name) {
   cag_repl_propose_text(n->proposals, name, strlen(name), n->prefix);
 }
 
-// Imports the module into a session of its own: Tab defines nothing.
+// Imports the module into a separate session, because completion must not define anything.
 static void propose_names_of(CagRepl *repl, CagReplProposals *p, const char *module, size_t length,
                              const char *prefix) {
   char *text = NULL;
@@ -76,7 +76,7 @@ static void propose_names_of(CagRepl *repl, CagReplProposals *p, const char *mod
   cag_session_free(s);
 }
 
-// The end of the module's name: before `as`, `:` and spaces.
+// Returns the length of the module's name, up to `as`, `:`, or spaces.
 static size_t module_length(const char *rest) {
   if (*rest == '"') {
     const char *end = strchr(rest + 1, '"');
@@ -91,7 +91,7 @@ bool cag_repl_propose_import(CagRepl *repl, CagReplProposals *p, const char *lin
   const size_t n = module_length(rest);
   const char *colon = strchr(rest + n, ':');
   if (!rest[n]) {
-    if (*rest == '"') return false; // a file, as in any text
+    if (*rest == '"') return false; // a file, as in other texts
     propose_modules(repl, p, rest);
   } else if (colon) {
     const char *end = line + strlen(line), *word = cag_repl_word(line, end);

@@ -1,10 +1,10 @@
-// Lines of the REPL: from libedit on a terminal, else as they come.
+// Lines of the REPL: from libedit on a terminal, else unedited.
 //
-// The history is a file of lines, $XDG_STATE_HOME/cag/history (~/.local/state without it), one for
-// each text; newlines within a text are stored as LINE_BREAK, which no script holds. A text is
-// appended when it is complete, so that sessions side by side keep each other's; the file is cut at
-// the start when it has grown. Whatever goes wrong with it is passed over: history is a
-// comfort.
+// The history is a text file, $XDG_STATE_HOME/cag/history (by default in ~/.local/state), with one
+// line for each input. Newlines within an input are stored as LINE_BREAK, which scripts never
+// contain. An input is appended when it is complete, so that concurrent sessions keep each other's
+// entries. The file is truncated at the start if it has grown. All errors are ignored, because the
+// history is not essential.
 
 #include <errno.h>
 #include <fcntl.h>
@@ -23,20 +23,20 @@
 #include "base/utf8.h"
 #include "cli/repl.h"
 
-// Lines of history that are remembered, and those that the file may have before it is cut.
+// Lines of history that are kept, and the length at which the file is truncated.
 #define HISTORY_LINES 2000
 #define HISTORY_FILE_LINES 4000
-// Stands for a newline in the file: the ASCII unit separator.
+// Replaces a newline in the file: the ASCII unit separator.
 #define LINE_BREAK '\x1f'
 
 struct CagReplInput {
   CagRepl *repl;
   EditLine *editor; // NULL without a terminal
   History *history;
-  char *history_path; // NULL: none is kept
+  char *history_path; // NULL: not kept
   char *line;
   size_t capacity;
-  char *next; // the line looked at ahead
+  char *next; // the line that was read ahead
   size_t next_capacity;
   bool has_next;
   bool more;
@@ -45,7 +45,7 @@ struct CagReplInput {
 
 // --- History ---
 
-// Makes the folders of a path; those that are there stay as they are.
+// Creates the missing folders of a path.
 static void make_folders(char *path) {
   for (char *at = path + 1; *at; at++) {
     if (*at != '/') continue;
@@ -81,7 +81,8 @@ static void append_line(const CagReplInput *in, const char *line) {
   char *whole;
   int n = asprintf(&whole, "%s\n", line);
   if (n >= 0) {
-    ssize_t ignored = write(fd, whole, (size_t)n); // one write, so that sessions do not mix lines
+    ssize_t ignored = write(fd, whole, (size_t)n); // a single write, so that sessions do not mix
+                                                   // lines
     (void)ignored;
     free(whole);
   }
@@ -151,7 +152,7 @@ static char *prompt(EditLine *editor) {
   return input_of(editor)->more ? next : first;
 }
 
-// --- Signals at the prompt: another size of the window, and Ctrl-Z ---
+// --- Signals at the prompt: window size changes, and Ctrl-Z ---
 
 static volatile sig_atomic_t window_changed, stop_asked;
 
@@ -160,8 +161,8 @@ static void note(int signal) {
   else stop_asked = 1;
 }
 
-// Draws the line anew for the new size. Terminals wrap what stands on them anew, so the line's
-// first row is counted up to by the new width.
+// Redraws the line for the new size. Terminals rewrap their contents, so the first row of the line
+// is found by counting with the new width.
 static void redraw(EditLine *editor) {
   struct winsize size = {0};
   const LineInfo *line = el_line(editor);
@@ -179,13 +180,13 @@ static void redraw(EditLine *editor) {
   el_set(editor, EL_REFRESH);
 }
 
-// Gives the terminal back, stops, and goes on with the line when the shell says so.
+// Restores the terminal, stops the process, and continues with the line when the shell resumes it.
 static void stop(EditLine *editor) {
   stop_asked = 0;
   el_set(editor, EL_PREP_TERM, 0);
   fputs("\n", stdout);
   fflush(stdout);
-  // The signal's own action: where nobody could wake the process, the system does not stop it.
+  // The signal's default action, with which the system does not stop an orphaned process.
   const struct sigaction plain = {.sa_handler = SIG_DFL};
   struct sigaction ours;
   sigaction(SIGTSTP, &plain, &ours);
@@ -196,7 +197,8 @@ static void stop(EditLine *editor) {
   el_set(editor, EL_REFRESH);
 }
 
-// Waits for a byte; a change of the window's size is seen meanwhile. False: a signal ends the line.
+// Waits for a byte, and handles changes of the window's size. Returns false if a signal ends the
+// line.
 static bool wait_for_byte(EditLine *editor) {
   struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
   for (;;) {
@@ -208,7 +210,7 @@ static bool wait_for_byte(EditLine *editor) {
   }
 }
 
-// Reads one character of UTF-8. A signal ends the line: libedit's own reader would go on.
+// Reads one UTF-8 character. A signal ends the line, whereas libedit's own reader would continue.
 static int read_character(EditLine *editor, wchar_t *out) {
   (void)editor;
   mbstate_t state = {0};
@@ -220,12 +222,12 @@ static int read_character(EditLine *editor, wchar_t *out) {
     if (n < 0) return -1;
     if (n == 0) return 0;
     size_t k = mbrtowc(out, &byte, 1, &state);
-    if (k == (size_t)-1) memset(&state, 0, sizeof state); // no character: leave it out
+    if (k == (size_t)-1) memset(&state, 0, sizeof state); // invalid character: skip it
     else if (k != (size_t)-2) return 1;
   }
 }
 
-// Lists the proposals below the line, in columns.
+// Lists the completions below the line, in columns.
 static void list_proposals(const CagReplProposals *p) {
   struct winsize size = {0};
   size_t longest = 0;
@@ -318,7 +320,7 @@ static CagReplRead edit_line(CagReplInput *in, char **line) {
   struct sigaction on = {.sa_handler = note, .sa_flags = SA_RESTART}, window, stopping;
   sigaction(SIGWINCH, &on, &window);
   sigaction(SIGTSTP, &on, &stopping);
-  el_resize(in->editor); // it may have changed meanwhile
+  el_resize(in->editor); // the size may have changed
   el_set(in->editor, EL_PREP_TERM, 1);
   const char *text = el_gets(in->editor, &n);
   el_set(in->editor, EL_PREP_TERM, 0);
@@ -332,7 +334,7 @@ static CagReplRead edit_line(CagReplInput *in, char **line) {
     putchar('\n');
     return CAG_REPL_END;
   }
-  size_t length = strlen(text); // a text from the history has newlines within
+  size_t length = strlen(text); // a text from the history may contain newlines
   while (length && (text[length - 1] == '\n' || text[length - 1] == '\r')) length--;
   if (!keep_line(in, text, length)) return CAG_REPL_END;
   *line = in->line;
@@ -341,7 +343,7 @@ static CagReplRead edit_line(CagReplInput *in, char **line) {
 
 // --- Plain lines ---
 
-// Reads a line into a buffer, without its end. A byte of zero ends it.
+// Reads a line into a buffer, without its line end. A zero byte ends it.
 static bool read_plain(char **line, size_t *capacity) {
   ssize_t n = getline(line, capacity, stdin);
   if (n < 0) return false;

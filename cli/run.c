@@ -1,4 +1,4 @@
-// cag run FILE: evaluates a script and says what it shows.
+// cag run FILE: runs a script and lists what it shows.
 
 #include "cli/tool.h"
 

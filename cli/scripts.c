@@ -1,4 +1,4 @@
-// The scripts that operands of a command stand for, and their bytes.
+// The scripts that operands of a command select, and reading them.
 
 #include "cli/scripts.h"
 
@@ -32,7 +32,7 @@ static int visit(CagToolScripts *s, const char *path) {
 
 static int walk_folder(CagToolScripts *s, const char *folder);
 
-// An entry of a folder: a script, a folder with more of them, or something else.
+// Handles an entry of a folder: a script, a folder of scripts, or something else.
 static int walk_entry(CagToolScripts *s, const char *folder, const char *name) {
   char *path;
   struct stat link, target;
@@ -43,7 +43,7 @@ static int walk_entry(CagToolScripts *s, const char *folder, const char *name) {
     return CAG_STATUS_LIMIT;
   int status = CAG_STATUS_OK;
   if (lstat(path, &link) == 0 && stat(path, &target) == 0) {
-    // A link to a folder could lead back to where it stands.
+    // A link to a folder could be circular.
     if (S_ISDIR(link.st_mode)) status = walk_folder(s, path);
     else if (S_ISREG(target.st_mode) && is_script(name)) status = visit(s, path);
   }
@@ -77,13 +77,13 @@ int cag_tool_each_script(CagToolScripts *s, int count, char **paths) {
   return status;
 }
 
-// Bytes that are read at least at a time.
+// The minimum number of bytes to read at once.
 #define READ_SIZE ((size_t)64 * 1024)
 
-// Beyond it a file is no script: one without an end would take all memory.
+// Larger files are not scripts. An endless one would use all memory.
 #define READ_MAX ((size_t)1 << 30)
 
-// All that a file still gives, NUL-terminated; NULL with errno.
+// Reads the rest of a file, NUL-terminated. Returns NULL, with errno, on failure.
 static char *read_all(FILE *from, size_t *length) {
   struct stat st;
   size_t n = 0, capacity = READ_SIZE;

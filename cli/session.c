@@ -1,4 +1,4 @@
-// What the commands that run scripts share: the session, and the check of an output's place.
+// Shared by commands that run scripts: the session, and checking an output's path.
 
 #include <errno.h>
 #include <limits.h>
@@ -10,11 +10,11 @@
 #include "base/atomic_file.h"
 #include "cli/tool.h"
 
-// The run is in a step that does not look up (a decomposition of a huge matrix): the program ends,
-// on the spot, as it does after a second Ctrl-C.
+// Called if the run is in a step that cannot be stopped (such as the decomposition of a huge
+// matrix). Ends the program immediately, as a second Ctrl-C does.
 static void end_overdue(CagSession *s, void *context) {
   const CagTool *t = context;
-  // What was printed stands before, unless it is just that which takes so long.
+  // Earlier output comes first, unless writing it is what takes so long.
   if (ftrylockfile(stdout) == 0) {
     fflush_unlocked(stdout);
     funlockfile(stdout);
@@ -48,7 +48,7 @@ bool cag_tool_try_place(const char *path, CagError *err) {
   struct stat st;
   snprintf(above, sizeof above, "%s", path);
   snprintf(place, sizeof place, "%s", path);
-  // A file in the nearest folder that is there shows whether one can be made in it.
+  // A file in the nearest existing folder shows whether folders can be created there.
   for (char *slash = strrchr(above, '/'); slash && slash > above; slash = strrchr(above, '/')) {
     *slash = '\0';
     if (stat(above, &st) == 0 || errno != ENOENT) break;
@@ -74,7 +74,7 @@ void cag_tool_make_folder(const char *path) {
     *slash = '\0';
     const bool made = mkdir(folder, 0777) == 0 || errno == EEXIST || errno == EISDIR;
     *slash = '/';
-    if (!made) return; // writing the file tells why
+    if (!made) return; // writing the file reports the reason
   }
   (void)!mkdir(folder, 0777);
 }

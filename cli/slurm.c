@@ -1,8 +1,8 @@
-// An array job of Slurm: handed in, followed, taken up again.
+// Submits, watches, and resumes an array job of Slurm.
 //
-// Slurm is asked by its own programs, each within a time limit, since they wait long for a
-// controller that is down. A Slurm that stops answering while a job is followed is given time to
-// come back.
+// Slurm is accessed through its command-line programs, each with a time limit, because they wait
+// long for a controller that is down. If Slurm stops responding while a job is being watched, it is
+// given time to recover.
 
 #include "cli/slurm.h"
 
@@ -23,30 +23,31 @@
 
 #define CODE_QUEUE "E0918"
 
-// Seconds that a program of Slurm may take.
+// The time limit, in seconds, for a program of Slurm.
 static const double ANSWER_LIMIT = 30;
-// Seconds that Slurm may be silent while a job is followed.
+// The time, in seconds, that Slurm may not respond while a job is being watched.
 static const double SILENCE_LIMIT = 60;
-// Seconds between questions to Slurm, which serves others too; and between looks for results.
+// Seconds between queries of Slurm, which serves others, too; and milliseconds between checks for
+// results.
 static const double ASK_INTERVAL = 2;
 #define LOOK_INTERVAL 200 // milliseconds
-// An element that ended without a result is looked at this often before it counts as lost: files of
-// another machine may be seen late.
+// An element that ended without a result is checked this often before it counts as lost, because
+// files of another machine may become visible late.
 #define LOOKS_FOR_RESULT 3
-// Where Slurm does not tell how many elements an array may have.
+// The maximum size of an array if Slurm does not tell.
 #define ELEMENTS_USUAL 1000
 
 typedef struct {
   CagBatch *batch;
   char name[CAG_JOURNAL_KEY_SIZE]; // of the job
   char *folder;                    // of its plan and results
-  CagTask **tasks;                 // of the plan; NULL where a row is not there any more
+  CagTask **tasks;                 // of the plan; NULL if the row no longer exists
   size_t count, elements;
-  unsigned char *missed; // of each element: looks since it ended without all results
+  unsigned char *missed; // for each element: checks since it ended without all results
   CagBatchProgress progress;
   double asked, answered;
-  bool silent; // was told
-  bool gone;   // Slurm knows no element of it
+  bool silent; // silence was reported
+  bool gone;   // Slurm knows none of its elements
 } Array;
 
 static void free_array(Array *a) {
@@ -59,7 +60,7 @@ static void say_once(const CagBatch *b, const char *message) {
   cag_tool_fail(b->tool, CAG_STATUS_OK, NULL, CODE_QUEUE ": %s", message);
 }
 
-// The last line of what a program said, without its end.
+// Returns the last line of a program's output, without its line end.
 static const char *last_line(char *text) {
   size_t n = strlen(text);
   while (n && (text[n - 1] == '\n' || text[n - 1] == ' ')) text[--n] = '\0';
@@ -67,9 +68,9 @@ static const char *last_line(char *text) {
   return line ? line + 1 : text;
 }
 
-// --- Handing in ---
+// --- Submitting ---
 
-// Fails all tasks that the job would have had, after one message for all.
+// Fails all tasks of the job, after one message for all.
 static void refuse(CagBatch *b, const char *what, char *said) {
   char *message = NULL;
   const char *line = said ? last_line(said) : "no answer";
@@ -85,7 +86,7 @@ static void refuse(CagBatch *b, const char *what, char *said) {
   free(message);
 }
 
-// How many elements an array may have; 0, with the rows failed, when Slurm does not answer.
+// Returns the maximum size of an array, or 0, with the rows failed, if Slurm does not respond.
 static size_t ask_elements(CagBatch *b) {
   char *const words[] = {"scontrol", "show", "config", NULL}, *said = NULL;
   const int status = cag_child_run(words, ANSWER_LIMIT, &cag_tool_interrupt, &said);
@@ -98,11 +99,11 @@ static size_t ask_elements(CagBatch *b) {
     elements = 0;
   }
   free(said);
-  // The largest number of an element is one less, and Slurm wants it below its bound.
+  // Slurm's limit is exclusive and applies to the largest index.
   return elements ? elements - 1 : 0;
 }
 
-// A text for the shell.
+// Writes a text quoted for the shell.
 static void write_quoted(CagAtomicFile *f, const char *text) {
   cag_atomic_file_text(f, "'");
   for (; *text; text++)
@@ -147,7 +148,7 @@ static bool write_plan(const Array *a, const char *path, CagError *err) {
   return ok;
 }
 
-// The tasks that wait, but for those that join others.
+// Collects the waiting tasks, except those that join others.
 static bool gather(Array *a) {
   CagBatch *b = a->batch;
   a->tasks = malloc((b->task_count + 1) * sizeof *a->tasks);
@@ -164,7 +165,7 @@ static bool settle_names(Array *a) {
   return asprintf(&a->folder, "%s/%s", a->batch->queue_folder, a->name) >= 0;
 }
 
-// Makes the folder with plan and script.
+// Creates the folder with plan and script.
 static bool prepare(const Array *a, char **script, CagError *err) {
   const CagBatch *b = a->batch;
   char *plan = NULL;
@@ -178,7 +179,7 @@ static bool prepare(const Array *a, char **script, CagError *err) {
   return ok;
 }
 
-// Minutes that an element may take, when its tasks have a time limit.
+// Returns the time limit of an element in minutes, if its tasks have one.
 static double minutes(const Array *a) {
   const CagTool *t = a->batch->tool;
   const double tasks = ceil((double)a->count / (double)a->elements);
@@ -187,7 +188,7 @@ static double minutes(const Array *a) {
   return ceil((seconds + START_SECONDS) / 60);
 }
 
-// Calls sbatch; false, with the rows failed, when it refuses.
+// Calls sbatch. Returns false, with the rows failed, if it refuses the job.
 static bool submit(Array *a, char *script) {
   const CagTool *t = a->batch->tool;
   char array[64], name[64], time[64], threads[32], output[4096 + 32];
@@ -196,12 +197,12 @@ static bool submit(Array *a, char *script) {
   if (t->jobs) snprintf(array, sizeof array, "--array=0-%zu%%%zu", last, t->jobs);
   else snprintf(array, sizeof array, "--array=0-%zu", last);
   snprintf(name, sizeof name, "--job-name=%s", a->name);
-  // In a name with a % Slurm would see its own signs.
+  // Slurm would interpret a % in the name.
   if (strchr(a->folder, '%')) snprintf(output, sizeof output, "--output=/dev/null");
   else snprintf(output, sizeof output, "--output=%s/said-%%a.txt", a->folder);
   snprintf(time, sizeof time, "--time=%.0f", t->session.max_time > 0 ? minutes(a) : 0);
   snprintf(threads, sizeof threads, "--cpus-per-task=%d", t->threads);
-  // A task of a lost node is not begun again by Slurm: it is reported, and the next call does it.
+  // Slurm does not requeue a task of a failed node: it is reported, and the next call runs it.
   char *words[10] = {"sbatch", "--parsable", "--no-requeue", array, name, output};
   size_t n = 6;
   if (t->session.max_time > 0) words[n++] = time;
@@ -214,11 +215,11 @@ static bool submit(Array *a, char *script) {
   return status == 0;
 }
 
-// --- Following ---
+// --- Watching ---
 
 static bool is_open(const CagTask *task) { return task && task->state == CAG_TASK_WAITING; }
 
-// Takes the results that are there. Gives a status, and how many tasks are open still.
+// Collects the available results. Returns a status, and the number of unfinished tasks.
 static int collect(Array *a, size_t *open) {
   CagBatch *b = a->batch;
   int status = CAG_STATUS_OK;
@@ -239,7 +240,7 @@ static int collect(Array *a, size_t *open) {
   return status;
 }
 
-// An element ended, or is unknown: after a while its open tasks are lost.
+// An element ended or is unknown: after some time, its unfinished tasks count as lost.
 static int lose(Array *a, size_t element, const char *state) {
   int status = CAG_STATUS_OK;
   if (++a->missed[element] < LOOKS_FOR_RESULT) return status;
@@ -266,7 +267,7 @@ static bool is_over(const char *state) {
   return false;
 }
 
-// Looks through lines "ELEMENT STATE" of squeue. Elements of which it says nothing ended long ago.
+// Parses lines "ELEMENT STATE" of squeue. Elements that are not listed have ended long ago.
 static int read_states(Array *a, char *said) {
   int status = CAG_STATUS_OK;
   bool *seen = calloc(a->elements, sizeof *seen);
@@ -286,7 +287,7 @@ static int read_states(Array *a, char *said) {
   return status;
 }
 
-// Asks Slurm for the states of the elements; `*silent` when it has not answered for long.
+// Queries the states of the elements from Slurm. Sets `*silent` if it has not responded for long.
 static int query_states(Array *a, bool *silent) {
   char name[64], *said = NULL;
   snprintf(name, sizeof name, "--name=%s", a->name);
@@ -317,7 +318,7 @@ static int tell_interrupted(const Array *a) {
   return CAG_STATUS_INTERRUPTED;
 }
 
-// Follows the job until each of its tasks has ended; `*over` says whether they have.
+// Watches the job until all its tasks have ended. Sets `*over` if they have.
 static int follow(Array *a, bool *over) {
   size_t open;
   bool silent = false;
@@ -343,7 +344,7 @@ static int follow(Array *a, bool *over) {
   return status;
 }
 
-// --- The whole ---
+// --- The whole job ---
 
 static int remove_entry(const char *path, const struct stat *st, int type, struct FTW *at) {
   (void)st, (void)type, (void)at;
@@ -359,7 +360,7 @@ static int keep_in_journal(CagBatch *b, CagJournalWhat what, const char *name) {
   return cag_tool_fail(b->tool, cag_exit_status(&err), err.help, "%s", err.message);
 }
 
-// The job is over and its results are in the journal: nothing of it is needed any more.
+// Cleans up after the job is over and its results are in the journal.
 static int finish(Array *a) {
   enum { OPEN_FOLDERS = 8 };
   const int status = keep_in_journal(a->batch, CAG_JOURNAL_COLLECTED, a->name);
@@ -397,7 +398,8 @@ static bool match(Array *a, const CagPlan *plan) {
   return ok;
 }
 
-// Whether Slurm knows the job; also when it does not answer, which the following tells.
+// Tests whether Slurm knows the job. Returns true if Slurm does not respond, which is reported
+// later.
 static bool is_known(Array *a) {
   bool silent;
   if (query_states(a, &silent) != CAG_STATUS_OK) return true;
@@ -405,8 +407,8 @@ static bool is_known(Array *a) {
   return !a->gone;
 }
 
-// Takes up the job of an earlier call. One that never reached Slurm, or that it has forgotten,
-// leaves its open tasks to the next job.
+// Resumes the job of an earlier call. If it never reached Slurm, or Slurm has forgotten it, its
+// unfinished tasks are left for the next job.
 static int take_up(CagBatch *b, bool *over) {
   Array a = {.batch = b};
   CagPlan plan;
@@ -419,7 +421,7 @@ static int take_up(CagBatch *b, bool *over) {
       asprintf(&path, "%s/plan.json", a.folder) < 0)
     return CAG_STATUS_LIMIT;
   if (access(path, R_OK) != 0) {
-    status = finish(&a); // somebody removed it: nothing can be known
+    status = finish(&a); // it was removed, so its state is unknown
   } else if (!cag_plan_read(b->tool, &plan, path)) {
     status = CAG_STATUS_FILE;
   } else {
@@ -438,7 +440,7 @@ static int take_up(CagBatch *b, bool *over) {
   return status;
 }
 
-// Hands in the tasks that wait.
+// Submits the waiting tasks.
 static int hand_in(CagBatch *b) {
   Array a = {.batch = b};
   char *script = NULL;

@@ -1,23 +1,22 @@
-// A batch's tasks as one array job of Slurm.
+// Runs the tasks of a batch as an array job of Slurm.
 //
-// Beside the file of jobs, in the folder JOBS.slurm/NAME, stand the plan (the commands of all
-// tasks), the script that Slurm runs for each element of the array, and a result file for each
-// task, which the elements write whole or not at all. So what became of the tasks does not depend
-// on what Slurm remembers; it is asked only for elements that ended without a result. NAME is the
-// job's name; it is in the journal before the job is handed in, and a later call finds the job by
-// it.
+// The folder JOBS.slurm/NAME beside the job file contains the plan (the commands of all tasks), the
+// script that Slurm runs for each element of the array, and a result file for each task, which the
+// elements write atomically. So the results do not depend on Slurm's records; Slurm is queried only
+// about elements that ended without a result. NAME is the job's name. It is written to the journal
+// before the job is submitted, so that a later call can find the job by it.
 
 #ifndef CAG_CLI_SLURM_H
 #define CAG_CLI_SLURM_H
 
 #include "cli/batch.h"
 
-// Takes up the job of an earlier call, hands in what is missing, and follows it to its end. Tasks
-// that Slurm does not take or loses are failed; those of which nothing is known wait for the next
-// call. CAG_STATUS_INTERRUPTED after Ctrl-C: the job goes on.
+// Resumes the job of an earlier call, submits the missing tasks, and waits for the job to end.
+// Tasks that Slurm refuses or loses fail. Tasks whose state is unknown wait for the next call.
+// Returns CAG_STATUS_INTERRUPTED after Ctrl-C; the job then continues.
 int cag_slurm_run(CagBatch *b);
 
-// Runs element --element of the plan; what the script of the array calls.
+// Runs element --element of the plan. Called by the script of the array.
 int cag_slurm_element(CagTool *t, const char *plan);
 
 #endif

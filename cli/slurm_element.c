@@ -1,4 +1,4 @@
-// One element of an array job, on the machine that Slurm chose: its tasks one after the other.
+// Runs one element of an array job, on the machine that Slurm chose: its tasks in sequence.
 
 #include <errno.h>
 #include <poll.h>
@@ -10,7 +10,7 @@
 #include "cli/slurm.h"
 #include "cli/slurm_plan.h"
 
-// Milliseconds between looks at the process.
+// Milliseconds between checks of the process.
 #define LOOK_INTERVAL 20
 
 static void run_once(const CagPlan *plan, char *const *words, CagTask *task) {
@@ -33,8 +33,8 @@ static void run_once(const CagPlan *plan, char *const *words, CagTask *task) {
   cag_child_free(&c);
 }
 
-// A task that Slurm starts once more is not done twice; one that it ends leaves no result, and the
-// batch asks Slurm why.
+// A task that Slurm starts again is not run twice. One that Slurm ends leaves no result, and the
+// batch asks Slurm for the reason.
 static int run_task(CagTool *t, const CagPlan *plan, const CagPlanTask *p, const char *folder) {
   char *path = cag_plan_result_path(folder, p->key);
   CagTask task = {0};

@@ -128,7 +128,7 @@ bool cag_plan_write_result(const char *path, const CagTask *task, CagError *err)
 }
 
 bool cag_plan_read_result(const char *path, CagTask *task) {
-  // A result is a line of a message and some numbers.
+  // A result consists of a one-line message and some numbers.
   char text[8192];
   FILE *f = fopen(path, "re");
   if (!f) return false;

@@ -1,4 +1,4 @@
-// The plan of an array job: what its elements run, and where they leave the results.
+// The plan of an array job: the commands of its elements, and the location of their results.
 
 #ifndef CAG_CLI_SLURM_PLAN_H
 #define CAG_CLI_SLURM_PLAN_H
@@ -7,26 +7,27 @@
 
 typedef struct CagPlanTask {
   char key[CAG_JOURNAL_KEY_SIZE];
-  char **words; // NULL at the end; NULL in a plan of one's own
+  char **words; // ends with NULL; NULL while a plan is being made
 } CagPlanTask;
 
 // Element e of `elements` runs the tasks e, e + elements, e + 2 elements, ...
 typedef struct CagPlan {
   size_t elements, count, retries;
-  double max_time, limit; // seconds: of the message, and when a process is stopped
-  char *folder;           // where the processes start
+  double max_time, limit; // seconds: the limit in messages, and the time after which a process is
+                          // stopped
+  char *folder;           // working folder of the processes
   CagPlanTask *tasks;
 } CagPlan;
 
-// Writes and reads a plan. Reading gives NULL or false, after a message, for a file that is none.
+// Write and read a plan. Reading returns NULL or false, after a message, for an invalid file.
 bool cag_plan_write(const CagPlan *plan, const char *path, CagError *err);
 bool cag_plan_read(const CagTool *t, CagPlan *plan, const char *path);
 void cag_plan_free(CagPlan *plan);
 
-// A task's result. The path is malloc'd.
+// Returns the path of a task's result, allocated with malloc.
 char *cag_plan_result_path(const char *folder, const char *key);
 bool cag_plan_write_result(const char *path, const CagTask *task, CagError *err);
-// False where there is none yet.
+// Returns false if there is no result yet.
 bool cag_plan_read_result(const char *path, CagTask *task);
 
 #endif

@@ -1,10 +1,10 @@
-// cag test [PATH ...]: runs scripts as tests, several at a time.
+// cag test [PATH ...]: runs scripts as tests, in parallel.
 //
-// scripts.h says which scripts, interp/session/expect.h says what a test is. Workers take the
-// scripts in their order; what is said of a script is kept until those before it are told, so the
-// report does not depend on the number of workers. It goes to standard output: what failed, with -v
-// also what passed, and at last `N passed, N failed, N skipped`: a picture is skipped where there
-// is no POV-Ray to render it.
+// scripts.h defines which scripts are run, and interp/session/expect.h what a test is. Workers take
+// the scripts in order. The report of a script is delayed until those before it have been reported,
+// so the output does not depend on the number of workers. It goes to standard output: failures,
+// with -v also passed tests, and finally `N passed, N failed, N skipped`. Pictures are skipped
+// without POV-Ray.
 
 #include <cJSON.h>
 #include <pthread.h>
@@ -19,17 +19,17 @@
 
 typedef struct Testing Testing;
 
-// A script, and what came of it.
+// A script and its results.
 typedef struct Script {
   Testing *testing;
   char *path;
-  FILE *out, *messages; // into the texts below
+  FILE *out, *messages; // write to the texts below
   char *said, *told;
   size_t said_length, told_length;
   CagTestCounts counts;
   CagJunitCase *cases;
   size_t case_count;
-  FILE *failure; // of the test that runs
+  FILE *failure; // of the current test
   char *failure_text;
   size_t failure_length;
   int status;
@@ -52,7 +52,7 @@ static void add_text(cJSON *object, const char *name, const char *text) {
   if (text) cJSON_AddStringToObject(object, name, text);
 }
 
-// The fields of a diagnostic, and what was expected and found.
+// Writes the fields of a diagnostic, and the expected and actual output.
 static void report_json(FILE *out, const char *severity, const CagTestFailure *f) {
   cJSON *object = cJSON_CreateObject();
   add_text(object, "severity", severity);
@@ -98,7 +98,7 @@ static void report_failure(void *context, const CagTestFailure *f) {
   report_text(s->out, f);
 }
 
-// Keeps a case for the report in XML.
+// Stores a case for the XML report.
 static void keep_case(Script *s, const char *test, CagTestOutcome outcome, double seconds,
                       const char *remark) {
   if (s->failure) fclose(s->failure);
@@ -187,13 +187,13 @@ static void *work(void *context) {
   return NULL;
 }
 
-// Tells of the scripts in their order, as each is done. Gives the first status that ends it all.
+// Reports the scripts in order as they finish. Returns the first status that ends everything.
 static int report_scripts(Testing *t, CagTestCounts *counts, int *file_status) {
   int status = CAG_STATUS_OK;
   for (size_t i = 0; i < t->count && status == CAG_STATUS_OK; i++) {
     Script *s = &t->scripts[i];
     pthread_mutex_lock(&t->mutex);
-    // Scripts that were begun end; those behind them are not begun after an interruption.
+    // Started scripts finish. After an interruption, no others are started.
     while (!s->done && !(cag_tool_interrupt && i >= t->next)) {
       struct timespec soon;
       clock_gettime(CLOCK_REALTIME, &soon);
@@ -225,10 +225,10 @@ static int run_all(Testing *t, CagTestCounts *counts, int *file_status) {
   pthread_cond_init(&t->ended, NULL);
   while (threads && started < jobs && pthread_create(&threads[started], NULL, work, t) == 0)
     started++;
-  if (started == 0) work(t); // the system gives no thread
+  if (started == 0) work(t); // no thread could be created
   const int status = report_scripts(t, counts, file_status);
   pthread_mutex_lock(&t->mutex);
-  t->next = t->count; // after a failure of all: nothing more is begun
+  t->next = t->count; // after a failure of all: start no others
   pthread_mutex_unlock(&t->mutex);
   for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
   pthread_cond_destroy(&t->ended);
@@ -248,7 +248,7 @@ static int add_script(void *context, const char *path) {
   return CAG_STATUS_OK;
 }
 
-// The defines of the command line as two lists, in one piece of memory.
+// Copies the defines of the command line to two lists, in one block.
 static bool copy_defines(CagTestOptions *o, const CagTool *t) {
   size_t n = t->define_count;
   const char **texts = malloc((2 * n + 1) * sizeof *texts);

@@ -1,4 +1,4 @@
-// A picture's tiles, put together.
+// Joining the tiles of a picture.
 
 #include "cli/tiles.h"
 
@@ -10,7 +10,7 @@
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
 
-// --- Where they lie ---
+// --- Layout ---
 
 static bool read_side(const char **at, int *out) {
   *out = 0;
@@ -25,7 +25,7 @@ bool cag_tiles_read(const char *text, int *columns, int *lines) {
 
 bool cag_tiles_fit(int pixels, int tiles) { return tiles == 1 || pixels / CAG_TILE_STEP >= tiles; }
 
-// Where tile i of `tiles` begins.
+// Returns where tile i of `tiles` starts.
 static int edge(int pixels, int tiles, int i) {
   if (i == tiles) return pixels;
   const long steps = pixels / CAG_TILE_STEP;
@@ -50,7 +50,7 @@ static void paste(CagImage *into, size_t to, const CagImage *from, size_t channe
            (size_t)r.width * sizeof(float));
 }
 
-// Begins the picture with the first tile's channels.
+// Creates the picture with the first tile's channels.
 static bool begin(CagImage *picture, const CagImage *tile, int width, int height, CagError *err) {
   if (!cag_image_create(picture, (size_t)width, (size_t)height, tile->channel_count, err))
     return false;

@@ -1,13 +1,13 @@
-// The program `cag`: one function per command, and what they share.
+// The program `cag`: one function for each command, and shared functions.
 //
-// main.c reads the command line into a CagTool, by the tables commands.def and options.def, and
-// calls the command's function with its operands. A command gives back the exit status of the
-// program (CAG_STATUS_*). Commands use include/cag.h as any client of the library would; only
-// those about pictures also use the readers and writers of interp/render.
+// main.c parses the command line into a CagTool, by the tables commands.def and options.def, and
+// calls the command's function with its operands. The result of a command is the exit status of the
+// program (CAG_STATUS_*). Commands use include/cag.h like other clients of the library. Only those
+// for pictures also use the readers and writers of interp/render.
 //
-// Standard output belongs to what was asked for (prints, values, exported bytes); everything else
-// goes to standard error. main.c flushes standard output at the end and makes a failure of that
-// exit status 3, so a command need not look at each write.
+// Standard output contains only results (prints, values, exported bytes); everything else goes to
+// standard error. main.c flushes standard output at the end and turns a failure into exit status 3,
+// so commands need not check each write.
 
 #ifndef CAG_CLI_TOOL_H
 #define CAG_CLI_TOOL_H
@@ -26,7 +26,7 @@ typedef int CagToolFunction(CagTool *t, int argc, char **argv);
 // A row of commands.def.
 typedef struct CagToolCommand {
   const char *name, *operands, *summary, *story, *examples;
-  int least, most; // how many operands
+  int least, most; // numbers of operands
   CagToolFunction *run;
 } CagToolCommand;
 
@@ -40,12 +40,12 @@ typedef enum CagToolColor {
   CAG_TOOL_COLOR_NEVER
 } CagToolColor;
 
-// Why an option does not take a value.
+// Why the value of an option is invalid.
 typedef struct CagToolRefusal {
   char message[256], help[256];
 } CagToolRefusal;
 
-// The command line, read. Texts point into argv; NULL or 0 where an option was not given.
+// The parsed command line. Texts point into argv; values of missing options are NULL or 0.
 struct CagTool {
   const CagToolCommand *command;
   CagSessionOptions session; // limits, tolerance, module path, and the interrupt flag
@@ -61,7 +61,7 @@ struct CagTool {
   const char *quality, *camera;
   double exposure;
   bool has_frames, loop;        // --frames, --loop
-  int samples;                  // --samples; 0: by the quality
+  int samples;                  // --samples; 0: depends on the quality
   bool progress;                // --progress
   long first_frame, last_frame; // --frames
   double threshold;
@@ -70,18 +70,18 @@ struct CagTool {
   bool update;            // --update
   bool no_pictures;       // --no-pictures
   bool check, diff;       // --check, --diff
-  size_t jobs;            // --jobs; 0: one for each processor
+  size_t jobs;            // --jobs; 0: one per processor
   const char *report;     // --report
-  CagRenderRegion region; // --region; a width of 0: all of the picture
-  int threads;            // --threads; 0: one for each processor
-  const char *queue;      // --engine-queue; NULL: run here
+  CagRenderRegion region; // --region; a width of 0: the whole picture
+  int threads;            // --threads; 0: one per processor
+  const char *queue;      // --engine-queue; NULL: run on this machine
   size_t retries;         // --retries
   bool fresh;             // --fresh
   const char *tiles;      // --tiles
   const char *element;    // --element
   const char *html;       // --html
 
-  // Where a value that an option refuses is told instead of on standard error; NULL: there.
+  // Receives the error of an invalid option value; NULL: it is written to standard error.
   struct CagToolRefusal *refusal;
 };
 
@@ -89,44 +89,45 @@ CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, c
     cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
     cag_tool_repl, cag_tool_batch;
 
-// A session with the options and the -D of the command line. NULL, after a message, when memory is
-// out.
+// Makes a session with the options and the -D of the command line. Returns NULL, after a message,
+// if memory ran out.
 CagSession *cag_tool_session(CagTool *t);
 
-// Writes the diagnostics of the session's last call to standard error in the style asked for, and
-// gives back `status`: `return cag_tool_finish(t, s, cag_session_run_file(s, path));`. Says nothing
-// of an interruption and of a standard output that nobody reads any more.
+// Writes the diagnostics of the session's last call to standard error in the selected style, and
+// returns `status`: `return cag_tool_finish(t, s, cag_session_run_file(s, path));`. Does not report
+// interruptions, or a standard output that was closed by its reader.
 int cag_tool_finish(CagTool *t, CagSession *s, int status);
 
-// Says `cag render: MESSAGE` and, behind it, the mend `help` (NULL: none) on standard error, and
-// gives back `status`.
+// Writes `cag render: MESSAGE` and then `help` (NULL: none) to standard error, and returns
+// `status`.
 int cag_tool_fail(const CagTool *t, int status, const char *help, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-// Flushes standard output. When that fails, says so (unless nobody reads it any more), and makes
-// a status of 0 CAG_STATUS_FILE. main.c does it at the end.
+// Flushes standard output. If that fails, reports it (unless the reader closed it), and changes a
+// status of 0 to CAG_STATUS_FILE. Called by main.c at the end.
 int cag_tool_close_output(const CagTool *t, int status);
-// Whether standard output is a pipe that was closed at its other end.
+// Tests whether standard output is a pipe that its reader has closed.
 bool cag_tool_output_is_unread(void);
 
-// Keeps a value of the option `--name` in `t`, as the command line does. False, with the reason in
-// `why`, where the option does not take it.
+// Sets the option `--name` in `t`, as the command line does. Returns false, with the reason in
+// `why`, if the value is invalid.
 bool cag_tool_try(CagTool *t, const char *name, const char *value, CagToolRefusal *why);
 
-// A remark on standard error; nothing with -q or JSON diagnostics.
+// Writes a remark to standard error, unless -q or JSON diagnostics are selected.
 void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// Checks that the output can be written, before a long calculation: 0, or a status after a message.
+// Checks that the output can be written, before a long calculation. Returns 0, or a status after a
+// message.
 int cag_tool_check_output(const CagTool *t, const char *path);
-// The same where folders that are missing will be made; and makes them. That they cannot be made is
-// told when the file is opened.
+// The same, but creates missing folders. If that fails, the error is reported when the file is
+// opened.
 int cag_tool_check_place(const CagTool *t, const char *path);
 bool cag_tool_try_place(const char *path, CagError *err);
 void cag_tool_make_folder(const char *path);
 
 // Nonzero after Ctrl-C or SIGTERM; t->session.interrupt points to it. A second signal ends the
-// program at once, without temporaries left behind. Who handles Ctrl-C and goes on (the REPL)
-// resets it to 0.
+// program at once, but removes temporary files. A command that handles Ctrl-C and continues (the
+// REPL) resets it to 0.
 extern volatile int cag_tool_interrupt;
 
 #endif

@@ -1,8 +1,8 @@
-// The syntax tree, as the parser builds it and the resolver annotates it.
+// The syntax tree, as built by the parser and annotated by the resolver.
 //
-// Everything lives in the arena of its CagModuleAst and dies with it. Names are NFC and interned in
-// that arena: two equal names of one tree are the same pointer. The tree keeps what was written
-// (pipes, parentheses, units), so that the formatter can give it back; nothing is desugared here.
+// All nodes are in the arena of their CagModuleAst and are freed with it. Names are in NFC and
+// interned in that arena: equal names of a tree are the same pointer. The tree keeps the source
+// form (pipes, parentheses, units) for the formatter. Nothing is desugared here.
 
 #ifndef CAG_LANG_AST_H
 #define CAG_LANG_AST_H
@@ -16,10 +16,10 @@ typedef struct CagDecl CagDecl;
 typedef struct CagFunctionAst CagFunctionAst;
 
 typedef enum CagExprKind {
-  CAG_EXPR_NUMBER,   // number (a length unit is multiplied in already: 2.5cm is 25)
+  CAG_EXPR_NUMBER,   // number (a length unit has been applied: 2.5cm is 25)
   CAG_EXPR_ANGLE,    // number: degrees
   CAG_EXPR_TEXT,     // text
-  CAG_EXPR_TEMPLATE, // list: texts and expressions in turn
+  CAG_EXPR_TEMPLATE, // list: alternating texts and expressions
   CAG_EXPR_TRUE,
   CAG_EXPR_FALSE,
   CAG_EXPR_NONE,
@@ -42,7 +42,7 @@ typedef enum CagExprKind {
   CAG_EXPR_CALL,          // call
   CAG_EXPR_INDEX,         // binary: left[right]
   CAG_EXPR_MEMBER,        // member
-  CAG_EXPR_ERROR          // stands where the parser could not read an expression
+  CAG_EXPR_ERROR          // replaces an expression that could not be parsed
 } CagExprKind;
 
 typedef enum CagBinaryOp {
@@ -64,13 +64,13 @@ typedef enum CagBinaryOp {
 } CagBinaryOp;
 
 typedef struct CagArgument {
-  const char *name; // NULL: by position
+  const char *name; // NULL: positional
   CagSpan name_span;
   CagExpr *value;
 } CagArgument;
 
 typedef struct CagField {
-  const char *name; // NULL: a spread, its operand in value
+  const char *name; // NULL: a spread, whose operand is value
   CagSpan name_span;
   CagExpr *value;
 } CagField;
@@ -88,7 +88,7 @@ typedef struct CagClause {
 // A definition or an assert of a block or of a module.
 typedef struct CagStatement CagStatement;
 
-// What a name may stand for.
+// What a name can refer to.
 typedef enum CagDeclKind {
   CAG_DECL_TOP,       // definition or param of the module
   CAG_DECL_IMPORT,    // `import m`: the module itself
@@ -102,10 +102,10 @@ struct CagDecl {
   CagDeclKind kind;
   const char *name;
   CagSpan span;            // of the name
-  CagFunctionAst *owner;   // innermost function around it; NULL at the top level of the module (set
+  CagFunctionAst *owner;   // innermost enclosing function; NULL at the top level of the module (set
                            // by the resolver)
-  CagStatement *statement; // TOP, BLOCK, IMPORT, IMPORTED: where it is said
-  size_t index; // TOP: its number among the module's tops; free for the compiler's use otherwise
+  CagStatement *statement; // TOP, BLOCK, IMPORT, IMPORTED: the statement that declares it
+  size_t index; // TOP: its index among the module's tops; otherwise free for use by the compiler
   bool used;
   const char *doc; // TOP: text of the /// lines before it; NULL: none
 };
@@ -122,22 +122,23 @@ struct CagFunctionAst {
   size_t parameter_count, required_count;
   CagExpr *body;
   CagSpan span;
-  CagFunctionAst *outer; // innermost function around it (set by the resolver)
-  CagDecl *self; // BLOCK function definitions: the name that the body may call; NULL otherwise
+  CagFunctionAst *outer; // innermost enclosing function (set by the resolver)
+  CagDecl *self;         // BLOCK function definitions: the name for recursive calls; NULL otherwise
 };
 
-// What a NAME was found to mean (set by the resolver).
+// What a NAME refers to (set by the resolver).
 typedef enum CagBinding {
   CAG_BIND_NONE,
   CAG_BIND_DECL,    // decl
-  CAG_BIND_BUILTIN, // index: number of the built-in
-  CAG_BIND_OUTER    // index: what CagResolveEnv.find_outer gave (earlier inputs of the REPL)
+  CAG_BIND_BUILTIN, // index: of the built-in
+  CAG_BIND_OUTER    // index: result of CagResolveEnv.find_outer (earlier inputs of the REPL)
 } CagBinding;
 
 struct CagExpr {
   CagExprKind kind;
   CagSpan span;
-  uint32_t height; // of the tree below, from 1; at most CAG_MAX_HEIGHT, so that walks may recurse
+  uint32_t height; // of the tree below, from 1; at most CAG_MAX_HEIGHT, so that traversals may
+                   // recurse
   union {
     double number;
     struct {
@@ -204,7 +205,7 @@ typedef enum CagStatementKind {
   CAG_STATEMENT_SHOW,
   CAG_STATEMENT_PRINT,
   CAG_STATEMENT_ASSERT,
-  CAG_STATEMENT_EXPRESSION // only where cag_parse is told to allow it: the REPL and `cag eval`
+  CAG_STATEMENT_EXPRESSION // only in modes of cag_parse that allow it: the REPL and `cag eval`
 } CagStatementKind;
 
 typedef struct CagImportName {
@@ -234,7 +235,7 @@ struct CagStatement {
       const char *alias; // the name after `as`; NULL: none
       CagImportName *names;
       size_t name_count;
-      size_t module; // number of the imported module, set by the loader
+      size_t module; // index of the imported module, set by the loader
     } import;
     struct {
       CagDecl *decl;
@@ -256,7 +257,7 @@ struct CagStatement {
   } as;
 };
 
-// A comment, for the formatter: where it stands. `doc`: begins with ///.
+// The location of a comment, for the formatter. `doc`: it starts with ///.
 typedef struct CagComment {
   CagSpan span;
   bool doc, block;
@@ -271,7 +272,7 @@ typedef struct CagModuleAst {
   size_t top_count;
   CagComment *comments;
   size_t comment_count;
-  size_t name_count; // number of different names, reserved words included
+  size_t name_count; // number of different names, including reserved words
   // Names that unreadable text may define, possibly with repetitions.
   const char **damaged_names;
   size_t damaged_name_count;

@@ -1,4 +1,4 @@
-// The tree printed: every kind of node has its form, `(word parts...)`.
+// Prints the tree: each kind of node has its form, `(word parts...)`.
 
 #include "lang/dump.h"
 

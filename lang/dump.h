@@ -7,7 +7,7 @@
 
 #include "lang/ast.h"
 
-// One line for each statement.
+// Writes one line for each statement.
 void cag_ast_dump(FILE *out, const CagModuleAst *m);
 void cag_expr_dump(FILE *out, const CagExpr *e);
 

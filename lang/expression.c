@@ -1,4 +1,5 @@
-// Expressions: one function for each line of the grammar, loosest first at the end of the file.
+// Expressions: one function for each rule of the grammar, with the loosest binding at the end of
+// the file.
 
 #include "lang/parse.h"
 
@@ -15,14 +16,14 @@ CagExpr *cag_parse_new(Parser *p, CagExprKind kind, uint32_t start) {
   return e;
 }
 
-// Ends a node behind the last token.
+// Ends a node after the last token.
 CagExpr *cag_parse_finish(Parser *p, CagExpr *e) {
   uint32_t end = p->previous.span.end;
   e->span.end = end > e->span.start ? end : e->span.start;
   return e;
 }
 
-// Puts `below` under e in the count of heights.
+// Updates the height of e for its child `below`.
 void cag_parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below) {
   if (!below || below->height < e->height) return;
   e->height = below->height + 1;
@@ -37,7 +38,7 @@ CagExpr *cag_parse_error_node(Parser *p) {
   return cag_parse_new(p, CAG_EXPR_ERROR, p->previous.span.end);
 }
 
-// Counts recursion that no bracket bounds. Gives false, in panic, when it is too deep.
+// Counts recursion without brackets. If it is too deep, enters panic mode and returns false.
 bool cag_parse_deeper(Parser *p) {
   if (p->depth < CAG_MAX_NESTING) {
     p->depth++;
@@ -70,7 +71,7 @@ CagDecl *cag_parse_declare(Parser *p, CagDeclKind kind, const CagToken *name) {
   return d;
 }
 
-// Consumes a name that is defined here; NULL, in panic, when something else stands here.
+// Consumes the name of a definition. If there is none, enters panic mode and returns NULL.
 const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *what) {
   if (parse_kind(p) == CAG_TOKEN_NAME) {
     *name = *parse_current(p);
@@ -91,7 +92,7 @@ const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *
 
 // parameters = parameter { "," parameter }          parameter = name [ "=" expr ]
 //
-// From the opening bracket to the closing one.
+// Reads from the opening bracket to the closing one.
 static void parameters(Parser *p, CagFunctionAst *f) {
   Opened o = cag_parse_open(p, false);
   size_t list = cag_parse_list_begin(p);
@@ -118,7 +119,7 @@ static void parameters(Parser *p, CagFunctionAst *f) {
     f->required_count++;
 }
 
-// Puts defaults and body under the expression that holds the function.
+// Makes defaults and body children of the expression for the function.
 static CagExpr *function_expression(Parser *p, CagFunctionAst *f, uint32_t start) {
   CagExpr *e = cag_parse_new(p, CAG_EXPR_LAMBDA, start);
   e->as.function = f;
@@ -138,8 +139,8 @@ CagFunctionAst *cag_parse_function(Parser *p, const char *name) {
   return f;
 }
 
-// Whether `(` opens the parameters of a lambda: when `)`, `name ,`, `name =` or `name ) =>`
-// follows.
+// Tests whether `(` opens the parameters of a lambda, which is the case before `)`, `name ,`, `name
+// =`, or `name ) =>`.
 bool cag_parse_opens_lambda(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_LEFT_PAREN) return false;
   CagTokenKind next = parse_kind_at(p, 1);
@@ -221,7 +222,7 @@ static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
 
 // "if" expr "then" expr "else" expr
 //
-// A chain of `else if` is read in a loop: generated code has long ones.
+// A chain of `else if` is read in a loop, because generated code has long ones.
 CagExpr *cag_parse_branch(Parser *p) {
   size_t list = cag_parse_list_begin(p);
   CagExpr *first = NULL, *last = NULL;
@@ -257,8 +258,8 @@ CagExpr *cag_parse_branch(Parser *p) {
 
 // ---- operators ----
 //
-// Each function below may be given the operand that it begins with, read already: most expressions
-// are a single one, and nothing need be asked of each level for them.
+// Each function below can be given its first operand, already read. Most expressions are a single
+// operand, for which this avoids going through all levels.
 
 static CagExpr *unary(Parser *p);
 
@@ -307,7 +308,7 @@ static CagExpr *product(Parser *p, CagExpr *first) {
 
 // sum = product { ( "+" | "-" | "|" ) product }
 //
-// A line that begins with `-` begins something new.
+// A line that starts with `-` starts a new statement.
 static CagExpr *sum(Parser *p, CagExpr *first) {
   CagExpr *e = product(p, first);
   for (;;) {
@@ -332,7 +333,7 @@ static bool at_range(Parser *p) {
   return parse_kind(p) == CAG_TOKEN_RANGE || parse_kind(p) == CAG_TOKEN_RANGE_OPEN;
 }
 
-// The end of a range, behind its `..`.
+// Reads the end of a range, after its `..`.
 static CagExpr *range_end(Parser *p) {
   CagTokenKind kind = parse_kind(p);
   if (!p->panic && (kind == CAG_TOKEN_RIGHT_SQUARE || kind == CAG_TOKEN_RIGHT_PAREN)) {
@@ -415,7 +416,7 @@ static CagExpr *comparison(Parser *p, CagExpr *first) {
   CagExpr *right = cag_parse_operand(p);
   e = cag_parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
   if (comparison_op(parse_kind(p), &op)) report_chained_comparison(p, e);
-  while (comparison_op(parse_kind(p), &op)) { // told once
+  while (comparison_op(parse_kind(p), &op)) { // reported only once
     cag_parse_advance(p);
     cag_parse_operand(p);
   }
@@ -472,7 +473,7 @@ static CagExpr *pipe_expression(Parser *p, CagExpr *first) {
   return e;
 }
 
-// What may stand between operands. (`^` is taken with them.)
+// Tests for tokens between operands. (`^` is consumed together with them.)
 static bool is_operator(CagTokenKind kind) {
   switch (kind) {
   case CAG_TOKEN_RANGE:
@@ -498,8 +499,8 @@ static bool is_operator(CagTokenKind kind) {
   }
 }
 
-// A single word between commas and brackets, as most expressions are: no operator need be looked
-// for.
+// Tests for a single word between commas and brackets, as most expressions are, for which no
+// operators need to be checked.
 static bool at_single_word(Parser *p) {
   switch (parse_kind(p)) {
   case CAG_TOKEN_NUMBER:

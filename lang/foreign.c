@@ -1,5 +1,4 @@
-// Look-ups in the table of foreign words. It is read only when an error is reported, so they are
-// linear.
+// Lookups in the table of foreign words. They are needed only to report errors, so they are linear.
 
 #include "lang/foreign.h"
 

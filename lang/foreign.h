@@ -1,11 +1,11 @@
-// Words and forms of other languages (foreign.def), and the form to write in their place.
+// Words and forms of other languages (foreign.def), and the corresponding forms in cag.
 
 #ifndef CAG_LANG_FOREIGN_H
 #define CAG_LANG_FOREIGN_H
 
 #include <stddef.h>
 
-// The rows of the parser and the lexer, by id: CAG_FOREIGN_for_statement.
+// The rows for the parser and the lexer, by id: CAG_FOREIGN_for_statement.
 typedef enum CagForeignSyntax {
 #define CAG_FOREIGN_NAME(word, form)
 #define CAG_FOREIGN_MEMBER(word, form)
@@ -23,14 +23,14 @@ typedef enum CagForeignSyntax {
 
 const char *cag_foreign_syntax(CagForeignSyntax id);
 
-// The form to write for a name, for a member, and for a call of one of our functions whose
-// arguments do not fit it; NULL: none is known.
+// Return the form to write instead of a name, a member, or a call of one of our functions with
+// wrong arguments, or NULL if none is known.
 const char *cag_foreign_name(const char *word);
 const char *cag_foreign_member(const char *word);
 const char *cag_foreign_call(const char *function);
 
-// The parameter, of `count` `parameters`, that an unknown name of an argument stands for, and the
-// form of such a call; NULL: none.
+// Returns the parameter, one of `count` `parameters`, that an unknown argument name probably means,
+// and the form of such a call, or NULL.
 const char *cag_foreign_argument(const char *word, const char *const *parameters, size_t count,
                                  const char **form);
 

@@ -1,9 +1,9 @@
-// Formats scripts: from the tree to documents (layout.h), statement by statement.
+// Formats scripts: converts the tree to documents (layout.h), statement by statement.
 //
-// Words are copied from the source by their spans. Comments stand in a list of their own; each is
-// put before the word that follows it, and the printer sees to it that one which stood at the end
-// of a line stands at the end of a line again. Line breaks are offered only where the language lets
-// a statement go on: in brackets, behind operators, before `|>`, `then` and `else`.
+// Words are copied from the source by their spans. Comments are in a separate list. Each is placed
+// before the word that follows it, and the printer keeps comments at line ends at line ends. Line
+// breaks are allowed only where a statement can continue: in brackets, after operators, and before
+// `|>`, `then`, and `else`.
 
 #include "lang/format.h"
 
@@ -14,26 +14,28 @@
 #include "lang/parser.h"
 
 #define INDENT 2
-// Elements of a list at most so wide are set several to a line.
+// List elements up to this width are placed several per line.
 #define SMALL_ITEM 28
 
 typedef struct Format {
   const CagModuleAst *module;
   const char *text;
   Layout layout;
-  size_t comment;      // the next one that is not set yet
-  uint32_t comment_at; // where it begins; behind the text where there is none
-  bool begun;          // a statement has been set
-  bool inner;          // what is set is part of something: an operand, an element, an argument
-  bool data; // what was set last is data: words, and lists, records and calls of nothing else
-  char *out; // the whole text, once the last statement is printed
+  size_t comment;      // the next one to place
+  uint32_t comment_at; // where it starts; the end of the text if there are no more
+  bool begun;          // a statement has been placed
+  bool inner;          // the current expression is part of another: an operand, an element, an
+                       // argument
+  bool data; // the last placed expression is data: words, and lists, records, and calls that
+             // contain only data
+  char *out; // the whole text, after the last statement was printed
   size_t length;
 } Format;
 
 static Doc *expression(Format *f, const CagExpr *e);
 
-// An expression that is part of another, or one that stands for itself: a definition's value, the
-// body of a function.
+// Formats an expression that is part of another one (`inner`), or that is the value of a definition
+// or the body of a function.
 static Doc *within(Format *f, const CagExpr *e, bool inner) {
   const bool outer = f->inner;
   f->inner = inner;
@@ -46,7 +48,7 @@ static Doc *whole(Format *f, const CagExpr *e) { return within(f, e, false); }
 
 // ---- words and comments ----
 
-// Line ends in [start, end) of the source.
+// Counts the line ends in [start, end) of the source.
 static size_t newlines(const Format *f, uint32_t start, uint32_t end) {
   size_t n = 0;
   for (const char *p = f->text + start, *stop = f->text + end;
@@ -57,21 +59,21 @@ static size_t newlines(const Format *f, uint32_t start, uint32_t end) {
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// Line ends in the white space right before the place.
+// Counts the line ends in the white space directly before `at`.
 static size_t lines_before(const Format *f, uint32_t at) {
   size_t n = 0;
   while (at > 0 && is_blank(f->text[at - 1])) n += f->text[--at] == '\n';
   return n;
 }
 
-// Whether no word but a comma stands between `at` and the end of its line.
+// Tests whether nothing but a comma is between `at` and the end of its line.
 static bool ends_line(const Format *f, uint32_t at) {
   const char *p = f->text + at;
   while (*p && strchr(" \t\r,;", *p)) p++;
   return *p == '\n' || *p == 0;
 }
 
-// A comment of several lines whose line ends are those of Windows, with ours.
+// Converts Windows line ends in a multi-line comment.
 static Doc *mended_comment(Format *f, const char *text, size_t length) {
   char *out = cag_layout_memory(&f->layout, length);
   size_t n = 0;
@@ -103,21 +105,21 @@ static const CagComment *next_comment(Format *f) {
   return c;
 }
 
-// Whether a line break is set behind the comment that was just taken: before the next one, or as a
-// blank line before the word at `offset`.
+// Tests whether a line break follows the last comment: before the next comment, or as a blank line
+// before the word at `offset`.
 static bool breaks_next(const Format *f, uint32_t offset, bool inner) {
   if (comments_before(f, offset))
     return lines_before(f, f->module->comments[f->comment].span.start) > 0;
   return !inner && lines_before(f, offset) > 1;
 }
 
-// Sets a comment that a line break follows.
+// Places a comment that a line break follows.
 static void set_last(Format *f, Docs *out, Doc *text, bool begins_line) {
   layout_add(out, begins_line ? cag_layout_comment(&f->layout, text)
                               : cag_layout_trailing(&f->layout, text));
 }
 
-// Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
+// Places one comment. `inner`: it is before a closing bracket, so no space follows it.
 static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offset, bool inner) {
   const size_t before = lines_before(f, c->span.start);
   const bool alone = !c->block || (ends_line(f, c->span.end) && !(inner && before == 0)) ||
@@ -144,7 +146,7 @@ static inline void set_comments(Format *f, Docs *out, uint32_t offset, bool inne
     layout_add(out, cag_layout_blank(&f->layout));
 }
 
-// Those before a bracket that stands on a line of its own.
+// Places the comments before a bracket that is on its own line.
 static void set_last_comments(Format *f, Docs *out, uint32_t offset) {
   while (comments_before(f, offset)) {
     const CagComment *c = next_comment(f);
@@ -154,18 +156,18 @@ static void set_last_comments(Format *f, Docs *out, uint32_t offset) {
   }
 }
 
-// The words of the source in the span, after the comments before them.
+// Places the text of the span, after the comments before it.
 static void set_span(Format *f, Docs *out, CagSpan span) {
   set_comments(f, out, span.start, false);
   layout_add(out, cag_layout_text(&f->layout, f->text + span.start, span.end - span.start));
-  while (comments_before(f, span.end)) next_comment(f); // within a text's { }
+  while (comments_before(f, span.end)) next_comment(f); // in the { } of a text
 }
 
 static inline void set_word(Format *f, Docs *out, const char *word) {
   layout_add(out, cag_layout_plain(&f->layout, word, strlen(word)));
 }
 
-// A closing bracket, whose place in the source is the last byte of what it closes.
+// Places a closing bracket, which is the last byte of the expression that it closes.
 static void set_closer(Format *f, Docs *out, uint32_t end, const char *word) {
   set_comments(f, out, end - 1, true);
   set_word(f, out, word);
@@ -181,13 +183,13 @@ static Doc *span_doc(Format *f, CagSpan span) {
 
 // ---- lists between brackets ----
 
-// A blank line of the source before `start`, or before the comments that stand there.
+// Tests for a blank line in the source before `start`, or before the comments there.
 static bool blank_before(const Format *f, uint32_t start) {
   if (comments_before(f, start)) start = f->module->comments[f->comment].span.start;
   return lines_before(f, start) > 1;
 }
 
-// What may begin behind a bracket or `=>` and breaks within its own brackets.
+// Tests for expressions that may start after a bracket or `=>` and break within their own brackets.
 static bool opens_by_itself(const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_BLOCK:
@@ -218,7 +220,7 @@ static Doc *argument(Format *f, const CagArgument *a) {
 static Doc *call(Format *f, const CagExpr *e) {
   Docs d = {0}, items = {0};
   layout_add(&d, expression(f, e->as.call.callee));
-  bool clear = true; // no comment stands where hugging would swallow its line
+  bool clear = true; // no comment is where hugging would remove its line
   bool gathers = true, opens = !comments_before(f, e->span.end - 1);
   const CagExpr *last = NULL;
   bool data = true;
@@ -254,7 +256,8 @@ static bool is_number(const CagExpr *e) {
   return e->kind == CAG_EXPR_NUMBER || e->kind == CAG_EXPR_ANGLE;
 }
 
-// Whether both are numbers, or lists of one shape; `words` is raised by the numbers in each.
+// Tests whether both are numbers, or lists of the same shape. Increases `words` by the count of
+// numbers in each.
 static bool have_one_shape(const CagExpr *a, const CagExpr *b, size_t *words) {
   if (is_number(a)) {
     ++*words;
@@ -268,7 +271,8 @@ static bool have_one_shape(const CagExpr *a, const CagExpr *b, size_t *words) {
   return same;
 }
 
-// The numbers in each row of a list of such rows, all of one shape; 0 for anything else.
+// Returns the count of numbers in each row of a list of rows of the same shape, or 0 for anything
+// else.
 static size_t table_words(const CagExpr *e) {
   if (e->kind != CAG_EXPR_LIST || e->as.list.count < 2) return 0;
   const CagExpr *first = e->as.list.items[0];
@@ -281,7 +285,7 @@ static size_t table_words(const CagExpr *e) {
   return words;
 }
 
-// Whether the rows can stand on a line each: no comment within breaks one.
+// Tests whether each row can be on one line, because no comment in it forces a break.
 static bool rows_are_whole(const Docs *items) {
   for (const Doc *d = items->head; d; d = d->next) {
     const Doc *row = d;
@@ -297,7 +301,7 @@ static bool rows_are_whole(const Docs *items) {
 
 static bool is_small(const Doc *d) { return d->width <= SMALL_ITEM; }
 
-// Items of a list or record between its brackets.
+// Formats the items of a list or record between its brackets.
 static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const CagExpr *, size_t),
                       uint32_t (*start)(const CagExpr *, size_t), size_t count, char open,
                       const char *close) {
@@ -377,7 +381,8 @@ static Doc *parameters(Format *f, const CagFunctionAst *fn) {
   return d;
 }
 
-// What stands behind `=` or `=>`: beginning there, or on a line of its own where it is a choice.
+// Places the value after `=` or `=>`, either starting there or, for an `if`, possibly on a new
+// line.
 static void set_value(Format *f, Docs *out, const CagExpr *value) {
   if (comments_before(f, value->span.start)) {
     Docs d = {0};
@@ -390,7 +395,7 @@ static void set_value(Format *f, Docs *out, const CagExpr *value) {
     layout_add(&d, cag_layout_space(&f->layout));
     Doc *choice = whole(f, value);
     if (choice->kind == DOC_GROUP)
-      choice->kind = DOC_CONCAT; // breaks where the line before it does
+      choice->kind = DOC_CONCAT; // breaks together with the line before it
     layout_add(&d, choice);
     layout_add(out, cag_layout_group(&f->layout, cag_layout_nest(&f->layout, INDENT, &d)));
   } else {
@@ -442,14 +447,14 @@ static Doc *power(Format *f, const CagExpr *e) {
   return cag_layout_concat(&f->layout, &d);
 }
 
-// The operator of a binary expression as it is written, between spaces.
+// Places the operator of a binary expression as written, between spaces.
 static void set_operator(Format *f, Docs *out, const CagExpr *e) {
   const CagSpan s = e->as.binary.op_span;
   set_word(f, out, " ");
   layout_add(out, cag_layout_text(&f->layout, f->text + s.start, s.end - s.start));
 }
 
-// What may stand beside a * or / without spaces.
+// Tests for operands that can be next to * or / without spaces.
 static bool is_factor(const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_NUMBER:
@@ -464,11 +469,11 @@ static bool is_factor(const CagExpr *e) {
   }
 }
 
-// Factors of a product that is set without spaces are at most so many.
+// The maximum number of factors in a product without spaces.
 #define FACTORS_MAX 4
 
-// 2*r, a.x/3: products of plain words, which are set without spaces where they are part of
-// something.
+// Tests for products of plain words, such as 2*r and a.x/3, which have no spaces if they are part
+// of another expression.
 static bool is_product(const CagExpr *e) {
   size_t factors = 1;
   for (; e->kind == CAG_EXPR_BINARY &&
@@ -489,7 +494,7 @@ static Doc *product(Format *f, const CagExpr *e) {
   return cag_layout_concat(&f->layout, &d);
 }
 
-// a + b - c: the operands of one level, a line break behind each operator where they do not fit.
+// a + b - c: the operands of one level, with a line break after each operator if they do not fit.
 static Doc *chain(Format *f, const CagExpr *e) {
   const int mine = level(e);
   if (f->inner && is_product(e) && !comments_before(f, e->span.end)) return product(f, e);
@@ -512,7 +517,7 @@ static Doc *chain(Format *f, const CagExpr *e) {
   return cag_layout_fill(&f->layout, INDENT, &d);
 }
 
-// a |> f |> g: all on a line, or each stage on its own.
+// a |> f |> g: all on one line, or each stage on its own line.
 static Doc *pipe(Format *f, const CagExpr *e) {
   size_t n = 0;
   for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) n++;
@@ -545,7 +550,7 @@ static bool is_plain(const CagExpr *e) {
   }
 }
 
-// The end of a range: arithmetic without spaces, 0..n-1.
+// Formats the end of a range, where arithmetic has no spaces: 0..n-1.
 static Doc *range_end(Format *f, const CagExpr *e) {
   if (e->kind != CAG_EXPR_BINARY || !is_plain(e)) return expression(f, e);
   Docs d = {0};
@@ -589,13 +594,13 @@ static Doc *group(Format *f, const CagExpr *e) {
   return cag_layout_concat(&f->layout, &d);
 }
 
-// if a then b else if c then d else e: on a line, or each branch on its own.
+// if a then b else if c then d else e: on one line, or each branch on its own line.
 static Doc *branches(Format *f, const CagExpr *e) {
   Docs d = {0};
   const char *word = "if ";
   for (bool first = true;; first = false) {
     if (first) set_comments(f, &d, e->span.start, false);
-    else set_each_comment(f, &d, e->span.start, false); // they stand before `else`
+    else set_each_comment(f, &d, e->span.start, false); // they are before `else`
     set_word(f, &d, word);
     layout_add(&d, expression(f, e->as.branch.condition));
     set_word(f, &d, " then ");
@@ -702,7 +707,7 @@ static Doc *member(Format *f, const CagExpr *e) {
   return cag_layout_concat(&f->layout, &d);
 }
 
-// What is computed from parts, and is no data.
+// Formats computed expressions, which are not data.
 static Doc *computed(Format *f, const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_GROUP: return group(f, e);
@@ -741,7 +746,7 @@ static Doc *expression(Format *f, const CagExpr *e) {
     d = computed(f, e);
     f->data = false;
     return d;
-  default: // numbers, texts, names: as they are written
+  default: // numbers, texts, names: as written
     f->data = true;
     return span_doc(f, e->span);
   }
@@ -768,7 +773,7 @@ static void set_import(Format *f, Docs *d, const CagStatement *s) {
   layout_add(d, cag_layout_fill(&f->layout, INDENT, &names));
 }
 
-// Where the label of a param begins: it is the last word of the statement.
+// Returns the start of the label of a param, which is the last word of the statement.
 static uint32_t label_start(const Format *f, const CagStatement *s) {
   const CagExpr *last = s->as.param.domain ? s->as.param.domain : s->as.param.value;
   const uint32_t from = last->span.end;
@@ -785,7 +790,7 @@ static uint32_t label_start(const Format *f, const CagStatement *s) {
   return s->span.end;
 }
 
-// Whether the word is on one line, which no comment ends.
+// Tests whether the word is on one line that does not end with a comment.
 static bool stands_last(const Format *f, CagSpan word) {
   const char *end = f->text + word.end;
   end += strspn(end, " \t\r;");
@@ -803,7 +808,7 @@ static void set_param(Format *f, Docs *d, const CagStatement *s) {
   }
   if (!s->as.param.label) return;
   const CagSpan label = {label_start(f, s), s->span.end};
-  // Labels that end neighboring lines are set one below the other, as comments are.
+  // Labels at the ends of neighboring lines are aligned, as comments are.
   if (!comments_before(f, label.start) && stands_last(f, label)) {
     Doc *text = cag_layout_text(&f->layout, f->text + label.start, label.end - label.start);
     layout_add(d, cag_layout_trailing(&f->layout, text));
@@ -869,7 +874,7 @@ static void set_statement(Format *f, Docs *d, const CagStatement *s) {
   }
 }
 
-// Sets and prints a statement of the module, or (NULL) what stands behind the last.
+// Formats and prints a statement of the module, or (NULL) what follows the last one.
 static void print_statement(void *context, const CagModuleAst *m, const CagStatement *s) {
   Format *f = context;
   Docs d = {0};

@@ -1,8 +1,8 @@
 // Formatting of scripts.
 //
-// Formatting looks at the tree and at nothing of the old layout but comments and blank lines, and
-// never changes the tree: what is written stays written (units, parentheses, texts), only spaces,
-// line breaks, `;` between statements and commas before closing brackets are set anew.
+// The layout is determined by the tree. Of the old layout, only comments and blank lines are kept.
+// The tree never changes: words are kept as written (units, parentheses, texts). Only spaces, line
+// breaks, `;` between statements, and commas before closing brackets are replaced.
 
 #ifndef CAG_LANG_FORMAT_H
 #define CAG_LANG_FORMAT_H
@@ -10,7 +10,7 @@
 #include "base/diagnostic.h"
 #include "base/source.h"
 
-// Columns that a line has, where its words allow it.
+// The maximum line width, unless a word is longer.
 #define CAG_FORMAT_WIDTH 100
 
 // Formats a script. Returns a malloc'd, NUL-terminated text of `length` bytes. Formatting the

@@ -1,5 +1,5 @@
-// Forms of other languages, recognized where the parser would otherwise only say what it did not
-// expect. The forms to write in their place are those of foreign.def.
+// Recognizes forms of other languages, so that the parser can suggest the correct form (from
+// foreign.def) instead of only stating what it expected.
 
 #include <string.h>
 
@@ -8,7 +8,7 @@
 const char cag_parse_minus_help[] = "a line that starts with `-` is a new statement; to continue "
                                     "the line above, end that line with `-`";
 
-// Reports a form, in panic. Gives true.
+// Reports a form and enters panic mode. Returns true.
 static bool report_form(Parser *p, CagSpan span, CagForeignSyntax id, const char *message) {
   cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, span, "%s", message), "write %s",
                  cag_foreign_syntax(id));
@@ -26,7 +26,7 @@ static bool is_name(const CagExpr *e, const char *name) {
 
 // ---- behind an expression ----
 
-// union() { ... } and sphere { ... }
+// Recognizes union() { ... } and sphere { ... }.
 static bool braces_behind(Parser *p, const CagExpr *before) {
   static const struct {
     const char *name;
@@ -52,7 +52,8 @@ static bool braces_behind(Parser *p, const CagExpr *before) {
   return false;
 }
 
-// `translate(V) sphere(2)`: what is moved stands before the pipe. A chain of them is turned round.
+// Recognizes `translate(V) sphere(2)`. The suggestion puts the shape before the pipe, and reverses
+// a chain of modifiers.
 #define MODIFIERS_MAX 4
 static bool modifiers_behind(Parser *p, const CagExpr *before) {
   CagSpan parts[MODIFIERS_MAX] = {before->span};
@@ -119,8 +120,8 @@ static bool text_behind(Parser *p, const CagExpr *before) {
   return false;
 }
 
-// Behind an expression in the { } of a text, which is meant to hold braces. A `:` with its format
-// directly behind it is another habit.
+// Recognizes braces that are meant literally after an expression in the { } of a text. A `:`
+// directly followed by a format specifier is reported elsewhere.
 static bool brace_in_text(Parser *p) {
   if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
     return false;

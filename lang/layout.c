@@ -8,8 +8,8 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Comments at the ends of neighboring lines stand one below the other while the code of all of
-// them ends before this column.
+// Comments at the ends of neighboring lines are aligned if the code of all these lines ends before
+// this column.
 #define ALIGN_UNTIL 72
 #define COMMENT_GAP 2
 
@@ -89,7 +89,7 @@ Doc *cag_layout_plain(Layout *l, const char *word, size_t length) {
 Doc *cag_layout_text(Layout *l, const char *text, size_t length) {
   Doc *d = cag_layout_plain(l, text, length);
   size_t plain = 0;
-  while (plain < length && (signed char)text[plain] > '\n') plain++; // below: UTF-8, or a break
+  while (plain < length && (signed char)text[plain] > '\n') plain++; // otherwise UTF-8, or a break
   if (plain == length) return d;
   const char *end = memchr(text, '\n', length);
   d->first = code_points(text, end ? (size_t)(end - text) : length);
@@ -204,14 +204,15 @@ static const Doc *last_of(const Doc *child) {
 static bool is_leaf(const Doc *d) { return d->kind <= DOC_INLINE; }
 static bool is_brackets(const Doc *d) { return d->kind >= DOC_BRACKETS; }
 
-// The brackets of an item of a table, behind its comments.
+// Returns the brackets of an item of a table, after its comments.
 static const Doc *row_of(const Doc *item) {
   return item->kind == DOC_CONCAT ? last_of(item->child) : item;
 }
 
 static uint32_t word_width(const Doc *d) { return d->width - d->comma; }
 
-// Raises the widths of columns to those of the words of a row; gives what is behind the last.
+// Increases the widths of columns to those of the words of a row. Returns the position after the
+// last one.
 static uint32_t *widen_columns(const Doc *d, uint32_t *widths) {
   if (!is_brackets(d)) {
     if (*widths < word_width(d)) *widths = word_width(d);
@@ -257,7 +258,7 @@ static void reserve(Layout *l, size_t n) {
 static inline void put(Layout *l, const char *bytes, size_t n) {
   if (!n) return;
   reserve(l, n);
-  if (n == 1) l->out[l->length] = *bytes; // most words are
+  if (n == 1) l->out[l->length] = *bytes; // most words have one byte
   else memcpy(l->out + l->length, bytes, n);
   l->length += n;
 }
@@ -279,7 +280,7 @@ static void break_line(Layout *l) {
   l->pending = l->blank = l->closed = false;
 }
 
-// A word without line breaks, of so many columns.
+// Writes a word without line breaks that is `columns` wide.
 static inline void put_word(Layout *l, const char *word, size_t length, uint32_t columns) {
   if (!length) return;
   if (l->pending) break_line(l);
@@ -323,7 +324,8 @@ static void put_comment(Layout *l, const Doc *text, int indent) {
   l->closed = true;
 }
 
-// The column for the comments that wait, which end neighboring lines; 0 where some code is long.
+// Returns the common column for the pending comments of neighboring lines, or 0 if some code is too
+// long.
 static uint32_t common_column(const Layout *l) {
   uint32_t most = 0;
   for (size_t i = 0; i < l->trailing_count; i++)
@@ -335,7 +337,7 @@ static size_t gap_before(const LayoutTrailing *t, uint32_t column) {
   return (column > t->column ? column - t->column : 0) + COMMENT_GAP;
 }
 
-// Moves the comments that wait to their column, the last one first.
+// Moves the pending comments to their column, starting with the last one.
 static void align_trailing(Layout *l) {
   const uint32_t column = common_column(l);
   size_t moved = 0, end = l->length;
@@ -352,7 +354,7 @@ static void align_trailing(Layout *l) {
   l->trailing_count = 0;
 }
 
-// Whether a comment at the end of this line stands below the last of those that wait.
+// Tests whether a comment at the end of this line is aligned with the last pending one.
 static bool joins_trailing(const Layout *l) {
   const LayoutTrailing *last = &l->trailing[l->trailing_count - 1];
   return l->line == last->line + 1 && l->indent == last->indent;
@@ -382,7 +384,7 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
 static void print(Layout *l, const Doc *d, int indent, uint32_t tail);
 static void print_flat(Layout *l, const Doc *d);
 
-// The width behind d up to the next possible break.
+// Returns the width after d up to the next possible break.
 static uint32_t behind(const Doc *d, uint32_t tail) {
   uint32_t width = 0;
   for (d = d->next; d; d = d->next) {
@@ -397,8 +399,8 @@ static void print_children(Layout *l, const Doc *child, int indent, uint32_t tai
     print(l, child, indent, is_leaf(child) ? 0 : behind(child, tail));
 }
 
-// `rest`: the indentation of the lines behind the first. `apart`: what has to be broken stands on
-// lines of its own.
+// `rest`: the indentation of the lines after the first one. `apart`: items that must be broken are
+// on separate lines.
 static void print_fill(Layout *l, const Doc *child, int indent, int rest, uint32_t tail,
                        bool apart) {
   for (bool whole = true; child; child = child->next, indent = rest) {
@@ -416,7 +418,7 @@ static void print_fill(Layout *l, const Doc *child, int indent, int rest, uint32
   }
 }
 
-// Whether the items but the last stand on this line, and the last opens on it.
+// Tests whether all items but the last fit on this line, and the last one can start on it.
 static bool hugs(const Layout *l, const Doc *d, int indent) {
   const Doc *last = last_of(d->child);
   if (!d->hugs || !last) return false;
@@ -426,7 +428,7 @@ static bool hugs(const Layout *l, const Doc *d, int indent) {
   return d->child == last || (uint32_t)(indent + d->indent) + last->width + 1 > l->width;
 }
 
-// Whether all items fit on the line below the bracket.
+// Tests whether all items fit on the line below the bracket.
 static bool gathers(const Layout *l, const Doc *d, int indent) {
   uint32_t width = (uint32_t)(indent + d->indent);
   if (!d->gathers) return false;
@@ -434,10 +436,10 @@ static bool gathers(const Layout *l, const Doc *d, int indent) {
   return width <= l->width;
 }
 
-// Items behind the first are short when they are at most so wide together.
+// Items after the first one are short if they are at most this wide together.
 #define REST_MAX 40
 
-// Whether the first item opens on the line of the bracket, and the rest stand behind its end.
+// Tests whether the first item starts on the line of the bracket, and the rest follows its end.
 static bool opens(const Layout *l, const Doc *d, int indent) {
   if (!d->opens || gathers(l, d, indent)) return false;
   uint32_t rest = 0;
@@ -450,12 +452,12 @@ static void put_inline(Layout *l, const Doc *text) {
   put_text(l, text);
 }
 
-// Prints the documents from `c` up to `end` on the line.
+// Prints the documents from `c` up to `end` on one line.
 static void print_all_flat(Layout *l, const Doc *c, const Doc *end) {
   for (; c != end; c = c->next) print_flat(l, c);
 }
 
-// Prints what fits on the line.
+// Prints a document on one line.
 static void print_flat(Layout *l, const Doc *d) {
   switch (d->kind) {
   case DOC_TEXT:
@@ -498,11 +500,11 @@ static void print_aligned(Layout *l, const Doc *d) {
   if (d->comma) put_word(l, ",", 1, 1);
 }
 
-// The rows of a table, each on a line where that is long enough.
+// Prints the rows of a table, each on one line if it is long enough.
 static void print_rows(Layout *l, const Doc *item, int indent) {
   for (; item; item = item->next) {
     const Doc *row = is_leaf(item) ? NULL : row_of(item);
-    const bool comma = row != item && item->comma; // which the row does not count
+    const bool comma = row != item && item->comma; // not included in the row's width
     if (!row || (uint32_t)indent + aligned_width(row) + comma > l->width) {
       print(l, item, indent, 0);
       continue;
@@ -530,7 +532,7 @@ static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
     else if (d->kind == DOC_TABLE) print_rows(l, d->child, inner);
     else if (gathers(l, d, indent)) print_all_flat(l, d->child, NULL);
     else print_children(l, d->child, inner, 0);
-    if (d->close->kind == DOC_CONCAT) { // comments before the bracket stand with the items
+    if (d->close->kind == DOC_CONCAT) { // comments before the bracket are indented like the items
       const Doc *bracket = last_of(d->close->child);
       for (const Doc *c = d->close->child; c != bracket; c = c->next) print(l, c, inner, 0);
       put_line(l, indent);
@@ -542,16 +544,16 @@ static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
   print(l, d->close, indent, tail);
 }
 
-// Whether the line so far is a closing bracket or two.
+// Tests whether the line so far consists of one or two closing brackets.
 static bool has_just_closed(const Layout *l, int indent) {
   return !l->pending && l->length && strchr(")]}", l->out[l->length - 1]) &&
          l->column <= (uint32_t)indent + 2;
 }
 
-// Whether a single stage that cannot stand on a line may begin after its head, and break within
-// its own brackets.
+// Tests whether a single stage that does not fit on a line can start directly after its head, and
+// break within its own brackets.
 static bool begins_behind(const Layout *l, const Doc *head, const Doc *rest, int indent) {
-  const Doc *stage = rest->child->next->next; // behind a LINE and `|> `
+  const Doc *stage = rest->child->next->next; // after a LINE and `|> `
   if (!stage || stage->next || stage->kind != DOC_CONCAT || !is_brackets(last_of(stage->child)))
     return false;
   const uint32_t sign = rest->child->next->width;
@@ -596,7 +598,7 @@ static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   }
 }
 
-// Prints d, with `tail` columns to follow it before the line may be broken.
+// Prints d, which is followed by `tail` columns before the next possible break.
 static void print(Layout *l, const Doc *d, int indent, uint32_t tail) {
   cag_source_check(l->source);
   if (d->kind >= DOC_GROUP && fits(l, d, tail)) {

@@ -1,4 +1,4 @@
-// The lexer: one function for each sort of word, chosen by the first byte.
+// The lexer: one function for each kind of word, selected by the first byte.
 
 #include "lang/lexer.h"
 
@@ -58,7 +58,7 @@ static void reserve_buffer(CagLexer *lx, size_t size) {
 
 // ---- characters ----
 
-// ENDS_RUN: is not itself within a text in quotes, or ends it.
+// ENDS_RUN: ends a quoted text, or must be replaced in it.
 enum { IS_NAME = 1, IS_DIGIT = 2, IS_BLANK = 4, ENDS_RUN = 8 };
 
 static const byte classes[128] = {
@@ -81,7 +81,7 @@ static const byte classes[128] = {
 
 static bool is_digit(byte c) { return c < 128 && (classes[c] & IS_DIGIT); }
 
-// The character at an offset and its length in bytes. The source is valid UTF-8.
+// Returns the character at an offset and its length in bytes. The source is valid UTF-8.
 static int32_t code_point(const CagLexer *lx, uint32_t offset, uint32_t *length) {
   utf8proc_int32_t c = -1;
   utf8proc_ssize_t n = utf8proc_iterate((const byte *)lx->source->text + offset,
@@ -95,15 +95,15 @@ static bool is_letter(int32_t c) {
   return (k >= UTF8PROC_CATEGORY_LU && k <= UTF8PROC_CATEGORY_LO) || k == UTF8PROC_CATEGORY_NL;
 }
 
-// What may follow the first letter: marks too, so that a decomposed letter becomes one name with
-// its composed form.
+// Tests for characters that can follow the first letter, including marks, so that decomposed and
+// composed forms become the same name.
 static bool continues_name(int32_t c) {
   utf8proc_category_t k = utf8proc_category(c);
   return is_letter(c) || k == UTF8PROC_CATEGORY_ND || k == UTF8PROC_CATEGORY_MN ||
          k == UTF8PROC_CATEGORY_MC;
 }
 
-// End of the name characters from `offset` on. `ascii` tells whether all of them are.
+// Returns the end of the name characters from `offset` on. *ascii is set if all are ASCII.
 static uint32_t name_end(const CagLexer *lx, uint32_t offset, bool *ascii) {
   *ascii = true;
   for (;;) {
@@ -146,7 +146,7 @@ static void skip_line_comment(CagLexer *lx) {
   keep_comment(lx, start, end, doc, false);
 }
 
-// "/*" { comment | character } "*/". Gives false when the end is missing.
+// "/*" { comment | character } "*/". Returns false if the end is missing.
 static bool skip_block_comment(CagLexer *lx, bool *newline) {
   uint32_t start = lx->position, p = start + 2, depth = 1, length = (uint32_t)lx->source->length;
   while (depth) {
@@ -179,7 +179,7 @@ static void report_hash(CagLexer *lx, uint32_t start) {
   else help(d, "a comment starts with //; a color is a text: \"#ff8000\"");
 }
 
-// Passes blanks and comments. Gives false after an error that ends the text.
+// Skips blanks and comments. Returns false after an error that ends the text.
 static bool skip_blanks(CagLexer *lx, bool *newline) {
   for (;;) {
     byte c = at(lx, lx->position);
@@ -196,7 +196,7 @@ static bool skip_blanks(CagLexer *lx, bool *newline) {
       uint32_t start = lx->position;
       report_hash(lx, start);
       skip_line_comment(lx);
-    } else if (c >= 128) { // no-break and other spaces that come along when text is pasted
+    } else if (c >= 128) { // no-break and other spaces, often from pasted text
       uint32_t n;
       int32_t wide = code_point(lx, lx->position, &n);
       bool mark = wide == 0xfeff && lx->position == 0;
@@ -221,7 +221,7 @@ typedef struct Unit {
 static const Unit units[] = {
     {"mm", 1, 0, false},  {"cm", 1, 1, false},    {"m", 1, 3, false},
     {"um", 1, -3, false}, {"in", 254, -1, false}, {"ft", 3048, -1, false},
-    {"deg", 1, 0, true},  {"turn", 360, 0, true}, {"rad", 0, 0, true}, // factor 0: by pi
+    {"deg", 1, 0, true},  {"turn", 360, 0, true}, {"rad", 0, 0, true}, // factor 0: use pi
 };
 #define UNIT_COUNT (sizeof units / sizeof *units)
 
@@ -234,7 +234,7 @@ static const Unit *find_unit(const char *name, size_t length) {
 
 bool cag_lexer_is_unit(const char *name) { return find_unit(name, strlen(name)) != NULL; }
 
-// Reports a unit that is not known, with the one that was likely meant.
+// Reports an unknown unit, and suggests the one that was probably meant.
 static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t end) {
   const char *text = lx->source->text;
   int digits = (int)(start - number), length = (int)(end - start);
@@ -278,11 +278,11 @@ static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6, 
                                        1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 #define EXACT_POWER 22                     // largest power of ten that a double holds exactly
 #define EXACT_INTEGER ((uint64_t)1 << 53)  // integers up to it are exact in a double
-#define MANTISSA_LIMIT ((uint64_t)1 << 59) // a further digit still fits 64 bits
-#define EXPONENT_LIMIT 100000              // beyond it every number is 0 or too large
+#define MANTISSA_LIMIT ((uint64_t)1 << 59) // another digit still fits in 64 bits
+#define EXPONENT_LIMIT 100000              // with larger exponents, every number is 0 or overflows
 
-// mantissa * 10^exponent, correctly rounded when both are exact in doubles (Clinger 1990); false
-// otherwise.
+// Computes mantissa * 10^exponent, correctly rounded, if both are exact in doubles (Clinger 1990).
+// Returns false otherwise.
 static bool exact_value(uint64_t mantissa, long exponent, double *value) {
   if (mantissa > EXACT_INTEGER || exponent < -EXACT_POWER || exponent > EXACT_POWER) return false;
   double m = (double)mantissa;
@@ -290,7 +290,7 @@ static bool exact_value(uint64_t mantissa, long exponent, double *value) {
   return true;
 }
 
-// The number in [start, end) times 10^shift, by the C library in its own locale.
+// Converts the number in [start, end) times 10^shift, with the C library in the C locale.
 static double slow_value(CagLexer *lx, uint32_t start, uint32_t end, int shift) {
   size_t needed = end - start + 1, n = 0;
   reserve_buffer(lx, needed);
@@ -305,7 +305,7 @@ static double slow_value(CagLexer *lx, uint32_t start, uint32_t end, int shift) 
 typedef struct Decimal {
   uint64_t mantissa;
   long exponent;
-  bool whole; // all digits are in the mantissa
+  bool whole; // all digits fit in the mantissa
 } Decimal;
 
 static uint32_t read_digits(CagLexer *lx, uint32_t p, Decimal *d, bool fraction) {
@@ -431,7 +431,7 @@ static void put_code_point(CagLexer *lx, size_t *length, int32_t c) {
   for (utf8proc_ssize_t i = 0; i < n; i++) put_byte(lx, length, (char)bytes[i]);
 }
 
-// \u{hex}: gives the place behind it.
+// \u{hex}: returns the position after it.
 static uint32_t lex_code_point(CagLexer *lx, uint32_t backslash, size_t *length) {
   uint32_t p = backslash + 2;
   int32_t c = 0;
@@ -491,8 +491,8 @@ static void text_not_closed(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t 
   t->kind = CAG_TOKEN_ERROR;
 }
 
-// The part of a text from `p` on, up to its closing quote or its next `{`. `quote` is where the
-// whole text began, and `inside` whether the part begins behind a `}`.
+// Reads the part of a text from `p` to its closing quote or its next `{`. `quote` is the start of
+// the whole text. `inside`: the part starts after a `}`.
 static void lex_text(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t p, bool inside) {
   size_t length = 0;
   for (;;) {
@@ -541,7 +541,7 @@ static void lex_raw_text(CagLexer *lx, CagToken *t) {
     return;
   }
   uint32_t end = (uint32_t)(close - text);
-  if (lx->text_count) { // a text ends on its line, with all that stands in its { }
+  if (lx->text_count) { // a text ends on its line, with everything in its { }
     const char *newline = memchr(text + start, '\n', end - start);
     if (newline) {
       finish(lx, t, CAG_TOKEN_ERROR, (uint32_t)(newline - text));
@@ -554,7 +554,7 @@ static void lex_raw_text(CagLexer *lx, CagToken *t) {
   finish(lx, t, CAG_TOKEN_TEXT, end + 1);
 }
 
-// 'text': reported, and read as what was meant when it ends on its line.
+// Reports 'text', and reads it as a text if it ends on its line.
 static void lex_single_quotes(CagLexer *lx, CagToken *t) {
   uint32_t start = t->span.start, p = start + 1;
   while (p < lx->source->length && at(lx, p) != '\n' && at(lx, p) != '\'') p++;
@@ -574,8 +574,8 @@ static void lex_single_quotes(CagLexer *lx, CagToken *t) {
 
 // ---- signs ----
 
-// A sign of the language, or one of another language with the sign that is meant. The first that
-// fits is taken, so longer ones stand before their beginnings.
+// A sign of the language, or of another language with its equivalent. The first match is taken, so
+// longer signs come before their prefixes.
 typedef struct Sign {
   const char *spelling;
   CagTokenKind kind;
@@ -640,14 +640,15 @@ static const Sign signs[] = {
     THEIR("!", NOT, "not", not_operator),
 };
 
-// Signs of one byte that begin no longer one, for speed.
+// Signs of one byte that are not the start of a longer one, for speed.
 static const byte single[128] = {
     ['('] = CAG_TOKEN_LEFT_PAREN,   [')'] = CAG_TOKEN_RIGHT_PAREN, ['['] = CAG_TOKEN_LEFT_SQUARE,
     [']'] = CAG_TOKEN_RIGHT_SQUARE, ['{'] = CAG_TOKEN_LEFT_BRACE,  ['}'] = CAG_TOKEN_RIGHT_BRACE,
     [','] = CAG_TOKEN_COMMA,        [';'] = CAG_TOKEN_SEMICOLON,   ['?'] = CAG_TOKEN_QUESTION,
 };
 
-// Signs of one byte that begin longer ones too: alone where none of `lengthens` follows.
+// Signs of one byte that may also be the start of a longer one: they stand alone unless a byte of
+// `lengthens` follows.
 static const byte alone[128] = {
     ['.'] = CAG_TOKEN_DOT,     [':'] = CAG_TOKEN_COLON,   ['='] = CAG_TOKEN_EQUALS,
     ['<'] = CAG_TOKEN_LESS,    ['>'] = CAG_TOKEN_GREATER, ['+'] = CAG_TOKEN_PLUS,
@@ -660,7 +661,7 @@ static const bool lengthens[256] = {
     ['|'] = true, ['&'] = true, ['*'] = true,
 };
 
-// Characters of typeset mathematics and word processors, and what is written for them.
+// Characters of mathematics and word processors, and their equivalents.
 static const struct {
   int32_t character;
   const char *meant;
@@ -672,7 +673,7 @@ static const struct {
     {0x2192, "=>"},      {0xff0c, ","},   {0xff08, "("},  {0xff09, ")"},  {0xb0, "deg"},
 };
 
-// $fn and its like, of OpenSCAD: special variables, which are not here.
+// Recognizes special variables of OpenSCAD, such as $fn, which are not supported.
 static bool special_variable(CagLexer *lx, CagToken *t) {
   static const struct {
     const char *name;
@@ -739,8 +740,7 @@ static void lex_sign(CagLexer *lx, CagToken *t) {
   unknown_character(lx, t);
 }
 
-// A brace inside the { } of a text: counted, so that the one that ends the expression is known.
-// Gives true for that one.
+// Counts braces inside the { } of a text. Returns true for the one that ends the expression.
 static bool ends_interpolation(CagLexer *lx, CagTokenKind kind) {
   if (lx->text_count == 0) return false;
   CagOpenText *text = &lx->texts[lx->text_count - 1];
@@ -797,7 +797,7 @@ void cag_lexer_next(CagLexer *lx, CagToken *t) {
   }
 }
 
-// ---- the lexer itself ----
+// ---- interface ----
 
 static const char *const whats[] = {
 #define CAG_TOKEN(name, what) what,
@@ -808,7 +808,7 @@ static const char *const whats[] = {
 
 const char *cag_token_what(CagTokenKind kind) { return whats[kind]; }
 
-// The spelling of a reserved word is what messages call it, without the quotes.
+// Extracts the spelling of a reserved word from its name in messages, by removing the quotes.
 static size_t reserved_word(size_t kind, const char **word) {
   *word = whats[kind] + 1;
   return strlen(*word) - 1;

@@ -1,14 +1,13 @@
-// Text to words. The lexer gives one token at a time and looks at nothing but the text: whether a
-// newline ends a statement, or a `{` opens a record, is the parser's to say.
+// The lexer: converts text to tokens, one at a time, by looking only at the text. Whether a newline
+// ends a statement, or a `{` opens a record, is decided by the parser.
 //
-// A text with { } comes as several tokens: a HEAD up to the first `{`, the tokens of the
-// expression, then a MIDDLE for each `} ... {` and a TAIL for the last `} ..."`. The lexer keeps a
-// stack of the texts that it stands inside, with the number of plain braces open in each, so
-// nesting takes no recursion.
+// A text with { } becomes several tokens: a HEAD up to the first `{`, the tokens of the expression,
+// then a MIDDLE for each `} ... {` and a TAIL for the last `} ..."`. The lexer keeps a stack of the
+// enclosing texts, with the number of open braces in each, so nesting needs no recursion.
 //
-// What is wrong with a single word (an unknown unit, an operator of another language) is reported
-// here and mended: the token that was meant is given, and parsing goes on. An ERROR token means
-// that it cannot go on; its error is reported already.
+// Errors in a single word (an unknown unit, an operator of another language) are reported and
+// corrected here: the probable token is returned, and parsing continues. After an ERROR token,
+// parsing cannot continue; its error has been reported.
 
 #ifndef CAG_LANG_LEXER_H
 #define CAG_LANG_LEXER_H
@@ -16,7 +15,7 @@
 #include "lang/ast.h"
 #include "lang/names.h"
 
-// CAG_TOKEN(name, what a message calls it)
+// CAG_TOKEN(name, its name in messages)
 #define CAG_TOKENS(CAG_TOKEN)                                                                      \
   CAG_TOKEN(END, "the end of the file")                                                            \
   CAG_TOKEN(ERROR, "an error")                                                                     \
@@ -88,7 +87,7 @@ typedef enum CagTokenKind {
 
 typedef struct CagToken {
   CagTokenKind kind;
-  bool newline_before; // a line ends between the token before and this one
+  bool newline_before; // a line ends between the previous token and this one
   CagSpan span;
   uint32_t comments; // number of comments before it
   union {
@@ -101,10 +100,10 @@ typedef struct CagToken {
   } as;
 } CagToken;
 
-// A text whose { } the lexer stands inside.
+// A text whose { } contains the current token.
 typedef struct CagOpenText {
   uint32_t start;  // of its opening quote
-  uint32_t braces; // plain braces open within its { }
+  uint32_t braces; // open braces within its { }
 } CagOpenText;
 
 typedef struct CagLexer {
@@ -119,30 +118,30 @@ typedef struct CagLexer {
   size_t text_count, text_capacity;
   CagComment *comments;
   size_t comment_count, comment_capacity;
-  char *buffer; // the text being read, its escapes resolved
+  char *buffer; // the text being read, with its escapes replaced
   size_t buffer_capacity;
-  void *locale; // the C locale for strtod, made when first needed
+  void *locale; // the C locale for strtod, created on first use
 } CagLexer;
 
-// The lexer borrows everything it is given. Reserved words are interned into `names`.
+// The lexer borrows all its arguments. Reserved words are interned into `names`.
 void cag_lexer_init(CagLexer *lx, const CagSource *source, CagArena *arena, CagNames *names,
                     CagDiagnostics *errors);
-// A second lexer on the same text, silent and from another place, to look far ahead.
+// A second, silent lexer on the same text, starting at another position, to look far ahead.
 void cag_lexer_probe(CagLexer *probe, const CagLexer *lx, uint32_t position);
 void cag_lexer_release(CagLexer *lx);
 
 void cag_lexer_next(CagLexer *lx, CagToken *t);
 
-// What a message calls a token of this kind: "`)`", "a number".
+// Returns the name of this kind of token in messages: "`)`", "a number".
 const char *cag_token_what(CagTokenKind kind);
 
-// Whether a word of this spelling is reserved.
+// Tests whether a word is reserved.
 bool cag_word_is_reserved(const char *word);
 
-// What to write for a brace in a text.
+// The help for a brace in a text.
 extern const char cag_lexer_brace_help[];
 
-// Whether a word is one of the units that come directly after a number.
+// Tests whether a word is a unit that can directly follow a number.
 bool cag_lexer_is_unit(const char *name);
 
 #endif

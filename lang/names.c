@@ -1,4 +1,4 @@
-// The table of names: linear probing over pointers to the names' heads.
+// The table of names: linear probing over pointers to the heads of names.
 
 #include "lang/names.h"
 

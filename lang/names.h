@@ -1,8 +1,9 @@
-// Interned names: one string per different name of a tree, so that names compare as pointers.
+// Interned names: one string for each different name of a tree, so that names can be compared as
+// pointers.
 //
-// Each name carries its number (0, 1, 2 ... in the order of first appearance) and, when it is a
-// reserved word, the token it makes; both are read back from the string's address. Strings live in
-// the arena of the tree, the table only as long as the parser.
+// Each name has its number (0, 1, 2 ... in the order of first appearance) and, if it is a reserved
+// word, its token; both are found from the string's address. Strings are in the arena of the tree,
+// and the table lives only as long as the parser.
 
 #ifndef CAG_LANG_NAMES_H
 #define CAG_LANG_NAMES_H
@@ -26,11 +27,11 @@ typedef struct CagNames {
 void cag_names_init(CagNames *n, CagArena *arena);
 void cag_names_release(CagNames *n);
 
-// The one string for these bytes (which are NFC already).
+// Returns the unique string for these bytes, which must be in NFC.
 CagNameHead *cag_names_intern(CagNames *n, const char *bytes, size_t length);
 
-// The same for a caller that has taken the hash while it looked for the end of the name: FNV-1a,
-// from CAG_NAME_HASH on byte by byte.
+// The same for callers that have computed the hash while they searched for the end of the name:
+// FNV-1a, starting from CAG_NAME_HASH, byte by byte.
 CagNameHead *cag_names_intern_hashed(CagNames *n, const char *bytes, size_t length, uint32_t hash);
 #define CAG_NAME_HASH 2166136261u
 static inline uint32_t cag_name_hash(uint32_t hash, unsigned char byte) {

@@ -1,4 +1,4 @@
-// The parser's ground: tokens, errors, panic, brackets, lists under way.
+// Basic functions of the parser: tokens, errors, panic mode, brackets, unfinished lists.
 
 #include "lang/parse.h"
 
@@ -44,8 +44,8 @@ static void count_opener(Parser *p, const CagToken *t, CagTokenKind closer) {
                   CAG_MAX_NESTING);
 }
 
-// Takes away the bracket that a closer belongs to, with what was left open inside it. One that
-// closes nothing is passed over.
+// Removes the bracket that a closer belongs to, and brackets left open inside it. Ignores a closer
+// without an opening bracket.
 static void count_closer(Parser *p, CagTokenKind closer) {
   if (p->excess) {
     p->excess--;
@@ -113,12 +113,12 @@ bool cag_parse_token_is(Parser *p, const CagToken *t, const char *name) {
   return t->kind == CAG_TOKEN_NAME && strcmp(t->as.name, name) == 0;
 }
 
-// ---- what begins a statement ----
+// ---- the start of statements ----
 
-// So many words of a parameter list are looked through for its `=`.
+// The maximum number of words of a parameter list that are searched for its `=`.
 #define LONGEST_PARAMETER_LIST 4096
-// After so many words looked through in vain, only short lists are: a text of nothing but open
-// brackets would take quadratic time otherwise.
+// After this many words were searched in vain, only short lists are searched. Otherwise a text of
+// only opening brackets would take quadratic time.
 #define VAIN_LIMIT ((size_t)1 << 20)
 #define VAIN_LENGTH 64
 
@@ -129,7 +129,7 @@ void cag_parse_probe_end(Parser *p) {
   p->probe_source = NULL;
 }
 
-// The token behind the bracket that closes the one at `start`; ERROR when it is not found.
+// Returns the token after the bracket that closes the one at `start`, or ERROR if it is not found.
 static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
   cag_lexer_probe(&p->probe, &p->lexer, start);
   CagToken t;
@@ -195,7 +195,7 @@ CagDiagnostic *cag_parse_error(Parser *p, CagErrorId id, CagSpan span, const cha
   if (kind == CAG_TOKEN_END && told == 0) p->cut_off = true;
   if (kind == CAG_TOKEN_ERROR && told == 1 && p->lexer.cut_off) p->cut_off = true;
   p->panic = true;
-  if (kind == CAG_TOKEN_ERROR) return NULL; // the lexer has told it
+  if (kind == CAG_TOKEN_ERROR) return NULL; // already reported by the lexer
   va_list args;
   va_start(args, format);
   CagDiagnostic *d = add_error(p, id, span, format, args);
@@ -259,7 +259,7 @@ CagSpan cag_parse_here(Parser *p) {
   return s;
 }
 
-// Reports the innermost bracket when the text goes on, or ends, as if it were closed.
+// Reports the innermost bracket if the text continues, or ends, as if it were closed.
 static void report_unclosed(Parser *p) {
   if (p->bracket_count == 0) return;
   if (parse_kind(p) != CAG_TOKEN_END && !cag_parse_at_statement(p)) return;
@@ -294,7 +294,7 @@ static void unexpected_closer(Parser *p, const char *found) {
   cag_parse_related(p, d, opener, "the open bracket");
 }
 
-// c ? a : b
+// Reports c ? a : b.
 static void report_ternary(Parser *p, const CagExpr *condition) {
   CagSpan here = cag_parse_here(p);
   cag_parse_advance(p);
@@ -308,7 +308,7 @@ static void report_ternary(Parser *p, const CagExpr *condition) {
                  b ? cag_parse_quote(p, b->span, third, sizeof third, "b") : "b");
 }
 
-// Reports words that people put behind a value out of habit.
+// Reports words of other languages after a value.
 static void report_habit(Parser *p, const CagExpr *before) {
   char text[QUOTE_SIZE];
   CagSpan here = cag_parse_here(p);
@@ -408,7 +408,7 @@ bool cag_parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *be
   return false;
 }
 
-// ---- lists under way ----
+// ---- unfinished lists ----
 
 size_t cag_parse_list_begin(Parser *p) { return p->stack_size; }
 

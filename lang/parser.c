@@ -1,4 +1,4 @@
-// Statements, and the parse as a whole.
+// Statements, and the parser as a whole.
 
 #include "lang/parser.h"
 #include "base/array.h"
@@ -25,7 +25,7 @@ static CagStatement *end_statement(Parser *p, CagStatement *s) {
   return s;
 }
 
-// The text of one /// comment, without its slashes and the blank behind them.
+// Adds the text of one /// comment, without its slashes and the blank after them.
 static void add_doc_line(Parser *p, size_t list, CagSpan span) {
   const char *text = p->module->source->text + span.start + 3;
   size_t length = span.end - span.start - 3;
@@ -34,7 +34,7 @@ static void add_doc_line(Parser *p, size_t list, CagSpan span) {
   if (length) cag_parse_list_push(p, text, length);
 }
 
-// The documentation before the current token: all its /// lines.
+// Returns the documentation before the current token: all its /// lines.
 const char *cag_parse_doc(Parser *p) {
   const CagComment *comments = p->lexer.comments;
   size_t end = parse_current(p)->comments, first = end;
@@ -59,7 +59,7 @@ static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
   return d;
 }
 
-// A name that a statement defines. An error, in panic, for anything else.
+// Reads the name that a statement defines. Reports anything else, and enters panic mode.
 static bool statement_name(Parser *p, CagToken *name, const char *what) {
   *name = *parse_current(p);
   if (cag_parse_accept(p, CAG_TOKEN_NAME)) return true;
@@ -114,7 +114,7 @@ CagStatement *cag_parse_definition(Parser *p, bool top) {
   return end_statement(p, s);
 }
 
-// A text that stands for itself, without { }.
+// Reads a constant text, without { }.
 static const char *plain_text(Parser *p, const char *what) {
   CagToken *t = parse_current(p);
   if (t->kind == CAG_TOKEN_TEXT_HEAD) {
@@ -152,8 +152,8 @@ static CagStatement *param(Parser *p) {
 
 // ---- import ----
 
-// The last word of a path in a text: what stands between its last `/` and its `.cag`. False when
-// that is not a name.
+// Returns the last word of a path in a text: the part between its last `/` and its `.cag`. Returns
+// false if it is not a valid name.
 static bool word_of_path(Parser *p, const char *path, CagToken *word) {
   const char *slash = strrchr(path, '/'), *start = slash ? slash + 1 : path;
   size_t length = strlen(start);
@@ -170,7 +170,7 @@ static bool word_of_path(Parser *p, const char *path, CagToken *word) {
   return good;
 }
 
-// name { "." name }: the path, and its last name.
+// name { "." name }: returns the path and its last name.
 static const char *module_path(Parser *p, CagToken *last) {
   size_t list = cag_parse_list_begin(p), length;
   do {
@@ -273,9 +273,9 @@ static bool is_one_of(const char *name, const char *const *words, size_t count) 
   is_one_of(name, (const char *const[]){__VA_ARGS__},                                              \
             sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
-// A name of another language at the head of a statement.
+// Recognizes a name of another language at the start of a statement.
 //
-// A word before a definition is passed over, and the definition read as one.
+// A word before a definition is skipped, and the definition is read.
 static bool name_habit(Parser *p) {
   CagToken word = *parse_current(p), next = *cag_parse_peek(p, 1);
   if (next.newline_before) return false;
@@ -351,7 +351,7 @@ bool cag_parse_habit(Parser *p, bool in_block) {
 
 // ---- the module ----
 
-// An expression where a statement should stand.
+// Reads an expression instead of a statement.
 static CagStatement *expression_statement(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_EXPRESSION);
   const bool below = p->previous.span.end > 0; // another statement
@@ -361,7 +361,7 @@ static CagStatement *expression_statement(Parser *p) {
   if (p->mode == CAG_PARSE_REPL || p->panic) return s;
   if (parse_kind(p) == CAG_TOKEN_ASSIGN_OPERATOR || parse_kind(p) == CAG_TOKEN_QUESTION ||
       parse_kind(p) == CAG_TOKEN_EQUALS || cag_parse_foreign_follows(p))
-    return s; // reported as what it is
+    return s; // already reported
   char text[QUOTE_SIZE];
   const char *said = cag_parse_quote(p, e->span, text, sizeof text, "...");
   CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_expression_statement, e->span,
@@ -438,8 +438,8 @@ static void end_of_statement(Parser *p, const CagStatement *s) {
   cag_parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
 }
 
-// No bracket is open, and a line begins in its first column with a value that the line before does
-// not ask for.
+// Tests whether no bracket is open, and a line starts in its first column with a value that does
+// not continue the previous line.
 static bool at_new_line(Parser *p) {
   const CagToken *t = parse_current(p);
   if (p->bracket_count || p->excess || !t->newline_before || !cag_parse_begins_expression(t->kind))
@@ -459,8 +459,8 @@ static bool at_new_line(Parser *p) {
   }
 }
 
-// A bracket of the wrong kind, just reported, stands for the right one, unless there is one that it
-// could close.
+// Treats a bracket of the wrong kind, just reported, as the right one, unless it could close
+// another open bracket.
 static void pass_wrong_closer(Parser *p, CagErrorId told) {
   CagTokenKind kind = parse_current(p)->kind;
   if (told != CAG_ERR_bracket_mismatch || p->excess || p->bracket_count == 0) return;
@@ -471,24 +471,24 @@ static void pass_wrong_closer(Parser *p, CagErrorId told) {
   p->panic = false;
 }
 
-// Ends a panic: passes on to the next statement in the first column, and reports a bracket that is
+// Ends panic mode: skips to the next statement in the first column, and reports a bracket that is
 // still open there.
 static void recover(Parser *p, uint32_t start) {
   CagDiagnostics *errors = p->lexer.errors;
   size_t told = p->errors->count;
   bool unclosed_told = told && p->errors->items[told - 1].id == CAG_ERR_bracket_not_closed;
-  p->lexer.errors = NULL; // what is skipped is not judged
+  p->lexer.errors = NULL; // no errors are reported in the skipped text
   p->panic = false;
   pass_wrong_closer(p, told ? p->errors->items[told - 1].id : CAG_ERR_COUNT);
   while (parse_kind(p) != CAG_TOKEN_END) {
     if (parse_current(p)->span.start > start && (cag_parse_at_statement(p) || at_new_line(p)))
       break;
-    p->panic = true; // nor are the brackets in it
+    p->panic = true; // nor for its brackets
     cag_parse_skip(p);
     p->panic = false;
   }
   p->lexer.errors = errors;
-  for (size_t i = 0; i < p->bracket_count; i++) // a text that is still open ended with its line
+  for (size_t i = 0; i < p->bracket_count; i++) // an open text ended with its line
     if (p->brackets[i].closer == CAG_TOKEN_TEXT_TAIL) p->bracket_count = i;
   if (p->bracket_count && !p->excess && !unclosed_told) {
     const Bracket *b = &p->brackets[p->bracket_count - 1];
@@ -526,8 +526,8 @@ static void show_comments(Parser *p) {
   p->module->comment_count = p->lexer.comment_count;
 }
 
-// Hands over a statement, and forgets its tree: unless the next word, which is read already, lies
-// in the same arena.
+// Passes a statement to `each`, and frees its tree, unless the next word, which was already read,
+// is in the same arena.
 static void hand_over(Parser *p, const CagStatement *s) {
   show_comments(p);
   p->each(p->each_context, p->module, s);
@@ -604,7 +604,7 @@ static void mark_mended(CagModuleAst *m, const CagDiagnostics *errors, size_t fr
     }
 }
 
-// Parses into a module, with the names in an arena that may be another than the module's.
+// Parses into a module. The arena of names may differ from the module's.
 static void parse_into(Parser *p, CagArena *names) {
   CagModuleAst *m = p->module;
   CagDiagnostics *errors = p->errors;
@@ -616,7 +616,7 @@ static void parse_into(Parser *p, CagArena *names) {
   cag_lexer_init(&p->lexer, m->source, &m->arena, &p->names, errors);
   cag_parse_peek(p, 0);
   statements(p);
-  cag_diagnostics_sort(errors, before); // those of the lexer run a few words ahead
+  cag_diagnostics_sort(errors, before); // those of the lexer may be a few words ahead
 }
 
 static void release(Parser *p) {
@@ -630,7 +630,7 @@ static void release(Parser *p) {
   cag_free(p);
 }
 
-// Who asked the work to end says why.
+// Reports exhausted memory. If the work was asked to stop, the caller reports the reason.
 static void fail_memory(const CagSource *source, CagDiagnostics *errors) {
   if (cag_source_stopped(source)) return;
   cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},

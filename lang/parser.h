@@ -1,4 +1,4 @@
-// Text to syntax tree, and names to what they mean.
+// Parsing of text to a syntax tree, and name resolution.
 
 #ifndef CAG_LANG_PARSER_H
 #define CAG_LANG_PARSER_H
@@ -7,14 +7,14 @@
 
 typedef enum CagParseMode {
   CAG_PARSE_FILE, // a module
-  CAG_PARSE_REPL  // statements, and bare expressions too
+  CAG_PARSE_REPL  // statements, and also bare expressions
 } CagParseMode;
 
-// Brackets nest at most so deep (language, section 8).
+// The maximum nesting depth of brackets (language, section 8).
 #define CAG_MAX_NESTING 1000
-// No expression tree is higher than this: a chain of as many operators, or brackets and what stands
-// between them. Low enough that a walk which recurses fits an ordinary stack, in a build with
-// sanitizers too.
+// The maximum height of an expression tree, for example a chain of this many operators, or of
+// brackets with their contents. It is low enough for recursive traversals on an ordinary stack,
+// even in a build with sanitizers.
 #define CAG_MAX_HEIGHT 4000
 
 // Parses a source. Returns a tree (release it with cag_module_ast_free), or NULL if memory ran out.
@@ -32,19 +32,19 @@ typedef void CagParseEach(void *context, const CagModuleAst *m, const CagStateme
 bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors);
 
-// Whether a REPL text asks for another line: an open bracket, text or comment, or an operator at
-// the end.
+// Tests whether an input of the REPL needs another line: it has an open bracket, text, or comment,
+// or ends with an operator.
 bool cag_parse_incomplete(const char *text, size_t length);
 
-// How the resolver learns names that are not in the file.
+// Names outside of the file, for the resolver.
 typedef struct CagResolveEnv {
   void *context;
-  // Number of the built-in with this name, or (size_t)-1.
+  // Returns the index of the built-in with this name, or (size_t)-1.
   size_t (*find_builtin)(void *context, const char *name);
-  // All built-in names, for the nearest one.
+  // All built-in names, for suggestions.
   const char *const *builtin_names;
   size_t builtin_count;
-  // Number of a name that was defined before this text (REPL), or (size_t)-1. NULL: there are none.
+  // Returns the index of a name from an earlier input (REPL), or (size_t)-1. NULL: there are none.
   size_t (*find_outer)(void *context, const char *name);
   const char *const *outer_names;
   size_t outer_count;

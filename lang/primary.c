@@ -1,5 +1,5 @@
-// What binds tightest: literals, texts, brackets of every kind, and the calls, indices and members
-// behind them.
+// The expressions that bind tightest: literals, texts, brackets of all kinds, and calls, indices,
+// and members after them.
 
 #include "lang/parse.h"
 
@@ -111,7 +111,7 @@ static CagExpr *list_expression(Parser *p) {
 
 // ---- records and blocks ----
 
-// The name of a field: a word, or a text that stands for itself.
+// Reads the name of a field: a word, or a constant text.
 static bool field_name(Parser *p, CagField *f) {
   CagToken *t = parse_current(p);
   CagTokenKind kind = parse_kind(p);
@@ -164,7 +164,7 @@ static CagExpr *record(Parser *p) {
   CagExpr *e = cag_parse_new(p, CAG_EXPR_RECORD, o.span.start), *last = NULL;
   size_t list = cag_parse_list_begin(p);
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_BRACE) {
-    // the next statement of the file, where a field should stand, means that the brace is open
+    // a statement of the file instead of a field means that the brace is open
     if (cag_parse_at_statement(p)) break;
     CagField f = field(p);
     last = f.value;
@@ -184,7 +184,7 @@ static bool at_definition(Parser *p) {
   return next == CAG_TOKEN_LEFT_PAREN && cag_parse_at_function(p);
 }
 
-// Behind a statement of a block: newline, `;`, or the end of the block.
+// After a statement of a block: a newline, `;`, or the end of the block.
 static void end_in_block(Parser *p) {
   if (p->panic || cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) return;
   if (parse_kind(p) == CAG_TOKEN_RIGHT_BRACE) return;
@@ -194,7 +194,7 @@ static void end_in_block(Parser *p) {
   cag_parse_unexpected(p, NULL, CAG_ERR_expected_end, "the end of the line or `;`");
 }
 
-// Behind the value of a block.
+// After the value of a block.
 static void close_block(Parser *p, Opened o, const CagExpr *value) {
   bool ended = cag_parse_accept(p, CAG_TOKEN_SEMICOLON) || cag_parse_at_newline(p);
   CagTokenKind kind = parse_kind(p);
@@ -254,7 +254,7 @@ static CagExpr *block(Parser *p) {
   return cag_parse_finish(p, e);
 }
 
-// `{` opens a record when `}`, `...`, or a word or text with its `:` follows, else a block.
+// `{` opens a record before `}`, `...`, or a word or text with a `:`, and otherwise a block.
 static CagExpr *braces(Parser *p) {
   CagTokenKind next = parse_kind_at(p, 1);
   bool is_record = next == CAG_TOKEN_RIGHT_BRACE || next == CAG_TOKEN_SPREAD ||
@@ -309,7 +309,7 @@ static CagExpr *template(Parser *p) {
   return cag_parse_finish(p, e);
 }
 
-// print(a, b), or a list in parentheses.
+// Reports print(a, b), or a list in parentheses.
 static void report_tuple(Parser *p, CagSpan span) {
   char text[QUOTE_SIZE];
   CagSpan inside = {span.start + 1, span.end - 1};
@@ -352,7 +352,7 @@ CagExpr *cag_parse_group(Parser *p) {
   return cag_parse_finish(p, e);
 }
 
-// A definition begins where the value of the line before should stand.
+// Tests whether a definition starts where the value of the previous line is expected.
 bool cag_parse_at_next_definition(Parser *p) {
   if (!parse_current(p)->newline_before) return false;
   if (p->newlines && parse_kind(p) == CAG_TOKEN_NAME && parse_kind_at(p, 1) == CAG_TOKEN_EQUALS)
@@ -360,7 +360,7 @@ bool cag_parse_at_next_definition(Parser *p) {
   return cag_parse_at_statement(p);
 }
 
-// Says that an expression is missing before the current token.
+// Reports that an expression is missing before the current token.
 CagExpr *cag_parse_missing(Parser *p) {
   if (p->panic) return cag_parse_error_node(p);
   CagSpan here = cag_parse_here(p);
@@ -410,7 +410,8 @@ CagExpr *cag_parse_missing(Parser *p) {
   return cag_parse_error_node(p);
 }
 
-// Something that reaches far to the right, inside an operation: read, and reported.
+// Reads and reports an expression that needs parentheses inside of an operation, because it extends
+// far to the right.
 static CagExpr *in_parentheses(Parser *p, CagExpr *(*read)(Parser *), const char *what) {
   CagSpan here = cag_parse_here(p);
   CagExpr *e = read(p);
@@ -567,7 +568,8 @@ static CagExpr *member(Parser *p, CagExpr *object) {
 
 // postfix = primary { call | "[" expr "]" | "." word }
 //
-// The bracket of a call and of an index stands on the line of what it follows, inside brackets too.
+// The bracket of a call or an index must be on the same line as the expression before it, even
+// inside of brackets.
 CagExpr *cag_parse_postfix(Parser *p) {
   CagExpr *e = primary(p);
   for (;;) {

@@ -1,8 +1,9 @@
-// Names to what they mean.
+// Name resolution.
 //
-// Every name of a tree has a number, so what it means at the moment is found in an array:
-// `current[number]` is the innermost declaration in force. Opening a scope marks a place on the
-// stack of declarations; closing it puts back what each of them covered. So a look-up takes one
+// Every name of a tree has a number, and the array `current` holds its meaning: `current[number]`
+// is the innermost visible declaration. Opening a scope marks a position in the stack of
+// declarations. Closing it restores what each of them hid. So a lookup takes constant time,
+// regardless of the number of names in a scope.
 // step, however many names a scope has.
 
 #include "base/array.h"
@@ -18,18 +19,18 @@
 
 typedef struct Entry {
   CagDecl *decl;
-  CagDecl *covered; // what the name meant before
+  CagDecl *covered; // previous meaning of the name
   uint32_t covered_scope;
 } Entry;
 
 typedef struct Current {
   CagDecl *decl;
-  uint32_t scope; // depth of the scope that it belongs to: 0 is the module
-  bool damaged;   // unreadable text may define it, so nothing is known about it
-  bool head;      // begins an expression that is a statement; a `=` may be missing
+  uint32_t scope; // depth of its scope; 0 is the module
+  bool damaged;   // unparsable text may define it, so nothing is known about it
+  bool head;      // first name of an expression that is a statement, which may lack a `=`
 } Current;
 
-// A block that is being walked, to tell a name used too early from one that is nowhere.
+// An enclosing block, to distinguish a name that is used too early from an unknown one.
 typedef struct OpenBlock {
   const CagExpr *block;
   const struct OpenBlock *outer;
@@ -40,15 +41,15 @@ typedef struct Resolver {
   const CagResolveEnv *env;
   CagDiagnostics *errors;
   Current *current; // one for each name of the tree
-  Entry *entries;   // declarations in force, innermost last
+  Entry *entries;   // visible declarations, innermost last
   size_t count, capacity;
   uint32_t scope;
-  CagFunctionAst *function; // innermost function around
+  CagFunctionAst *function; // innermost enclosing function
   const OpenBlock *block;
-  const char *param;              // name of the param whose default or domain is walked; NULL: none
-  const CagFunctionAst *defaults; // function whose defaults are walked; NULL: none
+  const char *param;              // the param whose default or domain is being resolved; NULL: none
+  const CagFunctionAst *defaults; // the function whose defaults are being resolved; NULL: none
   size_t default_index;
-  size_t templates; // texts with { } around
+  size_t templates; // number of enclosing texts with { }
   CagArena scratch; // holds lists that live as long as the resolver
 } Resolver;
 
@@ -75,8 +76,8 @@ static CagDiagnostic *report(Resolver *r, CagErrorId id, CagSpan span, const cha
 
 static bool full(const Resolver *r) { return r->errors->count >= CAG_DIAGNOSTICS_MAX; }
 
-// The known name nearest to `name`: of the scopes around, the module, earlier inputs, the
-// built-ins.
+// Returns the known name nearest to `name`, from the enclosing scopes, the module, earlier inputs,
+// and the built-ins.
 static const char *nearest(Resolver *r, const char *name) {
   const CagResolveEnv *env = r->env;
   size_t count = 0, most = r->count + env->outer_count + env->builtin_count;
@@ -88,7 +89,7 @@ static const char *nearest(Resolver *r, const char *name) {
   return cag_nearest_name(name, names, count);
 }
 
-// The definition of a block around that comes below the place where its name is used; NULL: none.
+// Returns the definition of the name in an enclosing block after its use, or NULL.
 static const CagDecl *defined_below(const Resolver *r, const char *name) {
   for (const OpenBlock *b = r->block; b; b = b->outer)
     for (size_t i = 0; i < b->block->as.block.count; i++) {
@@ -166,13 +167,13 @@ static const char *role_of(const CagDecl *d) {
   }
 }
 
-// Text in the first columns of an unreadable statement may be definitions.
+// Text in the first columns of an unparsable statement may be definitions.
 static bool is_damaged(const CagDecl *d) {
   return d->statement && d->statement->damage == CAG_DAMAGED;
 }
 
-// Puts a name in force. Two in one scope, and one that hides a name of an inner scope around, are
-// errors.
+// Makes a declaration visible. Reports a duplicate in the same scope, and a name that hides one of
+// an enclosing inner scope.
 static void declare(Resolver *r, CagDecl *d) {
   d->owner = r->function;
   if (is_blank(d->name)) return;
@@ -198,7 +199,7 @@ static void declare(Resolver *r, CagDecl *d) {
 
 static void walk(Resolver *r, CagExpr *e);
 
-// The default and the domain of a param know only built-in names, and what they bind themselves.
+// The default and the domain of a param can use only built-in names, and names that they define.
 static bool allowed_in_param(Resolver *r, const CagExpr *e, const CagDecl *d) {
   if (!r->param || d->kind == CAG_DECL_PARAMETER || d->kind == CAG_DECL_BLOCK ||
       d->kind == CAG_DECL_CLAUSE)
@@ -243,7 +244,7 @@ static void walk_name(Resolver *r, CagExpr *e) {
   }
 }
 
-// Whether the module of an import has a name. Reports it when not.
+// Checks that the module of an import defines a name, and reports it if not.
 static void check_in_module(Resolver *r, const CagStatement *import, const char *name,
                             CagSpan span) {
   if (name[0] == '_') {
@@ -305,7 +306,7 @@ static void walk_function(Resolver *r, CagFunctionAst *f) {
 }
 
 static void walk_comprehension(Resolver *r, CagExpr *e) {
-  // Each clause opens a scope of its own inside the one before, so that a later name cannot hide an
+  // Each clause opens a new scope inside the previous one, so that a later name cannot hide an
   // earlier one.
   size_t mark = r->count;
   uint32_t scope = r->scope;
@@ -322,8 +323,8 @@ static void walk_comprehension(Resolver *r, CagExpr *e) {
   r->scope = scope;
 }
 
-// A block function sees itself, so it is declared before its body is walked; any other definition
-// only behind its value.
+// A function in a block is visible in its own body, so it is declared first. Other definitions are
+// declared after their value.
 static void walk_block(Resolver *r, CagExpr *e) {
   OpenBlock open = {e, r->block};
   r->block = &open;
@@ -346,9 +347,9 @@ static void walk_block(Resolver *r, CagExpr *e) {
   r->block = open.outer;
 }
 
-// ---- things given twice ----
+// ---- duplicates ----
 
-// Names up to this many are compared with each other; more are sorted first.
+// Up to this many names are compared pairwise. More are sorted first.
 #define FEW 16
 
 typedef struct Given {
@@ -368,7 +369,7 @@ static void report_given_twice(Resolver *r, CagErrorId id, const char *what, Giv
   cag_diagnostic_add_note(d, CAG_NOTE_RELATED, r->module->source, first.span, "first given here");
 }
 
-// Reports names that stand twice in the list, which is put in order.
+// Reports duplicate names in the list, which is sorted.
 static void check_twice(Resolver *r, Given *given, size_t count, CagErrorId id, const char *what) {
   if (count <= FEW) {
     for (size_t i = 1; i < count; i++)
@@ -450,7 +451,7 @@ static void walk(Resolver *r, CagExpr *e) {
     if (e->as.range.step) walk(r, e->as.range.step);
     break;
   case CAG_EXPR_IF:
-    for (; e->kind == CAG_EXPR_IF; e = e->as.branch.otherwise) { // chains of else if are long
+    for (; e->kind == CAG_EXPR_IF; e = e->as.branch.otherwise) { // chains of else if may be long
       walk(r, e->as.branch.condition);
       walk(r, e->as.branch.then);
     }
@@ -506,7 +507,7 @@ static void walk_statement(Resolver *r, CagStatement *s) {
   }
 }
 
-// Returns the name with which an expression begins, or NULL.
+// Returns the name at the start of an expression, or NULL.
 static const char *head_of(const CagExpr *e) {
   for (;;) switch (e->kind) {
     case CAG_EXPR_NAME: return e->as.name.id;

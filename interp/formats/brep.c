@@ -1,4 +1,4 @@
-// The things of a scene as shapes of curves, sheets and solids, and their shells.
+// Converts the items of a scene to shapes of curves, sheets, and solids, with their shells.
 
 #include "interp/formats/brep.h"
 
@@ -11,10 +11,10 @@
 #include "geom/tessellate/orient.h"
 #include "interp/formats/brep_build.h"
 
-// Ends and edges that are meant to meet do so to this part of a shape's size: what the checks of
-// closed solids allow.
+// The fraction of a shape's size within which ends and edges count as equal. The checks of closed
+// solids allow the same.
 #define SAME 1e-6
-// No file needs less than this: programs take it for the smallest length.
+// The minimum accuracy in a file, because programs use it as their smallest length.
 #define ACCURACY_MIN 1e-7
 
 void cag_brep_free(CagBrep *b) {
@@ -38,7 +38,7 @@ static size_t root(size_t *parent, size_t i) {
   return i;
 }
 
-// Joins faces that share an edge; *open: an edge has one use.
+// Joins faces that share an edge. *open is set if an edge has only one use.
 static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagError *err) {
   const CagBrep *b = w->brep;
   const size_t n = b->face_count - w->first_face, edges = b->edge_count - w->first_edge;
@@ -60,7 +60,7 @@ static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagEr
   return CAG_OK;
 }
 
-// Numbers the sets by their first faces; gives how many there are.
+// Numbers the sets by their first faces. Returns their number.
 static size_t number_sets(size_t *parent, size_t n, size_t *set) {
   size_t sets = 0;
   for (size_t f = 0; f < n; f++) set[f] = SIZE_MAX;
@@ -72,7 +72,7 @@ static size_t number_sets(size_t *parent, size_t n, size_t *set) {
   return sets;
 }
 
-// Puts the faces of one set together, and makes a shell of each.
+// Sorts the faces by sets, and makes a shell of each set.
 static CagStatus sort_faces(CagBrep *b, size_t first, const size_t *set, size_t sets, bool closed,
                             CagError *err) {
   size_t n = b->face_count - first;
@@ -114,10 +114,10 @@ static CagStatus make_shells(CagBrepWork *w, bool *closed, CagError *err) {
   return status;
 }
 
-// --- Hollows ---
+// --- Cavities ---
 
-// The volume that a shell of some of the solid's faces bounds, negative where its normals look
-// inwards; and its box.
+// Computes the volume bounded by a shell of faces of the solid, which is negative if its normals
+// point inward, and its box.
 static CagStatus shell_volume(const CagBrep *b, const CagBrepShell *shell, const CagSolid *solid,
                               double *volume, CagBounds *box, CagError *err) {
   double terms[10] = {0};
@@ -125,7 +125,7 @@ static CagStatus shell_volume(const CagBrep *b, const CagBrepShell *shell, const
   *box = CAG_BOUNDS_EMPTY;
   for (size_t f = shell->first; f < shell->first + shell->count; f++) {
     size_t source = b->faces[f].source;
-    if (source == last) continue; // another piece of the same
+    if (source == last) continue; // another part of the same surface
     last = source;
     CagBounds part;
     CagStatus status = cag_surface_volume_terms(solid->faces[source], terms, err);
@@ -143,7 +143,7 @@ static bool holds(const CagBounds *a, const CagBounds *b) {
          a->max.x >= b->max.x && a->max.y >= b->max.y && a->max.z >= b->max.z;
 }
 
-// Says which shells of a solid are hollows of which others: the smallest box around decides.
+// Finds the shells of a solid that are cavities, each in the shell with the smallest enclosing box.
 static CagStatus find_hollows(CagBrep *b, size_t first, const CagSolid *solid, CagError *err) {
   size_t n = b->shell_count - first;
   if (n < 2) return CAG_OK;
@@ -187,7 +187,7 @@ static CagStatus fail_mesh(const CagItem *item, CagError *err) {
                   item->name);
 }
 
-// The normals of a closed surface point outward, as those of a solid.
+// The normals of a closed surface point outward, as for a solid.
 static CagStatus add_surface(CagBrepWork *w, const CagSurface *s, CagError *err) {
   CagSurface *outward;
   CagStatus status = cag_surface_outward(s, &outward, err);
@@ -215,7 +215,7 @@ static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   }
 }
 
-// Size of the sides made so far: what nearness is relative to.
+// Computes the size of the sides so far, to which tolerances are relative.
 static CagStatus measure(CagBrepWork *w, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < w->side_count; i++) {
@@ -228,8 +228,7 @@ static CagStatus measure(CagBrepWork *w, CagError *err) {
   if (!isfinite(size))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "", -1, "%s is too large",
                     w->item->name);
-  // Where two sides of an edge were approximated each on its own, they differ by twice the
-  // tolerance.
+  // Two sides of an edge that were approximated separately may differ by twice the tolerance.
   w->same = fmax(SAME * size, w->approximate ? 2 * w->asked : 0);
   return CAG_OK;
 }
@@ -264,7 +263,7 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
   return status;
 }
 
-// Errors of the geometry do not know which shape was written.
+// Adds the name of the shape to errors of the geometry.
 static CagStatus name_shape(const CagItem *item, CagStatus status, CagError *err) {
   char said[sizeof err->message];
   if (status == CAG_E_CALLBACK || strstr(err->message, item->name)) return status;

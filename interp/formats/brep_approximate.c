@@ -1,10 +1,11 @@
-// A bicubic B-spline near a surface of any kind.
+// Approximates any surface by a bicubic B-spline.
 //
-// The surface is cut by lines of both parameters into cells; each cell is the bicubic patch with
-// the surface's points, first and mixed partials at its corners, so neighbors agree in value and
-// slope and the whole is one net with double knots (triple at the surface's own breaks, where the
-// two sides may differ). Its distance falls with the fourth power of the cells' size. Where a cell
-// is too far off, the lines are halved in the direction in which it is worse.
+// Lines of both parameters divide the surface into cells. Each cell becomes the bicubic patch that
+// has the surface's points and its first and mixed partial derivatives at the corners. So neighbors
+// agree in value and slope, and together form a control net with double knots (triple at breaks of
+// the surface, where the two sides may differ). The error decreases with the fourth power of the
+// size of the cells. If a cell is too inaccurate, the lines are halved in the direction with the
+// larger error.
 
 #include <math.h>
 #include <stdint.h>
@@ -13,14 +14,17 @@
 #include "geom/surface/family.h"
 #include "interp/formats/brep_build.h"
 
-// Cells of one direction; beyond, the surface has a place that no polynomial comes near.
+// The maximum number of cells in one direction. If it is exceeded, the surface has a point that no
+// polynomial approximates.
 #define LINES_MAX 2048
-// A cell of this part of the domain that is still too far off holds a jump or a corner: further
-// cuts would only come nearer to it, one a round.
+// If a cell of this fraction of the domain is still too inaccurate, it contains a jump or a corner,
+// and more divisions would not help.
 #define NARROWEST 0x1p-40
-// Points of a cell's inside and edges at which the distance is measured, each way.
+// The number of points in a cell and on its edges, in each direction, at which the error is
+// measured.
 #define PROBES 5
-// The probes may miss the farthest point; a bicubic's error between them is below this part more.
+// The probes may miss the maximum error, but the largest error at the probes is at least this
+// fraction of it for a bicubic.
 #define SAFETY 0.8
 
 typedef struct Lines {
@@ -37,7 +41,7 @@ static void lines_free(Lines *l) {
 static CagStatus lines_first(const CagSurface *s, int direction, Lines *out, CagError *err) {
   size_t breaks = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
   double lo = direction == 0 ? s->u0 : s->v0, hi = direction == 0 ? s->u1 : s->v1;
-  // A turn all round needs some pieces before its ends can be told from its middle.
+  // With few pieces, the ends of a full turn could not be distinguished from its middle.
   const size_t least = 4;
   *out = (Lines){cag_malloc((breaks + least + 2) * sizeof *out->t),
                  cag_calloc(breaks + least + 2, sizeof *out->broken), 0};
@@ -54,7 +58,7 @@ static CagStatus lines_first(const CagSurface *s, int direction, Lines *out, Cag
   return CAG_OK;
 }
 
-// Halves the intervals that are marked.
+// Halves the marked intervals.
 static CagStatus lines_halve(Lines *l, const bool *marked, CagError *err) {
   const double narrowest = NARROWEST * (l->t[l->n - 1] - l->t[0]);
   bool jumps = false;
@@ -93,7 +97,7 @@ typedef struct Cell {
   CagVec3 b[4][4]; // Bezier points, by u then v
 } Cell;
 
-// Bezier points of a corner: the two of each direction that it says.
+// Computes the Bezier points that a corner determines, two in each direction.
 static CagStatus corner(const CagSurface *s, Cell *c, int i, int j, CagError *err) {
   CagVec3 d[9];
   CagStatus status = cag_surface_eval(s, i ? c->u1 : c->u0, j ? c->v1 : c->v0, 2,
@@ -132,7 +136,8 @@ static CagVec3 cell_point(const Cell *c, double a, double b) {
   return cubic(row, a);
 }
 
-// Largest distance inside, and along the edges of each direction, which tell the worse one.
+// Computes the largest error inside, and along the edges in each direction, which show the worse
+// direction.
 static CagStatus cell_errors(const CagSurface *s, const Cell *c, double out[3], CagError *err) {
   out[0] = out[1] = out[2] = 0;
   for (int i = 0; i < PROBES; i++)
@@ -150,9 +155,9 @@ static CagStatus cell_errors(const CagSurface *s, const Cell *c, double out[3], 
   return CAG_OK;
 }
 
-// --- The whole ---
+// --- The whole surface ---
 
-// Marks the intervals to be halved; *good: there are none.
+// Marks the intervals to be halved. *good: there are none.
 static CagStatus judge_cells(const CagSurface *s, const Lines *u, const Lines *v, double tolerance,
                              bool *mark_u, bool *mark_v, bool *good, CagError *err) {
   *good = true;
@@ -171,9 +176,9 @@ static CagStatus judge_cells(const CagSurface *s, const Lines *u, const Lines *v
   return CAG_OK;
 }
 
-// Which of the Bezier lines stand in the net: where both sides of a line have one derivative, the
-// line itself follows from its neighbors and a double knot (out[k]: place in the net, SIZE_MAX:
-// none). *n: their number.
+// Determines which Bezier lines are part of the net. If both sides of a line have the same
+// derivative, the line follows from its neighbors and a double knot (out[k]: index in the net,
+// SIZE_MAX: none). *n: their number.
 static size_t *net_lines(const Lines *l, size_t *n) {
   size_t lines = 3 * (l->n - 1) + 1, *out = cag_malloc(lines * sizeof *out);
   *n = 0;
@@ -217,7 +222,7 @@ static CagStatus fill_net(const CagSurface *s, const Lines *u, const Lines *v, N
       if (status) return status;
       put_cell(n, &c, i, j);
     }
-  // Opposite edges that are one, and edges that are a point, stay so to the last bit.
+  // Opposite edges that coincide, and edges that are a point, stay exactly so.
   for (size_t j = 0; s->closed_u && j < n->nv; j++)
     n->points[(n->nu - 1) * n->nv + j] = n->points[j];
   for (size_t i = 0; s->closed_v && i < n->nu; i++)

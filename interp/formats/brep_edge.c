@@ -1,9 +1,9 @@
-// Which sides of faces are one edge.
+// Joins sides of faces to edges.
 //
-// Ends of sides that are near become one vertex. Two sides between the same vertices are one edge
-// when points of the one lie on the other, and when the loops run along them against each other, as
-// those of neighbors with agreeing normals do. A side that found no partner is cut at the vertices
-// of others that lie on it, and tried again: so one long side meets two short ones.
+// Ends of sides that nearly coincide become one vertex. Two sides between the same vertices are one
+// edge if points of one lie on the other, and if the loops traverse them in opposite directions, as
+// for neighboring faces with consistent normals. A side without a partner is split at the vertices
+// of others that lie on it, and tried again, so that one long side can meet two short ones.
 
 #include <math.h>
 #include <stdint.h>
@@ -77,10 +77,11 @@ static CagStatus make_vertices(CagBrepWork *w, size_t first_vertex, CagError *er
 
 // --- Edges ---
 
-// Points at which two sides are compared; their order tells the sense of closed ones.
+// The number of points at which two sides are compared. Their order shows the direction of closed
+// ones.
 #define PROBES 5
 
-// +1: the same curve, -1: run backwards, 0: different.
+// +1: the same curve, -1: the reversed curve, 0: different.
 static CagStatus compare(const CagCurve *a, const CagCurve *b, double same, int *out, double *gap,
                          CagError *err) {
   *out = 0;
@@ -108,7 +109,7 @@ static int by_vertices(const void *a, const void *b) {
   size_t t0 = t->from < t->to ? t->from : t->to, t1 = t->from < t->to ? t->to : t->from;
   if (s0 != t0) return s0 < t0 ? -1 : 1;
   if (s1 != t1) return s1 < t1 ? -1 : 1;
-  return s < t ? -1 : s > t; // faces in their order
+  return s < t ? -1 : s > t; // in the order of the faces
 }
 
 static bool same_vertices(const CagBrepSide *s, const CagBrepSide *t) {
@@ -117,10 +118,10 @@ static bool same_vertices(const CagBrepSide *s, const CagBrepSide *t) {
 
 typedef struct Pair {
   size_t with;   // side; SIZE_MAX: none
-  bool opposite; // the partner's curve runs backwards
+  bool opposite; // the partner's curve is reversed
 } Pair;
 
-// Finds partners among the sides that have none.
+// Finds partners for the sides that have none.
 static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
   CagBrepSide **order = cag_malloc((w->side_count + 1) * sizeof *order);
   if (!order) return cag_fail_memory(err);
@@ -138,7 +139,7 @@ static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
       if (pairs[ia].with != SIZE_MAX) break;
       if (pairs[ib].with != SIZE_MAX) continue;
       status = compare(a->curve, b->curve, w->same, &how, &w->brep->accuracy, err);
-      // Neighbors run along an edge against each other.
+      // Neighboring faces traverse an edge in opposite directions.
       if (status || how == 0 || (how > 0) != (a->reversed != b->reversed)) continue;
       pairs[ia] = (Pair){ib, how < 0};
       pairs[ib] = (Pair){ia, how < 0};
@@ -155,9 +156,9 @@ static bool near_box(const CagBounds *box, CagVec3 p, double off) {
          p.y <= box->max.y + off && p.z >= box->min.z - off && p.z <= box->max.z + off;
 }
 
-// A vertex of another side without partner that lies within the side, at its parameter t: the one
-// nearest to the middle, so that repeated halving ends soon. `count` is the number of sides in
-// `pairs`.
+// Finds a vertex, of another side without partner, inside the side, and its parameter t. Chooses
+// the one nearest to the middle, so that few divisions are needed. `count` is the number of sides
+// in `pairs`.
 static CagStatus vertex_within(const CagBrepWork *w, const Pair *pairs, size_t count, size_t index,
                                double *t, bool *found, CagError *err) {
   const CagBrepSide *s = &w->sides[index];
@@ -182,7 +183,7 @@ static CagStatus vertex_within(const CagBrepWork *w, const Pair *pairs, size_t c
   return CAG_OK;
 }
 
-// Cuts the side in two; the second part goes to the end of the list.
+// Splits the side in two. The second part is appended to the list.
 static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err) {
   CagCurve *parts[2];
   CagStatus status = cag_curve_split(w->sides[index].curve, t, parts, err);
@@ -193,7 +194,7 @@ static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err)
     return cag_fail_memory(err);
   }
   CagBrepSide *s = &w->sides[index], *second = &w->sides[w->side_count++];
-  // Orders stay apart: those behind in the loop move on by one.
+  // Orders stay unique: those after it in the loop increase by one.
   size_t order = s->order;
   for (size_t i = 0; i + 1 < w->side_count; i++)
     if (w->sides[i].loop == s->loop && w->sides[i].order > order) w->sides[i].order++;
@@ -206,7 +207,7 @@ static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err)
   return CAG_OK;
 }
 
-// Appends the parts that are cut off after the sides in `pairs`.
+// Appends the parts that are split off after the sides in `pairs`.
 static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagError *err) {
   size_t n = w->side_count;
   *any = false;
@@ -221,11 +222,10 @@ static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagErro
   return CAG_OK;
 }
 
-// Each round halves the number of cuts that are left. A body that needs more rounds than this is
-// not closed.
+// Each round halves the number of remaining splits. A body that needs more rounds is not closed.
 #define CUT_ROUNDS 64
 
-// Makes vertices and finds partners; *pairs has an element for each side afterwards.
+// Makes vertices and finds partners. *pairs then has an element for each side.
 static CagStatus match_sides(CagBrepWork *w, size_t first_vertex, Pair **pairs, CagError *err) {
   if (!CAG_RESIZE(*pairs, w->side_count + 1)) return cag_fail_memory(err);
   for (size_t i = 0; i < w->side_count; i++) (*pairs)[i] = (Pair){SIZE_MAX, false};
@@ -254,7 +254,7 @@ static CagStatus make_edges(CagBrepWork *w, const Pair *pairs, CagError *err) {
     return cag_fail_memory(err);
   for (size_t i = 0; i < w->side_count; i++) {
     CagBrepSide *s = &w->sides[i];
-    if (s->edge != SIZE_MAX) continue; // of its partner
+    if (s->edge != SIZE_MAX) continue; // assigned with its partner
     s->edge = b->edge_count;
     b->edges[b->edge_count++] = (CagBrepEdge){.curve = cag_curve_retain(s->curve),
                                               .from = s->from,
@@ -263,7 +263,7 @@ static CagStatus make_edges(CagBrepWork *w, const Pair *pairs, CagError *err) {
     if (pairs[i].with == SIZE_MAX) continue;
     CagBrepSide *other = &w->sides[pairs[i].with];
     other->edge = s->edge;
-    other->reversed = !s->reversed; // against the edge now
+    other->reversed = !s->reversed; // opposite to the edge now
   }
   return CAG_OK;
 }

@@ -1,4 +1,4 @@
-// Surfaces and regions taken apart into smooth faces with their sides.
+// Divides surfaces and regions into smooth faces with their sides.
 
 #include <math.h>
 #include <stdint.h>
@@ -13,9 +13,10 @@
 #include "geom/surface/trimmed.h"
 #include "interp/formats/brep_build.h"
 
-// Corners of a patch lie in one plane to this part of its size: rounding of its control points.
+// Corners of a patch count as coplanar up to this fraction of its size, which allows for rounding
+// of its control points.
 #define FLAT 1e-12
-// A flat face's rectangle stands off its outline by this part of its size.
+// The margin of a flat face's rectangle around its outline, as a fraction of its size.
 #define MARGIN 1e-3
 
 static size_t power_of_two(size_t least) {
@@ -50,7 +51,7 @@ static CagStatus add_loop(CagBrepWork *w, size_t face, size_t *index, CagError *
   return CAG_OK;
 }
 
-// Takes the reference to the curve.
+// Takes over the reference to the curve.
 static CagStatus add_side(CagBrepWork *w, CagCurve *curve, bool reversed, size_t face, size_t loop,
                           size_t order, CagError *err) {
   if (!CAG_RESERVE(w->sides, w->side_room, w->side_count + 1)) {
@@ -78,13 +79,13 @@ static CagTransform plane_frame(CagVec3 origin, CagVec3 x, CagVec3 normal) {
                               {0, 0, 0, 1}}};
 }
 
-// A bilinear patch whose corners make a convex quadrangle or a triangle of a plane.
+// Tests for a bilinear patch whose corners form a convex plane quadrilateral or triangle.
 static bool is_flat_patch(const CagSurface *s, CagTransform *plane) {
   CagSurfaceNurbsView v;
   if (!cag_surface_nurbs_view(s, &v) || v.rational || v.degree_u != 1 || v.degree_v != 1 ||
       v.nu != 2 || v.nv != 2)
     return false;
-  CagVec3 p[4]; // around
+  CagVec3 p[4]; // in order around the patch
   const int around[4] = {0, 2, 3, 1};
   for (int k = 0; k < 4; k++) {
     const double *h = v.homogeneous + 4 * around[k];
@@ -107,7 +108,7 @@ static bool is_flat_patch(const CagSurface *s, CagTransform *plane) {
 
 // --- Pieces of surfaces ---
 
-// Sides in the order of the loop: v0 forward, u1 forward, v1 back, u0 back.
+// Adds the sides in the order of the loop: v0 forward, u1 forward, v1 backward, u0 backward.
 static CagStatus add_piece_sides(CagBrepWork *w, const CagSurface *s, size_t face, CagError *err) {
   static const int SIDE[4] = {2, 1, 3, 0};
   const bool pole[4] = {s->pole_u0, s->pole_u1, s->pole_v0, s->pole_v1};
@@ -124,14 +125,16 @@ static CagStatus add_piece_sides(CagBrepWork *w, const CagSurface *s, size_t fac
 
 // --- Trimmed pieces ---
 
-// The boundary of a trimmed surface is in general no NURBS: it is written to this part of its size,
-// a hundredth of what edges that meet may be apart. Only where a box cut a quadric is it exact.
+// The boundary of a trimmed surface is usually not a NURBS curve. It is approximated within this
+// fraction of its size, a hundredth of the tolerance for edges that meet. It is exact only if a box
+// cut a quadric.
 #define TRIM_NEAR 1e-8
 
 static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCurve *loop,
                                 size_t face, CagError *err);
 
-// The whole surface with the loops in space; parameters need not agree with those of the NURBS.
+// Adds the whole surface with the loops in space. The parameters need not agree with those of the
+// NURBS.
 static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurface *inner,
                              const CagRegion *region, size_t outer, size_t source, CagError *err) {
   CagBrepFace face = {.first = w->brep->loop_count, .source = source};
@@ -153,7 +156,7 @@ static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurfa
   return status;
 }
 
-// Takes the reference to the piece.
+// Takes over the reference to the piece.
 static CagStatus add_piece(CagBrepWork *w, CagSurface *piece, size_t source, CagError *err) {
   CagBrepFace face = {
       .surface = piece, .whole = true, .first = w->brep->loop_count, .source = source};
@@ -243,7 +246,7 @@ static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagT
 // If all points of a stretch of a loop lie within this fraction of the size of each other, the
 // stretch runs along a pole of the surface.
 #define POLE 1e-12
-// Sine of an angle that is no corner of a loop.
+// The sine of the smallest angle that counts as a corner of a loop.
 #define TRIM_CORNER 1e-6
 
 static CagStatus is_collapsed(const CagCurve *c, double a, double b, double slack, bool *out,
@@ -303,8 +306,8 @@ static CagStatus is_corner(const CagCurve *c, double t, bool *out, CagError *err
   return status;
 }
 
-// Finds which stretches between cuts are poles, and which ones end in a corner. Only stretches of
-// quadrics within boxes are cut at corners before they are made, since each lies on another side.
+// Finds which stretches between cuts are poles, and which ones end in a corner. Stretches of
+// quadrics within boxes are cut at corners in advance, because each lies on a different side.
 static CagStatus look_at_cuts(const CagSurface *s, const CagCurve *c, const double *cuts, size_t n,
                               double slack, bool *pole, bool *corner, CagError *err) {
   CagQuadricWithin unused;
@@ -344,7 +347,7 @@ static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCu
   return status;
 }
 
-// The rectangle about the outline, along the axes of the plane.
+// Computes the rectangle around the outline, along the axes of the plane.
 static CagStatus rectangle_about(const CagRegion *r, size_t outer, const CagTransform *frame,
                                  CagSurface **out, CagError *err) {
   CagBounds box;

@@ -1,5 +1,5 @@
-// Curves and surfaces in the one form that files of exact geometry know: clamped, with positive
-// weights, polynomial where they can be.
+// Converts curves and surfaces to the form that files of exact geometry support: clamped, with
+// positive weights, and polynomial if possible.
 
 #include <math.h>
 #include <stdio.h>
@@ -13,15 +13,16 @@
 #include "geom/surface/reshape.h"
 #include "interp/formats/brep_build.h"
 
-// Weights are alike to this part of them: rounding of the products that they come from.
+// Weights count as equal up to this relative difference, which allows for rounding.
 #define WEIGHT_SAME 1e-14
-// Sine of an angle that is no corner: rounding of exact arcs is a thousand times below, and other
-// programs take what is less for smooth.
+// The sine of the smallest angle that counts as a corner. Rounding of exact arcs is a thousand
+// times smaller, and other programs treat smaller angles as smooth.
 #define CORNER 1e-7
-// Control points of a line stray from it by this part of its length: rounding of raised degrees.
+// The largest distance of control points from a line, as a fraction of its length, which allows for
+// rounding after degree elevation.
 #define LINE_SAME 1e-13
 
-// --- What cannot be exact ---
+// --- Shapes without an exact form ---
 
 static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *err) {
   return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
@@ -30,7 +31,7 @@ static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *
                   w->item->name, what);
 }
 
-// A place where no cut is fine enough: which shape has it, and what to do.
+// Reports a shape that cannot be approximated at some point, and what to do.
 static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *what,
                             CagError *err) {
   if (status != CAG_E_CONVERGENCE) return status;
@@ -70,7 +71,7 @@ static Weights judge_weights(const double *h, size_t n, double *bad) {
   return low == 1 && high == 1 ? WEIGHTS_ONE : WEIGHTS_ALIKE;
 }
 
-// Divides by the weight of each point, so that the weight is 1.
+// Divides each point by its weight, so that the weights are 1.
 static double *without_weights(const double *h, size_t n) {
   double *out = cag_malloc(4 * n * sizeof *out);
   for (size_t i = 0; out && i < n; i++) {
@@ -140,11 +141,12 @@ CagStatus cag_brep_curve(CagBrepWork *w, const CagCurve *c, CagCurve **out, CagE
 
 static bool turns(CagVec3 before, CagVec3 after) {
   double a = cag_norm(before), b = cag_norm(after);
-  if (!(a > 0) || !(b > 0)) return false; // standing still is no corner by itself
+  if (!(a > 0) || !(b > 0)) return false; // zero speed alone is not a corner
   return cag_norm(cag_cross(before, after)) > CORNER * a * b || cag_dot(before, after) < 0;
 }
 
-// Distinct inner knots that stand at least `degree` times: elsewhere a derivative is continuous.
+// Returns the distinct inner knots with at least multiplicity `degree`. Elsewhere, the derivative
+// is continuous.
 static size_t full_knots(const double *knots, size_t count, int degree, double *out) {
   size_t n = 0, p = (size_t)degree;
   for (size_t i = p + 1; i < count; i++) {
@@ -176,7 +178,7 @@ CagStatus cag_brep_curve_corners(const CagCurve *c, double **out, size_t *n, Cag
   return CAG_OK;
 }
 
-// A line has its control points where the averages of its knots say.
+// On a line with constant speed, control points are at the averages of knots (Greville abscissas).
 bool cag_brep_is_straight(const CagCurve *c) {
   CagNurbsView v;
   double bad;
@@ -248,7 +250,7 @@ CagStatus cag_brep_side_curve(const CagSurface *s, int side, CagCurve **out, Cag
   return status;
 }
 
-// Lines across on which a crease is looked for.
+// The number of lines across a possible crease that are examined.
 #define CREASE_PROBES 7
 
 static CagStatus is_crease(const CagSurface *s, int direction, double t, bool *out, CagError *err) {

@@ -1,8 +1,8 @@
-// A glTF 2.0 document: the JSON that describes, and the data with positions, normals, parameters
-// and indices of each mesh, one after the other.
+// The glTF 2.0 document: JSON, and the data with positions, normals, parameters, and indices of
+// each mesh in sequence.
 //
-// Parts that are copies of another share its data, and its mesh where the material is the same too;
-// a node places each part. The root node turns millimeters with Z up into meters with Y up.
+// Parts that are copies of another part share its data, and also its mesh if the material is the
+// same. A node places each part. The root node converts millimeters with Z up to meters with Y up.
 
 #include "interp/formats/gltf.h"
 
@@ -21,7 +21,7 @@
 #endif
 
 enum { BATCH = 2048 };
-// Numbers of the glTF specification.
+// Constants of the glTF specification.
 enum { FLOAT = 5126, UNSIGNED_INT = 5125, ARRAY_BUFFER = 34962, ELEMENT_ARRAY_BUFFER = 34963 };
 
 typedef CagGltfText Text;
@@ -58,7 +58,7 @@ static void add_string(Text *t, const char *s) {
   add(t, "\"");
 }
 
-// 9 digits give back a float exactly; validators compare bounds with the data.
+// 9 digits preserve a float exactly, and validators compare bounds with the data.
 static void add_numbers(Text *t, const char *key, const float *x, int n) {
   add(t, ",\"%s\":[", key);
   for (int k = 0; k < n; k++) add(t, "%s%.9g", k ? "," : "", (double)x[k]);
@@ -80,7 +80,7 @@ static void add_material(Text *t, const CagMaterial *m) {
   if (brightest > 0)
     add(t, ",\"emissiveFactor\":[%.9g,%.9g,%.9g]", unit_range(m->emission.r / strength),
         unit_range(m->emission.g / strength), unit_range(m->emission.b / strength));
-  // What the core does not know is left out where it says the same as the core.
+  // Properties of extensions are omitted if they equal the defaults of the core specification.
   const double core_ior = 1.5;
   Text e = {0};
   if (strength > 1)
@@ -97,7 +97,7 @@ static void add_material(Text *t, const CagMaterial *m) {
   add(t, "}");
 }
 
-// Names of the extensions in use, each once.
+// Adds the names of the used extensions, each once.
 static void add_extensions(Text *t, const Plan *p) {
   static const char *const names[] = {"KHR_materials_emissive_strength",
                                       "KHR_materials_transmission", "KHR_materials_ior",
@@ -127,7 +127,7 @@ static void add_materials(Text *t, const Plan *p) {
   if (p->materials.count > 0) add(t, "]");
 }
 
-// A motion as translation and rotation; what does nothing is left out.
+// Adds a rigid motion as translation and rotation. Identities are omitted.
 static void add_place(Text *t, const CagTransform *place) {
   CagError err;
   double q[4];
@@ -146,7 +146,7 @@ static const char *name_of(const CagMeshPart *part) { return part->name ? part->
 
 static void add_nodes(Text *t, const Plan *p) {
   size_t shown = 0;
-  // A quarter turn about x brings z up to y up; meters are 1000 mm.
+  // A quarter turn about x converts Z up to Y up; a meter is 1000 mm.
   add(t, ",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"scene\",\"rotation\":"
          "[-0.7071067811865476,0,0,0.7071067811865476],\"scale\":[0.001,0.001,0.001]");
   for (size_t i = 0; i < p->count; i++)
@@ -162,7 +162,7 @@ static void add_nodes(Text *t, const Plan *p) {
   add(t, "]");
 }
 
-// Accessors and buffer views go side by side: number k of each is the same data.
+// Accessors correspond to buffer views: number k of each is the same data.
 static void add_meshes(Text *t, const Plan *p) {
   bool any = false;
   for (size_t i = 0; i < p->count; i++) {
@@ -233,7 +233,7 @@ static void add_views(Text *t, const Plan *p) {
   if (offset > 0) add(t, "]");
 }
 
-// A file's name as a relative reference (RFC 3986).
+// Adds a file name as a relative reference (RFC 3986).
 static void add_uri(Text *t, const char *name) {
   add(t, ",\"uri\":\"");
   for (; *name; name++) {
@@ -257,7 +257,7 @@ CagStatus cag_gltf_text(const CagGltfPlan *p, const char *uri, CagGltfText *t, C
   if (p->data_bytes > 0) {
     add(t, ",\"buffers\":[{\"byteLength\":%llu", (unsigned long long)p->data_bytes);
     if (uri) add_uri(t, uri);
-    // The place of the data's text, where it stands in the document.
+    // The position in the document for embedded data.
     t->data_at = t->length;
     add(t, "}]");
   }
@@ -275,8 +275,8 @@ void cag_gltf_text_free(CagGltfText *t) {
 
 // --- The plan ---
 
-// Gives part i's node its mesh: one of the same data and material, or a new one. Returns false if
-// memory ran out.
+// Assigns a mesh to part i's node: one with the same data and material, or a new one. Returns false
+// if memory ran out.
 static bool number_mesh(Plan *p, size_t i, size_t *meshes) {
   Part *g = &p->parts[i];
   const size_t original = p->copies[i].original;
@@ -346,7 +346,7 @@ static void write_uv(const double *x, size_t n, CagAtomicFile *file) {
   }
 }
 
-// Linear light, as the format has it; it multiplies the material's color.
+// Writes colors in linear light, as the format requires. They multiply the material's color.
 static void write_colors(const CagMesh *m, CagAtomicFile *file) {
   for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
@@ -361,7 +361,7 @@ static void write_colors(const CagMesh *m, CagAtomicFile *file) {
   }
 }
 
-// Validators want normals of length 1, also where a surface has none.
+// Validators require normals of length 1, even where a surface has none.
 static void write_normals(const CagVec3 *x, size_t n, CagAtomicFile *file) {
   const double most_off = 1e-3;
   for (size_t k = 0; k < n && !cag_stopped();) {
@@ -419,7 +419,7 @@ static void write_base64(const unsigned char *bytes, size_t n, CagAtomicFile *fi
   }
 }
 
-// The document with the data as text in it.
+// Writes the document with embedded data.
 static void write_embedded(const Text *t, const CagGltfData *d, CagAtomicFile *file) {
   cag_atomic_file_write(file, t->at, t->data_at);
   cag_atomic_file_text(file, ",\"uri\":\"data:application/octet-stream;base64,");

@@ -1,9 +1,9 @@
-// A glTF document taken apart: its JSON, its buffers, and typed views of them.
+// Parsing of a glTF document: its JSON, its buffers, and typed views of them.
 //
-// Buffers are the binary chunk of a GLB, base64 text in the document, or files beside it. Views and
-// accessors are checked in whole numbers against the buffers that are there, so that reading
-// through them needs no check. JSON is taken apart by cJSON; what its tree will need is estimated
-// by the commas and brackets first.
+// Buffers are the binary chunk of a GLB, base64 text in the document, or separate files. Views and
+// accessors are checked against the buffers with integer arithmetic, so that reading through them
+// needs no checks. JSON is parsed by cJSON. The memory of its tree is estimated in advance from the
+// number of commas and brackets.
 
 #include "interp/formats/gltf_document.h"
 
@@ -20,9 +20,9 @@
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 #define JSON_CHUNK 0x4e4f534au
 #define BINARY_CHUNK 0x004e4942u
-// Bytes of one value in cJSON's tree with what the allocator adds.
+// Bytes of one value in cJSON's tree, including the overhead of the allocator.
 #define JSON_VALUE_BYTES 96
-// Whole numbers up to here are exact in JSON's doubles.
+// Integers up to this are exact in JSON's doubles.
 #define WHOLE_MOST 9007199254740992.0
 
 // Component types of the specification.
@@ -50,12 +50,12 @@ bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_
 
 // --- JSON ---
 
-// From this size on, cJSON works long enough for a stop to wait for it.
+// Larger texts take cJSON so long that they must be interruptible.
 #define LARGE_JSON ((size_t)1 << 20)
 
 typedef struct Parsing {
   const char *text; // followed by its copy, if it is large
-  size_t n, end;    // where the parser has stopped
+  size_t n, end;    // position at which the parser stopped
   cJSON *json;
 } Parsing;
 
@@ -71,7 +71,7 @@ static void free_parsing(void *data) {
   free(data);
 }
 
-// A large text is parsed aside, so that the work can be stopped.
+// A large text is parsed on another thread, so that the work can be stopped.
 static CagStatus run_parser(CagGltf *g, const char *text, size_t n, size_t *end, CagError *err) {
   const bool large = n >= LARGE_JSON;
   CagStatus status = large ? cag_draft_take(g->draft, n, 1, err) : CAG_OK;
@@ -135,7 +135,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   return CAG_OK;
 }
 
-// Splits a GLB into its chunks; a file of JSON is one chunk.
+// Splits a GLB into its chunks. A JSON file is a single chunk.
 static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
                              CagGltfBuffer *binary, CagError *err) {
   const CagMeshFile *f = g->draft->file;
@@ -211,7 +211,7 @@ static int hex_digit(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-// A relative path with its %XX read; malloc'd.
+// Decodes %XX in a relative path. Returns it allocated with malloc.
 static char *decode_path(const char *uri) {
   char *path = cag_strdup(uri), *to = path;
   for (const char *at = path; at && *at; at++) {
@@ -273,7 +273,7 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
   return status;
 }
 
-// Only those that change nothing about the triangles are no matter.
+// Only required extensions that do not affect the triangles are accepted.
 static CagStatus check_extensions(CagGltf *g, CagError *err) {
   static const char *const harmless[] = {"KHR_materials_",      "KHR_texture_",
                                          "KHR_lights_punctual", "KHR_mesh_quantization",
@@ -341,7 +341,7 @@ static size_t component_size(int component) {
   }
 }
 
-// Where `count` elements of `size` bytes begin in a view; *stride: 0 where it says none.
+// Finds where `count` elements of `size` bytes start in a view. *stride is 0 if it is not given.
 static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t accessor, size_t count,
                                 size_t size, const unsigned char **data, size_t *stride,
                                 CagError *err) {
@@ -368,7 +368,7 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
                          "again",
                          view, at + length, b->size);
   if (*stride == 0) *stride = size;
-  if (*stride < size) // elements that overlap
+  if (*stride < size) // overlapping elements
     return cag_gltf_fail(
         g, err, CAG_ERR_mesh_file_syntax,
         "bufferViews[%zu] has a stride of %zu bytes, less than its elements of %zu", view, *stride,
@@ -442,7 +442,7 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
   return status;
 }
 
-// Bytes need not be aligned.
+// Bytes may be unaligned.
 static double read_component(const unsigned char *at, int component, bool normalized) {
   switch (component) {
   case BYTE: return normalized ? fmax((int8_t)at[0] / 127.0, -1) : (int8_t)at[0];

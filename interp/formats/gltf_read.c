@@ -1,8 +1,10 @@
-// glTF and GLB: the triangles of a document's scene, each mesh placed by the nodes above it.
+// Reads the triangles of the scene of a glTF or GLB file, with each mesh transformed by its parent
+// nodes.
 //
-// A first walk over the scene counts what all meshes hold together, so that it is checked against
-// the limits before anything is made; a second fills the draft. A node has one parent at most, so
-// no walk is longer than the nodes are many. Meters with Y up become millimeters with Z up.
+// A first traversal of the scene counts the contents of all meshes, to check them against the
+// limits before anything is allocated. A second one fills the draft. A node has at most one parent,
+// so a traversal visits each node at most once. Meters with Y up are converted to millimeters with
+// Z up.
 
 #include <string.h>
 
@@ -13,7 +15,7 @@
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6, USHORT_TYPE = 5123, UBYTE_TYPE = 5121, UINT_TYPE = 5125 };
 
 typedef struct Visit {
-  const cJSON *node; // NULL: a mesh by itself
+  const cJSON *node; // NULL: a mesh without a node
   size_t mesh;       // SIZE_MAX: none
   CagTransform place;
 } Visit;
@@ -25,7 +27,7 @@ typedef struct Walk {
   bool *seen;
 } Walk;
 
-// One set of triangles of a mesh, its data checked.
+// A set of triangles of a mesh, whose data were checked.
 typedef struct Primitive {
   CagGltfAccessor positions, normals, uv, indices;
   bool has_normals, has_uv, has_indices;
@@ -37,7 +39,7 @@ typedef struct Total {
   bool normals, uv;
 } Total;
 
-// --- Places ---
+// --- Transforms ---
 
 static bool read_numbers(const cJSON *node, const char *key, double *x, int n) {
   const cJSON *list = cJSON_GetObjectItemCaseSensitive(node, key), *item;
@@ -51,7 +53,7 @@ static bool read_numbers(const cJSON *node, const char *key, double *x, int n) {
   return k == n;
 }
 
-// The node's own transform: a matrix by columns, or translation * rotation * scale.
+// Reads the node's own transform: a matrix by columns, or translation * rotation * scale.
 static bool read_place(const cJSON *node, CagTransform *out) {
   double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   *out = cag_transform_identity();
@@ -66,7 +68,7 @@ static bool read_place(const cJSON *node, CagTransform *out) {
     return false;
   double x = q[0], y = q[1], z = q[2], w = q[3], size = x * x + y * y + z * z + w * w;
   if (!(size > 0) || !isfinite(size)) return false;
-  double f = 2 / size; // a quaternion of length 1 within rounding gives an exact rotation
+  double f = 2 / size; // a quaternion of length 1 up to rounding gives an exact rotation
   const double r[3][3] = {{1 - f * (y * y + z * z), f * (x * y - z * w), f * (x * z + y * w)},
                           {f * (x * y + z * w), 1 - f * (x * x + z * z), f * (y * z - x * w)},
                           {f * (x * z - y * w), f * (y * z + x * w), 1 - f * (x * x + y * y)}};
@@ -87,7 +89,7 @@ static CagTransform to_millimeters(void) {
   return t;
 }
 
-// --- The walk ---
+// --- Traversal ---
 
 static CagStatus push(Walk *w, const cJSON *node, size_t mesh, const CagTransform *place,
                       CagError *err) {
@@ -125,8 +127,8 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
   return push(w, node, mesh, &place, err);
 }
 
-// Roots of the scene: those it names; without scenes the nodes that are no child; without nodes all
-// meshes.
+// Pushes the roots of the scene: the nodes that it names; if there are no scenes, the nodes that
+// are not children; and if there are no nodes, all meshes.
 static CagStatus push_roots(Walk *w, CagError *err) {
   CagGltf *g = w->g;
   CagTransform place = to_millimeters();
@@ -195,7 +197,7 @@ static size_t triangles_of(size_t mode, size_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
-// Positions and what goes with them; another attribute of another count is an error.
+// Reads positions and their attributes, which must have the same count.
 static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *out, CagError *err) {
   const cJSON *attributes = cJSON_GetObjectItemCaseSensitive(p, "attributes");
   size_t position, normal, uv;
@@ -204,7 +206,7 @@ static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *ou
       !cag_gltf_whole(attributes, "TEXCOORD_0", SIZE_MAX, &uv))
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "an attribute is not the number of an accessor");
-  if (position == SIZE_MAX) return CAG_OK; // nothing to see
+  if (position == SIZE_MAX) return CAG_OK; // nothing visible
   CagStatus status = cag_gltf_accessor(g, position, 3, &out->positions, err);
   out->has_normals = !status && normal != SIZE_MAX;
   if (out->has_normals) status = cag_gltf_accessor(g, normal, 3, &out->normals, err);
@@ -262,7 +264,7 @@ static CagStatus count_mesh(CagGltf *g, size_t mesh, const CagTransform *place, 
     CagStatus status = read_primitive(g, item, &p, err);
     if (status) return status;
     if (p.triangles == 0) continue;
-    // Data without a view are zeros that the file's size does not bound.
+    // Data without a view are zeros, whose number is not limited by the size of the file.
     if (p.positions.count > UINT32_MAX || t->vertices > UINT32_MAX)
       return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                            "it has more than %lu vertices; divide it", (unsigned long)UINT32_MAX);
@@ -276,7 +278,7 @@ static CagStatus count_mesh(CagGltf *g, size_t mesh, const CagTransform *place, 
 
 // --- Filling ---
 
-// Numbers of an accessor into every `step` doubles.
+// Copies the numbers of an accessor.
 static void copy_numbers(const CagGltfAccessor *a, double *to, int width) {
   for (size_t i = 0; i < a->count; i++)
     for (int k = 0; k < width; k++) to[i * (size_t)width + (size_t)k] = cag_gltf_number(a, i, k);
@@ -296,7 +298,8 @@ static void copy_vectors(const CagGltfAccessor *a, CagVec3 *to) {
                  cag_gltf_sparse_number(a, i, 2));
 }
 
-// The cofactors of the linear part carry normals, up to their length; a mirror turns them round.
+// Normals are transformed by the cofactors of the linear part, up to their length. A reflection
+// reverses them.
 static CagVec3 place_normal(const CagTransform *t, CagVec3 n) {
   CagVec3 x = cag_vec3(t->m[0][0], t->m[1][0], t->m[2][0]);
   CagVec3 y = cag_vec3(t->m[0][1], t->m[1][1], t->m[2][1]);
@@ -337,7 +340,7 @@ static CagStatus fill_triangles(CagGltf *g, const Primitive *p, bool mirrored, s
     size_t k[3] = {t, t + 1, t + 2};
     if (p->mode == TRIANGLES) k[0] = 3 * t, k[1] = 3 * t + 1, k[2] = 3 * t + 2;
     else if (p->mode == FAN) k[0] = 0;
-    else if (t % 2) k[0] = t + 1, k[1] = t; // every other triangle of a strip is turned
+    else if (t % 2) k[0] = t + 1, k[1] = t; // every other triangle of a strip is reversed
     for (int j = 0; j < 3; j++) {
       k[j] = corner(p, k[j]);
       if (k[j] >= p->positions.count)

@@ -1,8 +1,9 @@
-// The writer of IGES files.
+// Writer of IGES files.
 //
-// A file is lines of 80 columns in five sections: start, global, directory (two lines an entity),
-// parameters, end. The directory stands before the parameters that it tells the lines of, so both
-// are made in memory first. An entity is known by the number of its first directory line.
+// A file consists of lines of 80 columns in five sections: start, global, directory (two lines per
+// entity), parameters, and end. The directory comes first and contains line numbers of the
+// parameters, so both are made in memory first. An entity is referred to by the number of its first
+// directory line.
 
 #include "interp/formats/iges.h"
 
@@ -13,7 +14,7 @@
 #include "base/memory.h"
 #include "base/utf8.h"
 
-// Columns of parameters in a line; the number of the directory line follows.
+// Columns of parameters in a line, which are followed by the number of the directory line.
 #define PARAMETER_COLUMNS 64
 #define GLOBAL_COLUMNS 72
 
@@ -23,12 +24,12 @@ typedef struct Writer {
   const CagBrep *brep;
   CagAtomicFile *directory, *parameters;
   char line[81];
-  size_t column, width; // of the line being filled
+  size_t column, width; // of the current line
   Pointer entity;       // whose parameters are being written; 0: the global section
   long parameter_lines, first_line, entities;
   int type, form, status;
   Pointer color, name;
-  bool undefined; // whether a number was not finite
+  bool undefined; // a number was not finite
 } Writer;
 
 // --- Lines ---
@@ -44,7 +45,7 @@ static void end_line(Writer *w) {
   w->column = 0;
 }
 
-// A value with its separator stands in one line.
+// A value and its separator must be on the same line.
 static void put_token(Writer *w, const char *text, char separator) {
   size_t n = strlen(text);
   if (w->column + n + 1 > w->width) end_line(w);
@@ -61,7 +62,7 @@ static void put_integer(Writer *w, long x) {
 
 static void put_pointer(Writer *w, Pointer p) { put_integer(w, p); }
 
-// Reals have a point, and an exponent of D is one of double precision.
+// Reals contain a point. The exponent of double precision is written with D.
 static void put_real(Writer *w, double x) {
   char text[40], out[48];
   w->undefined |= !isfinite(x);
@@ -78,7 +79,7 @@ static void put_character(Writer *w, char c) {
   w->line[w->column++] = c;
 }
 
-// The count of the characters stands before them; others than those of ASCII are not known.
+// A string is preceded by its length. Only ASCII characters are supported.
 static void put_string(Writer *w, const char *text) {
   const size_t n = cag_utf8_count(text, strlen(text));
   if (n == 0) {
@@ -104,8 +105,8 @@ static void put_point(Writer *w, CagVec3 p) {
 
 // --- Entities ---
 
-// The digits of the status: hidden, dependence (01: part of another), use (05: in parameters of a
-// surface, 02: definition), hierarchy.
+// The digits of the status: visibility, dependence (01: part of another), use (05: in parameters of
+// a surface, 02: definition), hierarchy.
 enum { FREE = 0, PART = 10000, PART_FLAT = 10500, DEFINITION = 200 };
 
 static Pointer begin(Writer *w, int type, int form, int status) {
@@ -137,7 +138,7 @@ static void end(Writer *w, bool named) {
 static Pointer color(Writer *w, CagColor c) {
   Pointer p = begin(w, 314, 0, DEFINITION);
   const double rgb[3] = {c.r, c.g, c.b};
-  // Hundredths of sRGB, as viewers take it, to 3 places.
+  // Percentages of sRGB, which viewers expect, to 3 decimal places.
   for (int i = 0; i < 3; i++)
     put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1))) / 1e3);
   end(w, false);
@@ -185,7 +186,7 @@ static CagStatus nurbs_curve(Writer *w, const CagCurve *c, bool flat, int use, P
   return CAG_OK;
 }
 
-// Points and weights with u running fastest.
+// Writes control points and weights, with u varying fastest.
 static Pointer nurbs_surface(Writer *w, const CagSurface *s, int status) {
   CagSurfaceNurbsView v = {0};
   cag_surface_nurbs_view(s, &v);
@@ -241,7 +242,7 @@ typedef struct Chain {
   size_t count;
 } Chain;
 
-// Both forms of the curve; map NULL: that of space alone.
+// Adds the curve in space and, unless map is NULL, in the parameters.
 static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *map, Chain *chain,
                          CagError *err) {
   CagCurve *run = NULL, *flat = NULL;
@@ -258,7 +259,7 @@ static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *m
   return status;
 }
 
-// One curve of several, end to end; of one, itself.
+// Joins several curves end to end. A single curve is returned unchanged.
 static Pointer composite(Writer *w, const Pointer *parts, size_t n, int status) {
   if (n == 1) return parts[0];
   Pointer p = begin(w, 102, 0, status);
@@ -279,11 +280,11 @@ static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform
     Pointer flat = map ? composite(w, chain.flat, chain.count, PART_FLAT) : 0;
     Pointer space = composite(w, chain.space, chain.count, PART);
     *out = begin(w, 142, 0, PART);
-    put_integer(w, 0); // made in no particular way
+    put_integer(w, 0); // unspecified way of creation
     put_pointer(w, surface);
     put_pointer(w, flat);
     put_pointer(w, space);
-    put_integer(w, map ? 3 : 2); // both are as good; that of space is
+    put_integer(w, map ? 3 : 2); // both are equally good; or the one in space
     end(w, false);
   }
   cag_free(chain.flat);
@@ -303,7 +304,7 @@ static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
   if (!status) {
     begin(w, 144, 0, FREE);
     put_pointer(w, surface);
-    put_integer(w, 1); // the outer boundary is given
+    put_integer(w, 1); // with an outer boundary
     put_integer(w, (long)f->count - 1);
     for (size_t i = 0; i < f->count; i++) put_pointer(w, loops[i]);
     end(w, true);
@@ -312,7 +313,7 @@ static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
   return status;
 }
 
-// --- The whole ---
+// --- The whole file ---
 
 static CagStatus write_shape(Writer *w, const CagBrepShape *s, CagError *err) {
   const CagBrep *b = w->brep;
@@ -343,7 +344,7 @@ static double largest_coordinate(const CagBrep *b) {
   return most;
 }
 
-// No date: the same scene gives the same bytes.
+// There is no date, so that the output is reproducible.
 static void write_global(Writer *w, const char *script) {
   w->width = GLOBAL_COLUMNS;
   put_string(w, ",");
@@ -352,7 +353,7 @@ static void write_global(Writer *w, const char *script) {
   put_string(w, script);
   put_string(w, "cag " CAG_VERSION);
   put_string(w, "cag " CAG_VERSION);
-  // Bits of an integer, powers and digits of single and double precision.
+  // Bits of integers, exponents and digits of single and double precision.
   const long precision[5] = {32, 38, 6, 308, 15};
   for (int i = 0; i < 5; i++) put_integer(w, precision[i]);
   put_string(w, script);
@@ -373,7 +374,7 @@ static void write_global(Writer *w, const char *script) {
   end_line(w);
 }
 
-// Appends a section made in memory; counts its lines.
+// Appends a section made in memory, and counts its lines.
 static bool append(CagAtomicFile *to, CagAtomicFile *section, CagError *io) {
   char *bytes;
   size_t size;

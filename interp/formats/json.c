@@ -1,7 +1,7 @@
-// The scene as JSON: see the header for the form.
+// Writes the scene as JSON, in the form that the header describes.
 //
-// Written as it goes, since meshes may be large. `open`, `close` and the put functions keep the
-// commas; each value inside an object has its key put first.
+// The output is written immediately, because meshes may be large. `open`, `close`, and the put
+// functions write the commas. The key of each value in an object must be put first.
 
 #include "interp/formats/json.h"
 
@@ -13,14 +13,14 @@
 #include "geom/solid/csg.h"
 #include "geom/tessellate/orient.h"
 
-#define DEPTH_MAX 512 // the form nests to about 12, and set operations of operations by 2 each
+#define DEPTH_MAX 512 // the nesting is about 12, plus 2 for each nested set operation
 
 typedef struct Writer {
   const CagScene *scene;
   CagAtomicFile *file;
   int depth;
-  bool filled[DEPTH_MAX]; // the object or list of this depth has a member
-  bool keyed;             // a key was put and its value is next
+  bool filled[DEPTH_MAX]; // the object or list at this depth has a member
+  bool keyed;             // a key was put, and its value is next
 } Writer;
 
 // --- Tokens ---
@@ -165,7 +165,7 @@ static void put_mesh(Writer *w, const CagMesh *m) {
 
 // --- Curves and regions ---
 
-// Points and weights of homogeneous control points.
+// Writes points and weights from homogeneous control points.
 static void put_control(Writer *w, const double *h, size_t n, int dimension) {
   open(w, "[");
   for (size_t i = 0; i < n; i++, h += 4)
@@ -393,7 +393,7 @@ static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err);
 
 static CagStatus put_operands(Writer *w, const CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
-  const int room = 16; // what a solid without operands nests to
+  const int room = 16; // nesting of a solid without operands
   if (w->depth + room > DEPTH_MAX)
     return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_depth, "", -1,
                     "set operations nest too deep for the file (more than %d); `tessellate` makes "
@@ -447,7 +447,7 @@ static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err) {
 
 // --- Items ---
 
-// What is closed has its normals outward in the file.
+// Closed surfaces have outward normals in the file.
 static CagStatus put_outward_surface(Writer *w, const CagSurface *s, CagError *err) {
   CagSurface *outward;
   CagStatus status = cag_surface_outward(s, &outward, err);

@@ -1,8 +1,9 @@
-// Which parts of an output are another part moved.
+// Finds parts of an output that are congruent.
 //
-// Three vertices far from one line give each mesh a frame. A mesh of as many vertices and triangles
-// whose frame has the same lengths is compared with the other one moved from frame to frame, vertex
-// by vertex. Meshes are looked up by a hash of their counts.
+// Three vertices that are far from collinear define a frame for each mesh. A mesh with the same
+// number of vertices and triangles, whose frame has the same lengths, is compared vertex by vertex
+// with the other mesh after a motion from frame to frame. Meshes are looked up by a hash of their
+// counts.
 
 #include "interp/formats/mesh_copies.h"
 
@@ -10,13 +11,13 @@
 
 #include "base/memory.h"
 
-// Largest difference between a vertex and the moved one, in sizes of the mesh: far above rounding,
-// far below single precision.
+// The largest difference between corresponding vertices, as a fraction of the size of the mesh. It
+// is far above rounding and far below single precision.
 #define SAME 1e-9
-// Difference of unit normals and of parameters that no shading shows.
+// A difference of unit normals and of parameters that is invisible in shading.
 #define SAME_NORMAL 1e-6
-// Meshes of the same counts and another shape that are looked at before a mesh is taken for new:
-// a thousand balls of different sizes are not compared each with each.
+// The maximum number of meshes with the same counts but different shapes that are compared with a
+// mesh. A thousand balls of different sizes are not compared pairwise.
 #define CANDIDATES 32
 
 #define NONE SIZE_MAX
@@ -33,18 +34,18 @@ typedef struct Finder {
   CagMeshCopy *copies;
   Frame *frames; // of originals
   size_t *slots; // hash -> the last original, NONE
-  size_t *next;  // of an original: the one before it
+  size_t *next;  // of an original: the previous one
   size_t mask;
 } Finder;
 
-// Of what a motion leaves; the triangles may differ in diagonals.
+// Hashes what a motion preserves. Triangles may differ in diagonals.
 static size_t hash(const CagMesh *m, const CagMaterial *material) {
   uint64_t h = m->vertex_count * 0x9e3779b97f4a7c15u + m->triangle_count; // any odd constant
   h ^= (uintptr_t)material * 0xc2b2ae3d27d4eb4fu;
   return (size_t)(h ^ h >> 32);
 }
 
-// The frame of three corners; false where they lie on one line.
+// Computes the frame of three corners. Returns false if they are collinear.
 static bool frame_of(const CagMesh *m, Frame *f) {
   const double least = 1e-6; // sine of the angle between the sides
   CagVec3 a = m->positions[f->corner[0]];
@@ -83,10 +84,10 @@ static bool choose_frame(const CagMesh *m, Frame *f) {
   return frame_of(m, f);
 }
 
-// The motion from frame a to frame b. One that only carries is exactly so.
+// Computes the motion from frame a to frame b. A translation is exact.
 static CagTransform motion(const Frame *a, const Frame *b) {
   CagTransform t = cag_transform_identity();
-  const double straight = 1e-12; // turns below this are rounding
+  const double straight = 1e-12; // smaller rotations are rounding errors
   bool turned = false;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
@@ -133,7 +134,7 @@ static bool names(const uint32_t *six, uint32_t v) {
   return false;
 }
 
-// Two triangles each: the same quad with the other diagonal?
+// Tests whether two pairs of triangles are the same quad with different diagonals.
 static bool same_quad(const uint32_t *a, const uint32_t *b) {
   for (int k = 0; k < 6; k++)
     if (!names(b, a[k]) || !names(a, b[k])) return false;
@@ -158,7 +159,7 @@ static bool same_triangles(const CagMesh *a, const CagMesh *b) {
   return true;
 }
 
-// Is part i a copy of original k? Fills in the copy.
+// Tests whether part i is a copy of original k, and sets the copy.
 static bool try_original(Finder *f, size_t i, size_t k) {
   const CagMesh *a = f->parts[k].mesh, *b = f->parts[i].mesh;
   if (f->same_material && f->parts[k].material != f->parts[i].material) return false;
@@ -182,7 +183,7 @@ static void find_one(Finder *f, size_t i) {
   size_t looked = 0;
   for (size_t k = *slot; k != NONE && looked < CANDIDATES; k = f->next[k], looked++)
     if (try_original(f, i, k)) return;
-  if (!choose_frame(m, &f->frames[i])) return; // on one line: copies of it are not looked for
+  if (!choose_frame(m, &f->frames[i])) return; // collinear vertices: copies are not detected
   f->next[i] = *slot;
   *slot = i;
 }

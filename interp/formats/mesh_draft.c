@@ -1,8 +1,8 @@
-// What the readers of mesh formats share: a mesh as it grows, and the places of errors.
+// Internals of the readers of mesh formats: a growing mesh, and the locations of errors.
 //
-// Finishing finds the vertices that lie at one place by a hash of their coordinates, drops
-// triangles that this makes edges, and leaves out vertices that no triangle names. Vertices without
-// attributes become one; those with normals or parameters stay and are welded.
+// Finishing a draft finds coincident vertices by a hash of their coordinates, removes triangles
+// that are thereby degenerate, and removes unused vertices. Coincident vertices without attributes
+// are merged. Those with normals or parameters are kept and welded.
 
 #include "interp/formats/mesh_draft.h"
 
@@ -71,7 +71,7 @@ CagStatus cag_draft_take(CagMeshDraft *d, size_t count, size_t bytes_each, CagEr
   return CAG_OK;
 }
 
-// Makes *items, NULL or of `before` elements, one of n with zeros behind.
+// Grows *items, NULL or an array of `before` elements, to n elements, and zeroes the new ones.
 static bool grow(void **items, size_t before, size_t n, size_t size) {
   if (!*items) before = 0;
   char *larger = cag_realloc(*items, (n + 1) * size);
@@ -160,14 +160,15 @@ static uint64_t mix(uint64_t h) {
 
 static uint64_t bits_of(double x) {
   uint64_t bits;
-  x += 0.0; // a negative zero is the same place as a positive one
+  x += 0.0; // negative and positive zero are equal
   memcpy(&bits, &x, sizeof bits);
   return bits;
 }
 
 static bool same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// first[v]: the first vertex with v's position, of those that triangles name; NO_VERTEX of others.
+// Sets first[v] to the first vertex with v's position among those that triangles use, or NO_VERTEX
+// if v is not used.
 static CagStatus find_points(CagMeshDraft *d, uint32_t *first, CagError *err) {
   size_t size = 1024;
   while (size < d->vertex_count + d->vertex_count / 2) size *= 2;
@@ -192,7 +193,7 @@ static CagStatus find_points(CagMeshDraft *d, uint32_t *first, CagError *err) {
   return CAG_OK;
 }
 
-// Leaves out the triangles that have a point twice.
+// Removes the triangles that contain a point twice.
 static void drop_shrunk(CagMeshDraft *d, const uint32_t *first) {
   size_t kept = 0;
   for (size_t t = 0; t < d->triangle_count; t++) {
@@ -204,9 +205,9 @@ static void drop_shrunk(CagMeshDraft *d, const uint32_t *first) {
   d->triangle_count = kept;
 }
 
-// Unit normals; where the file says none or one of no direction, those of the faces around.
+// Normalizes normals. Missing and zero normals are computed from the adjacent faces.
 static CagStatus complete_normals(CagMeshDraft *d, CagError *err) {
-  const double least = 1e-6; // length below which a normal is none; files have unit ones
+  const double least = 1e-6; // shorter normals count as missing; files have unit normals
   CagStatus status = cag_draft_take(d, d->vertex_count + 1, sizeof(bool), err);
   if (status) return status;
   bool *said = cag_malloc(d->vertex_count + 1), all = true;
@@ -233,8 +234,8 @@ static CagStatus complete_normals(CagMeshDraft *d, CagError *err) {
   return CAG_OK;
 }
 
-// Leaves out the vertices that no triangle names. first: as found, becomes of no use. weld, NULL
-// for a mesh whose vertices are its points: of the vertices that stay.
+// Removes the vertices that no triangle uses. first: from find_points, invalid afterwards. weld:
+// for the remaining vertices; NULL for a mesh whose vertices are its points.
 static void drop_unnamed(CagMeshDraft *d, const uint32_t *first, uint32_t *number, uint32_t *weld) {
   memset(number, 0xff, d->vertex_count * sizeof *number);
   for (size_t k = 0; k < 3 * d->triangle_count; k++) number[d->triangles[k]] = 0;
@@ -248,7 +249,7 @@ static void drop_unnamed(CagMeshDraft *d, const uint32_t *first, uint32_t *numbe
     number[v] = (uint32_t)n++;
   }
   for (size_t k = 0; k < 3 * d->triangle_count; k++) d->triangles[k] = number[d->triangles[k]];
-  // A point is named by its first vertex that stays.
+  // A point is represented by its first remaining vertex.
   memset(number, 0xff, d->vertex_count * sizeof *number);
   for (size_t v = 0; weld && v < n; v++) {
     uint32_t *name = &number[weld[v]];
@@ -267,7 +268,7 @@ static CagStatus fail_empty(const CagMeshDraft *d, CagError *err) {
                                  d->vertex_count);
 }
 
-// Welds and thins the draft; `first` and `number` have an element a vertex.
+// Welds the draft and removes unused parts. `first` and `number` have an element for each vertex.
 static CagStatus tidy(CagMeshDraft *d, uint32_t *first, uint32_t *number, uint32_t **weld,
                       CagError *err) {
   CagStatus status = find_points(d, first, err);
@@ -299,7 +300,7 @@ CagStatus cag_draft_finish(CagMeshDraft *d, CagMesh **out, CagError *err) {
     cag_free(weld);
     return status;
   }
-  // The mesh takes over what the draft has.
+  // The mesh takes over the arrays of the draft.
   cag_free(m->positions);
   cag_free(m->triangles);
   m->vertex_count = d->vertex_count;

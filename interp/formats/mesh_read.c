@@ -1,7 +1,7 @@
-// Mesh files of other programs: telling the format.
+// Detecting the format of mesh files.
 //
-// The content decides where it can (PLY and GLB begin with a mark, a binary STL has exactly the
-// length that it says); then the ending of the name; then the first words.
+// The contents decide if possible: PLY and GLB start with a signature, and a binary STL has exactly
+// the length stated in its header. Otherwise, the extension decides, and then the first words.
 
 #include "interp/formats/mesh_read.h"
 
@@ -21,7 +21,7 @@ static bool ends(const CagMeshFile *f, const char *ending) {
   return n > k && strcasecmp(f->name + n - k, ending) == 0;
 }
 
-// Does the text begin, comments left out, with a word that files of points and faces have?
+// Tests whether the text starts, after comments, with a keyword of OBJ files.
 static bool looks_like_obj(const CagMeshFile *f) {
   static const char *const words[] = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
   CagTextScan s = {f->bytes, f->bytes + f->size};

@@ -1,4 +1,5 @@
-// What the mesh formats share: numbers as text and as bytes, vertices in single precision.
+// Internals of the writers of mesh formats: numbers as text and as bytes, and vertices in single
+// precision.
 
 #include "interp/formats/mesh_write.h"
 
@@ -31,7 +32,7 @@ char *cag_mesh_write_index(char *at, uint64_t n) {
 
 enum { DIGITS = 9 };
 
-// Decimals of x < 10^9 so that it has DIGITS significant digits.
+// Returns the number of decimals of x < 10^9 for DIGITS significant digits.
 static int decimals_of(double x) {
   static const double bound[] = {1e8, 1e7, 1e6, 1e5, 1e4, 1e3, 1e2, 1e1, 1, 1e-1, 1e-2, 1e-3, 1e-4};
   int k = 0;
@@ -39,8 +40,8 @@ static int decimals_of(double x) {
   return k;
 }
 
-// The digits of a fraction of `decimals` digits, without trailing zeros; from the back, so that
-// zeros are dropped as they come.
+// Writes the digits of a fraction with `decimals` digits, without trailing zeros, starting from the
+// end.
 static char *write_fraction(char *at, uint64_t fraction, int decimals) {
   while (decimals > 0 && fraction % 10 == 0) fraction /= 10, decimals--;
   for (char *to = at + decimals; to > at; fraction /= 10) *--to = (char)('0' + fraction % 10);
@@ -105,7 +106,7 @@ static CagStatus fail_range(const CagMeshPart *part, CagError *err) {
   return CAG_OK;
 }
 
-// Numbers are taken as one row of 3 n, in steps of 12, so that the compiler makes vectors of them.
+// Numbers are processed as one row of 3 n, in steps of 12, so that the compiler can vectorize.
 enum { LANES = 12 };
 
 static void widen(const double *x, float least[LANES], float most[LANES], int n) {
@@ -127,7 +128,7 @@ CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], 
   for (int j = 0; j < LANES; j++) low[j] = INFINITY, high[j] = -INFINITY;
   int good = 1;
   for (; k + LANES <= n; k += LANES) {
-    // + 0: a negative zero is the same place as a positive one.
+    // + 0: makes a negative zero positive.
     for (int j = 0; j < LANES; j++) p[k + (size_t)j] = (float)x[k + (size_t)j] + 0.0f;
     for (int j = 0; j < LANES; j++) good &= fabs(x[k + (size_t)j]) <= FLT_MAX;
     widen(x + k, low, high, LANES);

@@ -18,7 +18,7 @@ static char *put_text(char *at, const char *text) {
   return at + n;
 }
 
-// One line: a word and its numbers.
+// Writes one line: a word and its numbers.
 static char *put_line(char *at, const char *word, const double *x, int n) {
   at = put_text(at, word);
   for (int k = 0; k < n; k++) {
@@ -29,12 +29,12 @@ static char *put_line(char *at, const char *word, const double *x, int n) {
   return at;
 }
 
-// The materials of the parts. Names in the file are unique: that of a material whose name an
-// earlier one has gets the number of the first part that wears it.
+// The materials of the parts. Names in the file are unique: a material whose name is already taken
+// gets the number of the first part that uses it as a suffix.
 typedef struct ObjMaterials {
   CagMaterialList list;
-  size_t *of;    // number of each part's material
-  size_t *first; // part that wears each material first
+  size_t *of;    // index of each part's material
+  size_t *first; // the first part that uses each material
   bool *taken;   // an earlier material has the name
 } ObjMaterials;
 
@@ -48,7 +48,7 @@ static void free_materials(ObjMaterials *m) {
 
 static const char *material_name(const CagMaterial *m) { return m->name ? m->name : "material"; }
 
-// Marks the materials whose names are taken. Those without a name take none.
+// Marks the materials whose names are taken. Materials without a name take none.
 static bool mark_taken(ObjMaterials *m) {
   CagHashIndex names = {0};
   bool good = true;
@@ -130,7 +130,7 @@ static void write_normals(const CagMesh *m, CagAtomicFile *file) {
   }
 }
 
-// Corners are point/parameters/normal, with what the mesh has.
+// Corners are point/parameters/normal, as far as the mesh has them.
 static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCounts *before,
                         CagAtomicFile *file) {
   for (size_t t = 0; t < m->triangle_count && !cag_stopped();) {
@@ -154,7 +154,7 @@ static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCount
   }
 }
 
-// materials: NULL: none are written.
+// materials: NULL if none are written.
 static CagStatus write_part(const CagMeshPart *parts, size_t i, const ObjMaterials *materials,
                             ObjCounts *counts, CagAtomicFile *file, CagError *err) {
   const CagMesh *m = parts[i].mesh;
@@ -213,10 +213,10 @@ static void write_value(CagAtomicFile *file, const char *word, double x) {
 }
 
 static void write_material(const CagMaterial *m, CagAtomicFile *file) {
-  // Phong's exponent with highlights as wide as those of the roughness: 2 / roughness^4 - 2.
+  // Phong's exponent for highlights of the same width as the roughness: 2 / roughness^4 - 2.
   const double most_shiny = 1000;
   double alpha = fmax(m->roughness * m->roughness, 0.04);
-  // A dielectric reflects ((n - 1)/(n + 1))^2 of light that meets it square, a metal its color.
+  // A dielectric reflects ((n - 1)/(n + 1))^2 of light at normal incidence, and a metal its color.
   double f0 = (m->ior - 1) / (m->ior + 1);
   CagColor mirror = {f0 * f0 + (m->color.r - f0 * f0) * m->metallic,
                      f0 * f0 + (m->color.g - f0 * f0) * m->metallic,

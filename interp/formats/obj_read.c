@@ -1,9 +1,9 @@
-// Wavefront OBJ: points, parameters, normals and polygons of all groups.
+// Reads Wavefront OBJ: points, parameters, normals, and polygons of all groups.
 //
-// A corner of a face names a point and, where given, parameters and a normal; each such triple is a
-// vertex of the mesh, found again by a hash. Numbers count from 1, negative ones back from the last
-// that was read. A first pass counts, so that the arrays are made once; words of curves, surfaces,
-// groups and materials are stepped over.
+// A corner of a face refers to a point and optionally to parameters and a normal. Each such triple
+// is a vertex of the mesh, found by a hash. Indices count from 1; negative ones count back from the
+// last element read. A first pass counts, so that the arrays are allocated once. Curves, surfaces,
+// groups, and materials are skipped.
 
 #include <string.h>
 
@@ -16,7 +16,7 @@ typedef struct Counts {
   size_t points, parameters, normals, faces;
 } Counts;
 
-// A corner as numbers from 1; 0: none.
+// A corner as indices from 1; 0: none.
 typedef struct Corner {
   uint32_t point, parameters, normal;
 } Corner;
@@ -30,7 +30,7 @@ typedef struct Obj {
   Corner *corners; // of each vertex of the draft
   uint32_t *slots; // hash of a corner -> its vertex + 1; 0: free
   size_t slot_count;
-  uint32_t *face; // vertices of one
+  uint32_t *face; // vertices of the current face
   size_t face_room;
 } Obj;
 
@@ -43,7 +43,7 @@ static void count(Obj *o) {
     else if (n == 2 && !memcmp(word, "vt", 2)) o->all.parameters++;
     else if (n == 2 && !memcmp(word, "vn", 2)) o->all.normals++;
     else if (n == 1 && *word == 'f') o->all.faces++;
-    if (*word == '#') // of a comment no end of line is escaped
+    if (*word == '#') // comments have no continuation lines
       while (s.at < s.end && *s.at != '\n' && *s.at != '\r') s.at++;
     cag_scan_blanks(&s);
     while (!cag_scan_at_line_end(&s)) cag_scan_word(&s, &word);
@@ -104,7 +104,7 @@ static CagStatus read_normal(Obj *o, CagError *err) {
 
 // --- Faces ---
 
-// `count`: of all in the file, `read`: up to here.
+// `count`: of all in the file; `read`: so far.
 static CagStatus read_index(Obj *o, size_t count, size_t read, const char *noun, uint32_t *out,
                             CagError *err) {
   int64_t k = 0;
@@ -162,7 +162,7 @@ static uint32_t *find_slot(Obj *o, Corner c) {
   return &o->slots[at];
 }
 
-// Room for twice as many vertices, and a hash twice as large as these.
+// Doubles the room for vertices and the hash.
 static CagStatus grow(Obj *o, CagError *err) {
   CagMeshDraft *d = o->draft;
   size_t room = d->vertex_room ? 2 * d->vertex_room : 1024, slots = 2 * room;
@@ -193,7 +193,7 @@ static CagStatus vertex_of(Obj *o, Corner c, uint32_t *out, CagError *err) {
     size_t v = d->vertex_count++;
     *slot = (uint32_t)v + 1;
     o->corners[v] = c;
-    // A point may stand behind the faces that name it: filled in at the end.
+    // A point may come after the faces that refer to it, so positions are set at the end.
     d->positions[v] = cag_vec3(0, 0, 0);
   }
   *out = *slot - 1;
@@ -215,7 +215,7 @@ static CagStatus read_face(Obj *o, CagError *err) {
     }
     if (!status) status = vertex_of(o, c, &o->face[n], err);
     if (status) break;
-    // The triangulation looks at the positions.
+    // The triangulation needs the positions.
     if (c.point <= o->read.points) o->draft->positions[o->face[n]] = o->points[c.point - 1];
     n++;
   }

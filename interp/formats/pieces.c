@@ -8,8 +8,8 @@
 #include "base/memory.h"
 
 #define DEGREE_MAX 3
-// Points are the same, or a line is straight, to this part of the curve's size: rounding of the
-// knot insertions below.
+// Points count as equal, and a line as straight, up to this fraction of the curve's size, which
+// allows for rounding in the knot insertions below.
 #define SAME 1e-9
 
 bool cag_pieces_add(CagPieces *p, const CagVec3 cubic[4]) {
@@ -34,9 +34,9 @@ static void elevate(const CagVec3 *b, int degree, CagVec3 out[4]) {
   memcpy(out, c, sizeof c);
 }
 
-// The polar form of the span [knots[i], knots[i + 1]] at the arguments a[0..degree): de Boor with
-// another argument at each level. Bezier point k is that of degree - k times the span's start and k
-// times its end (Ramshaw).
+// Evaluates the polar form of the span [knots[i], knots[i + 1]] at the arguments a[0..degree): de
+// Boor's algorithm with a different argument at each level. The arguments of Bezier point k are
+// degree - k times the span's start and k times its end (Ramshaw).
 static CagVec3 blossom(const CagNurbsView *v, size_t i, const double *a) {
   CagVec3 d[DEGREE_MAX + 1];
   int p = v->degree;
@@ -91,7 +91,7 @@ static bool nearly(CagVec3 a, CagVec3 b, double size) {
   return cag_norm(cag_sub(a, b)) <= SAME * size;
 }
 
-// True when the pieces are the curve: a guard against kinds whose NURBS form is not what is drawn.
+// Tests whether the pieces equal the curve, in case its NURBS form differs from the curve itself.
 static bool pieces_are_curve(const CagPieces *p, const CagCurve *c) {
   CagError err;
   CagVec3 from, to;

@@ -1,5 +1,5 @@
-// Binary PLY, little-endian: a list of vertices with normals, parameters and colors, and one of
-// triangles. The vertices of a point are one vertex unless their normals differ, as at a sharp
+// Writes binary PLY, little-endian: a list of vertices with normals, parameters, and colors, and a
+// list of triangles. The vertices of a point are merged unless their normals differ, as at a sharp
 // edge.
 
 #include "base/memory.h"
@@ -12,14 +12,14 @@ enum { VERTEX_BYTES = 8 * 4 + 3, FACE_BYTES = 1 + 3 * 4, BATCH = 1024 };
 
 typedef struct PlyPart {
   float *positions;
-  uint32_t *number; // of a vertex in the file; NULL: its own, from `first` on
+  uint32_t *number; // of each vertex in the file; NULL: consecutive, from `first` on
   CagVec3 *sums;    // normals of the points of a mesh without normals
   size_t first, vertices, triangles;
 } PlyPart;
 
 static uint32_t point_of(const CagMesh *m, size_t v) { return m->weld ? m->weld[v] : (uint32_t)v; }
 
-// Normals of the points of a mesh without normals: those of their triangles together.
+// Sums up the normals of the triangles at each point, for a mesh without normals.
 static bool sum_normals(const CagMesh *m, PlyPart *p) {
   if (m->normals) return true;
   p->sums = cag_malloc((m->vertex_count + 1) * sizeof *p->sums);
@@ -37,7 +37,7 @@ static bool sum_normals(const CagMesh *m, PlyPart *p) {
   return true;
 }
 
-// True when each vertex is a point of its own.
+// Tests whether each vertex is a separate point.
 static bool is_plain(const CagMesh *m) {
   size_t v = 0;
   while (m->weld && v < m->vertex_count && m->weld[v] == v) v++;
@@ -49,8 +49,8 @@ static bool same_normal(const CagMesh *m, size_t a, size_t b) {
   return !m->normals || cag_dot(m->normals[a], m->normals[b]) >= same_direction;
 }
 
-// Numbers the vertices, those alike with one number. Numbers ascend from `first` on. `next` leads
-// from a point's vertex to the other vertices of the point that have numbers of their own.
+// Numbers the vertices in ascending order from `first`; equal vertices get the same number. `next`
+// links a point's vertex to the other vertices of the point that have their own numbers.
 static void number_vertices(const CagMesh *m, PlyPart *p, uint32_t *next) {
   p->vertices = 0;
   for (size_t v = 0; v < m->vertex_count; v++) {
@@ -125,7 +125,7 @@ static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicF
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * VERTEX_BYTES);
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
     for (; v < end; v++) {
-      if (p->number && p->number[v] != number) continue; // one like it is written
+      if (p->number && p->number[v] != number) continue; // an equal one has been written
       number++;
       if (m->scale.kind) color_bytes(cag_color_scale_at(&m->scale, m->uv[2 * v]), rgb);
       CagVec3 n = p->sums ? cag_unit(p->sums[v]) : m->normals[v];

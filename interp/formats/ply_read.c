@@ -1,9 +1,9 @@
-// PLY: as text, little-endian and big-endian.
+// Reads PLY as text, little-endian, or big-endian.
 //
-// The header lists elements, each with properties that are numbers or lists of numbers, of eight
-// types. Wanted are the elements `vertex` (x y z, nx ny nz, parameters), `face` and `tristrips`
-// (strips with -1 between them); all else is stepped over. What an element takes at least in the
-// file is known from its properties, so counts are checked against the rest of the file before
+// The header lists elements, whose properties are numbers or lists of numbers, of eight types. The
+// elements `vertex` (x y z, nx ny nz, parameters), `face`, and `tristrips` (strips separated by -1)
+// are read, and others are skipped. The minimum size of an element in the file follows from its
+// properties, so counts are checked against the rest of the file before anything is read.
 // anything is read.
 
 #include <string.h>
@@ -18,7 +18,7 @@ enum { ELEMENTS_MAX = 64, PROPERTIES_MAX = 256 };
 typedef enum NumberType { I8, U8, I16, U16, I32, U32, F32, F64, NO_TYPE } NumberType;
 static const size_t type_size[] = {1, 1, 2, 2, 4, 4, 4, 8};
 
-// What a property is to a mesh.
+// The meaning of a property for a mesh.
 typedef enum Role { X, Y, Z, NX, NY, NZ, U, V, CORNERS, OTHER } Role;
 #define VERTEX_ROLES CORNERS // those before it
 
@@ -39,12 +39,12 @@ typedef enum Format { TEXT, LITTLE, BIG } Format;
 typedef struct Ply {
   CagMeshDraft *draft;
   Format format;
-  CagTextScan scan; // of a binary file `at` and `end` alone
+  CagTextScan scan; // of a binary file, only `at` and `end` are used
   Element elements[ELEMENTS_MAX];
   size_t element_count;
   Property properties[PROPERTIES_MAX];
   size_t property_count;
-  uint32_t *corners; // of one list
+  uint32_t *corners; // of the current list
   size_t corner_room;
 } Ply;
 
@@ -193,13 +193,13 @@ static double decode(const unsigned char *b, NumberType type, bool big) {
   }
 }
 
-// The next number. False: the file ends, or there is none at p->scan.at.
+// Reads the next number. Returns false if the file ends, or there is no number at p->scan.at.
 static bool next_number(Ply *p, NumberType type, double *x) {
   if (p->format == TEXT) {
     const char *word;
     if (!cag_scan_to_word(&p->scan)) return false;
     if (cag_scan_number(&p->scan, x)) return true;
-    // "nan" and "inf", which some programs write where a value is not known.
+    // "nan" and "inf", which some programs write for unknown values.
     CagTextScan before = p->scan;
     size_t n = cag_scan_word(&p->scan, &word);
     if (n > 0 && (*word == '-' || *word == '+')) word++, n--;
@@ -229,7 +229,7 @@ static CagStatus fail_number(Ply *p, size_t i, CagError *err) {
 
 // --- Elements ---
 
-// Reads a list's count; at most what the rest of the file can hold.
+// Reads the count of a list, which must fit in the rest of the file.
 static CagStatus read_count(Ply *p, const Property *q, size_t i, size_t *count, CagError *err) {
   double x;
   if (!next_number(p, q->count_type, &x)) return fail_number(p, i, err);
@@ -277,7 +277,7 @@ static CagStatus read_vertex(Ply *p, const Element *e, size_t i, CagError *err) 
   return CAG_OK;
 }
 
-// Strips with -1 between them: every other triangle is turned.
+// Adds strips separated by -1. Every other triangle is reversed.
 static CagStatus add_strips(Ply *p, size_t n, CagError *err) {
   CagMeshDraft *d = p->draft;
   size_t in_strip = 0;
@@ -332,7 +332,7 @@ static CagStatus read_other(Ply *p, const Element *e, size_t i, CagError *err) {
   return status;
 }
 
-// Bytes that an element takes at least.
+// Returns the minimum size of an element in bytes.
 static size_t least_size(const Ply *p, const Element *e) {
   size_t n = 0;
   for (size_t k = 0; k < e->property_count; k++) {
@@ -370,7 +370,8 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
                                    "file again",
                                    e->count, least, rest - 1);
   CagStatus status = e->kind == VERTICES ? begin_vertices(p, e, err) : CAG_OK;
-  // Most faces are triangles: their room at once, as far as the file can hold so many.
+  // Most faces are triangles, so room for them is reserved at once, as far as the file can contain
+  // them.
   if (!status && e->kind == FACES) status = cag_draft_triangles(p->draft, e->count, err);
   for (size_t i = 0; !status && i < e->count; i++) {
     status = e->kind == VERTICES ? read_vertex(p, e, i, err) : read_other(p, e, i, err);

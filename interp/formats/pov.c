@@ -1,4 +1,4 @@
-// The order of a POV-Ray file: what it is, settings, camera, light, sky, materials, things.
+// Writes a POV-Ray file in this order: header, settings, camera, lights, sky, materials, items.
 
 #include "interp/formats/pov.h"
 
@@ -13,7 +13,7 @@ static void heading(CagPovWriter *w, const char *text) {
   cag_pov_printf(w, "\n// ---------- %s ----------\n\n", text);
 }
 
-// --- What is drawn and of what ---
+// --- Used items and materials ---
 
 static CagStatus find_closed(const CagItem *item, bool *closed, CagError *err) {
   *closed = item->kind != CAG_ITEM_REGION;
@@ -66,7 +66,7 @@ static void write_settings(CagPovWriter *w) {
   cag_pov_text(w, "}\n");
 }
 
-// --- Things ---
+// --- Items ---
 
 static void write_ground(CagPovWriter *w, const CagItem *item) {
   if (isinf(item->ground_size)) {
@@ -75,7 +75,7 @@ static void write_ground(CagPovWriter *w, const CagItem *item) {
     cag_pov_text(w, "\n}");
     return;
   }
-  const double thickness = 1e-3; // of its size: a slab below its level
+  const double thickness = 1e-3; // as a fraction of its size: a slab below its level
   double half = item->ground_size / 2;
   cag_pov_text(w, "box {\n  ");
   cag_pov_vec(w, cag_vec3(-half, -half, item->ground_z - thickness * item->ground_size));
@@ -153,7 +153,7 @@ static void write_item_comment(CagPovWriter *w, const CagItem *item) {
   cag_pov_comment(w, "", line);
 }
 
-// Opaque in all of its parts?
+// Tests whether all parts are opaque.
 static bool is_opaque(const CagPovWriter *w, const CagItem *item) {
   bool opaque = !w->see_through;
   for (size_t k = 0; k < item->label_count; k++)
@@ -189,10 +189,10 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   if (item->kind == CAG_ITEM_MESH && item->as.mesh->scale.kind && item->as.mesh->triangle_count)
     cag_pov_scale_material(w, item->material, &item->as.mesh->scale);
   else cag_pov_printf(w, "  material { %s }\n", material);
-  // Where the smooth normals of a mesh look away from a ray, the renderer turns them around, and
-  // lights what is behind: black specks. The camera sees no such place (pov_facing.c), but a mirror
-  // may. Of an opaque body what is behind lies in its own shadow, so that light from both sides is
-  // right.
+  // If smooth normals of a mesh point away from a ray, the renderer reverses them and lights the
+  // back side, which causes black specks. This never happens in direct view (pov_facing.c), but may
+  // in a mirror. The back side of an opaque body is in its own shadow, so lighting both sides is
+  // correct.
   if (meshed && closed && is_opaque(w, item)) cag_pov_text(w, "  double_illuminate\n");
   cag_pov_placement(w, "  ", &w->placement);
   cag_pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
@@ -203,14 +203,14 @@ static CagStatus write_items(CagPovWriter *w, const bool *closed, CagError *err)
   for (size_t i = 0; i < w->scene->item_count; i++) {
     if (w->scene->interrupt && *w->scene->interrupt)
       return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
-    if (cag_atomic_file_failed(w->file)) return CAG_OK; // its commit tells
+    if (cag_atomic_file_failed(w->file)) return CAG_OK; // its commit reports the error
     CagStatus status = write_item(w, i, closed[i], err);
     if (status) return status;
   }
   return CAG_OK;
 }
 
-// --- The whole ---
+// --- The whole file ---
 
 static bool make_names(CagPovWriter *w) {
   const CagScene *s = w->scene;
@@ -225,8 +225,9 @@ static bool make_names(CagPovWriter *w) {
   return ok;
 }
 
-// POV-Ray's tolerances are absolute, about 1e-3: between these radii a scene is well above them and
-// well below where doubles get coarse. Another is brought to about 100 by a power of ten.
+// POV-Ray's tolerances are absolute, about 1e-3. Scenes with radii in this range are well above
+// them, and well below the range where doubles are imprecise. Others are scaled to about 100 by a
+// power of ten.
 #define RADIUS_MIN 2.0
 #define RADIUS_MAX 1e6
 
@@ -240,7 +241,7 @@ static void measure(CagPovWriter *w) {
   bool empty = !(b->min.x <= b->max.x);
   w->center = empty ? cag_vec3(0, 0, 0) : cag_lerp(b->min, b->max, 0.5);
   w->radius = empty ? 0 : cag_norm(cag_sub(b->max, b->min)) / 2;
-  if (!(w->radius > 0)) w->radius = 100; // nothing but ground or points: any size will do
+  if (!(w->radius > 0)) w->radius = 100; // only grounds or points: any size is suitable
   w->unit = unit_for(w->radius);
 }
 

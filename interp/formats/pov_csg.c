@@ -1,19 +1,18 @@
-// Set operations of solids as POV-Ray's own.
+// Writes set operations of solids natively.
 //
-// Each operand is written as the object it is: a primitive, a prism, a lathe, a plane, a quadric,
-// an operation again; what has no object of its own becomes a closed mesh2. Operands may stand
-// anywhere, so their placement is part of them.
+// Each operand is written natively as a primitive, a prism, a lathe, a plane, a quadric, or a
+// nested operation. Others become a closed mesh2. Each operand includes its placement.
 //
-// A face that an operand shares with what is taken away from it is neither inside nor outside to
-// the renderer, which then shows parts of it at random. So what is taken away is enlarged about its
-// middle, by so little that no picture shows it.
+// If an operand shares a face with an operand that is subtracted from it, the renderer shows parts
+// of the face at random. So subtracted operands are enlarged about their center by an invisibly
+// small amount.
 
 #include "interp/formats/pov_write.h"
 
 #include "geom/solid/csg.h"
 
-// How much larger what is taken away is: below a pixel of any picture, and well above the
-// renderer's own tolerance, about 1e-6 of the distance.
+// The relative enlargement of subtracted operands: below a pixel of any picture, and well above the
+// renderer's tolerance, about 1e-6 of the distance.
 #define ENLARGED 4e-5
 
 static bool is_operation(const CagSolid *s) {
@@ -21,7 +20,7 @@ static bool is_operation(const CagSolid *s) {
          s->kind == CAG_SOLID_INTERSECTION;
 }
 
-// The mesh as fine as the item's would be.
+// Writes a mesh with the item's tolerance.
 static void write_mesh(CagPovWriter *w, const CagSolid *s) {
   CagItem item = {.kind = CAG_ITEM_SOLID, .as.solid = (CagSolid *)s, .tolerance = w->tolerance};
   CagMesh *m;
@@ -34,7 +33,7 @@ static void write_mesh(CagPovWriter *w, const CagSolid *s) {
   if (status && !w->failure.status) w->failure = err;
 }
 
-// The plane of a half space: inside is where its normal leaves.
+// Writes the plane of a half space. The normal points outward.
 static void write_plane(CagPovWriter *w, const CagQuadric *q, int depth) {
   CagVec3 n = cag_vec3(q->c[6], q->c[7], q->c[8]);
   double length = cag_norm(n);
@@ -45,7 +44,7 @@ static void write_plane(CagPovWriter *w, const CagQuadric *q, int depth) {
   cag_pov_text(w, "\n}");
 }
 
-// Objects that are bodies to the renderer: clipped quadrics and flat pieces are none.
+// Writes objects that are solid for the renderer, which excludes clipped quadrics and flat pieces.
 static bool try_leaf(CagPovWriter *w, const CagSolid *s) {
   const CagSurface *const *faces = (const CagSurface *const *)s->faces;
   switch (s->kind) {
@@ -104,7 +103,7 @@ static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
   cag_pov_text(w, "}");
 }
 
-// An operand with a material of its own has it inside, where that of the whole does not reach.
+// The material of an operand is written inside it, where it overrides that of the whole.
 static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
   char material[64];
   if (!s->label || !w->item || !w->item->label_count) {
@@ -132,7 +131,7 @@ void cag_pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
   for (size_t i = 0; i < s->core->count && !w->failure.status; i++) {
     bool taken = s->kind == CAG_SOLID_DIFFERENCE && i > 0;
     write_operand(w, s->core->operands[i], depth + taken);
-    if (i + 1 == s->core->count) w->depth--; // the line of the closing brace
+    if (i + 1 == s->core->count) w->depth--; // for the line of the closing brace
     cag_pov_text(w, "\n");
   }
   w->in_operation = inside;

@@ -1,12 +1,12 @@
-// Curves, drawn as round lines: a cylinder, a torus, or cylinders with spheres at their joints.
+// Draws curves as tubes: a cylinder, a torus, or cylinders with spheres at their joints.
 
 #include "base/memory.h"
 #include "interp/formats/pov_write.h"
 #include "interp/scene/item_mesh.h"
 
-// Joints of a line turn by at most this, so that the chain looks round.
+// The maximum turn at a joint, so that the chain looks smooth.
 #define TURN_MAX (6 * 3.14159265358979323846 / 180)
-// Largest distance of the chain from the curve, in radii of the line.
+// The chord tolerance, as a fraction of the tube's radius.
 #define SAG 0.05
 
 static void write_joint(CagPovWriter *w, CagVec3 p) {
@@ -15,9 +15,9 @@ static void write_joint(CagPovWriter *w, CagVec3 p) {
   cag_pov_text(w, ", line_radius }");
 }
 
-// A length that the renderer refuses is seen as its end alone.
+// A rod that is too short for the renderer is omitted; only its end is drawn.
 static void write_rod(CagPovWriter *w, CagVec3 p, CagVec3 q) {
-  const double least = 1e-8; // some hundred times the renderer's own limit
+  const double least = 1e-8; // a few hundred times the renderer's own limit
   if (cag_norm(cag_sub(q, p)) * w->unit <= least) {
     write_joint(w, p);
     return;
@@ -39,7 +39,8 @@ static bool is_circle(const CagCurve *c, double *radius, CagTransform *frame) {
   return true;
 }
 
-// Rods and joints along the points; with dashes only what lies in the first half of each period.
+// Writes rods and joints along the points. With dashes, only the first half of each period is
+// drawn.
 static void write_chain(CagPovWriter *w, const CagVec3 *p, size_t n, double dash, bool closed) {
   double run = 0; // length so far
   cag_pov_text(w, "union {\n");
@@ -48,7 +49,7 @@ static void write_chain(CagPovWriter *w, const CagVec3 *p, size_t n, double dash
     while (done < length) {
       double left = dash > 0 ? dash - fmod(run, dash) : length - done;
       double step = fmin(left, length - done);
-      if (step <= length * 1e-12) step = fmin(dash, length - done); // at a boundary, to rounding
+      if (step <= length * 1e-12) step = fmin(dash, length - done); // at a boundary, up to rounding
       bool drawn = dash <= 0 || fmod(floor((run + step / 2) / dash), 2) == 0;
       if (drawn) {
         cag_pov_text(w, "  ");

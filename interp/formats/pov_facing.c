@@ -1,38 +1,38 @@
-// Normals of meshes at the outline, as the camera sees it.
+// Adjusts normals of meshes at the silhouette, as seen by the camera.
 //
-// A triangle that faces the camera near the outline may have corners whose smooth normals look away
-// from it. POV-Ray turns such a normal around, and shades the side that is not seen: dark pixels
-// along the outline. The corners of these triangles get vertices of their own, whose normals are
-// turned towards the camera, or away from it where the triangle shows its back, by the smallest
-// angle that will do. A mirror may still show such pixels.
+// A triangle near the silhouette that faces the camera may have corners whose smooth normals point
+// away from it. POV-Ray reverses such a normal and shades the invisible side, which causes dark
+// pixels along the silhouette. The corners of these triangles get separate vertices, whose normals
+// are rotated by the smallest sufficient angle toward the camera, or away from it if the back of
+// the triangle is visible. Mirrors may still show such pixels.
 
 #include <string.h>
 
 #include "interp/formats/pov_write.h"
 
-// The cosine that is left between a normal and a ray along the surface: above the rounding of
-// normals, which are written with five decimals, and of single precision in the renderer.
+// The minimum cosine between a normal and a ray: above the rounding of normals, which are written
+// with five decimals, and of single precision in the renderer.
 #define FACING_MARGIN 1e-4
 
 typedef struct Viewer {
-  CagVec3 eye, direction; // direction: of all rays, of an orthographic camera
+  CagVec3 eye, direction; // direction: of all rays of an orthographic camera
   bool parallel;
-  double lens; // its radius
+  double lens; // radius of the lens
 } Viewer;
 
 static CagVec3 ray_to(const Viewer *v, CagVec3 p) {
   return v->parallel ? v->direction : cag_sub(p, v->eye);
 }
 
-// 1 if the triangle shows the camera the side that its normals point to, else -1.
+// Returns 1 if the camera sees the side of the triangle to which its normals point, else -1.
 static double side_seen(const CagVec3 p[3], const CagVec3 n[3], CagVec3 view) {
   const CagVec3 g = cag_cross(cag_sub(p[1], p[0]), cag_sub(p[2], p[0]));
   const CagVec3 mean = cag_add(cag_add(n[0], n[1]), n[2]);
   return (cag_dot(g, mean) < 0) == (cag_dot(g, view) < 0) ? -1 : 1;
 }
 
-// Turns the corners' normals, so that those between them are on the same side of all rays to the
-// triangle. Gives the corners that were turned, as bits.
+// Rotates the normals of the corners, so that all normals between them are on the same side of all
+// rays to the triangle. Returns the rotated corners as bits.
 static unsigned turn_normals(const Viewer *v, const CagVec3 p[3], CagVec3 n[3]) {
   CagVec3 ray[3], view = {0, 0, 0};
   double margin[3];
@@ -43,7 +43,7 @@ static unsigned turn_normals(const Viewer *v, const CagVec3 p[3], CagVec3 n[3]) 
   }
   view = cag_unit(view);
   for (int j = 0; j < 3; j++)
-    if (!(cag_dot(view, ray[j]) > 0)) return 0; // the camera is about to touch it
+    if (!(cag_dot(view, ray[j]) > 0)) return 0; // the camera is too close
   const double side = side_seen(p, n, view);
   unsigned turned = 0;
   for (int i = 0; i < 3; i++) {
@@ -57,7 +57,7 @@ static unsigned turn_normals(const Viewer *v, const CagVec3 p[3], CagVec3 n[3]) 
   return turned;
 }
 
-// The camera in the coordinates of the mesh.
+// Converts the camera to the coordinates of the mesh.
 static bool viewer_of(const CagPovWriter *w, Viewer *v) {
   const CagCamera *c = w->camera;
   const CagTransform frame = cag_camera_frame(c);
@@ -72,7 +72,7 @@ static bool viewer_of(const CagPovWriter *w, Viewer *v) {
   return true;
 }
 
-// The triangle's corners with their normals turned; the corners that were turned, as bits.
+// Returns the triangle's corners with rotated normals, and the rotated corners as bits.
 static unsigned turn_corners(const Viewer *v, const CagMesh *m, size_t t, CagVec3 p[3],
                              CagVec3 n[3]) {
   for (int k = 0; k < 3; k++) {
@@ -83,7 +83,7 @@ static unsigned turn_corners(const Viewer *v, const CagMesh *m, size_t t, CagVec
   return turn_normals(v, p, n);
 }
 
-// A copy with room for more vertices, without weld and labels.
+// Copies a mesh with room for more vertices, without weld and labels.
 static CagStatus roomy_copy(const CagMesh *m, size_t more, CagMesh **out, CagError *err) {
   CagMesh *copy;
   const size_t n = m->vertex_count;

@@ -1,16 +1,17 @@
-// Lathes, prisms and flat polygons.
+// Lathes, prisms, and flat polygons.
 //
-// A lathe is a profile in the half plane (radius, height) turned about its y axis; a prism a plane
-// outline drawn along its y axis. Both take linear and Bezier splines, and both let several closed
-// outlines stand one after the other, so holes come along. Polynomials of degree up to 3 are
-// written as they are, others (arcs, conics, higher degrees) as cubics near them (pov_outline.h).
-// `sor` serves nobody here: its radius is the root of a cubic in the height, which no spline is.
+// A lathe is a profile in the half plane (radius, height), revolved about its y axis. A prism is a
+// plane outline, extruded along its y axis. Both accept linear and Bezier splines, and several
+// closed outlines in sequence, which include holes. Polynomials of degree up to 3 are written
+// exactly, and others (arcs, conics, higher degrees) are approximated by cubics (pov_outline.h).
+// `sor` is not used: its radius is the root of a cubic in the height, which no spline is.
 
 #include <stdlib.h>
 
 #include "interp/formats/pov_outline.h"
 
-// Points are the same, or lie in a plane, to this part of the size: rounding of knot insertions.
+// Points count as equal or coplanar up to this fraction of the size, which allows for rounding of
+// knot insertions.
 #define SAME 1e-9
 
 static bool nearly(CagVec3 a, CagVec3 b, double size) {
@@ -20,9 +21,10 @@ static bool nearly(CagVec3 a, CagVec3 b, double size) {
 // --- Lathes ---
 
 typedef struct Turn {
-  CagVec3 axis, through, out; // out: unit, perpendicular to the axis, in the profile's half plane
+  CagVec3 axis, through, out; // out: a unit vector perpendicular to the axis, in the half plane of
+                              // the profile
   bool has_out;
-  CagTransform map; // the whole is seen through it
+  CagTransform map; // applied to the whole revolution
 } Turn;
 
 #define FULL_TURN (2 * 3.14159265358979323846)
@@ -32,7 +34,7 @@ static CagVec3 radial_part(const Turn *t, CagVec3 p) {
   return cag_madd(d, -cag_dot(d, t->axis), t->axis);
 }
 
-// Takes the pieces to (radius, height); false: they leave the half plane.
+// Converts the pieces to (radius, height). Returns false if they leave the half plane.
 static bool to_half_plane(Turn *t, CagPieces *p) {
   double size = 0;
   CagVec3 farthest = {0, 0, 0};
@@ -59,7 +61,7 @@ static bool same_axis(const Turn *t, CagVec3 axis, CagVec3 through) {
   return fabs(fabs(cag_dot(axis, t->axis)) - 1) < SAME && off <= SAME * (1 + cag_norm(between));
 }
 
-// The faces of one body were all moved alike, so that their maps are equal to the last bit.
+// All faces of a body have exactly the same map.
 static bool same_map(const CagTransform *a, const CagTransform *b) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
@@ -88,7 +90,7 @@ static bool add_profile(CagPovOutline *o, Turn *t, const CagSurface *s) {
   return ok;
 }
 
-// y of the lathe to the axis, x to the profile's side, and on through the map.
+// Maps y of the lathe to the axis and x to the side of the profile, and then applies the map.
 static CagTransform lathe_placement(const Turn *t) {
   CagTransform m = cag_transform_identity();
   CagVec3 x = t->out, y = t->axis, z = cag_cross(x, y);
@@ -111,8 +113,8 @@ bool cag_pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n) {
     cag_pov_outline_tidy(&o);
     cag_pov_text(w, "lathe { // points are (radius, height)\n");
     cag_pov_outline_write(w, &o, "");
-    // Degree 6 is solved by Sturm sequences in any case; pieces that happen to be of degree 2 are
-    // solved in closed form without this, which misses points where the profile stands upright.
+    // Degree 6 always uses Sturm sequences. Without this keyword, pieces that happen to have degree
+    // 2 would be solved in closed form, which misses points where the profile is vertical.
     if (!o.linear) cag_pov_text(w, "  sturm\n");
     CagTransform placement = lathe_placement(&turn);
     cag_pov_placement(w, "  ", &placement);
@@ -122,8 +124,8 @@ bool cag_pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n) {
   return ok;
 }
 
-// A profile of straight lines as open cones and rings, met by rays nearly twice as fast as the same
-// lathe. A shell only, with no inside: for what is no operand of a set operation.
+// Writes a profile of straight lines as open cones and rings, which render almost twice as fast as
+// the same lathe. It is a shell without an inside, so it cannot be an operand of a set operation.
 
 static void write_straight(CagPovWriter *w, CagVec3 a, CagVec3 b, double size) {
   if (fabs(a.x) <= SAME * size && fabs(b.x) <= SAME * size) return; // on the axis
@@ -163,7 +165,7 @@ bool cag_pov_try_cones(CagPovWriter *w, const CagSurface *s) {
 
 // --- Prisms ---
 
-// The straight extrusion's two flat ends: the same region, moved without turning.
+// Finds the two flat ends of a straight extrusion: the same region, translated.
 static bool find_ends(const CagSolid *s, const CagRegion **region, CagTransform *low,
                       CagTransform *high) {
   size_t found = 0;
@@ -188,7 +190,7 @@ static bool next_side(const CagSolid *s, size_t *i) {
   return false;
 }
 
-// The vector from the low end to the high one, as the first side has it.
+// Finds the vector from the low end to the high one, from the first side.
 static bool find_along(const CagSolid *s, const CagTransform *low, const CagTransform *high,
                        CagVec3 *along) {
   CagError err;
@@ -249,7 +251,7 @@ bool cag_pov_try_prism(CagPovWriter *w, const CagSolid *s) {
   for (size_t i = 0; ok && i < region->count; i++) ok = cag_pov_outline_add(&o, region->loops[i]);
   if (ok) {
     cag_pov_outline_tidy(&o);
-    // The outline's x and y stay, and the prism's own y, from 0 to 1, goes along the extrusion.
+    // The x and y of the outline are kept, and the prism's y, from 0 to 1, is along the extrusion.
     CagTransform m = low;
     const CagVec3 columns[3] = {column(&low, 0), along, column(&low, 1)};
     for (int j = 0; j < 3; j++) {

@@ -1,17 +1,18 @@
-// Materials as POV-Ray's `material`: pigment, finish, relief and interior.
+// Writes materials as POV-Ray's `material`: pigment, finish, normal, and interior.
 //
-// A CagMaterial speaks of a rough or smooth surface, metal or not, perhaps glazed. POV-Ray's finish
-// has one mirror (always sharp), one broad highlight (`specular`) and one narrow one (`phong`). So:
+// A CagMaterial is a rough or smooth surface, metallic or not, possibly with a clear coat.
+// POV-Ray's finish has one mirror reflection (always sharp), one broad highlight (`specular`), and
+// one narrow one (`phong`). They are used as follows:
 //
-//   diffuse     what is neither metal nor passed through
-//   specular    the surface's own highlight; as wide as the roughness says
-//   phong       the highlight of the glaze
-//   reflection  fresnel's law of the index of refraction, as far as surface or glaze are smooth; of
-//               metals, their own color. What a rough metal would mirror blurred is shared between
-//               highlight and diffuse
+//   diffuse     the part that is neither metallic nor transmitted
+//   specular    the highlight of the surface; its width follows from the roughness
+//   phong       the highlight of the clear coat
+//   reflection  Fresnel reflection for the index of refraction, as far as the surface or the coat
+//               is smooth; for metals, in their color. The blurred reflection of a rough metal is
+//               divided between highlight and diffuse
 //
-// A material is declared for closed bodies; where light passes through it and something open wears
-// it, once more as a thin sheet that does not bend the light.
+// A material is declared for closed bodies. If it is transparent and an open shape uses it, it is
+// declared again as a thin sheet that does not refract.
 
 #include <stdio.h>
 #include <string.h>
@@ -32,28 +33,29 @@ void cag_pov_material_name(const CagPovWriter *w, size_t index, bool closed, cha
   snprintf(out, 64, "%s%s", w->material_names[index], thin ? "_thin" : "");
 }
 
-// Smoothness at which a sharp mirror image begins to be seen.
+// The roughness below which a sharp reflection is visible.
 #define MIRROR_ROUGHNESS 0.5
-// The specular exponent's inverse that POV-Ray calls roughness; below this a highlight is a pixel.
+// The minimum of POV-Ray's roughness, the inverse of the specular exponent. Below it, a highlight
+// is a single pixel.
 #define SPECULAR_ROUGHNESS_MIN 0.0008
 
-// A mirror image fainter than this is left out.
+// Fainter reflections are omitted.
 #define MIRROR_LEAST 0.01
 
-// Sharp share of the mirror image of a surface of this roughness.
+// Returns the sharp fraction of the reflection for this roughness.
 static double gloss(double roughness) {
   double g = clamp01(1 - roughness / MIRROR_ROUGHNESS);
   return g * g;
 }
 
-// Blinn's exponent of a microfacet slope a = roughness^2 is 2 / a^2 - 2 (Walter et al. 2007), and
-// POV-Ray's roughness its inverse.
+// Blinn's exponent for a microfacet slope a = roughness^2 is 2 / a^2 - 2 (Walter et al. 2007), and
+// POV-Ray's roughness is its inverse.
 static double specular_roughness(double roughness) {
   double a = roughness * roughness;
   return fmax(SPECULAR_ROUGHNESS_MIN, a * a / 2);
 }
 
-// Share of light mirrored at right angles (Fresnel).
+// Returns the fraction of light reflected at normal incidence (Fresnel).
 static double normal_reflectance(double ior) {
   double f = (ior - 1) / (ior + 1);
   return f * f;
@@ -66,7 +68,7 @@ typedef struct Finish {
 
 static Finish finish_of(const CagMaterial *m) {
   double metallic = clamp01(m->metallic), rough = clamp01(m->roughness), coat = clamp01(m->coat);
-  // A mirror's share falls with roughness; what it loses goes to the highlight and to all sides.
+  // The mirror reflection decreases with roughness, in favor of highlight and diffuse reflection.
   double mirror = metallic * 0.95 * pow(1 - rough, 1.5);
   double blurred = metallic - mirror;
   Finish f = {.metal = metallic > 0.5};
@@ -85,12 +87,12 @@ static void write_mirror(CagPovWriter *w, const Finish *f, bool bends) {
   if (f->mirror < MIRROR_LEAST) return;
   if (f->metal) cag_pov_printf(w, "      reflection { %.4g metallic }\n", f->mirror);
   else if (bends) cag_pov_printf(w, "      reflection { 0, %.4g fresnel }\n", f->mirror);
-  else // a thin sheet: Fresnel's law for glass, roughly
+  else // a thin sheet: approximately Fresnel reflection of glass
     cag_pov_printf(w, "      reflection { %.4g, %.4g falloff 4 }\n", 0.05 * f->mirror, f->mirror);
   cag_pov_text(w, "      conserve_energy\n");
 }
 
-// The pigment's color multiplies emission, so it is divided out.
+// Emission is multiplied by the pigment's color, so it is divided by it here.
 static void write_emission(CagPovWriter *w, CagColor pigment, CagColor light) {
   if (brightness(light) <= 0) return;
   cag_pov_text(w, "      emission ");
@@ -114,7 +116,7 @@ static void write_finish(CagPovWriter *w, const CagMaterial *m, CagColor pigment
 // --- Patterns ---
 
 typedef struct Stop {
-  double at, mix, transmit; // place, share of the second color, transparency
+  double at, mix, transmit; // position, fraction of the second color, transparency
 } Stop;
 
 static void write_color_map(CagPovWriter *w, const CagMaterial *m, const Stop *stops, size_t n) {
@@ -131,7 +133,7 @@ static void write_color_map(CagPovWriter *w, const CagMaterial *m, const Stop *s
   write_color_map(w, m, (const Stop[]){__VA_ARGS__},                                               \
                   sizeof((const Stop[]){__VA_ARGS__}) / sizeof(Stop))
 
-// Rings about an axis along X below the ground, slightly bent, and fine fibres over them.
+// Slightly bent rings about an axis along X below the ground, overlaid with fine fibers.
 static void write_wood(CagPovWriter *w, const CagMaterial *m) {
   double s = m->texture_scale;
   cag_pov_text(w, "    pigment {\n      wood\n      turbulence <0.08, 0.08, 0.4> octaves 4\n");
@@ -202,7 +204,7 @@ static void write_plain_pigment(CagPovWriter *w, const CagMaterial *m, CagColor 
 static void write_texture(CagPovWriter *w, const CagMaterial *m, bool bends) {
   const Pattern *pattern = find_pattern(m);
   CagColor c = m->color;
-  if (brightness(m->emission) > 0) { // black cannot be made to shine
+  if (brightness(m->emission) > 0) { // black cannot emit light
     const double least = 0.01;
     c = (CagColor){fmax(c.r, least), fmax(c.g, least), fmax(c.b, least)};
   }
@@ -218,7 +220,7 @@ static void write_texture(CagPovWriter *w, const CagMaterial *m, bool bends) {
   cag_pov_text(w, "  }\n");
 }
 
-// The script's own text: a whole texture, or what stands in one.
+// Writes the script's own text: a whole texture, or the contents of one.
 static void write_own_texture(CagPovWriter *w, const char *text) {
   bool whole = strncmp(text + strspn(text, " \t\r\n"), "texture", 7) == 0;
   cag_pov_text(w, whole ? "  " : "  texture {\n    ");
@@ -226,7 +228,7 @@ static void write_own_texture(CagPovWriter *w, const char *text) {
   cag_pov_text(w, whole ? "\n" : "\n  }\n");
 }
 
-// Fresnel's law and refraction ask the interior.
+// Fresnel reflection and refraction need the interior.
 static bool needs_ior(const CagMaterial *m) {
   Finish f = finish_of(m);
   return m->pov || m->transmission > 0 || (!f.metal && f.mirror >= MIRROR_LEAST);
@@ -263,7 +265,8 @@ void cag_pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *
   cag_pov_text(w, "  }\n");
 }
 
-// Share of a sky's mean color that stands in for its light: corners see less than all of it.
+// The fraction of the sky's mean color that replaces its light, because corners receive less than
+// all of it.
 #define SKY_SHARE 0.5
 #define DIM_WHITE 0.12
 

@@ -1,12 +1,12 @@
 // Meshes as mesh2: vertex_vectors, normal_vectors, face_indices.
 //
-// Numbers are written with a fixed count of decimals that follows from the size of the mesh: a
-// 10^-8th of it for positions, 1e-5 for normals. That is beyond what the renderer resolves, and
-// formats several times faster than shortest numbers.
+// Numbers are written with a fixed number of decimals that depends on the size of the mesh: 1e-8 of
+// it for positions, and 1e-5 for normals. This is finer than the renderer's resolution, and several
+// times faster than the shortest form of numbers.
 //
-// The renderer keeps vertices in single precision. Far from the origin, neighboring triangles would
-// not quite meet, and rays would pass between them. A mesh there is written about a point near its
-// middle, and translated to its place.
+// The renderer stores vertices in single precision. Far from the origin, neighboring triangles
+// would not quite meet, and rays would pass between them. So such a mesh is written relative to a
+// point near its center, and translated.
 
 #include <string.h>
 
@@ -32,7 +32,8 @@ static char *put_unsigned(char *at, uint64_t x) {
   return at;
 }
 
-// x with at most `decimals` places, without trailing zeros. |x| * 10^decimals < INTEGER_MAX.
+// Writes x with at most `decimals` decimals, without trailing zeros. |x| * 10^decimals <
+// INTEGER_MAX.
 static char *put_fixed(char *at, double x, int decimals) {
   int64_t scaled = llround(x * powers_of_ten[decimals]);
   if (scaled < 0) *at++ = '-';
@@ -50,7 +51,7 @@ static char *put_fixed(char *at, double x, int decimals) {
   return at + decimals;
 }
 
-#define VECTOR_ROOM 96 // three numbers of at most 22 characters, and what is between them
+#define VECTOR_ROOM 96 // three numbers of at most 22 characters, with separators
 #define VECTORS_PER_LINE 4
 #define FACES_PER_LINE 8
 
@@ -92,12 +93,12 @@ static void write_faces(CagPovWriter *w, const CagMesh *m) {
   cag_pov_text(w, "\n  }\n");
 }
 
-// Distances from the origin, in radii of the mesh, from which it is written about its middle:
-// single precision is at least twice as fine there.
+// The distance from the origin, in radii of the mesh, from which it is written relative to its
+// center. Single precision is then at least twice as fine.
 #define FAR_RADII 2
 
-// The point that the mesh is written about: the origin, or near the middle of a mesh that is far
-// from it. A multiple of a power of ten, so that few digits are needed.
+// Returns the point relative to which the mesh is written: the origin, or a point near the center
+// of a mesh far from it. It is a multiple of a power of ten, so that few digits are needed.
 static CagVec3 mesh_origin(const CagMesh *m) {
   const CagBounds b = cag_mesh_bounds(m);
   const double radius = cag_norm(cag_sub(b.max, b.min)) / 2;
@@ -108,7 +109,7 @@ static CagVec3 mesh_origin(const CagMesh *m) {
                   cag_pov_round(middle.z, unit));
 }
 
-// Decimals that resolve a 10^-8th of the largest coordinate.
+// Returns the number of decimals that resolve 1e-8 of the largest coordinate.
 static int position_decimals(const CagMesh *m, CagVec3 origin) {
   double largest = 0;
   for (size_t i = 0; i < m->vertex_count; i++) {
@@ -120,8 +121,9 @@ static int position_decimals(const CagMesh *m, CagVec3 origin) {
   return decimals < 0 ? 0 : decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
 
-// The places of the vertices on the scale of colors. They use the middle half of 0..1, where the
-// pattern does not begin anew, so that values beyond the scale stay beyond its colors.
+// Writes the values of the vertices as positions in the pattern of colors. They use the middle half
+// of 0..1, where the pattern does not repeat, so that values outside of the scale get the colors of
+// its ends.
 static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   const int decimals = 7;
   const CagColorScale *s = &m->scale;
@@ -140,7 +142,7 @@ static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   cag_pov_text(w, "\n  }\n");
 }
 
-// The parts of a mesh of several materials, each with its own.
+// Writes the parts of a mesh with several materials, each with its own material.
 static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
   size_t *materials, count;
   CagStatus status = cag_item_materials(w->item, &materials, &count, err);
@@ -172,7 +174,7 @@ static void write_triangles(CagPovWriter *w, const CagMesh *m, CagVec3 origin, i
     write_vectors(w, "normal_vectors", m->normals, m->vertex_count, none, NORMAL_DECIMALS);
   if (m->scale.kind && m->uv) write_scale_places(w, m);
   write_faces(w, m);
-  // Any direction will do that no face is likely to lie along.
+  // Any direction that is unlikely to lie in a face.
   if (w->in_operation) cag_pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
   CagTransform place = cag_transform_identity();
   place.m[0][3] = origin.x;
@@ -185,7 +187,7 @@ static void write_triangles(CagPovWriter *w, const CagMesh *m, CagVec3 origin, i
 CagStatus cag_pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   if (m->labels && w->item && w->item->label_count && !w->in_operation)
     return write_parts(w, m, err);
-  if (m->triangle_count == 0) { // a shape without area: its name stands for something unseen
+  if (m->triangle_count == 0) { // a shape without area: declare its name as an invisible object
     cag_pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
                     "  no_image no_shadow no_reflection\n}");
     return CAG_OK;

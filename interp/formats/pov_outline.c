@@ -8,8 +8,8 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 
-// Distance of what is written from the curve, in parts of its size: far below a pixel of the
-// largest picture (16,384 pixels).
+// The maximum distance of the output from the curve, as a fraction of its size: far below a pixel
+// of the largest picture (16,384 pixels).
 #define NEAR 2e-6
 
 void cag_pov_outline_free(CagPovOutline *o) { cag_free(o->all.points); }
@@ -47,7 +47,7 @@ static bool curve_pieces(const CagCurve *c, CagPieces *out) {
 bool cag_pov_outline_add(CagPovOutline *o, const CagCurve *c) {
   CagPieces p;
   if (!curve_pieces(c, &p)) return false;
-  // Separate outlines are told apart by Bezier pieces only.
+  // Only Bezier splines can contain several outlines.
   if (o->all.count > 0 || !p.linear) o->linear = false;
   bool ok = cag_pieces_append(&o->all, &p);
   cag_free(p.points);
@@ -59,7 +59,8 @@ bool cag_pov_outline_append(CagPovOutline *o, const CagPovOutline *part) {
   return cag_pieces_append(&o->all, &part->all);
 }
 
-// Rounding leaves coordinates such as 3e-17 where 0 is meant: a 10^-13th of the size is no shape.
+// Rounding produces coordinates such as 3e-17 instead of 0. Values below 1e-13 of the size are
+// insignificant.
 void cag_pov_outline_tidy(CagPovOutline *o) {
   double unit = largest(&o->all) * 1e-13;
   for (size_t i = 0; i < 4 * o->all.count; i++) {

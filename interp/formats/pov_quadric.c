@@ -1,17 +1,18 @@
-// Quadric surfaces as `quadric`, cut where the patch ends.
+// Writes quadric surfaces as `quadric`, clipped to the patch.
 //
-// POV-Ray's quadric is the whole surface. A patch of it is written with a box that cuts it: one
-// along the quadric's own axes, one stretched and sheared as the patch was, or one along the axes
-// of the world, whichever has the patch's edges on its faces. Where none does, the patch is no
-// piece that a box cuts out, and becomes a mesh.
+// POV-Ray's quadric is the whole surface. A patch is clipped with a box: one along the quadric's
+// own axes, one that is stretched and sheared as the patch was, or one along the world axes,
+// whichever has the patch's edges on its faces. If there is none, the patch becomes a mesh.
 
 #include <string.h>
 
 #include "interp/formats/pov_write.h"
 
-// An edge lies on a face of the box to this part of its size: what bounds of patches are good for.
+// An edge counts as lying on a face of the box up to this fraction of its size, which is the
+// accuracy of bounds of patches.
 #define ON_FACE 1e-7
-// Faces that cut nothing stand off by this part of the size, so that they do not touch the surface.
+// Faces that do not clip are moved outward by this fraction of the size, so that they do not touch
+// the surface.
 #define CLEARANCE 1e-4
 #define EDGE_SAMPLES 16
 
@@ -22,7 +23,7 @@ typedef struct Cut {
   bool cutting[6]; // min x, y, z, max x, y, z
 } Cut;
 
-// Marks the faces that p, in coordinates of the box, lies on; false: on none.
+// Marks the faces on which p, in coordinates of the box, lies. Returns false if there are none.
 static bool mark_faces(Cut *c, CagVec3 p) {
   const double x[3] = {p.x, p.y, p.z};
   const double low[3] = {c->box.min.x, c->box.min.y, c->box.min.z};

@@ -1,12 +1,12 @@
-// Solids that POV-Ray has objects for.
+// Writes solids for which POV-Ray has objects.
 //
-// Where a solid was only moved and turned, it is written in its own coordinates and the writer's
-// `placement` says where it stands; a scaled or sheared one carries its matrix itself, and so does
-// an operand of a set operation.
+// A solid under a rigid motion is written in its own coordinates, and the writer's `placement`
+// contains the motion. A scaled or sheared solid, and an operand of a set operation, is written
+// with its matrix.
 
 #include "interp/formats/pov_write.h"
 
-// Columns of unit length and perpendicular to each other, to rounding.
+// Tests for orthonormal columns, up to rounding.
 static bool is_rigid(const CagTransform *t) {
   const double rounding = 1e-12;
   for (int j = 0; j < 3; j++)

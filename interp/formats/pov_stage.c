@@ -6,7 +6,8 @@ static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
 }
 
-// A unit direction to 12 places: what is behind them is rounding, and 0 looks better than 6e-17.
+// Rounds a unit direction to 12 decimals, which removes rounding errors: 0 is more readable than
+// 6e-17.
 static CagVec3 tidy(CagVec3 v) {
   const double unit = 1e-12;
   return cag_vec3(cag_pov_round(v.x, unit), cag_pov_round(v.y, unit), cag_pov_round(v.z, unit));
@@ -140,10 +141,9 @@ void cag_pov_camera(CagPovWriter *w) {
 
 // --- Lights ---
 
-// Distance of a sun in radii of the scene: its rays are parallel to 0.06 degrees.
+// The distance of a sun in radii of the scene. Its rays are parallel up to 0.06 degrees.
 #define SUN_DISTANCE 1000.0
-// Its width as seen from the scene, radians; twice that of the real one, for shadows a little
-// softer.
+// The angular diameter of a sun in radians, twice the real one, for slightly softer shadows.
 #define SUN_WIDTH 0.0175
 
 static void any_perpendicular(CagVec3 d, CagVec3 *a, CagVec3 *b) {
@@ -186,7 +186,7 @@ static void write_sun(CagPovWriter *w, const CagLight *l) {
 }
 
 static void write_spot(CagPovWriter *w, const CagLight *l) {
-  const double soft_edge = 0.8; // the cone's inner part that has the full light
+  const double soft_edge = 0.8; // the inner part of the cone with full light
   double half = l->angle / 2 * 180 / 3.14159265358979323846;
   write_light_head(w, l, "spot", l->position);
   cag_pov_printf(w, "  spotlight radius %.6g falloff %.6g point_at ", soft_edge * half, half);
@@ -221,8 +221,8 @@ static void write_quoted(CagPovWriter *w, const char *path) {
   cag_pov_text(w, "\"");
 }
 
-// A panorama stands upright about Z and is seen from inside as it is in the file: POV-Ray's own is
-// about Y and left-handed, so y and z change places.
+// A panorama is upright about Z and not mirrored as seen from inside. POV-Ray's mapping is about Y
+// and left-handed, so y and z are swapped.
 static void write_sky_image(CagPovWriter *w, const char *path) {
   cag_pov_text(w, "sky_sphere {\n  pigment {\n    image_map { exr ");
   write_quoted(w, path);

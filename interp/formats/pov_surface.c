@@ -1,10 +1,11 @@
-// Surfaces that POV-Ray has objects for: bicubic Bezier patches, quadrics, tori, spheres, lathes,
-// flat polygons.
+// Writes surfaces for which POV-Ray has objects: bicubic Bezier patches, quadrics, tori, spheres,
+// lathes, and flat polygons.
 
 #include "geom/surface/reshape.h"
 #include "interp/formats/pov_write.h"
 
-// A sampled point fits a sphere or torus to this part of its size: rounding of the evaluation.
+// A sampled point fits a sphere or torus up to this fraction of its size, which allows for rounding
+// in the evaluation.
 #define FITS 1e-9
 
 #define FULL_TURN (2 * 3.14159265358979323846)
@@ -14,7 +15,7 @@ static bool is_bezier(const CagSurfaceNurbsView *v) {
          v->nv == (size_t)v->degree_v + 1 && v->degree_u <= 3 && v->degree_v <= 3;
 }
 
-// A Bezier patch of degree up to 3, raised to it; flat quadrangles are better off as meshes.
+// Writes a Bezier patch of degree up to 3, elevated to 3. Flat quadrilaterals are better as meshes.
 static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
   CagSurfaceNurbsView v;
   CagError err;
@@ -22,7 +23,7 @@ static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
   if (!cag_surface_nurbs_view(s, &v) || !is_bezier(&v) || v.degree_u + v.degree_v < 3) return false;
   if (cag_surface_elevate(s, 3 - v.degree_u, 3 - v.degree_v, &raised, &err)) return false;
   cag_surface_nurbs_view(raised, &v);
-  // 2^steps cells each way; normals are exact at their corners.
+  // 2^steps cells in each direction; normals are exact at their corners.
   int steps = w->options->quality == CAG_POV_DRAFT ? 3 : 5;
   cag_pov_printf(w, "bicubic_patch {\n  type 1 flatness 0 u_steps %d v_steps %d,\n", steps, steps);
   for (int i = 0; i < 16; i++) {
@@ -36,7 +37,7 @@ static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
   return true;
 }
 
-// --- Tori, by sampling: R, r and the frame follow from a few points, and others must fit ---
+// --- Tori, by sampling: R, r, and the frame follow from a few points, and others must fit ---
 
 typedef struct Ring {
   const CagSurface *s;
@@ -104,7 +105,7 @@ bool cag_pov_try_torus(CagPovWriter *w, const CagSurface *s) {
   return true;
 }
 
-// A half circle about a center on the axis, turned all round.
+// Recognizes a half circle about a center on the axis, revolved by a full turn.
 static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
   const CagCurve *profile;
   double from, to, a, b;

@@ -1,4 +1,4 @@
-// Numbers, vectors, comments and names of POV-Ray's language.
+// Writes numbers, vectors, comments, and names in POV-Ray's language.
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "interp/formats/pov_write.h"
 
 void cag_pov_text(CagPovWriter *w, const char *text) {
-  // Lines of what stands within another object are indented.
+  // Lines within another object are indented.
   for (const char *end; w->depth > 0 && (end = strchr(text, '\n')) != NULL; text = end + 1) {
     cag_atomic_file_write(w->file, text, (size_t)(end + 1 - text));
     for (int i = 0; i < w->depth; i++) cag_atomic_file_text(w->file, "  ");
@@ -81,12 +81,12 @@ void cag_pov_vec2(CagPovWriter *w, double x, double y) {
 
 double cag_pov_round(double x, double unit) {
   double rounded = round(x / unit);
-  // Dividing by the whole number 1/unit gives the double nearest to the decimal.
+  // Dividing by the integer 1/unit gives the double nearest to the decimal.
   return unit < 1 ? rounded / round(1 / unit) : rounded * unit;
 }
 
 void cag_pov_color(CagPovWriter *w, CagColor c) {
-  const double unit = 1e-5; // finer than any display's step
+  const double unit = 1e-5; // finer than the steps of any display
   cag_pov_text(w, "rgb ");
   cag_pov_vec(
       w, cag_vec3(cag_pov_round(c.r, unit), cag_pov_round(c.g, unit), cag_pov_round(c.b, unit)));
@@ -124,7 +124,7 @@ void cag_pov_placement(CagPovWriter *w, const char *indent, const CagTransform *
     cag_pov_text(w, "\n");
     return;
   }
-  // POV-Ray writes the images of x, y, z and the origin, one after the other.
+  // POV-Ray expects the images of x, y, z, and the origin in sequence.
   cag_pov_text(w, indent);
   cag_pov_text(w, "matrix <");
   for (int j = 0; j < 4; j++)
@@ -135,7 +135,8 @@ void cag_pov_placement(CagPovWriter *w, const char *indent, const CagTransform *
   cag_pov_text(w, ">\n");
 }
 
-// The renderer's own tolerances become those of the stretched body, in its thinnest direction.
+// The minimum volume of the image of a unit cube, relative to the cube of its longest edge. The
+// renderer's tolerances apply in the thinnest direction of the transformed body.
 #define FLATTEST 1e-6
 
 bool cag_pov_takes(const CagTransform *map) {
@@ -154,7 +155,7 @@ const CagSurface *cag_pov_unplaced(const CagSurface *s, CagTransform *map) {
   return cag_surface_placed_view(s, &inner, map) ? inner : s;
 }
 
-// Words of POV-Ray 3.7 that are written in small letters, digits and _ only, sorted.
+// Reserved words of POV-Ray 3.7 that consist only of lower-case letters, digits, and _, sorted.
 static const char *const reserved[] = {
 #include "interp/formats/pov_words.def"
 };
@@ -172,7 +173,7 @@ static bool is_word_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-// Leaves room for a number that makes the name the only one of its kind.
+// Leaves room for a number that makes the name unique.
 #define BASE_MAX 30
 
 static void make_identifier(const char *prefix, const char *name, CagPovName out) {
@@ -207,7 +208,7 @@ bool cag_pov_names(const char *prefix, const char *const *names, size_t n, CagPo
     make_identifier(prefix, names[i], made[i]);
     const size_t base = strlen(made[i]);
     uint64_t hash = cag_hash_text(CAG_HASH_START, made[i]);
-    // Numbers behind the first thousand names are higher, so that they are hardly ever taken.
+    // After the first thousand names, numbers start higher, so that they are rarely taken.
     for (size_t k = 2; is_taken(&taken, made, hash, made[i]); k++) {
       snprintf(made[i] + base, sizeof made[i] - base, "_%zu", i > 1000 ? i + k : k);
       hash = cag_hash_text(CAG_HASH_START, made[i]);

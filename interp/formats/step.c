@@ -1,5 +1,5 @@
-// The writer of STEP files: one entity a line, each numbered when it is written, what it refers to
-// before it.
+// Writer of STEP files: one entity per line, numbered when it is written, after the entities to
+// which it refers.
 
 #include "interp/formats/step.h"
 
@@ -17,10 +17,10 @@ typedef struct Writer {
   CagAtomicFile *file;
   Id last;
   Id context, product_shape, placement;
-  Id *vertex, *edge; // vertex points and edge curves, 0: not yet written
+  Id *vertex, *edge; // vertex points and edge curves; 0: not written yet
   Id *styled;
   size_t styled_count, styled_room;
-  bool failed;    // memory is out
+  bool failed;    // memory ran out
   bool undefined; // a number was not finite
 } Writer;
 
@@ -30,7 +30,7 @@ static void put(Writer *w, const char *text) { cag_atomic_file_text(w->file, tex
 
 static void put_id(Writer *w, Id id) { cag_atomic_file_printf(w->file, "#%zu", id); }
 
-// Reals have a point, also with an exponent.
+// Reals contain a point, even with an exponent.
 static void put_real(Writer *w, double x) {
   char text[40];
   w->undefined |= !isfinite(x);
@@ -45,7 +45,7 @@ static void put_real(Writer *w, double x) {
   }
 }
 
-// Characters beyond printable ASCII are written by their code points.
+// Characters other than printable ASCII are written as code points.
 static void put_code(Writer *w, unsigned long code) {
   cag_atomic_file_printf(w->file, code > 0xffff ? "\\X4\\%08lX\\X0\\" : "\\X2\\%04lX\\X0\\", code);
 }
@@ -131,7 +131,7 @@ static Id placement(Writer *w, const CagTransform *t) {
 
 // --- NURBS ---
 
-// Knots as multiplicities and distinct values.
+// Writes knots as multiplicities and distinct values.
 static void put_multiplicities(Writer *w, const double *knots, size_t n) {
   put(w, "(");
   for (size_t i = 0, k; i < n; i = k) {
@@ -313,7 +313,7 @@ static Id shell(Writer *w, const CagBrepShell *s, bool closed) {
   return id;
 }
 
-// A solid of the shell and its hollows, whose normals look away from the material as well.
+// Writes a solid from the shell and its cavities, whose normals also point out of the material.
 static Id solid(Writer *w, const CagBrepShape *shape, size_t outer) {
   const CagBrep *b = w->brep;
   Id *hollow = take_ids(w, shape->count);
@@ -352,7 +352,7 @@ static Id sheet(Writer *w, const CagBrepShape *shape) {
   return id;
 }
 
-// A curve set of its own, which can have a name and a color.
+// Writes a separate curve set, which can have a name and a color.
 static Id curve_set(Writer *w, const CagBrepShape *shape) {
   Id curve = nurbs_curve(w, shape->curve);
   Id id = begin(w, "GEOMETRIC_CURVE_SET(");
@@ -365,7 +365,7 @@ static Id curve_set(Writer *w, const CagBrepShape *shape) {
 
 // --- Colors ---
 
-// Of sRGB, as viewers take it, to 5 places.
+// Writes a color component in sRGB, which viewers expect, to 5 decimals.
 static void put_share(Writer *w, double linear) {
   put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(linear, 0), 1))) / 1e5);
 }
@@ -430,7 +430,8 @@ static Id representation(Writer *w, const char *type, const Items *items) {
   return id;
 }
 
-// X(kind, representation): each kind of shape has its own, which the product's refers to.
+// X(kind, representation): each kind of shape has its own representation, to which the product's
+// refers.
 #define REPRESENTATIONS(X)                                                                         \
   X(CAG_BREP_SOLID, "ADVANCED_BREP_SHAPE_REPRESENTATION")                                          \
   X(CAG_BREP_SHEET, "MANIFOLD_SURFACE_SHAPE_REPRESENTATION")                                       \
@@ -498,7 +499,7 @@ static void write_data(Writer *w, const char *name) {
     representation(w, "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION", &styled);
 }
 
-// No date: the same scene gives the same bytes.
+// There is no date, so that the output is reproducible.
 static void write_header(Writer *w, const char *name) {
   put(w, "ISO-10303-21;\nHEADER;\n");
   put(w, "FILE_DESCRIPTION(('exact geometry'),'2;1');\nFILE_NAME(");

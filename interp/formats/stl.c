@@ -1,4 +1,4 @@
-// Binary STL: an 80-byte header, the number of triangles, 50 bytes each.
+// Writes binary STL: an 80-byte header, the number of triangles, and 50 bytes per triangle.
 
 #include "base/memory.h"
 
@@ -7,15 +7,16 @@
 
 enum { HEADER = 80, RECORD = 50, LANES = 8, BATCH = 1024 };
 
-// Corners and normals of LANES triangles, a row a number, so that normals are found by vectors.
+// Corners and normals of LANES triangles, one row per number, so that normals are computed with
+// vector instructions.
 typedef struct Lanes {
   float corner[9][LANES], normal[3][LANES], size[LANES];
 } Lanes;
 
-// Squares of lengths that single precision holds well: what is beyond is scaled first.
+// Squared lengths that single precision represents well. Others are scaled first.
 static const float least_square = 1e-30f, most_square = 1e30f;
 
-// The unit normal of a triangle that is very small or large; zero where it has no area.
+// Computes the unit normal of a very small or large triangle, or zero if it has no area.
 static void put_normal(Lanes *l, int k) {
   CagVec3 p[3];
   for (int j = 0; j < 3; j++)
@@ -26,7 +27,7 @@ static void put_normal(Lanes *l, int k) {
   l->normal[2][k] = (float)n.z;
 }
 
-// Products of two floats are exact in double, so that only one rounding is left in a slim triangle.
+// Products of two floats are exact in double, so only one rounding remains for a slim triangle.
 static void find_normals(Lanes *l) {
   for (int k = 0; k < LANES; k++) {
     double a[3], b[3];
@@ -53,7 +54,7 @@ static void find_normals(Lanes *l) {
   }
 }
 
-// n triangles, at most LANES, whose corners are p[3 k].
+// Writes n triangles, at most LANES, whose corners are p[3 k].
 static char *put_triangles(char *at, const float *p, const uint32_t *corners, int n) {
   Lanes l;
   for (int k = 0; k < LANES; k++) {
@@ -84,7 +85,7 @@ static void write_all(const CagMesh *m, const float *p, CagAtomicFile *file) {
   }
 }
 
-// Without those that shrink.
+// Writes the triangles that do not degenerate.
 static void write_kept(const CagMesh *m, const float *p, CagAtomicFile *file) {
   for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
@@ -111,7 +112,7 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
                       "tolerance",
                       (unsigned long)UINT32_MAX, triangles);
   if (!status) {
-    // Readers take a file that begins with "solid" for the text form.
+    // Readers treat a file that starts with "solid" as the text form.
     char header[HEADER + 4] = {0};
     strcpy(header, "cag: ");
     strncpy(header + 5, title ? title : "binary STL, mm", HEADER - 5);

@@ -1,9 +1,9 @@
-// STL, binary and as text.
+// Reads STL, binary and as text.
 //
-// Binary files may begin with "solid" like those of text. A file is binary when its length is
-// exactly what its count of triangles asks for; else it is text when it begins with "solid" and its
-// beginning has "facet" or "endsolid" and no zero byte; else binary, and its length is wrong.
-// Normals and colors of triangles are left: a normal follows from the corners.
+// Binary files may start with "solid", too. A file is binary if its length exactly matches its
+// count of triangles. Otherwise it is text if it starts with "solid", and its first part contains
+// "facet" or "endsolid" and no zero byte. Otherwise it is binary with a wrong length. Normals and
+// colors of triangles are ignored, because a normal follows from the corners.
 
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include "interp/formats/text_scan.h"
 
 enum { HEADER = 80, RECORD = 50 };
-// How far into a file it is looked whether it is text: an 80-byte header with a first facet.
+// The length of the part that is examined for text: an 80-byte header and a first facet.
 #define TEXT_LOOK ((size_t)1024)
 
 static uint64_t count_of(const CagMeshFile *f) { return cag_read_u32(f->bytes + HEADER); }
@@ -77,7 +77,7 @@ static CagStatus read_binary(CagMeshDraft *d, CagError *err) {
 
 // --- Text ---
 
-// A word that must come now. *word, *n: what came.
+// Reads a required word. *word, *n: the word that was found.
 static bool expect(CagTextScan *s, const char *expected) {
   const char *word;
   if (!cag_scan_to_word(s)) return false;
@@ -114,15 +114,15 @@ static CagStatus read_vertex(CagMeshDraft *d, CagTextScan *s, CagError *err) {
   return CAG_OK;
 }
 
-// facet normal x y z / outer loop / vertex x y z (three) / endloop / endfacet; the word `facet` is
-// read.
+// facet normal x y z / outer loop / vertex x y z (three) / endloop / endfacet; the word `facet` has
+// been read.
 static CagStatus read_facet(CagMeshDraft *d, CagTextScan *s, CagError *err) {
-  // What a facet is written with takes 60 bytes at least: room grows with what was read.
+  // A facet has at least 60 bytes, so the room grows only with the input.
   CagStatus status = cag_draft_triangles(d, 1, err);
   if (!status && d->vertex_count + 3 > d->vertex_room)
     status = cag_draft_vertices(d, 2 * d->vertex_count + 3 * 64, false, false, err);
   if (status) return status;
-  // `normal` and its numbers, which may be nan or left out.
+  // `normal` and its numbers, which may be nan or missing.
   const int most_words = 4;
   const char *word;
   uint32_t first = (uint32_t)d->vertex_count;
@@ -146,7 +146,7 @@ static CagStatus read_facet(CagMeshDraft *d, CagTextScan *s, CagError *err) {
 static CagStatus read_text(CagMeshDraft *d, CagError *err) {
   CagTextScan s = {d->file->bytes, d->file->bytes + d->file->size};
   CagStatus status = CAG_OK;
-  // Files may hold several solids, one after the other.
+  // Files may contain several solids.
   while (!status && cag_scan_to_word(&s)) {
     if (!expect(&s, "solid")) return fail_word(d, &s, "solid", err);
     cag_scan_next_line(&s);

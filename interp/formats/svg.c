@@ -1,8 +1,7 @@
-// Curves to SVG paths.
+// Converts curves to SVG paths.
 //
-// Paths are made in memory first, with the box of what they cover, because the size of the picture
-// stands at the top of the file. Coordinates on the way are y up; they are turned where numbers are
-// written.
+// Paths are made in memory together with their bounding box, because the size of the picture is at
+// the top of the file. Coordinates have y up until numbers are written.
 
 #include "interp/formats/svg.h"
 
@@ -14,18 +13,19 @@
 #include "interp/formats/pieces.h"
 #include "interp/formats/svg_label.h"
 
-// Part of the picture's size that an approximated curve may be off, and that numbers are rounded
-// to.
+// The tolerance for approximated curves and for rounding of numbers, as a fraction of the picture's
+// size.
 #define TOLERANCE_PART 5e-5
 #define ROUNDING_PART 1e-9
-// A picture is flat when its z stay within this part of its size.
+// A picture is flat if its z range is below this fraction of its size.
 #define FLAT 1e-9
 #define MARGIN 0.05
-// A line that says no width is this part of the picture's diagonal wide.
+// The default line width, as a fraction of the picture's diagonal.
 #define STROKE_PART 0.003
-// Bisections of a curve between two breaks: a 10^-5th of it.
+// The maximum number of bisections of a curve between two breaks, to 1e-5 of it.
 #define DEPTH_MAX 17
-// Points of an arc that the picture's box is made of: it may bulge out by 1/800 of its radius.
+// Points of an arc from which its bounding box is computed. It may exceed the box by 1/800 of its
+// radius.
 #define ARC_SAMPLES 64
 #define PI 3.14159265358979323846
 
@@ -35,14 +35,14 @@ typedef struct Picture {
   bool flat;         // seen along -Z
   CagTransform view; // world to picture: affine when `affine`, else to the camera's own space
   bool affine;
-  double near;  // perspective: nothing nearer than this is drawn
+  double near;  // perspective: anything closer is not drawn
   double scale; // perspective: picture = scale * (x / z, y / z)
-  double size;  // of what is drawn, before projection
+  double size;  // of the items, before projection
   CagBounds box;
   FILE *out; // paths
   CagVec3 last;
   bool drawing;   // the pen is down at `last`
-  bool undefined; // whether a number was not finite
+  bool undefined; // a number was not finite
 } Picture;
 
 // --- Numbers ---
@@ -87,7 +87,7 @@ static ColorText color_text(CagColor c) {
   return out;
 }
 
-// --- Strokes of the pen ---
+// --- Pen strokes ---
 
 static void move_to(Picture *p, CagVec3 q) {
   if (p->drawing && cag_norm(cag_sub(q, p->last)) <= ROUNDING_PART * p->size) return;
@@ -111,7 +111,7 @@ static CagVec3 cubic_at(const CagVec3 c[4], double t) {
   return cag_madd(p, t * t * t, c[3]);
 }
 
-// Adds the points where a cubic turns back in x (or y); w: its control points' x (or y).
+// Adds the points where a cubic reverses in x (or y); w: its control points' x (or y).
 static void cover_turns(Picture *p, const CagVec3 c[4], const double w[4]) {
   // A third of the derivative is a t^2 + 2 b t + k.
   const double k = w[1] - w[0], b = w[2] - 2 * w[1] + w[0], a = w[3] - 3 * w[2] + 3 * w[1] - w[0];
@@ -134,7 +134,7 @@ static void cubic_to(Picture *p, CagVec3 a, CagVec3 b, CagVec3 q) {
   p->last = q;
 }
 
-// --- Exact paths, where the view is affine ---
+// --- Exact paths, if the view is affine ---
 
 static bool is_straight(const CagVec3 c[4], double size) {
   CagVec3 a = cag_sub(c[1], cag_lerp(c[0], c[3], 1.0 / 3));
@@ -180,10 +180,10 @@ static bool draw_arc(Picture *p, const CagCurve *c) {
   CagVec3 f = cag_transform_vector(&frame, cag_vec3(0, b, 0));
   center.z = e.z = f.z = 0;
   principal_axes(e, f, &major, &minor, &angle);
-  if (!(minor > FLAT * major)) return false; // seen from its edge
+  if (!(minor > FLAT * major)) return false; // seen edge-on
   bool counter_clockwise = e.x * f.y - e.y * f.x > 0;
   double span = c->end - c->start;
-  int n = (int)ceil(span / PI - 1e-9); // parts of at most a half turn
+  int n = (int)ceil(span / PI - 1e-9); // parts of at most half a turn
   for (int i = 0; i <= n; i++) {
     double t = c->start + span * i / n;
     CagVec3 q = cag_madd(cag_madd(center, cos(t), e), sin(t), f);
@@ -199,18 +199,18 @@ static bool draw_arc(Picture *p, const CagCurve *c) {
     put_point(p, q);
     p->last = q;
   }
-  for (int i = 0; i <= ARC_SAMPLES; i++) { // the path's points do not hold its bulge
+  for (int i = 0; i <= ARC_SAMPLES; i++) { // the path's points do not include its bulge
     double t = c->start + span * i / ARC_SAMPLES;
     cag_bounds_add(&p->box, cag_madd(cag_madd(center, cos(t), e), sin(t), f));
   }
   return true;
 }
 
-// --- Approximation: cubics with the curve's own end tangents, halved until they fit ---
+// --- Approximation: cubics with the curve's end tangents, bisected until they fit ---
 
 typedef struct Sample {
   double t;
-  CagVec3 p, d; // in the picture; d by t
+  CagVec3 p, d; // in the picture; d: derivative by t
   bool visible;
 } Sample;
 
@@ -225,7 +225,7 @@ static bool projected_sample(const Picture *p, const CagCurve *c, double t, CagS
   if (p->affine) return true;
   out->visible = q.z > p->near;
   double z = fmax(q.z, p->near), k = p->scale / z;
-  out->p = cag_vec3(k * q.x, -k * q.y, 0); // y of the camera goes down
+  out->p = cag_vec3(k * q.x, -k * q.y, 0); // the camera's y points down
   out->d = cag_vec3(k * (d.x - q.x * d.z / z), -k * (d.y - q.y * d.z / z), 0);
   return true;
 }
@@ -253,7 +253,7 @@ static void draw_between(Picture *p, const CagCurve *c, const Sample *a, const S
     else cubic_to(p, cubic[1], cubic[2], cubic[3]);
     return;
   }
-  // What is behind the camera is bisected down to where it comes into view, and dropped there.
+  // Parts behind the camera are bisected up to the visible part, and dropped there.
   const int coarse = DEPTH_MAX - 5;
   if (depth == 0 || (!a->visible && !b->visible && depth < coarse)) return;
   Sample left, right;
@@ -354,7 +354,7 @@ static CagStatus draw_item(Picture *p, const CagItem *item, CagError *err) {
 
 // --- Labels ---
 
-// False: behind the camera. The picture of a direction is that of a short step along it.
+// Returns false if it is behind the camera. A direction is projected as a short step along it.
 static bool look_at_label(const Picture *p, const CagLabel *l, CagVec3 *at, CagVec3 *along) {
   CagVec3 q = cag_transform_point(&p->view, l->at), d = cag_transform_vector(&p->view, l->along);
   *at = cag_vec3(q.x, q.y, 0);
@@ -366,7 +366,7 @@ static bool look_at_label(const Picture *p, const CagLabel *l, CagVec3 *at, CagV
   return q.z > p->near;
 }
 
-// They come last: over all lines, and when the picture's size is known.
+// Labels come last: they are on top of all lines, and depend on the picture's size.
 static void draw_labels(Picture *p) {
   const CagScene *s = p->scene;
   CagBounds drawn = p->box;
@@ -433,7 +433,7 @@ static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagEr
   p->affine = c->orthographic;
   p->scale = cag_norm(cag_sub(c->target, c->eye));
   p->near = 1e-3 * p->scale;
-  up.m[1][1] = -1; // y of the camera goes down; a perspective view turns it after its division
+  up.m[1][1] = -1; // the camera's y points down; a perspective view flips it after the division
   if (p->affine) p->view = cag_transform_multiply(&up, &p->view);
   return status;
 }

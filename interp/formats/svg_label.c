@@ -1,4 +1,4 @@
-// Labels of an SVG picture: a mark, and a text that stands beside it.
+// Labels of an SVG drawing: a mark, and a text beside it.
 
 #include "interp/formats/svg_label.h"
 #include "base/utf8.h"
@@ -6,18 +6,19 @@
 #include <ctype.h>
 #include <string.h>
 
-// Height of a text as a part of the picture's diagonal: 3.5 mm on a figure 130 mm wide.
+// The height of a text as a fraction of the picture's diagonal: 3.5 mm on a figure 130 mm wide.
 #define TEXT_PART 0.024
-// Radius of a mark, space between mark and text, and the like, in heights of the text.
+// The radius of a mark, the space between mark and text, and so on, in heights of the text.
 #define MARK_RADIUS 0.24
 #define GAP 0.36
 #define MARK_STROKE 0.1
 #define ARROW_LENGTH 0.9
 #define ARROW_WIDTH 0.55
-// Of the usual sans-serif fonts: a letter's width, the height of capitals, in heights of the text.
+// For common sans-serif fonts: the width of a letter and the height of capitals, in heights of the
+// text.
 #define LETTER 0.56
 #define CAPITAL 0.72
-// A lowered index: its size, and how far it is lowered.
+// A subscript: its size, and how far it is lowered.
 #define INDEX_SIZE 0.7
 #define INDEX_DROP 0.22
 
@@ -35,7 +36,7 @@ void cag_svg_escape(FILE *out, const char *text, size_t n) {
   }
 }
 
-// --- Numbers: to a thousandth of a letter ---
+// --- Numbers, rounded to a thousandth of a letter ---
 
 // The location at which a label is written.
 typedef struct Pen {
@@ -92,9 +93,9 @@ static void put_cross(Pen *out, CagVec3 p, double size, const char *color) {
   fputs("\"/>\n", out->file);
 }
 
-// A slender head with a notched back, its tip at p.
+// Draws a slender head with a notched back and its tip at p.
 static void put_arrow(Pen *out, CagVec3 p, CagVec3 along, double size, const char *color) {
-  if (cag_norm(along) == 0) return; // seen from its end
+  if (cag_norm(along) == 0) return; // seen end-on
   const CagVec3 a = cag_unit(along), across = cag_vec3(-a.y, a.x, 0);
   const CagVec3 back = cag_madd(p, -ARROW_LENGTH * size, a);
   const double half = ARROW_WIDTH / 2 * size, notch = 0.25 * ARROW_LENGTH * size;
@@ -120,7 +121,7 @@ static void put_mark(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, con
 
 // --- Texts ---
 
-// The first code point is a letter and no letter follows it.
+// Tests whether the first code point is a letter that is not followed by a letter.
 static bool is_name(const char *text) {
   const unsigned char *c = (const unsigned char *)text;
   if (!isalpha(*c) && *c < 0x80) return false;
@@ -129,7 +130,7 @@ static bool is_name(const char *text) {
 
 static bool is_index(unsigned char c) { return isalnum(c) || c >= 0x80; }
 
-// Number of code points.
+// Counts code points.
 static double letters(const char *text, size_t n) {
   size_t count = 0;
   for (size_t i = 0; i < n; i++) count += ((unsigned char)text[i] & 0xC0) != 0x80;
@@ -142,7 +143,7 @@ static size_t index_length(const char *text) {
   return n;
 }
 
-// Writes the text with the runs after a _ lowered where `name`; gives its width in letters.
+// Writes the text, with the parts after a _ as subscripts if `name`. Returns its width in letters.
 static double put_runs(Pen *out, const char *text, bool name, double size) {
   double width = 0, lowered = 0;
   while (*text) {
@@ -184,12 +185,12 @@ static void put_text(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, con
   const int sx = steps[l->place].x, sy = steps[l->place].y;
   const bool name = is_name(l->text), turned = l->mark != CAG_LABEL_ARROW && cag_norm(along) > 0;
   const double gap = (GAP + (l->mark == CAG_LABEL_NONE ? 0 : MARK_RADIUS)) * size;
-  // At a corner the mark is round, and the text may come nearer.
+  // The mark is round, so the text may be closer at a corner.
   const double near = sx && sy ? 0.7 : 1;
-  // From the place to the start of the line of writing, in the text's own directions.
+  // From the location to the start of the baseline, along the text's axes.
   const double dx = sx * gap * near;
   const double dy = sy * gap * near - (1 - sy) / 2.0 * CAPITAL * size;
-  // A text that runs down or to the left would stand on its head.
+  // A text that runs down or to the left would be upside down.
   CagVec3 x = turned ? cag_unit(along) : cag_vec3(1, 0, 0);
   if (x.x < -1e-9 || (fabs(x.x) <= 1e-9 && x.y < 0)) x = cag_scaled(x, -1);
   const CagVec3 y = cag_vec3(-x.y, x.x, 0), from = cag_madd(cag_madd(at, dx, x), dy, y);

@@ -1,9 +1,8 @@
-// Polygons of files that no triangulation should be asked about.
+// Detects polygons that would take too long to triangulate.
 //
-// The polygon is seen along the axis that its normal is nearest to. Its edges are taken in the
-// order of where they begin in x; each is compared with those that reach over its beginning. A
-// proper crossing decides; edges that touch are allowed, as bridges to holes have them, but not
-// many more than there are corners.
+// The polygon is projected along the axis nearest to its normal. Its edges are sorted by their
+// smallest x, and each is compared with those whose range contains it. A proper crossing decides.
+// Edges may touch, as bridges to holes do, but not much more often than there are corners.
 
 #include "interp/formats/tangle.h"
 
@@ -11,12 +10,12 @@
 
 #include "base/memory.h"
 
-// Corners up to which a polygon is triangulated as it is: with every edge crossing every other that
-// is still a matter of milliseconds.
+// The number of corners up to which any polygon is triangulated. Even if every edge crosses every
+// other, this takes only milliseconds.
 #define FEW_CORNERS 128
-// Pairs of edges that are compared: about a second.
+// The maximum number of pairs of edges that are compared: about a second.
 #define MOST_PAIRS ((size_t)200000000)
-// Pairs that touch, beside neighbors, for each corner.
+// The maximum number of touching pairs, except neighbors, per corner.
 #define MOST_TOUCHES 8
 
 typedef struct Edge {

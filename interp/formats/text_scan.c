@@ -1,4 +1,4 @@
-// Words and numbers of text formats, line by line.
+// Scanner for line-based text formats.
 
 #include "interp/formats/text_scan.h"
 
@@ -10,7 +10,7 @@ static bool is_end(char c) { return c == '\n' || c == '\r' || c == 0; }
 static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// A backslash at the end of a line. The text ends with a zero, so the byte behind may be looked at.
+// Tests for a backslash at the end of a line. The text ends with a zero, so at[1] can be read.
 static bool is_continued(const char *at) { return *at == '\\' && (at[1] == '\n' || at[1] == '\r'); }
 
 void cag_scan_blanks(CagTextScan *s) {
@@ -51,9 +51,9 @@ bool cag_scan_is(const char *word, size_t n, const char *expected) {
   return strlen(expected) == n && strncasecmp(word, expected, n) == 0;
 }
 
-// Digits as a whole number, the first 19 of them: *dropped says how many more there were.
+// Reads digits as an integer, of which the first 19 count. *dropped is the number of others.
 static const char *read_digits(const char *p, uint64_t *mantissa, int *count, int *dropped) {
-  const int most = 19; // digits that always fit 64 bits
+  const int most = 19; // digits that always fit in 64 bits
   for (; is_digit(*p); p++) {
     if (*count < most) {
       *mantissa = *mantissa * 10 + (uint64_t)(*p - '0');
@@ -80,8 +80,8 @@ bool cag_scan_number(CagTextScan *s, double *x) {
   static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-  const int most_power = 22;                     // powers of ten up to here are doubles
-  const uint64_t most_whole = (uint64_t)1 << 53; // so are whole numbers: one rounding in all
+  const int most_power = 22;                     // powers of ten up to this are exact doubles
+  const uint64_t most_whole = (uint64_t)1 << 53; // so are these integers: a single rounding
   cag_scan_blanks(s);
   const char *begin = s->at, *p = begin;
   bool negative = *p == '-';

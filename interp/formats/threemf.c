@@ -1,10 +1,10 @@
-// 3MF, core specification: a ZIP archive of the model as XML and the two parts that point to it.
+// 3MF, core specification: a ZIP archive with the model as XML and two parts that refer to it.
 //
-// Ids: 1 the base materials, 2 on the objects in the order of the parts. A part is an object with a
-// mesh; a copy of one of the same material is an object with that one as its component, moved, and
-// with a name of its own: components have no material. Behind the objects' ids come the color
-// groups (materials extension) of meshes that show values by colors. A mesh must be closed to be a
-// model; an open one is a surface. Points are those of the welded mesh.
+// Ids: 1 is the base materials, and objects start from 2 in the order of the parts. A part is an
+// object with a mesh. A copy with the same material is an object that contains the other one as a
+// transformed component and has its own name, because components have no material. After the
+// objects come the color groups (materials extension) of meshes that show values as colors. A mesh
+// must be closed to be a model; an open one is a surface. Points are those of the welded mesh.
 
 #include <stdio.h>
 
@@ -32,15 +32,15 @@ typedef struct Model {
   size_t count;
   CagMeshCopy *copies;
   CagMaterialList materials;
-  size_t *material_of; // number of each part's material
-  CagAtomicFile *xml;  // in memory: what was not packed yet
+  size_t *material_of; // index of each part's material
+  CagAtomicFile *xml;  // in memory: not packed yet
   CagZip zip;
 } Model;
 
-// Text that is kept before it is packed.
+// The amount of text that is collected before it is packed.
 #define XML_KEPT ((uint64_t)1 << 20)
 
-// Packs the text so far, once there is enough of it.
+// Packs the text so far if there is enough of it.
 static CagStatus pack_xml(Model *m, bool all, CagError *err) {
   CagError io;
   char *xml;
@@ -61,7 +61,7 @@ static char *put_text(char *at, const char *text) {
   return at + n;
 }
 
-// Text of an attribute. Control characters are none of XML's.
+// Writes the text of an attribute. XML does not allow control characters.
 static void write_escaped(CagAtomicFile *xml, const char *text) {
   for (; *text; text++) {
     unsigned char c = (unsigned char)*text;
@@ -78,7 +78,7 @@ static void write_escaped(CagAtomicFile *xml, const char *text) {
 
 // --- Materials ---
 
-// Colors are sRGB; what lets light through is transparent.
+// Colors are in sRGB. Transmission becomes transparency.
 static void write_materials(Model *m) {
   if (m->materials.count == 0) return;
   cag_atomic_file_printf(m->xml, "  <basematerials id=\"%d\">\n", MATERIALS_ID);
@@ -99,7 +99,7 @@ static void write_materials(Model *m) {
 
 // --- Colors of values ---
 
-// Steps of a scale: neighbors differ by less than 8-bit colors show.
+// Steps of a scale: neighbors differ by less than 8-bit colors can show.
 #define SCALE_STEPS 256
 
 static size_t scale_id(const Model *m, size_t i) { return m->count + FIRST_OBJECT + i; }
@@ -123,7 +123,7 @@ static void write_scale(Model *m, size_t i) {
   cag_atomic_file_text(m->xml, "  </m:colorgroup>\n");
 }
 
-// pid and p1, p2, p3 of a triangle.
+// Writes pid and p1, p2, p3 of a triangle.
 static char *put_triangle_colors(const Model *m, size_t i, const uint32_t *corners, char *at) {
   static const char *const names[] = {"\" p1=\"", "\" p2=\"", "\" p3=\""};
   const CagMesh *mesh = m->parts[i].mesh;
@@ -203,7 +203,7 @@ static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
 
 // --- Objects ---
 
-// A transform by rows, as for row vectors: the three images of the axes, then the place.
+// Writes a transform by rows, for row vectors: the images of the three axes, then the translation.
 static void write_transform(Model *m, const CagTransform *t) {
   cag_atomic_file_text(m->xml, " transform=\"");
   for (int j = 0; j < 4; j++)
@@ -214,7 +214,7 @@ static void write_transform(Model *m, const CagTransform *t) {
 
 static bool is_component(const Model *m, size_t i) { return m->copies[i].original != i; }
 
-// p: the positions, of a part with a mesh of its own.
+// p: the positions, for a part with its own mesh.
 static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, CagError *err) {
   const CagMeshPart *part = &m->parts[i];
   size_t original = m->copies[i].original;
@@ -239,12 +239,12 @@ static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, C
   return status;
 }
 
-// All objects; *shown: those of which single precision leaves something.
+// Writes all objects. *shown: those that are not empty in single precision.
 static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
   for (size_t i = 0; i < m->count; i++) {
     CagVec3 edge[2];
     float *p = NULL;
-    // Before the positions are made: the check takes as much memory as the mesh.
+    // Done before the positions are made, because the check needs as much memory as the mesh.
     bool closed;
     CagStatus status = cag_mesh_watertight(m->parts[i].mesh, &closed, edge, err);
     if (status) return status;

@@ -1,4 +1,4 @@
-// The text of a URDF file and its meshes.
+// Writes the text of a URDF file and its meshes.
 
 #include "interp/formats/urdf.h"
 
@@ -13,7 +13,7 @@
 
 typedef struct Writer {
   CagAtomicFile *file;
-  bool undefined; // whether a number was not finite
+  bool undefined; // a number was not finite
 } Writer;
 
 static void put(Writer *f, const char *text) { cag_atomic_file_text(f->file, text); }
@@ -31,7 +31,7 @@ static void put_numbers(Writer *f, const double *x, int n) {
   }
 }
 
-// An attribute's text. Control characters have no place in XML.
+// Writes the text of an attribute. XML does not allow control characters.
 static void put_text(Writer *f, const char *text) {
   for (const char *c = text; *c; c++) {
     char one[2] = {(unsigned char)*c < ' ' || *c == 0x7f ? '_' : *c, 0};
@@ -56,13 +56,14 @@ static void put_value(Writer *f, const char *name, double x) {
   put(f, "\"");
 }
 
-// --- Places ---
+// --- Transforms ---
 
-// Roll, pitch and yaw: the yaw first, and the others of what it leaves. So they give the rotation
-// to rounding also where the pitch is a quarter turn, and yaw and roll are one.
+// Computes roll, pitch, and yaw: first the yaw, then the others from the remaining rotation. So
+// they reproduce the rotation up to rounding even if the pitch is a quarter turn, where yaw and
+// roll coincide.
 static void roll_pitch_yaw(const CagTransform *t, double rpy[3]) {
   double s = t->m[1][0], c = t->m[0][0], across = hypot(s, c);
-  // Below this the first column has no direction but rounding's.
+  // Below this, the direction of the first column is only rounding.
   const double upright = 1e-15;
   if (across > upright) s /= across, c /= across;
   else s = 0, c = 1;

@@ -1,4 +1,4 @@
-// A serial chain out of a tree of links.
+// Selects a serial chain from a tree of links.
 
 #include <stdio.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "interp/formats/urdf_read.h"
 
-// Names that a message has room for.
+// The maximum number of names in a message.
 enum { TOLD = 6 };
 
 static CagStatus find(const CagUrdfTree *t, const char *name, const char *argument, size_t *out,
@@ -43,7 +43,7 @@ static bool is_below(const CagUrdfTree *t, size_t node, size_t top) {
   return false; // a ring
 }
 
-// "a", "b" and 3 more
+// Formats "a", "b" and 3 more.
 typedef struct Names {
   char text[240];
   size_t count;
@@ -113,7 +113,7 @@ CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip
   if (status) return status;
   status = tip ? find(t, tip, "tip", &last, err) : find_tip(t, first, &last, err);
   if (status) return status;
-  // Without a base the chain begins at the root above the tip.
+  // Without a base, the chain starts at the root above the tip.
   size_t at = last;
   bool anywhere = tip && !base;
   while ((anywhere || at != first) && t->nodes[at].above != CAG_URDF_NONE) {

@@ -1,6 +1,6 @@
-// Masses of bodies, and of bodies joined.
+// Mass properties of bodies, and of joined bodies.
 //
-// What closes no volume (curves, regions, open surfaces and meshes) has none.
+// Shapes without a volume (curves, regions, open surfaces and meshes) have no mass.
 
 #include "geom/mesh/mesh.h"
 #include "geom/solid/csg.h"
@@ -8,8 +8,8 @@
 
 #define CUBIC_METERS 1e-9 // of a cubic millimeter
 
-// From integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a point near the body; a body that is
-// inside out is the same body.
+// Computes the mass properties from the integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a
+// point near the body. An inside-out body counts as the same body.
 static CagUrdfMass mass_of_terms(const double given[10], CagVec3 about, double density) {
   double t[10], sign = given[0] < 0 ? -1 : 1;
   for (int i = 0; i < 10; i++) t[i] = sign * density * CUBIC_METERS * given[i];
@@ -38,7 +38,8 @@ static CagStatus solid_mass(const CagSolid *s, double tolerance, double density,
   return CAG_OK;
 }
 
-// Integrals are taken about the middle of the bounds: about a far origin they lose their digits.
+// Integrals are computed about the center of the bounds, because a distant origin would cause loss
+// of precision.
 static CagStatus mesh_mass(const CagMesh *m, double density, CagUrdfMass *out, CagError *err) {
   bool closed;
   CagStatus status = cag_mesh_watertight(m, &closed, NULL, err);
@@ -84,7 +85,7 @@ CagStatus cag_urdf_item_mass(const CagItem *item, double density, CagUrdfMass *o
   }
 }
 
-// Steiner's theorem about the common center.
+// The parallel axis theorem (Steiner) for the common center.
 static void add_offset(CagUrdfMass *m, CagVec3 from_center, double mass) {
   const double d[3] = {from_center.x, from_center.y, from_center.z};
   const double square = cag_dot(from_center, from_center);

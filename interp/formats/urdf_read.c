@@ -1,6 +1,6 @@
-// The text of a URDF file read into links and joints.
+// Reads the text of a URDF file as links and joints.
 //
-// libxml2 reads the XML; its own bounds on depth and on the length of names and texts stay on.
+// libxml2 parses the XML, with its limits on depth and on the length of names and texts.
 
 #include "interp/formats/urdf_read.h"
 #include "base/memory.h"
@@ -15,15 +15,15 @@
 
 #include "interp/formats/text_scan.h"
 
-// Descriptions of robots are a few hundred kilobytes at most: shapes lie in files of their own. A
-// tree of the XML takes some thirty times its text.
+// Descriptions of robots have at most a few hundred kilobytes, because shapes are in separate
+// files. The tree of the XML takes about thirty times the size of its text.
 #define FILE_MOST ((size_t)16 << 20)
-// Names are compared one with each other.
+// Names are compared pairwise.
 #define LINKS_MOST 4096
 #define BODIES_MOST 16384
 
 #define MILLIMETERS 1000.0
-// Meters: robots are larger than the one and smaller than the other.
+// Meters: the range of sizes of robots.
 #define LENGTH_LEAST 1e-9
 #define LENGTH_MOST 1e9
 
@@ -50,7 +50,7 @@ static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format
 static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format, ...) {
   char message[300];
   va_list args;
-  if (r->status) return r->status; // the first is told
+  if (r->status) return r->status; // only the first error is reported
   va_start(args, format);
   vsnprintf(message, sizeof message, format, args);
   va_end(args);
@@ -74,7 +74,7 @@ static const xmlNode *child(const xmlNode *n, const char *name) {
 
 static void free_text(void *text) { xmlFree(text); }
 
-// A copy in the arena; NULL: the attribute is not there.
+// Returns a copy in the arena, or NULL if there is no such attribute.
 static const char *attribute(Reader *r, const xmlNode *n, const char *name) {
   xmlChar *text = xmlGetNoNsProp((xmlNode *)n, (const xmlChar *)name);
   if (!text) return NULL;
@@ -93,7 +93,8 @@ static const char *wanted(Reader *r, const xmlNode *n, const char *name) {
   return "";
 }
 
-// n finite numbers of an attribute; false: it is not there, and `out` stays.
+// Reads n finite numbers of an attribute. Returns false, and leaves `out` unchanged, if it is
+// missing.
 static bool numbers(Reader *r, const xmlNode *node, const char *name, double *out, int n) {
   const char *text = node ? attribute(r, node, name) : NULL;
   if (!text) return false;
@@ -117,7 +118,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
   return true;
 }
 
-// The same for lengths in meters and for scale factors. One above LENGTH_MOST is an error.
+// The same for lengths in meters and for scale factors. Values above LENGTH_MOST are errors.
 static bool lengths(Reader *r, const xmlNode *node, const char *name, double *out, int n) {
   if (!numbers(r, node, name, out, n)) return false;
   for (int i = 0; i < n; i++)
@@ -127,7 +128,7 @@ static bool lengths(Reader *r, const xmlNode *node, const char *name, double *ou
   return !r->status;
 }
 
-// --- Elements that several have ---
+// --- Common elements ---
 
 static CagTransform origin_of(Reader *r, const xmlNode *owner) {
   double xyz[3] = {0}, rpy[3] = {0};
@@ -155,7 +156,7 @@ static void *grown(Reader *r, void *items, size_t count, size_t *room, size_t si
   return bigger;
 }
 
-// A material with a color is known by its name from then on, wherever it stands.
+// A material with a color is then known by its name, wherever it was defined.
 static void read_material(Reader *r, const xmlNode *n, CagUrdfBody *body) {
   double rgba[4] = {0, 0, 0, 1};
   const char *name = attribute(r, n, "name");
@@ -345,7 +346,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
 
 // --- The document ---
 
-// Colors of materials that are only named.
+// Finds the colors of materials that are given only by name.
 static void find_colors(Reader *r) {
   for (size_t i = 0; i < r->tree->node_count; i++)
     for (CagUrdfBody *b = r->tree->nodes[i].visuals; b; b = b->next)
@@ -382,7 +383,7 @@ static void read_document(Reader *r, const xmlDoc *doc) {
     fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)root), "the robot has no links");
 }
 
-// A document type is where entities come from: reading ends at its beginning.
+// Entities are defined in a document type, so reading stops at its start.
 static void refuse_document_type(void *context, const xmlChar *name, const xmlChar *external,
                                  const xmlChar *system) {
   xmlParserCtxtPtr parser = context;
@@ -398,8 +399,8 @@ static void read_tree(void *context) {
   read_document(r, r->document);
 }
 
-// Bytes that libxml2 takes for a file at most: nodes and attributes with their texts begin at these
-// characters.
+// Returns the maximum memory that libxml2 needs for a file, from the number of characters at which
+// nodes, attributes, and texts start.
 static size_t tree_bytes(const char *bytes, size_t size) {
   enum { NODE = 256, ATTRIBUTE = 384 };
   size_t total = 3 * size;

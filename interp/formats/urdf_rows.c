@@ -1,13 +1,13 @@
-// A chain of URDF joints as Denavit-Hartenberg rows.
+// Converts a chain of URDF joints to Denavit-Hartenberg rows.
 //
-// The walk stands, seen from the frame that the last joint has moved, at `at`. When the next joint
-// comes, the way to its axis is a constant transform. By the common normal of the two axes it is
-// Rot(z) Trans(z) Trans(x) Rot(x), which completes the row of the last joint, and a rest, Rot(z)
-// Trans(z), which goes with the next joint's own motion and is left for the way behind it. Axes
-// that are nearly parallel have no common normal to compute with; the row then stays bare, and a
-// fixed link goes between. Bodies belong to the last row, and are carried along when it is
-// completed. Before the first joint the way is the robot's base, or a fixed link where there are
-// bodies on it; behind the last one it completes the row, or is the tool.
+// `at` is the current frame of the walk, relative to the frame that the last joint has moved. At
+// the next joint, the transform to its axis is constant. By the common normal of the two axes, it
+// is Rot(z) Trans(z) Trans(x) Rot(x), which completes the row of the last joint, and a rest, Rot(z)
+// Trans(z), which commutes with the next joint's own motion and is added to the transform after it.
+// Nearly parallel axes have no usable common normal. The row then stays empty, and a fixed link is
+// inserted. Bodies belong to the last row and are transformed when it is completed. Before the
+// first joint, the transform is the robot's base, or a fixed link if it has bodies. After the last
+// joint, it completes the row, or is the tool.
 
 #include <string.h>
 
@@ -15,15 +15,16 @@
 #include "geom/robot/kernel.h"
 #include "interp/formats/urdf_read.h"
 
-// Sines and radians below which a direction is taken for a round one: files have angles with 12
-// digits or more, and an arm of 10 m then ends within 1e-10 m of where they lead.
+// Directions that differ less, as a sine or in radians, are rounded to a simple one. Files have
+// angles with 12 digits or more. An arm of 10 m then ends within 1e-10 m of the exact point.
 #define SAME_DIRECTION 1e-11
-// Lengths are kept to so many parts of a millimeter: what they lose by is 1e-13 m.
+// Lengths are rounded to 1 / LENGTH_PARTS mm, which is 1e-13 m.
 #define LENGTH_PARTS 1e10
 #define LENGTH_MOST 1e5
-// How far from where a row leads, in millimeters, the next axis may lie.
+// The maximum distance, in millimeters, of the next axis from where a row leads.
 #define OFF_AXIS 1e-10
-// Common normals of axes that cross at less than this are not computed: rounding moves them.
+// If the sine of the angle between axes is smaller, their common normal is not computed, because
+// rounding would move it.
 #define LEAST_SINE 1e-5
 
 typedef struct Walk {
@@ -34,7 +35,7 @@ typedef struct Walk {
   bool bodies;
 } Walk;
 
-// --- Round numbers ---
+// --- Rounding ---
 
 static double round_length(double x) {
   return fabs(x) < LENGTH_MOST ? round(x * LENGTH_PARTS) / LENGTH_PARTS + 0.0 : x;
@@ -45,7 +46,7 @@ static double round_angle(double x) {
   return fabs(x - quarters * M_PI_2) < SAME_DIRECTION ? quarters * M_PI_2 + 0.0 : x;
 }
 
-// A number that is nearly 0, 1 or -1 is that.
+// Rounds a number that is nearly 0, 1, or -1.
 static double round_cosine(double x) {
   double whole = round(x);
   return fabs(x - whole) < SAME_DIRECTION * SAME_DIRECTION + 1e-15 ? whole + 0.0 : x;
@@ -67,8 +68,8 @@ static bool is_identity(const CagTransform *t) {
 
 // --- Rows ---
 
-// The x axis of a row whose z axis leads to that of t: the direction of the common normal, turned
-// so that theta is small. False: the axes are nearly parallel.
+// Computes the x axis of a row whose z axis leads to that of t: the direction of the common normal,
+// with the sign that makes theta small. Returns false if the axes are nearly parallel.
 static bool normal_of(const CagTransform *t, CagVec3 *x) {
   CagVec3 z = cag_vec3(t->m[0][2], t->m[1][2], 0), p = cag_vec3(t->m[0][3], t->m[1][3], 0);
   double sine = hypot(z.x, z.y), away = hypot(p.x, p.y);
@@ -85,8 +86,8 @@ static bool normal_of(const CagTransform *t, CagVec3 *x) {
   return true;
 }
 
-// Theta, d, a and alpha of a row that leads from one axis to the next, and the turn and shift about
-// that axis which are left. False: there are none that are good.
+// Computes theta, d, a, and alpha of a row that leads from one axis to the next, and the remaining
+// rotation and translation about that axis. Returns false if there are no suitable ones.
 static bool as_row(const CagTransform *t, CagRobotLink *l, CagTransform *rest) {
   CagVec3 x;
   if (!normal_of(t, &x)) return false;
@@ -123,19 +124,19 @@ static bool has_bodies(const Walk *w, size_t node) {
 static void add_bodies(Walk *w, size_t node) {
   if (!has_bodies(w, node)) return;
   w->out->placed[w->placed_count++] = (CagUrdfPlaced){node, w->at};
-  // Bodies before the first joint are counted when there is a row for them.
+  // Bodies before the first joint are counted when they have a row.
   if (w->out->row_count > 0) w->out->rows[w->out->row_count - 1].count++;
 }
 
-// The bodies of the row, seen from a frame at t.
+// Transforms the bodies of the row to a frame at t.
 static void carry(Walk *w, const CagUrdfRow *row, const CagTransform *t) {
   CagTransform back = cag_robot_rigid_inverse(t);
   for (size_t i = row->first; i < row->first + row->count; i++)
     w->out->placed[i].place = cag_transform_multiply(&back, &w->out->placed[i].place);
 }
 
-// Takes the way from the last joint to `t` into its row, but for `rest`. False: it is none of a
-// row.
+// Makes the transform from the last joint to `t` part of its row, except for `rest`. Returns false
+// if it is not the transform of a row.
 static bool complete(Walk *w, const CagTransform *t, CagTransform *rest) {
   CagRobotLink row = {.kind = CAG_JOINT_FIXED};
   if (w->out->row_count == 0) return false;
@@ -150,7 +151,8 @@ static bool complete(Walk *w, const CagTransform *t, CagTransform *rest) {
   return true;
 }
 
-// The way to the next joint's frame; what of it is left behind that joint.
+// Continues to the next joint's frame. Returns the part of the transform that remains after that
+// joint.
 static CagTransform go_to(Walk *w, CagTransform t) {
   CagTransform rest = cag_transform_identity();
   round_frame(&t);
@@ -172,7 +174,7 @@ static CagTransform go_to(Walk *w, CagTransform t) {
 
 // --- Joints ---
 
-// A rotation that brings z to the axis, by the shortest way.
+// Returns the smallest rotation that brings z to the axis.
 static CagTransform to_axis(CagVec3 u) {
   CagTransform t = cag_transform_identity();
   CagError err;
@@ -203,7 +205,8 @@ static void add_joint(Walk *w, const CagUrdfEdge *e, double screw) {
   w->at = cag_transform_multiply(&rest, &back);
 }
 
-// Two joints about and along one axis, of which the sliding one follows the other: a screw.
+// Tests for a screw: two joints about and along the same axis, of which the prismatic one follows
+// the revolute one.
 static bool is_screw(const CagUrdfEdge *slide, const CagUrdfEdge *turn) {
   CagTransform origin = turn->origin;
   round_frame(&origin);

@@ -1,8 +1,7 @@
-// ZIP archives: deflated members, the same bytes for the same content.
+// ZIP archives: deflated members, with reproducible bytes.
 //
-// A member is deflated in memory first, so that its header can say how long it is: readers that go
-// from front to back need that, and the output may be a pipe. No time is written but the format's
-// first day.
+// A member is deflated in memory first, so that its header can contain its length. Streaming
+// readers need that, and the output may be a pipe. The time is always the first day of the format.
 
 #include "interp/formats/zip.h"
 
@@ -12,12 +11,12 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Words of the format (APPNOTE 4.3).
+// Signatures of the format (APPNOTE 4.3).
 #define LOCAL_HEADER 0x04034b50u
 #define DIRECTORY_HEADER 0x02014b50u
 #define DIRECTORY_END 0x06054b50u
 enum { VERSION = 20, DEFLATED = 8, UTF8_NAMES = 1 << 11, FIRST_DAY = 0x21, RAW_WINDOW = -15 };
-// Numbers in text are many and alike: more work hardly makes them smaller.
+// Text with many similar numbers hardly becomes smaller with more effort.
 enum { LEVEL = 3, MEMORY_LEVEL = 8 };
 
 static char *put(char *at, uint64_t x, int bytes) {
@@ -25,7 +24,8 @@ static char *put(char *at, uint64_t x, int bytes) {
   return at;
 }
 
-// What both headers of a member share: from the version needed to the length of its name.
+// Writes the common part of both headers of a member, from the version needed to the length of its
+// name.
 static char *put_member(char *at, const struct CagZipMember *m) {
   at = put(at, VERSION, 2);
   at = put(at, UTF8_NAMES, 2);
@@ -68,7 +68,7 @@ CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err) {
   return CAG_OK;
 }
 
-// Deflates what the stream has as input; `flush`: Z_FINISH with the last of it.
+// Deflates the input of the stream. `flush`: Z_FINISH for the last part.
 static CagStatus pack(struct CagZipPacker *p, int flush, CagError *err) {
   z_stream *s = &p->stream;
   do {

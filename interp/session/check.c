@@ -1,4 +1,4 @@
-// A script checked without being run.
+// Checking a script without running it.
 
 #include "interp/check/check.h"
 
@@ -12,7 +12,7 @@ typedef struct Check {
 static bool check(CagVm *vm, void *context) {
   const Check *c = context;
   int status;
-  const size_t k = vm->module_count; // imports come behind
+  const size_t k = vm->module_count; // imports have higher indices
   const size_t loaded = c->path ? cag_load_file(vm, c->path, &status)
                                 : cag_load_text(vm, c->name, c->text, c->length, CAG_PARSE_FILE);
   if (loaded == CAG_NO_MODULE && (k >= vm->module_count || !vm->modules[k]->resolved)) return false;

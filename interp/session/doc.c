@@ -47,7 +47,8 @@ int cag_session_document_text(CagSession *s, const char *name, const char *text,
   return cag_session_end(s, done ? status : cag_session_fail_memory(s));
 }
 
-// Writes a library module (`member` NULL), or one definition of it. False: there is no such.
+// Writes a library module (`member` NULL), or one of its definitions. Returns false if there is
+// none.
 static bool write_library(CagSession *s, const char *name, const char *member,
                           const CagDocWriter *w) {
   const char *text;
@@ -69,7 +70,7 @@ static bool write_library(CagSession *s, const char *name, const char *member,
   return found;
 }
 
-// "robots.puma560" and "std.robots.puma560": the module, and behind the last point its member.
+// "robots.puma560" and "std.robots.puma560": splits the name at its last point.
 static bool write_member(CagSession *s, const char *name, const CagDocWriter *w) {
   const char *dot = strrchr(name, '.');
   char module[128];
@@ -79,7 +80,7 @@ static bool write_member(CagSession *s, const char *name, const CagDocWriter *w)
   return write_library(s, module, dot + 1, w);
 }
 
-// A chapter of the manual, as it is written.
+// Writes a chapter of the manual unchanged.
 static bool write_guide(const char *name, FILE *out) {
   char path[128];
   snprintf(path, sizeof path, "docs/%s.md", name);

@@ -1,8 +1,8 @@
-// Scripts as tests: reading the expectations, running, comparing.
+// Scripts as tests: reading the expectations, running, and comparing.
 //
-// Reading: a scan over the bytes of the script that knows comments and texts and nothing else of
-// the language, since scripts with errors are tests too. It makes a Plan: for each run its options,
-// the lines to be printed, and the errors.
+// Expectations are read by scanning the script for comments and texts only, without parsing the
+// language, because scripts with errors are tests, too. The scan makes a Plan for each run, with
+// its options, the expected lines, and the expected errors.
 
 #include "interp/session/expect.h"
 
@@ -29,7 +29,7 @@ void cag_test_options_init(CagTestOptions *o) {
   cag_session_options_init(&o->session);
 }
 
-// A piece of the script's text.
+// A part of the script's text.
 typedef struct Piece {
   const char *start, *end;
 } Piece;
@@ -38,7 +38,7 @@ typedef struct Expected {
   Piece text; // the line, or the error's code
   size_t line;
   bool is_error;
-  bool alone; // nothing but the comment stands on the line
+  bool alone; // nothing else is on the line
   bool met;
 } Expected;
 
@@ -47,15 +47,15 @@ typedef struct Define {
 } Define;
 
 typedef struct Plan {
-  char *options; // as written behind `run:`; NULL: the plain run
+  char *options; // as written after `run:`; NULL: the run without options
   size_t line;
   Define *defines;
   size_t define_count;
   CagSessionOptions limits;
-  bool picture; // the reference picture is of this run
+  bool picture; // the reference picture belongs to this run
   Expected *expected;
   size_t count;
-  char *problem; // with the options
+  char *problem; // with the options; NULL: none
 } Plan;
 
 // A comment that looks like an expectation.
@@ -70,12 +70,12 @@ typedef struct Plans {
   size_t count;
   Miss *misses;
   size_t miss_count;
-  bool memory; // ran out
+  bool memory; // memory ran out
 } Plans;
 
 // --- Making plans ---
 
-// Room for one more; NULL when memory is out.
+// Makes room for one more. Returns NULL if memory ran out.
 static void *grow(void **array, size_t *count, size_t size) {
   char *larger = cag_realloc(*array, (*count + 1) * size);
   if (!larger) return NULL;
@@ -115,8 +115,8 @@ static Piece trim(Piece p) {
   return p;
 }
 
-// The next word of a line of options into `out` (as long as the line), without its quotes. Gives
-// where it ends, NULL when there is none.
+// Copies the next word of a line of options to `out` (which is as long as the line), without its
+// quotes. Returns its end, or NULL if there is none.
 static const char *next_word(const char *at, char *out) {
   while (isspace((unsigned char)*at)) at++;
   if (!*at) return NULL;
@@ -163,7 +163,7 @@ static void set_problem(Plan *p, const char *word) {
   if (cag_asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
 }
 
-// Reads the options of `// run:` into the plan.
+// Parses the options of `// run:` into the plan.
 static void read_options(Plans *plans, Plan *p, Piece text) {
   p->options = cag_strndup(text.start, (size_t)(text.end - text.start));
   char *word = cag_malloc((size_t)(text.end - text.start) + 1);
@@ -190,7 +190,7 @@ static void read_options(Plans *plans, Plan *p, Piece text) {
 
 typedef struct Reader {
   const char *start, *end; // of the script
-  size_t line;             // of the byte that is looked at
+  size_t line;             // of the current byte
   const char *line_start;
   const CagSessionOptions *limits;
   Plans *plans;
@@ -211,7 +211,7 @@ static void add_expected(Reader *r, Piece text, bool is_error, bool alone) {
   else r->plans->memory = true;
 }
 
-// `E0201, E0203`: several errors of one line.
+// Parses `E0201, E0203`: several errors of one line.
 static void add_errors(Reader *r, Piece text, bool alone) {
   const char *at = text.start;
   while (at < text.end) {
@@ -230,7 +230,7 @@ static void note_miss(Reader *r, Piece text) {
   else r->plans->memory = true;
 }
 
-// What stands behind the `//` of a comment.
+// Reads the text after the `//` of a comment.
 static void read_comment(Reader *r, Piece text, bool alone) {
   Piece rest;
   text = trim(text);
@@ -246,7 +246,7 @@ static void read_comment(Reader *r, Piece text, bool alone) {
   }
 }
 
-// The rest of a line whose text or comment has no end.
+// Reads the rest of a line with an unterminated text or comment.
 static void read_broken_line(Reader *r, const char *at, const char *line_end) {
   Piece rest;
   for (; at + 2 <= line_end; at++)
@@ -260,7 +260,8 @@ static const char *end_of_line(const Reader *r, const char *at) {
   return newline ? newline : r->end;
 }
 
-// Behind the `*/` of a block comment that begins at `at`, NULL when it has none. They nest.
+// Returns the position after the `*/` of the block comment at `at`, or NULL if it is unterminated.
+// Block comments nest.
 static const char *skip_block_comment(const char *at, const char *end) {
   size_t depth = 0;
   for (; at + 2 <= end; at++) {
@@ -280,9 +281,9 @@ static const char *skip_raw(const char *at, const char *end) {
   return close ? close + 1 : NULL;
 }
 
-// Behind the closing quote of a text that begins at `at`, NULL when there is none on its line.
-// Within its { } stand expressions with texts of their own: `holes` are the braces open in each
-// text around.
+// Returns the position after the closing quote of the text at `at`, or NULL if there is none on its
+// line. The { } of a text contain expressions that may contain texts: `holes` counts the open
+// braces in each enclosing text.
 #define TEXT_NESTING 64
 static const char *skip_text(const char *at, const char *line_end) {
   unsigned holes[TEXT_NESTING] = {0}, depth = 0;
@@ -322,7 +323,7 @@ static bool is_blank(const char *from, const char *to) {
   return from == to;
 }
 
-// Reads the comment or text at `at`, if one begins there, and gives where to go on.
+// Reads the comment or text at `at`, if there is one, and returns the next position.
 static const char *read_at(Reader *r, const char *at) {
   const char *line_end = end_of_line(r, at), *behind;
   const bool two = at + 2 <= r->end;
@@ -361,15 +362,15 @@ static bool read_plans(const char *text, size_t length, const CagSessionOptions 
 typedef struct Run {
   const CagTestOptions *options;
   CagTestCounts *counts;
-  const char *path;   // shown, and read unless there is a text
+  const char *path;   // shown in messages, and read if `text` is NULL
   const char *text;   // NULL: the file's
   size_t length;      // of the text
-  const char *about;  // the name of what the text is an example of; NULL: it is a script
-  size_t example;     // its number among those, from 1
-  const char *folder; // of an example: where it finds the script
+  const char *about;  // the definition whose documentation contains the example; NULL: a script
+  size_t example;     // number among the examples of the definition, from 1
+  const char *folder; // of an example: the folder of its script
   Plan *plan;
-  const Plans *plans; // in the first run of a script: what else was read of it
-  bool pictured;      // the reference picture, where there is one, is of this run
+  const Plans *plans; // in the first run of a script: other results of reading it
+  bool pictured;      // the reference picture, if there is one, belongs to this run
   char *name;
   bool failed;
 } Run;
@@ -398,9 +399,9 @@ static char *rendered_errors(const CagSession *s) {
   return text;
 }
 
-// Whether the error is one that a line expects. One with a place in this script must be on the
-// line; but a comment alone on its line in a run with options names the code only, since such runs
-// stand behind the script.
+// Tests whether a line expects the error. An error with a location in this script must be on that
+// line. But in a run with options, a comment on a line of its own expects only the code, because
+// such comments are after the script.
 static bool meets(const Run *r, const CagErrorView *error, const Expected *e) {
   size_t n = (size_t)(e->text.end - e->text.start);
   if (e->met || !e->is_error || strlen(error->code) != n || memcmp(error->code, e->text.start, n))
@@ -422,8 +423,8 @@ static void check_errors(Run *r, const CagSession *s) {
   bool all = true;
   size_t line = 0;
   char message[256];
-  // Another error of the same line or code may have been seen already: an error again is no new
-  // one.
+  // Repeated errors with the same line or code, which have already been expected, are not reported
+  // again.
   for (size_t i = 0; i < cag_session_error_count(s); i++) {
     CagErrorView e;
     cag_session_error(s, i, &e);
@@ -448,7 +449,7 @@ static void check_errors(Run *r, const CagSession *s) {
   }
 }
 
-// Compares what was printed line by line; tells the first difference.
+// Compares the output line by line, and reports the first difference.
 static void check_output(Run *r, const char *text, size_t size) {
   const char *at = text, *end = text + size;
   size_t last_line = r->plan->line;
@@ -477,7 +478,7 @@ static void check_output(Run *r, const char *text, size_t size) {
     cag_free(expected);
     at = stop < end ? stop + 1 : end;
   }
-  if (at == end || last_line == r->plan->line) return; // a script that expects no line may print
+  if (at == end || last_line == r->plan->line) return; // a script without expected lines may print
   const char *stop = memchr(at, '\n', (size_t)(end - at));
   char *found = cag_strndup(at, (size_t)((stop ? stop : end) - at));
   fail(r, last_line, "more is printed than expected", NULL, found, NULL);
@@ -491,7 +492,7 @@ static bool ends_with(const char *path, const char *ending) {
   return n >= k && strcmp(path + n - k, ending) == 0;
 }
 
-// The reference picture of the script, or NULL; to be freed.
+// Returns the reference picture of the script, to be freed, or NULL.
 static char *find_reference(const char *path) {
   static const char *const endings[] = {".exr", ".png"};
   size_t stem = strlen(path) - (ends_with(path, ".cag") ? 4 : 0);
@@ -545,7 +546,7 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
   return ok;
 }
 
-// Renders to `path` in the size of the reference. False, after a failure was told.
+// Renders to `path` at the size of the reference. Returns false after a failure was reported.
 static bool render(Run *r, CagSession *s, const CagImage *reference, const char *path) {
   CagRenderOptions options;
   cag_render_options_init(&options);
@@ -553,7 +554,7 @@ static bool render(Run *r, CagSession *s, const CagImage *reference, const char 
   options.height = (int)reference->height;
   const double limit = r->options->session.max_time;
   options.time_limit = limit > 0 ? limit : CAG_TEST_PICTURE_SECONDS;
-  s->options.max_time = options.time_limit; // the scene's meshes belong to the picture
+  s->options.max_time = options.time_limit; // making the scene's meshes is part of rendering
   cag_session_renew_time(s);
   if (cag_session_render(s, &options, path) == CAG_STATUS_OK) return true;
   char *errors = rendered_errors(s);
@@ -562,7 +563,7 @@ static bool render(Run *r, CagSession *s, const CagImage *reference, const char 
   return false;
 }
 
-// Renders into a folder of its own, which goes away unless the picture differs.
+// Renders into a temporary folder, which is removed unless the picture differs.
 static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
                                const char *reference_path) {
   const char *root = getenv("TMPDIR"), *slash = strrchr(reference_path, '/');
@@ -635,7 +636,7 @@ static bool expects_error(const Plan *p) {
   return false;
 }
 
-// The picture belongs to a run that ends well.
+// The picture belongs to a run that succeeds.
 static int test_reference(Run *r, CagSession *s) {
   const bool none = r->options->no_pictures || r->text || !r->pictured || expects_error(r->plan);
   char *reference = none ? NULL : find_reference(r->path);
@@ -680,7 +681,7 @@ static int perform(Run *r) {
     fflush(out);
     if (status != CAG_STATUS_INTERRUPTED) {
       check_errors(r, s);
-      // What an error left unprinted is no failure of its own.
+      // Output that is missing because of an error is not reported separately.
       if (!r->failed) check_output(r, output, size);
       bool ok = !r->failed;
       end_run(r, ok ? CAG_TEST_PASSED : CAG_TEST_FAILED, cag_clock_seconds() - begin, NULL);
@@ -710,7 +711,7 @@ static bool some_pictured(const Plans *plans) {
   return false;
 }
 
-// Runs a script in all its runs; `text` is its text, also where the run reads the file.
+// Runs a script with all its runs. `text` is its text, even if the run reads the file.
 static int run_plans(const Run *script, const char *text, size_t length) {
   Plans plans = {0};
   const CagTestOptions *options = script->options;
@@ -739,8 +740,8 @@ int cag_test_text(const char *name, const char *text, size_t length, const CagTe
 
 // --- Examples in the documentation of definitions ---
 
-// An example as a script in which all stands in the line, and the column, where it does in the
-// file: so failures are told by their place there. What it imports stands before it.
+// Returns an example as a script in which everything is at the line and column of the file, so that
+// failures are reported with their location in the file. Its imports come first.
 static char *place_example(const CagDocEntry *e, size_t first, const char *part, size_t length,
                            const char *import, size_t *size) {
   char *text = NULL;
@@ -775,7 +776,7 @@ static void read_head(void *context) {
   h->import = cag_doc_script_import(h->module, h->file, h->example);
 }
 
-// Runs an example, which begins in the line of the entry's text. `script` has its number.
+// Runs an example that starts at a line of the entry's text. `script` contains its number.
 static int run_example(const Run *script, const CagDocModule *m, const CagDocEntry *e, size_t line,
                        const char *part, size_t length) {
   const char *slash = strrchr(script->path, '/');
@@ -813,7 +814,7 @@ static int run_examples_of(const Run *script, const CagDocModule *m, const CagDo
   return status;
 }
 
-// A script with errors has no examples: its own run tells them.
+// Examples of a script with errors are not run, because the script's own run reports the errors.
 static int run_examples(const Run *script, const char *text, size_t length) {
   if (!memmem(text, length, "///     ", 8)) return CAG_STATUS_OK;
   CagSession *s = cag_session_new(&script->options->session);

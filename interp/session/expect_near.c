@@ -1,14 +1,15 @@
-// Comments that look like expectations of a test and are none, so that nothing would be tested.
+// Misspelled expectations, which would silently not be tested.
 
 #include <ctype.h>
 #include <string.h>
 
 #include "interp/session/expect_near.h"
 
-// Longer words before a colon are prose.
+// Longer words before a colon are ordinary text.
 #define KEY_MOST 24
 
-// Whether b is a by one letter left out, added or changed, or two neighbors swapped.
+// Tests whether a and b differ by one missing, additional, or changed letter, or two swapped
+// neighbors.
 static bool is_one_off(const char *a, const char *b) {
   const size_t n = strlen(a), m = strlen(b);
   size_t head = 0, tail = 0;

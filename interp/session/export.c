@@ -1,4 +1,4 @@
-// Writing the scene in a format.
+// Writes the scene in a file format.
 
 #include <errno.h>
 #include <string.h>
@@ -42,7 +42,8 @@ static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
   return CAG_OK;
 }
 
-// One part, or (apart) one for each material that faces of a set operation have. Takes the mesh.
+// Adds one part or, with `apart`, one for each material of the faces of a set operation. Takes over
+// the mesh.
 static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item, CagMesh *mesh,
                            bool apart, CagError *err) {
   if (!apart || !mesh->labels || !item->label_count) {
@@ -66,8 +67,8 @@ static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item,
   return status;
 }
 
-// Warns that a part of a file for printing encloses nothing. The list of diagnostics keeps room for
-// the error that may follow.
+// Warns about an open part in a file for printing. Leaves room in the list of diagnostics for a
+// later error.
 static CagStatus warn_open(CagSession *s, const CagItem *item, const CagMesh *mesh, CagError *err) {
   const bool region = item->kind == CAG_ITEM_REGION;
   size_t open = 0;
@@ -95,11 +96,11 @@ static CagStatus warn_open(CagSession *s, const CagItem *item, const CagMesh *me
 
 typedef enum MeshUse {
   FOR_PRINTING = 1, // parts should be solids
-  ONE_MATERIAL = 2  // parts have one material each
+  ONE_MATERIAL = 2  // each part has a single material
 } MeshUse;
 
-// Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
-// shown. use: of MeshUse.
+// Makes meshes of all shown items. Grounds and lines are omitted unless nothing else was shown.
+// use: of MeshUse.
 static int make_parts(CagSession *s, unsigned use, Parts *out) {
   const CagScene *scene = &s->scene;
   *out = (Parts){0};
@@ -130,7 +131,7 @@ static int make_parts(CagSession *s, unsigned use, Parts *out) {
   return CAG_STATUS_OK;
 }
 
-// Meshes are no output without triangles: labels and grounds are drawn in pictures alone.
+// A mesh file needs triangles. Labels and grounds appear only in pictures.
 static int check_parts(CagSession *s, const Parts *parts) {
   for (size_t i = 0; i < parts->count; i++)
     if (parts->items[i].mesh->triangle_count > 0) return CAG_STATUS_OK;
@@ -143,8 +144,8 @@ static int check_parts(CagSession *s, const Parts *parts) {
   return CAG_STATUS_SCRIPT;
 }
 
-// Makes the name of the file that accompanies another one, such as part.mtl with part.obj; NULL for
-// standard output. Returns false if memory ran out.
+// Makes the path of an accompanying file, such as part.mtl for part.obj, or NULL for standard
+// output. Returns false if memory ran out.
 static bool path_beside(const char *path, const char *ending, char **out) {
   *out = NULL;
   if (strcmp(path, "-") == 0) return true;
@@ -162,7 +163,7 @@ static int fail_memory(CagSession *s) {
 typedef struct MeshOutput {
   const CagMeshPart *parts;
   size_t count;
-  CagAtomicFile *file, *beside; // beside: NULL where the format or the output has none
+  CagAtomicFile *file, *beside; // beside: NULL if the format or the output has none
   const char *beside_name;
 } MeshOutput;
 
@@ -191,12 +192,12 @@ static int commit(CagSession *s, CagAtomicFile *f) {
                                         : cag_session_fail_io(s, CAG_ERR_output_file, &io);
 }
 
-// Puts both files into their places, or neither. The one beside comes first: a file that stands
-// there whole finds what it names.
+// Commits both files or neither. The accompanying file comes first, so that a complete main file
+// never refers to a missing one.
 static int commit_both(CagSession *s, MeshOutput *m) {
   cag_atomic_file_flush(m->file);
   if (m->beside) cag_atomic_file_flush(m->beside);
-  if (cag_atomic_file_failed(m->file)) { // its commit tells why
+  if (cag_atomic_file_failed(m->file)) { // its commit reports the reason
     cag_atomic_file_abort(m->beside);
     return commit(s, m->file);
   }
@@ -226,8 +227,8 @@ static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const ch
 
 // --- .gltf ---
 
-// The data that a .gltf file of ours at the path refers to, which the next one leaves without use;
-// NULL: none. Its name stands at the end of the file.
+// Returns the name of the data file of an existing .gltf file of ours, which will become unused, or
+// NULL. Its name is at the end of the file.
 static char *former_data(const char *path, const char *stem) {
   enum { TAIL = 4096, HASH_DIGITS = 16 };
   char tail[TAIL + 1], *name = NULL;
@@ -244,8 +245,8 @@ static char *former_data(const char *path, const char *stem) {
   return name;
 }
 
-// Writes the data under the name of its content first and renames the JSON last: whenever the
-// program is stopped, the JSON that stands there has its own data.
+// Writes the data first, under a name derived from its contents, and renames the JSON last. So
+// whenever the program is stopped, the JSON refers to its own data.
 static int write_gltf_data(CagSession *s, const CagGltfData *data, const char *folder) {
   CagError io = {0};
   char *path = NULL;
@@ -259,7 +260,7 @@ static int write_gltf_data(CagSession *s, const CagGltfData *data, const char *f
   return commit(s, f);
 }
 
-// Puts both files into their places; the data that the former JSON referred to goes.
+// Commits both files, and removes the data of the previous JSON.
 static int commit_gltf(CagSession *s, CagAtomicFile *f, const CagGltfData *data, const char *path,
                        const char *stem, const char *folder) {
   char *former = former_data(path, stem);
@@ -274,8 +275,8 @@ static int commit_gltf(CagSession *s, CagAtomicFile *f, const CagGltfData *data,
   return status;
 }
 
-// stem: the path without its ending, NULL where no file can be beside it; folder: what of it comes
-// before the name.
+// stem: the path without its extension, NULL if there can be no file beside it; folder: the part of
+// it before the name.
 static int write_gltf_files(CagSession *s, const Parts *parts, const char *path, const char *stem,
                             const char *folder) {
   CagError io = {0};
@@ -291,7 +292,7 @@ static int write_gltf_files(CagSession *s, const Parts *parts, const char *path,
     status = cag_session_fail_geometry(s, &err);
   } else {
     cag_atomic_file_flush(f);
-    // The commit of a file that failed tells why.
+    // the commit of a failed file reports the reason
     status = !stem || cag_atomic_file_failed(f) ? commit(s, f)
                                                 : commit_gltf(s, f, &data, path, stem, folder);
   }
@@ -319,7 +320,7 @@ static int write_gltf(CagSession *s, const Parts *parts, const char *path) {
   return status;
 }
 
-// ending: of the file that goes with it; NULL: none. use: of MeshUse.
+// ending: extension of the accompanying file; NULL: none. use: of MeshUse.
 static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending,
                          unsigned use) {
   Parts parts;
@@ -381,7 +382,7 @@ static int export_text(CagSession *s, const char *path,
 
 static CagStatus write_pov(CagSession *s, CagAtomicFile *f, CagError *err) {
   CagPovOptions options = CAG_POV_OPTIONS_DEFAULT;
-  // export_pov has looked at the option.
+  // export_pov has checked the option.
   (void)cag_session_pov_csg(s, CAG_POV_CSG_GENERAL, &options.csg);
   return cag_export_pov(&s->scene, &options, f, err);
 }
@@ -405,7 +406,7 @@ static int export_json(CagSession *s, const char *path) { return export_text(s, 
 typedef CagStatus (*BrepWriter)(const CagBrep *b, const char *script, CagAtomicFile *f,
                                 CagError *err);
 
-// Says what the file holds only nearly: exactness is what it is for.
+// Lists the approximated shapes, because users of the format expect exact ones.
 static void tell_approximate(const CagSession *s, const CagBrep *b) {
   for (size_t i = 0; s->options.messages && i < b->shape_count; i++)
     if (b->shapes[i].approximate)
@@ -446,7 +447,7 @@ static int export_iges(CagSession *s, const char *path) {
 
 // --- Robots ---
 
-// The one robot that is shown, or a diagnostic.
+// Finds the shown robot if there is exactly one. Otherwise adds a diagnostic.
 static int find_robot(CagSession *s, const CagRobotValue **robot) {
   enum { NAMED = 8 };
   const CagRobotValue *found[NAMED];
@@ -504,7 +505,7 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
   return status;
 }
 
-// The meshes come first: a file that stands there whole finds what it names.
+// The meshes come first, so that a complete file never refers to missing ones.
 static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
   CagError io = {0};
   if (u->meshes && strcmp(path, "-") == 0) {
@@ -556,7 +557,7 @@ static int export_urdf(CagSession *s, const char *path) {
   return status;
 }
 
-// --- The table ---
+// --- The table of formats ---
 
 // X(name, story, function)
 #define FORMATS(X)                                                                                 \

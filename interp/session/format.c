@@ -1,4 +1,4 @@
-// Formats a script.
+// Formatting a script.
 
 #include "lang/format.h"
 

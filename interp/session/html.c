@@ -1,4 +1,4 @@
-// Texts and scripts as HTML.
+// Writes texts and scripts as HTML.
 
 #include <string.h>
 
@@ -34,7 +34,7 @@ static size_t word_end(const char *text, size_t i, size_t length) {
   return i;
 }
 
-// A number with its unit. The two points of a range do not belong to it.
+// Returns the end of a number with its unit. The two points of a range are not part of it.
 static size_t number_end(const char *text, size_t i, size_t length) {
   while (i < length && (is_digit(text[i]) || text[i] == '_')) i++;
   if (i + 1 < length && text[i] == '.' && is_digit(text[i + 1])) {
@@ -51,7 +51,7 @@ static size_t text_end(const char *text, size_t i, size_t length) {
   return i < length ? i + 1 : length;
 }
 
-// A name leads to its page where a built-in is called so and it is no member or argument.
+// Writes a name, with a link if it is that of a built-in and not a member or an argument.
 static void write_word(FILE *out, const char *root, const char *text, size_t at, size_t end,
                        size_t length) {
   char name[64];
@@ -64,7 +64,7 @@ static void write_word(FILE *out, const char *root, const char *text, size_t at,
   name[n] = 0;
   const bool member = at > 0 && text[at - 1] == '.' && !(at > 1 && text[at - 2] == '.');
   const bool argument = end < length && text[end] == ':';
-  // A name with nothing behind it may be a parameter or a definition of the script.
+  // A name that is not called may be a parameter or a definition of the script.
   const bool meant = n == length || (end < length && text[end] == '(');
   if (cag_word_is_reserved(name)) write_class(out, "k", name, n);
   else if (meant && !member && !argument && cag_builtin_find(name) != (size_t)-1)
@@ -98,7 +98,7 @@ void cag_html_prose(FILE *out, const char *root, const char *text, size_t length
   for (size_t i = 0; i < length;) {
     const char *close = text[i] == '`' ? memchr(text + i + 1, '`', length - i - 1) : NULL;
     const size_t n = close ? (size_t)(close - text) - i - 1 : 0;
-    // With nothing between them, backquotes are meant themselves.
+    // Empty backquotes are literal.
     if (n > 0 && strspn(text + i + 1, " ") < n) {
       fputs("<code>", out);
       cag_html_script(out, root, text + i + 1, n);
@@ -113,7 +113,8 @@ void cag_html_prose(FILE *out, const char *root, const char *text, size_t length
 
 // --- Examples ---
 
-// The script without its `// expect` comments: what it prints is shown below it. malloc'd.
+// Returns the script without its `// expect` comments, because its output is shown below it;
+// allocated with malloc.
 static char *without_expectations(const char *text, size_t length) {
   char *out = cag_strndup(text, length), *to = out;
   if (!out) cag_memory_leave();
@@ -125,7 +126,7 @@ static char *without_expectations(const char *text, size_t length) {
     }
     while (to > out && to[-1] == ' ') to--;
     at += strcspn(at, "\n");
-    // A line that had nothing else goes away with its end.
+    // A line that contained nothing else is removed completely.
     if ((to == out || to[-1] == '\n') && *at) at++;
   }
   *to = 0;

@@ -1,8 +1,8 @@
-// Interactive sessions: each text is a module of its own that sees the names of those before it.
+// Interactive sessions: each input is a module that sees the names of earlier inputs.
 //
-// A name that is defined again keeps its slot: whatever refers to it sees the new definition.
-// Values that were computed are forgotten then, and computed again when they are needed; since
-// nothing has effects, nobody can tell but by the new result.
+// A name that is redefined keeps its slot, so everything that refers to it sees the new definition.
+// All computed values are then discarded, and recomputed when they are needed. Since evaluation has
+// no side effects, only the results can change.
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +43,7 @@ static void add_name(CagVm *vm, const char *name, size_t global) {
   vm->outer_globals[vm->outer_count++] = global;
 }
 
-// Makes the definitions of a loaded text those of the session.
+// Makes the definitions of a loaded input part of the session.
 static void adopt(CagVm *vm, CagModuleUnit *m) {
   bool again = false;
   for (size_t i = 0; i < m->ast->top_count; i++) {
@@ -78,7 +78,7 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
   if (!in->value) return;
   CagString s = {0};
   cag_print_value(vm, &s, v, true);
-  // The text of a value that took too long or too much memory breaks off somewhere.
+  // If the value took too long or too much memory, its text is incomplete.
   if (!vm->failed && cag_keep_going(vm)) {
     cag_string_check(vm, &s);
     in->value(in->context, s.bytes ? s.bytes : "", cag_type_name(v));
@@ -86,7 +86,7 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
   cag_string_free(&s);
 }
 
-// Params get the values of -D, those that a text has; their defaults are checked.
+// Sets params to the values of -D for params of an input, and checks their defaults.
 static bool set_params(CagVm *vm, CagModuleUnit *m, const CagSession *s) {
   CagCleanup cleanup;
   CagDefine *defines = cag_temporary(&cleanup, s->define_count, sizeof *defines);
@@ -140,7 +140,7 @@ bool cag_input_is_incomplete(const char *text, size_t length) {
   return cag_parse_incomplete(text, length);
 }
 
-// The definition that name i of the session stands for; NULL when an import brought it.
+// Returns the definition of name i of the session, or NULL if it was imported.
 static const CagDecl *find_decl(const CagVm *vm, size_t i) {
   const CagModuleUnit *m = vm->globals[vm->outer_globals[i]].unit;
   for (size_t k = 0; m && m->adopted && k < m->ast->top_count; k++)
@@ -193,7 +193,7 @@ bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t
   cag_free(head);
   if (i == (size_t)-1) return false;
   const CagGlobal *g = &s->vm->globals[s->vm->outer_globals[i]];
-  const bool whole = g->value.type == CAG_MODULE; // of the name is the module, not a member of it
+  const bool whole = g->value.type == CAG_MODULE; // the name is that of the module, not of a member
   const CagModuleUnit *m =
       whole ? s->vm->modules[((const CagModuleValue *)g->value.as.object)->module] : g->unit;
   if (!m || m->path || strncmp(m->name, "std.", 4) != 0 || (!whole && name[n])) return false;
@@ -203,7 +203,7 @@ bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t
 
 // --- Members ---
 
-// Tab does not wait for values that take longer.
+// The time limit of completion for values.
 #define MEMBERS_SECONDS 1.0
 
 typedef struct MemberQuestion {
@@ -253,7 +253,7 @@ static void write_span(const CagModuleUnit *m, CagSpan span, FILE *out) {
   fprintf(out, "%.*s\n", (int)(span.end - span.start), m->source->text + span.start);
 }
 
-// Whether what is shown was written so.
+// Tests whether an expression shown has this source text.
 static bool is_written(const CagModuleUnit *m, const CagExpr *e, const char *text) {
   const size_t length = e->span.end - e->span.start;
   return strlen(text) == length && memcmp(m->source->text + e->span.start, text, length) == 0;
@@ -284,7 +284,7 @@ static void write_show(const CagModuleUnit *m, const CagStatement *show, FILE *o
   }
 }
 
-// Writes the statements of a kind of all inputs that ran.
+// Writes the statements of one kind of all inputs that ran.
 static void write_statements(const CagSession *s, CagStatementKind kind, FILE *out) {
   for (size_t i = 0; i < s->input_count; i++) {
     const CagModuleUnit *m = s->vm->modules[s->inputs[i]];

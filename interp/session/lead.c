@@ -4,7 +4,7 @@
 
 #include "interp/vm/builtin.h"
 
-// The comprehensions around an expression.
+// The comprehensions that enclose an expression.
 typedef struct Around {
   const CagExpr *comprehension;
   const struct Around *outer;
@@ -20,14 +20,15 @@ static bool is_one_of(const char *name, const char *const *names, size_t n) {
   return false;
 }
 
-// Makes copies of the first argument.
+// Tests for functions that make copies of the first argument.
 static bool copies(const CagExpr *callee) {
   static const char *const names[] = {"around", "rows", "mirrored"};
   return callee->kind == CAG_EXPR_NAME && callee->as.name.binding == CAG_BIND_BUILTIN &&
          is_one_of(callee->as.name.id, names, sizeof names / sizeof *names);
 }
 
-// Gives the first argument, moved or with something said about it ("as G"), or in another form.
+// Tests for functions that return the first argument, transformed, with other attributes ("as G"),
+// or in another form.
 static bool keeps(const CagExpr *callee) {
   static const char *const forms[] = {"posed", "thicken", "solid", "clip", "tessellate"};
   if (callee->kind != CAG_EXPR_NAME || callee->as.name.binding != CAG_BIND_BUILTIN) return false;
@@ -46,7 +47,7 @@ static bool is_group(const CagExpr *callee) {
 
 // The callee and the first argument of a call or pipe.
 typedef struct Step {
-  const CagExpr *callee, *first; // first: NULL if there is none by position
+  const CagExpr *callee, *first; // first: NULL if there is no positional argument
 } Step;
 
 static Step step_of(const CagExpr *e) {
@@ -59,7 +60,8 @@ static Step step_of(const CagExpr *e) {
   return (Step){e->as.call.callee, by_position ? a->value : NULL};
 }
 
-// A function of the script gives what it is called, unless something else goes through it.
+// For a function of the script, the name is that of the function, unless a named shape is piped
+// through it.
 static const char *lead_of_call(const CagExpr *e, const Around *around) {
   const Step s = step_of(e);
   if (keeps(s.callee) || copies(s.callee)) return s.first ? lead(s.first, around) : NULL;
@@ -70,7 +72,7 @@ static const char *lead_of_call(const CagExpr *e, const Around *around) {
 
 // --- Names ---
 
-// A name that runs over something leads where that does.
+// For a name of a comprehension, the name is that of its source.
 static const char *lead_of_clause(const CagDecl *decl, const Around *around) {
   for (; around; around = around->outer)
     for (size_t i = 0; i < around->comprehension->as.comprehension.count; i++) {
@@ -115,7 +117,7 @@ static const char *lead(const CagExpr *e, const Around *around) {
   case CAG_EXPR_BLOCK: return lead(e->as.block.value, around);
   case CAG_EXPR_IF:
     return same(lead(e->as.branch.then, around), lead(e->as.branch.otherwise, around));
-  case CAG_EXPR_BINARY: // a transform times what it moves
+  case CAG_EXPR_BINARY: // a transform times its operand
     return e->as.binary.op == CAG_OP_MULTIPLY ? lead(e->as.binary.right, around) : NULL;
   case CAG_EXPR_INDEX: return lead(e->as.binary.left, around);
   case CAG_EXPR_MEMBER:

@@ -1,8 +1,8 @@
-// Documents in Markdown as parts of pages.
+// Converts Markdown documents to parts of pages.
 //
-// cmark makes the tree and writes it; before that, headings get anchors, links to other documents
-// lead to their pages, code that is the name of a function leads to it, and fenced blocks of `cag`
-// become examples.
+// cmark parses the document and writes it. In between, headings get anchors, links to other
+// documents become links to their pages, names of functions in code become links, and fenced blocks
+// of `cag` become examples.
 
 #include <cmark-gfm-core-extensions.h>
 #include <cmark-gfm.h>
@@ -15,10 +15,10 @@
 typedef struct Document {
   CagSite *site;
   const char *root, *about;
-  bool is_guide; // a chapter of the manual; else what is said of a module
+  bool is_guide; // a chapter of the manual; otherwise the comment of a module
 } Document;
 
-// Puts HTML in the place of a node.
+// Replaces a node by HTML.
 static void replace(cmark_node *node, cmark_node_type type, const char *html) {
   cmark_node *new = cmark_node_new(type);
   cmark_node_set_literal(new, html);
@@ -30,7 +30,7 @@ static void change_block(const Document *d, cmark_node *node) {
   const char *info = cmark_node_get_fence_info(node), *text = cmark_node_get_literal(node);
   int width, offset;
   char character;
-  // Indented code, as in the comments of modules, is of the language as well.
+  // Indented code, as in the comments of modules, is also cag.
   const bool plain = !cmark_node_get_fenced(node, &width, &offset, &character);
   const bool named = info && strncmp(info, "cag", 3) == 0 && (info[3] == 0 || info[3] == ' ');
   if (!plain && !named) return;
@@ -67,7 +67,7 @@ static void change_code(const Document *d, cmark_node *node) {
   cag_free(html);
 }
 
-// The text of a heading, of all the nodes in it.
+// Returns the text of all nodes of a heading.
 static char *plain_text(cmark_node *heading) {
   char *text = NULL;
   size_t length = 0;
@@ -99,8 +99,8 @@ static void anchor_heading(const Document *d, cmark_node *node) {
   cag_free(text);
 }
 
-// "language.md#values" is the page language.html, where the site has it; what lies elsewhere in the
-// tree of the source has no page, and stays as words.
+// "language.md#values" becomes language.html if the site has this page. Other files of the source
+// tree have no page, so the link is replaced by its text.
 static void change_link(const Document *d, cmark_node *node) {
   const char *url = cmark_node_get_url(node);
   const char *dot = strstr(url, ".md");
@@ -127,7 +127,7 @@ static void change_link(const Document *d, cmark_node *node) {
   cmark_node_free(node);
 }
 
-// What looks like HTML in the comments of a script, such as `a <b> c`, is meant as it stands.
+// Text that looks like HTML in the comments of a script, such as `a <b> c`, is literal.
 static void change_html(cmark_node *node, cmark_node_type type) {
   cmark_node *text = cmark_node_new(CMARK_NODE_TEXT), *new = text;
   cmark_node_set_literal(text, cmark_node_get_literal(node));
@@ -149,7 +149,7 @@ static void change(const Document *d, cmark_node *node) {
   else if (type == CMARK_NODE_LINK) change_link(d, node);
 }
 
-// The nodes are gathered first, since they are changed under way.
+// Nodes are collected first, because the changes modify the tree.
 static void change_all(const Document *d, cmark_node *root) {
   size_t count = 0, capacity = 0;
   cmark_node **nodes = NULL;

@@ -1,4 +1,4 @@
-// From a scene to a picture: POV-Ray source, the renderer, EXR or PNG.
+// Renders a scene: POV-Ray source, the renderer, and output as EXR or PNG.
 
 #include <math.h>
 #include <string.h>
@@ -94,7 +94,7 @@ static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *
   return cag_exr_metadata_matrix(m, name, rows, err);
 }
 
-// What a picture tells of itself: script, camera, tolerance, versions.
+// Makes the metadata of a picture: script, camera, tolerance, versions.
 static bool make_metadata(const CagSession *s, const CagCamera *camera, const char *renderer,
                           CagExrMetadata *m, CagError *err) {
   CagTransform frame = cag_camera_frame(camera), inverse;
@@ -136,7 +136,7 @@ static int write_source(CagSession *s, void *context) {
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  // The sky's panorama stands beside the scene under a plain name (see povray.h).
+  // The sky's panorama is copied beside the scene under a plain name (see povray.h).
   CagScene *scene = &s->scene;
   char plain[] = SKY_FILE, *image = scene->sky.image;
   if (image) scene->sky.image = plain;
@@ -186,7 +186,7 @@ static bool is_png(const char *path) {
   return dot && strcasecmp(dot, ".png") == 0;
 }
 
-// Reads the renderer's picture: the part of it that was asked for.
+// Reads the requested part of the renderer's picture.
 static bool read_picture(const Job *j, CagImage *out, CagError *io) {
   const CagRenderRegion r = j->options->region;
   CagImage whole;
@@ -220,7 +220,7 @@ static bool write_png(Job *j, const char *path, CagError *io) {
   return ok;
 }
 
-// POV-Ray's pictures are half floats, and so are parts of them.
+// POV-Ray's pictures are half floats, so their parts are, too.
 static bool write_part(Job *j, const char *path, const CagExrMetadata *m, CagError *io) {
   CagImage image;
   if (!read_picture(j, &image, io)) return false;
@@ -293,7 +293,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   status = cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;
   CagCamera *chosen = &s->scene.cameras[camera];
-  if (options->width > 0 && chosen->framed) { // for the picture's shape
+  if (options->width > 0 && chosen->framed) { // for the shape of the picture
     chosen->size[0] = options->width;
     chosen->size[1] = options->height;
     status = cag_session_geometry(s, frame_all, chosen);
@@ -308,7 +308,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   j.index = camera;
   status = cag_session_geometry(s, write_source, &j);
   const double left = s->time_left;
-  if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a time of its own
+  if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a separate time limit
   if (status == CAG_STATUS_OK) status = cag_session_geometry(s, make_picture, &j);
   if (options->time_limit > 0) s->time_left = left;
   cag_free(j.source);

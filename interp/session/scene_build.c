@@ -1,5 +1,5 @@
-// From the values that a script shows to a scene: groups are taken apart, what was said about a
-// group goes down to shapes that say nothing themselves, records become plain structs.
+// Converts the values that a script shows to a scene: groups are split, attributes of a group apply
+// to its shapes that have none, and records become plain structs.
 //
 // Nothing here calls back into the script, so values need no roots.
 
@@ -24,14 +24,14 @@ typedef struct Build {
   CagScene *scene;
   size_t item_capacity, label_capacity, material_capacity, camera_capacity, light_capacity;
   CagHashIndex names;     // items by name
-  size_t *name_numbers;   // of an item: the last number added to its name for other items
+  size_t *name_numbers;   // for each item: the last number appended to its name for other items
   size_t number_capacity; // of name_numbers
-  CagHashIndex materials; // by what they look like, and by that and their name
-  CagHashIndex labels;    // of the item at hand
-  bool failed;            // memory is out
+  CagHashIndex materials; // by appearance, and by appearance and name
+  CagHashIndex labels;    // of the current item
+  bool failed;            // memory ran out
 } Build;
 
-// What groups around a shape say about it.
+// The attributes of the groups around a shape.
 typedef struct Said {
   CagRecord *material;
   const char *name;
@@ -77,7 +77,7 @@ static CagColor color_field(const CagRecord *r, const char *name, CagColor fallb
 
 // --- Materials ---
 
-// Curves without a material are drawn in ink.
+// The color of curves without a material.
 static const CagColor ink = {0.03, 0.035, 0.05};
 #define DEFAULT_MATERIAL 0
 #define INK_MATERIAL 1
@@ -97,7 +97,7 @@ static uint64_t hash_color(uint64_t h, CagColor c) {
   return cag_hash_number(cag_hash_number(cag_hash_number(h, c.r), c.g), c.b);
 }
 
-// The hash of what same_material compares.
+// Hashes the fields that same_material compares.
 static uint64_t hash_material(const CagMaterial *m) {
   const double numbers[] = {m->metallic,     m->roughness, m->ior,
                             m->transmission, m->coat,      m->texture_scale};
@@ -107,7 +107,7 @@ static uint64_t hash_material(const CagMaterial *m) {
   return m->pov ? cag_hash_text(h, m->pov) : h;
 }
 
-// Finds the first material that looks the same and has the name (NULL: any).
+// Finds the first material with the same appearance and name (NULL: any).
 static bool find_material(const Build *b, uint64_t hash, const CagMaterial *m, const char *name,
                           size_t *out) {
   const CagMaterial *known = b->scene->materials;
@@ -116,7 +116,7 @@ static bool find_material(const Build *b, uint64_t hash, const CagMaterial *m, c
   return false;
 }
 
-// Keeps the material unless the scene has the same one already; copies texts.
+// Adds the material unless the scene contains the same one. Copies texts.
 static size_t keep_material(Build *b, CagMaterial m, const char *name) {
   CagScene *s = b->scene;
   const uint64_t look = hash_material(&m);
@@ -150,7 +150,7 @@ static size_t material_of(Build *b, const CagRecord *r, size_t fallback) {
   m.transmission = number_field(r, "transmission", m.transmission);
   m.coat = number_field(r, "coat", m.coat);
   m.texture_scale = number_field(r, "texture_scale", m.texture_scale);
-  // Copied when the material is kept.
+  // copied when the material is added
   m.texture = (char *)text_field(r, "texture", m.texture);
   m.pov = (char *)text_field(r, "pov", NULL);
   return keep_material(b, m, text_field(r, "name", NULL));
@@ -165,8 +165,8 @@ static bool find_item(const Build *b, const char *name, size_t *out) {
   return false;
 }
 
-// "vase", "vase.2", "vase.3" ... The search continues from the last number that was added to the
-// name, so that naming many items alike takes linear time.
+// Makes "vase", "vase.2", "vase.3" ... The search continues from the last number appended to the
+// name, so that naming many items with the same name takes linear time.
 static char *unique_name(Build *b, const char *wanted) {
   size_t first, taken;
   if (!find_item(b, wanted, &first)) return copy_text(b, wanted);
@@ -213,20 +213,20 @@ static void add_label(Build *b, const CagLabelText *label, const Said *said) {
                                            .material = material};
 }
 
-// What it was made as, wherever it was moved since.
+// Returns the kind of surface that it was made as, before any transforms.
 static const char *surface_name(const CagSurface *s) {
   const CagSurface *inner;
   CagTransform map;
   return cag_surface_placed_view(s, &inner, &map) ? inner->kind->name : s->kind->name;
 }
 
-// The labels that a body or mesh has, with their materials.
+// The labels in a solid or mesh, and their materials.
 typedef struct Labels {
   Build *b;
   CagItem *item;
   CagRecord *outer;
   size_t capacity;
-  uint32_t last; // label noted last: triangles with one label follow each other
+  uint32_t last; // the last label found; neighboring triangles usually have the same one
 } Labels;
 
 static bool is_noted(const Labels *l, uint32_t label) {
@@ -339,9 +339,9 @@ static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
 
 static const CagVec3 none = {0, 0, 0};
 
-// Up made perpendicular to the view; along the view, Y is up.
+// Makes up perpendicular to the view direction. If they are parallel, uses Y.
 static CagVec3 square_up(CagVec3 view, CagVec3 up) {
-  const double along_view = 1e-9; // sine below which up and view are one direction
+  const double along_view = 1e-9; // sine of the angle below which up and view count as parallel
   CagVec3 v = cag_unit(view), u = cag_unit(up);
   if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 1, 0);
   if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 0, 1);
@@ -443,7 +443,7 @@ static void add_setting(Build *b, const CagSceneValue *v, const char *name) {
   }
 }
 
-// --- What is shown ---
+// --- Shown values ---
 
 // A robot is shown at home.
 static void add_robot(Build *b, CagValue v, CagLead lead) {

@@ -1,4 +1,4 @@
-// Sessions: one machine a run, on a thread with a large stack, and what became of it.
+// Sessions: a machine for each run, on a thread with a large stack, and the results.
 
 #include "interp/session/session.h"
 
@@ -15,8 +15,8 @@
 #include "interp/session/scene_build.h"
 #include "interp/session/watch.h"
 
-// The C stack of an evaluation: reserved address space; deep recursion through built-ins needs
-// about 1 KiB a call (several with sanitizers).
+// The C stack of an evaluation: reserved address space. Deep recursion through built-ins needs
+// about 1 KiB per call (more with sanitizers).
 #define C_STACK_BYTES ((size_t)512 << 20)
 
 const char *cag_version(void) { return CAG_VERSION; }
@@ -169,13 +169,14 @@ typedef struct Task {
 static void *perform(void *context) {
   Task *t = context;
   char here;
-  t->vm->stack_low = &here - t->stack + 65536; // the guard and what the system keeps there
+  t->vm->stack_low = &here - t->stack + 65536; // for the guard page, and what the system stores
+                                               // there
   t->vm->stack_paid = &here;
   cag_stop_lend(&t->vm->stop);
   cag_account_lend(&t->vm->account);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
-  // What was cut short because the work must stop may not have told so.
-  // Otherwise the work has added a diagnostic of its own.
+  // Work that was interrupted may not have set an error. If it failed without an error of the
+  // machine, it has added its own diagnostic.
   if (t->vm->stop && (t->ok || t->vm->failed)) t->ok = cag_stop_answer(t->vm);
   cag_account_drop((size_t)(&here - t->vm->stack_paid));
   return NULL;
@@ -194,7 +195,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   if (!vm) return CAG_STATUS_LIMIT;
   cag_vm_clear_error(vm);
   Task task = {.vm = vm, .work = work, .context = context, .stack = C_STACK_BYTES};
-  // A limit that is crossed already ends the work as soon as it looks.
+  // If the limit has already been exceeded, the work ends at its first check.
   const double least = 1e-6;
   CagWatch w = {.stop = &vm->stop,
                 .interrupt = s->options.interrupt,
@@ -208,7 +209,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   bool started = false;
-  for (; task.stack >= 1 << 20; task.stack /= 2) { // less where the system gives less
+  for (; task.stack >= 1 << 20; task.stack /= 2) { // less if the system does not provide as much
     started = pthread_attr_setstacksize(&attributes, task.stack) == 0 &&
               pthread_create(&thread, &attributes, perform, &task) == 0;
     if (started) break;
@@ -222,7 +223,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   vm->failed = false;
   if (started && task.ok) return CAG_STATUS_OK;
   const int status = cag_session_status(s);
-  // Work that was cut short may have told nothing.
+  // Interrupted work may not have set an error.
   return status == CAG_STATUS_OK && vm->stop ? fail_stopped(s, why_stopped(s)) : status;
 }
 
@@ -243,7 +244,7 @@ int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context
   GeometryTask t = {s, work, context, CAG_STATUS_OK};
   int status = cag_session_work(s, perform_geometry, &t);
   if (t.status == CAG_STATUS_LIMIT && s->diagnostics.count == 0) cag_session_fail_memory(s);
-  // An error of work that was cut short says nothing.
+  // Errors of interrupted work are meaningless.
   if (s->vm && s->vm->stop && t.status != CAG_STATUS_OK && t.status != CAG_STATUS_LIMIT &&
       t.status != CAG_STATUS_INTERRUPTED) {
     cag_diagnostics_clear(&s->diagnostics);
@@ -265,7 +266,7 @@ int cag_session_fail_memory(CagSession *s) {
   return CAG_STATUS_LIMIT;
 }
 
-// Warnings may stand before the error that ended the work.
+// Warnings may precede the error.
 static const CagDiagnostic *first_error(const CagDiagnostics *d, size_t from) {
   for (size_t i = from; i < d->count; i++)
     if (d->items[i].severity == CAG_SEVERITY_ERROR) return &d->items[i];
@@ -288,7 +289,7 @@ int cag_session_status(const CagSession *s) {
   }
 }
 
-// Why the flag of the machine is set.
+// Returns the reason why the machine's stop flag is set.
 static CagErrorId why_stopped(const CagSession *s) {
   const bool interrupted = s->options.interrupt && *s->options.interrupt;
   return interrupted || !(s->options.max_time > 0) ? CAG_ERR_interrupted : CAG_ERR_limit_time;
@@ -312,8 +313,8 @@ void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
   cag_diagnostics_clear(&d);
 }
 
-// Where the script asked for the set operation that has no end: the first thing shown with the same
-// error.
+// Returns the location in the script of the set operation whose result is unbounded: that of the
+// first shown item with the same error.
 static CagSolidPlace place_of_operation(const CagSession *s, const CagError *err) {
   const CagSolidPlace none = {NULL, 0, 0};
   if (err->id != CAG_ERR_solid_unbounded) return none;
@@ -334,7 +335,7 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
     return cag_session_status(s);
   }
   CagErrorId id = err->id;
-  if (s->vm && s->vm->stop) id = why_stopped(s); // whatever the work that was cut short says
+  if (s->vm && s->vm->stop) id = why_stopped(s); // takes precedence over errors of interrupted work
   if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
   const CagSolidPlace place = place_of_operation(s, err);
   cag_diagnostics_add(&s->diagnostics, id, place.source, (CagSpan){place.start, place.end}, "%s",
@@ -449,7 +450,7 @@ static int complete_scene(CagSession *s, void *context) {
   return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
-// The list of diagnostics keeps room for the error that may follow.
+// Leaves room in the list of diagnostics for a later error.
 static void warn_shown(CagSession *s, CagErrorId id, CagSolidPlace place, const char *name,
                        const char *what) {
   if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
@@ -482,7 +483,7 @@ static int fail_nothing_shown(CagSession *s) {
   return CAG_STATUS_SCRIPT;
 }
 
-// Surfaces that cross themselves and flat lofts are shown all the same, with a warning.
+// Self-intersecting surfaces and flat lofts are shown, with a warning.
 static int look_for_crossings(CagSession *s, void *context) {
   (void)context;
   char what[256];
@@ -551,7 +552,7 @@ typedef struct Listing {
   FILE *out;
 } Listing;
 
-// What was named keeps its name; else that of the definition.
+// Returns the name of the shape, or else of the definition.
 static const char *shown_name(const CagShown *shown) {
   const CagText *own = cag_is_shape(shown->value) ? CAG_AS_SHAPE(shown->value)->name : NULL;
   return own ? own->bytes : cag_lead(shown->expr).name;

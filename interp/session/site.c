@@ -1,4 +1,4 @@
-// The making of the site: the two rounds, files, the frame around each page, and the search.
+// Writing of the site: the two passes, files, the frame of each page, and the search.
 
 #include <dirent.h>
 #include <errno.h>
@@ -35,7 +35,7 @@ static bool make_folder(CagSite *s, const char *name) {
   return made;
 }
 
-// Pictures of earlier sites that no page shows any more.
+// Removes pictures of earlier sites that no page shows.
 static void remove_old_pictures(const CagSite *s) {
   char *path = cag_doc_text("%s/pictures", s->folder);
   DIR *folder = opendir(path);
@@ -107,7 +107,7 @@ void cag_site_end(CagSitePage *p) {
 
 // --- The search ---
 
-// A text as a string of JavaScript that may stand in a page as well.
+// Writes a text as a JavaScript string that is also valid in HTML.
 static void write_string(FILE *out, const char *text, size_t length) {
   fputc('"', out);
   for (size_t i = 0; i < length; i++) {
@@ -152,7 +152,7 @@ static void write_pages(CagSite *s) {
   cag_free(index);
 }
 
-// --- All of it ---
+// --- The whole site ---
 
 static bool read_modules(CagSite *s) {
   while (cag_doc_module_name(s->module_count)) s->module_count++;
@@ -197,7 +197,7 @@ static void find_renderer(CagSite *s) {
   if (!s->renders) report_site(s, "pictures are left out, other than drawings: %s", found);
 }
 
-// An example that does not do what it says is an error of the documentation.
+// Reports each failed example as an error of the documentation.
 static int judge(CagSite *s) {
   size_t pictures = 0, wrong = 0;
   for (size_t i = 0; i < s->count; i++) {

@@ -1,7 +1,7 @@
-// The pages of modules: of the library, and of scripts that the site is asked to tell of.
+// The pages of modules: of the library, and of scripts that are added to the site.
 //
-// Both are shelves of modules and differ only in where they stand, what their search results are
-// called, and how an example gets to see the module.
+// Both are shelves of modules. They differ only in their location, in the name of their search
+// results, and in how an example imports the module.
 
 #include <string.h>
 
@@ -35,7 +35,7 @@ void cag_site_begin_parameters(const CagSitePage *p) {
         p->out);
 }
 
-// What the /// lines say of a parameter: a type may stand before a colon.
+// Writes the description of a parameter from the /// lines, which may have a type before a colon.
 static void write_said_parameter(const CagSitePage *p, const CagDocArgument *a) {
   const char *colon = strstr(a->meaning, ": ");
   char *type = cag_strndup(a->meaning, colon ? (size_t)(colon - a->meaning) : 0);
@@ -46,7 +46,7 @@ static void write_said_parameter(const CagSitePage *p, const CagDocArgument *a) 
 
 // --- A module ---
 
-// Where a module's page stands.
+// The location of a module's page.
 typedef struct Shelf {
   const char *folder, *section, *kind;
 } Shelf;
@@ -57,11 +57,11 @@ static const Shelf library = {"library", "Library", "library"},
 typedef struct Book {
   const Shelf *shelf;
   const CagDocModule *module;
-  const CagSiteScript *script; // NULL: it is of the library
-  const char *page;            // its name, without folder and ending
+  const CagSiteScript *script; // NULL: of the library
+  const char *page;            // its name, without folder and extension
 } Book;
 
-// The line that imports the module, as its purpose shows it; malloc'd.
+// Returns the line that imports the module, as in its purpose; allocated with malloc.
 static char *import_line(const CagDocModule *m) {
   const char *shown = strstr(m->purpose, m->name);
   const char *begin = shown && shown - m->purpose >= 7 ? shown - 7 : NULL;
@@ -69,7 +69,8 @@ static char *import_line(const CagDocModule *m) {
   return cag_doc_text("import %s", m->name);
 }
 
-// What an example of the module begins with; NULL: it says it itself. malloc'd.
+// Returns the import for an example of the module, allocated with malloc, or NULL if the example
+// contains it.
 static char *example_import(const Book *b, const char *text) {
   if (b->script) return cag_doc_script_import(b->module, b->script->file, text);
   return strstr(text, "import ") ? NULL : import_line(b->module);
@@ -88,8 +89,8 @@ static void write_module_example(const CagSitePage *p, const Book *b, const char
   cag_free(import);
 }
 
-// Documentation is prose in which lines indented by four are a script. Gives the text from its
-// first script on with `prose_only`, else its end.
+// Documentation is prose, with scripts indented by four. Returns, with `prose_only`, the text from
+// its first script on, or else its end.
 static const char *write_doc_text(const CagSitePage *p, const Book *b, const char *text,
                                   bool prose_only) {
   bool is_code;
@@ -104,12 +105,12 @@ static const char *write_doc_text(const CagSitePage *p, const Book *b, const cha
   return text;
 }
 
-// What is known of a parameter other than by its own /// line; NULL: nothing.
+// Returns the description of a parameter from other sources than its /// line, or NULL.
 static const CagDocParameter *known_parameter(const Book *b, const CagDocEntry *e, size_t i) {
   return cag_doc_module_parameter(b->module->name, e->name, e->arguments[i].name);
 }
 
-// The table of parameters, where something is known of one of them.
+// Writes the table of parameters if at least one is described.
 static void write_arguments(const CagSitePage *p, const Book *b, const CagDocEntry *e) {
   bool told = false;
   for (size_t i = 0; i < e->argument_count; i++)
@@ -127,7 +128,7 @@ static void write_arguments(const CagSitePage *p, const Book *b, const CagDocEnt
   fputs("</tbody></table>\n", p->out);
 }
 
-// The first sentence that is said of a definition: of its text, or its label.
+// Returns the first sentence of the description of a definition: of its text, or its label.
 static const char *sentence_of(const CagDocEntry *e, size_t *length) {
   const char *text = e->text && *e->text ? e->text : e->label ? e->label : "";
   *length = cag_doc_sentence(text);
@@ -172,7 +173,7 @@ static void module_page(CagSite *s, const Book *b) {
   cag_site_end(&p);
 }
 
-// A line of a list of modules.
+// Writes an item of a list of modules.
 static void write_item(const CagSitePage *p, const Book *b) {
   fprintf(p->out, "<dt><a href=\"%s.html\"><code>", b->page);
   write_text(p->out, b->module->name);
@@ -233,7 +234,7 @@ void cag_site_scripts_item(const CagSitePage *p) {
   if (p->site->script_count) fputs("<li><a href=\"#scripts\">Scripts</a></li>\n", p->out);
 }
 
-// The definitions of a script, for the index of functions.
+// Lists the definitions of a script in the index of functions.
 static void list_definitions(const CagSitePage *p, const Book *b) {
   for (size_t i = 0; i < b->module->count; i++) {
     const CagDocEntry *e = &b->module->entries[i];

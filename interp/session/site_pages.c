@@ -1,4 +1,4 @@
-// The pages of functions, of errors, of the guide and of the cookbook.
+// The pages of functions, errors, the guide, and the cookbook.
 
 #include <string.h>
 
@@ -29,7 +29,7 @@ static void write_error_link(void *context, CagErrorId id) {
   fprintf(out, "\">%s</a>", info->reason);
 }
 
-// A summary, in which names of the row's parameters lead nowhere.
+// Writes a summary. Names of the row's parameters in it are not links.
 static void write_summary(const CagSitePage *p, const CagSignature *s, const char *text) {
   while (*text) {
     const char *open = strchr(text, '`'), *close = open ? strchr(open + 1, '`') : NULL;
@@ -81,7 +81,7 @@ static void write_row(const CagSitePage *p, const CagBuiltin *row) {
   fputs("</section>\n", p->out);
 }
 
-// The other functions of the family, beside the page.
+// Writes the list of the other functions of the family, beside the page.
 static void write_family_list(const CagSitePage *p, const char *family, size_t here) {
   fputs("<aside><h2>", p->out);
   write_text(p->out, family);
@@ -129,7 +129,7 @@ static void write_family(const CagSitePage *p, const char *family) {
   cag_free(anchor);
 }
 
-// The families in the order of the table; the caller frees the list.
+// Returns the families in the order of the table. The caller frees the list.
 static const char **list_families(size_t *count) {
   const char **families = cag_calloc(cag_builtin_count() + 1, sizeof *families);
   if (!families) cag_memory_leave();
@@ -238,7 +238,7 @@ void cag_site_guides(CagSite *s) {
 
 // --- Cookbook ---
 
-// A recipe begins with comments: its title, an empty one, and its paragraph.
+// A recipe starts with comments: its title, an empty line, and its paragraph.
 static void write_recipe(const CagSitePage *p, const CagDocument *d) {
   char title[160], name[64], url[128];
   const char *at = d->text, *file = strrchr(d->path, '/') + 1;

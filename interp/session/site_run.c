@@ -1,9 +1,9 @@
-// The examples of the site: each is run in a session of its own, and its picture made.
+// Runs the examples of the site, each in its own session, and makes their pictures.
 //
-// A picture shows what the example shows. One that shows nothing has the picture of the call that
-// it is an example of, where that gives a shape, or else of the last shape that it defines. Curves
-// and regions of one plane become .svg, all else is rendered. The name of a picture's file is made
-// of what it shows, so that pictures that are there already need not be made again.
+// A picture shows what the example shows. If the example shows nothing, the picture shows the call
+// of the documented function if that returns a shape, or else the last shape that the example
+// defines. Curves and regions of one plane become .svg, and all others are rendered. File names of
+// pictures are derived from their contents, so that existing pictures need not be made again.
 
 #include <pthread.h>
 #include <string.h>
@@ -17,11 +17,11 @@
 #include "interp/session/session.h"
 #include "interp/session/site.h"
 
-// The seconds that an example, or its picture, may take.
+// The time limit, in seconds, for an example, and for its picture.
 #define SECONDS 120.0
-// What examples are called in their messages.
+// The name of examples in messages.
 #define NAME "example.cag"
-// A drawing is as flat as rounding leaves it, by its width.
+// The thickness of a drawing due to rounding, as a fraction of its width.
 #define FLAT 1e-9
 
 static bool is_same(const CagSiteExample *e, const char *folder, const char *text, size_t length) {
@@ -64,7 +64,7 @@ static void keep_type(void *context, const char *text, const char *type) {
   snprintf(((Type *)context)->name, sizeof((Type *)context)->name, "%s", type);
 }
 
-// The type of an expression in an interactive session; "" where it fails.
+// Returns the type of an expression in an interactive session, or "" if it fails.
 static Type type_of(CagSession *s, const char *expression) {
   Type t = {""};
   if (cag_session_input(s, expression, strlen(expression), keep_type, &t) != CAG_STATUS_OK)
@@ -72,7 +72,7 @@ static Type type_of(CagSession *s, const char *expression) {
   return t;
 }
 
-// Whether an expression is a shape, or a list of shapes.
+// Tests whether an expression is a shape, or a list of shapes.
 static bool is_shape(CagSession *s, const char *expression, Type t) {
   static const char *const shapes[] = {"curve", "region", "surface", "solid", "mesh", "group"};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
@@ -85,9 +85,10 @@ static bool is_shape(CagSession *s, const char *expression, Type t) {
   return shape;
 }
 
-// --- What a picture shows ---
+// --- The contents of pictures ---
 
-// The call of the function in the text, with its balanced parentheses; malloc'd, NULL: none.
+// Returns the call of the function in the text, with balanced parentheses, allocated with malloc,
+// or NULL.
 static char *find_call(const char *text, const char *function) {
   const size_t n = strlen(function);
   for (const char *at = text; (at = strstr(at, function)); at += n) {
@@ -103,7 +104,8 @@ static char *find_call(const char *text, const char *function) {
   return NULL;
 }
 
-// The last definition of the session that is a shape, as an expression; malloc'd.
+// Returns the last definition of the session that is a shape, as an expression, allocated with
+// malloc.
 static char *last_shape(CagSession *s) {
   size_t count = 0;
   while (cag_session_name(s, count, NULL, NULL)) count++;
@@ -121,7 +123,8 @@ static char *last_shape(CagSession *s) {
   return NULL;
 }
 
-// What to show of an example that shows nothing itself; malloc'd, NULL: no shape is in it.
+// Returns the expression to show for an example that shows nothing, allocated with malloc, or NULL
+// if it contains no shape.
 static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *out) {
   CagSession *s = open_session(site, e, out, out);
   char *call = e->function ? find_call(e->text, e->function) : NULL, *shape = NULL;
@@ -138,7 +141,7 @@ static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *ou
   return shape;
 }
 
-// Whether all that is shown are curves and regions of one plane z = constant.
+// Tests whether only curves and regions of one plane z = constant are shown.
 static bool is_drawing(const CagScene *scene) {
   const CagBounds *b = &scene->bounds;
   bool drawn = scene->item_count > 0;
@@ -154,7 +157,7 @@ static char *picture_name(const char *text, const char *shape, const char *endin
   return cag_doc_text("pictures/%016llx.%s", (unsigned long long)h, ending);
 }
 
-// Makes the picture of a session's scene, where it is not there yet.
+// Makes the picture of a session's scene unless it exists.
 static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, const char *shape) {
   CagShownCounts counts;
   if (cag_session_scene(s, &counts) != CAG_STATUS_OK || counts.items == 0) return;
@@ -199,13 +202,13 @@ static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FIL
 
 // --- A run ---
 
-// Whether a place of a script stands in a line of documentation, which expects nothing itself.
+// Tests whether a position of a script is in a line of documentation, which is not an expectation.
 static bool is_documentation(const char *script, const char *at) {
   while (at > script && at[-1] != '\n') at--;
   return strncmp(at + strspn(at, " "), "///", 3) == 0;
 }
 
-// What was printed against the `expect:` comments, in their order; a script without them is well.
+// Compares the output with the `expect:` comments, in order. A script without them always passes.
 static bool is_expected(const char *script, const char *output) {
   const char *line = output, *at = strstr(script, "// expect:");
   for (; at; at = strstr(at + 1, "// expect:")) {
@@ -238,7 +241,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   if (fails != (status != CAG_STATUS_OK) || (!fails && !is_expected(e->text, e->output)))
     e->failure = cag_strdup(e->output);
   fflush(messages);
-  fwrite(told, 1, told_length, out); // what trace says
+  fwrite(told, 1, told_length, out); // output of trace
   if (status == CAG_STATUS_OK && !site->options->no_pictures) {
     s->options.out = s->options.messages = quiet; // geometry may call functions again
     picture(site, s, e, quiet);
@@ -250,7 +253,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   cag_free(told);
 }
 
-// --- All of them ---
+// --- All examples ---
 
 typedef struct Running {
   CagSite *site;

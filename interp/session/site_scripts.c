@@ -1,7 +1,7 @@
-// The scripts that a site tells of beside the library: reading them, and what they are called.
+// The scripts that a site documents in addition to the library: reading them, and their names.
 //
-// A script is called by its path without the folder that all of them have in common, so a site does
-// not tell where on a machine it was made.
+// The name of a script is its path without the common folder of all scripts, so that a site does
+// not reveal where it was made.
 
 #include <string.h>
 
@@ -12,13 +12,13 @@
 
 // --- Names ---
 
-// The bytes of a path up to its last slash, with it.
+// Returns the length of a path up to and including its last slash.
 static size_t folder_length(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-// The length of the folder that all paths begin with.
+// Returns the length of the common folder of all paths.
 static size_t common_folder(const char *const *paths, size_t count) {
   size_t common = folder_length(paths[0]);
   for (size_t i = 1; i < count; i++) {
@@ -35,13 +35,13 @@ static bool is_plain(char c) {
 }
 
 static bool is_taken(const CagSite *s, const char *page) {
-  if (strcmp(page, "index") == 0) return true; // the list of all of them
+  if (strcmp(page, "index") == 0) return true; // the list of all scripts
   for (size_t i = 0; i < s->script_count; i++)
     if (s->scripts[i].page && strcmp(s->scripts[i].page, page) == 0) return true;
   return false;
 }
 
-// "parts/gripper.cag" is the page "parts.gripper": words that need no care in a path or an address.
+// The page of "parts/gripper.cag" is "parts.gripper". Its words need no escapes in a path or a URL.
 static char *page_name(const CagSite *s, const char *name) {
   const size_t n = strlen(name);
   char *stem = cag_strndup(name, n > 4 && strcmp(name + n - 4, ".cag") == 0 ? n - 4 : n), *page;

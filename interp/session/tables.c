@@ -1,4 +1,4 @@
-// The tables of the program for those who ask: built-ins with their documentation, kinds of errors.
+// The program's tables for clients: built-ins with their documentation, and kinds of errors.
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ const char *cag_library_module(size_t i) {
 
 const char *const *cag_builtin_name_list(void) { return cag_builtin_names(); }
 
-// Text wrapped at word ends, each line behind `indent`.
+// The width of wrapped text; each line is preceded by `indent`.
 #define WIDTH 88
 
 static void write_wrapped(FILE *out, const char *text, const char *indent) {

@@ -1,8 +1,8 @@
-// A robot taken apart into the links and joints of a URDF file.
+// Converts a robot to the links and joints of a URDF file.
 //
-// The walk goes from the base to the tool and keeps, beside the link where it is, the transform
-// from that link's frame to where it stands: what rows leave behind their joints. A joint or a
-// fixed link takes that up into its origin.
+// The walk goes from the base to the tool. Besides the current link, it tracks the transform from
+// that link's frame to the current frame, which contains the constant part of rows after their
+// joints. The origin of the next joint or fixed link absorbs it.
 
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "interp/session/urdf_robot.h"
 #include "interp/vm/vm.h"
 
-// Bytes of a name; longer ones give way to those of the walk.
+// Bytes of a name; longer names are replaced by generated ones.
 enum { NAME_ROOM = 120 };
 
 typedef struct Walk {
@@ -22,14 +22,14 @@ typedef struct Walk {
   const CagUrdfHow *how;
   CagUrdf *u;
   const CagRobotValue *value;
-  size_t link;     // where the walk is
-  CagTransform at; // from its frame
+  size_t link;     // the current link
+  CagTransform at; // from its frame to the current one
   bool plain;      // no link has a shape
-  double size;     // of the plain drawing
+  double size;     // of the default drawing
   size_t triangles;
 } Walk;
 
-// --- Robots among what is shown ---
+// --- Robots among the shown values ---
 
 typedef struct Found {
   CagVm *vm;
@@ -71,8 +71,8 @@ static char *text_of(CagUrdf *u, const char *text) {
   return cag_arena_copy(&u->arena, text, strlen(text));
 }
 
-// Letters, digits, - . and _: what every reader takes, also as a file's name; letters beyond ASCII
-// stay. The first is no . or -.
+// Makes a name of letters, digits, - . and _, which every reader accepts, also in file names.
+// Letters beyond ASCII are kept. The first character is neither . nor -.
 static char *plain_name(CagUrdf *u, const char *text) {
   char *name = text_of(u, text);
   for (char *c = name; *c; c++) {
@@ -84,7 +84,7 @@ static char *plain_name(CagUrdf *u, const char *text) {
   return name;
 }
 
-// Names that the walk gives itself.
+// Tests for names that the walk generates.
 static bool is_reserved(const char *name) {
   return !strcmp(name, "world") || !strcmp(name, "base_link") || !strcmp(name, "tool");
 }
@@ -95,7 +95,7 @@ static bool is_taken(const CagUrdf *u, const char *name) {
   return is_reserved(name);
 }
 
-// The name of the link's shape where it has one.
+// Returns the name of the link's shape, if it has one.
 static char *link_name(Walk *w, size_t i) {
   CagUrdf *u = w->u;
   char wanted[NAME_ROOM], name[NAME_ROOM + 32];
@@ -116,7 +116,7 @@ static bool same_material(const CagUrdfMaterial *a, const CagUrdfMaterial *b) {
          a->color.b == b->color.b && a->alpha == b->alpha;
 }
 
-// Its number; materials of one name and different colors get different names.
+// Returns the index of the material. Different colors with the same name get different names.
 static size_t keep_material(CagUrdf *u, const char *said, CagColor color, double alpha) {
   CagUrdfMaterial m = {plain_name(u, said), color, alpha};
   const char *wanted = m.name;
@@ -152,7 +152,7 @@ static CagUrdfShape *add_shape(CagUrdf *u, size_t link, CagUrdfShapeKind kind) {
   return s;
 }
 
-// File systems may take large and small letters for the same.
+// File systems may be case-insensitive.
 static bool file_is_taken(const CagUrdf *u, const char *file) {
   for (size_t i = 0; i < u->link_count; i++)
     for (const CagUrdfShape *s = u->links[i].shapes; s; s = s->next)
@@ -160,7 +160,7 @@ static bool file_is_taken(const CagUrdf *u, const char *file) {
   return false;
 }
 
-// The name of the next mesh of a link: foot.stl, foot_2.stl ...
+// Returns the name of the next mesh of a link: foot.stl, foot_2.stl ...
 static char *file_name(CagUrdf *u, const char *link) {
   char file[200];
   snprintf(file, sizeof file, "%s.stl", link);
@@ -202,7 +202,7 @@ static const char *material_name(CagValue leaf) {
   return name && name->length > 0 && name->length < NAME_ROOM ? name->bytes : "material";
 }
 
-// The one item of a leaf, as a mesh of the link, and its mass.
+// Adds the single item of a leaf as a mesh of the link, and its mass.
 static bool add_item(Walk *w, CagScene *scene, CagValue leaf) {
   CagUrdf *u = w->u;
   CagUrdfLink *l = &u->links[w->link];
@@ -240,7 +240,7 @@ static bool add_item(Walk *w, CagScene *scene, CagValue leaf) {
 
 static bool is_body(CagValue leaf) { return leaf.type != CAG_CURVE && !CAG_AS_SHAPE(leaf)->hidden; }
 
-// What is drawn in the frame where the walk stands. Curves count where there is nothing else.
+// Adds the shapes in the current frame. Curves are used only if there is nothing else.
 static bool add_shapes(Walk *w, CagValue shape) {
   CagVm *vm = w->call.vm;
   if (shape.type == CAG_NONE) return true;
@@ -255,7 +255,7 @@ static bool add_shapes(Walk *w, CagValue shape) {
     CagScene scene;
     CagShown shown = {.value = leaf};
     if (!cag_keep_going(vm) || !cag_scene_from_values(vm, &shown, 1, &scene)) return false;
-    if (scene.item_count > 0) ok = add_item(w, &scene, leaf); // labels are none
+    if (scene.item_count > 0) ok = add_item(w, &scene, leaf); // labels are not items
     cag_scene_free(&scene);
   }
   return ok;
@@ -325,7 +325,7 @@ static size_t add_link(CagUrdf *u, char *name) {
   return u->link_count++;
 }
 
-// A joint from where the walk stands to a new link; the walk goes on there.
+// Adds a joint from the current frame to a new link, and continues from there.
 static CagUrdfJoint *go_on(Walk *w, const char *type, char *joint, char *link) {
   CagUrdf *u = w->u;
   CagUrdfJoint *j = &u->joints[u->joint_count++];
@@ -345,7 +345,7 @@ static char *numbered(CagUrdf *u, const char *format, size_t n) {
 
 static void move_on(Walk *w, const CagTransform *t) { w->at = cag_transform_multiply(&w->at, t); }
 
-// The sliding half of a screw, which goes before the turning one.
+// Adds the prismatic half of a screw, which comes before the revolute one.
 static void add_screw(Walk *w, const CagRobotLink *l, char *turning, size_t joint) {
   CagUrdf *u = w->u;
   char *name = numbered(u, "joint_%zu_slide", joint);
@@ -370,7 +370,8 @@ static void add_joint(Walk *w, const CagRobotLink *l, size_t link, size_t joint)
     move_on(w, &across);
   }
   if (!turns) add_slide(w, &w->at);
-  // Turns about z and shifts along it go with the joint's own, so they may stand before it.
+  // Rotations about z and translations along it commute with the joint's own motion, so they may
+  // precede it.
   move_on(w, &along);
   char *name = numbered(u, "joint_%zu", joint);
   if (l->screw != 0) add_screw(w, l, name, joint);
@@ -409,7 +410,7 @@ static void begin(Walk *w) {
   go_on(w, "fixed", text_of(u, "base_joint"), text_of(u, "base_link"));
 }
 
-// Whether no link has a shape, and then the size of what is drawn instead.
+// Tests whether no link has a shape, and computes the size of the default drawing.
 static bool measure_plain(Walk *w) {
   const CagRobotValue *v = w->value;
   const CagRobot *r = v->robot;
@@ -430,7 +431,7 @@ static bool measure_plain(Walk *w) {
 
 bool cag_urdf_of_robot(CagVm *vm, const CagRobotValue *robot, const CagUrdfHow *how, CagUrdf *out) {
   const CagRobot *r = robot->robot;
-  size_t rows, joint = 0, most = 2 * r->link_count + 3; // a screw is two
+  size_t rows, joint = 0, most = 2 * r->link_count + 3; // a screw is two joints
   *out = (CagUrdf){.coupled = r->coupling != NULL};
   Walk w = {
       .call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), NULL, 0, &vm->core_error},

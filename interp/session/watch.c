@@ -1,4 +1,4 @@
-// The thread that looks at the clock while work runs.
+// The thread that checks the clock while work runs.
 
 #include "interp/session/watch.h"
 
@@ -8,13 +8,15 @@
 
 #include "base/clock.h"
 
-// Seconds between looks at the interrupt, which a signal handler sets and which wakes nobody.
+// Seconds between checks of the interrupt flag, because a signal handler that sets it wakes no
+// thread.
 static const double LOOK_INTERVAL = 0.02;
 
-// Seconds after its time until work is overdue: what looks at the flag has ended long before.
+// Seconds after the limit until work counts as overdue. Work that checks the flag has ended long
+// before.
 static const double OVERDUE = 0.6;
 
-// Waits, with the mutex held, until the work is done or that many seconds have passed.
+// Waits, with the mutex held, until the work is done or this many seconds have passed.
 static void wait_for_end(CagWatch *w, double seconds) {
   const double until = cag_clock_seconds() + fmax(seconds, 0), whole = floor(until);
   const struct timespec t = {(time_t)whole, (long)((until - whole) * 1e9)};
