@@ -235,12 +235,16 @@ check-layers:
 	python3 tools/check_layers.py
 # What GCC finds by following the paths through each function. Its check of uninitialized values is left out: it takes loops that run at
 # least once for loops that may not. GCC's ordinary warnings, Clang, and the sanitizers look for these.
-ANALYZED := base lang geom
+# GCC 12 takes memory for lost that is stored in an element of an array at an index that changes, as that of the tasks of a batch: leaks in
+# cli/, which allocates with malloc, are left to `make tidy`. The other folders allocate with cag_malloc, which neither of them follows.
+ANALYZED := base lang geom interp cli
 ANALYZE  := -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value
 $(BUILD)/analyzed/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "analyze $<"
 	$Qgcc $(CFLAGS_ALL) $(ANALYZE) -c $< -o $@
+$(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-file-leak
+$(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
 
 # The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.

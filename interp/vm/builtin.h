@@ -74,6 +74,12 @@ bool cag_check_defined(CagCall *call, CagValue result);
 // arguments end here when they meet one, since cag_fail_type and cag_fail_element do.
 bool cag_fail_differentiate(CagCall *call, int argument);
 
+// Compilers and analyzers know that these never give true.
+#define cag_fail_call(...) cag_never_true((cag_fail_call)(__VA_ARGS__))
+#define cag_fail_help(...) cag_never_true((cag_fail_help)(__VA_ARGS__))
+#define cag_fail_geometry(...) cag_never_true((cag_fail_geometry)(__VA_ARGS__))
+#define cag_fail_type(...) cag_never_true((cag_fail_type)(__VA_ARGS__))
+
 // --- Reading arguments. Each gives false with the error set. `argument` is the parameter's index.
 // Unset ones take the default given (…_or). ---
 bool cag_given(const CagCall *call, int argument);
