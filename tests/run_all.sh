@@ -144,6 +144,7 @@ for build in "$BUILD" ${SANITIZED:+"$SANITIZED"}; do
     suite unit "${build##*/} tests/interp/${name}_test" "'$build/tests/interp/${name}_test'"
   done
 done
+suite check "threads" "make -s test-threads"
 all=$(wc -l < "$work/suites")
 
 seq "$together" | xargs -P "$(nproc)" -n 1 sh tests/run_all.sh --suite "$work"
