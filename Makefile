@@ -2,6 +2,7 @@
 #
 #   make             program and libraries          make test            all suites, closing with `N passed, N failed, N skipped`
 #   make test-sanitize  under ASan and UBSan        make bench           figures against peers
+#   make test-threads   what has threads, under the thread sanitizer
 #   make coverage    lines and branches by folder   make mutate N=100    how many random changes the tests notice
 #   make format      clang-format everything        make check-format / check-layers / analyze
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
@@ -64,7 +65,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
 CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers analyze install deb editors
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench format check-format check-layers analyze install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -185,6 +186,21 @@ test-sanitize:
 test-programs-clang:
 	$(MAKE) BUILD=$(BUILD)-clang CC=clang $(SANITIZED) test-programs
 
+# Runs what has threads under the thread sanitizer: work that is left behind, interruptions, the pages of a site, and scripts that are tested
+# side by side. One copy of each function: the choice between copies is made before the sanitizer has begun.
+VOLATILE := $(BUILD)-threads/volatile.o
+THREADED := OPT="-O0 -DCAG_ONE_COPY --param tsan-distinguish-volatile=1" SANITIZE="-fsanitize=thread"
+THREAD_TESTS := base/aside_test interp/interrupt_test interp/site_test
+THREAD_SCRIPTS := tests/language/values tests/language/modules tests/language/words
+test-programs-threads:
+	@mkdir -p $(BUILD)-threads
+	gcc -std=c17 $(WARN) -fPIC -c tests/threads/volatile.c -o $(VOLATILE)
+	$(MAKE) BUILD=$(BUILD)-threads CC=gcc $(THREADED) LDFLAGS=$(VOLATILE) \
+	  $(patsubst %,$(BUILD)-threads/%,cag $(addprefix tests/,$(THREAD_TESTS)))
+test-threads: test-programs-threads
+	@for t in $(THREAD_TESTS); do $(abspath $(BUILD)-threads)/tests/$$t || exit 1; done
+	$(BUILD)-threads/cag test --jobs 4 $(THREAD_SCRIPTS)
+
 # A failing test, such as a timing test, does not stop the report. More allocations fail than in `make test`.
 COVERAGE_EXIT := $(BUILD)-coverage/exit.o
 coverage:
@@ -235,12 +251,16 @@ check-layers:
 	python3 tools/check_layers.py
 # What GCC finds by following the paths through each function. Its check of uninitialized values is left out: it takes loops that run at
 # least once for loops that may not. GCC's ordinary warnings, Clang, and the sanitizers look for these.
-ANALYZED := base lang geom
+# GCC 12 takes memory for lost that is stored in an element of an array at an index that changes, as that of the tasks of a batch: leaks in
+# cli/, which allocates with malloc, are left to `make tidy`. The other folders allocate with cag_malloc, which neither of them follows.
+ANALYZED := base lang geom interp cli
 ANALYZE  := -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value
 $(BUILD)/analyzed/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "analyze $<"
 	$Qgcc $(CFLAGS_ALL) $(ANALYZE) -c $< -o $@
+$(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-file-leak
+$(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
 
 # The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.
@@ -265,6 +285,6 @@ editors: $(BUILD)/tools/tables
 	$(BUILD)/tools/tables | sh tools/editors.sh editors
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-coverage $(BUILD)-mutate
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-threads $(BUILD)-coverage $(BUILD)-mutate
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

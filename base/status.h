@@ -54,6 +54,12 @@ static inline CagStatus cag_never_ok(CagStatus status) {
   if (!status) __builtin_unreachable();
   return status;
 }
+// The same for functions that return whether something went well, such as the errors of a run.
+static inline bool cag_never_true(bool ok) {
+  CAG_ASSERT(!ok);
+  if (ok) __builtin_unreachable();
+  return ok;
+}
 #define cag_fail(...) cag_never_ok((cag_fail)(__VA_ARGS__))
 #define cag_fail_memory(err) cag_never_ok((cag_fail_memory)(err))
 // The same for files and renderers: fills err, which may be NULL, and returns false. Texts that are

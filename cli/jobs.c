@@ -320,14 +320,15 @@ static bool read_json(CagJobs *jobs, const char *text, size_t length) {
   // The zero after the text makes cJSON check that nothing else follows.
   cJSON *list = cJSON_ParseWithLengthOpts(text, length + 1, &stopped, true);
   bool ok = true;
-  if (!list)
+  if (!list) {
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "a list of records: [{\"script\": ...}, ...]",
                           "line %zu: this is not JSON", line_of(text, stopped));
-  else if (!cJSON_IsArray(list))
+  } else if (!cJSON_IsArray(list)) {
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "put the records between [ and ]",
                           "the jobs are not a list");
-  for (const cJSON *m = cJSON_IsArray(list) ? list->child : NULL; ok && m; m = m->next)
-    ok = take_record(jobs, m);
+  } else {
+    for (const cJSON *m = list->child; ok && m; m = m->next) ok = take_record(jobs, m);
+  }
   cJSON_Delete(list);
   return ok;
 }

@@ -155,12 +155,12 @@ static bool reads_file(const char *function) { return strncmp(function, "read_",
 static void propose_in_text(CagReplProposals *p, const char *text, const Open *o) {
   const char *quote = o->places[o->count - 1];
   char *function = find_call(text, o);
+  const bool reads = function && reads_file(function);
+  free(function);
   const char *line = quote;
   while (line > text && line[-1] != '\n') line--;
   line += strspn(line, " \t");
-  if (strncmp(line, "import", 6) == 0 || (function && reads_file(function)))
-    propose_files(p, quote + 1);
-  free(function);
+  if (strncmp(line, "import", 6) == 0 || reads) propose_files(p, quote + 1);
 }
 
 // --- Named arguments ---

@@ -109,6 +109,8 @@ static void keep_case(Script *s, const char *test, CagTestOutcome outcome, doubl
   s->lost = s->lost || !cases || !name;
   if (s->lost) {
     free(name);
+    free(s->failure_text);
+    s->failure_text = NULL;
     return;
   }
   const bool skipped = outcome == CAG_TEST_SKIPPED;
@@ -220,11 +222,11 @@ static int run_all(Testing *t, CagTestCounts *counts, int *file_status) {
   size_t jobs = t->tool->jobs ? t->tool->jobs : processors > 0 ? (size_t)processors : 1;
   if (jobs > t->count) jobs = t->count;
   pthread_t *threads = malloc((jobs + 1) * sizeof *threads);
+  if (!threads) jobs = 0;
   size_t started = 0;
   pthread_mutex_init(&t->mutex, NULL);
   pthread_cond_init(&t->ended, NULL);
-  while (threads && started < jobs && pthread_create(&threads[started], NULL, work, t) == 0)
-    started++;
+  while (started < jobs && pthread_create(&threads[started], NULL, work, t) == 0) started++;
   if (started == 0) work(t); // no thread could be created
   const int status = report_scripts(t, counts, file_status);
   pthread_mutex_lock(&t->mutex);

@@ -128,7 +128,8 @@ unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
 for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance" \
-  "geom/tessellate geom/boolean geom/solid"; do
+  "geom/tessellate geom/boolean geom/solid" "interp/scene interp/render interp/formats" interp/vm "interp/doc interp/check" \
+  interp/builtin "interp/session cli"; do
   suite check "analyzer $part" "make -s analyze ANALYZED='$part'"
 done
 if command -v clang-format > /dev/null; then
@@ -143,6 +144,7 @@ for build in "$BUILD" ${SANITIZED:+"$SANITIZED"}; do
     suite unit "${build##*/} tests/interp/${name}_test" "'$build/tests/interp/${name}_test'"
   done
 done
+suite check "threads" "make -s test-threads"
 all=$(wc -l < "$work/suites")
 
 seq "$together" | xargs -P "$(nproc)" -n 1 sh tests/run_all.sh --suite "$work"

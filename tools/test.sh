@@ -11,7 +11,8 @@ install_clang() {
 }
 
 if install_packages $BUILD_PACKAGES $TEST_PACKAGES && install_clang && install_extra_packages $EXTRA_PACKAGES &&
-  make -j"$(nproc)" test-programs && make -j"$(nproc)" test-programs-clang; then
+  make -j"$(nproc)" test-programs && make -j"$(nproc)" test-programs-clang &&
+  make -j"$(nproc)" test-programs-threads; then
   BUILD=build SANITIZED=build-clang sh tests/run_all.sh
 else
   echo "the tests could not be built"

@@ -37,7 +37,7 @@ const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size) {
   return buffer;
 }
 
-bool cag_fail_value(CagCall *call, int argument, const char *expected) {
+bool(cag_fail_value)(CagCall *call, int argument, const char *expected) {
   char found[200];
   cag_value_words(call->vm, call->values[argument], found, sizeof found);
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
@@ -47,8 +47,8 @@ bool cag_fail_value(CagCall *call, int argument, const char *expected) {
                        cag_parameter_name(call, argument), found);
 }
 
-bool cag_fail_element(CagCall *call, int argument, size_t index, CagValue element,
-                      const char *expected) {
+bool(cag_fail_element)(CagCall *call, int argument, size_t index, CagValue element,
+                       const char *expected) {
   if (cag_holds_jet(element)) return cag_fail_differentiate(call, argument);
   char found[200];
   cag_value_words(call->vm, element, found, sizeof found);

@@ -472,6 +472,10 @@ static bool jet_cross(CagCall *call, CagValue *result) {
 static bool norm_of(CagCall *call, const Vector *v, CagValue *result) {
   CagSeries like, x[CAG_MAX_PACKED], out;
   double value = 0;
+  if (v->n == 0) {
+    *result = cag_number(0);
+    return true;
+  }
   shape_of_call(call, &like);
   for (size_t i = 0; i < v->n; i++) {
     if (!read_series(call, v->x[i], &like, &x[i])) return false;

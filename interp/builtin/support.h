@@ -19,6 +19,8 @@ bool cag_fail_value(CagCall *call, int argument, const char *expected);
 // [index]".
 bool cag_fail_element(CagCall *call, int argument, size_t index, CagValue element,
                       const char *expected);
+#define cag_fail_value(...) cag_never_true((cag_fail_value)(__VA_ARGS__))
+#define cag_fail_element(...) cag_never_true((cag_fail_element)(__VA_ARGS__))
 const char *cag_parameter_name(const CagCall *call, int argument);
 // Short text of a value for messages; buffer is given back. Cut with "..." where it does not fit.
 const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size);

@@ -28,7 +28,7 @@ enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 // Component types of the specification.
 enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
-CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...) {
+CagStatus(cag_gltf_fail)(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...) {
   char message[250];
   va_list arguments;
   va_start(arguments, format);
@@ -142,7 +142,7 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
   *json = f->bytes;
   *json_size = f->size;
   if (f->size < 4 || memcmp(f->bytes, "glTF", 4) != 0) return CAG_OK;
-  *json = NULL;
+  const char *text = NULL;
   if (f->size < GLB_HEADER || cag_read_u32(f->bytes + 8) > f->size)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
                          "it has %zu bytes of the %lu that it says; write or fetch it again",
@@ -162,13 +162,14 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
                                      "a chunk of %zu bytes, where %zu are left; write or fetch the "
                                      "file again",
                                      size, f->size - at);
-    if (kind == JSON_CHUNK && !*json) *json = f->bytes + at, *json_size = size;
+    if (kind == JSON_CHUNK && !text) text = f->bytes + at, *json_size = size;
     if (kind == BINARY_CHUNK && !binary->bytes)
       *binary = (CagGltfBuffer){(char *)f->bytes + at, size, false};
     at += size;
   }
-  return *json ? CAG_OK
-               : cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "it has no chunk of JSON");
+  if (!text) return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "it has no chunk of JSON");
+  *json = text;
+  return CAG_OK;
 }
 
 // --- Buffers ---

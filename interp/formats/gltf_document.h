@@ -55,5 +55,6 @@ double cag_gltf_sparse_number(const CagGltfAccessor *a, size_t i, int k);
 bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out);
 CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+#define cag_gltf_fail(...) cag_never_ok((cag_gltf_fail)(__VA_ARGS__))
 
 #endif

@@ -26,8 +26,8 @@ static CagStatus fail_with(const CagMeshFile *f, CagError *err, CagErrorId id, c
   return cag_fail(err, CAG_E_ARGUMENT, id, "path", -1, "%.80s%s: %s", f->name, place, message);
 }
 
-CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, CagErrorId id,
-                                  const char *at, const char *format, ...) {
+CagStatus(cag_mesh_file_fail_line)(const CagMeshFile *f, CagError *err, CagErrorId id,
+                                   const char *at, const char *format, ...) {
   char place[40] = "";
   size_t line = 1;
   for (const char *s = f->bytes; at && s < at; s++) line += *s == '\n';
@@ -39,8 +39,8 @@ CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, CagErrorI
   return status;
 }
 
-CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, CagErrorId id,
-                                  const char *at, const char *format, ...) {
+CagStatus(cag_mesh_file_fail_byte)(const CagMeshFile *f, CagError *err, CagErrorId id,
+                                   const char *at, const char *format, ...) {
   char place[40] = "";
   if (at) snprintf(place, sizeof place, ", byte %zu", (size_t)(at - f->bytes));
   va_list arguments;

@@ -47,9 +47,11 @@ CagStatus cag_draft_finish(CagMeshDraft *d, CagMesh **out, CagError *err);
 CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+#define cag_mesh_file_fail_line(...) cag_never_ok((cag_mesh_file_fail_line)(__VA_ARGS__))
 CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+#define cag_mesh_file_fail_byte(...) cag_never_ok((cag_mesh_file_fail_byte)(__VA_ARGS__))
 
 // A reader of one format.
 typedef CagStatus CagMeshReader(CagMeshDraft *d, CagError *err);

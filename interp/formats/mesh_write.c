@@ -121,7 +121,7 @@ CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], 
                           CagError *err) {
   const CagMesh *m = part->mesh;
   size_t n = 3 * m->vertex_count, k = 0;
-  const double *x = n > 0 ? &m->positions[0].x : NULL;
+  const double *x = (const double *)m->positions;
   float low[LANES], high[LANES], *p = cag_malloc((n + 3) * sizeof *p);
   *out = NULL;
   if (!p) return cag_fail_memory(err);

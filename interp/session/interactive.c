@@ -302,7 +302,8 @@ void cag_session_write_script(CagSession *s, FILE *out) {
   size_t length;
   for (size_t i = 0; cag_session_name(s, i, &text, &length); i++) {
     if (!text) continue;
-    const char *doc = find_decl(s->vm, i)->doc;
+    const CagDecl *d = find_decl(s->vm, i);
+    const char *doc = d ? d->doc : NULL;
     while (doc && *doc) {
       size_t n = strcspn(doc, "\n");
       fprintf(out, "/// %.*s\n", (int)n, doc);

@@ -79,6 +79,12 @@ bool cag_check_defined(CagCall *call, CagValue result);
 // read arguments report jets through cag_fail_type and cag_fail_element, which call this.
 bool cag_fail_differentiate(CagCall *call, int argument);
 
+// Compilers and analyzers know that these never return true.
+#define cag_fail_call(...) cag_never_true((cag_fail_call)(__VA_ARGS__))
+#define cag_fail_help(...) cag_never_true((cag_fail_help)(__VA_ARGS__))
+#define cag_fail_geometry(...) cag_never_true((cag_fail_geometry)(__VA_ARGS__))
+#define cag_fail_type(...) cag_never_true((cag_fail_type)(__VA_ARGS__))
+
 // --- Reading arguments ---
 // Each function returns false if it set an error. `argument` is the index of the parameter. The
 // functions that end with _or take the value for a parameter that is not given.

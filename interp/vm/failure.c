@@ -122,7 +122,7 @@ static void vfail(CagVm *vm, CagErrorId id, int argument, const char *prefix, co
   cag_string_free(&s);
 }
 
-bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...) {
+bool(cag_vm_fail)(CagVm *vm, CagErrorId id, const char *format, ...) {
   va_list args;
   va_start(args, format);
   vfail(vm, id, WHOLE_CALL, NULL, format, args);
@@ -148,7 +148,7 @@ bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *for
   return false;
 }
 
-bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...) {
+bool(cag_vm_fail_at)(CagVm *vm, int argument, CagErrorId id, const char *format, ...) {
   va_list args;
   va_start(args, format);
   vfail(vm, id, argument, NULL, format, args);
@@ -156,7 +156,7 @@ bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, 
   return false;
 }
 
-bool cag_fail_help(CagVm *vm, const char *format, ...) {
+bool(cag_fail_help)(CagVm *vm, const char *format, ...) {
   if (!vm->failed || vm->errors.count == 0) return false;
   char *text = NULL;
   va_list args;
@@ -192,7 +192,7 @@ static int argument_of(const CagCall *call, int parameter) {
   return n->order[parameter];
 }
 
-bool cag_fail_call(CagCall *call, int argument, CagErrorId id, const char *format, ...) {
+bool(cag_fail_call)(CagCall *call, int argument, CagErrorId id, const char *format, ...) {
   va_list args;
   va_start(args, format);
   vfail(call->vm, id, argument_of(call, argument), cag_builtin_signature_of(call->builtin)->name,
@@ -207,7 +207,7 @@ bool cag_fail_differentiate(CagCall *call, int argument) {
                                  "without it");
 }
 
-bool cag_fail_type(CagCall *call, int argument, const char *expected) {
+bool(cag_fail_type)(CagCall *call, int argument, const char *expected) {
   if ((size_t)argument < call->count && cag_holds_jet(call->values[argument]))
     return cag_fail_differentiate(call, argument);
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
@@ -233,7 +233,7 @@ bool cag_fail_type(CagCall *call, int argument, const char *expected) {
   return false;
 }
 
-bool cag_fail_geometry(CagCall *call, const CagError *err) {
+bool(cag_fail_geometry)(CagCall *call, const CagError *err) {
   if (err->status == CAG_E_CALLBACK && call->vm->failed)
     return false; // the function of the script has set its
                   // error

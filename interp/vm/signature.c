@@ -146,7 +146,7 @@ static void parse_type(CagParameterType *out, const char *words, Room *room) {
   bool any = false;
   for (size_t i = 0; i < count; i++) {
     const Part one = {p.start, i + 1 < count ? find_outside(p, or) : p.end};
-    if (*one.start == '"') {
+    if (choices && *one.start == '"') {
       choices[texts++] = copy_to_room((Part){one.start + 1, one.end - 1}, room);
       out->accepts |= TYPE(TEXT);
     } else {
@@ -191,11 +191,12 @@ static void add_field(CagParameterTypes *types, CagParameterType *type) {
 
 // A number or angle, in degrees.
 static double parse_number(const char *text, const char **end) {
-  char *after;
-  const double x = strncmp(text, "inf", 3) == 0 ? HUGE_VAL : strtod(text, &after);
-  *end = isinf(x) ? text + 3 : after;
+  const bool infinite = strncmp(text, "inf", 3) == 0;
+  char *after = NULL;
+  const double x = infinite ? HUGE_VAL : strtod(text, &after);
+  *end = infinite ? text + 3 : after;
   // strtod reads "0." from "0..1".
-  if (!isinf(x) && after > text && after[-1] == '.' && *after == '.') --*end;
+  if (!infinite && after > text && after[-1] == '.' && *after == '.') --*end;
   if (strncmp(*end, "deg", 3) == 0) *end += 3;
   return x;
 }

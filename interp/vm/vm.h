@@ -331,6 +331,9 @@ bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *for
 // The same, underlining argument `argument` (from 0) of the current call; -1: the callee.
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+// As cag_fail_call (builtin.h), these never give true.
+#define cag_vm_fail(...) cag_never_true((cag_vm_fail)(__VA_ARGS__))
+#define cag_vm_fail_at(...) cag_never_true((cag_vm_fail_at)(__VA_ARGS__))
 void cag_vm_clear_error(CagVm *vm);
 // Returns whether the error is a limit of the run, which `attempt` does not catch. An error without
 // a message counts as one.
