@@ -79,11 +79,11 @@ static CagStatus choose_lines(CagGridFit *f, CagError *err) {
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_planes_closed, "planes", -1,
                   "the surface is closed in %c, where planes that follow one another would have to "
                   "come back to the first; %s",
-                  "uv"[f->planes_along],
-                  f -> axis[1 - f->planes_along].closed
-                           ? "leave it open in one direction, or leave the planes out"
-                       : f->planes_along == 0 ? "give them for the other direction as {v: ...}"
-                                              : "give them for the other direction as {u: ...}");
+                  f->planes_along ? 'v' : 'u',
+                  f->axis[1 - f->planes_along].closed
+                      ? "leave it open in one direction, or leave the planes out"
+                  : f->planes_along == 0 ? "give them for the other direction as {v: ...}"
+                                         : "give them for the other direction as {u: ...}");
 }
 
 static CagStatus check_given(const CagGridFit *f, CagError *err) {

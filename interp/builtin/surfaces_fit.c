@@ -69,7 +69,7 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
   }
   return good || cag_fail_call(call, argument, CAG_ERR_length,
                                "expects as `parameters` by %c %zu numbers, or %zu rows of %zu",
-                               "uv"[k], lines, g -> r, g -> s);
+                               k ? 'v' : 'u', lines, g->r, g->s);
 }
 
 // A spacing, or a record of parameters u and v, of which one may be left to the chords.
