@@ -1,9 +1,9 @@
 # The only build. `make` leaves the program at build/cag; BUILD= chooses another folder.
 #
 #   make             program and libraries          make test            all suites, closing with `N passed, N failed, N skipped`
-#   make test-sanitize  under ASan and UBSan        make bench           figures against peers
-#   make test-threads   what has threads, under the thread sanitizer
-#   make coverage    lines and branches by folder   make mutate N=100    how many random changes the tests notice
+#   make test-sanitize  under ASan and UBSan        make bench           benchmarks, with comparisons
+#   make test-threads   code with threads, under the thread sanitizer
+#   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
 #   make format      clang-format everything        make check-format / check-layers / analyze
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
@@ -23,7 +23,7 @@ SANITIZE ?=
 V ?=
 Q := $(if $(V),,@)
 
-# Each: pkg-config name and the Debian package to install when it is missing.
+# For each library: its pkg-config name, and the Debian package to install if it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
          libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev \
          libcmark-gfm:libcmark-gfm-dev libxml-2.0:libxml2-dev
@@ -88,11 +88,11 @@ $(BUILD)/libcag.so: $(BASE_OBJ) $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh $(STDLIB) > $@.tmp && mv $@.tmp $@
-# What `cag doc` shows and makes a site of.
+# The documents for `cag doc` and the documentation site.
 $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
-# The built-in functions. The prototypes do not change with a summary or an example.
+# The built-in functions. The prototypes do not depend on summaries and examples.
 $(BUILD)/gen/builtins.c: $(PARAMETERS) $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)
 	@echo "awk $@"
@@ -111,12 +111,12 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 $(BUILD)/cag: $(CLI_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
-# Writes the program's tables, for what tools/*.sh make of them.
+# Writes the program's tables, as input for tools/*.sh.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 
-# Makes man pages of Markdown, for tools/man.sh.
+# Converts Markdown to man pages, for tools/man.sh.
 $(BUILD)/tools/markdown_man: tools/markdown_man.c
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $< -o $@ $(LDLIBS_ALL)
@@ -208,19 +208,19 @@ coverage:
 	$(CC) -std=c17 $(WARN) -fPIC -c tests/coverage/exit.c -o $(COVERAGE_EXIT)
 	-MEMORY_POINTS=30 $(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit $(COVERAGE_EXIT)" test
 	BUILD=$(BUILD)-coverage sh tools/coverage.sh
-# How many of N random changes to the code the tests notice; SEED= draws others.
+# Measures how many of N random changes to the code the tests detect. SEED= selects other changes.
 mutate:
 	N=$(N) SEED=$(SEED) python3 tools/mutate.py
 
 $(BUILD)/tests/bench/%: tests/bench/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
-# SISL is a peer of this figure only, and only where its header is.
+# SISL is compared only in this benchmark, and only if its header is installed.
 $(BUILD)/tests/bench/curves: tests/bench/curves.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $$(test -f /usr/include/sisl.h && echo -DCAG_SISL) $< $(BUILD)/libcag.a -o $@ \
 	  $$(test -f /usr/include/sisl.h && echo -lsisl) $(LDLIBS_ALL)
-# Orocos KDL is a peer as well, a program of its own in C++, built only where its header is.
+# Orocos KDL is also compared, by a separate C++ program that is built only if its header is installed.
 KDL := $(wildcard /usr/include/kdl/chain.hpp)
 $(BUILD)/tests/bench/robots_kdl: tests/bench/robots_kdl.cpp tests/bench/robots.h
 	@mkdir -p $(@D)
@@ -235,7 +235,7 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	@mkdir -p $(@D)
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
-# What Tab proposes belongs to the program, not to the library.
+# Completion with Tab is part of the program, not of the library.
 $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
@@ -249,10 +249,10 @@ check-format:
 	clang-format --dry-run -Werror $(FORMATTED)
 check-layers:
 	python3 tools/check_layers.py
-# What GCC finds by following the paths through each function. Its check of uninitialized values is left out: it takes loops that run at
-# least once for loops that may not. GCC's ordinary warnings, Clang, and the sanitizers look for these.
-# GCC 12 takes memory for lost that is stored in an element of an array at an index that changes, as that of the tasks of a batch: leaks in
-# cli/, which allocates with malloc, are left to `make tidy`. The other folders allocate with cag_malloc, which neither of them follows.
+# GCC's path-sensitive static analysis. Its check of uninitialized values is off, because it reports loops that always run at least once.
+# GCC's ordinary warnings, Clang, and the sanitizers detect such values. GCC 12 also reports a leak of memory that is stored in an array
+# element at a variable index, such as that of the tasks of a batch. Leaks in cli/, which allocates with malloc, are therefore left to
+# `make tidy`. The other folders allocate with cag_malloc, which neither tool follows.
 ANALYZED := base lang geom interp cli
 ANALYZE  := -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value
 $(BUILD)/analyzed/%.o: %.c
@@ -263,7 +263,7 @@ $(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-fi
 $(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
 
-# The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.
+# Installs the program, the libraries with their pkg-config file, and the files of tools/install.sh.
 install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin $(LIBDIR)/pkgconfig include share)
 	install -m 755 $(BUILD)/cag $(DESTDIR)$(PREFIX)/bin/cag
@@ -277,7 +277,7 @@ install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	$(BUILD)/tools/tables > $(BUILD)/tables.txt
 	sh tools/install.sh $(BUILD)/tables.txt $(BUILD)/tools/markdown_man $(DESTDIR)$(PREFIX)/share
 
-# Debian packages in $(BUILD)/deb: the program, the library, and what programs that use it are built with.
+# Debian packages in $(BUILD)/deb: the program, the library, and the development files.
 deb: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	BUILD=$(BUILD) VERSION=$(VERSION) sh packaging/deb.sh
 # The names of the built-in functions in the files for editors.

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 _Noreturn void cag_assert_failed(const char *condition, const char *file, int line) {
-  fprintf(stderr, "%s:%d: this does not hold: %s\n", file, line, condition);
+  fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
   abort();
 }
 #endif

@@ -82,7 +82,7 @@ void cag_atomic_files_cleanup(void) {
 static bool fail_open(CagError *err, const char *path, int code) {
   const char *help = code == ENOENT || code == ENOTDIR ? "create the folder first, or name another"
                      : code == EACCES || code == EPERM || code == EROFS
-                         ? "choose a place that you may write to"
+                         ? "choose a folder that you can write to"
                          : NULL;
   return cag_fail_io(err, CAG_E_FILE, help, "cannot write '%s': %s", path, strerror(code));
 }

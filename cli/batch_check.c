@@ -82,7 +82,7 @@ static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
     snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
   if (!format)
     return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help,
-                            "the output '%s' has no ending that says its format", output);
+                            "the output '%s' has no extension that determines its format", output);
   return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help, "unknown format '.%s'", format);
 }
 
@@ -112,15 +112,16 @@ static bool check_pattern(CagBatch *b, const CagJob *job, const CagBatchRow *row
   const char *output = job->cells[CAG_JOB_output];
   const int places = row->renders ? cag_frames_places(output) : 0;
   if (!row->film && places > 0)
-    return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "fill in frames, such as 0..47",
-                            "the output '%s' has a place for a frame's number, but the row has no "
-                            "frames",
-                            output);
+    return cag_jobs_problem(
+        &b->jobs, job, CODE_VALUE, "fill in frames, such as 0..47",
+        "the output '%s' has a placeholder for a frame number, but the row has no "
+        "frames",
+        output);
   if (row->film && (places < 0 || places > 1))
     return cag_jobs_problem(&b->jobs, job, CODE_VALUE, HELP,
                             places < 0
-                                ? "a %% in the output '%s' is not a place for a frame's number"
-                                : "the output '%s' has several places for a frame's number",
+                                ? "a %% in the output '%s' is not a placeholder for a frame number"
+                                : "the output '%s' has several placeholders for a frame number",
                             output);
   if (row->film && places == 0 && row->last > row->first)
     return cag_jobs_problem(&b->jobs, job, CODE_TWICE, HELP,

@@ -31,12 +31,12 @@ static int reject_format(const CagTool *t, const char *format) {
 // Checks the command line before anything runs. Returns 0, or the status after a message.
 static int check(const CagTool *t) {
   if (!t->output)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "say where to with -o OUT, such as -o vase.stl",
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "name the output with -o OUT, such as -o vase.stl",
                          "there is no output");
   const char *format = t->format ? t->format : ending(t->output);
   if (!format)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",
-                         "the output '%s' has no ending that says its format", t->output);
+                         "the output '%s' has no extension that determines its format", t->output);
   if (!is_format(format)) return reject_format(t, format);
   return cag_tool_check_place(t, t->output);
 }

@@ -33,7 +33,7 @@ static void write_back(Formatting *f, const char *path, const char *text, size_t
   CagAtomicFile *file = cag_atomic_file_open(path, &err);
   if (file) cag_atomic_file_write(file, text, length);
   if (file && cag_atomic_file_commit(file, &err)) {
-    if (f->tool->verbose) cag_tool_say(f->tool, "%s is laid out anew", path);
+    if (f->tool->verbose) cag_tool_say(f->tool, "formatted %s", path);
     return;
   }
   remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE, err.help, "%s", err.message));

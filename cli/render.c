@@ -45,7 +45,7 @@ static int check_ending(const CagTool *t) {
   if (!strcmp(t->output, "-"))
     return format ? CAG_STATUS_OK
                   : cag_tool_fail(t, CAG_STATUS_USAGE, "add --format exr or --format png",
-                                  "standard output has no ending that says the format");
+                                  "standard output has no extension that determines the format");
   const char *ending = has_ending(t->output, ".exr")   ? "exr"
                        : has_ending(t->output, ".png") ? "png"
                                                        : NULL;
@@ -64,13 +64,14 @@ static int check_pattern(const CagTool *t) {
   if (!t->has_frames)
     return places <= 0 ? CAG_STATUS_OK
                        : cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
-                                       "the output '%s' has a place for a frame's number, but no "
-                                       "frames are asked for",
+                                       "the output '%s' has a placeholder for a frame number, but "
+                                       "--frames is not given",
                                        t->output);
   if (places < 0 || places > 1)
     return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
-                         places < 0 ? "a %% in the output '%s' is not a place for a frame's number"
-                                    : "the output '%s' has several places for a frame's number",
+                         places < 0
+                             ? "a %% in the output '%s' is not a placeholder for a frame number"
+                             : "the output '%s' has several placeholders for a frame number",
                          t->output);
   if (places == 0 && t->last_frame > t->first_frame)
     return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
@@ -91,7 +92,7 @@ static int find_length(const CagTool *t, double *frames) {
     *frames = strtod(d->value, &end);
     if (end == d->value || *end || !(*frames >= 1) || *frames > INT_MAX ||
         *frames != (double)(long)*frames)
-      return cag_tool_fail(t, CAG_STATUS_USAGE, "with --frames give a whole number, such as 96",
+      return cag_tool_fail(t, CAG_STATUS_USAGE, "with --frames, give an integer, such as 96",
                            "-D frames=%s: expected the length of a film", d->value);
   }
   if (*frames > (double)t->last_frame) return CAG_STATUS_OK;
@@ -103,7 +104,7 @@ static int find_length(const CagTool *t, double *frames) {
 static int check(const CagTool *t, double *frames) {
   *frames = 1;
   if (!t->output)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "say where to with -o OUT, such as -o out.png",
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "name the output with -o OUT, such as -o out.png",
                          "there is no output");
   int status = check_ending(t);
   if (status == CAG_STATUS_OK) status = check_pattern(t);

@@ -95,7 +95,7 @@ static size_t ask_elements(CagBatch *b) {
   size_t elements = equals ? strtoul(equals + 1, NULL, 10) : 0;
   if (elements < 2) elements = ELEMENTS_USUAL;
   if (status != 0 && !cag_tool_interrupt) {
-    refuse(b, said ? "Slurm does not answer" : "Slurm's programs cannot be run", said);
+    refuse(b, said ? "Slurm does not respond" : "Slurm's programs cannot be run", said);
     elements = 0;
   }
   free(said);
@@ -304,7 +304,7 @@ static int query_states(Array *a, bool *silent) {
   } else if (!cag_tool_interrupt) {
     cag_batch_progress_clear(&a->progress);
     if (!a->silent)
-      cag_tool_say(a->batch->tool, "Slurm does not answer (%s), waiting",
+      cag_tool_say(a->batch->tool, "Slurm does not respond (%s), waiting",
                    said ? last_line(said) : "squeue cannot be run");
     a->silent = true;
     *silent = now - a->answered > SILENCE_LIMIT;
@@ -338,8 +338,7 @@ static int follow(Array *a, bool *over) {
   }
   cag_batch_progress_clear(&a->progress);
   if (silent)
-    say_once(a->batch,
-             "Slurm does not answer; what its job does meanwhile is taken by the next call");
+    say_once(a->batch, "Slurm does not respond; the next call collects the results of its job");
   *over = status == CAG_STATUS_OK && !open;
   return status;
 }

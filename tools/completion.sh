@@ -1,11 +1,11 @@
 #!/bin/sh
-# Writes the completion of a shell, made from the program's tables: commands, options, values of options, and operands (files by
-# their endings, error codes, names of functions).
+# Writes the completion script of a shell from the program's tables: commands, options, values of options, and operands (files by
+# extension, error codes, names of functions).
 #   build/tools/tables | sh tools/completion.sh bash|zsh > FILE
 set -eu
 shell=$1
 exec awk -F '\t' -v shell="$shell" '
-  # The endings of the files that a command takes as operands, or what else it takes.
+  # The extensions of the files that a command accepts as operands, or other kinds of operands.
   function operand_kind(command, operands) {
     if (operands == "-") return "nothing"
     if (operands ~ /CODE/) return "codes"
@@ -116,7 +116,7 @@ exec awk -F '\t' -v shell="$shell" '
         if (of[i] != commands[c]) continue
         k = "[" described(help[i]) "]"
         if (argument[i] != "-") k = k ":" described(argument[i]) ":" action(value_kind(argument[i], name[i], of[i]))
-        # -D and -I may be said again.
+        # -D and -I can be repeated.
         both = letter[i] ~ /[DI]/ ? "*" : ""
         if (letter[i] != "-") print "      " quoted(both "-" letter[i] (argument[i] != "-" ? "+" : "") k) " \\"
         if (name[i] != "-") print "      " quoted(both "--" name[i] (argument[i] != "-" ? "=" : "") k) " \\"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Copies the files for editors into a folder, with the names of the built-in functions and constants as the program has them.
-#   TABLES | sh tools/editors.sh FOLDER        TABLES is what build/tools/tables writes; FOLDER may be editors itself
+# Copies the files for editors into a folder, and updates the names of the built-in functions and constants from the program's tables.
+#   TABLES | sh tools/editors.sh FOLDER        TABLES is the output of build/tools/tables; FOLDER may be editors itself
 set -eu
 folder=$1
 source=$(dirname "$0")/../editors
@@ -12,11 +12,11 @@ functions=$(names function)
 constants=$(names constant)
 [ -n "$functions" ] && [ -n "$constants" ]
 
-# The line behind `"comment": "functions"` of the grammar, and the lines `syn keyword cagFunction` of Vim.
+# Replaces the line after `"comment": "functions"` in the grammar, and the lines `syn keyword cagFunction` of Vim.
 (cd "$source" && find . -type f) | while read -r file; do
   mkdir -p "$folder/$(dirname "$file")"
   awk -v functions="$functions" -v constants="$constants" '
-    # What Vim would take for an option is written with its last letter as optional.
+    # Names that Vim would interpret as options are written with an optional last letter.
     function words(s) {
       s = " " s " "
       n = split("conceal cchar contained contains containedin display extend fold keepend nextgroup oneline skipempty skipnl skipwhite transparent", option, " ")

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes C source that holds the given files.
+# Writes C source that contains the given files.
 #   embed.sh FILE.cag ...                 the standard library: cag_stdlib[] of { "std.name", text, length }
 #   embed.sh --documents FILE ...         documents: cag_documents[] of { "path", text, length }
 documents=

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What `make install` puts beside the program and the libraries: man pages, completions, documents, examples, files for editors.
+# Installs the other files of `make install`: man pages, completions, documents, examples, and files for editors.
 #   sh tools/install.sh TABLES CONVERTER SHARE
-# TABLES is what build/tools/tables wrote, CONVERTER is build/tools/markdown_man, and SHARE is the folder share/ of the installation.
+# TABLES is the output of build/tools/tables, CONVERTER is build/tools/markdown_man, and SHARE is the folder share/ of the installation.
 set -eu
 tables=$1 converter=$(realpath "$2") share=$3
 cd "$(dirname "$0")/.."

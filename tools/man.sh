@@ -1,6 +1,6 @@
 #!/bin/sh
 # Writes the man pages below a folder: man1/cag.1 and one for each command, from the program's tables, and man7/cag-language.7, from
-# docs/language-card.md. The pages are written as Markdown, of which CONVERTER, build/tools/markdown_man, makes man pages.
+# docs/language-card.md. The pages are written as Markdown, which CONVERTER, build/tools/markdown_man, converts to man pages.
 #   build/tools/tables | sh tools/man.sh CONVERTER FOLDER
 set -eu
 converter=$1
@@ -14,8 +14,8 @@ if [ -n "${SOURCE_DATE_EPOCH-}" ]; then day=$(date -u -d "@$SOURCE_DATE_EPOCH" +
 version=$(awk -F '\t' '$1 == "version" { print $2 }' "$tables")
 mkdir -p "$folder/man1" "$folder/man7"
 
-# Makes a man page of the Markdown on standard input. The writer's output is adapted: a heading is one line, no paragraph begins
-# directly below it, a paragraph with a quotation is a tagged paragraph, fonts are those of every man macro set, and code is an example.
+# Converts the Markdown on standard input to a man page. The converter's output is adapted: a heading is one line without a paragraph
+# macro after it, a paragraph with a quotation is a tagged paragraph, fonts are those of all man macro sets, and code is an example.
 #   man_page NAME SECTION
 man_page() {
   printf '.TH %s %s %s "cag %s" "cag"\n' "$(printf '%s' "$1" | tr a-z A-Z | sed 's/-/\\-/g')" "$2" "$day" "$version"
@@ -47,7 +47,7 @@ common='
     return out
   }
   function section(name) { print "\n# " name "\n" }
-  # A paragraph and what is said of it.
+  # A term and its description.
   function term(head, story) { return head "\n\n> " text(story) "\n" }
 '
 
@@ -128,8 +128,8 @@ for command in $(awk -F '\t' '$1 == "command" { print $2 }' "$tables"); do
   command_page "$command" | man_page "cag-$command" 1 > "$folder/man1/cag-$command.1"
 done
 
-# The card of the language: its title becomes the name of the page, and the rows of its tables become terms. The names of the built-in
-# functions follow it by their families.
+# The language card: its title becomes the name of the page, and the rows of its tables become terms. The names of the built-in
+# functions, by family, follow.
 language_page() {
   printf '# NAME\n\ncag-language - the language of cag scripts\n\n# DESCRIPTION\n\n'
   awk '

@@ -1,5 +1,5 @@
-// Reads Markdown (CommonMark) from standard input and writes it as the text of a man page, by the
-// writer of libcmark-gfm. tools/man.sh adds the title and adapts the result to mandoc.
+// Converts Markdown (CommonMark) on standard input to the text of a man page with libcmark-gfm.
+// tools/man.sh adds the title and adapts the result to mandoc.
 
 #include <cmark-gfm.h>
 #include <stdio.h>

@@ -1,20 +1,20 @@
-# The Debian packages that cag needs, and their installation; read by setup.sh and test.sh.
+# The Debian packages that cag needs, and their installation; sourced by setup.sh and test.sh.
 
-# LAPACK comes with Debian's own BLAS: that of OpenBLAS starts threads in every process, which spin for longer than most scripts take.
+# LAPACK uses Debian's reference BLAS. OpenBLAS starts threads in every process, which busy-wait longer than most scripts run.
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev povray povray-includes"
 TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format tmux zsh mandoc groff-base vim strace g++ dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
-# The Khronos validator of glTF runs on these; where they came from elsewhere, Debian's would be in their way.
+# Needed by the Khronos glTF validator. If they were installed from another source, Debian's packages would conflict with them.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
 command -v python3 > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES python3"
 
-# Tests that need these are skipped where they cannot be had: they are large, and not needed by anything else.
+# Tests that need these are skipped if they are not available. They are large, and nothing else needs them.
 EXTRA_PACKAGES="chromium"
-# The seconds that their download may take.
+# The time limit of their download in seconds.
 EXTRA_SECONDS=240
 
-# Installs those of the packages that are not here; as root, or with sudo.
+# Installs the missing packages, as root or with sudo.
 install_packages() {
   find_missing "$@"
   [ -n "$missing" ] || return 0
@@ -23,7 +23,7 @@ install_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing
 }
 
-# The same, where it goes well without: what cannot be downloaded in time is only told.
+# The same for optional packages: those that cannot be downloaded in time are only reported.
 install_extra_packages() {
   find_missing "$@"
   [ -n "$missing" ] || return 0
@@ -34,7 +34,7 @@ install_extra_packages() {
     echo "these could not be installed, and their tests are skipped:$missing"
 }
 
-# Sets `missing` to those of the packages that are not here, and `as_root` to what makes one root.
+# Sets `missing` to the packages that are not installed, and `as_root` to the prefix for root commands.
 find_missing() {
   missing= as_root=
   [ "$(id -u)" -eq 0 ] || as_root=sudo

@@ -1,4 +1,4 @@
-# Makes the C tables of the built-in functions from interp/builtin/*.rows.
+# Generates the C tables of the built-in functions from interp/builtin/*.rows.
 #
 #     awk -f rows.awk PARAMETER.def ... FILE.rows ...                cag_builtins[], in the order of the files
 #     awk -v header=1 -f rows.awk PARAMETER.def ... FILE.rows ...    the prototypes of the functions
@@ -17,22 +17,22 @@
 #         Returns a cone whose axis is Z.
 #             print volume(cone(3, 1)) / pi   // expect: 1
 #
-# `functions` states how the names of the functions in C begin; # is a heading of the documentation.
+# `functions` is the prefix of the names of the C functions; # is a heading of the documentation.
 #
-# A row begins with its signature (interp/vm/signature.h), which may go on in lines that are indented
-# by 4; its last line ends with `-> TYPE`, the type of the result. A name without parentheses is a
-# constant, which has no function. Below the signature, indented by 4:
+# A row starts with its signature (interp/vm/signature.h), which may continue on lines that are
+# indented by 4; its last line ends with `-> TYPE`, the type of the result. A name without parentheses
+# is a constant, which has no function. Below the signature, indented by 4:
 #
 # - `first`: the types of the first argument for which the row is called. `sequence` is for list and
-#   range, `shape` for all types of shapes, and `movable` for everything that transforms apply to, but
-#   lists. Any type by default.
-# - `function`: the function in C, if it is not the beginning and the name.
+#   range, `shape` for all types of shapes, and `movable` for everything that transforms apply to,
+#   except lists. Any type by default.
+# - `function`: the C function, if its name is not the prefix and the name of the row.
 # - `unbound`: the function reads its arguments from the call.
-# - The summary, which begins with a capital.
+# - The summary, which starts with a capital letter.
 # - The example, indented by 8.
 #
-# The function of a row gets its arguments in a structure, which has its name. It has a field for each
-# parameter, with the name of the parameter and the type in C that parameter_kinds.def states:
+# The function of a row receives its arguments in a structure with the same name. It has a field for
+# each parameter, with the name of the parameter and the C type from parameter_kinds.def:
 #
 #     struct cag_solids_cone {
 #       double height;
@@ -77,14 +77,14 @@ function toupper_tags(text,    out, tag) {
   return out text
 }
 
-# The kind of the words of a type, the longest known ones that it begins with.
+# Returns the kind of the longest known words with which a type starts.
 function kind_of(type,    words, best) {
   for (words in kind_of_words)
     if ((type == words || index(type, words " ") == 1) && length(words) > length(best)) best = words
   return best == "" ? "VALUE" : kind_of_words[best]
 }
 
-# The kind of the type of a parameter, such as `length > 0` or `"left" or "right"`.
+# Returns the kind of the type of a parameter, such as `length > 0` or `"left" or "right"`.
 function parameter_kind(type,    i, c, depth, in_text, alternatives, texts, start) {
   type = type " or "
   start = 1

@@ -1,5 +1,5 @@
-// Writes the tables of the program as rows of texts with tabs between them, for the scripts that
-// make man pages, completions of shells, and the grammars of editors:
+// Writes the tables of the program as tab-separated rows of texts, for the scripts that make man
+// pages, shell completions, and grammars for editors:
 //
 //     version  TEXT
 //     command  NAME OPERANDS SUMMARY STORY
@@ -12,15 +12,14 @@
 //     module   NAME                   of the standard library, as import writes it
 //     error    CODE TITLE
 //
-// A part that is empty is a `-`. Options that every script takes are shared, those of some commands
-// their own.
+// An empty field is a `-`. Options of all commands that run scripts are `shared`, others are `own`.
 
 #include <string.h>
 
 #include "cli/cli.h"
 #include "cli/repl.h"
 
-// The tables come with what reads the command line, which looks at this.
+// Used by the parser of the command line, which is linked for its tables.
 volatile int cag_tool_interrupt;
 
 static const char *part(const char *text) { return text && *text ? text : "-"; }
@@ -61,8 +60,8 @@ static void write_formats(void) {
     printf("format\t%s\t%s\n", *f, cag_export_format_story(*f));
 }
 
-// Names by their rows; a row without parentheses is a constant. Params that every script has come
-// with the constants.
+// Writes the names of built-ins. A row without parentheses is a constant. The params that every
+// script has are written as constants, too.
 static void write_builtins(void) {
   static const char *const params[] = {"time", "frame", "frames"};
   const char *signature, *summary, *family;

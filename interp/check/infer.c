@@ -66,8 +66,7 @@ static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
                    types = types_of_elements(clause->source, source);
     if (!(source & CAG_TYPES_LOOPED))
       cag_check_report_found(c, CAG_ERR_type, clause->source->span,
-                             "a comprehension runs over a list, a range, a text or a record",
-                             source);
+                             "a comprehension needs a list, range, text, or record", source);
     for (size_t k = 0; k < clause->name_count; k++)
       cag_check_learn(c, clause->names[k], clause->pattern ? CAG_TYPES_ANY : types);
     if (clause->filter) cag_check_expect_bool(c, clause->filter, "the condition");

@@ -26,8 +26,8 @@
 
 static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *err) {
   return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
-                  "%s has no exact form as a NURBS (%s): give --tolerance 0.01 to have it "
-                  "approximated within 0.01 mm, or say tolerance(.., 0.01) of the shape alone",
+                  "%s has no exact form as a NURBS (%s): to approximate it within 0.01 mm, use "
+                  "--tolerance 0.01, or tolerance(.., 0.01) for this shape only",
                   w->item->name, what);
 }
 
@@ -36,7 +36,7 @@ static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *
                             CagError *err) {
   if (status != CAG_E_CONVERGENCE) return status;
   return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "", -1,
-                  "%s (%s) has a place that is not smooth, so that no B-spline of a sensible size "
+                  "%s (%s) is not smooth at a point, so that no B-spline of a sensible size "
                   "comes within %g mm of it: give a larger --tolerance, cut the shape there, or "
                   "write .stl, .obj, .ply or .glb",
                   w->item->name, what, w->asked);

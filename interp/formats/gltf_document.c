@@ -264,10 +264,11 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
     if (!cag_gltf_whole(list.items[i], "byteLength", 0, &size))
       status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "buffers[%zu] has no byteLength", i);
     else if (size > b->size)
-      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
-                             "buffers[%zu] says that it has %zu bytes, and has %zu; write or fetch "
-                             "it again",
-                             i, size, b->size);
+      status =
+          cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
+                        "buffers[%zu] states a length of %zu bytes, but has %zu; write or fetch "
+                        "it again",
+                        i, size, b->size);
     else b->size = size;
   }
   cag_free(list.items);

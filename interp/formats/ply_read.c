@@ -365,7 +365,7 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
   if (least == 0 || e->count == 0) return CAG_OK;
   if (e->count > rest / least)
     return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, NULL,
-                                   "its header says that it has %zu elements of at least %zu "
+                                   "its header states %zu elements of at least %zu "
                                    "bytes, and %zu bytes are left for them; write or fetch the "
                                    "file again",
                                    e->count, least, rest - 1);

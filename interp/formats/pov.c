@@ -279,8 +279,8 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
                     "the script shows no shape");
   if (options->camera >= scene->camera_count)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", (long)options->camera,
-                    "the scene has %zu cameras, there is none with the number %zu",
-                    scene->camera_count, options->camera);
+                    "the scene has %zu cameras, but none with the number %zu", scene->camera_count,
+                    options->camera);
   w.camera = &scene->cameras[options->camera];
   w.indirect = options->quality == CAG_POV_FINAL ||
                (options->quality == CAG_POV_NORMAL && lit_by_sky_alone(scene));

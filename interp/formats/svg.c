@@ -425,7 +425,7 @@ static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagEr
   if (p->flat) return CAG_OK;
   if (camera >= p->scene->camera_count)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", (long)camera,
-                    "the scene has %zu cameras, there is none with the number %zu",
+                    "the scene has %zu cameras, but none with the number %zu",
                     p->scene->camera_count, camera);
   const CagCamera *c = p->camera = &p->scene->cameras[camera];
   CagTransform frame = cag_camera_frame(c), up = cag_transform_identity();

@@ -74,7 +74,7 @@ static CagStatus find_root(const CagUrdfTree *t, size_t *out, CagError *err) {
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "path", -1,
                     "%s: the joints form a loop, no link is the first", t->file);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_branches, "path", -1,
-                  "%s has several links that hang on no joint: %s; `base` says which is the first",
+                  "%s has several links without a parent joint: %s; `base` selects the first one",
                   t->file, roots.text);
 }
 
@@ -85,8 +85,8 @@ static CagStatus fail_branches(const CagUrdfTree *t, size_t node, CagError *err)
     if (children(t, i, &ignored) == 0 && is_below(t, i, node)) add_name(&tips, t->nodes[i].name);
   end_names(&tips);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_branches, "tip", -1,
-                  "%s: after the link \"%.40s\" the robot branches, to the ends %s; `tip` says "
-                  "which link the chain ends at",
+                  "%s: after the link \"%.40s\", the robot branches, to the ends %s; `tip` selects "
+                  "the last link of the chain",
                   t->file, t->nodes[node].name, tips.text);
 }
 

@@ -219,7 +219,7 @@ static CagStatus fail_joint(const CagUrdfTree *t, const CagUrdfEdge *e, CagError
   if (e->mimic)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,
                     "%s, line %ld: the joint \"%.60s\" follows the joint \"%.60s\"; joints of a "
-                    "chain move by themselves: take its <mimic> out, or end the chain before it "
+                    "chain must be independent: remove its <mimic>, or end the chain before it "
                     "(tip: \"%.60s\")",
                     t->file, e->line, e->name, e->mimic, t->nodes[e->parent].name);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,

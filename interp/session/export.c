@@ -482,7 +482,7 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
   CagError io = {0};
   CagError err = {0};
   if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file lie in this folder beside it",
+    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file are written to this folder beside it",
                 "cannot make the folder %s: %s", folder, strerror(errno));
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }

@@ -216,7 +216,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   }
   pthread_attr_destroy(&attributes);
   if (started) pthread_join(thread, NULL);
-  else cag_vm_fail(vm, CAG_ERR_limit_memory, "the system gives no thread to evaluate on");
+  else cag_vm_fail(vm, CAG_ERR_limit_memory, "cannot create a thread for the evaluation");
   s->time_left -= cag_watch_end(&w);
   fflush(s->options.out);
   cag_diagnostics_move(&s->diagnostics, &vm->errors);

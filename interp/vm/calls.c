@@ -254,8 +254,7 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
   }
   CagString s = {0};
   cag_describe_value(vm, &s, callee);
-  cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "a call of something that is not a function: %s",
-                 s.bytes);
+  cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "cannot call %s, which is not a function", s.bytes);
   cag_string_free(&s);
   return cag_fail_hidden(vm);
 }

@@ -203,8 +203,7 @@ bool(cag_fail_call)(CagCall *call, int argument, CagErrorId id, const char *form
 
 bool cag_fail_differentiate(CagCall *call, int argument) {
   cag_fail_call(call, argument, CAG_ERR_not_differentiable, "cannot be differentiated");
-  return cag_fail_help(call->vm, "a curve or surface whose derivatives are asked for must be made "
-                                 "without it");
+  return cag_fail_help(call->vm, "a curve or surface that is differentiated must not use it");
 }
 
 bool(cag_fail_type)(CagCall *call, int argument, const char *expected) {
@@ -226,7 +225,7 @@ bool(cag_fail_type)(CagCall *call, int argument, const char *expected) {
     cag_number_text(v.as.number, n);
     cag_fail_help(call->vm, "write %sdeg or %srad", n, n);
   } else if (v.type == CAG_ANGLE && strcmp(expected, "a number") == 0) {
-    cag_fail_help(call->vm, "in_degrees(a) and in_radians(a) give numbers");
+    cag_fail_help(call->vm, "in_degrees(a) and in_radians(a) return numbers");
   } else if (strstr(expected, "function")) {
     cag_fail_hidden(call->vm);
   }

@@ -326,8 +326,7 @@ bool cag_fail_jet_level(CagVm *vm) {
 static bool fail_power(CagVm *vm, double base, double exponent) {
   char x[32], y[32];
   return cag_vm_fail(vm, CAG_ERR_not_differentiable,
-                     "`^` cannot be differentiated at %s ^ %s: the derivatives asked for are "
-                     "infinite there",
+                     "`^` cannot be differentiated at %s ^ %s: the derivatives are infinite there",
                      cag_number_text(base, x), cag_number_text(exponent, y));
 }
 

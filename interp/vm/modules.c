@@ -76,7 +76,7 @@ static void fail_circle(CagVm *vm, const CagModuleUnit *from, const CagStatement
       cag_string_printf(&chain, "%s -> ", vm->modules[i]->name);
   cag_string_printf(&chain, "%s", m->name);
   cag_diagnostics_add(&vm->errors, CAG_ERR_import_circle, from->source, s->as.import.path_span,
-                      "a circle of imports: %s", chain.bytes);
+                      "circular imports: %s", chain.bytes);
   cag_string_free(&chain);
 }
 

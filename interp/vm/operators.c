@@ -47,7 +47,7 @@ static bool check_number(CagVm *vm, CagBinaryOp op, double a, double b, double r
   if (op == CAG_OP_DIVIDE && b == 0)
     return cag_vm_fail(vm, CAG_ERR_not_finite, "division of %s by 0", x);
   if (op == CAG_OP_MODULO && b == 0)
-    return cag_vm_fail(vm, CAG_ERR_not_finite, "%s %% 0 has no value", x);
+    return cag_vm_fail(vm, CAG_ERR_not_finite, "%s %% 0 is undefined", x);
   return cag_vm_fail(vm, CAG_ERR_not_finite,
                      isnan(r) ? "%s %s %s is undefined" : "%s %s %s is too large for a number", x,
                      symbol(op), y);
@@ -373,7 +373,8 @@ bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
   else {
     CagString s = {0};
     cag_describe_value(vm, &s, v);
-    cag_vm_fail(vm, CAG_ERR_operand, "`-` turns a number, an angle or a vector, found %s", s.bytes);
+    cag_vm_fail(vm, CAG_ERR_operand, "`-` expects a number, an angle, or a vector, found %s",
+                s.bytes);
     cag_string_free(&s);
     return false;
   }
@@ -476,7 +477,7 @@ bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
   }
   return fail_operands(
       vm, CAG_OP_IN, needle, haystack,
-      "`in` looks in a range, a list, for a field in a record, for a part in a text");
+      "`in` searches a list or range for an element, a record for a field, or a text for a part");
 }
 
 // --- Ranges ---
@@ -506,8 +507,7 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
     CagString s = {0};
     cag_describe_value(vm, &s, parts[i]);
     if (i == 0 || !is_scalar(parts[i]))
-      cag_vm_fail(vm, CAG_ERR_type, "a range goes between numbers or between angles, found %s",
-                  s.bytes);
+      cag_vm_fail(vm, CAG_ERR_type, "a range needs numbers or angles, found %s", s.bytes);
     else
       cag_vm_fail(vm, CAG_ERR_type, "the step of a range of %s, found %s",
                   angle ? "angles must be an angle" : "numbers must be a number", s.bytes);
@@ -529,7 +529,7 @@ static bool fail_index(CagVm *vm, double at, size_t n, const char *what) {
   char text[32];
   cag_number_text(at, text);
   if (at != rint(at))
-    return cag_vm_fail(vm, CAG_ERR_index, "an index is a whole number, found %s", text);
+    return cag_vm_fail(vm, CAG_ERR_index, "expected an integer as index, found %s", text);
   cag_vm_fail(vm, CAG_ERR_index, "index %s lies outside of %s %s of %zu", text, cag_article(what),
               what, n);
   if (n) cag_fail_help(vm, "0 to %zu, or -%zu to -1", n - 1, n);
@@ -551,7 +551,7 @@ static bool resolve_part(CagVm *vm, const CagRange *r, size_t n, const char *wha
   if (r->angle)
     return cag_vm_fail(vm, CAG_ERR_index, "indices are numbers, found a range of angles");
   if (r->start != rint(r->start) || (r->end != rint(r->end)))
-    return cag_vm_fail(vm, CAG_ERR_index, "indices are whole numbers");
+    return cag_vm_fail(vm, CAG_ERR_index, "expected integers as indices");
   double a = r->start < 0 ? r->start + (double)n : r->start;
   double b = isinf(r->end) && r->end > 0
                  ? (double)n

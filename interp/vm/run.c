@@ -26,7 +26,8 @@ bool cag_room_on_c_stack(CagVm *vm) {
 bool cag_may_go_deeper(CagVm *vm, const char *done) {
   if (vm->stop) return !vm->failed && cag_keep_going(vm);
   if (cag_room_on_c_stack(vm)) return true;
-  if (!vm->failed) cag_vm_fail(vm, CAG_ERR_limit_depth, "the values nest too deep to be %s", done);
+  if (!vm->failed)
+    cag_vm_fail(vm, CAG_ERR_limit_depth, "the values are nested too deeply to be %s", done);
   return false;
 }
 
@@ -60,9 +61,9 @@ static bool equal(CagVm *vm, CagValue a, CagValue b, bool negated, bool *out) {
 }
 
 static bool fail_depth(CagVm *vm) {
-  cag_vm_fail(vm, CAG_ERR_limit_depth, "calls nest deeper than %zu", vm->frame_limit);
+  cag_vm_fail(vm, CAG_ERR_limit_depth, "calls are nested deeper than %zu", vm->frame_limit);
   return cag_fail_help(vm, "does the recursion end? A call in tail position, `reduce` or a "
-                           "comprehension takes no stack");
+                           "comprehension uses no stack");
 }
 
 static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
@@ -111,8 +112,8 @@ static bool iterate(CagVm *vm, CagValue *it, CagValue source) {
   default: {
     CagString s = {0};
     cag_describe_value(vm, &s, source);
-    cag_vm_fail(vm, CAG_ERR_type,
-                "a comprehension runs over a list, a range, a text or a record, found %s", s.bytes);
+    cag_vm_fail(vm, CAG_ERR_type, "a comprehension needs a list, range, text, or record, found %s",
+                s.bytes);
     cag_string_free(&s);
     if (source.type == CAG_NUMBER) cag_fail_help(vm, "to count, write 0..<n");
     return false;
@@ -454,7 +455,7 @@ next:
   CASE(NOT) {
     if (R(i.b).type != CAG_BOOL) {
       SAVE();
-      fail_condition(vm, R(i.b), "what `not` turns");
+      fail_condition(vm, R(i.b), "the operand of `not`");
       goto failed;
     }
     R(i.a) = cag_bool(!R(i.b).as.boolean);

@@ -283,7 +283,7 @@ it 'what no cut brings within the tolerance is named, with the mend'
 script step.cag 'show surface((u, v) => [u, v, if u < 1.37 then 0 else 1], u: 0..4, v: 0..3) |> named("ribbon")'
 try export step.cag -o step.step --tolerance 0.01
 status 1
-says 'ribbon (function) has a place that is not smooth'
+says 'ribbon (function) is not smooth at a point'
 says 'larger --tolerance'
 is_missing step.step
 

@@ -64,7 +64,7 @@ exit 1
 END
 queue two.csv
 status 1
-says 'E0918: Slurm does not answer: no answer'
+says 'E0918: Slurm does not respond: no answer'
 prints_exactly '0 done, 2 failed, 0 left out (already done)'
 fake scontrol <<'END'
 #!/bin/sh
@@ -113,7 +113,7 @@ printf '0 RUNNING\n1 RUNNING\n'
 END
 queue two.csv
 status 0
-says 'Slurm does not answer (squeue: the controller is away), waiting'
+says 'Slurm does not respond (squeue: the controller is away), waiting'
 prints_exactly '2 done, 0 failed, 0 left out (already done)'
 
 # A journal whose last line is a job that was handed in.

@@ -24,13 +24,13 @@ wrong_rows script,output,frames,size,tiles <<'END'
 folder.cag,a.stl,,, | E0913: row 1: the script 'folder.cag' cannot be read: it is not a regular file
 /no/where.cag,a.stl,,, | E0913: row 1: the script '/no/where.cag' cannot be read: No such file or directory
 ,a.stl,,, | E0913: row 1: the script is missing
-ball.cag,ball,,, | E0916: row 1: the output 'ball' has no ending that says its format
-ball.cag,.png,,, | E0916: row 1: the output '.png' has no ending that says its format
-ball.cag,ball.,,, | E0916: row 1: the output 'ball.' has no ending that says its format
-ball.cag,a.b/c,,, | E0916: row 1: the output 'a.b/c' has no ending that says its format
-ball.cag,-,,, | E0916: row 1: the output '-' has no ending that says its format
-ball.cag,a%d%d.png,0..1,, | E0912: row 1: the output 'a%d%d.png' has several places for a frame's number
-ball.cag,a%q.png,0..1,, | E0912: row 1: a % in the output 'a%q.png' is not a place for a frame's number
+ball.cag,ball,,, | E0916: row 1: the output 'ball' has no extension that determines its format
+ball.cag,.png,,, | E0916: row 1: the output '.png' has no extension that determines its format
+ball.cag,ball.,,, | E0916: row 1: the output 'ball.' has no extension that determines its format
+ball.cag,a.b/c,,, | E0916: row 1: the output 'a.b/c' has no extension that determines its format
+ball.cag,-,,, | E0916: row 1: the output '-' has no extension that determines its format
+ball.cag,a%d%d.png,0..1,, | E0912: row 1: the output 'a%d%d.png' has several placeholders for a frame number
+ball.cag,a%q.png,0..1,, | E0912: row 1: a % in the output 'a%q.png' is not a placeholder for a frame number
 ball.cag,a%d.png,0..2000000,, | E0912: row 1: with this row there are more than 1000000 pictures to make
 ball.cag,a.png,,640x32,1x2 | E0912: row 1: tiles 1x2 of a picture of 640 by 32 pixels are smaller than 32 pixels
 ball.cag,a.png,,32x640,2x1 | E0912: row 1: tiles 2x1 of a picture of 32 by 640 pixels are smaller than 32 pixels

@@ -245,7 +245,7 @@ stop controller
 sleep 1
 try batch refused.csv --engine-queue slurm
 status 1
-says 'E0918: Slurm does not answer: '
+says 'E0918: Slurm does not respond: '
 start_controller > /dev/null 2>&1
 waits_for node_is idle
 try batch refused.csv --engine-queue slurm

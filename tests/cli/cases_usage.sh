@@ -237,11 +237,11 @@ refuses "--size '0x5': sides are from 1 to" 'width x height' render option.cag -
 refuses "--size '5x0': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x0
 refuses "--size '5x99999999': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
 refuses "--tiles '0x1': expected tiles" 'columns x lines' batch jobs.csv --tiles 0x1
-refuses 'there is no output' 'say where to with -o OUT' render option.cag
+refuses 'there is no output' 'name the output with -o OUT' render option.cag
 refuses 'unknown picture format' '.exr or .png' render option.cag -o a.png --format gif
 refuses "--format exr and the output 'a.png' contradict each other" 'leave --format out' render option.cag -o a.png --format exr
 for frames in 0.5 x '' 1.5 1e99; do
-  refuses "-D frames=$frames: expected the length of a film" 'a whole number, such as 96' render option.cag -o a%d.png --frames 0..3 -D "frames=$frames"
+  refuses "-D frames=$frames: expected the length of a film" 'an integer, such as 96' render option.cag -o a%d.png --frames 0..3 -D "frames=$frames"
 done
 refuses '--frames sets `time`' 'leave one of them out' render option.cag -o a%d.png --frames 0..3 -D time=0.5
 refuses '--frames sets `frame`' 'leave one of them out' render option.cag -o a%d.png --frames 0..3 -D frame=1

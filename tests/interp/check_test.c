@@ -461,7 +461,7 @@ static void messages_mark_what_is_wrong(void **state) {
       {"print { assert «1»; 2 }", "E0309", "assert expects true or false, found a number", NULL},
       {"assert 1 < 2, «\"a\" + 1»", "E0321", "cannot apply + to a text and a number", NULL},
       {"print [for x in «5»: x]", "E0301",
-       "a comprehension runs over a list, a range, a text or a record, found a number", NULL},
+       "a comprehension needs a list, range, text, or record, found a number", NULL},
       {"print [for x in 1..5 if «x»: x]", "E0309",
        "the condition expects true or false, found a number", NULL},
       {"print [for x in 1deg..5deg: «x + 1»]", "E0321", "cannot apply + to an angle and a number",

@@ -413,9 +413,9 @@ static void buffers_lie_beside(void **state) {
       {BUFFERS("{\"byteLength\":1,\"uri\":\"data:x;base65,AAAA\"}"), "mesh-file-unsupported",
        "is not base64"},
       {BUFFERS("{\"byteLength\":4,\"uri\":\"data:;base64,AAAA\"}"), "mesh-file-truncated",
-       "buffers[0] says that it has 4 bytes, and has 3"},
+       "buffers[0] states a length of 4 bytes, but has 3"},
       {BUFFERS("{\"byteLength\":1}"), "mesh-file-truncated",
-       "buffers[0] says that it has 1 bytes, and has 0"},
+       "buffers[0] states a length of 1 bytes, but has 0"},
       {BUFFERS("{\"byteLength\":0},{\"byteLength\":\"\"}"), "mesh-file-syntax",
        "buffers[1] has no byteLength"},
       {BUFFERS("3"), "mesh-file-syntax", "buffers[0] is not an object"},
@@ -518,7 +518,7 @@ static void chunks_are_found(void **state) {
   t = glb_of(2, 0);
   add_chunk(&t, "JSON", two, strlen(two));
   add_chunk(&t, "BIN\0", "abcd", 4);
-  refused(t.at, t.n, "mesh-file-truncated", "buffers[1] says");
+  refused(t.at, t.n, "mesh-file-truncated", "buffers[1] states");
 }
 
 // --- Meshes ---

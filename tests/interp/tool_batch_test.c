@@ -147,14 +147,15 @@ static void rows_become_tasks(void **state) {
        "E0912 an export has no tiles (leave the field empty)\n"},
       // Films.
       {"a.cag,f%d.png",
-       "! 1 E0912 the output 'f%d.png' has a place for a frame's number, but the row "
+       "! 1 E0912 the output 'f%d.png' has a placeholder for a frame number, but the row "
        "has no frames (fill in frames, such as 0..47)\n"},
       {"a.cag,f.png,0..1",
        "! 1 E0914 all frames would be written to the one output 'f.png' " PATTERN_HELP "\n"},
-      {"a.cag,f%d%d.png,0..1", "! 1 E0912 the output 'f%d%d.png' has several places for a frame's "
-                               "number " PATTERN_HELP "\n"},
+      {"a.cag,f%d%d.png,0..1",
+       "! 1 E0912 the output 'f%d%d.png' has several placeholders for a frame "
+       "number " PATTERN_HELP "\n"},
       {"a.cag,f%s.png,0..1",
-       "! 1 E0912 a % in the output 'f%s.png' is not a place for a frame's number " PATTERN_HELP
+       "! 1 E0912 a % in the output 'f%s.png' is not a placeholder for a frame number " PATTERN_HELP
        "\n"},
       {"a.cag,f%d.png,0..999999\na.cag,g.png", "! 2 E0912 with this row there are more than "
                                                "1000000 pictures to make (take several files of "
@@ -169,12 +170,15 @@ static void rows_become_tasks(void **state) {
       // Formats.
       {"a.cag,", "! 1 E0916 the output is missing (name a file, such as vase.png)\n"},
       {"a.cag,noending",
-       "! 1 E0916 the output 'noending' has no ending that says its format (" FORMATS ")\n"},
+       "! 1 E0916 the output 'noending' has no extension that determines its format (" FORMATS
+       ")\n"},
       {"a.cag,.png",
-       "! 1 E0916 the output '.png' has no ending that says its format (" FORMATS ")\n"},
+       "! 1 E0916 the output '.png' has no extension that determines its format (" FORMATS ")\n"},
       {"a.cag,x.d/noending",
-       "! 1 E0916 the output 'x.d/noending' has no ending that says its format (" FORMATS ")\n"},
-      {"a.cag,x.", "! 1 E0916 the output 'x.' has no ending that says its format (" FORMATS ")\n"},
+       "! 1 E0916 the output 'x.d/noending' has no extension that determines its format (" FORMATS
+       ")\n"},
+      {"a.cag,x.",
+       "! 1 E0916 the output 'x.' has no extension that determines its format (" FORMATS ")\n"},
       {"a.cag,x.gif", "! 1 E0916 unknown format '.gif' (" FORMATS ")\n"},
       // Tiles.
       {"a.cag,t.png,,,2x2",

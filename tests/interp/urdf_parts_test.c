@@ -223,7 +223,7 @@ static void chains_lead_from_base_to_tip(void **state) {
   CagError err = {0};
   assert_int_equal(cag_urdf_chain(&t, NULL, NULL, &chain, &n, &err), CAG_E_ARGUMENT);
   assert_non_null(
-      strstr(err.message, "after the link \"b\" the robot branches, to the ends \"d\", \"f\";"));
+      strstr(err.message, "after the link \"b\", the robot branches, to the ends \"d\", \"f\";"));
   cag_urdf_tree_free(&t);
 }
 
@@ -238,7 +238,7 @@ static void trees_without_one_root_are_refused(void **state) {
     const char *text, *tip, *reason, *part;
   } cases[] = {
       {"<robot>" LINKS JOINT("j", "a", "b") "</robot>", NULL, "urdf-branches",
-       "no joint: \"a\", \"c\";"},
+       "parent joint: \"a\", \"c\";"},
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",
        NULL, "urdf-chain", "no link is the first"},
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",

@@ -206,7 +206,7 @@ static void remainders_have_the_sign_of_the_divisor(void **state) {
       assert_int_equal(ok, b != 0);
       if (b == 0) {
         char expected[64];
-        snprintf(expected, sizeof expected, "%d %% 0 has no value", a);
+        snprintf(expected, sizeof expected, "%d %% 0 is undefined", a);
         assert_string_equal(error_text(vm), expected);
         forget_error(vm);
         continue;
