@@ -4,7 +4,7 @@
 #   make test-sanitize  under ASan and UBSan        make bench           benchmarks, with comparisons
 #   make test-threads   code with threads, under the thread sanitizer
 #   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
-#   make format      clang-format everything        make check-format / check-layers / analyze
+#   make format      clang-format everything        make check-format / check-layers / analyze / tidy
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
 BUILD   ?= build
@@ -65,7 +65,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
 CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench format check-format check-layers analyze install deb editors
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench format check-format check-layers analyze tidy install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -262,6 +262,16 @@ $(BUILD)/analyzed/%.o: %.c
 $(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-file-leak
 $(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
+
+# clang-tidy, with the checks of .clang-tidy.
+TIDIED := base lang geom interp cli
+$(BUILD)/tidied/%.ok: %.c .clang-tidy
+	@mkdir -p $(@D)
+	@echo "tidy $<"
+	$Qclang-tidy --quiet $< -- $(filter-out -Werror -MMD -MP $(SANITIZE),$(CFLAGS_ALL)) 2> $@.log || { cat $@.log; false; }
+	@touch $@
+$(patsubst %.c,$(BUILD)/tidied/%.ok,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
+tidy: $(patsubst %.c,$(BUILD)/tidied/%.ok,$(shell find $(TIDIED) -name '*.c'))
 
 # Installs the program, the libraries with their pkg-config file, and the files of tools/install.sh.
 install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man

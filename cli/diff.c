@@ -70,19 +70,17 @@ static bool match_middle(Diff *d, size_t from_a, long n, size_t from_b, long m) 
   }
   long x = n, y = m;
   for (long e = edits; ok && e >= 0; e--) { // back along the path
-    long start_x = 0, start_y = 0;
     if (e > 0) {
       const long *before = kept[e - 1] + e; // before[k]: furthest x on diagonal k
       const long k = x - y;
       const long from = k == -e || (k != e && before[k - 1] < before[k + 1]) ? k + 1 : k - 1;
-      start_x = before[from] + (from < k);
-      start_y = start_x - k;
+      const long start_x = before[from] + (from < k);
       for (; x > start_x; x--, y--)
         d->keep_a[from_a + (size_t)x - 1] = d->keep_b[from_b + (size_t)y - 1] = true;
       x = before[from];
       y = x - from;
     } else {
-      for (; x > start_x && y > start_y; x--, y--)
+      for (; x > 0 && y > 0; x--, y--)
         d->keep_a[from_a + (size_t)x - 1] = d->keep_b[from_b + (size_t)y - 1] = true;
     }
   }

@@ -144,6 +144,10 @@ static int show_path(CagTool *t, CagSession *s, const char *path) {
 static int show(CagTool *t, CagSession *s, const char *operand) {
   if (operand && is_path(operand)) return show_path(t, s, operand);
   if (cag_session_document(s, operand, is_styled(t), stdout)) return CAG_STATUS_OK;
+  if (!operand) { // where nothing is named, only memory can be missing
+    cag_tool_finish(t, s, CAG_STATUS_LIMIT);
+    return CAG_STATUS_LIMIT;
+  }
   return is_site_path(operand) ? show_path(t, s, operand) : reject(t, s, operand);
 }
 

@@ -202,7 +202,6 @@ static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
       cag_parse_token_is(p, t, "elsif")) {
     cag_parse_help(cag_parse_mend(p, CAG_ERR_elif, t->span, "`%s` is two words here", t->as.name),
                    "write else if");
-    t = parse_current(p);
     cag_parse_advance(p);
     return true;
   }

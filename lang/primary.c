@@ -391,11 +391,11 @@ CagExpr *cag_parse_missing(Parser *p) {
     const char *after = cag_parse_quote(p, p->previous.span, before, sizeof before, NULL);
     CagSpan place = kind == CAG_TOKEN_END ? here : p->previous.span;
     if (after)
-      d = cag_parse_error(p, CAG_ERR_expected_expression, place,
-                          "expected an expression after `%s`", after);
+      cag_parse_error(p, CAG_ERR_expected_expression, place, "expected an expression after `%s`",
+                      after);
     else
-      d = cag_parse_error(p, CAG_ERR_expected_expression, place, "expected an expression, found %s",
-                          found);
+      cag_parse_error(p, CAG_ERR_expected_expression, place, "expected an expression, found %s",
+                      found);
   } else {
     d = cag_parse_error(p, CAG_ERR_expected_expression, here, "expected an expression, found %s",
                         found);

@@ -279,6 +279,7 @@ static int by_patch(const void *a, const void *b) {
 // Joins the faces of flat faces into patches, and sorts the sides by patch.
 static void find_patches(Cutter *c, bool alone) {
   Side *s = c->sides.items;
+  if (!s) return; // there are none
   if (!alone) qsort(s, c->sides.n, sizeof *s, by_ends);
   for (size_t i = 0, same; !alone && i < c->sides.n; i += same) {
     for (same = 1;

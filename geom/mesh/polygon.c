@@ -40,10 +40,10 @@ static CagStatus triangulate_concave(const CagVec3 *vertices, const uint32_t *fa
   double ax = fabs(normal.x), ay = fabs(normal.y), az = fabs(normal.z);
   for (size_t k = 0; k < count; k++) {
     CagVec3 p = vertices[face[k]];
-    double x = p.x, y = p.y;
+    double x, y;
     if (ax >= ay && ax >= az) x = normal.x > 0 ? p.y : -p.y, y = p.z;
     else if (ay >= az) x = normal.y > 0 ? p.z : -p.z, y = p.x;
-    else x = normal.z > 0 ? p.x : -p.x;
+    else x = normal.z > 0 ? p.x : -p.x, y = p.y;
     xy[2 * k] = x;
     xy[2 * k + 1] = y;
   }

@@ -304,6 +304,7 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   } else {
     check_shape_call(c, called, v);
   }
+  v->types = NULL; // `few` ends here
   return result;
 }
 

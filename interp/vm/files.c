@@ -19,13 +19,14 @@ static const char TOO_LARGE[] = "it is too large";
 const char cag_file_out_of_memory[] = "out of memory";
 
 static bool below(const char *path, const char *folder) {
+  if (!folder) return false;
   size_t n = strlen(folder);
   if (strcmp(folder, "/") == 0) return true;
   return strncmp(path, folder, n) == 0 && (path[n] == '/' || path[n] == 0);
 }
 
 static bool is_allowed(const CagVm *vm, const char *real) {
-  if (vm->root && below(real, vm->root)) return true;
+  if (below(real, vm->root)) return true;
   for (size_t i = 0; i < vm->include_count; i++)
     if (below(real, vm->include[i])) return true;
   return false;
