@@ -218,7 +218,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print [1, 2].z", "a vector of 2 numbers has no `z`", NULL},
       {"print [\"a\", \"b\"].x", "of a vector of 2 to 4 numbers", NULL},
       {"print (1..3).first", "a range has no member `first`", "write x |> first(...)"},
-      {"print (1..3).middle", "a range has no member `middle`", "a range has start, end and step"},
+      {"print (1..3).middle", "a range has no member `middle`", "it has start, end, step"},
       {"print translate(X).orign", "a transform has no member `orign`", "did you mean `origin`?"},
       {"print robot([revolute()]).x", "a robot has no member `x`", "it has joints"},
       {"import std.robots as r\nprint r.pume560", "std.robots defines no pume560", "puma560"},
