@@ -114,7 +114,7 @@ static CagStatus lead(const CagCurve *c, double t, CagSide side, CagVec3 normal,
 
 static int sign_of(double x) { return (x > 0) - (x < 0); }
 
-CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagContact *out,
+CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagPlaneContact *out,
                             CagError *err) {
   CagVec3 left[CAG_MAX_DERIVATIVE + 1], right[CAG_MAX_DERIVATIVE + 1];
   Leading before, after;

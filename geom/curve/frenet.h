@@ -24,12 +24,12 @@ CagStatus cag_triad_derivative(const CagVec3 m[3], const CagVec3 dm[3], double o
 
 // The distance of the curve from the plane with this normal through its point at t, as a series in
 // the parameter step h: c[1] h + c[2] h^2 + c[3] h^3 + ..
-typedef struct CagContact {
+typedef struct CagPlaneContact {
   double c[4];
   int order;         // order of contact: 0 crosses at an angle, 1 touches ..; -1: lies in the plane
   int before, after; // side of the plane before and after t: -1, 0 (in the plane), 1
-} CagContact;
-CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagContact *out,
+} CagPlaneContact;
+CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagPlaneContact *out,
                             CagError *err);
 
 // Quantities that may vanish along a curve: speed, curvature, torsion.

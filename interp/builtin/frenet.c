@@ -144,7 +144,7 @@ bool cag_frenet_tangent_line(CagCall *call, const struct cag_frenet_tangent_line
 bool cag_frenet_plane_contact(CagCall *call, const struct cag_frenet_plane_contact *a,
                               CagValue *result) {
   static const char *const names[] = {"coefficients", "order", "before", "after", "crosses"};
-  CagContact found;
+  CagPlaneContact found;
   double t;
   if (!cag_arg_at(call, a->C, &t) ||
       !cag_geometry_ok(call, cag_curve_contact(a->C, t, a->normal.at, &found, call->err)))

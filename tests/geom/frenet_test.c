@@ -142,7 +142,7 @@ static CagCurve *twisted_cubic(void) {
 static void contact_with_planes(void **state) {
   (void)state;
   CagCurve *c = twisted_cubic();
-  CagContact k;
+  CagPlaneContact k;
   OK(cag_curve_contact(c, 0, cag_vec3(2, 0, 0), &k, &err));
   assert_true(k.order == 0 && k.after == 1 && k.before == -1 && k.c[1] == 1);
   OK(cag_curve_contact(c, 0, cag_vec3(0, 1, 0), &k, &err));
@@ -346,7 +346,7 @@ static void frames_of_powers_have_their_limits(void **state) {
           const CagVec3 normals[3] = {x, y, z};
           for (int k = 0; k < 3; k++) {
             const int sign = (m + n + q + k) % 2 ? -1 : 1;
-            CagContact contact;
+            CagPlaneContact contact;
             OK(cag_curve_contact(curve, 0, cag_scaled(normals[k], 3 * sign), &contact, &err));
             assert_int_equal(contact.order, power[k] - 1);
             assert_int_equal(contact.after, sign);
@@ -369,7 +369,7 @@ static void contact_at_a_joint_is_the_looser_of_both(void **state) {
         const double f[3] = {1, flip == 2 ? 0 : 2, 0}, g[3] = {1, flip ? -1 : 1, 0};
         const int p[3] = {1, left, 1}, q[3] = {1, right, 1};
         CagCurve *parts[2] = {powers(f, p, -1, 0, &frame), powers(g, q, 0, 1, &frame)}, *c, *r;
-        CagContact k;
+        CagPlaneContact k;
         OK(cag_curve_join(parts, 2, &c, &err));
         const double joint = c->start + (c->end - c->start) / 2;
         OK(cag_curve_contact(c, joint, cag_vec3(0, 1, 0), &k, &err));

@@ -424,7 +424,7 @@ QUESTION(special_points) {
 }
 QUESTION(contact) {
   CURVE;
-  CagContact contact;
+  CagPlaneContact contact;
   const CagStatus status = cag_curve_contact(c, along(c, 0.5), cag_vec3(0, 1, 0), &contact, e);
   if (!status) fault_found(contact.c[2]);
   return status;
