@@ -17,7 +17,7 @@
 
 // Seconds between asking a process to end and killing it. If it can, the program ends by itself
 // after two seconds and removes its temporary files (see main.c).
-static const double PATIENCE = 4;
+#define PATIENCE 4.0
 
 // Exit status of a child whose exec failed.
 #define EXEC_FAILED 127

@@ -18,28 +18,30 @@
 
 // Seconds between checks for an idle processor, and between measurements of the fractions of time,
 // which take fifteen ticks of the kernel's clock per processor.
-static const double LOOK_INTERVAL = 0.008, SHARE_INTERVAL = 0.15;
+#define LOOK_INTERVAL 0.008
+#define SHARE_INTERVAL 0.15
 
 // Processors count as idle if they are busy for less than this fraction of the time.
-static const double BUSY = 0.95;
+#define BUSY 0.95
 
 // If a processor is idle, the number of processes may grow by this fraction of the number of
 // processors, and by at least one.
-static const double GROWTH = 0.125;
+#define GROWTH 0.125
 
 // The number of processes by which the limit decreases per second without an idle processor.
-static const double SINK = 0.5;
+#define SINK 0.5
 
 // The maximum per processor until one has ended.
-static const double MOST_UNKNOWN = 6;
+#define MOST_UNKNOWN 6.0
 
 // If this many processes per processor are needed to keep it busy, they sleep. At the end of a
 // batch, all waiting ones are then started at once, if they are not more than may run.
-static const double SLEEPERS = 2;
+#define SLEEPERS 2.0
 
 // The fraction of memory that must be free before more processes are started, and the fraction that
 // all processes may use if they become as large as the largest one.
-static const double FREE_MEMORY = 0.25, USED_MEMORY = 0.75;
+#define FREE_MEMORY 0.25
+#define USED_MEMORY 0.75
 
 static FILE *open_file(const char *proc, const char *name) {
   char path[4096];

@@ -13,7 +13,7 @@
 #define WIDEST 30
 
 // Seconds between two drawings.
-static const double DRAW_INTERVAL = 0.1;
+#define DRAW_INTERVAL 0.1
 
 typedef struct {
   size_t done, failed, waiting;

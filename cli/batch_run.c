@@ -25,7 +25,7 @@
 #define LOOK_INTERVAL_CLOSED 1
 
 // Seconds between checks of memory.
-static const double MEMORY_INTERVAL = 0.5;
+#define MEMORY_INTERVAL 0.5
 
 // Memory that a row's processes may use in addition to --max-memory, which limits the values of its
 // script.
@@ -33,7 +33,8 @@ static const double MEMORY_INTERVAL = 0.5;
 
 // A process enforces --max-time itself, and reports where it was. It is stopped only if it does
 // not.
-static const double TIME_FACTOR = 1.1, TIME_BESIDE = 1;
+#define TIME_FACTOR 1.1
+#define TIME_BESIDE 1.0
 
 typedef struct {
   CagChild child;

@@ -59,7 +59,7 @@ static bool read_whole(const char *text, const char **end, long *out) {
 }
 
 // The largest count that is accepted.
-static const double COUNT_MAX = 1e15;
+#define COUNT_MAX 1e15
 
 static bool read_count(const CagTool *t, const char *option, const char *value, size_t *out) {
   double n;

@@ -18,11 +18,11 @@ volatile int cag_tool_interrupt;
 
 // Signals within this time, in seconds, after the first one count as the same request, for example
 // if both a shell and `timeout` send one. The work then still has time to clean up.
-static const double SAME_WISH = 0.3;
+#define SAME_WISH 0.3
 
 // The time, in seconds, that the work has to stop. Renderers, their folders, and the script need
 // less.
-static const unsigned PATIENCE = 2;
+#define PATIENCE 2
 
 static void end_now(void) {
   cag_atomic_files_cleanup();

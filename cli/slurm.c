@@ -24,12 +24,12 @@
 #define CODE_QUEUE "E0918"
 
 // The time limit, in seconds, for a program of Slurm.
-static const double ANSWER_LIMIT = 30;
+#define ANSWER_LIMIT 30.0
 // The time, in seconds, that Slurm may not respond while a job is being watched.
-static const double SILENCE_LIMIT = 60;
+#define SILENCE_LIMIT 60.0
 // Seconds between queries of Slurm, which serves others, too; and milliseconds between checks for
 // results.
-static const double ASK_INTERVAL = 2;
+#define ASK_INTERVAL 2.0
 #define LOOK_INTERVAL 200 // milliseconds
 // An element that ended without a result is checked this often before it counts as lost, because
 // files of another machine may become visible late.

@@ -44,7 +44,7 @@ typedef struct Corners {
   double cell;
 } Corners;
 
-static const size_t none = (size_t)-1;
+#define NOWHERE ((size_t)-1)
 
 static size_t bucket(const Corners *c, double x, double y) {
   // Cells beyond the range of integers belong to coordinates whose spacing exceeds the cell size
@@ -60,16 +60,16 @@ static size_t bucket(const Corners *c, double x, double y) {
 static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out, CagError *err) {
   const double x = floor(p.x / c->cell), y = floor(p.y / c->cell);
   double best = tolerance;
-  *out = none;
+  *out = NOWHERE;
   for (int i = -1; i <= 1; i++)
     for (int k = -1; k <= 1; k++)
-      for (size_t v = c->heads[bucket(c, x + i, y + k)]; v != none; v = c->next[v]) {
+      for (size_t v = c->heads[bucket(c, x + i, y + k)]; v != NOWHERE; v = c->next[v]) {
         const double d = hypot(c->points[v].x - p.x, c->points[v].y - p.y);
         if (d > best) continue;
         best = d;
         *out = v;
       }
-  if (*out != none) return CAG_OK;
+  if (*out != NOWHERE) return CAG_OK;
   if (c->n == c->capacity) {
     const size_t capacity = 2 * c->capacity + 8;
     if (!CAG_RESIZE(c->points, capacity) || !CAG_RESIZE(c->next, capacity))
@@ -90,7 +90,7 @@ static CagStatus corners_new(Corners *c, size_t most, double tolerance, CagError
   c->next = cag_malloc(sizeof *c->next * (most + 1));
   c->heads = cag_malloc(sizeof *c->heads * c->buckets);
   if (!c->points || !c->next || !c->heads) return cag_fail_memory(err);
-  for (size_t i = 0; i < c->buckets; i++) c->heads[i] = none;
+  for (size_t i = 0; i < c->buckets; i++) c->heads[i] = NOWHERE;
   return CAG_OK;
 }
 

@@ -13,7 +13,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 
-static const size_t none = (size_t)-1;
+#define NOWHERE ((size_t)-1)
 
 typedef struct Chain {
   const CagRegionPieces *s;
@@ -66,7 +66,7 @@ static CagStatus successor(const Chain *c, const CagRegionEdge *in, size_t *out,
   const size_t v = edge_end(in);
   size_t candidates = 0;
   double radius = chord(c, in);
-  *out = none;
+  *out = NOWHERE;
   for (size_t i = c->starts[v]; i < c->starts[v + 1]; i++) {
     if (c->used[i]) continue;
     candidates++;
@@ -96,7 +96,7 @@ static CagStatus successor(const Chain *c, const CagRegionEdge *in, size_t *out,
 // Splits off the loop that starts at position i of the path.
 static void cut_off(Chain *c, size_t i) {
   for (size_t k = i; k < c->path_size; k++) {
-    c->position[edge_start(&c->edges[c->kept[c->path[k]]])] = none;
+    c->position[edge_start(&c->edges[c->kept[c->path[k]]])] = NOWHERE;
     c->loops[c->loop_size++] = c->path[k];
   }
   c->path_size = i;
@@ -111,11 +111,11 @@ static CagStatus walk(Chain *c, size_t first, CagError *err) {
     c->used[at] = true;
     c->position[edge_start(e)] = c->path_size;
     c->path[c->path_size++] = at;
-    if (c->position[v] != none) cut_off(c, c->position[v]);
+    if (c->position[v] != NOWHERE) cut_off(c, c->position[v]);
     if (c->path_size == 0) return CAG_OK;
     CagStatus status = successor(c, e, &at, err);
     if (status) return status;
-    if (at == none) return undecided(c, v, err);
+    if (at == NOWHERE) return undecided(c, v, err);
   }
 }
 
@@ -136,7 +136,7 @@ static CagStatus chain_new(Chain *c, const CagRegionEdge *edges, size_t n, size_
   for (size_t v = 2; v < corners + 2; v++) c->starts[v] += c->starts[v - 1];
   for (size_t i = 0; i < n; i++)
     if (edges[i].keep) c->kept[c->starts[edge_start(&edges[i]) + 1]++] = i;
-  for (size_t v = 0; v < corners; v++) c->position[v] = none;
+  for (size_t v = 0; v < corners; v++) c->position[v] = NOWHERE;
   return CAG_OK;
 }
 
@@ -431,15 +431,15 @@ static CagStatus probe(const Chain *c, const Loop *loop, CagVec3 *out, CagError 
 static CagStatus find_around(const Chain *c, Loop *loops, size_t n, size_t i, CagError *err) {
   CagVec3 p;
   CagStatus status = probe(c, &loops[i], &p, err);
-  loops[i].around = none;
+  loops[i].around = NOWHERE;
   for (size_t k = 0; !status && k < n; k++) {
     bool within;
     if (loops[k].area < 0) continue;
-    if (loops[i].around != none && loops[k].area > loops[loops[i].around].area) continue;
+    if (loops[i].around != NOWHERE && loops[k].area > loops[loops[i].around].area) continue;
     status = runs_around(c, &loops[k], p, &within, err);
     if (!status && within) loops[i].around = k;
   }
-  if (!status && loops[i].around == none)
+  if (!status && loops[i].around == NOWHERE)
     return undecided(c, edge_start(loop_edge(c, loops[i].edges, 0)), err);
   return status;
 }

@@ -10,7 +10,7 @@
 // Points lie on a line, a plane, or a conic if they are closer to it than this fraction of the
 // surface's size, which is their accuracy.
 #define EXACT 1e-10
-static const double FULL_TURN = 6.283185307179586;
+#define FULL_TURN 6.283185307179586
 
 // --- Lines and planes ---
 

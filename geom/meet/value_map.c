@@ -19,7 +19,7 @@
 const char *const cag_surface_values[] = {CAG_SURFACE_VALUES(X) NULL};
 #undef X
 
-static const double DEGREES = 57.29577951308232;
+#define DEGREES 57.29577951308232
 
 // Fraction of a triangle by which a corner at a break or a pole is moved inside for evaluation.
 #define INWARD 1e-3

@@ -24,7 +24,7 @@
 // inclination may differ by as much.
 #define ROUNDING CAG_ROUNDING
 
-static const double FULL_TURN = 6.283185307179586;
+#define FULL_TURN 6.283185307179586
 
 typedef struct TorusForm {
   CagTransform map; // from the torus about Z at the origin

@@ -19,7 +19,7 @@
 // Coefficients of a section below this number of rounding errors of their terms are 0.
 #define ROUNDINGS (16 * DBL_EPSILON)
 
-static const int TERMS = 10;
+#define TERMS 10
 
 // The terms of the equation at p, in the order of the coefficients.
 static void terms_at(const CagQuadric *q, CagVec3 p, double out[10]) {

@@ -9,7 +9,8 @@
 
 enum { CHORDS = 32 }; // maximum number of chords of an atom that are measured
 
-static const double highest_use = 0.9, aimed_use = 0.84; // see plan.c
+#define HIGHEST_USE 0.9
+#define AIMED_USE 0.84 // see plan.c
 
 // Largest distance from some of the n chords of [from, to] to the curve, at their midpoints and
 // thirds.
@@ -86,8 +87,8 @@ CagStatus cag_tess_refine_chords(Tessellator *t, Line *line, CagError *err) {
       CagStatus status = chord_distance(t, line, atom->from, atom->to, n, &distance, err);
       if (status) return status;
       double use = distance / t->how.tolerance;
-      if (use <= highest_use) break;
-      n = ceil(n * fmin(16, fmax(1.05, sqrt(use / aimed_use))));
+      if (use <= HIGHEST_USE) break;
+      n = ceil(n * fmin(16, fmax(1.05, sqrt(use / AIMED_USE))));
       if (n > (double)t->how.max_triangles) return cag_tess_limit(t, n, err);
     }
     if (n <= atom->n) continue;

@@ -13,7 +13,7 @@
 
 // Ratio of the height of the bulge to that of the triangle: the tangent of the angle by which it
 // leans.
-static const double leaning = 0.1;
+#define LEANING 0.1
 enum { ROUNDS = 32, MOST_RAISED = 8 };
 
 static size_t first_atom(const Tessellator *t, const Line *line, double from) {
@@ -77,7 +77,7 @@ static CagStatus is_thin(const Tessellator *t, const Leaf *leaf, int side, bool 
     const CagVec3 height = cag_sub(out, cag_scaled(chord, cag_dot(out, chord)));
     const CagVec3 normal = cag_cross(chord, cag_unit(height));
     const CagVec3 bulge = cag_sub(middle, cag_scaled(cag_add(a, b), 0.5));
-    *thin = fabs(cag_dot(bulge, normal)) > leaning * cag_norm(height);
+    *thin = fabs(cag_dot(bulge, normal)) > LEANING * cag_norm(height);
   }
   return CAG_OK;
 }

@@ -13,7 +13,7 @@
 #include "geom/tessellate/tessellation.h"
 
 // Normals that differ by less than this are equal: they are the same limit computed in two ways.
-static const double same_normal = 1e-6;
+#define SAME_NORMAL 1e-6
 
 // --- Vertices ---
 
@@ -102,7 +102,7 @@ static CagStatus sided_vertex(const CagSurface *s, double u, double v, bool afte
   return CAG_OK;
 }
 
-static bool alike(CagVec3 a, CagVec3 b) { return cag_norm(cag_sub(a, b)) <= same_normal; }
+static bool alike(CagVec3 a, CagVec3 b) { return cag_norm(cag_sub(a, b)) <= SAME_NORMAL; }
 
 // --- Corners ---
 

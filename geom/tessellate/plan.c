@@ -27,10 +27,12 @@ enum {
 
 // The sampling grid stays this far (as a fraction of the leaf) inside, so that one-sided
 // derivatives are those of the leaf's piece, and poles have normals.
-static const double inset = 1e-6;
+#define CELL_INSET 1e-6
 // Distances measured on samples may be this fraction of the tolerance; the rest is a margin for the
 // points between.
-static const double highest_use = 0.9, aimed_use = 0.84, lowest_use = 0.68;
+#define HIGHEST_USE 0.9
+#define AIMED_USE 0.84
+#define LOWEST_USE 0.68
 
 typedef struct Range {
   int u0, u1, v0, v1; // sample indices, including both ends
@@ -78,7 +80,7 @@ static void find_lengths_and_normals(Sampled *s) {
 
 // Derivative of the samples d along a direction (stride) at index i, in leaf parameters 0..1.
 static CagVec3 slope(const CagVec3 *d, int i, int stride) {
-  const double twice_step = 2 * (1 - 2 * inset) / STEPS;
+  const double twice_step = 2 * (1 - 2 * CELL_INSET) / STEPS;
   CagVec3 change;
   if (i == 0)
     change = cag_sub(cag_sub(cag_scaled(d[stride], 4), cag_scaled(d[0], 3)), d[2 * stride]);
@@ -139,7 +141,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   for (int d = 0; d < 2; d++) {
     length[d] = s->to[d] - s->from[d];
     for (int i = 0; i < SIDE; i++)
-      ts[d][i] = s->from[d] + length[d] * (inset + (1 - 2 * inset) * i / STEPS);
+      ts[d][i] = s->from[d] + length[d] * (CELL_INSET + (1 - 2 * CELL_INSET) * i / STEPS);
   }
   CagStatus status =
       cag_surface_eval_grid(surface, ts[0], SIDE, ts[1], SIDE, s->points, s->du, s->dv, err);
@@ -156,7 +158,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
 }
 
 // Radians between two samples above which the samples do not determine how the normal turns.
-static const double turned_away = 1;
+#define TURNED_AWAY 1.0
 
 // Points can be distributed well around a rim at which the normal jumps. Smaller rims are left to
 // the trial.
@@ -164,7 +166,7 @@ static bool are_turns_resolved(const CagTessellation *how, const Sampled *s, int
   const double small = 4; // tolerances
   int stride = direction == 0 ? SIDE : 1;
   for (int k = 0; k < SAMPLES; k++)
-    if (s->turn[direction][k] > turned_away * STEPS &&
+    if (s->turn[direction][k] > TURNED_AWAY * STEPS &&
         cag_norm(cag_sub(s->points[k + stride], s->points[k])) > small * how->tolerance)
       return false;
   return true;
@@ -208,14 +210,14 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.length[0] = tess_larger(n.length[0], s->speed[0][k]);
       n.length[1] = tess_larger(n.length[1], s->speed[1][k]);
       if (i < r.u1 && j < r.v1 &&
-          tess_larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS) {
+          tess_larger(s->turn[0][k], s->turn[1][k]) <= TURNED_AWAY * STEPS) {
         n.both = tess_larger(n.both, s->both[k]);
         n.diagonal = tess_larger(n.diagonal, s->diagonal[k]);
       }
       for (int d = 0; d < 2; d++) {
         if (d == 0 ? i == r.u1 : j == r.v1) continue;
         n.turn[d] = tess_larger(n.turn[d], s->turn[d][k]);
-        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = tess_larger(n.bend[d], s->turn[d][k]);
+        if (s->turn[d][k] <= TURNED_AWAY * STEPS) n.bend[d] = tess_larger(n.bend[d], s->turn[d][k]);
       }
     }
   n.uu *= part[0] * part[0];
@@ -284,10 +286,10 @@ static void best_counts(const Form *f, double square_ratio, double n[2]) {
 
 // Fraction of the angle: where grids of different fineness are stitched, edges differ from those of
 // the grid.
-static const double closely = 0.95;
+#define CLOSELY 0.95
 // Fraction of the tolerance. Edges need not be shorter than that because of the angle: at a cusp
 // the normal jumps.
-static const double shortest_edge = 0.2;
+#define SHORTEST_EDGE 0.2
 
 // Counts for a leaf; correction scales the bound on the distance.
 static void counts_for(const CagTessellation *how, const Needs *needs, double correction,
@@ -305,19 +307,19 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
   if (how->angle > 0) {
     double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
            b = needs->bend[1] > no_turn ? needs->bend[1] : 0,
-           limit = closely * closely * how->angle * how->angle;
+           limit = CLOSELY * CLOSELY * how->angle * how->angle;
     // If turns cancel along the diagonals, both sides of a quadrilateral may use the whole angle.
     const double canceled = -0.5; // fraction of the value for a common axis
     const double sewn = 0.9;      // where bands are stitched, edges lean slightly more
     if (needs->diagonal < canceled * a * b) {
-      most[0] = tess_larger(1, ceil(a / (sewn * closely * how->angle)));
-      most[1] = tess_larger(1, ceil(b / (sewn * closely * how->angle)));
+      most[0] = tess_larger(1, ceil(a / (sewn * CLOSELY * how->angle)));
+      most[1] = tess_larger(1, ceil(b / (sewn * CLOSELY * how->angle)));
     } else {
       best_counts(&(Form){a * a, a > 0 && b > 0 ? 2 * needs->both : 0, b * b, limit}, square_ratio,
                   most);
     }
     for (int d = 0; d < 2; d++) {
-      double room = tess_larger(1, ceil(needs->length[d] / (shortest_edge * how->tolerance)));
+      double room = tess_larger(1, ceil(needs->length[d] / (SHORTEST_EDGE * how->tolerance)));
       n[d] = tess_larger(n[d], tess_smaller(most[d], room));
     }
   }
@@ -366,7 +368,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     CagStatus status = try_distance(trial, &needs, &distance, err);
     if (status) return status;
     double use = distance / tolerance;
-    if (use <= highest_use) {
+    if (use <= HIGHEST_USE) {
       status = cag_tess_try_middles(trial, &distance, err);
       if (status) return status;
       use = tess_larger(use, distance / tolerance);
@@ -376,25 +378,25 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
       *halved = longer_way(&needs);
       return CAG_OK;
     }
-    if (use <= highest_use) {
+    if (use <= HIGHEST_USE) {
       smallest = quads;
       memcpy(best, n, sizeof best);
-      if (use >= lowest_use || quads <= 1) break;
+      if (use >= LOWEST_USE || quads <= 1) break;
     }
     // Differences miss features between samples: then the counts themselves grow.
     double largest = tess_larger(needs.uu, tess_larger(needs.uv, needs.vv));
-    if (use > highest_use && largest * correction < tolerance * 0.5) {
+    if (use > HIGHEST_USE && largest * correction < tolerance * 0.5) {
       needs.uu = tess_larger(needs.uu, tolerance);
       needs.vv = tess_larger(needs.vv, tolerance);
     }
-    correction *= tess_smaller(16, tess_larger(use / aimed_use, 1.0 / 16));
+    correction *= tess_smaller(16, tess_larger(use / AIMED_USE, 1.0 / 16));
   }
   if (smallest < INFINITY) {
     memcpy(n, best, sizeof best);
     return CAG_OK;
   }
   // If corrections do not converge, doubling does.
-  for (double distance = INFINITY; distance > highest_use * tolerance;) {
+  for (double distance = INFINITY; distance > HIGHEST_USE * tolerance;) {
     n[0] *= 2;
     n[1] *= 2;
     if (n[0] * n[1] > limit) return cag_tess_limit(t, 2 * n[0] * n[1], err);
@@ -411,7 +413,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
   const double near = 0.6, slight = 0.05, few = 4;
   const double surprising = 1.25; // more is needed only in some part of the leaf
   const CagTessellation *how = &t->how;
-  const double free = shortest_edge * how->tolerance;
+  const double free = SHORTEST_EDGE * how->tolerance;
   double *n = trial->n;
   for (int round = 0; round < MAX_CORRECTIONS; round++) {
     double turn[2], length[2];
@@ -424,7 +426,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
     if (!turns && !runs) return CAG_OK;
     TessExcess found;
     CagStatus status =
-        cag_tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
+        cag_tess_try_edges(trial, CLOSELY * how->angle, free, how->max_edge, &found, err);
     if (status) return status;
     double worst = tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1]));
     if (worst <= 1) return CAG_OK;

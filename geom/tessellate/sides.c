@@ -14,9 +14,9 @@
 // The limit of the normal at a corner is evaluated at this fraction of the way to the middle of the
 // triangle: normals change little over it, and partial derivatives that vanish at the corner are
 // above rounding.
-static const double within = 1e-3;
+#define WITHIN_PART 1e-3
 // Limits that differ by less are equal.
-static const double same_direction = 1 - 1e-6;
+#define SAME_DIRECTION (1 - 1e-6)
 
 typedef struct Sides {
   CagMesh *m;
@@ -83,7 +83,7 @@ static bool normal_within(const Sides *s, size_t t, uint32_t j, CagVec3 *out) {
   double middle[2] = {0, 0};
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < 2; i++) middle[i] += s->m->uv[2 * (size_t)k[c] + (size_t)i] / 3;
-  return normal_towards(s, t, j, middle, within, out);
+  return normal_towards(s, t, j, middle, WITHIN_PART, out);
 }
 
 // Returns the limit at a corner from within the triangle, if it differs from the normal of its
@@ -113,7 +113,7 @@ static CagStatus grow(Sides *s, CagError *err) {
 static CagStatus copy_of(Sides *s, uint32_t v, CagVec3 normal, uint32_t *out, CagError *err) {
   CagMesh *m = s->m;
   for (uint32_t i = s->copy[v]; i != UINT32_MAX; i = s->copy[i])
-    if (cag_dot(m->normals[i], normal) >= same_direction) {
+    if (cag_dot(m->normals[i], normal) >= SAME_DIRECTION) {
       *out = i;
       return CAG_OK;
     }

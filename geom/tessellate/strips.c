@@ -35,16 +35,20 @@ enum {
 };
 
 // Fractions of the tolerance; see plan.c. Chords of creases must keep it on their own (chords.c).
-static const double highest_use = 0.9, aimed_use = 0.84, lowest_use = 0.72, chord_use = 0.88;
+#define HIGHEST_USE 0.9
+#define AIMED_USE 0.84
+#define LOWEST_USE 0.72
+#define CHORD_USE 0.88
 // Fraction of the angle, and the length of edges exempt from it as a fraction of the tolerance; see
 // plan.c.
-static const double closely = 0.95, shortest_edge = 0.2;
+#define CLOSELY 0.95
+#define SHORTEST_EDGE 0.2
 // Strips must take less than this fraction of the quadrilaterals of leaves, because their triangles
 // are longer.
-static const double gain = 0.5;
+#define LEAST_GAIN 0.5
 // Fraction of the length of a cell: steeper slants would be cut off at both ends.
-static const double steepest = 0.75;
-static const double inset = 1e-6; // fraction of a cell, as in plan.c
+#define STEEPEST 0.75
+#define CELL_INSET 1e-6 // fraction of a cell, as in plan.c
 
 // Derivatives of the surface at a sample. Index [0] is across a strip, [1] along it.
 typedef struct Bend {
@@ -115,7 +119,7 @@ static bool bend_at(const CagSurface *s, int along, double across, double at, Be
 }
 
 static double sample_at(double from, double to, double part) {
-  return from + (to - from) * (inset + (1 - 2 * inset) * part);
+  return from + (to - from) * (CELL_INSET + (1 - 2 * CELL_INSET) * part);
 }
 
 // Decides from a few samples whether a cell bends along the rails, so that slants have a direction,
@@ -170,7 +174,7 @@ static double slope_of(const Cell *c, int first, int last) {
 // limits of edges. turn: change of the normal along both sides.
 static bool are_edges_within(const Run *r, const CagVec3 side[2], const CagVec3 turn[2]) {
   const CagTessellation *how = &r->t->how;
-  const double free = shortest_edge * how->tolerance;
+  const double free = SHORTEST_EDGE * how->tolerance;
   static const double part[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
   for (int k = 0; k < 4; k++) {
     const double *p = part[k];
@@ -189,7 +193,7 @@ static bool is_strip(const Run *r, const Cell *c, int first, int last, Strip *ou
   *out = (Strip){.from = first == 0 ? c->from : c->from + first * piece,
                  .to = last == c->pieces ? c->to : c->from + last * piece,
                  .slope = slope};
-  if (fabs(slope) * width > steepest * (r->to - r->from)) return false;
+  if (fabs(slope) * width > STEEPEST * (r->to - r->from)) return false;
   for (int k = first * ALONG; k < (last + 1) * ALONG; k++) {
     const Bend *b = &c->bends[k];
     const double off = fabs(b->uu + slope * (2 * b->uv + slope * b->vv)) * width * width / 8 +
@@ -247,10 +251,10 @@ static double least_steps(const Run *r) {
       const bool end = k < ALONG || k >= c->pieces * ALONG; // may be a crease
       const double edge = cag_norm(b->partial[1]) * length;
       n = fmax(n, sqrt(fabs(b->vv) * length * length / 8 / r->tolerance));
-      if (end) n = fmax(n, sqrt(b->chord * length * length / 8 / (chord_use * how->tolerance)));
+      if (end) n = fmax(n, sqrt(b->chord * length * length / 8 / (CHORD_USE * how->tolerance)));
       if (how->angle > 0)
         n = fmax(n, fmin(cag_norm(b->turn[1]) * length / r->angle,
-                         edge / (shortest_edge * how->tolerance)));
+                         edge / (SHORTEST_EDGE * how->tolerance)));
       if (how->max_edge > 0) n = fmax(n, edge / how->max_edge);
     }
   }
@@ -323,7 +327,7 @@ static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double
   CagStatus status = cag_tess_try_distance(&trial, sine, &distance[0], err);
   if (!status) status = cag_tess_try_middles(&trial, &distance[1], err);
   if (!status)
-    status = cag_tess_try_edges(&trial, closely * how->angle, shortest_edge * how->tolerance,
+    status = cag_tess_try_edges(&trial, CLOSELY * how->angle, SHORTEST_EDGE * how->tolerance,
                                 how->max_edge, &found, err);
   if (!status && cag_tess_is_known_by_points(r->surface))
     status = cag_tess_try_scattered(&trial, how->tolerance, &missed, err);
@@ -362,9 +366,9 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     }
     if (!possible || use == INFINITY) break;
     if (excess > 1 + rounding) r->angle /= fmin(2, fmax(1.01, excess));
-    if (use > highest_use || use < lowest_use)
-      r->tolerance *= fmin(4, fmax(1.0 / 4, aimed_use / use));
-    if (use > highest_use || excess > 1 + rounding) continue;
+    if (use > HIGHEST_USE || use < LOWEST_USE)
+      r->tolerance *= fmin(4, fmax(1.0 / 4, AIMED_USE / use));
+    if (use > HIGHEST_USE || excess > 1 + rounding) continue;
     // These are fewer quadrilaterals than the last solution had; otherwise plan_run finds none.
     cag_free(best.strips);
     best = *r;
@@ -372,7 +376,7 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     r->strip_capacity = 0;
     most_quads = 0.98 * (double)best.strip_count * best.steps;
     *settled = true;
-    if (use >= lowest_use || r->tolerance > 16 * tolerance) break;
+    if (use >= LOWEST_USE || r->tolerance > 16 * tolerance) break;
   }
   if (!*settled) return CAG_OK;
   cag_free(r->strips);
@@ -449,7 +453,7 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   r->low = r->cells[0].from;
   r->high = r->cells[r->cell_count - 1].to;
   CagStatus status = cag_tess_interrupted(r->t, err);
-  if (!status && possible) status = settle_run(r, gain * quads, &settled, err);
+  if (!status && possible) status = settle_run(r, LEAST_GAIN * quads, &settled, err);
   cag_free(bends);
   if (!status && settled)
     status =
@@ -474,8 +478,8 @@ static CagStatus plan_row(const Tessellator *t, const Face *f, Run run, const do
   CagStatus status = CAG_OK;
   bool worthwhile = false;
   if (has_pole(s, run.along, run.from, run.to)) return CAG_OK;
-  run.tolerance = aimed_use * t->how.tolerance;
-  run.angle = closely * t->how.angle;
+  run.tolerance = AIMED_USE * t->how.tolerance;
+  run.angle = CLOSELY * t->how.angle;
   for (size_t k = 0; !status && k <= count; k++) {
     bool usable = false, saves = false;
     if (k < count) {

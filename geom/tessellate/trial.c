@@ -191,7 +191,7 @@ typedef struct EdgeLimits {
 // An edge along which the normal turns by more than this crosses a cusp. More edges would not help
 // there, so its angle does not count. An unknown normal is a zero vector: its angle is 0 or pi,
 // which does not count either.
-static const double turned_at_once = 1;
+#define TURNED_AT_ONCE 1.0
 
 static bool is_free(const EdgeLimits *most, const CagVec3 *p, size_t a, size_t b) {
   CagVec3 ab = cag_sub(p[b], p[a]);
@@ -204,7 +204,7 @@ static double excess_of(const EdgeLimits *most, const CagVec3 *p, const CagVec3 
   if (most->longest > 0) excess = length / most->longest;
   if (!(most->angle > 0) || length <= most->free) return excess;
   double turn = atan2(cag_norm(cag_cross(q[a], q[b])), cag_dot(q[a], q[b]));
-  return turn > turned_at_once ? excess : tess_larger(excess, turn / most->angle);
+  return turn > TURNED_AT_ONCE ? excess : tess_larger(excess, turn / most->angle);
 }
 
 // Parameters of the corners of at most EDGES quadrilaterals along direction d; `step` is the offset

@@ -17,10 +17,10 @@
 
 // Fraction of the angle that the normal may turn along an edge: a triangle that leans less is
 // normal.
-static const double leaning = 0.5;
+#define LEANING 0.5
 // Fraction of the tolerance, as in the trial of plan.c.
-static const double highest_use = 0.9;
-static const double clearly = 1e-3; // radians: minimum gain of a flip
+#define HIGHEST_USE 0.9
+#define CLEARLY 1e-3 // radians: minimum gain of a flip
 
 enum { MAX_PASSES = 24 };
 static const uint32_t next_corner[] = {1, 2, 0};
@@ -75,7 +75,7 @@ static bool may_turn(const Turner *t, uint32_t a, uint32_t b, uint32_t c, uint32
   if (t->how->angle > 0 && turn > t->how->angle) return false;
   if (t->how->max_edge > 0 && length > t->how->max_edge) return false;
   const double off = fmax(bulge(m, b, d), fmax(middle_bulge(m, a, b, d), middle_bulge(m, b, c, d)));
-  return off <= highest_use * t->how->tolerance;
+  return off <= HIGHEST_USE * t->how->tolerance;
 }
 
 // The corner of triangle t whose edge borders triangle `other`.
@@ -104,7 +104,7 @@ static bool turn(Turner *t, uint32_t low, uint32_t k) {
   if (q[h] != a || q[next_corner[h]] != c) return false;
   const double before = fmax(lean(t->m, a, b, c), lean(t->m, a, c, d));
   const double after = fmax(lean(t->m, a, b, d), lean(t->m, b, c, d));
-  if (!(after < before - clearly) || !may_turn(t, a, b, c, d)) return false;
+  if (!(after < before - CLEARLY) || !may_turn(t, a, b, c, d)) return false;
   const uint32_t ab = t->beside[3 * low + next_corner[k]],
                  bc = t->beside[3 * low + next_corner[next_corner[k]]],
                  cd = t->beside[3 * high + next_corner[h]],
@@ -147,7 +147,7 @@ static CagStatus find_neighbors(Turner *t, CagError *err) {
 
 static bool leans(const Turner *t, uint32_t triangle) {
   const uint32_t *k = t->m->triangles + 3 * triangle;
-  return lean(t->m, k[0], k[1], k[2]) > leaning * t->how->angle;
+  return lean(t->m, k[0], k[1], k[2]) > LEANING * t->how->angle;
 }
 
 static CagStatus turn_all(Turner *t, CagError *err) {

@@ -5,8 +5,8 @@
 
 #include "interp/builtin/support.h"
 
-static const double DEGREES_PER_RADIAN = 57.29577951308232;
-static const double RADIANS_PER_DEGREE = 0.017453292519943295;
+#define DEGREES_PER_RADIAN 57.29577951308232
+#define RADIANS_PER_DEGREE 0.017453292519943295
 
 bool cag_angles_sin(CagCall *call, CagValue *result) {
   double a, s, c;

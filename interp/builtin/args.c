@@ -131,7 +131,7 @@ bool cag_arg_integer_or(CagCall *call, int argument, long fallback, long low, lo
 
 // --- Angles ---
 
-static const double RADIANS_PER_DEGREE = 0.017453292519943295; // pi / 180
+#define RADIANS_PER_DEGREE 0.017453292519943295 // pi / 180
 
 bool cag_arg_degrees(CagCall *call, int argument, double *degrees) {
   *degrees = 0;

@@ -10,7 +10,7 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/jet.h"
 
-static const double DEGREES_PER_RADIAN = 57.29577951308232;
+#define DEGREES_PER_RADIAN 57.29577951308232
 
 // --- The function under study ---
 
@@ -229,7 +229,7 @@ static Survey survey(const Integrand *g, const Pieces *pieces) {
 // From a piece's end to the outermost point, as a part of half its width.
 #define BLIND (1 - POINTS[0])
 // Where the function is compared, from the end as a part of the width.
-static const double PROBE = 0x1p-36;
+#define PROBE 0x1p-36
 
 // Lagrange's polynomials of the rule's points, from the lowest, at the high end.
 static void fill_end_weights(double *weights) {

@@ -9,7 +9,7 @@
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 
-static const double FULL_TURN = 6.283185307179586; // 2 pi
+#define FULL_TURN 6.283185307179586 // 2 pi
 
 // The curve itself, or of a conic the one branch that it has.
 static const CagCurve *branch_of(const CagCurve *c) {

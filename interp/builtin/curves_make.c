@@ -2,7 +2,7 @@
 
 #include "interp/builtin/curves.h"
 
-static const double FULL_TURN = 6.283185307179586; // 2 pi
+#define FULL_TURN 6.283185307179586 // 2 pi
 
 bool cag_curves_line(CagCall *call, const struct cag_curves_line *a, CagValue *result) {
   CagCurve *c = NULL;

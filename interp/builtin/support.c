@@ -402,8 +402,8 @@ bool cag_read_number(const char *s, size_t n, double *out) {
 
 // --- Angles in degrees ---
 
-static const double DEGREES_PER_RADIAN = 57.29577951308232;
-static const double RADIANS_PER_DEGREE = 0.017453292519943295;
+#define DEGREES_PER_RADIAN 57.29577951308232
+#define RADIANS_PER_DEGREE 0.017453292519943295
 
 void cag_sincos_degrees(double degrees, double *sine, double *cosine) {
   // The rest to the nearest quarter turn is exact, and at most 45 degrees.

@@ -6,7 +6,7 @@
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
-static const double FULL_TURN = 6.283185307179586; // 2 pi
+#define FULL_TURN 6.283185307179586 // 2 pi
 
 // --- Revolution ---
 

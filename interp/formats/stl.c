@@ -14,7 +14,8 @@ typedef struct Lanes {
 } Lanes;
 
 // Squared lengths that single precision represents well. Others are scaled first.
-static const float least_square = 1e-30f, most_square = 1e30f;
+#define LEAST_SQUARE 1e-30f
+#define MOST_SQUARE 1e30f
 
 // Computes the unit normal of a very small or large triangle, or zero if it has no area.
 static void put_normal(Lanes *l, int k) {
@@ -43,14 +44,14 @@ static void find_normals(Lanes *l) {
   for (int k = 0; k < LANES; k++) {
     float x = l->normal[0][k], y = l->normal[1][k], z = l->normal[2][k];
     float square = x * x + y * y + z * z, size = sqrtf(square);
-    good &= square > least_square && square < most_square;
+    good &= square > LEAST_SQUARE && square < MOST_SQUARE;
     l->size[k] = size;
   }
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < LANES; k++) l->normal[i][k] /= l->size[k];
   for (int k = 0; k < LANES && !good; k++) {
     float square = l->size[k] * l->size[k];
-    if (!(square > least_square && square < most_square)) put_normal(l, k);
+    if (!(square > LEAST_SQUARE && square < MOST_SQUARE)) put_normal(l, k);
   }
 }
 

@@ -22,7 +22,7 @@
 #define INDEX_SIZE 0.7
 #define INDEX_DROP 0.22
 
-static const double degrees = 57.29577951308232;
+#define DEGREES_PER_RADIAN 57.29577951308232
 
 void cag_svg_escape(FILE *out, const char *text, size_t n) {
   for (const char *c = text; c < text + n; c++) {
@@ -203,7 +203,7 @@ static void put_text(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, con
   if (turned) {
     char angle[32], cx[32], cy[32];
     fprintf(out->file, " transform=\"rotate(%s %s %s)\"",
-            cag_number_text(rounded(out, -atan2(x.y, x.x) * degrees, 10), angle),
+            cag_number_text(rounded(out, -atan2(x.y, x.x) * DEGREES_PER_RADIAN, 10), angle),
             cag_number_text(rounded(out, from.x, size), cx),
             cag_number_text(rounded(out, -from.y, size), cy));
   }

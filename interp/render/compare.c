@@ -8,8 +8,6 @@
 
 #include "base/memory.h"
 
-static const double PI = 3.14159265358979323846;
-
 // Returns the index in b of each channel of a, or sets an error that names the missing channel.
 static size_t *match_channels(const CagImage *a, const char *a_name, const CagImage *b,
                               const char *b_name, CagError *err) {
@@ -227,13 +225,13 @@ void cag_compare_lab(const double linear_rgb[3], double lab[3]) {
   lab[2] = 200 * (f[1] - f[2]);
 }
 
-static double degrees(double d) { return d * PI / 180; }
+static double degrees(double d) { return d * M_PI / 180; }
 
 // The angle of (a, b) in 0..2 pi, or 0 for gray.
 static double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double h = atan2(b, a);
-  return h < 0 ? h + 2 * PI : h;
+  return h < 0 ? h + 2 * M_PI : h;
 }
 
 // sqrt(c^7 / (c^7 + 25^7)): 0 for gray, 1 for strong color.
@@ -245,11 +243,11 @@ static double chroma_weight(double c) {
 // The mean of two hues along the shorter arc, and their signed difference.
 static void hue_pair(double h1, double h2, bool gray, double *mean, double *step) {
   *step = gray ? 0 : h2 - h1;
-  if (*step > PI) *step -= 2 * PI;
-  if (*step < -PI) *step += 2 * PI;
+  if (*step > M_PI) *step -= 2 * M_PI;
+  if (*step < -M_PI) *step += 2 * M_PI;
   if (gray) *mean = h1 + h2;
-  else if (fabs(h1 - h2) <= PI) *mean = (h1 + h2) / 2;
-  else *mean = h1 + h2 < 2 * PI ? (h1 + h2 + 2 * PI) / 2 : (h1 + h2 - 2 * PI) / 2;
+  else if (fabs(h1 - h2) <= M_PI) *mean = (h1 + h2) / 2;
+  else *mean = h1 + h2 < 2 * M_PI ? (h1 + h2 + 2 * M_PI) / 2 : (h1 + h2 - 2 * M_PI) / 2;
 }
 
 double cag_compare_delta_e(const double lab1[3], const double lab2[3]) {

@@ -15,7 +15,9 @@ static const unsigned sequence[SAMPLES] = {0x440154, 0x482475, 0x414487, 0x355f8
 static const unsigned diverging[SAMPLES] = {0x3b4cc0, 0x5977e3, 0x7b9ff9, 0x9ebeff,
                                             0xc0d4f5, 0xdddcdc, 0xf2cbb7, 0xf7ac8e,
                                             0xee8468, 0xd65244, 0xb40426};
-static const unsigned light_stripe = 0xf4f4f2, dark_stripe = 0x15181d, no_number = 0x808080;
+#define LIGHT_STRIPE 0xf4f4f2
+#define DARK_STRIPE 0x15181d
+#define NO_NUMBER 0x808080
 
 // Splits 0xrrggbb into red, green, and blue in sRGB, 0..1.
 static void split(unsigned rgb, double out[3]) {
@@ -35,7 +37,7 @@ static CagColor color_at(const CagColorScale *scale, double t) {
   t = fmin(fmax(t, 0), 1);
   if (scale->kind == CAG_SCALE_STRIPES) {
     double stripe = fmin(floor(2 * scale->stripes * t), 2 * scale->stripes - 1);
-    return mixed(fmod(stripe, 2) == 0 ? light_stripe : dark_stripe, 0, 0);
+    return mixed(fmod(stripe, 2) == 0 ? LIGHT_STRIPE : DARK_STRIPE, 0, 0);
   }
   const unsigned *samples = scale->kind == CAG_SCALE_DIVERGING ? diverging : sequence;
   int i = (int)fmin(floor(t * (SAMPLES - 1)), SAMPLES - 2);
@@ -43,7 +45,7 @@ static CagColor color_at(const CagColorScale *scale, double t) {
 }
 
 CagColor cag_color_scale_at(const CagColorScale *scale, double value) {
-  if (isnan(value)) return mixed(no_number, 0, 0);
+  if (isnan(value)) return mixed(NO_NUMBER, 0, 0);
   return color_at(scale, (value - scale->from) / (scale->to - scale->from));
 }
 

@@ -16,7 +16,7 @@
 #include "base/stop.h"
 #include "interp/scene/scene.h"
 
-static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a moderate perspective
+#define AUTOMATIC_FOV 0.52 // radians, about 30 degrees: a moderate perspective
 // The direction from the target to the automatic camera.
 static const CagVec3 THREE_QUARTERS = {0.62, -1, 0.55};
 // A scene is flat if its thickness is below this fraction of its width.

@@ -34,8 +34,7 @@
 #define TURN_AT_START 0.1
 #define TURN_AT_END (-0.17)
 // The cosine of the turn from which a corner counts as sharp: 25 degrees.
-static const double SHARP_COSINE = 0.9063;
-static const double PI = 3.14159265358979323846;
+#define SHARP_COSINE 0.9063
 
 typedef struct Buffer {
   CagVec3 *positions, *normals;
@@ -108,7 +107,7 @@ static CagVec3 carry(CagVec3 p, CagVec3 t, CagVec3 r, CagVec3 q, CagVec3 u) {
 static void add_ring(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 r, double turn, double radius) {
   CagVec3 s = cag_cross(t, r);
   for (int k = 0; k < SIDES; k++) {
-    double a = turn + 2 * PI * k / SIDES;
+    double a = turn + 2 * M_PI * k / SIDES;
     CagVec3 n = cag_madd(cag_scaled(r, cos(a)), sin(a), s);
     add_vertex(b, cag_madd(p, radius, n), n);
   }
@@ -181,7 +180,7 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
   const int quarter = SIDES / 4;
   const double turn = atan2(cag_norm(cag_cross(t, u)), cag_dot(t, u)), depth = joint_depth(t, u);
   const double rounding = 1e-9; // a quarter turn has SIDES / 4 steps
-  const size_t steps = (size_t)ceil(turn * SIDES / (2 * PI) - rounding);
+  const size_t steps = (size_t)ceil(turn * SIDES / (2 * M_PI) - rounding);
   CagStatus status = reserve(b, (steps + 2) * SIDES, steps * (SIDES - 2), err);
   if (status) return status;
   CagVec3 o = cag_unit(cag_madd(cag_scaled(u, -1), cag_dot(t, u), t)), a = cag_cross(t, o);
@@ -191,8 +190,8 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
     *firsts[side] = b->vertices;
     for (int k = 0; k < SIDES; k++) {
       // Both rings share the ends of the axis, which must not differ by rounding.
-      const double c = k % (SIDES / 2) == quarter ? 0 : cos(2 * PI * k / SIDES);
-      const double s = sin(2 * PI * k / SIDES);
+      const double c = k % (SIDES / 2) == quarter ? 0 : cos(2 * M_PI * k / SIDES);
+      const double s = sin(2 * M_PI * k / SIDES);
       CagVec3 n = cag_madd(cag_scaled(out->outward[side], c), s, a);
       CagVec3 cut = cag_madd(cag_scaled(a, s), c, cag_madd(o, depth, t)); // in the bisecting plane
       const bool inside = k > quarter && k < SIDES - quarter;
@@ -202,7 +201,7 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
   const Wedge wedge = {out, steps, b->vertices};
   for (size_t i = 1; i < steps; i++)
     for (int k = 1 - quarter; k < quarter; k++) {
-      const double at = turn * (double)i / (double)steps, angle = 2 * PI * k / SIDES;
+      const double at = turn * (double)i / (double)steps, angle = 2 * M_PI * k / SIDES;
       CagVec3 level = cag_madd(cag_scaled(o, cos(at)), sin(at), t);
       CagVec3 n = cag_madd(cag_scaled(level, cos(angle)), sin(angle), a);
       add_vertex(b, cag_madd(p, radius, n), n);
@@ -230,9 +229,9 @@ static double turn_to_joint(const CagVec3 *p, size_t n, CagVec3 first, const Joi
     t = u;
   }
   const double angle = atan2(cag_dot(r, to->axis), cag_dot(r, to->outward[0]));
-  const long steps = lround(angle * SIDES / (2 * PI));
+  const long steps = lround(angle * SIDES / (2 * M_PI));
   *shift = (size_t)((steps + SIDES) % SIDES);
-  return 2 * PI * (double)steps / SIDES - angle;
+  return 2 * M_PI * (double)steps / SIDES - angle;
 }
 
 // Adds an open tube through n points. Between two joints, the turn is distributed over the rings.
@@ -308,9 +307,9 @@ static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
   if (status) return status;
   size_t start = b->vertices;
   for (int i = 1; i <= BALL_RINGS; i++) {
-    double a = PI * i / (BALL_RINGS + 1);
+    double a = M_PI * i / (BALL_RINGS + 1);
     for (int k = 0; k < SIDES; k++) {
-      double c = 2 * PI * k / SIDES;
+      double c = 2 * M_PI * k / SIDES;
       CagVec3 n = askew(cag_vec3(sin(a) * cos(c), sin(a) * sin(c), -cos(a)));
       add_vertex(b, cag_madd(p, radius, n), n);
     }

@@ -10,11 +10,11 @@
 
 // Seconds between checks of the interrupt flag, because a signal handler that sets it wakes no
 // thread.
-static const double LOOK_INTERVAL = 0.02;
+#define LOOK_INTERVAL 0.02
 
 // Seconds after the limit until work counts as overdue. Work that checks the flag has ended long
 // before.
-static const double OVERDUE = 0.6;
+#define OVERDUE 0.6
 
 // Waits, with the mutex held, until the work is done or this many seconds have passed.
 static void wait_for_end(CagWatch *w, double seconds) {
