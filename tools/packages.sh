@@ -3,7 +3,7 @@
 # LAPACK comes with Debian's own BLAS: that of OpenBLAS starts threads in every process, which spin for longer than most scripts take.
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev povray povray-includes"
-TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format tmux zsh mandoc groff-base vim strace g++ dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
+TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format clang-tidy tmux zsh mandoc groff-base vim strace g++ dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
 # The Khronos validator of glTF runs on these; where they came from elsewhere, Debian's would be in their way.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
