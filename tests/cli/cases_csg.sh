@@ -134,7 +134,7 @@ it 'a half space alone has no end'
 script half.cag 'show half_space(plane(origin, Z))'
 try export half.cag -o half.pov
 status 1
-says 'reaches to infinity'
+says 'the half space is unbounded'
 
 it 'operations are operations in JSON, with their operands'
 script tree.cag 'show box(2) - (sphere(1) | translate(half_space(plane(origin, Z)), [0, 0, 0.5]))'

@@ -5,7 +5,7 @@ try doc insert_knot
 status 0
 prints 'insert_knot(C, t, times = 1) -> curve'
 prints 'insert_knot(S, u = none, v = none, times = 1) -> surface'
-prints 'integer: the number of times; default 1'
+prints 'integer in 1..1000: the number of times; default 1'
 prints 'knot-multiplicity'
 prints 'Example'
 

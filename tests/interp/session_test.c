@@ -435,9 +435,8 @@ static void fields_that_are_not_there_are_answered_with_those_that_are(void **st
       {"print {a1: 1, a2: 1, a3: 1, a4: 1, a5: 1, a6: 1, a7: 1, a8: 1, a9: 1, b1: 1, b2: 1, b3: 1, "
        "b4: 1}.qqqqqq",
        "the record has no field `qqqqqq`", NULL},
-      {"r = 1..3\nprint r.qqqq", "a range has no member `qqqq`", "a range has start, end and step"},
-      {"r = 1..3\nprint r.strat", "a range has no member `strat`",
-       "a range has start, end and step"},
+      {"r = 1..3\nprint r.qqqq", "a range has no member `qqqq`", "it has start, end, step"},
+      {"r = 1..3\nprint r.strat", "a range has no member `strat`", "did you mean `start`?"},
       {"t = identity\nprint t.qqqq", "a transform has no member `qqqq`", "it has x, y, z, origin"},
       {"t = identity\nprint t.orgin", "a transform has no member `orgin`",
        "did you mean `origin`?"},
