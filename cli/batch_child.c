@@ -43,8 +43,8 @@ static bool reset_child(int output, bool whole, const char *folder, pid_t parent
          (!folder || chdir(folder) == 0);
 }
 
-// Forks. Returns 0 in the child, where *c must not be used, 1 in the parent, and -1, with errno, if
-// there is no child.
+// Forks. Returns 0 in the child, where *c must not be used, and 1 in the parent. If the fork fails,
+// returns -1 and sets errno.
 static int begin(CagChild *c, const char *folder, double limit, bool whole) {
   int ends[2];
   *c = (CagChild){.said = -1, .limit = limit, .begun = cag_clock_seconds()};

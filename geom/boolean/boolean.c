@@ -219,7 +219,7 @@ static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolP
   return cag_bool_flatten(w, sources, true, parts, n);
 }
 
-// There are no more faces than before, since their outlines are the same.
+// The outlines stay the same, so the number of faces cannot grow.
 static bool replace_fans(BoolWork *w, FaceTable *table) {
   BoolSource *sources = cag_malloc((w->face_count + 1) * sizeof *sources);
   BoolPart *parts[2] = {NULL, NULL};

@@ -71,7 +71,7 @@ typedef struct Work {
   Branches b;
   Crossing at[GAPS_MOST];
   size_t n;
-  int sign; // sign on the whole perimeter if there are no crossings
+  int sign; // if n is 0: the sign on the whole perimeter
 } Work;
 
 // --- The perimeter ---

@@ -1,9 +1,9 @@
 // Intersections by subdivision. Parts whose distance exceeds the bounds of their sag are dropped.
 // Parts with at most one crossing are finished by Newton's method. The rest is clipped to the
 // parameters at which its control points allow it to be near the other curve, and halved if that
-// helps little. Parts on which Newton's method fails are halved as well: only the bounds prove that
-// there is no intersection. Parts that remain at the smallest size are tangencies, found many times
-// (contact.h).
+// helps little. Parts on which Newton's method fails are halved as well, because only the bounds
+// can exclude an intersection. Parts that remain at the smallest size belong to tangencies, each of
+// which is found many times (contact.h).
 
 #include "geom/curve/intersect.h"
 

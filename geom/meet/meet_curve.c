@@ -4,8 +4,8 @@
 // of the plane through the middle of its corners. Pairs separated by these bounds are dropped. If
 // the chord crosses the plane steeply enough for a single crossing, Newton's method finishes the
 // pair. Other pairs, including those on which it fails, are halved on the side that is bent more:
-// only the bounds prove that there is no intersection. Pairs that remain at the smallest size are
-// tangencies, found many times (geom/curve/contact.h).
+// only the bounds can exclude an intersection. Pairs that remain at the smallest size belong to
+// tangencies, each of which is found many times (geom/curve/contact.h).
 
 #include "geom/meet/meet_curve.h"
 #include "geom/surface/trimmed.h"

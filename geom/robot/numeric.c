@@ -245,8 +245,8 @@ static void polish(const Problem *p, State *s) {
   }
 }
 
-// Minimizes the error if there is no solution: the damping is reduced after a successful step and
-// raised otherwise (Levenberg-Marquardt), since the error does not vanish there.
+// Minimizes the error of a target that cannot be reached, by the Levenberg-Marquardt method: the
+// damping is reduced after a successful step and raised after a failed one.
 static void descend(const Problem *p, State *s, double damping_start, size_t steps_max) {
   const double raise = 4, lower = 0.3, most = 1e8, still = 1e-15;
   State next;

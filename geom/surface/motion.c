@@ -213,7 +213,7 @@ static void square_to(const CagVec3 *toward, int n, Frame *f) {
   series_cross(f->t, f->n1, n, f->n2);
 }
 
-// If the sine of the angle between direction and tangent is below this, there is no frame.
+// The frame is undefined if the sine of the angle between direction and tangent is below this.
 #define ALONG_TANGENT CAG_PARALLEL
 
 // Where the curvature vanishes up to rounding, at an inflection or at the end of a natural spline,

@@ -30,7 +30,7 @@ typedef struct Run {
 // lengths, which is rounding.
 #define PARALLEL CAG_PARALLEL
 
-// Factor that normalizes the cross product; 0: there is no normal.
+// Returns the factor that normalizes the cross product, or 0 if the normal is undefined.
 INLINE double normal_scale(double length2, double uu, double vv, const double noise2[2]) {
   bool good = (length2 > PARALLEL * PARALLEL * uu * vv) & (length2 > DBL_MIN) & (uu > noise2[0]) &
               (vv > noise2[1]);
