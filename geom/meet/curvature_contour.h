@@ -18,7 +18,8 @@ typedef enum CagCurvature {
 // the list, as accurate and in as many pieces as sections (cag_surface_section).
 //
 // Between breaks (knots) each patch has its own curvature. If it jumps across the level from one
-// patch to the next, the break itself is not a curve, and a curve that reaches the break ends there. At poles and other points without a normal the curvature is extrapolated from nearby
+// patch to the next, the break itself is not a curve, and a curve that reaches the break ends
+// there. At poles and other points without a normal the curvature is extrapolated from nearby
 // points. A patch with the constant value `level` has no curves; `everywhere` is set if the whole
 // surface has it. Points at which the curvature only touches the level may be missed.
 CagStatus cag_surface_curvature_contour(const CagSurface *s, CagCurvature of, double level,

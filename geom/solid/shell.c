@@ -3,8 +3,8 @@
 // Each boundary edge of each face must lie on boundary edges of other faces (or of itself), to
 // SHELL_GAP of the size. Edges that match entirely form the edge table and propagate the
 // orientation from face to face; the sign of the volume then determines which side is outside.
-// Faces whose edges match several others are cut first (shell_split.c), and loops of planar faces may match
-// several faces (shell_loop.c), until no edge is left.
+// Faces whose edges match several others are cut first (shell_split.c), and loops of planar faces
+// may match several faces (shell_loop.c), until no edge is left.
 
 #include <math.h>
 
