@@ -157,7 +157,8 @@ sheets twisted_sleeve 'show extrude(blade, 20, twist: 90deg, caps: false)'
 sheets closed_blade 'show loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
 sheets far_sheet 'show translate(loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false), [20000, 30000, 10000])'
 
-# The renderer keeps vertices in single precision: 0.002 mm at 30 m.
+# The renderer keeps vertices in single precision: 0.002 mm at 30 m. A pixel on an outline may fall to the other side,
+# so one in 10,000 may differ.
 it 'what is far from the origin looks like the same at the origin' povray
 for at in '0, 0, 0' '20000, 30000, 10000'; do
   script "at_$at.cag" "c = bspline([[-5, 0, 0], [-2, 4, 0], [2, 4, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -2, 0]], closed: true)
@@ -169,7 +170,8 @@ show sun(direction: [-1, 1, -2])"
   status 0
 done
 try compare 'at_0, 0, 0.exr' 'at_20000, 30000, 10000.exr' --threshold 0.002
-status 0
+differ=$(sed -n 's/^pixels that differ by more than 0.002: \([0-9]*\) of 172800.*/\1/p' out)
+test "${differ:-172800}" -le 17 || wrong "${differ:-all} pixels differ"
 
 # Eight digits of the largest coordinate: 11 decimals for thousandths of a millimeter, 3 for kilometers.
 it 'vertices of meshes have eight digits'
