@@ -213,11 +213,14 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
               cag_curve_image_dimension(curve, t), out, err);
 }
 
-// In reverse the angle is sum - angle: x and y are rotated and reflected, and the domain stays.
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+// Backwards the angle is sum - angle: x and y are rotated and reflected, and the phase stays.
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const Arc *c = (const Arc *)curve;
+  const double rate = c->rate * cag_part_rate(p), phase = c->phase + c->rate * cag_part_origin(p);
+  if (rate > 0)
+    return make(c->a, c->b, &c->frame, p->start, p->end, phase, rate, curve->dimension, out, err);
   double s, d;
-  cag_sincos(2 * c->phase + c->rate * (curve->start + curve->end), &s, &d);
+  cag_sincos(phase + c->phase, &s, &d);
   // In units of a and b: x -> cos x + sin y, y -> sin x - cos y.
   CagTransform turn = cag_transform_identity();
   turn.m[0][0] = d;
@@ -225,21 +228,7 @@ static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   turn.m[0][1] = s * (c->a / c->b);
   turn.m[1][1] = -d + 0.0;
   CagTransform frame = cag_transform_multiply(&c->frame, &turn);
-  return make(c->a, c->b, &frame, curve->start, curve->end, c->phase, c->rate, curve->dimension,
-              out, err);
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  const Arc *c = (const Arc *)curve;
-  return make(c->a, c->b, &c->frame, a, b, c->phase, c->rate, curve->dimension, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const Arc *c = (const Arc *)curve;
-  const double rate = c->rate * ((curve->end - curve->start) / (b - a));
-  const double phase = c->phase + c->rate * curve->start - rate * a;
-  return make(c->a, c->b, &c->frame, a, b, phase, rate, curve->dimension, out, err);
+  return make(c->a, c->b, &frame, p->start, p->end, c->phase, -rate, curve->dimension, out, err);
 }
 
 // Exact: the ends, and the extrema of each coordinate inside the range.
@@ -282,10 +271,7 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 }
 
 #define ARC_KIND(NAME)                                                                             \
-  {                                                                                                \
-    NAME, eval, eval_many, to_nurbs, transform, reverse, trim, reparametrize, hull, breaks,        \
-        describe, NULL                                                                             \
-  }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL }
 static const CagCurveKind arc_kind = ARC_KIND("arc");
 static const CagCurveKind circle_kind = ARC_KIND("circle");
 static const CagCurveKind ellipse_kind = ARC_KIND("ellipse");

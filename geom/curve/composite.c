@@ -346,83 +346,56 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
   return status;
 }
 
-typedef CagStatus (*PieceMap)(const CagCurve *piece, const void *context, CagCurve **out,
-                              CagError *err);
-
-// A composite of the images of all pieces over the given cuts, in reverse order if `backwards`.
-static CagStatus mapped(const Composite *c, PieceMap map, const void *context, bool backwards,
-                        const double *cuts, CagCurve **out, CagError *err) {
+static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
+                           CagError *err) {
+  const Composite *c = (const Composite *)curve;
   CagCurve **pieces = cag_calloc(c->n, sizeof *pieces);
   if (!pieces) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < c->n; i++)
-    status = map(c->pieces[backwards ? c->n - 1 - i : i], context, &pieces[i], err);
-  if (!status) status = make(pieces, cuts, c->n, c->base.angular, out, err);
+    status = cag_curve_transform(c->pieces[i], t, &pieces[i], err);
+  if (!status) status = make(pieces, c->cuts, c->n, curve->angular, out, err);
   for (size_t i = 0; i < c->n; i++) cag_curve_release(pieces[i]);
   cag_free(pieces);
   return status;
 }
 
-static CagStatus transform_piece(const CagCurve *piece, const void *context, CagCurve **out,
-                                 CagError *err) {
-  return cag_curve_transform(piece, context, out, err);
-}
-
-static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
-                           CagError *err) {
-  const Composite *c = (const Composite *)curve;
-  return mapped(c, transform_piece, t, false, c->cuts, out, err);
-}
-
-static CagStatus reverse_piece(const CagCurve *piece, const void *context, CagCurve **out,
-                               CagError *err) {
-  (void)context;
-  return cag_curve_reverse(piece, out, err);
-}
-
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
-  const Composite *c = (const Composite *)curve;
-  double *cuts = cag_malloc(sizeof *cuts * (c->n + 1));
-  if (!cuts) return cag_fail_memory(err);
-  for (size_t i = 0; i <= c->n; i++)
-    cuts[i] = cag_curve_remap(curve, c->cuts[c->n - i], curve->end, curve->start);
-  CagStatus status = mapped(c, reverse_piece, NULL, true, cuts, out, err);
-  cag_free(cuts);
+// The part of piece i between two parameters of the whole curve, a < b.
+static CagStatus part_of_piece(const Composite *c, size_t i, double a, double b, bool backwards,
+                               CagCurve **out, CagError *err) {
+  CagCurve *kept;
+  CagStatus status = cag_curve_trim(c->pieces[i], local(c, i, a), local(c, i, b), &kept, err);
+  if (status || !backwards) {
+    if (!status) *out = kept;
+    return status;
+  }
+  status = cag_curve_reverse(kept, out, err);
+  cag_curve_release(kept);
   return status;
 }
 
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const Composite *c = (const Composite *)curve;
-  const size_t first = piece_of(c, a, CAG_SIDE_RIGHT), last = piece_of(c, b, CAG_SIDE_LEFT);
+  const bool backwards = p->from > p->to;
+  const double lo = fmin(p->from, p->to), hi = fmax(p->from, p->to);
+  const size_t first = piece_of(c, lo, CAG_SIDE_RIGHT), last = piece_of(c, hi, CAG_SIDE_LEFT);
   const size_t n = last - first + 1;
   CagCurve **pieces = cag_calloc(n, sizeof *pieces);
   double *cuts = cag_malloc(sizeof *cuts * (n + 1));
   CagStatus status = CAG_OK;
   if (!pieces || !cuts) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
-    const size_t k = first + i;
-    cuts[i] = i == 0 ? a : c->cuts[k];
-    double from = local(c, k, cuts[i]);
-    double to = i == n - 1 ? local(c, k, b) : c->pieces[k]->end;
-    status = cag_curve_trim(c->pieces[k], from, to, &pieces[i], err);
+    const double a = i == 0 ? lo : c->cuts[first + i], b = i == n - 1 ? hi : c->cuts[first + i + 1];
+    const size_t k = backwards ? n - 1 - i : i;
+    cuts[k] = cag_part_parameter(p, backwards ? b : a);
+    status = part_of_piece(c, first + i, a, b, backwards, &pieces[k], err);
   }
   if (!status) {
-    cuts[n] = b;
-    status = make(pieces, cuts, n, curve->angular, out, err);
+    cuts[n] = p->end;
+    status = make(pieces, cuts, n, false, out, err);
   }
   for (size_t i = 0; pieces && i < n; i++) cag_curve_release(pieces[i]);
   cag_free(pieces);
-  cag_free(cuts);
-  return status;
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const Composite *c = (const Composite *)curve;
-  double *cuts = cag_malloc(sizeof *cuts * (c->n + 1));
-  if (!cuts) return cag_fail_memory(err);
-  for (size_t i = 0; i <= c->n; i++) cuts[i] = cag_curve_remap(curve, c->cuts[i], a, b);
-  CagStatus status = make(c->pieces, cuts, c->n, false, out, err);
   cag_free(cuts);
   return status;
 }
@@ -458,9 +431,8 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
   snprintf(buffer, size, "%zu pieces", ((const Composite *)curve)->n);
 }
 
-static const CagCurveKind composite_kind = {"composite", eval,    NULL,     to_nurbs,
-                                            transform,   reverse, trim,     reparametrize,
-                                            hull,        breaks,  describe, destroy};
+static const CagCurveKind composite_kind = {"composite", eval, NULL,   to_nurbs, transform,
+                                            part,        hull, breaks, describe, destroy};
 
 void cag_curve_lay_flat(CagCurve *c) {
   c->dimension = 2;

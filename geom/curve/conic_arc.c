@@ -291,24 +291,11 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return make(&d, curve->start, curve->end, cag_curve_image_dimension(curve, t), out, err);
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   CagOpenConic d = ((const Open *)curve)->d;
-  d.phase += d.rate * (curve->start + curve->end);
-  d.rate = -d.rate;
-  return make(&d, curve->start, curve->end, curve->dimension, out, err);
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  return make(&((const Open *)curve)->d, a, b, curve->dimension, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  CagOpenConic d = ((const Open *)curve)->d;
-  const double rate = d.rate * ((curve->end - curve->start) / (b - a));
-  d.phase += d.rate * curve->start - rate * a;
-  d.rate = rate;
-  return make(&d, a, b, curve->dimension, out, err);
+  d.phase += d.rate * cag_part_origin(p);
+  d.rate *= cag_part_rate(p);
+  return make(&d, p->start, p->end, curve->dimension, out, err);
 }
 
 // --- Bounds ---
@@ -361,9 +348,6 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 }
 
 #define OPEN_KIND(NAME)                                                                            \
-  {                                                                                                \
-    NAME, eval, eval_many, to_nurbs, transform, reverse, trim, reparametrize, hull, breaks,        \
-        describe, NULL                                                                             \
-  }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL }
 static const CagCurveKind parabola_kind = OPEN_KIND("parabola");
 static const CagCurveKind hyperbola_kind = OPEN_KIND("hyperbola");

@@ -97,23 +97,10 @@ static CagStatus transform(const CagCurve *c, const CagTransform *t, CagCurve **
   return status ? status : cag_curve_transform(b, t, out, err);
 }
 
-static CagStatus reverse(const CagCurve *c, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *c, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const CagCurve *b;
   CagStatus status = single(c, &b, err);
-  return status ? status : cag_curve_reverse(b, out, err);
-}
-
-static CagStatus trim(const CagCurve *c, double from, double to, CagCurve **out, CagError *err) {
-  const CagCurve *b;
-  CagStatus status = single(c, &b, err);
-  return status ? status : cag_curve_trim(b, from, to, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *c, double from, double to, CagCurve **out,
-                               CagError *err) {
-  const CagCurve *b;
-  CagStatus status = single(c, &b, err);
-  return status ? status : cag_curve_reparametrize(b, from, to, out, err);
+  return status ? status : b->kind->part(b, p, out, err);
 }
 
 static CagBounds hull(const CagCurve *curve, double a, double b) {
@@ -135,5 +122,5 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 
 static void destroy(CagCurve *c) { cag_curve_release(((Conic *)c)->branch); }
 
-static const CagCurveKind conic_kind = {"conic", eval,          NULL, to_nurbs, transform, reverse,
-                                        trim,    reparametrize, hull, breaks,   describe,  destroy};
+static const CagCurveKind conic_kind = {"conic", eval, NULL,   to_nurbs, transform,
+                                        part,    hull, breaks, describe, destroy};

@@ -221,14 +221,26 @@ CagStatus cag_curve_flatten(const CagCurve *c, const CagTransform *frame, CagCur
   return keep_unit(c, c->kind->transform(c, &t, out, err), out);
 }
 
+CagStatus cag_curve_part(const CagCurve *c, const CagCurvePart *p, CagCurve **out, CagError *err) {
+  return keep_unit(c, c->kind->part(c, p, out, err), out);
+}
+
 CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err) {
-  return keep_unit(c, c->kind->reverse(c, out, err), out);
+  const CagCurvePart backwards = {c->end, c->start, c->start, c->end};
+  return cag_curve_part(c, &backwards, out, err);
 }
 
 double cag_curve_remap(const CagCurve *c, double t, double a, double b) {
   if (t == c->start) return a;
   if (t == c->end) return b;
   return a + (t - c->start) * ((b - a) / (c->end - c->start));
+}
+
+double cag_part_parameter(const CagCurvePart *p, double t) {
+  if (t == p->from) return p->start;
+  if (t == p->to) return p->end;
+  if (p->from == p->start && p->to == p->end) return t;
+  return p->start + (t - p->from) * ((p->end - p->start) / (p->to - p->from));
 }
 
 static CagStatus check_range(const CagCurve *c, double a, double b, CagError *err) {
@@ -269,7 +281,8 @@ CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, 
     *out = cag_curve_retain(c);
     return CAG_OK;
   }
-  return keep_unit(c, c->kind->trim(c, a, b, out, err), out);
+  const CagCurvePart between = {a, b, a, b};
+  return cag_curve_part(c, &between, out, err);
 }
 
 CagStatus cag_curve_halves(const CagCurve *c, double t, CagCurve *out[2], CagError *err) {
@@ -300,7 +313,8 @@ CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurv
     *out = cag_curve_retain(c);
     return CAG_OK;
   }
-  return c->kind->reparametrize(c, a, b, out, err);
+  const CagCurvePart whole = {c->start, c->end, a, b};
+  return c->kind->part(c, &whole, out, err);
 }
 
 CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool angular,
@@ -311,7 +325,8 @@ CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool
     *out = cag_curve_retain(c);
     return CAG_OK;
   }
-  status = c->kind->reparametrize(c, a, b, out, err);
+  const CagCurvePart whole = {c->start, c->end, a, b};
+  status = c->kind->part(c, &whole, out, err);
   if (!status) (*out)->angular = angular;
   return status;
 }

@@ -21,6 +21,14 @@ typedef enum CagSide { CAG_SIDE_RIGHT, CAG_SIDE_LEFT } CagSide;
 // Highest derivative that callers may request.
 #define CAG_MAX_DERIVATIVE 16
 
+// The part of a curve between the parameters `from` and `to`, which is backwards if from > to. At
+// the parameter t in [start, end], it is at the affine image of t, which maps start to `from` and
+// end to `to`.
+typedef struct CagCurvePart {
+  double from, to;
+  double start, end;
+} CagCurvePart;
+
 typedef struct CagCurveKind {
   const char *name; // "line", "polyline", "arc", "helix", "bezier", "bspline", "nurbs" ...
   // Point and derivatives 1..order at t (in the domain), as the limit from `side`: out[0..order].
@@ -34,11 +42,8 @@ typedef struct CagCurveKind {
   CagStatus (*to_nurbs)(const CagCurve *c, CagCurve **out, CagError *err);
   // Image under a transform; a kind that is not closed under it returns another kind.
   CagStatus (*transform)(const CagCurve *c, const CagTransform *t, CagCurve **out, CagError *err);
-  // The same points in reverse order over the same domain; the part over [a, b]; the same points
-  // over [a, b] (affine change of t).
-  CagStatus (*reverse)(const CagCurve *c, CagCurve **out, CagError *err);
-  CagStatus (*trim)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
-  CagStatus (*reparametrize)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
+  // A part of the curve, over its own domain and possibly backwards.
+  CagStatus (*part)(const CagCurve *c, const CagCurvePart *p, CagCurve **out, CagError *err);
   // A box that contains the curve over [a, b], cheap and not always tight (hull of control points).
   CagBounds (*hull)(const CagCurve *c, double a, double b);
   // Interior parameters at which the curve is not C-infinity (distinct, ascending). Returns their

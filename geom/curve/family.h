@@ -28,6 +28,18 @@ CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, Ca
                                     CagError *err);
 // The affine map of parameters from [c->start, c->end] to [a, b], exact at the ends.
 double cag_curve_remap(const CagCurve *c, double t, double a, double b);
+// How fast the parameter of the curve changes with that of its part; negative: backwards.
+static inline double cag_part_rate(const CagCurvePart *p) {
+  return p->start < p->end ? (p->to - p->from) / (p->end - p->start) : 1;
+}
+// The parameter of the curve at which the part's parameter would be 0.
+static inline double cag_part_origin(const CagCurvePart *p) {
+  return p->from - cag_part_rate(p) * p->start;
+}
+// The part's parameter at the curve's parameter t; exact at the ends, and if only the range changes.
+double cag_part_parameter(const CagCurvePart *p, double t);
+// The part as the kind makes it, with the unit of its parameter; for ranges that were checked.
+CagStatus cag_curve_part(const CagCurve *c, const CagCurvePart *p, CagCurve **out, CagError *err);
 // Bound of the distance of the curve over [a, b], where it must be smooth, from the chord between
 // its ends. Proportional to the square of b - a in the limit.
 double cag_curve_sag(const CagCurve *c, double a, double b);

@@ -275,25 +275,10 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return finish(made, out, err);
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const Function *c = (const Function *)curve;
   CagCurve *made;
-  CagStatus status = make(c, curve->start, curve->end, c->to, c->from, &made, err);
-  return status ? status : finish(made, out, err);
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  const Function *c = (const Function *)curve;
-  CagCurve *made;
-  CagStatus status = make(c, a, b, inner(c, a), inner(c, b), &made, err);
-  return status ? status : finish(made, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const Function *c = (const Function *)curve;
-  CagCurve *made;
-  CagStatus status = make(c, a, b, c->from, c->to, &made, err);
+  CagStatus status = make(c, p->start, p->end, inner(c, p->from), inner(c, p->to), &made, err);
   return status ? status : finish(made, out, err);
 }
 
@@ -314,9 +299,7 @@ static const CagCurveKind function_kind = {
     .name = "function",
     .eval = eval,
     .transform = transform,
-    .reverse = reverse,
-    .trim = trim,
-    .reparametrize = reparametrize,
+    .part = part,
     .hull = hull,
     .describe = describe,
     .destroy = destroy,

@@ -159,22 +159,10 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return make(c, &frame, curve->start, curve->end, c->phase, c->rate, out, err);
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const Helix *c = (const Helix *)curve;
-  return make(c, &c->frame, curve->start, curve->end,
-              c->phase + c->rate * (curve->start + curve->end), -c->rate, out, err);
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  const Helix *c = (const Helix *)curve;
-  return make(c, &c->frame, a, b, c->phase, c->rate, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const Helix *c = (const Helix *)curve;
-  const double rate = c->rate * ((curve->end - curve->start) / (b - a));
-  return make(c, &c->frame, a, b, c->phase + c->rate * curve->start - rate * a, rate, out, err);
+  return make(c, &c->frame, p->start, p->end, c->phase + c->rate * cag_part_origin(p),
+              c->rate * cag_part_rate(p), out, err);
 }
 
 // The chord's box, enlarged by the bound of the sag. Ends early if the work is canceled.
@@ -207,5 +195,5 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
     snprintf(buffer + used, size - (size_t)used, ", taper %s", cag_number_text(c->taper, k));
 }
 
-static const CagCurveKind helix_kind = {"helix", eval,          eval_many, NULL, transform, reverse,
-                                        trim,    reparametrize, hull,      NULL, describe,  NULL};
+static const CagCurveKind helix_kind = {"helix", eval, eval_many, NULL,     transform,
+                                        part,    hull, NULL,      describe, NULL};

@@ -469,27 +469,10 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return status;
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
-  const CagNurbs *c = (const CagNurbs *)curve;
-  const size_t n = c->count, m = n + (size_t)c->degree + 1;
-  double *data = cag_malloc(sizeof(double) * (4 * n + m));
-  if (!data) return cag_fail_memory(err);
-  double *h = data, *knots = data + 4 * n;
-  for (size_t i = 0; i < n; i++)
-    memcpy(h + 4 * i, c->homogeneous + 4 * (n - 1 - i), 4 * sizeof(double));
-  const double a = curve->start, b = curve->end;
-  for (size_t i = 0; i < m; i++) {
-    double x = c->knots[m - 1 - i];
-    knots[i] = x == a ? b : x == b ? a : a + (b - x);
-  }
-  CagStatus status = cag_nurbs_new(h, n, c->degree, knots, c->rational, distinct_of(c), kind_of(c),
-                                   curve->dimension, out, err);
-  cag_free(data);
-  return status;
-}
-
-// Raises the ends of the part to multiplicity p by Boehm's insertion and keeps what lies between.
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
+// The part over [a, b], with the ends clamped: raises the ends to multiplicity p by Boehm's
+// insertion and keeps what lies between.
+CagStatus cag_nurbs_clamped(const CagCurve *curve, double a, double b, CagCurve **out,
+                            CagError *err) {
   const CagNurbs *c = (const CagNurbs *)curve;
   const int p = c->degree;
   const size_t room = c->count + 2 * (size_t)p;
@@ -520,16 +503,37 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
   return status;
 }
 
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
+// The same points over [p->start, p->end], backwards if p->from > p->to.
+static CagStatus remapped(const CagCurve *curve, const CagCurvePart *p, CagCurve **out,
+                          CagError *err) {
   const CagNurbs *c = (const CagNurbs *)curve;
-  const size_t m = c->count + (size_t)c->degree + 1;
-  double *knots = cag_malloc(sizeof(double) * m);
-  if (!knots) return cag_fail_memory(err);
-  for (size_t i = 0; i < m; i++) knots[i] = cag_curve_remap(curve, c->knots[i], a, b);
-  CagStatus status = cag_nurbs_new(c->homogeneous, c->count, c->degree, knots, c->rational,
-                                   distinct_of(c), kind_of(c), curve->dimension, out, err);
-  cag_free(knots);
+  const bool backwards = p->from > p->to;
+  const size_t n = c->count, m = n + (size_t)c->degree + 1;
+  double *data = cag_malloc(sizeof(double) * (4 * n + m));
+  if (!data) return cag_fail_memory(err);
+  double *h = data, *knots = data + 4 * n;
+  for (size_t i = 0; i < n; i++)
+    memcpy(h + 4 * i, c->homogeneous + 4 * (backwards ? n - 1 - i : i), 4 * sizeof(double));
+  for (size_t i = 0; i < m; i++)
+    knots[i] = cag_part_parameter(p, c->knots[backwards ? m - 1 - i : i]);
+  CagStatus status = cag_nurbs_new(h, n, c->degree, knots, c->rational, distinct_of(c), kind_of(c),
+                                   curve->dimension, out, err);
+  cag_free(data);
+  return status;
+}
+
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
+  const double lo = fmin(p->from, p->to), hi = fmax(p->from, p->to);
+  CagCurve *cut = NULL;
+  CagStatus status = CAG_OK;
+  if (lo != curve->start || hi != curve->end) status = cag_nurbs_clamped(curve, lo, hi, &cut, err);
+  if (status) return status;
+  if (cut && p->from == p->start && p->to == p->end) {
+    *out = cut;
+    return CAG_OK;
+  }
+  status = remapped(cut ? cut : curve, p, out, err);
+  cag_curve_release(cut);
   return status;
 }
 
@@ -566,10 +570,7 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 }
 
 #define NURBS_KIND(NAME)                                                                           \
-  {                                                                                                \
-    NAME, eval, eval_many, to_nurbs, transform, reverse, trim, reparametrize, hull, breaks,        \
-        describe, destroy                                                                          \
-  }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, destroy }
 static const CagCurveKind kinds[3] = {NURBS_KIND("bezier"), NURBS_KIND("bspline"),
                                       NURBS_KIND("nurbs")};
 

@@ -40,6 +40,8 @@ const CagNurbs *cag_nurbs_data(const CagCurve *c);
 CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const double *knots,
                         bool rational, size_t distinct, CagNurbsKind kind, int dimension,
                         CagCurve **out, CagError *err);
+// The part over [a, b], which is in the domain, with clamped ends.
+CagStatus cag_nurbs_clamped(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
 // Index of the piece that contains t.
 size_t cag_nurbs_piece(const CagNurbs *c, double t, CagSide side, size_t hint);
 // Points and derivatives up to `order` at n parameters, limits from the right, like eval_many.

@@ -66,7 +66,7 @@ static CagStatus clamped(const CagCurve *c, CagCurve **out, CagError *err) {
     *out = exact;
     return CAG_OK;
   }
-  status = exact->kind->trim(exact, exact->start, exact->end, out, err);
+  status = cag_nurbs_clamped(exact, exact->start, exact->end, out, err);
   cag_curve_release(exact);
   return status;
 }

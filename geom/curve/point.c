@@ -57,14 +57,9 @@ static CagStatus transform(const CagCurve *c, const CagTransform *t, CagCurve **
   return cag_curve_resting(p, dimension, c->start, c->end, c->angular, out, err);
 }
 
-static CagStatus reverse(const CagCurve *c, CagCurve **out, CagError *err) {
-  (void)err;
-  *out = cag_curve_retain(c);
-  return CAG_OK;
-}
-
-static CagStatus over(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
-  return cag_curve_resting(((const Point *)c)->p, c->dimension, a, b, c->angular, out, err);
+static CagStatus part(const CagCurve *c, const CagCurvePart *p, CagCurve **out, CagError *err) {
+  return cag_curve_resting(((const Point *)c)->p, c->dimension, p->start, p->end, c->angular, out,
+                           err);
 }
 
 static CagBounds hull(const CagCurve *c, double a, double b) {
@@ -90,9 +85,7 @@ static const CagCurveKind point_kind = {
     .eval = eval,
     .to_nurbs = to_nurbs,
     .transform = transform,
-    .reverse = reverse,
-    .trim = over,
-    .reparametrize = over,
+    .part = part,
     .hull = hull,
     .describe = describe,
 };

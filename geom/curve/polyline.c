@@ -160,49 +160,25 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   return status;
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const Polyline *c = (const Polyline *)curve;
-  CagVec3 *points = cag_malloc(sizeof *points * c->n);
-  double *params = cag_malloc(sizeof *params * c->n);
-  CagStatus status = CAG_OK;
-  if (!points || !params) status = cag_fail_memory(err);
-  for (size_t i = 0; !status && i < c->n; i++) {
-    points[i] = c->points[c->n - 1 - i];
-    params[i] = cag_curve_remap(curve, c->params[c->n - 1 - i], curve->end, curve->start);
-  }
-  if (!status)
-    status = make(points, params, c->n, c->ring, curve->kind, curve->dimension, out, err);
-  cag_free(points);
-  cag_free(params);
-  return status;
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  const Polyline *c = (const Polyline *)curve;
-  size_t first = edge_of(c, a, CAG_SIDE_RIGHT), last = edge_of(c, b, CAG_SIDE_LEFT);
-  size_t n = last - first + 2;
+  const double lo = fmin(p->from, p->to), hi = fmax(p->from, p->to);
+  const bool whole = lo == curve->start && hi == curve->end;
+  const size_t first = edge_of(c, lo, CAG_SIDE_RIGHT), last = edge_of(c, hi, CAG_SIDE_LEFT);
+  const size_t n = last - first + 2;
   CagVec3 *points = cag_malloc(sizeof *points * n);
   double *params = cag_malloc(sizeof *params * n);
   CagStatus status = CAG_OK;
   if (!points || !params) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
-    params[i] = i == 0 ? a : i == n - 1 ? b : c->params[first + i];
-    status = eval(curve, params[i], 0, CAG_SIDE_LEFT, &points[i], err);
+    const double t = i == 0 ? lo : i == n - 1 ? hi : c->params[first + i];
+    const size_t k = p->from < p->to ? i : n - 1 - i;
+    params[k] = cag_part_parameter(p, t);
+    status = eval(curve, t, 0, CAG_SIDE_LEFT, &points[k], err);
   }
-  if (!status) status = make(points, params, n, false, curve->kind, curve->dimension, out, err);
+  if (!status)
+    status = make(points, params, n, whole && c->ring, curve->kind, curve->dimension, out, err);
   cag_free(points);
-  cag_free(params);
-  return status;
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const Polyline *c = (const Polyline *)curve;
-  double *params = cag_malloc(sizeof *params * c->n);
-  if (!params) return cag_fail_memory(err);
-  for (size_t i = 0; i < c->n; i++) params[i] = cag_curve_remap(curve, c->params[i], a, b);
-  CagStatus status =
-      make(c->points, params, c->n, c->ring, curve->kind, curve->dimension, out, err);
   cag_free(params);
   return status;
 }
@@ -245,9 +221,6 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 }
 
 #define STRAIGHT_KIND(NAME)                                                                        \
-  {                                                                                                \
-    NAME, eval, NULL, to_nurbs, transform, reverse, trim, reparametrize, hull, breaks, describe,   \
-        destroy                                                                                    \
-  }
+  { NAME, eval, NULL, to_nurbs, transform, part, hull, breaks, describe, destroy }
 static const CagCurveKind line_kind = STRAIGHT_KIND("line");
 static const CagCurveKind polyline_kind = STRAIGHT_KIND("polyline");

@@ -65,7 +65,8 @@ CagStatus cag_curve_trim_over_seam(const CagCurve *c, double a, double b, CagCur
   const double period = c->end - c->start, slack = 16 * DBL_EPSILON * fmax(fabs(a), fabs(b));
   CagVec3 center, x, y;
   double rate;
-  if (cag_curve_arc_axes(c, &center, &x, &y, &rate)) return c->kind->trim(c, a, b, out, err);
+  const CagCurvePart between = {a, b, a, b};
+  if (cag_curve_arc_axes(c, &center, &x, &y, &rate)) return cag_curve_part(c, &between, out, err);
   // Removes whole turns, so that the part begins within the domain.
   const double turns = floor((a - c->start + slack) / period) * period;
   const double from = fmax(a - turns, c->start), to = b - turns;

@@ -293,25 +293,10 @@ static CagStatus along(const OnSurface *c, CagCurve *plane, CagCurve **out, CagE
   return status;
 }
 
-static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out, CagError *err) {
   const OnSurface *c = (const OnSurface *)curve;
   CagCurve *plane;
-  CagStatus status = cag_curve_reverse(c->plane, &plane, err);
-  return status ? status : along(c, plane, out, err);
-}
-
-static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
-  const OnSurface *c = (const OnSurface *)curve;
-  CagCurve *plane;
-  CagStatus status = cag_curve_trim(c->plane, a, b, &plane, err);
-  return status ? status : along(c, plane, out, err);
-}
-
-static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                               CagError *err) {
-  const OnSurface *c = (const OnSurface *)curve;
-  CagCurve *plane;
-  CagStatus status = cag_curve_reparametrize(c->plane, a, b, &plane, err);
+  CagStatus status = c->plane->kind->part(c->plane, p, &plane, err);
   return status ? status : along(c, plane, out, err);
 }
 
@@ -339,9 +324,7 @@ static const CagCurveKind on_surface_kind = {
     .name = "on surface",
     .eval = eval,
     .transform = transform,
-    .reverse = reverse,
-    .trim = trim,
-    .reparametrize = reparametrize,
+    .part = part,
     .hull = hull,
     .breaks = breaks,
     .describe = describe,

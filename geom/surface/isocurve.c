@@ -96,24 +96,11 @@ static CagStatus isocurve_transform(const CagCurve *curve, const CagTransform *t
   return status;
 }
 
-static CagStatus isocurve_reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
-  const Isocurve *c = (const Isocurve *)curve;
-  return isocurve_new(c->surface, c->direction, c->at, running(c, curve->end),
-                      running(c, curve->start), curve->start, curve->end, out, err);
-}
-
-static CagStatus isocurve_trim(const CagCurve *curve, double a, double b, CagCurve **out,
+static CagStatus isocurve_part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out,
                                CagError *err) {
   const Isocurve *c = (const Isocurve *)curve;
-  return isocurve_new(c->surface, c->direction, c->at, running(c, a), running(c, b), a, b, out,
-                      err);
-}
-
-static CagStatus isocurve_reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
-                                        CagError *err) {
-  const Isocurve *c = (const Isocurve *)curve;
-  return isocurve_new(c->surface, c->direction, c->at, running(c, curve->start),
-                      running(c, curve->end), a, b, out, err);
+  return isocurve_new(c->surface, c->direction, c->at, running(c, p->from), running(c, p->to),
+                      p->start, p->end, out, err);
 }
 
 static CagBounds isocurve_hull(const CagCurve *curve, double a, double b) {
@@ -175,21 +162,16 @@ static bool agrees(const CagCurve *curve, const CagCurve *exact) {
 static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Isocurve *c = (const Isocurve *)curve;
   CagSurface *exact = NULL;
-  CagCurve *whole = NULL, *turned = NULL, *part = NULL, *made = NULL;
+  CagCurve *whole = NULL, *made = NULL;
   CagError ignored;
-  double a = running(c, curve->start), b = running(c, curve->end);
+  const CagCurvePart own = {running(c, curve->start), running(c, curve->end), curve->start,
+                            curve->end};
   CagStatus status = cag_surface_to_nurbs(c->surface, &exact, &ignored);
   if (!status) status = cag_surface_isocurve(exact, c->direction, c->at, &whole, &ignored);
-  if (!status) status = cag_curve_trim(whole, fmin(a, b), fmax(a, b), &part, &ignored);
-  if (!status && b < a) status = cag_curve_reverse(part, &turned, &ignored);
-  if (!status)
-    status =
-        cag_curve_reparametrize(turned ? turned : part, curve->start, curve->end, &made, &ignored);
+  if (!status) status = cag_curve_part(whole, &own, &made, &ignored);
   bool good = !status && agrees(curve, made);
   cag_surface_release(exact);
   cag_curve_release(whole);
-  cag_curve_release(part);
-  cag_curve_release(turned);
   if (good) {
     *out = made;
     return CAG_OK;
@@ -206,9 +188,7 @@ static const CagCurveKind isocurve_kind = {
     .eval = isocurve_eval,
     .to_nurbs = isocurve_to_nurbs,
     .transform = isocurve_transform,
-    .reverse = isocurve_reverse,
-    .trim = isocurve_trim,
-    .reparametrize = isocurve_reparametrize,
+    .part = isocurve_part,
     .hull = isocurve_hull,
     .breaks = isocurve_breaks,
     .describe = isocurve_describe,
