@@ -57,11 +57,11 @@ CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *e
   for (int f = 0; !status && f < 6; f++) {
     int axis = f / 2, u = face_u(f), v = face_v(f);
     double at = entry(f % 2 ? hi : lo, axis);
-    CagVec3 p[4];
-    for (int k = 0; k < 4; k++)
-      p[k] = with_entries(axis, at, u, entry(k / 2 ? hi : lo, u), v, entry(k % 2 ? hi : lo, v));
+    const CagVec3 origin = with_entries(axis, at, u, entry(lo, u), v, entry(lo, v));
+    const CagVec3 x = with_entries(axis, 0, u, entry(size, u), v, 0);
+    const CagVec3 y = with_entries(axis, 0, u, 0, v, entry(size, v));
     CagSurface *face;
-    status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &face, err);
+    status = cag_surface_parallelogram(origin, x, y, &face, err);
     if (!status) cag_solid_add(s, face);
   }
   if (!status) status = box_edges(s, err);

@@ -291,10 +291,11 @@ static CagStatus saddle(Bodies *out, const CagQuadricForm *f, const Range *r, Ca
     status = column_side(&place, by_x, floor, &faces[1 + side], err);
     if (!status) status = column_side(&place, by_y, floor, &faces[3 + side], err);
   }
-  CagVec3 p[4];
-  for (int k = 0; k < 4; k++)
-    p[k] = cag_transform_point(&place, cag_vec3(k & 2 ? x : -x, k & 1 ? y : -y, floor));
-  if (!status) status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &faces[5], err);
+  if (!status)
+    status = cag_surface_parallelogram(cag_transform_point(&place, cag_vec3(-x, -y, floor)),
+                                       cag_transform_vector(&place, cag_vec3(2 * x, 0, 0)),
+                                       cag_transform_vector(&place, cag_vec3(0, 2 * y, 0)),
+                                       &faces[5], err);
   if (!status) status = cag_solid_shell(faces, 6, &s, err);
   for (int i = 0; i < 6; i++) cag_surface_release(faces[i]);
   if (!status) out->s[out->n++] = s;

@@ -426,6 +426,9 @@ CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err)
   const Nurbs *b = as_nurbs(s);
   if (b) return reversed_v(b, out, err);
   if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_flip(s, out, err);
+  CagVec3 origin, x, y;
+  if (cag_surface_parallelogram_view(s, &origin, &x, &y))
+    return cag_surface_parallelogram(cag_add(origin, y), x, cag_scaled(y, -1), out, err);
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) {

@@ -76,6 +76,10 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
                               double to, CagSurface **out, CagError *err);
 CagStatus cag_surface_bilinear(CagVec3 p00, CagVec3 p01, CagVec3 p10, CagVec3 p11, CagSurface **out,
                                CagError *err); // p01: u = 0, v = 1
+// Kind "plane": origin + u x + v y for u and v in 0..1. The view returns false for another kind.
+CagStatus cag_surface_parallelogram(CagVec3 origin, CagVec3 x, CagVec3 y, CagSurface **out,
+                                    CagError *err);
+bool cag_surface_parallelogram_view(const CagSurface *s, CagVec3 *origin, CagVec3 *x, CagVec3 *y);
 // The ruled surface between two curves: u = 0 on the second, u = 1 on the first; v in 0..1 along
 // both (each reparametrized to 0..1).
 CagStatus cag_surface_ruled(const CagCurve *first, const CagCurve *second, CagSurface **out,

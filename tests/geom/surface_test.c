@@ -316,6 +316,34 @@ static void translational_surfaces_move_point_by_point(void **state) {
   cag_curve_release(b);
 }
 
+// The corners, the area |x x y|, the bounds, and the exact form.
+static void parallelograms_are_the_bilinear_surface_of_their_corners(void **state) {
+  (void)state;
+  const CagVec3 o = {1, 2, 3}, x = {2, 0, 1}, y = {-1, 3, 0.5};
+  CagSurface *s, *exact;
+  CagVec3 back[3];
+  CagBounds box;
+  double area;
+  MUST(cag_surface_parallelogram(o, x, y, &s, err));
+  assert_consistent(s);
+  assert_transforms(s);
+  assert_true(cag_surface_parallelogram_view(s, &back[0], &back[1], &back[2]));
+  assert_point(back[2], y, 0, "y");
+  MUST(cag_surface_area(s, &area, NULL, err));
+  assert_near(area, sqrt(3 * 3 + 2 * 2 + 6 * 6), 1e-12, "area"); // x x y = [-3, -2, 6]
+  MUST(cag_surface_bounds(s, &box, err));
+  assert_point(box.min, cag_vec3(0, 2, 3), 1e-12, "least");
+  assert_point(box.max, cag_vec3(3, 5, 4.5), 1e-12, "most");
+  MUST(cag_surface_to_nurbs(s, &exact, err));
+  for (int k = 0; k < 4; k++) {
+    const double u = inside(0, 1, k), v = inside(0, 1, 3 - k);
+    assert_point(surface_at(exact, u, v), surface_at(s, u, v), 1e-14, "exact form");
+  }
+  assert_false(cag_surface_parallelogram_view(exact, &back[0], &back[1], &back[2]));
+  cag_surface_release(exact);
+  cag_surface_release(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(planar_pieces_measure_their_region),
@@ -325,6 +353,7 @@ int main(void) {
       cmocka_unit_test(breaks_are_those_of_the_curves),
       cmocka_unit_test(grids_of_the_largest_degree_are_their_points),
       cmocka_unit_test(translational_surfaces_move_point_by_point),
+      cmocka_unit_test(parallelograms_are_the_bilinear_surface_of_their_corners),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
