@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/builtin/images.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
@@ -91,6 +92,7 @@ static bool bind_argument(CagCall *call, int argument, const CagParameterType *t
     return true;
   }
   case CAG_BIND_ROBOT: return cag_arg_robot(call, argument, field);
+  case CAG_BIND_IMAGE: return cag_arg_image(call, argument, field);
   }
   return false;
 }

@@ -265,6 +265,7 @@ static void release_surface(void *s) { cag_surface_release(s); }
 static void release_solid(void *s) { cag_solid_release(s); }
 static void release_mesh(void *m) { cag_mesh_release(m); }
 static void release_robot(void *r) { cag_robot_release(r); }
+static void release_raster(void *r) { cag_raster_release(r); }
 
 CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
   CAG_ASSERT(cag_check_curve(c));
@@ -292,6 +293,16 @@ CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
   CagShape *s = shape_of(vm, CAG_SOLID, release_solid, solid);
   s->as.solid = solid;
   return cag_object(CAG_SOLID, s);
+}
+
+CagValue cag_image_value(CagVm *vm, CagRaster *r) {
+  CAG_ASSERT(cag_check_raster(r));
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release_raster, r);
+  CagImageValue *v = cag_alloc(vm, CAG_IMAGE, sizeof *v);
+  cag_cleanup_pop(&cleanup);
+  v->raster = r;
+  return cag_object(CAG_IMAGE, v);
 }
 
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {

@@ -18,6 +18,7 @@
 #include "base/string.h"
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
+#include "geom/image/raster.h"
 #include "geom/linalg/transform.h"
 #include "geom/mesh/mesh.h"
 #include "geom/robot/robot.h"
@@ -233,6 +234,12 @@ typedef struct CagRobotValue {
   CagList *links;  // of link values
 } CagRobotValue;
 
+// --- Images ---
+typedef struct CagImageValue {
+  CagObject head;
+  CagRaster *raster; // holds one reference
+} CagImageValue;
+
 typedef struct CagModuleValue {
   CagObject head;
   size_t module; // index in the program
@@ -265,6 +272,7 @@ static inline bool cag_is_function(CagValue v) {
 #define CAG_AS_SCENE(v) ((CagSceneValue *)(v).as.object)
 #define CAG_AS_LINK(v) ((CagLinkValue *)(v).as.object)
 #define CAG_AS_ROBOT(v) ((CagRobotValue *)(v).as.object)
+#define CAG_AS_IMAGE(v) ((CagImageValue *)(v).as.object)
 #define CAG_AS_MODULE(v) ((CagModuleValue *)(v).as.object)
 
 CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF-8; copies
@@ -329,6 +337,7 @@ CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement
 CagValue cag_surface_value(CagVm *vm, CagSurface *s);
 CagValue cag_solid_value(CagVm *vm, CagSolid *s);
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
+CagValue cag_image_value(CagVm *vm, CagRaster *r);
 CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the
