@@ -270,10 +270,11 @@ static double clamped(double x, double low, double high) { return fmin(fmax(x, l
 typedef enum Outcome { FOUND, LEFT_CELL, FAILED } Outcome;
 
 // Moves the parameters to where the surface meets the line.
-static Outcome refine_root(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
-                           Root *r) {
+static CagStatus refine_root(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
+                             Root *r, Outcome *outcome, CagError *err) {
   const double domain[2][2] = {{s->surface->u0, s->surface->u1}, {s->surface->v0, s->surface->v1}};
   double low[2], high[2], before = INFINITY;
+  *outcome = FAILED;
   int stopped = 0; // iterations in a row that were stopped at a border
   for (int k = 0; k < 2; k++) {
     const double leeway = LEEWAY * (cell->to[k] - cell->from[k]);
@@ -282,24 +283,26 @@ static Outcome refine_root(const CagRayPatch *s, const CagRayCell *cell, const L
   }
   for (int i = 0; i < ITERATIONS; i++) {
     CagVec3 d[4];
-    CagError ignored;
     const CagSide side_u = r->at[0] >= cell->to[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
     const CagSide side_v = r->at[1] >= cell->to[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    if (cag_surface_eval(s->surface, r->at[0], r->at[1], 1, side_u, side_v, d, &ignored))
-      return FAILED;
+    CagStatus status = cag_surface_eval(s->surface, r->at[0], r->at[1], 1, side_u, side_v, d, err);
+    if (status) return status;
     r->p = d[0];
     r->du = d[cag_partial(1, 1, 0)];
     r->dv = d[cag_partial(1, 0, 1)];
     const CagVec3 off = cag_sub(r->p, line->ray->origin);
     const double f = cag_dot(off, line->a), g = cag_dot(off, line->b), distance = hypot(f, g);
     const double scale = s->size + cag_norm(off);
-    if (distance <= ON_RAY * scale) return FOUND;
-    if (i > 3 && distance <= NEAR_RAY * scale && distance >= before / 2) return FOUND;
+    if (distance <= ON_RAY * scale ||
+        (i > 3 && distance <= NEAR_RAY * scale && distance >= before / 2)) {
+      *outcome = FOUND;
+      return CAG_OK;
+    }
     before = distance;
     const double fu = cag_dot(r->du, line->a), fv = cag_dot(r->dv, line->a),
                  gu = cag_dot(r->du, line->b), gv = cag_dot(r->dv, line->b);
     const double det = fu * gv - fv * gu;
-    if (det == 0) return FAILED;
+    if (det == 0) return CAG_OK;
     const double step[2] = {(fv * g - gv * f) / det, (gu * f - fu * g) / det};
     bool moved = false, at_border = false;
     for (int k = 0; k < 2; k++) {
@@ -308,11 +311,12 @@ static Outcome refine_root(const CagRayPatch *s, const CagRayCell *cell, const L
       at_border = at_border || next != wanted;
       r->at[k] = next;
     }
-    if (!moved) return distance <= NEAR_RAY * scale ? FOUND : LEFT_CELL;
     stopped = at_border ? stopped + 1 : 0;
-    if (stopped == BORDER_STOPS) return LEFT_CELL;
+    if (moved && stopped < BORDER_STOPS) continue;
+    *outcome = !moved && distance <= NEAR_RAY * scale ? FOUND : LEFT_CELL;
+    return CAG_OK;
   }
-  return FAILED;
+  return CAG_OK;
 }
 
 // Whether a root is in its cell and in the outline. Cells that meet in an edge both have it.
@@ -369,10 +373,12 @@ static CagStatus meet_cell(const CagRayPatch *s, const CagRayCell *cell, const L
     Root r;
     for (int j = 0; j < 2; j++)
       r.at[j] = cell->from[j] + STARTS[k][j] * (cell->to[j] - cell->from[j]);
-    const Outcome outcome = refine_root(s, cell, line, &r);
+    Outcome outcome;
+    CagStatus status = refine_root(s, cell, line, &r, &outcome, err);
+    if (status) return status;
     if (outcome == FOUND && is_in_cell(s, cell, &r) && !is_known(found, n, &r, cell)) {
       found[n++] = r;
-      CagStatus status = add_root(s, line, &r, out, err);
+      status = add_root(s, line, &r, out, err);
       if (status) return status;
     }
     if (outcome != FAILED && single) return CAG_OK;

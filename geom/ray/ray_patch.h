@@ -36,8 +36,7 @@ typedef struct CagRayPatch {
   size_t cell_count;
   CagBvh bvh; // of the cells
   CagBounds bounds;
-  double size;       // diagonal of the bounds
-  bool calls_script; // its points are computed by a script, which one thread runs
+  double size; // diagonal of the bounds
 } CagRayPatch;
 
 CagStatus cag_ray_patch_new(const CagSurface *s, CagRayPatch **out, CagError *err);
