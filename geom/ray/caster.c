@@ -140,7 +140,7 @@ CagStatus cag_caster_of_mesh(const CagMesh *m, CagCaster **out, CagError *err) {
     return status;
   }
   c->bounds = cag_mesh_bounds(m);
-  c->closed = cag_mesh_is_watertight(m, NULL);
+  c->closed = m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL);
   find_size(c);
   *out = c;
   return CAG_OK;
@@ -267,6 +267,7 @@ CagStatus cag_caster_of_solid(const CagSolid *s, CagCaster **out, CagError *err)
   return solid_caster(s, &identity, out, err);
 }
 
+bool cag_caster_is_closed(const CagCaster *c) { return c->closed; }
 CagBounds cag_caster_bounds(const CagCaster *c) { return c->bounds; }
 
 // --- Spans ---

@@ -20,6 +20,8 @@ CagStatus cag_caster_of_surface(const CagSurface *s, CagCaster **out, CagError *
 CagStatus cag_caster_of_mesh(const CagMesh *m, CagCaster **out, CagError *err);
 void cag_caster_free(CagCaster *c); // c may be NULL
 
+// Whether it has an inside: a solid or closed mesh.
+bool cag_caster_is_closed(const CagCaster *c);
 // Bounds that contain the shape; infinite if it is unbounded.
 CagBounds cag_caster_bounds(const CagCaster *c);
 

@@ -3,6 +3,7 @@
 #ifndef CAG_GEOM_RAY_RAY_H
 #define CAG_GEOM_RAY_RAY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,6 +24,7 @@ typedef struct CagCrossing {
   uint32_t face;   // index of the face of a solid, or of the triangle of a mesh
   uint32_t label;  // of the solid or the triangle: see mesh.h
   int sign;        // 1: along the normal, out of a solid; -1: against it; 0: touches
+  bool angular[2]; // whether u and v are angles
   float weight[2]; // of corners 1 and 2 of the triangle, if the surface is a mesh
 } CagCrossing;
 

@@ -344,6 +344,7 @@ static CagStatus add_root(const CagRayPatch *s, const Line *line, const Root *r,
                      .normal = normal,
                      .u = r->at[0],
                      .v = r->at[1],
+                     .angular = {s->surface->angular_u, s->surface->angular_v},
                      .sign = slope > 0   ? 1
                              : slope < 0 ? -1
                                          : 0};

@@ -282,10 +282,12 @@ void cag_ray_primitive_parameters(const CagRayPrimitive *p, const CagRay *ray, C
   case CAG_SOLID_SPHERE:
     c->u = turn(at.y, at.x);
     c->v = acos(fmin(1, fmax(-1, -at.z / s->a)));
+    c->angular[0] = c->angular[1] = true;
     break;
   case CAG_SOLID_TORUS:
     c->u = turn(at.y, at.x);
     c->v = turn(at.z, hypot(at.x, at.y) - s->a);
+    c->angular[0] = c->angular[1] = true;
     break;
   case CAG_SOLID_CYLINDER:
     if (c->face != 0) { // the disk below is turned over
@@ -295,6 +297,7 @@ void cag_ray_primitive_parameters(const CagRayPrimitive *p, const CagRay *ray, C
     }
     slope = (s->c - s->b) / s->a;
     c->u = turn(at.y, at.x);
+    c->angular[0] = true;
     // Of a cone, |v| is the radius; it is negative if the radius decreases upward.
     c->v = slope == 0 ? at.z : copysign(s->b + slope * at.z, slope);
     break;

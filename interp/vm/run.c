@@ -822,6 +822,18 @@ static bool fail_circle(CagVm *vm, size_t global) {
   return false;
 }
 
+// Shapes, and those in a list of them, remember the definition whose value they first were.
+static void note_definition(CagVm *vm, const char *name, CagValue v) {
+  if (cag_is_shape(v)) {
+    CagShape *s = CAG_AS_SHAPE(v);
+    if (!s->definition) s->definition = cag_intern(vm, name, strlen(name));
+  } else if (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0) {
+    const CagList *list = CAG_AS_LIST(v);
+    for (size_t i = 0; i < list->length && cag_is_shape(list->as.items[i]); i++)
+      note_definition(vm, name, list->as.items[i]);
+  }
+}
+
 bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   CagGlobal *g = &vm->globals[global];
   if (g->state == CAG_GLOBAL_DONE) {
@@ -838,8 +850,10 @@ bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   bool ok = cag_vm_run(vm, p, result);
   g = &vm->globals[global];
   g->state = ok ? CAG_GLOBAL_DONE : CAG_GLOBAL_NEW;
-  if (ok) g->value = *result;
-  return ok;
+  if (!ok) return false;
+  g->value = *result;
+  note_definition(vm, g->name, *result);
+  return true;
 }
 
 typedef struct Work {
