@@ -91,7 +91,7 @@ static void command_help(const CagToolCommand *c, FILE *out) {
 }
 
 static void program_help(FILE *out) {
-  fputs("cag: scripts of geometry as meshes, scenes and pictures\n\n"
+  fputs("cag: turn scripts of geometry into meshes, exact files, scenes, and pictures\n\n"
         "Usage: cag COMMAND [OPERAND ...] [OPTION ...]\n"
         "       cag                     work interactively\n\n"
         "Commands:\n",
