@@ -65,14 +65,15 @@ int cag_child_result(const CagChild *c, double max_time, size_t limit_memory, ch
     return CAG_STATUS_LIMIT;
   }
   if (c->stop == CAG_CHILD_STOP_MEMORY) {
-    *message = print("exceeded the memory limit of %.0f %s",
-                     (double)limit_memory / (1 << 20), "MB");
+    *message =
+        print("exceeded the memory limit of %.0f %s", (double)limit_memory / (1 << 20), "MB");
     return CAG_STATUS_LIMIT;
   }
   if (WIFSIGNALED(c->status)) {
     const int number = WTERMSIG(c->status);
-    *message = print(number == SIGKILL ? "killed by signal %.0f (%s); the system may have run out of memory"
-                                       : "ended by signal %.0f (%s)",
+    *message = print(number == SIGKILL
+                         ? "killed by signal %.0f (%s); the system may have run out of memory"
+                         : "ended by signal %.0f (%s)",
                      number, strsignal(number));
     return CAG_STATUS_SCRIPT;
   }

@@ -126,7 +126,8 @@ static bool set_frames(CagTool *t, const char *value) {
     return reject(t, HELP, "--frames", value, "expected a range of frames");
   if (t->last_frame < t->first_frame)
     return reject(t, HELP, "--frames", value, "the last frame comes before the first");
-  if (t->last_frame >= INT_MAX) return reject(t, HELP, "--frames", value, "there are too many frames");
+  if (t->last_frame >= INT_MAX)
+    return reject(t, HELP, "--frames", value, "there are too many frames");
   t->has_frames = true;
   return true;
 }
@@ -197,8 +198,8 @@ static bool set_include(CagTool *t, const char *value) {
 
 static bool set_tolerance(CagTool *t, const char *value) {
   if (read_number(value, "mm", &t->session.tolerance) && t->session.tolerance > 0) return true;
-  return reject(t, "give a number of millimeters greater than 0, such as 0.05", "--tolerance", value,
-                "expected a distance");
+  return reject(t, "give a number of millimeters greater than 0, such as 0.05", "--tolerance",
+                value, "expected a distance");
 }
 
 static bool set_max_memory(CagTool *t, const char *value) {
@@ -213,15 +214,16 @@ static bool set_max_memory(CagTool *t, const char *value) {
     if (!strcasecmp(end, "iB") || !strcasecmp(end, "B")) end += strlen(end);
   }
   if (!begins || *end || !(bytes >= 1) || bytes > COUNT_MAX)
-    return reject(t, "give a number of bytes, or a number with K, M, G, or T, such as 512M", "--max-memory", value,
-                  "expected a size");
+    return reject(t, "give a number of bytes, or a number with K, M, G, or T, such as 512M",
+                  "--max-memory", value, "expected a size");
   t->session.max_memory = (size_t)bytes;
   return true;
 }
 
 static bool set_max_time(CagTool *t, const char *value) {
   if (read_number(value, "s", &t->session.max_time) && t->session.max_time > 0) return true;
-  return reject(t, "give a number of seconds greater than 0, such as 60", "--max-time", value, "expected a time");
+  return reject(t, "give a number of seconds greater than 0, such as 60", "--max-time", value,
+                "expected a time");
 }
 
 static bool set_max_depth(CagTool *t, const char *value) {
@@ -243,8 +245,7 @@ static bool set_diagnostics(CagTool *t, const char *value) {
 static bool set_color(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"auto", "always", "never"}; // in the order of CagToolColor
   size_t i;
-  if (!one_of(t, "--color", value, CHOICES, 3, "choose auto, always, or never", &i))
-    return false;
+  if (!one_of(t, "--color", value, CHOICES, 3, "choose auto, always, or never", &i)) return false;
   t->color = (CagToolColor)i;
   return true;
 }
@@ -265,7 +266,8 @@ static bool set_report(CagTool *t, const char *value) {
 }
 
 static bool set_region(CagTool *t, const char *value) {
-  static const char HELP[] = "write the width x height, and the offset from the left and the top, such as 640x360+640+0";
+  static const char HELP[] =
+      "write the width x height, and the offset from the left and the top, such as 640x360+640+0";
   long n[4];
   const char *at = value, *between = "x++";
   for (int i = 0; i < 4; i++) {

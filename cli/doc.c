@@ -89,7 +89,8 @@ static int reject_operand(CagTool *t, const char *operand) {
   if (strcmp(operand, "-") == 0)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "save the script to a file",
                          "--html expects scripts and folders, found '-'");
-  return cag_tool_fail(t, CAG_STATUS_USAGE, "omit the name: the site includes all functions and modules",
+  return cag_tool_fail(t, CAG_STATUS_USAGE,
+                       "omit the name: the site includes all functions and modules",
                        "--html expects scripts and folders, found '%s'", operand);
 }
 

@@ -228,8 +228,9 @@ static bool take_row(CagJobs *jobs, const Record *names, const Record *record, s
     const char *text = record->fields[i], *name = i < names->count ? names->fields[i] : "";
     if (*name) ok = set_field(row, name, text);
     else if (text[strspn(text, " \t\r")])
-      ok = cag_jobs_problem(jobs, row, CODE_FILE, "put a field that contains the separator in quotes",
-                            "the row has more fields than the first line has columns: '%.80s'", text);
+      ok = cag_jobs_problem(
+          jobs, row, CODE_FILE, "put a field that contains the separator in quotes",
+          "the row has more fields than the first line has columns: '%.80s'", text);
   }
   return ok;
 }
@@ -276,8 +277,8 @@ static bool take_member(CagJobs *jobs, CagJob *row, const cJSON *member) {
                             "the value of '%s' is a record", member->string);
   for (const cJSON *other = member->prev; other && other->next; other = other->prev)
     if (strcmp(other->string, member->string) == 0)
-      return cag_jobs_problem(jobs, row, CODE_COLUMN, "remove one of them",
-                              "'%s' is given twice", member->string);
+      return cag_jobs_problem(jobs, row, CODE_COLUMN, "remove one of them", "'%s' is given twice",
+                              member->string);
   char *text = value_text(member);
   const bool ok = text && set_field(row, member->string, text);
   free(text);
@@ -357,6 +358,7 @@ bool cag_jobs_read(CagJobs *jobs, const char *text, size_t length, bool is_json)
     if (jobs->rows[i].param_count)
       qsort(jobs->rows[i].params, jobs->rows[i].param_count, sizeof(CagJobParam), by_name);
   if (ok && !jobs->count && !jobs->problem_count)
-    return cag_jobs_problem(jobs, NULL, CODE_FILE, "add a row for each job", "the file has no rows");
+    return cag_jobs_problem(jobs, NULL, CODE_FILE, "add a row for each job",
+                            "the file has no rows");
   return ok;
 }

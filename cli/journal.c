@@ -159,9 +159,10 @@ bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagError *err
   *j = (CagJournal){.fd = -1, .path = path};
   j->fd = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
   if (j->fd < 0)
-    return cag_fail_io(err, CAG_E_FILE,
-                       "the journal is written to the folder of the table; make this folder writable",
-                       "cannot open the journal '%s': %s", path, strerror(errno));
+    return cag_fail_io(
+        err, CAG_E_FILE,
+        "the journal is written to the folder of the table; make this folder writable",
+        "cannot open the journal '%s': %s", path, strerror(errno));
   bool ok = true;
   if (fstat(j->fd, &st) != 0 || !S_ISREG(st.st_mode))
     ok = fail(j, "move it away", "it is not a regular file", err);
@@ -188,7 +189,8 @@ void cag_journal_close(CagJournal *j) {
 // --- Writing ---
 
 static bool fail_write(const CagJournal *j, CagError *err) {
-  return cag_fail_io(err, CAG_E_FILE, "free some space; without the journal, finished rows would run again",
+  return cag_fail_io(err, CAG_E_FILE,
+                     "free some space; without the journal, finished rows would run again",
                      "cannot write the journal '%s': %s", j->path, strerror(errno));
 }
 

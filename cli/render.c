@@ -50,7 +50,8 @@ static int check_ending(const CagTool *t) {
                        : has_ending(t->output, ".png") ? "png"
                                                        : NULL;
   if (!ending)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "cannot render to '%s': expected .exr or .png", t->output);
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "cannot render to '%s': expected .exr or .png",
+                         t->output);
   if (format && strcasecmp(format, ending) != 0)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "omit --format, or change the extension",
                          "--format %s and the output '%s' contradict each other", format,

@@ -122,20 +122,21 @@ static void rows_become_tasks(void **state) {
       {"a.cag,t.png,,,1x1", "0:0 t.png\n"},
       // Scripts.
       {",a.stl", "! 1 E0913 the script is missing (name a .cag file)\n"},
-      {"none.cag,a.stl",
-       "! 1 E0913 cannot read the script 'none.cag': No such file or directory "
-       "(paths are relative to the folder of the table)\n"},
+      {"none.cag,a.stl", "! 1 E0913 cannot read the script 'none.cag': No such file or directory "
+                         "(paths are relative to the folder of the table)\n"},
       {"/none.cag,a.stl",
        "! 1 E0913 cannot read the script '/none.cag': No such file or directory\n"},
       {"parts,a.stl",
        "! 1 E0913 cannot read the script 'parts': it is not a regular file (paths are relative to the folder of the table)\n"},
-      {"-,a.stl", "! 1 E0913 cannot read the script '-': rows cannot share standard input (paths are relative to the folder of the table)\n"},
+      {"-,a.stl",
+       "! 1 E0913 cannot read the script '-': rows cannot share standard input (paths are relative to the folder of the table)\n"},
       // Values.
       {"a.cag,a.png,,64", "! 1 E0912 size '64': expected a size (write width x height in pixels, "
                           "such as 1280x720)\n"},
       {"a.cag,a.stl,,,,0",
        "! 1 E0912 tolerance '0': expected a distance (give a number of millimeters greater than 0, such as 0.05)\n"},
-      {"a.cag,a.png,,x,,y", "! 1 E0912 size 'x': expected a size (write width x height in pixels, such as 1280x720)\n! 1 E0912 tolerance 'y': expected a distance (give a number of millimeters greater than 0, such as 0.05)\n"},
+      {"a.cag,a.png,,x,,y",
+       "! 1 E0912 size 'x': expected a size (write width x height in pixels, such as 1280x720)\n! 1 E0912 tolerance 'y': expected a distance (give a number of millimeters greater than 0, such as 0.05)\n"},
       {"a.cag,a.stl,0..1,64x64,2x2,,draft",
        "! 1 E0912 an export has no frames (leave the field empty)\n! 1 E0912 an export has no size "
        "(leave the field empty)\n! 1 E0912 an export has no quality (leave the field empty)\n! 1 "
@@ -152,10 +153,12 @@ static void rows_become_tasks(void **state) {
       {"a.cag,f%s.png,0..1",
        "! 1 E0912 a % in the output 'f%s.png' is not a placeholder for a frame number " PATTERN_HELP
        "\n"},
-      {"a.cag,f%d.png,0..999999\na.cag,g.png", "! 2 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
+      {"a.cag,f%d.png,0..999999\na.cag,g.png",
+       "! 2 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
       {"a.cag,f%d.png,0..1000000",
        "! 1 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
-      {"a.cag,f%d.png,5..1000005", "! 1 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
+      {"a.cag,f%d.png,5..1000005",
+       "! 1 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
       {"a.cag,f%d.png,2000000..2000001", "0:2000000 f2000000.png\n0:2000001 f2000001.png\n"},
       // Formats.
       {"a.cag,", "! 1 E0916 the output is missing (name a file, such as vase.png)\n"},
@@ -262,7 +265,9 @@ static void outputs_are_no_files_of_the_batch(void **state) {
       assert_true(cag_jobs_read(&b.jobs, text, strlen(text), false));
       assert_true(cag_batch_check(&b));
       describe(&b, told, sizeof told);
-      assert_string_equal(told, "0:0 y.stl\n1:0 x.stl\n! 2 E0914 the output 'DIR/x.stl' is one of the batch's own files (choose another name)\n");
+      assert_string_equal(
+          told,
+          "0:0 y.stl\n1:0 x.stl\n! 2 E0914 the output 'DIR/x.stl' is one of the batch's own files (choose another name)\n");
       remove("x.stl");
       close_batch(&b);
     }

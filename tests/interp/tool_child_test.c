@@ -65,8 +65,7 @@ static void test_ends(void **state) {
       {"echo '{\"message\":\"m\"}' >&2; exit 2", 2, "{\"message\":\"m\"}"},
       {"echo '{torn' >&2; exit 2", 2, "{torn"},
       {"exec 2>&- ; sleep 0.1; exit 4", 4, "failed with exit status 4"},
-      {"kill -KILL $$", 1,
-       "killed by signal 9 (Killed); the system may have run out of memory"},
+      {"kill -KILL $$", 1, "killed by signal 9 (Killed); the system may have run out of memory"},
       {"kill -SEGV $$", 1, "ended by signal 11 (Segmentation fault)"},
       {"sleep 30 & exit 3", 3, "failed with exit status 3"},
       // a flood: its end is kept

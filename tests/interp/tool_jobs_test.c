@@ -65,7 +65,8 @@ static const File FILES[] = {
     CSV("script,output,t\na.cag,a.stl,\"1\n2\"\nb.cag,b.stl,3\n",
         "2: script=a.cag output=a.stl t=1\n2\n4: script=b.cag output=b.stl t=3\n"),
     CSV("script,output\na.cag,\"a.stl\"", "2: script=a.cag output=a.stl\n"),
-    CSV("script,output\na.cag,\"a.stl\n", "2: script=a.cag output=a.stl\n! 1 E0910 the quote at the beginning of a field is never closed\n"),
+    CSV("script,output\na.cag,\"a.stl\n",
+        "2: script=a.cag output=a.stl\n! 1 E0910 the quote at the beginning of a field is never closed\n"),
     // columns
     CSV("script,output,,\na.cag,a.stl,,\n", "2: script=a.cag output=a.stl\n"),
     CSV("script,output\na.cag,a.stl,,more\n",
