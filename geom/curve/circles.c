@@ -25,7 +25,7 @@ static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
 static CagStatus no_circle(CagError *err, const char *why) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_tangent_circle, "", -1,
-                  "no circle of this radius touches both in this way: %s", why);
+                  "no circle of this radius is tangent to both in this way: %s", why);
 }
 
 static CagVec3 foot(const CagTouched *line, CagVec3 p) {

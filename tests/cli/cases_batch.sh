@@ -354,7 +354,7 @@ child=$!
 sleep 0.7
 try batch flaky.csv
 status 3
-says 'is held by another batch'
+says 'another batch of this table is running'
 kill -TERM $child
 wait $child
 

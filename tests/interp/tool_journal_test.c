@@ -181,7 +181,7 @@ static void test_refused(void **state) {
   rmdir("journal");
   assert_true(cag_journal_open(&j, "journal", false, &err));
   assert_false(cag_journal_open(&other, "journal", false, &err));
-  assert_non_null(strstr(err.message, "is held by another batch"));
+  assert_non_null(strstr(err.message, "another batch of this table is running"));
   // What cannot be written is told, with the reason.
   close(j.fd);
   assert_int_equal(open("/dev/full", O_WRONLY), j.fd);
