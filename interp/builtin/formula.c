@@ -202,10 +202,10 @@ static bool fail_unknown(Parser *p, Word w) {
   for (size_t i = 0; i < CONSTANT_COUNT; i++) candidates[n++] = constants[i];
   char name[64];
   snprintf(name, sizeof name, "%.*s", (int)w.n, w.s);
-  fail_here(p, w.s, "`%s` is not a parameter, function or constant of formulas", name);
+  fail_here(p, w.s, "`%s` is not a parameter, function, or constant of formulas", name);
   const char *nearest = word_is(w, "log") ? "ln` or `log10" : cag_nearest_name(name, candidates, n);
   if (nearest) cag_fail_help(p->call->vm, "did you mean `%s`?", nearest);
-  else cag_fail_help(p->call->vm, "name it among the parameters: formula(\"...\", [\"%s\"])", name);
+  else cag_fail_help(p->call->vm, "add it to the parameters: formula(\"...\", [\"%s\"])", name);
   return false;
 }
 

@@ -334,7 +334,7 @@ bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagVa
   bool inside = false;
   if (!is_body(a->G))
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects a closed mesh; this one has an open edge and no inside");
+                         "expects a closed mesh, found one with an open edge");
   if (!cag_geometry_ok(call, holds(call->vm, a->G, a->P.at, &inside, call->err))) return false;
   *result = cag_bool(inside);
   return true;

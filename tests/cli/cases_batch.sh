@@ -168,7 +168,7 @@ says "bad.csv:3: E0912: row 2: size '64x': expected a size"
 says "bad.csv:4: E0912: row 3: quality 'best'"
 says "bad.csv:5: E0916: row 4: unknown format '.foo'"
 says 'bad.csv:6: E0915: row 5: cannot write'
-says 'bad.csv:7: E0914: row 6: all frames would be written to the one output'
+says 'bad.csv:7: E0914: row 6: all frames would be written to the same output'
 says 'bad.csv:8: E0912: row 7: '
 says 'bad.csv:10: E0914: row 9: '
 says 'that of row 8 too'

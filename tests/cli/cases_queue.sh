@@ -76,7 +76,7 @@ it 'the folder of the job cannot be made'
 queue two.csv
 status 3
 says 'two.csv.slurm/cag-'
-says 'cannot be made'
+says 'cannot create the folder'
 rm two.csv.slurm
 
 it 'elements that Slurm does not know any more are lost'

@@ -53,7 +53,7 @@ printf '[{"script": "ball.cag", "output": "own.json"}]' > own.json
 try batch own.json
 status 2
 says 'E0914: row 1: the output'
-says 'is a file that the batch itself needs'
+says 'is one of the batch's own files'
 try batch own.json --diagnostics json
 status 2
 says '"row":1'
@@ -224,8 +224,8 @@ show box(1)'
   } > progress.csv
   try_command python3 "$here/on_terminal.py" "$CAG" batch progress.csv --jobs 1
   status 1
-  prints_like 'of 7 done, 1 at work, 1 failed, [0-9]*:[0-9][0-9] left'
+  prints_like 'of 7 done, 1 running, 1 failed, [0-9]*:[0-9][0-9] left'
   rm progress.csv.journal
   try_command python3 "$here/on_terminal.py" "$CAG" batch progress.csv --jobs 1 -q
-  ! grep -q 'at work' out || wrong 'a bar is drawn with -q'
+  ! grep -q 'running' out || wrong 'a bar is drawn with -q'
 fi

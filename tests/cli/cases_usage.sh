@@ -210,8 +210,8 @@ refuses() {
   says "$message"
   says "$help"
 }
-refuses "--threshold 'x': expected a number of at least 0" 'give a number from 0 on' compare a.png b.png --threshold x
-refuses "--threshold '-1': expected a number of at least 0" 'give a number from 0 on' compare a.png b.png --threshold -1
+refuses "--threshold 'x': expected a number of at least 0" 'give a number of at least 0' compare a.png b.png --threshold x
+refuses "--threshold '-1': expected a number of at least 0" 'give a number of at least 0' compare a.png b.png --threshold -1
 refuses "-I '': expected a name" 'name a folder' run option.cag -I=
 refuses 'there are too many frames' 'the first and the last frame' render option.cag -o a%d.png --frames 0..99999999999
 refuses 'the last frame comes before the first' 'the first and the last frame' render option.cag -o a%d.png --frames 5..3
