@@ -30,7 +30,7 @@ static CagTypes infer_binary(Check *c, const CagExpr *e) {
            cag_types_text(b, right, sizeof right));
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_operand, e->span, text);
   const bool mixed = (a | b) == (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE));
-  if (mixed) cag_diagnostic_set_help(d, "give the number a unit: 30deg");
+  if (mixed) cag_diagnostic_set_help(d, "write the number with a unit: 30deg");
   return CAG_TYPES_ANY;
 }
 
@@ -41,10 +41,10 @@ static CagTypes infer_branch(Check *c, const CagExpr *e) {
     cag_check_expect_bool(c, condition, "if");
     if (condition->kind == CAG_EXPR_TRUE)
       cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.otherwise->span,
-                     "this is never reached: the condition is always true");
+                     "this is unreachable: the condition is always true");
     if (condition->kind == CAG_EXPR_FALSE)
       cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.then->span,
-                     "this is never reached: the condition is always false");
+                     "this is unreachable: the condition is always false");
     types |= cag_check_infer(c, e->as.branch.then);
   }
   return types | cag_check_infer(c, e);
@@ -141,7 +141,7 @@ static void check_mixed_range(Check *c, const CagExpr *e, CagTypes low, CagTypes
            high == CAG_TYPES(NUMBER) ? "a number" : "an angle");
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_type, e->span, text);
   if (number->kind == CAG_EXPR_NUMBER)
-    cag_diagnostic_set_help(d, "give the number a unit: %.15gdeg", number->as.number);
+    cag_diagnostic_set_help(d, "write the number with a unit: %.15gdeg", number->as.number);
 }
 
 static CagTypes infer_range(Check *c, const CagExpr *e) {

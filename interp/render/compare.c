@@ -12,14 +12,14 @@
 static size_t *match_channels(const CagImage *a, const char *a_name, const CagImage *b,
                               const char *b_name, CagError *err) {
   if (a->width != b->width || a->height != b->height) {
-    cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures of one size",
+    cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures of the same size",
                 "'%s' is %zu by %zu pixels, but '%s' is %zu by %zu", a_name, a->width, a->height,
                 b_name, b->width, b->height);
     return NULL;
   }
   size_t *match = cag_malloc(a->channel_count * sizeof *match);
   if (!match) {
-    cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory to compare '%s'", a_name);
     return NULL;
   }
   const char *missing = NULL, *holder = a_name, *other = b_name;
@@ -120,7 +120,7 @@ bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b
   CagCompareChannel *channels = cag_calloc(a->channel_count, sizeof *channels);
   if (!channels) {
     cag_free(match);
-    return cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    return cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory to compare '%s'", a_name);
   }
   *out = (CagCompareReport){.width = a->width,
                             .height = a->height,

@@ -120,7 +120,7 @@ static bool check_names(const char *path, const CagImage *image, CagError *err) 
                          "cannot write '%s': channel %zu has no name", path, c);
     cag_image_find(image, name, &first);
     if (first != c)
-      return cag_fail_io(err, CAG_E_USAGE, "give each channel a name of its own",
+      return cag_fail_io(err, CAG_E_USAGE, "give each channel its own name",
                          "cannot write '%s': two channels are named '%s'", path, name);
   }
   return true;

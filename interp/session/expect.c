@@ -470,7 +470,7 @@ static void check_output(Run *r, const char *text, size_t size) {
                 memcmp(got.start, expected, strlen(expected)) == 0;
     if (!same) {
       char *found = cag_strndup(got.start, (size_t)(got.end - got.start));
-      fail(r, e->line, "another line is printed", expected, found, NULL);
+      fail(r, e->line, "the output is different", expected, found, NULL);
       cag_free(found);
       cag_free(expected);
       return;
@@ -481,7 +481,7 @@ static void check_output(Run *r, const char *text, size_t size) {
   if (at == end || last_line == r->plan->line) return; // a script without expected lines may print
   const char *stop = memchr(at, '\n', (size_t)(end - at));
   char *found = cag_strndup(at, (size_t)((stop ? stop : end) - at));
-  fail(r, last_line, "more is printed than expected", NULL, found, NULL);
+  fail(r, last_line, "there is more output than expected", NULL, found, NULL);
   cag_free(found);
 }
 
@@ -539,7 +539,7 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
             reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
             100 * CAG_TEST_PIXELS, path) < 0)
       message = NULL;
-    fail(r, 0, message ? message : "the picture is not as its reference", NULL, NULL, NULL);
+    fail(r, 0, message ? message : "the picture differs from its reference", NULL, NULL, NULL);
     cag_free(message);
   }
   cag_compare_report_free(&report);
@@ -570,7 +570,7 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
   char *folder = NULL, *path = NULL;
   if (cag_asprintf(&folder, "%s/cag-test-XXXXXX", root && *root ? root : "/tmp") < 0) return false;
   bool ok = mkdtemp(folder) != NULL;
-  if (!ok) fail(r, 0, "no folder for the picture can be made", NULL, NULL, NULL);
+  if (!ok) fail(r, 0, "cannot create a folder for the picture", NULL, NULL, NULL);
   ok = ok && cag_asprintf(&path, "%s/%s", folder, slash ? slash + 1 : reference_path) >= 0;
   bool keep = false;
   if (ok) ok = render(r, s, reference, path);

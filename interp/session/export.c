@@ -139,8 +139,8 @@ static int check_parts(CagSession *s, const Parts *parts) {
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
       "%s shows nothing that a mesh file can hold", s->script ? s->script : "the session");
   cag_diagnostic_set_help(d, s->scene.label_count > 0
-                                 ? "labels are drawn in .svg only; show a surface, solid or mesh"
-                                 : "a ground is for pictures; show a surface, solid or mesh");
+                                 ? "labels are drawn only in .svg; show a surface, solid, or mesh"
+                                 : "a ground is only for pictures; show a surface, solid, or mesh");
   return CAG_STATUS_SCRIPT;
 }
 
@@ -471,9 +471,10 @@ static int find_robot(CagSession *s, const CagRobotValue **robot) {
                                    "%s shows %zu robots (%s%s); a .urdf file is of one", script, n,
                                    names.bytes ? names.bytes : "", n > NAMED ? ", ..." : "");
   cag_diagnostic_set_help(
-      d, n == 0 ? "show a robot, as it is or by `posed`: show robot([revolute(a: 300)])"
-                : "show one alone; a param may choose it: `param which = 0`, `show robots[which]`, "
-                  "and -D which=1");
+      d,
+      n == 0
+          ? "show a robot, as it is or by `posed`, such as show robot([revolute(a: 300)])"
+          : "show only one; to select it by a param, use `param which = 0`, `show robots[which]`, and -D which=1");
   cag_string_free(&names);
   return CAG_STATUS_SCRIPT;
 }
@@ -482,8 +483,8 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
   CagError io = {0};
   CagError err = {0};
   if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file are written to this folder beside it",
-                "cannot make the folder %s: %s", folder, strerror(errno));
+    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file are written to this folder next to it",
+                "cannot create the folder %s: %s", folder, strerror(errno));
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }
   int status = CAG_STATUS_OK;
@@ -631,7 +632,7 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no ending that tells the format", path);
     cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
-                                   ? "`cag render` makes pictures"
+                                   ? "use `cag render` to make pictures"
                                    : FORMAT_HELP);
     return CAG_STATUS_USAGE;
   }

@@ -70,7 +70,7 @@ int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
   if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
   else
     cag_diagnostic_set_help(
-        d, "the scene has `%s`, and always top, bottom, front, back, left, right and iso",
+        d, "the scene has `%s`; top, bottom, front, back, left, right, and iso always work",
         names[0]);
   return CAG_STATUS_USAGE;
 }
@@ -277,7 +277,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
     CagDiagnostic *d =
         cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                             "a picture is an .exr or a .png file, found %s", path);
-    cag_diagnostic_set_help(d, "`export` writes the other formats");
+    cag_diagnostic_set_help(d, "use `cag export` for other formats");
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);

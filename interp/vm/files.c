@@ -152,7 +152,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   if (!*bytes && why == TOO_LARGE) {
     if (left < FILE_MAX)
       return cag_fail_call(call, argument, CAG_ERR_limit_memory,
-                           "%s is larger than the memory that is left (--max-memory)", path);
+                           "%s is larger than the remaining memory (--max-memory)", path);
     why = "it is larger than 1 GiB";
   }
   vm->starved |= !*bytes && why == cag_file_out_of_memory;

@@ -201,7 +201,7 @@ twice(x) = 2 * x'
 try test off.cag
 status 1
 prints 'FAILED off.cag: example of twice'
-prints 'off.cag:3: another line is printed'
+prints 'off.cag:3: the output is different'
 prints 'FAILED off.cag: example 2 of twice'
 prints 'off.cag:7:15'
 prints '2 passed, 2 failed, 0 skipped'

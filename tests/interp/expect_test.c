@@ -24,7 +24,7 @@ static void note(const char *format, ...) {
   va_end(args);
 }
 
-// "3: another line is printed [1|2]": the line, the message, what was expected and what came.
+// "3: the output is different [1|2]": the line, the message, what was expected and what came.
 static void write_failure(void *context, const CagTestFailure *f) {
   (void)context;
   note("%zu: %s", f->line, f->message);
@@ -90,16 +90,16 @@ static void printed_lines_are_compared_in_order(void **state) {
       {"print 1 //expect:1", "t passed\n"},
       {"print 1 // \t expect: \t 1 \t ", "t passed\n"},
       {"print \"a b\" // expect: a b\nprint 2 // expect: 2\n", "t passed\n"},
-      {"print 1 // expect: 2", "1: another line is printed [2|1]\nt failed\n"},
+      {"print 1 // expect: 2", "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\n\nprint 12 // expect: 1",
-       "3: another line is printed [1|12]\nt failed\n"},
-      {"print 1 // expect: 12", "1: another line is printed [12|1]\nt failed\n"},
+       "3: the output is different [1|12]\nt failed\n"},
+      {"print 1 // expect: 12", "1: the output is different [12|1]\nt failed\n"},
       {"print 1 // expect: 2\nprint 2 // expect: 1",
-       "1: another line is printed [2|1]\nt failed\n"},
+       "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\n// expect: 2",
        "2: the output ends before this line [2|]\nt failed\n"},
       {"print 1 // expect: 1\nprint 2\nprint 3\n// nothing\n",
-       "1: more is printed than expected [|2]\nt failed\n"},
+       "1: there is more output than expected [|2]\nt failed\n"},
       {"print \"a\\nb\"\n// expect: a\n// expect: b", "t passed\n"},
       {"print \"a\\n\\nb\"\n// expect: a\n// expect:\n// expect: b", "t passed\n"},
       {"print \"  a  \" // expect: a", "t passed\n"},
@@ -137,7 +137,7 @@ static void errors_are_expected_on_their_lines(void **state) {
        "1: the expected error E0201 did not come\nt failed\n"},
       // What was printed before the error is compared too.
       {"print 1 // expect: 2\nprint [][0] // expect error: E0305",
-       "1: another line is printed [2|1]\nt failed\n"},
+       "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\nprint [1][1] // expect error: E0305", "t passed\n"},
       {"print [1][1]\n// expect: 1", "1: an error that is not expected: E0305 +\nt failed\n"},
   };
@@ -150,7 +150,7 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
 #define H "param h = 1\nprint h\n"
   static const Row rows[] = {
       {H "// run: -D h=2\n// expect: 2\n// run: -D h=3\n// expect: 4",
-       "t -D h=2 passed\n6: another line is printed [4|3]\nt -D h=3 failed\n"},
+       "t -D h=2 passed\n6: the output is different [4|3]\nt -D h=3 failed\n"},
       {H "// expect: 1\n// run: -Dh=7\n// expect: 7", "t passed\nt -Dh=7 passed\n"},
       {H "// run:\n// expect: 1", "t  passed\n"},
       {"param a = \"x\"\nparam b = 1\nprint a, b\n// run: -D \"a=y z\" -D b=2\n// expect: y z 2",
@@ -160,7 +160,7 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
       {"param a = \"x\"\nprint a\n// run: -D a=k=v\n// expect: k=v", "t -D a=k=v passed\n"},
       // More is printed than expected: told at the last expectation of the run.
       {H "print h\n// run: -D h=2\n// expect: 2",
-       "5: more is printed than expected [|2]\nt -D h=2 failed\n"},
+       "5: there is more output than expected [|2]\nt -D h=2 failed\n"},
       // Behind `run:` errors are matched by their code where they stand alone on their line.
       {"param h = 1\nprint [5][h]\n// run: -D h=0\n// expect: 5\n// run: -D h=1\n"
        "// expect error: E0305",
@@ -299,7 +299,7 @@ static void examples_of_documentation_are_tests(void **state) {
       {"/// Adds.\n///\n///     print add(1, 2)  // expect: 3\nadd(a, b) = a + b\n",
        "t.cag passed\nt.cag: example of add passed\n"},
       {"x = 1\n/// Adds.\n///     print add(1, 2)\n///     // expect: 4\nadd(a, b) = a + b\n",
-       "t.cag passed\n4: another line is printed [4|3]\nt.cag: example of add failed\n"},
+       "t.cag passed\n4: the output is different [4|3]\nt.cag: example of add failed\n"},
       {"/// Adds.\n///\n///     print add(1, 2)  // expect: 3\n///\n/// And:\n///\n"
        "///     print add(2, 2)\n///     print add(2, q)\nadd(a, b) = a + b\n",
        "t.cag passed\nt.cag: example of add passed\n8: an error that is not expected: E0201 +\n"

@@ -512,7 +512,7 @@ static void chunks_are_found(void **state) {
   add_chunk(&t, "JSON", json, strlen(json));
   add_u32(&t, 5);
   add(&t, "ODD four");
-  refused(t.at, t.n, "mesh-file-truncated", "a chunk of 5 bytes, where 4 are left");
+  refused(t.at, t.n, "mesh-file-truncated", "a chunk has 5 bytes, but only 4 are left");
   // The second buffer has no chunk.
   static const char two[] = ASSET "\"buffers\":[{\"byteLength\":1},{\"byteLength\":1}]}";
   t = glb_of(2, 0);
@@ -716,7 +716,7 @@ static void scenes_and_primitives_are_checked(void **state) {
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":0"), 0, "mesh-file-syntax",
        "accessors[0] must be of the type SCALAR"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":4},\"indices\":1"), 0, "mesh-file-index",
-       "triangle 0 of a mesh names vertex 2, of 2 vertices"},
+       "triangle 0 of a mesh refers to vertex 2, but there are 2 vertices"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":4}"), 0, "mesh-file-empty", ""},
       {PRIMITIVE("\"attributes\":{}"), 0, "mesh-file-empty", ""},
       {PRIMITIVE("\"attributes\":{\"POSITION\":\"\"}"), 0, "mesh-file-syntax", "an attribute"},

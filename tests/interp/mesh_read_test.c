@@ -44,7 +44,7 @@ static void text_stl_is_read_with_its_liberties(void **state) {
 static void what_is_wrong_with_an_stl_is_told(void **state) {
   (void)state;
   Bytes b = binary_stl("x", 5);
-  assert_fails("a.stl", b, "mesh-file-truncated", "5 triangles, and its 284 bytes hold 4");
+  assert_fails("a.stl", b, "mesh-file-truncated", "5 triangles, but its 284 bytes contain 4");
   b.at[80] = 4;
   b.n -= 10;
   assert_fails("a.stl", b, "mesh-file-truncated", "byte 80");

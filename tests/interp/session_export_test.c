@@ -360,9 +360,9 @@ static void what_cannot_be_written_is_told(void **state) {
           "x.y/noending has no ending that tells the format",
           "use --format to choose a format: obj stl ply glb");
   refuses("show box(1)", "a.png", NULL, CAG_STATUS_USAGE, "unknown format `png`",
-          "`cag render` makes pictures");
+          "use `cag render` to make pictures");
   refuses("show box(1)", "a.EXR", NULL, CAG_STATUS_USAGE, "unknown format `EXR`",
-          "`cag render` makes pictures");
+          "use `cag render` to make pictures");
   refuses("show box(1)", "a.abc", NULL, CAG_STATUS_USAGE, "unknown format `abc`",
           "use --format to choose a format: obj stl ply glb");
 }

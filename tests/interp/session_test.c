@@ -598,10 +598,10 @@ static void scenes_without_shapes_are_errors(void **state) {
   static const struct {
     const char *text, *message, *help;
   } rows[] = {
-      {"x = 1", "test shows no shape", "add `show` and a shape: show sphere(10)"},
-      {"show sun(-Z)", "test shows no shape", "add `show` and a shape: show sphere(10)"},
+      {"x = 1", "test shows no shape", "show a shape, such as show sphere(10)"},
+      {"show sun(-Z)", "test shows no shape", "show a shape, such as show sphere(10)"},
       {"show box(1) - box(2)", "test shows nothing but empty shapes",
-       "`is_empty` tells what is empty"},
+       "`is_empty` tests whether a shape is empty"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     CagSession *s = new_session();
@@ -705,7 +705,7 @@ static void exports_warn_of_open_parts(void **state) {
       {"show box(1)", "stl", NULL, NULL, CAG_STATUS_OK},
       {"show sphere_surface(1)", "stl", NULL, NULL, CAG_STATUS_OK},
       {"show label([0, 0, 0], \"a\")", "stl", "test shows nothing that a mesh file can hold",
-       "labels are drawn in .svg only; show a surface, solid or mesh", CAG_STATUS_SCRIPT},
+       "labels are drawn only in .svg; show a surface, solid, or mesh", CAG_STATUS_SCRIPT},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
