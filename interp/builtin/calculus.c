@@ -125,7 +125,7 @@ static bool integrand_at(Integrand *g, double t, double *out) {
     g->vector = vector;
   }
   if (n != g->components || vector != g->vector)
-    return fail_result(&g->subject, y, "vectors of one length, or numbers,");
+    return fail_result(&g->subject, y, "vectors of the same length, or numbers,");
   for (size_t k = 0; k < n; k++) out[k] = numbers[k] * slope;
   return true;
 }
