@@ -397,7 +397,7 @@ static void report_chained_comparison(Parser *p, const CagExpr *e) {
   char a[QUOTE_SIZE], b[QUOTE_SIZE], c[QUOTE_SIZE], op1[8], op2[8];
   const char *middle = cag_parse_quote(p, e->as.binary.right->span, b, sizeof b, "b");
   CagDiagnostic *d =
-      cag_parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons do not chain");
+      cag_parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons cannot be chained");
   cag_parse_help(d, "write %s %s %s and %s %s %s",
                  cag_parse_quote(p, e->as.binary.left->span, a, sizeof a, "a"),
                  cag_parse_quote(p, first, op1, sizeof op1, "<"), middle, middle,

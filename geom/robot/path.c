@@ -223,7 +223,7 @@ static size_t joint_at_limit(const CagRobot *r, const double *q) {
 // q is the last configuration that was reached.
 static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size_t step,
                            double part, const char *what, CagError *err) {
-  char cause[80] = "a singular place stands";
+  char cause[80] = "a singular configuration is";
   double at = (double)step - 1 + part;
   if (how == LEFT)
     return cag_fail(

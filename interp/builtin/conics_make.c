@@ -320,9 +320,9 @@ static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out
   Axes k;
   if (!read_axes(call, c, &k)) return false;
   if (fmin(k.from, k.to) <= -M_PI || fmax(k.from, k.to) >= M_PI)
-    return FAIL_DOMAIN(call, "",
-                       "the rational form reaches its point at 180deg only at infinity: "
-                       "the arc must lie between -180deg and 180deg");
+    return FAIL_DOMAIN(
+        call, "",
+        "the rational form cannot reach 180deg: the arc must lie between -180deg and 180deg");
   const double from = tan(k.from / 2), to = tan(k.to / 2);
   for (size_t i = 0; i < n; i++) {
     const double t = from + (to - from) * ((double)i / (double)(n - 1)), d = 1 + t * t;
@@ -367,7 +367,7 @@ static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double slack = 1e-9 * (box.max.x - box.min.x);
   if (!status && (box.min.x < fmin(from, to) - slack || box.max.x > fmax(from, to) + slack))
-    return FAIL_DOMAIN(call, "", "x must go one way from the start to the end");
+    return FAIL_DOMAIN(call, "", "x must increase or decrease throughout the arc");
   for (size_t i = 1; !status && i + 1 < n; i++) {
     const double x = from + (to - from) * ((double)i / (double)(n - 1));
     status = find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i],

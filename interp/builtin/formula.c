@@ -328,7 +328,7 @@ static bool check_parameter(CagCall *call, const CagList *names, size_t i) {
   else if (find_function(w)) why = "is a function of formulas";
   else if (is_constant(w)) why = "is a constant of formulas";
   for (size_t j = 0; j < i && !why; j++)
-    if (word_is(w, CAG_AS_TEXT(cag_list_get(call->vm, names, j))->bytes)) why = "is named twice";
+    if (word_is(w, CAG_AS_TEXT(cag_list_get(call->vm, names, j))->bytes)) why = "occurs twice";
   if (!why) return true;
   return cag_fail_call(
       call, 1, CAG_ERR_value,

@@ -69,8 +69,8 @@ static bool fail_point(Formula *f, const double *at, CagValue given) {
   parameter_text(f, at, where, sizeof where);
   cag_value_words(vm, given, found, sizeof found);
   const char *wanted = f->variables == 2     ? "a point of 3 numbers"
-                       : f->coordinates == 2 ? "a point of 2 numbers, as it does at the start"
-                       : f->coordinates == 3 ? "a point of 3 numbers, as it does at the start"
+                       : f->coordinates == 2 ? "a point of 2 numbers, as at the start"
+                       : f->coordinates == 3 ? "a point of 3 numbers, as at the start"
                                              : "a point of 2 or 3 numbers";
   return cag_vm_fail_in(vm, vm->kept[f->slot], CAG_ERR_type,
                         "the function of a %s must return %s; at %s, it returned %s",

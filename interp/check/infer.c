@@ -99,7 +99,7 @@ static CagTypes infer_block(Check *c, const CagExpr *e) {
     cag_check_learn(c, decl, CAG_TYPES_ANY); // recursion
     cag_check_learn(c, decl, cag_check_infer(c, s->as.definition.value));
     if (decl->used || decl->name[0] == '_') continue;
-    snprintf(text, sizeof text, "nothing uses %s", decl->name);
+    snprintf(text, sizeof text, "%s is not used", decl->name);
     cag_check_warn(c, CAG_ERR_unused, decl->span, text);
   }
   return cag_check_infer(c, e->as.block.value);
@@ -112,7 +112,7 @@ static CagTypes infer_index(Check *c, const CagExpr *e) {
   const CagTypes types = cag_check_infer(c, e->as.binary.left);
   cag_check_infer(c, e->as.binary.right);
   if (types & indexable) return types == CAG_TYPES(TEXT) ? types : CAG_TYPES_ANY;
-  snprintf(text, sizeof text, "[ ] expects a list, a range, a text or a record, found %s",
+  snprintf(text, sizeof text, "[ ] expects a list, a range, a text, or a record, found %s",
            cag_types_text(types, found, sizeof found));
   cag_check_report(c, CAG_ERR_type, e->as.binary.left->span, text);
   return CAG_TYPES_ANY;
@@ -152,7 +152,8 @@ static CagTypes infer_range(Check *c, const CagExpr *e) {
   for (int i = 0; i < 3 && ends[i]; i++) {
     types[i] = cag_check_infer(c, ends[i]);
     if (types[i] & (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE))) continue;
-    snprintf(text, sizeof text, "the ends and the step of a range are numbers or angles, found %s",
+    snprintf(text, sizeof text,
+             "the ends and the step of a range must be numbers or angles, found %s",
              cag_types_text(types[i], found, sizeof found));
     cag_check_report(c, CAG_ERR_type, ends[i]->span, text);
     known = false;

@@ -154,8 +154,8 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
     if (isfinite(n->psnr)) snprintf(psnr, sizeof psnr, "%.2f dB", n->psnr);
     fprintf(out, "%-12s %12.6g %12.6g %14s %10s\n", n->name, n->rmse, n->largest, at, psnr);
     if (n->not_finite[0] || n->not_finite[1])
-      fprintf(out, "%-12s NaN or infinite: %zu in the first, %zu in the second, %zu unlike\n", "",
-              n->not_finite[0], n->not_finite[1], n->unlike);
+      fprintf(out, "%-12s NaN or infinite: %zu in the first, %zu in the second, %zu different\n",
+              "", n->not_finite[0], n->not_finite[1], n->unlike);
   }
   if (r->has_color)
     fprintf(out, "color difference (CIEDE2000): mean %.4g, largest %.4g\n", r->delta_e_mean,

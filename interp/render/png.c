@@ -69,8 +69,8 @@ static void on_write(png_structp png, png_bytep data, png_size_t n) {
   CagAtomicFile *file = png_get_io_ptr(png);
   cag_atomic_file_write(file, data, n);
   if (cag_atomic_file_failed(file))
-    png_error(png, "the disk refused the data"); // commit reports
-                                                 // the reason
+    png_error(png, "the data could not be written to the disk"); // commit reports
+                                                                 // the reason
 }
 
 static void on_flush(png_structp png) { (void)png; }

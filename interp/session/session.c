@@ -476,7 +476,7 @@ static int fail_nothing_shown(CagSession *s) {
   const bool empty = s->scene.empty_count > 0;
   CagDiagnostic *d = cag_diagnostics_add(
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0}, "%s shows %s",
-      s->script ? s->script : "the session", empty ? "nothing but empty shapes" : "no shape");
+      s->script ? s->script : "the session", empty ? "only empty shapes" : "no shape");
   cag_diagnostic_set_help(d, empty ? "`is_empty` tests whether a shape is empty"
                                    : "show a shape, such as show sphere(10)");
   drop_scene(s);

@@ -206,8 +206,8 @@ static int judge(CagSite *s) {
     if (!e->failure) continue;
     wrong++;
     cag_diagnostics_add(&s->session->diagnostics, CAG_ERR_doc_example, NULL, (CagSpan){0, 0},
-                        "an example of %s does not do what it says:\n%s\nit printed:\n%s", e->about,
-                        e->text, e->failure);
+                        "an example of %s does not print the expected output:\n%s\nit printed:\n%s",
+                        e->about, e->text, e->failure);
   }
   report_site(s, "%zu scripts run", s->count);
   if (pictures) report_site(s, "%zu pictures", pictures);

@@ -153,7 +153,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
     if (k == CAG_NO_MODULE && vm->errors.count == before)
       suggest_module(cag_diagnostics_add(&vm->errors, CAG_ERR_module_not_found, m->source,
                                          s->as.import.path_span,
-                                         "the standard library has no module %s", name),
+                                         "the standard library has no module `%s`", name),
                      name);
     return k;
   }

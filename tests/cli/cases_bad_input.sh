@@ -266,7 +266,7 @@ it 'a loft whose sections lie in one plane is reported, and exported all the sam
 script plate.cag 'show rotate([1, 2, 3], 30deg) * loft([circle(3), circle(5)]) |> named("plate")'
 try export plate.cag -o plate.stl
 status 0
-says 'warning: plate: its sections lie in one plane, so that the loft has no thickness'
+says 'warning: plate: its sections lie in one plane, so the loft has no volume'
 script cup.cag 'show loft([circle(3), translate([0, 0, 0.01]) * circle(5)])'
 try export cup.cag -o cup.stl
 says_not 'lie in one plane'
@@ -275,5 +275,5 @@ it 'a sweep that folds is reported, and exported all the same'
 script fold.cag 'show sweep(circle(8), helix(5, 3, 4))'
 try export fold.cag -o fold.stl
 status 0
-says 'so that it folds there'
+says 'so the surface folds there'
 exists fold.stl

@@ -101,7 +101,7 @@ try export nothing.cag -o nothing.stl
 status 1
 says 'nothing.cag:1:6'
 says 'the shape is empty'
-says 'shows nothing but empty shapes'
+says 'shows only empty shapes'
 
 it 'what leaves nothing or has no end is shown where it was asked for'
 script place.cag 'a = box(2)

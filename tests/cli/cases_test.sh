@@ -102,7 +102,7 @@ if needs povray; then
   cp two/scene.png one/scene.png
   try test one
   status 1
-  prints 'one/scene.cag: the picture is not as one/scene.png'
+  prints 'one/scene.cag: the picture differs from one/scene.png'
   try test one --update
   status 0
   prints 'renewed'
@@ -242,7 +242,7 @@ prints_exactly 'FAILED wrong.cag -D h=2
     expected: 3
     got:      2
 FAILED broken.cag
-  broken.cag:2: an error that is not expected: E0321
+  broken.cag:2: unexpected error: E0321
   error: cannot apply `+` to the number 1 and the text ""
    --> broken.cag:2:7
     |

@@ -221,11 +221,11 @@ refuses "--region '0x5+1+1': the region is empty" 'width x height' render option
 refuses "--region '5x0+1+1': the region is empty" 'width x height' render option.cag -o a.png --region 5x0+1+1
 refuses "--region '1x1+1': expected a region" 'width x height' render option.cag -o a.png --region 1x1+1
 refuses "--region '9999999x1+1+1': expected a region" 'width x height' render option.cag -o a.png --region 9999999x1+1+1
-refuses "--threads 'x': expected a count" 'a whole number from 1 on' render option.cag -o a.png --threads x
-refuses "--threads '': expected a count" 'a whole number from 1 on' render option.cag -o a.png --threads=
-refuses "--threads ' 1': expected a count" 'a whole number from 1 on' render option.cag -o a.png '--threads= 1'
-refuses "--samples '1.5': expected a count" 'a whole number from 1 on' render option.cag -o a.png --samples 1.5
-refuses "--jobs '1e99': expected a count" 'a whole number from 1 on' batch jobs.csv --jobs 1e99
+refuses "--threads 'x': expected a count" 'a whole number of at least 1' render option.cag -o a.png --threads x
+refuses "--threads '': expected a count" 'a whole number of at least 1' render option.cag -o a.png --threads=
+refuses "--threads ' 1': expected a count" 'a whole number of at least 1' render option.cag -o a.png '--threads= 1'
+refuses "--samples '1.5': expected a count" 'a whole number of at least 1' render option.cag -o a.png --samples 1.5
+refuses "--jobs '1e99': expected a count" 'a whole number of at least 1' batch jobs.csv --jobs 1e99
 refuses "--element 'x': expected a number" "the number of the array's task" batch plan --element x
 refuses "--max-memory '1GiX': expected a size" 'K, M, G or T' run option.cag --max-memory 1GiX
 refuses "--max-memory '.': expected a size" 'K, M, G or T' run option.cag --max-memory .

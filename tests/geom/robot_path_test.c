@@ -290,9 +290,8 @@ static void singular_places_are_told_by_their_step(void **state) {
     const size_t step = n / 2;
     FAILS_AT(cag_robot_line_path(r, &pose[0], &pose[1], n, &way, q[0], &err), "path-singular",
              (long)step);
-    snprintf(text, sizeof text,
-             between ? "between the steps %zu and %zu;" : "step %zu (before %zu)", step - between,
-             step + !between);
+    snprintf(text, sizeof text, between ? "between steps %zu and %zu;" : "step %zu (before %zu)",
+             step - between, step + !between);
     assert_non_null(strstr(err.message, text));
     way.cross = true;
     OK(cag_robot_line_path(r, &pose[0], &pose[1], n, &way, q[0], &err));

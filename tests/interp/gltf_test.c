@@ -405,7 +405,7 @@ static void buffers_lie_beside(void **state) {
   static const struct {
     const char *json, *reason, *part;
   } bad[] = {
-      {BUFFERS("{\"byteLength\":1,\"uri\":\"a.bin\"}"), "mesh-file-unsupported", "lies at a.bin"},
+      {BUFFERS("{\"byteLength\":1,\"uri\":\"a.bin\"}"), "mesh-file-unsupported", "is at a.bin"},
       {BUFFERS("{\"byteLength\":1,\"uri\":\"data:base64,AAAA\"}"), "mesh-file-unsupported",
        "is not base64"},
       {BUFFERS("{\"byteLength\":1,\"uri\":\"data:x;base64\"}"), "mesh-file-unsupported",
@@ -447,7 +447,7 @@ static void json_that_ends_early_is_told(void **state) {
   assert_int_equal(d.draft.taken, 96 * (1 + 7 + 4) + strlen(whole) + 3 * sizeof(void *));
   close_document(&d);
   for (size_t n = 1; n < strlen(whole); n++)
-    refused(whole, n, "mesh-file-truncated", "it ends within");
+    refused(whole, n, "mesh-file-truncated", "it is incomplete");
   // Broken, and not by its end: brackets in texts do not count.
   static const struct {
     const char *json, *place;
@@ -499,7 +499,7 @@ static void chunks_are_found(void **state) {
     close_document(&d);
   }
   Text t = glb_of(2, 12);
-  refused(t.at, 12, "mesh-file-syntax", "no chunk of JSON");
+  refused(t.at, 12, "mesh-file-syntax", "no JSON chunk");
   refused(t.at, 11, "mesh-file-truncated", "11 bytes of the 12");
   refused(t.at, 4, "mesh-file-truncated", "4 bytes of the 12");
   t = glb_of(2, 13);
@@ -690,13 +690,15 @@ static void scenes_and_primitives_are_checked(void **state) {
       {TWO ",\"scene\":-1,\"scenes\":[{}]", 0, "mesh-file-index",
        "the default scene does not exist"},
       {TWO ",\"scenes\":[{}]", 0, "mesh-file-empty", "no triangle"},
-      {TWO ",\"scenes\":[{\"nodes\":[2]}]", 0, "mesh-file-index", "names node 2, of 2 nodes"},
-      {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "names node 0.5"},
-      {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "names node -1"},
-      {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "names node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[2]}]", 0, "mesh-file-index",
+       "refers to node 2, but there are 2 nodes"},
+      {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "refers to node 0.5"},
+      {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "refers to node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "refers to node -1"},
       {TWO ",\"scenes\":[{\"nodes\":[0,0]}]", 0, "mesh-file-syntax", "nodes[0] occurs twice"},
       {"\"nodes\":[{\"children\":[2]},{\"children\":[0]},{\"mesh\":0}]," MESH, 1, NULL, NULL},
-      {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index", "names node 5"},
+      {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index",
+       "refers to node 5"},
       {"\"nodes\":[{\"mesh\":1}]," MESH, 0, "mesh-file-index", "nodes[0] refers to a mesh"},
       {"\"nodes\":[{\"mesh\":0.5}]," MESH, 0, "mesh-file-index", "nodes[0] refers to a mesh"},
       {"\"nodes\":[{\"rotation\":[0,0,0,0]}]," MESH, 0, "mesh-file-syntax",

@@ -86,7 +86,7 @@ static void boxes_of_quadrics_are_boxes(void **state) {
   static const char planes[] = "[1, -1, 0, 0, 0, 0, 0, 0, 0, -1]";
   char script[200];
   snprintf(script, sizeof script, "print quadric(%s)", planes);
-  expect(script, "E0456", "give `within` a box, as box([4, 4, 4], centered: true)", NULL);
+  expect(script, "E0456", "set `within` to a box, such as box([4, 4, 4], centered: true)", NULL);
   snprintf(script, sizeof script, "print quadric(%s, within: [-2..2, -2..2, -2..2])", planes);
   expect(script, "E0301", "expects a box or a range of z", "box([4, 4, 4], centered: true)");
 }
@@ -116,7 +116,8 @@ static void lengths_beyond_a_curve_name_its_length(void **state) {
 static void a_circle_names_its_definitions(void **state) {
   (void)state;
   expect("a = b\nb = a\nprint a", "E0311", "the value of `a` depends on itself: a -> b -> a", NULL);
-  expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "needs itself: b -> c -> a -> b", NULL);
+  expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "depends on itself: b -> c -> a -> b",
+         NULL);
   // The message ends there.
   CagSession *s;
   const CagErrorView e = first_error(&s, "a = b\nb = a\nprint a");
@@ -217,7 +218,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print {alpha: 1}.alpah", "the record has no field `alpah`", "did you mean `alpha`?"},
       {"print {}.a", "the record has no field `a`", NULL},
       {"print [1, 2].z", "a vector of 2 numbers has no `z`", NULL},
-      {"print [\"a\", \"b\"].x", "of a vector of 2 to 4 numbers", NULL},
+      {"print [\"a\", \"b\"].x", "needs a vector of 2 to 4 numbers", NULL},
       {"print (1..3).first", "a range has no member `first`", "write x |> first(...)"},
       {"print (1..3).middle", "a range has no member `middle`", "it has start, end, step"},
       {"print translate(X).orign", "a transform has no member `orign`", "did you mean `origin`?"},

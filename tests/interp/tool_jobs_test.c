@@ -78,7 +78,7 @@ static const File FILES[] = {
     // no rows
     CSV("", "! 0 E0910 the file is empty\n"),
     CSV(" \n\n", "! 0 E0910 the file is empty\n"),
-    CSV("script,output\n", "! 0 E0910 the file has no rowss\n"),
+    CSV("script,output\n", "! 0 E0910 the file has no rows\n"),
     BYTES("script,output\na\0b,c\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
     BYTES("script,output\n\xC3\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
     // --- JSON ---
@@ -91,7 +91,7 @@ static const File FILES[] = {
     JSON("[{\"r\": {\"a\": 1}}, 3, []]", "0:\n0:\n0:\n! 1 E0910 the value of 'r' is a record\n"
                                          "! 2 E0910 the row is not a record\n"
                                          "! 3 E0910 the row is not a record\n"),
-    JSON("[]", "! 0 E0910 the file has no rowss\n"),
+    JSON("[]", "! 0 E0910 the file has no rows\n"),
     JSON("{\"script\": \"a.cag\"}", "! 0 E0910 expected a list of records\n"),
     JSON("[\n{\"script\":\n", "! 0 E0910 line 3: invalid JSON\n"),
     JSON("[] more", "! 0 E0910 line 1: invalid JSON\n"),

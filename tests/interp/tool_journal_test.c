@@ -177,7 +177,7 @@ static void test_refused(void **state) {
   remove("journal");
   assert_int_equal(mkdir("journal", 0777), 0);
   assert_false(cag_journal_open(&j, "journal", false, &err));
-  assert_non_null(strstr(err.message, "cannot be opened"));
+  assert_non_null(strstr(err.message, "cannot open the journal"));
   rmdir("journal");
   assert_true(cag_journal_open(&j, "journal", false, &err));
   assert_false(cag_journal_open(&other, "journal", false, &err));

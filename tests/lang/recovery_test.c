@@ -47,7 +47,7 @@ static void habits_of_other_languages_get_their_mend(void **state) {
   expect_mend("a = 1\nprint(a, 2)", "E0157", "print a, 2");
   expect_mend("x = 1\nx += 1", "E0151", "x2 = x + ...");
   expect_mend("max(1, 2)", "E0150", "print max(1, 2)");
-  expect_mend("x == 3", "E0150", "define x write =");
+  expect_mend("x == 3", "E0150", "to define x, write =");
   expect_mend("x = if 1 = 2 then 3 else 4", "E0153", "==");
   expect_mend("let x = 1", "E0152", "let");
   expect_mend("def f(x) = x", "E0152", "def");
