@@ -503,7 +503,7 @@ static void messages_mark_what_is_wrong(void **state) {
        "the default of h is not in the list of allowed values", NULL},
       {"param h = «1» in [1deg, 2deg]\nprint h", "E0250",
        "the default of h is not in the list of allowed values", NULL},
-      {"a = 1 + b\nb = «a»\nprint a", "E0311", "needs itself: a -> b -> a", NULL},
+      {"a = 1 + b\nb = «a»\nprint a", "E0311", "depends on itself: a -> b -> a", NULL},
       {"«aa» = 1\nprint 2", "E0900", "aa is not used", NULL},
       {"«aa» = bb\nbb = 2\nprint 2", "E0900", "aa is not used", NULL},
       {"bb = 2\n«_aa» = bb\n", "E0900", "_aa is not used", NULL},

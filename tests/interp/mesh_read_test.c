@@ -250,7 +250,7 @@ static void what_is_wrong_with_a_ply_is_told(void **state) {
   "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
   assert_text_fails("a.ply", HEAD "end_header\n0 0\n0 0\n0 0\n", "mesh-file-syntax", "x, y, or z");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "mesh-file-index",
-                    "vertex 3; there are 3");
+                    "vertex 3, but there are 3");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "mesh-file-truncated", "");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "mesh-file-syntax",
                     "line 11");

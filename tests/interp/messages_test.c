@@ -49,7 +49,7 @@ static void a_line_that_begins_with_minus_is_explained(void **state) {
 
 static void braces_in_texts_are_explained(void **state) {
   (void)state;
-  static const char help[] = "write \\{ for a brace itself";
+  static const char help[] = "write \\{ for a brace";
   expect("x = \"texture { pigment {\"", "E0126", "found `{`", help);
   expect("x = \"a {\"", "E0104", "does not end", help);
   expect("x = \"{ a: 1 }\"", "E0126", "found `:`", help);
