@@ -51,7 +51,7 @@ static void braces_in_texts_are_explained(void **state) {
   (void)state;
   static const char help[] = "write \\{ for a brace";
   expect("x = \"texture { pigment {\"", "E0126", "found `{`", help);
-  expect("x = \"a {\"", "E0104", "does not end", help);
+  expect("x = \"a {\"", "E0104", "is not closed on its line", help);
   expect("x = \"{ a: 1 }\"", "E0126", "found `:`", help);
   expect("x = \"a { b c } d\"", "E0126", "found `c`", help);
   expect("x = \"a { qqzz } d\"", "E0201", "unknown name `qqzz`", help);
