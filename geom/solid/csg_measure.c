@@ -62,7 +62,7 @@ static CagStatus fail_empty(const CagSolid *s, CagError *err) {
       err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
       s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
       : s->kind == CAG_SOLID_DIFFERENCE
-          ? "the %s of (%s) and (%s)%s is empty: the first lies within the others; make it larger, or move it"
+          ? "the %s of (%s) and (%s)%s is empty: the first is covered; make it larger, or move it"
           : "the %s of (%s) and (%s)%s is empty: they do not overlap; move them together",
       cag_solid_kind_name(s->kind), first, second, s->core->count > 2 ? " and others" : "");
 }

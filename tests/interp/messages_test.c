@@ -56,7 +56,7 @@ static void braces_in_texts_are_explained(void **state) {
   expect("x = \"a { b c } d\"", "E0126", "found `c`", help);
   expect("x = \"a { qqzz } d\"", "E0201", "unknown name `qqzz`", help);
   expect("x = \"{}\"", "E0113", "nothing", help);
-  expect("y = 1\nx = \"{y:.2f}\"", "E0167", "no format", "text(y, digits: 2)");
+  expect("y = 1\nx = \"{y:.2f}\"", "E0167", "without a format", "text(y, digits: 2)");
 }
 
 // Functions that the checker does not know before the run.

@@ -312,7 +312,7 @@ edits ':edit takes the script loaded last, and loads all again' '41 : number
 width
 :edit
 width'
-edits 'an editor that fails is named' 'error: the editor `false` failed; VISUAL or EDITOR names another
+edits 'an editor that fails is named' 'error: the editor `false` failed; set VISUAL or EDITOR to another one
 3 : number' '' 'x = 3
 :edit
 x'
