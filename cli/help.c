@@ -91,8 +91,9 @@ static void command_help(const CagToolCommand *c, FILE *out) {
 }
 
 static void program_help(FILE *out) {
-  fputs("cag: turn geometry scripts into meshes, scenes, and pictures\n\nUsage: cag COMMAND [OPERAND ...] [OPTION ...]\n       cag                     work interactively\n\nCommands:\n",
-        out);
+  fputs(
+      "cag: turn geometry scripts into meshes, scenes, and pictures\n\nUsage: cag COMMAND [OPERAND ...] [OPTION ...]\n       cag                     work interactively\n\nCommands:\n",
+      out);
   for (size_t i = 0; i < CAG_TOOL_COMMAND_COUNT; i++) {
     const CagToolCommand *c = &cag_tool_commands[i];
     char usage[64];

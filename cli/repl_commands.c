@@ -154,8 +154,9 @@ static void list_commands(void) {
     else printf("%-*s", column, head);
     print_wrapped(commands[i].story, (size_t)column, (size_t)column);
   }
-  print_wrapped("Anything else is a definition, a statement, or an expression of the language. Tab completes names. Ctrl-C stops a running evaluation.",
-                0, 0);
+  print_wrapped(
+      "Anything else is a definition, a statement, or an expression of the language. Tab completes names. Ctrl-C stops a running evaluation.",
+      0, 0);
 }
 
 // Lists all built-in functions by family.
@@ -385,8 +386,8 @@ static bool run_editor(CagRepl *repl, const char *path) {
   sigaction(SIGINT, &before, NULL);
   free(command);
   if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  cag_repl_fail(repl, CAG_STATUS_FILE, "the editor `%s` failed; set VISUAL or EDITOR to another one",
-                editor);
+  cag_repl_fail(repl, CAG_STATUS_FILE,
+                "the editor `%s` failed; set VISUAL or EDITOR to another one", editor);
   return false;
 }
 

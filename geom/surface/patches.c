@@ -209,10 +209,9 @@ static CagStatus check_corners(const CagVec3 end[4][2], double size, CagError *e
       pass = 2;
       break;
     }
-  return cag_fail(
-      err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
-      "`%s` and `%s` must meet in the corner u = %d, v = %d, but they are %s apart; %s",
-      SIDES[i], SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
+                  "`%s` and `%s` must meet in the corner u = %d, v = %d, but they are %s apart; %s",
+                  SIDES[i], SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
 }
 
 CagStatus cag_surface_coons(const CagCurve *u0, const CagCurve *u1, const CagCurve *v0,
