@@ -53,7 +53,7 @@ printf '[{"script": "ball.cag", "output": "own.json"}]' > own.json
 try batch own.json
 status 2
 says 'E0914: row 1: the output'
-says 'is one of the batch's own files'
+says 'own files'
 try batch own.json --diagnostics json
 status 2
 says '"row":1'

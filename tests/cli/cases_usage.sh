@@ -227,10 +227,10 @@ refuses "--threads ' 1': expected a count" 'a whole number of at least 1' render
 refuses "--samples '1.5': expected a count" 'a whole number of at least 1' render option.cag -o a.png --samples 1.5
 refuses "--jobs '1e99': expected a count" 'a whole number of at least 1' batch jobs.csv --jobs 1e99
 refuses "--element 'x': expected a number" "the number of the array's task" batch plan --element x
-refuses "--max-memory '1GiX': expected a size" 'K, M, G or T' run option.cag --max-memory 1GiX
-refuses "--max-memory '.': expected a size" 'K, M, G or T' run option.cag --max-memory .
-refuses "--max-memory ':1': expected a size" 'K, M, G or T' run option.cag --max-memory :1
-refuses "--max-memory '9e99': expected a size" 'K, M, G or T' run option.cag --max-memory 9e99
+refuses "--max-memory '1GiX': expected a size" 'K, M, G, or T' run option.cag --max-memory 1GiX
+refuses "--max-memory '.': expected a size" 'K, M, G, or T' run option.cag --max-memory .
+refuses "--max-memory ':1': expected a size" 'K, M, G, or T' run option.cag --max-memory :1
+refuses "--max-memory '9e99': expected a size" 'K, M, G, or T' run option.cag --max-memory 9e99
 refuses "--max-time 's': expected a time" 'give seconds above 0' eval 1 --max-time s
 refuses "--max-time 'inf': expected a time" 'give seconds above 0' eval 1 --max-time inf
 refuses "--size '0x5': sides are from 1 to" 'width x height' render option.cag -o a.png --size 0x5
