@@ -22,7 +22,7 @@ prints 'puma560'
 try doc robots.puma560
 prints 'Unimation PUMA 560'
 try doc kinematics.gripper_tips
-prints 'number, mm: between the jaws'
+prints 'number, mm: the distance between the jaws'
 
 it 'a chapter of the manual is shown'
 try doc geometry

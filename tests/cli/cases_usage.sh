@@ -231,8 +231,8 @@ refuses "--max-memory '1GiX': expected a size" 'K, M, G, or T' run option.cag --
 refuses "--max-memory '.': expected a size" 'K, M, G, or T' run option.cag --max-memory .
 refuses "--max-memory ':1': expected a size" 'K, M, G, or T' run option.cag --max-memory :1
 refuses "--max-memory '9e99': expected a size" 'K, M, G, or T' run option.cag --max-memory 9e99
-refuses "--max-time 's': expected a time" 'give seconds above 0' eval 1 --max-time s
-refuses "--max-time 'inf': expected a time" 'give seconds above 0' eval 1 --max-time inf
+refuses "--max-time 's': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time s
+refuses "--max-time 'inf': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time inf
 refuses "--size '0x5': sides are from 1 to" 'width x height' render option.cag -o a.png --size 0x5
 refuses "--size '5x0': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x0
 refuses "--size '5x99999999': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
