@@ -316,7 +316,7 @@ is_missing labels.stl
 script ground.cag 'show ground()'
 try export ground.cag -o ground.3mf
 status 1
-says 'a ground is for pictures'
+says 'a ground is only for pictures'
 is_missing ground.3mf
 
 it 'the Khronos validator has nothing to say about .gltf and .glb'

@@ -233,9 +233,9 @@ refuses "--max-memory ':1': expected a size" 'K, M, G, or T' run option.cag --ma
 refuses "--max-memory '9e99': expected a size" 'K, M, G, or T' run option.cag --max-memory 9e99
 refuses "--max-time 's': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time s
 refuses "--max-time 'inf': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time inf
-refuses "--size '0x5': sides are from 1 to" 'width x height' render option.cag -o a.png --size 0x5
-refuses "--size '5x0': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x0
-refuses "--size '5x99999999': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
+refuses "--size '0x5': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 0x5
+refuses "--size '5x0': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x0
+refuses "--size '5x99999999': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
 refuses "--tiles '0x1': expected tiles" 'columns x lines' batch jobs.csv --tiles 0x1
 refuses 'the output is missing' 'name the output with -o OUT' render option.cag
 refuses 'unknown picture format' '.exr or .png' render option.cag -o a.png --format gif
