@@ -236,7 +236,7 @@ refuses "--max-time 'inf': expected a time" 'give a number of seconds greater th
 refuses "--size '0x5': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 0x5
 refuses "--size '5x0': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x0
 refuses "--size '5x99999999': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
-refuses "--tiles '0x1': expected tiles" 'columns x lines' batch jobs.csv --tiles 0x1
+refuses "--tiles '0x1': expected tiles" 'columns x rows' batch jobs.csv --tiles 0x1
 refuses 'the output is missing' 'name the output with -o OUT' render option.cag
 refuses 'unknown picture format' '.exr or .png' render option.cag -o a.png --format gif
 refuses "--format exr and the output 'a.png' contradict each other" 'leave --format out' render option.cag -o a.png --format exr
