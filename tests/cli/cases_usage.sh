@@ -239,7 +239,7 @@ refuses "--size '5x99999999': width and height must be 1 to" 'width x height' re
 refuses "--tiles '0x1': expected tiles" 'columns x rows' batch jobs.csv --tiles 0x1
 refuses 'the output is missing' 'name the output with -o OUT' render option.cag
 refuses 'unknown picture format' '.exr or .png' render option.cag -o a.png --format gif
-refuses "--format exr and the output 'a.png' contradict each other" 'leave --format out' render option.cag -o a.png --format exr
+refuses "--format exr and the output 'a.png' contradict each other" 'omit --format' render option.cag -o a.png --format exr
 for frames in 0.5 x '' 1.5 1e99; do
   refuses "-D frames=$frames: expected the length of a film" 'an integer, such as 96' render option.cag -o a%d.png --frames 0..3 -D "frames=$frames"
 done
