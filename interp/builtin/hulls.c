@@ -281,7 +281,7 @@ bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagVa
   if (!holds(call, a->G, a->P.at, &inside, &body)) return false;
   if (!body)
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects a closed mesh; this one has an open edge and no inside");
+                         "expects a closed mesh, found one with an open edge");
   *result = cag_bool(inside);
   return true;
 }

@@ -62,8 +62,9 @@ static bool equal(CagVm *vm, CagValue a, CagValue b, bool negated, bool *out) {
 
 static bool fail_depth(CagVm *vm) {
   cag_vm_fail(vm, CAG_ERR_limit_depth, "calls are nested deeper than %zu", vm->frame_limit);
-  return cag_fail_help(vm, "does the recursion end? A call in tail position, `reduce` or a "
-                           "comprehension uses no stack");
+  return cag_fail_help(
+      vm,
+      "does the recursion end? A call in tail position, `reduce`, or a comprehension uses no stack");
 }
 
 static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
@@ -73,7 +74,7 @@ static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
   cag_string_free(&s);
   if (v.type == CAG_NUMBER) cag_fail_help(vm, "compare it: ... != 0");
   else if (v.type == CAG_LIST || v.type == CAG_TEXT)
-    cag_fail_help(vm, "ask for its length: len(...) > 0");
+    cag_fail_help(vm, "compare its length: len(...) > 0");
   else if (v.type == CAG_NONE) cag_fail_help(vm, "compare it: ... != none");
   return false;
 }
@@ -165,8 +166,8 @@ static bool unpack(CagVm *vm, CagValue *out, CagValue v, size_t n) {
   if (!cag_as_list(vm, v, &list)) return false;
   const CagList *l = CAG_AS_LIST(list);
   if (l->length != n)
-    return cag_vm_fail(vm, CAG_ERR_pattern, "the pattern has %zu names, the element %zu parts", n,
-                       l->length);
+    return cag_vm_fail(vm, CAG_ERR_pattern,
+                       "the pattern has %zu names, but the element has %zu parts", n, l->length);
   for (size_t i = 0; i < n; i++) out[i] = cag_list_get(vm, l, i);
   return true;
 }
@@ -816,8 +817,8 @@ static bool fail_circle(CagVm *vm, size_t global) {
     cag_string_printf(&s, "%s -> ", p->name);
   }
   cag_string_add(&s, vm->globals[global].name, strlen(vm->globals[global].name));
-  cag_vm_fail(vm, CAG_ERR_circle, "the value of `%s` needs itself: %s", vm->globals[global].name,
-              s.bytes);
+  cag_vm_fail(vm, CAG_ERR_circle, "the value of `%s` depends on itself: %s",
+              vm->globals[global].name, s.bytes);
   cag_string_free(&s);
   return false;
 }
