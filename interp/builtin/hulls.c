@@ -1,4 +1,4 @@
-// Convex hulls, curves on surfaces, and what is inside of and how far from shapes.
+// Convex hulls, curves on surfaces, containment, and distances.
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -39,7 +39,7 @@ static bool space_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
 typedef struct Cloud {
   CagVec3 *points;
   size_t n, capacity;
-  bool plane; // all of the plane
+  bool plane; // all points are in the plane z = 0
 } Cloud;
 
 static void release_cloud(void *cloud) { cag_free(((Cloud *)cloud)->points); }
@@ -50,9 +50,9 @@ static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagErr
   return CAG_OK;
 }
 
-// How finely a shape is replaced by points of it: part of its size.
+// The tolerance for replacing a shape by points, as a fraction of its size.
 #define HULL_TOLERANCE 1e-4
-// A point is on a boundary when it is nearer than this part of the size.
+// A point is on a boundary if it is closer than this fraction of the size.
 #define BOUNDARY 1e-9
 
 static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, CagError *err) {
@@ -167,9 +167,9 @@ bool cag_hulls_curve_on(CagCall *call, const struct cag_hulls_curve_on *a, CagVa
   return cag_curve_result(call, cag_curve_on_surface(s, a->C, &on, call->err), &on, result);
 }
 
-// --- Inside and apart ---
+// --- Containment and distance ---
 
-// A shape as parts. Surfaces, curves and meshes that were made for it live as long as it does.
+// A shape split into parts. It also owns the surfaces, curves, and meshes created for it.
 typedef struct Body {
   CagParts parts;
   CagCurveList curves;
@@ -197,7 +197,7 @@ static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s,
   return status;
 }
 
-// The inside of a region by triangles, its edge exactly.
+// Adds the inside of a region as triangles, and its edges exactly.
 static CagStatus body_add_region(const CagVm *vm, Body *b, const CagRegion *r,
                                  const CagTransform *place, double tolerance, CagError *err) {
   CagSurface *flat;
@@ -224,7 +224,7 @@ static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face,
              : body_add_surface(vm, b, face, tolerance, err);
 }
 
-// Set operations and bodies within meshes are as far away as their triangles.
+// The distance from set operations and bodies bounded by meshes is that from their triangles.
 static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                    CagError *err) {
   const CagTessellation how = tessellation_of(vm, tolerance);
@@ -235,7 +235,7 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   return status;
 }
 
-// Of an empty shape nothing is added.
+// An empty shape adds nothing.
 static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
                                 CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
@@ -257,10 +257,10 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   }
 }
 
-// Which side of the boundary of a solid with faces, or of a closed mesh, p is on: -1 inside, 0 on
-// it, 1 outside. By its mesh. Within the tolerance of the boundary the
-// mesh may be on the other side of p: there the place is asked that lies beyond p as seen from the
-// boundary, on the same side but farther from it.
+// Determines on which side of the boundary of a solid with faces, or of a closed mesh, p is: -1
+// inside, 0 on it, 1 outside. The winding number of the mesh decides. Near the boundary, p and its
+// closest point may be on different sides of the mesh, which is only an approximation. In that
+// case, a point on the same side of the boundary but farther from it is tested instead.
 static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagBounds box;
@@ -301,13 +301,13 @@ static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *
 
 static CagStatus side_of_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side,
                               CagError *err) {
-  // Not a value of the heap, whose allocation could jump over what the callers hold.
+  // Not a value of the heap, because its allocation could jump past what the callers hold.
   CagShape shape = {.as.solid = (CagSolid *)leaf};
   return side_of(context, cag_object(CAG_SOLID, &shape), p, side, err);
 }
 
-// Set operations are asked by their operands: exactly where these are.
-static CagStatus holds(CagVm *vm, CagValue v, CagVec3 p, bool *inside, CagError *err) {
+// Set operations are decided from their operands, exactly if the operands allow it.
+static CagStatus is_inside(CagVm *vm, CagValue v, CagVec3 p, bool *inside, CagError *err) {
   int side = 1;
   CagStatus status = CAG_OK;
   const CagSolid *s = v.type == CAG_SOLID ? CAG_AS_SHAPE(v)->as.solid : NULL;
@@ -335,12 +335,12 @@ bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagVa
   if (!is_body(a->G))
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects a closed mesh; this one has an open edge and no inside");
-  if (!cag_geometry_ok(call, holds(call->vm, a->G, a->P.at, &inside, call->err))) return false;
+  if (!cag_geometry_ok(call, is_inside(call->vm, a->G, a->P.at, &inside, call->err))) return false;
   *result = cag_bool(inside);
   return true;
 }
 
-// One side of a distance: a point or shapes.
+// One argument of `distance`: a point, or shapes.
 typedef struct Side {
   bool point;
   CagVec3 p;
@@ -368,7 +368,7 @@ static bool read_side(CagCall *call, int argument, Side *out) {
 
 static size_t side_count(const Side *s) { return s->point ? 1 : s->shapes->length; }
 
-// Adds the point, or shape i.
+// Adds the point or the shape with index i.
 static CagStatus body_add_part(CagVm *vm, Body *b, const Side *side, size_t i, CagError *err) {
   return side->point ? cag_parts_add_point(&b->parts, side->p, err)
                      : body_add_shape(vm, b, cag_list_get(vm, side->shapes, i),
@@ -382,9 +382,9 @@ static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
   return status;
 }
 
-// Whether a body of the first holds any shape of the second. Where surfaces do not meet one point
-// of each shape tells.
-static CagStatus swallows(CagVm *vm, const Side *outer, const Side *inner, bool *yes,
+// Whether a body of `outer` contains a shape of `inner`. The surfaces do not meet, so one point of
+// each shape decides.
+static CagStatus encloses(CagVm *vm, const Side *outer, const Side *inner, bool *yes,
                           CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && !*yes && !outer->point && i < outer->shapes->length; i++) {
@@ -393,7 +393,7 @@ static CagStatus swallows(CagVm *vm, const Side *outer, const Side *inner, bool 
     for (size_t k = 0; !status && !*yes && k < side_count(inner); k++) {
       Body one = {0};
       status = body_add_part(vm, &one, inner, k, err);
-      if (!status && one.parts.n) status = holds(vm, v, one.parts.items[0].p[0], yes, err);
+      if (!status && one.parts.n) status = is_inside(vm, v, one.parts.items[0].p[0], yes, err);
       body_free(&one);
     }
   }
@@ -408,8 +408,8 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
     status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, CAG_PARTS_PAIRS, out,
                                 NULL, cag_vm_stop(vm), err);
   if (status || *out == 0) return status;
-  status = swallows(vm, &side[0], &side[1], &within, err);
-  if (!status && !within) status = swallows(vm, &side[1], &side[0], &within, err);
+  status = encloses(vm, &side[0], &side[1], &within, err);
+  if (!status && !within) status = encloses(vm, &side[1], &side[0], &within, err);
   if (within) *out = 0;
   return status;
 }

@@ -310,8 +310,8 @@ bool cag_robots_violations(CagCall *call, const struct cag_robots_violations *a,
 }
 
 // The map between joints and motors, or its linear part where `change` is true.
-static bool give_map(CagCall *call, const CagRobot *r, bool change,
-                     void (*map)(const CagRobot *, const double *, double *), CagValue *result) {
+static bool map_result(CagCall *call, const CagRobot *r, bool change,
+                       void (*map)(const CagRobot *, const double *, double *), CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX], at_zero[CAG_ROBOT_JOINTS_MAX];
   const double zeros[CAG_ROBOT_JOINTS_MAX] = {0};
   if (!cag_arg_joints(call, 1, r, false, q)) return false;
@@ -326,10 +326,10 @@ static bool give_map(CagCall *call, const CagRobot *r, bool change,
 
 bool cag_robots_motor_values(CagCall *call, const struct cag_robots_motor_values *a,
                              CagValue *result) {
-  return give_map(call, a->robot, a->change, cag_robot_motors, result);
+  return map_result(call, a->robot, a->change, cag_robot_motors, result);
 }
 
 bool cag_robots_joint_values(CagCall *call, const struct cag_robots_joint_values *a,
                              CagValue *result) {
-  return give_map(call, a->robot, a->change, cag_robot_joints, result);
+  return map_result(call, a->robot, a->change, cag_robot_joints, result);
 }

@@ -28,7 +28,7 @@ static bool set_limits(CagCall *call, CagRobotLink *l, CagRangeEnds limits, doub
 }
 
 // Checks a finished link; its shape, shapes or lists of them, is the parameter `shape`.
-static bool give_link(CagCall *call, const CagRobotLink *l, int shape, CagValue *result) {
+static bool link_result(CagCall *call, const CagRobotLink *l, int shape, CagValue *result) {
   const CagValue drawn = cag_given(call, shape) ? call->values[shape] : cag_none();
   if (drawn.type != CAG_NONE && !cag_shapes_collect(call, drawn, cag_builder_new(call->vm)))
     return false;
@@ -48,7 +48,7 @@ bool cag_robots_revolute(CagCall *call, const struct cag_robots_revolute *a, Cag
                     .effort = a->effort,
                     .screw = a->lead / (2 * M_PI)};
   return check_rate(call, 7, a->speed) && check_rate(call, 8, a->effort) &&
-         set_limits(call, &l, a->limits, a->home) && give_link(call, &l, 6, result);
+         set_limits(call, &l, a->limits, a->home) && link_result(call, &l, 6, result);
 }
 
 bool cag_robots_prismatic(CagCall *call, const struct cag_robots_prismatic *a, CagValue *result) {
@@ -64,12 +64,12 @@ bool cag_robots_prismatic(CagCall *call, const struct cag_robots_prismatic *a, C
     return cag_fail_call(call, -1, CAG_ERR_joint_limits,
                          "expects the travel of the joint as `limits`, such as limits: 0..300");
   return check_rate(call, 7, a->speed) && check_rate(call, 8, a->effort) &&
-         set_limits(call, &l, a->limits, a->home) && give_link(call, &l, 6, result);
+         set_limits(call, &l, a->limits, a->home) && link_result(call, &l, 6, result);
 }
 
 bool cag_robots_fixed_link(CagCall *call, const struct cag_robots_fixed_link *a, CagValue *result) {
   const CagRobotLink l = {.kind = CAG_JOINT_FIXED, .fixed = a->T};
-  return give_link(call, &l, 1, result);
+  return link_result(call, &l, 1, result);
 }
 
 // --- Robots ---

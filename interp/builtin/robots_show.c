@@ -105,8 +105,8 @@ static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue h
   return add_moved(d, &tool, holding);
 }
 
-static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
-                         CagValue *result) {
+static bool drawing_result(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
+                           CagValue *result) {
   Drawing d = {call, cag_builder_new(call->vm), 1};
   if (!draw(&d, v, q, holding)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
@@ -123,7 +123,7 @@ bool cag_robots_posed(CagCall *call, const struct cag_robots_posed *a, CagValue 
   // Checked before it is moved, so that errors name this function.
   if (holding.type != CAG_NONE && !cag_shapes_collect(call, holding, cag_builder_new(call->vm)))
     return false;
-  return give_drawing(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);
+  return drawing_result(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);
 }
 
 bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
@@ -134,7 +134,7 @@ bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
                   &vm->core_error};
   cag_robot_home(CAG_AS_ROBOT(robot)->robot, q);
   const size_t held = vm->held_count;
-  const bool ok = give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
+  const bool ok = drawing_result(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
   cag_vm_release_held(vm, held);
   return ok;
 }

@@ -80,8 +80,8 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
 
 static CagValue number_or_none(bool known, double x) { return known ? cag_number(x) : cag_none(); }
 
-static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *points, size_t n,
-                           CagValue *result) {
+static bool workspace_result(CagCall *call, const CagRobot *r, const CagVec3 *points, size_t n,
+                             CagValue *result) {
   static const char *const names[] = {"kind",   "of",    "points", "hull", "cloud", "bounds",
                                       "center", "r_min", "r_max",  "hole", "volume"};
   static const char *const kinds[] = {"cartesian", "cylindrical", "spherical",   "spherical-offset",
@@ -122,7 +122,7 @@ bool cag_robots_workspace(CagCall *call, const struct cag_robots_workspace *a, C
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
     if (!cag_keep_going(call->vm)) return false;
   }
-  return give_workspace(call, a->robot, points, (size_t)a->n, result);
+  return workspace_result(call, a->robot, points, (size_t)a->n, result);
 }
 
 // --- Frames for joint axes ---
@@ -166,8 +166,8 @@ static bool default_base(CagCall *call, const CagJointAxis *axis, CagTransform *
   return cag_geometry_ok(call, cag_axes(axis->point, square, cag_cross(z, square), out, call->err));
 }
 
-static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagTransform *frames,
-                            size_t n, CagValue *result) {
+static bool assignment_result(CagCall *call, const CagRobotLink *links, const CagTransform *frames,
+                              size_t n, CagValue *result) {
   static const char *const names[] = {"table", "frames"};
   static const char *const columns[] = {"kind", "theta", "d", "a", "alpha"};
   CagVm *vm = call->vm;
@@ -204,5 +204,5 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   const bool based = cag_given(call, 2);
   if (!(based ? cag_arg_pose(call, 2, &base) : default_base(call, &axes[0], &base))) return false;
   const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, call->err);
-  return cag_geometry_ok(call, status) && give_assignment(call, links, frames, n, result);
+  return cag_geometry_ok(call, status) && assignment_result(call, links, frames, n, result);
 }

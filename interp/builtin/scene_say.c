@@ -158,7 +158,7 @@ static bool copy_shape(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
+static bool set_material(CagCall *call, CagRecord *material, CagValue *result) {
   CagValue v = call->values[0];
   if (v.type == CAG_SETTING && !strcmp(CAG_AS_SCENE(v)->kind, "ground")) {
     CagValue old = cag_record_get(CAG_AS_SCENE(v)->fields, "material");
@@ -175,7 +175,7 @@ static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
 
 bool cag_scenes_material(CagCall *call, const struct cag_scenes_material *a, CagValue *result) {
   CagRecord *material = NULL;
-  return check_material(call, a->m, &material) && say_material(call, material, result);
+  return check_material(call, a->m, &material) && set_material(call, material, result);
 }
 
 bool cag_scenes_color(CagCall *call, CagValue *result) {
@@ -183,7 +183,7 @@ bool cag_scenes_color(CagCall *call, CagValue *result) {
   CagColor c;
   if (!cag_color_read(call, 1, "color", call->values[1], &c)) return false;
   CagValue color = cag_color_value(call->vm, c);
-  return say_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
+  return set_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
 }
 
 bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue *result) {

@@ -124,8 +124,8 @@ bool cag_splines_hermite(CagCall *call, const struct cag_splines_hermite *a, Cag
 
 // --- End conditions: records { type, start, finish, direction } ---
 
-static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue finish,
-                      bool direction, CagValue *result) {
+static bool ends_result(CagCall *call, const char *type, CagValue start, CagValue finish,
+                        bool direction, CagValue *result) {
   static const char *const names[] = {"type", "start", "finish", "direction"};
   CagValue values[] = {cag_text_c(call->vm, type), start, finish, cag_bool(direction)};
   *result = cag_record_new(call->vm, names, values, 4);
@@ -133,25 +133,25 @@ static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue 
 }
 
 bool cag_splines_clamped(CagCall *call, const struct cag_splines_clamped *a, CagValue *result) {
-  return give_ends(call, "clamped", call->values[0], call->values[1], a->direction, result);
+  return ends_result(call, "clamped", call->values[0], call->values[1], a->direction, result);
 }
 
 bool cag_splines_relaxed(CagCall *call, CagValue *result) {
-  return give_ends(call, "relaxed", cag_none(), cag_none(), false, result);
+  return ends_result(call, "relaxed", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_cyclic(CagCall *call, CagValue *result) {
-  return give_ends(call, "cyclic", cag_none(), cag_none(), false, result);
+  return ends_result(call, "cyclic", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_anticyclic(CagCall *call, CagValue *result) {
-  return give_ends(call, "anticyclic", cag_none(), cag_none(), false, result);
+  return ends_result(call, "anticyclic", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_ends(CagCall *call, const struct cag_splines_ends *a, CagValue *result) {
   const CagValue start = cag_given(call, 0) ? call->values[0] : cag_none();
   const CagValue finish = cag_given(call, 1) ? call->values[1] : cag_none();
-  return give_ends(call, "ends", start, finish, a->direction, result);
+  return ends_result(call, "ends", start, finish, a->direction, result);
 }
 
 // The tangent of one end from its field; a direction gets the natural speed of its segment.

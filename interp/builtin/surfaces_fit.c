@@ -175,8 +175,8 @@ static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_
   return cag_uv_value(vm, by[0], by[1]);
 }
 
-static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,
-                        const size_t net[2], const CagGridReport *report, CagValue *result) {
+static bool report_result(CagCall *call, const CagSurface *s, const CagGridData *g,
+                          const size_t net[2], const CagGridReport *report, CagValue *result) {
   static const char *const names[] = {"surface", "parameters", "residuals", "rms",
                                       "largest", "rounds",     "planes"};
   CagValue values[] = {*result,
@@ -214,7 +214,7 @@ static bool fit(CagCall *call, long corrections, int fixed, double error, bool r
   cag_hold_for(call, release_report, found);
   CagStatus status = cag_surface_fit(&g, net[0], net[1], &s, found, call->err);
   return cag_surface_result(call, status, &s, result) &&
-         (!report || give_report(call, s, &g, net, found, result));
+         (!report || report_result(call, s, &g, net, found, result));
 }
 
 bool cag_surfaces_fit_surface(CagCall *call, const struct cag_surfaces_fit_surface *a,

@@ -31,7 +31,7 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
 }
 
 // One surface, or a group of the sheets or planes.
-static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
+static bool patches_result(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagBounds box;
   bool z_only, given;
   if (!read_within(call, within, &box, &z_only, &given)) return false;
@@ -82,7 +82,7 @@ bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) {
 
 bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
   CagQuadric q;
-  return cag_surfaces_read_form(call, &q) && give_patches(call, &q, 1, result);
+  return cag_surfaces_read_form(call, &q) && patches_result(call, &q, 1, result);
 }
 
 // --- By name: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
@@ -93,28 +93,28 @@ bool cag_surfaces_ellipsoid(CagCall *call, const struct cag_surfaces_ellipsoid *
                             CagValue *result) {
   const CagQuadric q = {
       {inverse_square(a->a), inverse_square(a->b), inverse_square(a->c), 0, 0, 0, 0, 0, 0, -1}};
-  return give_patches(call, &q, 3, result);
+  return patches_result(call, &q, 3, result);
 }
 
 bool cag_surfaces_hyperboloid(CagCall *call, const struct cag_surfaces_hyperboloid *a,
                               CagValue *result) {
   const CagQuadric q = {{inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0,
                          0, 0, 0, a->sheets == 1 ? -1 : 1}};
-  return give_patches(call, &q, 4, result);
+  return patches_result(call, &q, 4, result);
 }
 
 bool cag_surfaces_elliptic_cone(CagCall *call, const struct cag_surfaces_elliptic_cone *a,
                                 CagValue *result) {
   const CagQuadric q = {
       {inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0, 0, 0, 0, 0}};
-  return give_patches(call, &q, 3, result);
+  return patches_result(call, &q, 3, result);
 }
 
 // x^2/a^2 + sign y^2/b^2 + j z + k = 0
 static bool two_axes(CagCall *call, double a, double b, double sign, double j, double k,
                      CagValue *result) {
   const CagQuadric q = {{inverse_square(a), sign * inverse_square(b), 0, 0, 0, 0, 0, 0, j, k}};
-  return give_patches(call, &q, 2, result);
+  return patches_result(call, &q, 2, result);
 }
 
 bool cag_surfaces_paraboloid(CagCall *call, const struct cag_surfaces_paraboloid *a,
@@ -141,7 +141,7 @@ bool cag_surfaces_hyperbolic_cylinder(CagCall *call,
 
 bool cag_surfaces_parabolic_cylinder(CagCall *call, const struct cag_surfaces_parabolic_cylinder *a,
                                      CagValue *result) {
-  return give_patches(call, &(CagQuadric){{0, 1, 0, 0, 0, 0, -4 * a->a, 0, 0, 0}}, 1, result);
+  return patches_result(call, &(CagQuadric){{0, 1, 0, 0, 0, 0, -4 * a->a, 0, 0, 0}}, 1, result);
 }
 
 // --- Classification ---

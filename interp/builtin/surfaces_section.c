@@ -134,7 +134,8 @@ static size_t faces_of(CagValue v, CagSurface *const **faces) {
 typedef bool (*CurvesOf)(CagCall *call, CagValue shape, const void *question, CagCurveList *list);
 
 // The curves of all the shapes in the first argument.
-static bool give_curves(CagCall *call, CurvesOf curves_of, const void *question, CagValue *result) {
+static bool curves_result(CagCall *call, CurvesOf curves_of, const void *question,
+                          CagValue *result) {
   CagList *shapes;
   if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   CagCurveList *list = cag_hold_curve_list(call);
@@ -168,7 +169,7 @@ static bool section_of(CagCall *call, CagValue v, const void *question, CagCurve
 }
 
 bool cag_sections_section(CagCall *call, const struct cag_sections_section *a, CagValue *result) {
-  return give_curves(call, section_of, a, result);
+  return curves_result(call, section_of, a, result);
 }
 
 static bool contour_of(CagCall *call, CagValue v, const void *question, CagCurveList *list) {
@@ -188,7 +189,7 @@ bool cag_sections_contour(CagCall *call, const struct cag_sections_contour *a, C
   if (cag_given(call, 1) == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value,
                          "needs either the direction of the view or, as `from`, the eye's place");
-  return give_curves(call, contour_of, a, result);
+  return curves_result(call, contour_of, a, result);
 }
 
 bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvature_line *a,

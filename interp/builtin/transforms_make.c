@@ -103,8 +103,8 @@ bool cag_transforms_axis_angle(CagCall *call, const struct cag_transforms_axis_a
 
 // Turn about Z by the first angle, then about the turned Y by the second, then a step along the
 // turned axes; without `orient` only the position is kept.
-static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step, bool orient,
-                          CagValue *result) {
+static bool position_result(CagCall *call, double turn, double tilt, CagVec3 step, bool orient,
+                            CagValue *result) {
   CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
   CagTransform t = cag_transform_multiply(&tilted, &place);
   if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
@@ -113,12 +113,12 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
 
 bool cag_transforms_cylindrical(CagCall *call, const struct cag_transforms_cylindrical *a,
                                 CagValue *result) {
-  return give_position(call, a->theta, 0, cag_vec3(a->r, 0, a->z), a->orient, result);
+  return position_result(call, a->theta, 0, cag_vec3(a->r, 0, a->z), a->orient, result);
 }
 
 bool cag_transforms_spherical(CagCall *call, const struct cag_transforms_spherical *a,
                               CagValue *result) {
-  return give_position(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
+  return position_result(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
 }
 
 bool cag_transforms_dh(CagCall *call, const struct cag_transforms_dh *a, CagValue *result) {
