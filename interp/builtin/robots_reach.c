@@ -1,4 +1,4 @@
-// From poses to joint values: inverse kinematics, reach, and paths.
+// Joint values from poses: inverse kinematics, reach, and paths.
 
 #include "geom/robot/path.h"
 #include "interp/builtin/robots.h"
@@ -74,7 +74,7 @@ bool cag_robots_closest_pose(CagCall *call, const struct cag_robots_closest_pose
 
 // --- Paths ---
 
-// n places of the joints as a list of q.
+// Returns n sets of joint values as a list.
 static bool joints_list_result(CagCall *call, const CagRobot *r, const double *q, size_t n,
                                CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
@@ -86,7 +86,7 @@ static bool joints_list_result(CagCall *call, const CagRobot *r, const double *q
   return true;
 }
 
-// Room for n places of the joints, held.
+// Allocates n sets of joint values, which are held.
 static double *joints_list_new(CagCall *call, const CagRobot *r, size_t n) {
   return cag_hold_array(call, n * r->joint_count, sizeof(double));
 }
@@ -124,7 +124,7 @@ bool cag_robots_line_path(CagCall *call, const struct cag_robots_line_path *a, C
   return cag_geometry_ok(call, status) && joints_list_result(call, a->robot, q, n, result);
 }
 
-// Poses, or points where the tool may be turned as it likes; *out is held.
+// Reads poses, or points if the tool may have any orientation; *out is held.
 static bool read_poses(CagCall *call, CagTransform **out, size_t *n, bool *points) {
   CagList *list;
   if (!cag_arg_list(call, 1, &list)) return false;

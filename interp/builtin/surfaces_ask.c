@@ -1,4 +1,4 @@
-// What surfaces answer at one place, and their data.
+// Properties of surfaces at one point, and their data.
 
 #include "interp/builtin/surfaces.h"
 
@@ -110,7 +110,7 @@ bool cag_surfaces_knots(CagCall *call, const struct cag_surfaces_knots *a, CagVa
   return true;
 }
 
-// The net by rows of u: points, or weights where `dim` is 1.
+// The net by rows of u: points, or weights if `dim` is 1.
 static bool net_result(CagCall *call, const CagSurfaceNurbsView *net, size_t dim,
                        CagValue *result) {
   CagBuilder *rows = cag_builder_new(call->vm);

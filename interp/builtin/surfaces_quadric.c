@@ -1,4 +1,4 @@
-// Quadrics: by their ten numbers, by rows, and by name.
+// Quadrics from their ten numbers, rows, or names.
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-// --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
+// --- Bounds of an unbounded quadric: a box (a solid whose bounds count) or a range of z ---
 
 static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
   CagValue v = call->values[argument];
@@ -30,7 +30,7 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
   return box->min.z < box->max.z || cag_fail_value(call, argument, "a range of z that ascends");
 }
 
-// One surface, or a group of the sheets or planes.
+// Returns one surface, or a group of the sheets or planes.
 static bool patches_result(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagBounds box;
   bool z_only, given;
@@ -46,9 +46,9 @@ static bool patches_result(CagCall *call, const CagQuadric *q, int within, CagVa
   return cag_shapes_result(call, list, result);
 }
 
-// --- By numbers ---
+// --- From numbers ---
 
-// Ten that are not all numbers, or neither ten nor four.
+// Reports a list that is not all numbers, or has neither ten numbers nor four rows.
 static bool fail_equation(CagCall *call, const CagList *list) {
   for (size_t i = 0; list->length == 10 && i < 10; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
@@ -85,7 +85,7 @@ bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
   return cag_surfaces_read_form(call, &q) && patches_result(call, &q, 1, result);
 }
 
-// --- By name: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
+// --- From names: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
 
 static double inverse_square(double x) { return 1 / (x * x); }
 
@@ -146,17 +146,18 @@ bool cag_surfaces_parabolic_cylinder(CagCall *call, const struct cag_surfaces_pa
 
 // --- Classification ---
 
-// The ball as an equation, negative inside.
+// The equation of a ball, negative inside.
 static bool sphere_equation(CagCall *call, const CagSolid *s, CagQuadric *q) {
   CagQuadric own = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -s->a * s->a}};
   return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, call->err));
 }
 
-// Places on a meridian at which it must be as far from the center as at its ends.
+// At this many points, a meridian must be as far from the center as at its ends.
 #define MERIDIAN_PROBES 9
-#define ON_SPHERE 1e-12 // part of the radius
+#define ON_SPHERE 1e-12 // fraction of the radius
 
-// The equation of a surface of revolution whose meridian is an arc about a point of the axis.
+// The equation of a surface of revolution whose meridian is an arc centered on the axis. Returns
+// false for any other surface.
 static bool turned_sphere(const CagSurface *s, CagQuadric *q) {
   const CagCurve *meridian;
   CagVec3 axis, through, d[2], p;
