@@ -1,7 +1,7 @@
 // Compares meshes with their surfaces by dense sampling, for tests of tessellation.
 //
-// The search for a point starts with the triangles near its parameters, which give an upper bound
-// of the distance. All triangles are searched only if this bound exceeds the tolerance.
+// The search for a point starts with the triangles near its parameters, which provide an upper
+// bound of the distance. All triangles are searched only if this bound exceeds the tolerance.
 
 #ifndef CAG_TESTS_GEOM_DENSE_SUPPORT_H
 #define CAG_TESTS_GEOM_DENSE_SUPPORT_H
@@ -11,11 +11,11 @@
 #include "geom/tessellate/tessellate.h"
 #include "tests/geom/support.h"
 
-// --- Chance ---
+// --- Random numbers ---
 
 static uint64_t chance_state = 1;
 
-// Park and Miller: the same points everywhere.
+// Park and Miller's generator, which is the same on every machine.
 static inline double chance(void) {
   chance_state = chance_state * 48271 % 2147483647;
   return (double)chance_state / 2147483647;
@@ -84,7 +84,7 @@ static inline double distance_at(const Boxes *b, double u, double v, CagVec3 p, 
 
 enum { POINTS = 12000 };
 
-// Every fourth point is near to an end of the domain, every eighth on it.
+// Every fourth point is close to an end of the domain, and every eighth is on it.
 static inline double place(double from, double to, int k) {
   double x = chance();
   if (k % 4 == 1) x = x * x * x * x;
