@@ -1,6 +1,6 @@
-// Convex hulls of few points, by trying all lines and planes through them: the points have whole
-// coordinates, so that every side is exact; turned and moved, they have the same hulls. Points that
-// are in a plane almost, up to rounding, have a closed hull, too.
+// Convex hulls of few points, compared with a search over all lines and planes through them. The
+// points have integer coordinates, so that every predicate is exact. Rotated and translated points
+// have the same hulls. Points that are almost coplanar, up to rounding, have a closed hull, too.
 
 #include "geom/linalg/transform.h"
 #include "geom/mesh/hull.h"
@@ -31,8 +31,8 @@ static double turn_of(CagVec3 a, CagVec3 b, CagVec3 c) {
 
 static bool is_same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// Whether b is the next corner after a: no point is to the right of the line, and none on it lies
-// beyond b or before a.
+// Whether b is the corner after a: no point is to the right of the line, and no point on the line
+// is beyond b or before a.
 static bool is_side(const CagVec3 *p, int n, CagVec3 a, CagVec3 b) {
   for (int i = 0; i < n; i++) {
     const double turn = turn_of(a, b, p[i]);
@@ -43,7 +43,8 @@ static bool is_side(const CagVec3 *p, int n, CagVec3 a, CagVec3 b) {
   return !is_same_place(a, b);
 }
 
-// Corners counter-clockwise from the lowest x, and y where several have it. 0: all are on one line.
+// Finds the corners counter-clockwise from the lowest x, and the lowest y among these. Returns 0 if
+// all points are collinear.
 static int corners_of(const CagVec3 *p, int n, CagVec3 *ring) {
   int count = 0;
   bool flat = true;
@@ -103,7 +104,7 @@ static void corners_in_the_plane_are_those_of_all_lines_through_two_points(void 
 
 // --- Space ---
 
-// The planes of the faces: outward normals and offsets, each once.
+// The planes of the faces, each once: outward normals and offsets.
 typedef struct Planes {
   CagVec3 normal[2 * MOST];
   double offset[2 * MOST];
@@ -118,7 +119,7 @@ static void add_plane(Planes *planes, const CagVec3 *p, int n, int a, int b, int
     above |= side > 0;
     below |= side < 0;
   }
-  if (above == below) return; // points on both sides, or a normal of 0
+  if (above == below) return; // points on both sides, or a zero normal
   if (above) normal = cag_scaled(normal, -1);
   const double offset = cag_dot(normal, p[a]);
   for (int k = 0; k < planes->count; k++) {
@@ -138,7 +139,7 @@ static Planes planes_of(const CagVec3 *p, int n) {
   return planes;
 }
 
-// A point is a corner if the faces that it is in have it alone in common.
+// A point is a corner if it is the only common point of its faces.
 static bool is_corner(const Planes *planes, CagVec3 p) {
   double best = 0;
   int at[2 * MOST], n = 0;
@@ -163,7 +164,8 @@ static double volume_of(const CagMesh *m) {
   return volume;
 }
 
-// Closed, like a ball, and as far in every direction as the points.
+// Checks that the mesh is closed, is a topological sphere, and has the extent of the points in
+// every direction.
 static void check_body(const CagMesh *m, const CagVec3 *p, int n, double slack) {
   CagVec3 edge[2];
   assert_true(cag_mesh_is_watertight(m, edge));
