@@ -27,7 +27,7 @@ static void set_points(Subject *s, bool pole) {
   s->g.s = (size_t)whole(5, MOST);
   s->g.degree_u = whole(1, 4);
   s->g.degree_v = whole(1, 4);
-  for (int k = 0; k < 2; k++) // with odd degrees, and with even ones for any number of points
+  for (int k = 0; k < 2; k++) // degree 4 is not used in closed directions
     if (s->g.closed[k] && degree_of(s, k) == 4) *(k ? &s->g.degree_v : &s->g.degree_u) = 2;
   for (size_t i = 0; i < s->g.r; i++)
     for (size_t j = 0; j < s->g.s; j++) {

@@ -779,7 +779,7 @@ static void questions_to_a_surface_report_faults(void **state) {
   assert_int_equal(fault_problems, 0);
 }
 
-// These have cells of their own, and are not among the quick kinds.
+// These have their own cells, and are not among the quick kinds.
 static void nearest_points_of_swept_surfaces_report_faults(void **state) {
   (void)state;
   fault_problems = 0;
