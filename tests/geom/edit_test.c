@@ -318,7 +318,7 @@ static void seams_tell_angle_and_curvature(void **state) {
     NEAR(seam.gap, 0, 1e-12);
     NEAR(seam.angle, angle, 1e-7);
     NEAR(seam.curvature, 1 / r, 1e-9);
-    //S_u| of the plate is 2, and that of the arc is its radius.
+    // |S_u| of the plate is 2, and that of the arc is its radius.
     NEAR(seam.first, sqrt(4 + r * r - 4 * r * cos(angle)), 1e-7);
     assert_true(seam.c0 && seam.g1 == (angle == 0) && !seam.c1 && !seam.g2);
     cag_surface_release(plate);
