@@ -1,4 +1,4 @@
-// Solids: closed forms for mass, outward normals, shared edges, and refusals.
+// Solids: closed forms for mass, outward normals, common edges, and rejected input.
 
 #include <stdio.h>
 
@@ -25,7 +25,8 @@ static CagRegion *new_disk(double radius, double x, double y) {
   return r;
 }
 
-// Volume by the divergence theorem over the faces: positive exactly when they face outward.
+// The volume by the divergence theorem over the faces, which is positive if they are oriented
+// outward.
 static double flux_volume(const CagSolid *s) {
   double terms[10] = {0};
   for (size_t i = 0; i < s->face_count; i++)
@@ -33,8 +34,8 @@ static double flux_volume(const CagSolid *s) {
   return terms[0];
 }
 
-// Every edge that a face has is listed with a partner, and the two run along the same points in the
-// senses told. With `whole`, sides correspond one to one.
+// Checks that every edge of a face has a partner, and that the two run along the same points in the
+// recorded directions. With `whole`, sides correspond one to one.
 static void assert_edges(const CagSolid *s, size_t expected) {
   assert_int_equal(s->edge_count, expected);
   for (size_t e = 0; e < s->edge_count; e++) {
@@ -70,7 +71,8 @@ static void assert_mass(const CagSolid *s, double volume, double area, CagVec3 c
   assert_point(m.volume_centroid, centroid, 1e-8, "centroid");
 }
 
-// The closed form agrees with the integrals over the faces, inertia and area centroid too.
+// The closed form agrees with the integrals over the faces, and so do the inertia and the centroid
+// of the area.
 static void assert_same_as_shell(const CagSolid *s) {
   CagSolid *shell;
   CagMassProperties a, b;
