@@ -1,4 +1,4 @@
-// The examples of the built-ins' table do what they say.
+// The examples in the table of built-ins have the stated results.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,7 +49,7 @@ static void every_example_runs_as_it_says(void **state) {
   assert_true(counts.passed >= examples);
 }
 
-// An example that shows no result says nothing.
+// An example without a result is useless.
 static void every_example_prints_or_shows_or_fails(void **state) {
   (void)state;
   const char *signature, *example;

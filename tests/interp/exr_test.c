@@ -1,8 +1,8 @@
-// EXR files: what is written is read back, foreign layouts are read, and damaged files are errors.
+// EXR files: written files can be read, foreign layouts are supported, and damaged files are
+// errors.
 //
-// Expected pixels come from closed forms; a file made byte by byte after the file layout of the
-// OpenEXR documentation, and tiled and multi-part files made with the library's own calls, stand in
-// for other programs.
+// Expected pixels are from closed forms. A file written byte by byte according to the OpenEXR
+// documentation, and tiled and multi-part files written with the library, represent other programs.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -51,7 +51,7 @@ static void *read_bytes(const char *path, size_t *size) {
   return bytes;
 }
 
-// A picture whose samples are exact in half: multiples of 1/64 below 16.
+// A picture whose samples are exact as half floats: multiples of 1/64 below 16.
 static CagImage ramp(size_t width, size_t height) {
   CagImage image;
   assert_true(cag_image_create(&image, width, height, 3, NULL));
@@ -111,7 +111,7 @@ static void metadata_is_kept(void **state) {
   (void)state;
   CagImage image = ramp(4, 4), again;
   CagExrMetadata facts = {0}, found = {0};
-  // A quarter turn about z and a shift by (1, 2, 3).
+  // A quarter turn about z and a translation by (1, 2, 3).
   const double camera[16] = {0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1};
   assert_true(cag_exr_metadata_text(&facts, "cag.script", "old", NULL));
   assert_true(cag_exr_metadata_text(&facts, "cag.script", "vase.cag", NULL));
@@ -189,7 +189,7 @@ static void a_rewrite_keeps_pixels_and_adds_facts(void **state) {
   unlink(place("a.exr"));
 }
 
-// Appends to a file in memory, little-endian as EXR is.
+// A file in memory to which numbers are appended, in little-endian order as in EXR.
 typedef struct {
   unsigned char bytes[4096];
   size_t size;
@@ -208,8 +208,8 @@ static void put_head(Bytes *b, const char *name, const char *type, uint32_t size
   put_u32(b, size);
 }
 
-// A 2 by 2 file without compression, after "OpenEXR File Layout": channels A (float), H (half), U
-// (uint); its data window is (1,1)-(2,2) in a display window of (0,0)-(3,2).
+// An uncompressed file of 2 by 2 pixels according to "OpenEXR File Layout": channels A (float), H
+// (half), U (uint). Its data window is (1,1)-(2,2), in a display window of (0,0)-(3,2).
 static Bytes file_by_hand(void) {
   Bytes b = {.size = 0};
   put_u32(&b, 20000630);
@@ -277,8 +277,8 @@ static void a_file_made_by_hand_is_read(void **state) {
   cag_image_free(&image);
 }
 
-// A 4 by 2 file without compression: Y at every pixel (10 y + x), C (0.5, 0.75) for squares of two
-// by two.
+// An uncompressed file of 4 by 2 pixels: Y at every pixel (10 y + x), C (0.5, 0.75) for blocks of 2
+// by 2.
 static Bytes file_with_coarse_channel(uint32_t sampling) {
   Bytes b = {.size = 0};
   put_u32(&b, 20000630);
@@ -341,7 +341,7 @@ static void a_coarse_channel_is_repeated(void **state) {
   }
 }
 
-// Writes float channel "Y" with value 100 y + x, tiled, through the library.
+// Writes the float channel "Y" with the values 100 y + x, tiled, using the library.
 static void write_tiled(const char *path, int width, int height, exr_compression_t compression) {
   exr_context_t file;
   int part;
@@ -461,7 +461,7 @@ static void bad_files_are_named_with_their_fault(void **state) {
   assert_non_null(strstr(err.message, "not an EXR file"));
 }
 
-// Nothing may be printed by the library: what goes to standard error while f runs must be nothing.
+// The library must not print anything, so standard error must be empty while f runs.
 static void a_file_cut_anywhere_is_an_error(void **state) {
   (void)state;
   CagImage image = ramp(40, 40);
@@ -471,7 +471,8 @@ static void a_file_cut_anywhere_is_an_error(void **state) {
   int saved = dup(2);
   assert_non_null(freopen(place("stderr"), "w", stderr));
   for (size_t n = 0; n < size; n += 1 + n / 97) {
-    unsigned char *cut = malloc(n ? n : 1); // its own block, so that a read beyond it is seen
+    unsigned char *cut =
+        malloc(n ? n : 1); // a separate block, so that out-of-bounds reads are detected
     memcpy(cut, bytes, n);
     CagImage out;
     CagError err = {0};
@@ -492,9 +493,7 @@ static void a_file_cut_anywhere_is_an_error(void **state) {
   unlink(place("a.exr"));
 }
 
-// Flips bytes at random, a third of the time in the header, and reads: either way is fine, as long
-// as it ends in order.
-// Until its table of chunks is filled in, which comes last, a file lacks something.
+// The table of chunks is written last. Until then, the file counts as incomplete.
 static void a_file_is_whole_when_all_of_it_is_there(void **state) {
   (void)state;
   CagImage image = ramp(37, 50);
@@ -503,7 +502,7 @@ static void a_file_is_whole_when_all_of_it_is_there(void **state) {
   unsigned char *bytes = read_bytes(place("a.exr"), &size);
   assert_true(cag_exr_is_whole(bytes, size));
   for (size_t n = 0; n < size; n++) assert_false(cag_exr_is_whole(bytes, n));
-  // ZIP has 16 lines a chunk: 4 chunks, whose offsets stand before the first of them.
+  // With ZIP, a chunk has 16 lines. The offsets of the 4 chunks precede the first chunk.
   uint64_t first;
   size_t table = 0;
   for (size_t i = 0; !table && i + 8 <= size; i++) {
@@ -518,6 +517,8 @@ static void a_file_is_whole_when_all_of_it_is_there(void **state) {
   unlink(place("a.exr"));
 }
 
+// Flips random bytes, a third of the time in the header, and reads the file. Both success and
+// failure are valid, but not a crash.
 static void flip_and_read(const unsigned char *bytes, size_t size, unsigned seed, int rounds) {
   uint64_t random = seed * 2654435761u + 1;
   unsigned char *damaged = malloc(size);

@@ -1,5 +1,5 @@
-// The interactive session by the C interface: what inputs define, what the session tells about
-// names, and what it writes as a script.
+// Interactive sessions through the C interface: definitions by inputs, information about names, and
+// writing the session as a script.
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 
 #include "session_support.h"
 
-// The answers of one call, each followed by a space.
+// The values returned by one call, each followed by a space.
 typedef struct Heard {
   char text[8000];
 } Heard;
@@ -29,7 +29,7 @@ static void hear_value(void *context, const char *text, const char *type) {
   hear(context, type);
 }
 
-// Enters each line of the text by itself, and gives the values.
+// Enters each line of the text separately, and returns the values.
 static Heard enter(CagSession *s, const char *text) {
   Heard h = {""};
   while (*text) {
@@ -58,7 +58,7 @@ static void members_are(CagSession *s, const char *path, const char *expected) {
   assert_string_equal(members(s, path).text, expected);
 }
 
-// What is written to a stream.
+// Text written to a stream.
 typedef struct Page {
   FILE *out;
   char *text;
@@ -86,8 +86,7 @@ static void a_name_may_be_defined_again(void **state) {
   CagSession *s = new_session();
   gives(s, "a = 1\nb = a + 1\nf(x) = x * a\nb\nf(3)", "2 number 3 number ");
   gives(s, "a = 5\nb\nf(3)\na", "6 number 15 number 5 number ");
-  // An imported name takes the place of a definition, and the other way round. The module keeps
-  // its own definition.
+  // An imported name replaces a definition, and vice versa. The module keeps its own definition.
   gives(s, "import std.robots: categories\nlen(categories) > 3", "true bool ");
   gives(s, "categories = 2\ncategories", "2 number ");
   gives(s, "import std.robots\nlen(robots.categories) > 3", "true bool ");
@@ -129,7 +128,7 @@ static void members_of_all_kinds_of_values(void **state) {
   members_are(s, "bad", "");
   assert_int_equal(cag_session_error_count(s), 0);
   assert_non_null(strstr(members(s, "robots").text, "puma560 "));
-  // Each member that the session names can be asked for.
+  // Each member that the session lists can be evaluated.
   static const char *const values[] = {"box(1)",
                                        "translate([1, 2, 3])",
                                        "plane(origin, Z)",
