@@ -1,4 +1,4 @@
-// Words: numbers and units, names, texts, comments.
+// Tokens: numbers and units, names, texts, and comments.
 
 #include <math.h>
 
@@ -31,7 +31,7 @@ static double value_of(const char *number, CagExprKind kind) {
   return v;
 }
 
-// Compared with what the C compiler makes of the same decimal number.
+// Compared with the C compiler's value of the same decimal number.
 static void numbers_are_rounded_correctly(void **state) {
   (void)state;
   static const struct {
@@ -152,7 +152,7 @@ static void a_byte_order_mark_and_other_spaces_are_blanks(void **state) {
   expect_tree("\xef\xbb\xbfx = 1\r\ny\xc2\xa0= 2\r\n", "(= x 1)\n(= y 2)");
 }
 
-// ---- random words ----
+// ---- random tokens ----
 
 static uint32_t seed;
 static uint32_t chance(uint32_t n) {
@@ -163,7 +163,7 @@ static uint32_t chance(uint32_t n) {
 typedef struct Word {
   const char *text;
   CagTokenKind kind;
-  const char *holds; // of a text or a name: its bytes
+  const char *holds; // contents of a text or a name
   double number;
 } Word;
 
@@ -253,7 +253,7 @@ static const Word words[] = {
     SIGN("true", TRUE),
 };
 
-// What may stand between two words; lines: how many of them end there, comments: how many it has.
+// Separators between two tokens: the number of lines that end there, and the number of comments.
 static const struct {
   const char *text;
   bool line;
@@ -283,7 +283,7 @@ static void words_are_told_apart(void **state) {
     bool lines[40];
     for (size_t i = 0; i < count; i++) {
       lines[i] = false;
-      // One gap at least; a first line break is one as well.
+      // At least one separator; a line break comes first.
       for (uint32_t n = 1 + chance(3); n > 0; n--) {
         const uint32_t g = chance(sizeof gaps / sizeof *gaps);
         strcat(text, gaps[g].text);
@@ -341,7 +341,7 @@ static void words_are_told_apart(void **state) {
   }
 }
 
-// Decimal numbers of any length, with underscores, against the C library.
+// Decimal numbers of any length, with underscores, compared with the C library.
 static void random_numbers_are_rounded_correctly(void **state) {
   (void)state;
   seed = 12;
@@ -364,7 +364,7 @@ static void random_numbers_are_rounded_correctly(void **state) {
     }
     const double expected = strtod(plain, NULL);
     if (!(value_of(spaced, CAG_EXPR_NUMBER) == expected)) fail_msg("%s", spaced);
-    // A metric unit moves the point.
+    // A metric unit moves the decimal point.
     char scaled[260], shifted[260];
     static const struct {
       const char *name;
@@ -380,7 +380,7 @@ static void random_numbers_are_rounded_correctly(void **state) {
   }
 }
 
-// Whole numbers around 2^53 and 2^59, and powers of ten around the largest exact one.
+// Integers around 2^53 and 2^59, and powers of ten around the largest exact one.
 static void numbers_at_the_limits_of_exact_arithmetic(void **state) {
   (void)state;
   static const uint64_t around[] = {(uint64_t)1 << 53, (uint64_t)1 << 59, 999999999999999999u,
@@ -395,7 +395,7 @@ static void numbers_at_the_limits_of_exact_arithmetic(void **state) {
         snprintf(text, sizeof text, "%de%d", d + 20, e);
         assert_true(value_of(text, CAG_EXPR_NUMBER) == strtod(text, NULL));
       }
-  // Zeros beyond the digits that fit, whole and as a fraction.
+  // Zeros after the digits that fit, in integers and fractions.
   value_is("12345678901234567890000", "1.2345678901234568e+22");
   value_is("1.00000000000000000000000000", "1");
   expect_mend("x = 1e308_0", "E0112", "");
@@ -415,7 +415,7 @@ static void long_texts_are_read_whole(void **state) {
   assert_int_equal(e->as.text.length, 900);
   assert_memory_equal(e->as.text.bytes, expected, 900);
   release(&p);
-  // Texts within texts, deeper than any first capacity.
+  // Nested texts, deeper than the initial capacity.
   char deep[300] = "", wanted[600] = "";
   for (int i = 0; i < 40; i++) strcat(deep, "\"{"), strcat(wanted, "(text \"\" ");
   strcat(deep, "1");
@@ -424,9 +424,9 @@ static void long_texts_are_read_whole(void **state) {
   value_is(deep, wanted);
 }
 
-// ---- errors of single words ----
+// ---- errors of single tokens ----
 
-// Code, the marked span and the help of the only error. The marks are « and ».
+// The code, the marked span, and the help of the only error. The marks are « and ».
 static void words_that_are_wrong_are_marked(void **state) {
   (void)state;
   static const struct {

@@ -1,4 +1,4 @@
-// Errors of the syntax: going on after one, open brackets, habits of other languages, limits.
+// Syntax errors: recovery, open brackets, syntax of other languages, and limits.
 
 #include "support.h"
 
@@ -80,7 +80,8 @@ static void habits_of_other_languages_get_their_mend(void **state) {
   expect_mend("x = max(...[1])", "E0143", "each argument");
 }
 
-// Mended habits let the parser go on: one error each, and nothing that follows from it.
+// After syntax of another language, the parser continues: there is one error each, and no
+// subsequent errors.
 static void a_mended_habit_leaves_no_further_error(void **state) {
   (void)state;
   expect_errors("x = !true && false\nlet y = 2 ** 3 # c\nprint('a', y)\n",
@@ -151,7 +152,7 @@ static void a_long_line_is_no_burden(void **state) {
   free(text);
 }
 
-// A small generator of our own, so that every run has the same texts.
+// A small generator, so that every run has the same texts.
 static uint32_t next_random(uint32_t *seed) {
   *seed ^= *seed << 13;
   *seed ^= *seed >> 17;
@@ -159,8 +160,8 @@ static uint32_t next_random(uint32_t *seed) {
   return *seed;
 }
 
-// A text ends with its line, and what is open in it; a bracket before it does not. `1 2` is an
-// error in each of them.
+// A text, with everything open in it, ends at the end of its line, but a bracket before it does
+// not. `1 2` is an error in each of them.
 static void a_text_that_is_open_is_no_open_bracket(void **state) {
   (void)state;
   uint32_t seed = 88172645u;
@@ -216,8 +217,8 @@ static void damaged_texts_neither_crash_nor_hang(void **state) {
   }
 }
 
-// The first error of a text: its code, the span between « and », and what its message and its help
-// hold. "" stands for no help.
+// The first error of a text: its code, the span between « and », and the contents of its message
+// and its help. "" means that there is no help.
 static void syntax_errors_mark_what_is_wrong(void **state) {
   (void)state;
   static const struct {
