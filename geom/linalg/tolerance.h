@@ -5,8 +5,8 @@
 //
 // - CAG_ROUNDING is the rounding error of some thousand operations, with a margin of 10. Values
 //   below it count as 0.
-// - CAG_COINCIDENT is the distance below which points, lengths, or parameters count as equal if they
-//   were computed in different ways, or written to a file or script with at least ten digits.
+// - CAG_COINCIDENT is the distance below which points, lengths, or parameters count as equal if
+//   they were computed in different ways, or written to a file or script with at least ten digits.
 // - CAG_PARALLEL is the sine of the angle below which such directions count as parallel, and
 //   rotations as 0.
 //

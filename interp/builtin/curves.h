@@ -21,11 +21,11 @@ bool cag_fail_no_data(CagCall *call, const CagCurve *c, const char *what);
 // the fallback.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
 
-// The frame of a circle, with z along the normal (0: not given). Its x axis is horizontal, or X if the
-// normal is parallel to Z. The frame is planar if neither the center nor the normal is in space.
+// The frame of a circle, with z along the normal (0: not given). Its x axis is horizontal, or X if
+// the normal is parallel to Z. The frame is planar if neither the center nor the normal is in space.
 bool cag_circle_frame(CagCall *call, CagPoint center, CagPoint normal, CagTransform *out);
-// Converts a curve that the core made over the ascending range to a result. Reverses it if the range
-// is descending.
+// Converts a curve that the core made over the ascending range to a result. Reverses it if the
+// range is descending.
 bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, CagCurve **made,
                              CagValue *result);
 

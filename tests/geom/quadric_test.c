@@ -143,8 +143,8 @@ static void round_semi_axes_come_out_round(void **state) {
   assert_true(f.semi[0] == 5 && f.semi[1] == 3 && f.semi[2] == 2);
 }
 
-// Class, ranks, and semi-axes do not change if the quadric is moved, its equation is multiplied by a
-// negative number, or the drawing is scaled to other units.
+// Class, ranks, and semi-axes do not change if the quadric is moved, its equation is multiplied by
+// a negative number, or the drawing is scaled to other units.
 static void classes_survive_motions_and_units(void **state) {
   (void)state;
   CagTransform turn, shift, scale, map;

@@ -134,8 +134,8 @@ static void removed_knots_leave_the_nearest_curve(void **state) {
       most = fmax(most, cag_norm(cag_vec3(rest[4 * i], rest[4 * i + 1], rest[4 * i + 2])));
     NEAR(deviation, most, 1e-11);
     assert_true(apart(c, less) <= deviation * (1 + 1e-12));
-    // A control point that affects two points after the insertion, neither of them entirely, is free.
-    // The residual is orthogonal to its effect.
+    // A control point that affects two points after the insertion, neither of them entirely, is
+    // free. The residual is orthogonal to its effect.
     for (size_t k = 0; k + 1 < n; k++) {
       double net_moved[4 * MOST], along[3] = {0};
       int acts = 0;

@@ -310,8 +310,8 @@ static void smooth_functions_have_their_series_and_ranges(void **state) {
 
 typedef struct Edge {
   double at;
-  // 0: |t - at|; 1: a jump; 2: a pole; 3: a failure; 4: a jump of the third derivative; 5: a kink of
-  // a wave
+  // 0: |t - at|; 1: a jump; 2: a pole; 3: a failure; 4: a jump of the third derivative; 5: a kink
+  // of a wave
   int what;
   double bend;
 } Edge;
