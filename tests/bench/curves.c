@@ -45,7 +45,7 @@ static void check(bool ok, const char *what) {
 }
 
 // Park and Miller's multiplicative generator: the same parameters on every machine.
-static double random_share(void) {
+static double random_fraction(void) {
   static uint64_t state = 1;
   state = state * 48271 % 2147483647;
   return (double)state / 2147483647;
@@ -176,7 +176,7 @@ static void measure_evaluation(const char *kind, const char *order, bool rationa
   double *t = malloc(EVALUATIONS * sizeof *t);
   CagVec3 *out = malloc(3 * EVALUATIONS * sizeof *out);
   check(t && out, "no memory");
-  for (size_t i = 0; i < EVALUATIONS; i++) t[i] = s.start + (s.end - s.start) * random_share();
+  for (size_t i = 0; i < EVALUATIONS; i++) t[i] = s.start + (s.end - s.start) * random_fraction();
   if (sorted) qsort(t, EVALUATIONS, sizeof *t, ascending);
   double single = 0, many = 0, sisl = 0, sums[3];
   for (int round = 0; round < ROUNDS; round++) {
@@ -311,7 +311,8 @@ static void measure_closest(const char *name, bool rational) {
   double *theirs = malloc(QUERIES * sizeof *theirs);
   check(p && distance && theirs, "no memory");
   for (size_t i = 0; i < QUERIES; i++)
-    p[i] = cag_vec3(120 * random_share() - 60, 100 * random_share() - 50, 70 * random_share() - 10);
+    p[i] = cag_vec3(120 * random_fraction() - 60, 100 * random_fraction() - 50,
+                    70 * random_fraction() - 10);
   double ours = 0, sisl = 0, t;
   CagError err;
   for (int round = 0; round < ROUNDS; round++) {

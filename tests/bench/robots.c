@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
     double forward, jacobian, solved, mean, longest;
     bool beside = peers && fscanf(peers, "%lf %lf %lf %lf", &peer.fk, &peer.jacobian, &peer.solved,
                                   &peer.mean) == 4;
-    bench_places(c, q);
+    bench_samples(c, q);
     time_forward(r, &forward, &jacobian);
     time_inverse(r, &solved, &mean, &longest);
     printf("%-15s fk %6.3f us", c->name, forward);

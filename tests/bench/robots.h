@@ -85,7 +85,7 @@ static const BenchChain bench_chains[] = {
 #define BENCH_CHAINS (sizeof bench_chains / sizeof *bench_chains)
 
 // Joint values in radians, distributed evenly over the limits, the same for both sides.
-static inline void bench_places(const BenchChain *c, double (*q)[BENCH_JOINTS_MAX]) {
+static inline void bench_samples(const BenchChain *c, double (*q)[BENCH_JOINTS_MAX]) {
   const double degree = 0.017453292519943295;
   uint64_t state = 12345;
   for (int k = 0; k < BENCH_POSES; k++)

@@ -34,7 +34,7 @@ static void run(const BenchChain &c) {
   KDL::ChainIkSolverVel_pinv rates(chain);
   KDL::ChainIkSolverPos_NR_JL inverse(chain, low, high, forward, rates, iterations,
                                       BENCH_TOLERANCE);
-  bench_places(&c, q);
+  bench_samples(&c, q);
   static KDL::JntArray places[BENCH_POSES];
   static KDL::Frame poses[BENCH_POSES];
   for (int k = 0; k < BENCH_POSES; k++) {

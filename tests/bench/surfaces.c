@@ -234,7 +234,7 @@ static double distance_at(const Boxes *b, double u, double v, CagVec3 p) {
 }
 
 // Park and Miller's generator: the same parameters on every machine.
-static double random_share(void) {
+static double random_fraction(void) {
   static uint64_t state = 1;
   state = state * 48271 % 2147483647;
   return (double)state / 2147483647;
@@ -245,7 +245,7 @@ static double largest_distance(const Subject *s, const CagMesh *m, size_t tries)
   double largest = 0;
   CagError err;
   for (size_t k = 0; k < tries; k++) {
-    double u = s->end * random_share(), v = s->end * random_share();
+    double u = s->end * random_fraction(), v = s->end * random_fraction();
     CagVec3 p;
     check(cag_surface_point(s->ours, u, v, &p, &err) == CAG_OK, err.message);
     largest = fmax(largest, distance_at(&b, u, v, p));

@@ -146,7 +146,7 @@ static void begin(int origin) {
   }
 }
 
-static uint32_t given(void) { return (uint32_t)whole(0, GIVEN - 1); }
+static uint32_t random_given(void) { return (uint32_t)whole(0, GIVEN - 1); }
 
 static uint32_t any(void) {
   for (;;) {
@@ -159,7 +159,7 @@ static uint32_t any(void) {
 static void random_plane(uint32_t plane[3]) {
   Whole n[3];
   do {
-    for (int k = 0; k < 3; k++) plane[k] = given();
+    for (int k = 0; k < 3; k++) plane[k] = random_given();
     normal_of(plane, n);
   } while (n[0] == 0 && n[1] == 0 && n[2] == 0);
 }
@@ -167,7 +167,7 @@ static void random_plane(uint32_t plane[3]) {
 static void add_crossing(void) {
   uint32_t plane[3];
   random_plane(plane);
-  const uint32_t a = given(), b = given();
+  const uint32_t a = random_given(), b = random_given();
   const Whole s = side_of(plane, &known[a]), t = side_of(plane, &known[b]);
   if (sign(s) * sign(t) >= 0) return;
   Fraction f = {.w = t - s};
@@ -220,7 +220,7 @@ static void add_put(void) {
 static void add_centroid(void) {
   uint32_t v[3];
   Fraction f = {.w = 3};
-  for (int k = 0; k < 3; k++) v[k] = k ? given() : any();
+  for (int k = 0; k < 3; k++) v[k] = k ? random_given() : any();
   for (int i = 0; i < 3; i++) f.w *= known[v[i]].w;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) f.x[k] += known[v[i]].x[k] * (f.w / 3 / known[v[i]].w);
@@ -248,7 +248,7 @@ static void ask_once(void) {
   assert_int_equal(cag_bool_side(&points, v, v[3]), sign(side_of(v, d)));
   // For one of the planes, all points are given points, as for most planes of operands.
   random_plane(m);
-  for (int k = 0; k < 3; k++) n[k] = whole(0, 3) ? given() : v[k];
+  for (int k = 0; k < 3; k++) n[k] = whole(0, 3) ? random_given() : v[k];
   normal_of(m, p);
   normal_of(n, q);
   Whole dot = 0;

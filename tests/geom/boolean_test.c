@@ -190,7 +190,7 @@ static CagVec3 random_point(double size) {
   return cag_vec3(size * x, size * y, size * random_number());
 }
 
-static void assert_same_places(CagSetOperation op, const CagMesh *a, const CagMesh *b,
+static void assert_same_inside(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                                const CagMesh *m, double size, int points) {
   for (int i = 0; i < points; i++) {
     const CagVec3 p = cag_sub(random_point(size + 1.5), cag_vec3(0.713, 0.717, 0.719));
@@ -213,7 +213,7 @@ static void check_pair(const CagMesh *a, const CagMesh *b, double size, int poin
   for (int op = 0; op < 3; op++) {
     m[op] = operated((CagSetOperation)op, a, b);
     v[op] = volume(m[op]);
-    assert_same_places((CagSetOperation)op, a, b, m[op], size, points);
+    assert_same_inside((CagSetOperation)op, a, b, m[op], size, points);
   }
   NEAR(v[CAG_UNION] + v[CAG_INTERSECTION], volume(a) + volume(b), tolerance);
   NEAR(v[CAG_DIFFERENCE] + v[CAG_INTERSECTION], volume(a), tolerance);

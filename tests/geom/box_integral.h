@@ -118,7 +118,7 @@ static inline void touches(double a, double b, double c, double d, double e, dou
   roots_within(b * b - 4 * a * d, 2 * b * c - 4 * a * e, c * c - 4 * a * f, lo, hi, cuts, n);
 }
 
-static inline int places_of_z(const BoxIntegral *b, double *cuts) {
+static inline int cuts_of_z(const BoxIntegral *b, double *cuts) {
   const double *k = b->k, lo = b->box.min.z, hi = b->box.max.z;
   const double xs[2] = {b->box.min.x, b->box.max.x}, ys[2] = {b->box.min.y, b->box.max.y};
   int n = 0;
@@ -147,7 +147,7 @@ static inline void box_integrals(const CagQuadric *q, const CagBounds *box, doub
   double cuts[32];
   memcpy(b.k, q->c, sizeof b.k);
   set_rule(&b);
-  const int n = places_of_z(&b, cuts);
+  const int n = cuts_of_z(&b, cuts);
   for (int i = 0; i < INTEGRALS; i++) out[i] = 0;
   for (int i = 0; i + 1 < n; i++)
     for (int g = 0; g < POINTS; g++) {

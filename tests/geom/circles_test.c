@@ -177,7 +177,7 @@ static void rounding_shortens_by_what_the_arcs_save(void **state) {
 
 // --- Random circles and lines ---
 
-static CagVec3 random_place(double size) {
+static CagVec3 random_location(double size) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(-size, size);
   p.y = uniform(-size, size);
@@ -205,8 +205,8 @@ static void random_circles_touch_as_chosen(void **state) {
     CagTouched t[2];
     for (int k = 0; k < 2; k++) {
       const bool round = k == 0 ? kind >= 2 : kind % 2;
-      t[k].p = random_place(3);
-      t[k].d = round ? cag_vec3(0, 0, 0) : random_place(2);
+      t[k].p = random_location(3);
+      t[k].d = round ? cag_vec3(0, 0, 0) : random_location(2);
       t[k].radius = round ? uniform(0.3, 2) : 0;
     }
     CagVec3 found[2][2], touch[2]; // indexed by .right and .near
@@ -269,7 +269,7 @@ static void circles_that_just_reach_are_found(void **state) {
   seed = 18;
   for (int i = 0; i < 100; i++) {
     const double angle = uniform(-3, 3), radius = uniform(0.5, 2), r = uniform(0.5, 2);
-    const CagVec3 p = random_place(i % 2 ? 1e4 : 100), e = {cos(angle), sin(angle), 0},
+    const CagVec3 p = random_location(i % 2 ? 1e4 : 100), e = {cos(angle), sin(angle), 0},
                   n = {-e.y, e.x, 0};
     const double s = uniform(0.5, 2);
     const CagTouched a = {p, {0, 0, 0}, r};
@@ -331,10 +331,10 @@ static void tangents_from_random_points(void **state) {
     CagTangentLine *lines;
     size_t n;
     const CagTransform f = plane_frame(1, 0.5, 0.3);
-    for (int k = 0; k < 5; k++) net[k] = random_place(3);
+    for (int k = 0; k < 5; k++) net[k] = random_location(3);
     if (i % 2) OK(cag_curve_bezier(net, NULL, 5, 2, &c, &err));
     else OK(cag_curve_arc(2, 1, uniform(-3, 0), uniform(0.1, 3), &f, &c, &err));
-    const CagVec3 p = random_place(4);
+    const CagVec3 p = random_location(4);
     OK(cag_tangents_from_point(c, p, &lines, &n, &err));
     assert_int_equal(n, count_tangents(c, p));
     for (size_t k = 0; k < n; k++) {
@@ -408,7 +408,7 @@ static void random_ellipses_have_their_common_tangents(void **state) {
     CagTangentLine *lines;
     size_t n;
     for (int k = 0; k < 2; k++) {
-      c[k] = random_place(2);
+      c[k] = random_location(2);
       a[k] = uniform(0.4, 2);
       b[k] = i % 2 ? a[k] : uniform(0.4, 2);
       const CagTransform f = plane_frame(c[k].x, c[k].y, 0);
@@ -472,7 +472,7 @@ static void tangent_lines_have_images(void **state) {
     CagVec3 net[2][4];
     CagCurve *c[2], *image[2];
     for (int k = 0; k < 2; k++) {
-      for (int j = 0; j < 4; j++) net[k][j] = random_place(3);
+      for (int j = 0; j < 4; j++) net[k][j] = random_location(3);
       const CagTransform f = plane_frame(net[k][0].x, net[k][0].y, i % 8 == 7 ? 0 : 0.3);
       const double radius = uniform(0.5, 2);
       if (i % 4 == 3 || (i % 4 == 1 && k))
@@ -480,7 +480,7 @@ static void tangent_lines_have_images(void **state) {
       else OK(cag_curve_bezier(net[k], NULL, 4, 2, &c[k], &err));
       OK(cag_curve_transform(c[k], &grow, &image[k], &err));
     }
-    const CagVec3 p = random_place(4);
+    const CagVec3 p = random_location(4);
     for (int two = 0; two < 2; two++) {
       CagTangentLine *lines, *images;
       size_t n, m;
@@ -547,7 +547,8 @@ static void fillets_of_lines_are_closed_forms(void **state) {
   (void)state;
   seed = 51;
   for (int i = 0; i < 100; i++) {
-    const CagVec3 corner = random_place(3), before = random_place(3), after = random_place(3);
+    const CagVec3 corner = random_location(3), before = random_location(3),
+                  after = random_location(3);
     const CagVec3 a = cag_sub(corner, before), b = cag_sub(after, corner);
     const double across = a.x * b.y - a.y * b.x, turn = atan2(fabs(across), cag_dot(a, b));
     const double room = fmin(cag_norm(a), cag_norm(b)) / tan(turn / 2),
@@ -649,8 +650,8 @@ static void fillets_of_bent_curves_are_where_parallels_cross(void **state) {
   for (int round = 0; round < 150; round++) {
     CagVec3 v[4], w[4];
     for (int i = 0; i < 4; i++) {
-      v[i] = random_place(3);
-      w[i] = random_place(3);
+      v[i] = random_location(3);
+      w[i] = random_location(3);
     }
     w[0] = v[3];
     CagCurve *a, *b, *arc;
@@ -739,7 +740,7 @@ static void random_polylines_are_rounded(void **state) {
     const size_t n = 6;
     for (size_t k = 0; k < n; k++) {
       const double angle = 2 * M_PI * (double)k / 6;
-      p[k] = cag_add(cag_vec3(4 * cos(angle), 4 * sin(angle), 0), random_place(0.8));
+      p[k] = cag_add(cag_vec3(4 * cos(angle), 4 * sin(angle), 0), random_location(0.8));
       if (space) p[k].z = uniform(-1, 1);
     }
     if (i % 3 == 0) p[2] = cag_lerp(p[1], p[3], 0.4); // straight

@@ -87,7 +87,7 @@ static double coordinate(double lo, double hi, bool closed) {
   return lo + (hi - lo) * uniform(-beside, 1 + beside);
 }
 
-static CagVec3 place(const CagSurface *s) {
+static CagVec3 random_parameters(const CagSurface *s) {
   const double u = coordinate(s->u0, s->u1, s->closed_u);
   return cag_vec3(u, coordinate(s->v0, s->v1, s->closed_v), 0);
 }
@@ -97,7 +97,7 @@ static CagCurve *plane_curve(const CagSurface *s, int kind) {
   CagCurve *c;
   double weights[6];
   for (int i = 0; i < 6; i++) {
-    p[i] = place(s);
+    p[i] = random_parameters(s);
     weights[i] = uniform(0.5, 2);
   }
   const double smooth[] = {0, 0, 0, 0, 0.3, 0.8, 1, 1, 1, 1};
@@ -115,7 +115,7 @@ static double home(double x, double lo, double hi, bool closed) {
   return fmin(fmax(x, lo), hi);
 }
 
-static CagVec3 place_on(const CagSurface *s, const CagCurve *plane, double t) {
+static CagVec3 surface_point(const CagSurface *s, const CagCurve *plane, double t) {
   CagVec3 at, p;
   OK(cag_curve_point(plane, t, &at, &err));
   OK(cag_surface_point(s, home(at.x, s->u0, s->u1, s->closed_u),
@@ -254,10 +254,10 @@ static void curves_on_surfaces_are_as_their_parts_tell(void **state) {
       const double t = c->start + (c->end - c->start) * i / 40;
       CagVec3 p;
       OK(cag_curve_point(c, t, &p, &err));
-      near_vec(p, place_on(s, plane, t), 1e-11);
+      near_vec(p, surface_point(s, plane, t), 1e-11);
     }
-    assert_int_equal(c->closed, cag_norm(cag_sub(place_on(s, plane, c->start),
-                                                 place_on(s, plane, c->end))) < 1e-9);
+    assert_int_equal(c->closed, cag_norm(cag_sub(surface_point(s, plane, c->start),
+                                                 surface_point(s, plane, c->end))) < 1e-9);
     check_breaks(s, plane, c, what);
     cag_curve_release(c);
     cag_curve_release(plane);
@@ -289,7 +289,7 @@ static void images_of_curves_on_surfaces_are_those_of_their_points(void **state)
     assert_true(other[1]->start == a && other[1]->end == b);
     for (int i = 0; i <= 20; i++) {
       const double x = a + (b - a) * i / 20;
-      const CagVec3 p = cag_transform_point(&t, place_on(s, plane, x));
+      const CagVec3 p = cag_transform_point(&t, surface_point(s, plane, x));
       const CagVec3 q = cag_transform_point(&turn, p);
       CagVec3 found;
       OK(cag_curve_point(image, x, &found, &err));

@@ -18,7 +18,9 @@ static CagCurve *image_of(const CagCurve *c) {
   return out;
 }
 
-static double share(const CagCurve *c, double t) { return (t - c->start) / (c->end - c->start); }
+static double domain_fraction(const CagCurve *c, double t) {
+  return (t - c->start) / (c->end - c->start);
+}
 
 static void each_image(int rounds, void (*check)(const CagCurve *c, const CagCurve *image)) {
   static const int powers[] = {-18, 15, -7, 9};
@@ -83,7 +85,7 @@ static void check_closest(const CagCurve *c, const CagCurve *image) {
   OK(cag_curve_closest(image, cag_scaled(p, scale), &u, &there, &away, &err));
   NEAR(away / scale, distance, 1e-12 * (1 + distance));
   near_vec(cag_scaled(there, 1 / scale), foot, 1e-6);
-  NEAR(share(image, u), share(c, t), 1e-6);
+  NEAR(domain_fraction(image, u), domain_fraction(c, t), 1e-6);
 }
 
 static void nearest_points_are_scaled(void **state) {
@@ -100,7 +102,8 @@ static void check_steps(const CagCurve *c, const CagCurve *image) {
   OK(cag_curve_discretize(image, scale * tolerance, angle, &u, &m, &err));
   // A step close to the limit may be halved or not, depending on the rounding of a parameter.
   assert_true(n <= m + 2 && m <= n + 2);
-  for (size_t i = 0; n == m && i < n; i++) NEAR(share(image, u[i]), share(c, t[i]), 1e-9);
+  for (size_t i = 0; n == m && i < n; i++)
+    NEAR(domain_fraction(image, u[i]), domain_fraction(c, t[i]), 1e-9);
   free(t);
   free(u);
 }

@@ -85,7 +85,7 @@ static inline double distance_at(const Boxes *b, double u, double v, CagVec3 p, 
 enum { POINTS = 12000 };
 
 // Every fourth point is close to an end of the domain, and every eighth is on it.
-static inline double place(double from, double to, int k) {
+static inline double sample_parameter(double from, double to, int k) {
   double x = chance();
   if (k % 4 == 1) x = x * x * x * x;
   if (k % 4 == 2) x = 1 - x * x * x * x;
@@ -100,7 +100,7 @@ static inline double largest_distance(const CagSurface *s, const CagMesh *m, dou
   Boxes b = sort_into_boxes(m, s);
   cag_surface_trimmed_view(s, NULL, &region);
   for (int k = 0; k < POINTS; k++) {
-    double u = place(s->u0, s->u1, k), v = place(s->v0, s->v1, k / 8);
+    double u = sample_parameter(s->u0, s->u1, k), v = sample_parameter(s->v0, s->v1, k / 8);
     CagVec3 p;
     bool inside = true;
     if (region) OK(cag_region_contains(region, cag_vec3(u, v, 0), &inside, &err));

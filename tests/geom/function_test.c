@@ -107,7 +107,7 @@ static CagStatus saddle_eval(void *context, double u, double v, int n, CagVec3 *
 }
 static CagStatus saddle_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  return row_by_places(saddle_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(saddle_eval, context, u, vs, nv, n, out, e);
 }
 
 static void points_that_are_not_finite_are_found(void **state) {
@@ -196,7 +196,7 @@ static CagStatus fourier_eval(void *context, double t, int order, CagVec3 *out, 
   return CAG_OK;
 }
 
-static double random_share(uint64_t *state) {
+static double random_fraction(uint64_t *state) {
   *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
   return (double)(*state >> 11) / 9007199254740992.0;
 }
@@ -226,8 +226,8 @@ static void bounds_of_random_waves_are_those_of_their_summits(void **state) {
     Fourier f = {.calls = 0};
     for (int axis = 0; axis < 3; axis++)
       for (int k = 0; k <= WAVES; k++) {
-        f.a[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
-        f.b[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
+        f.a[axis][k] = (random_fraction(&seed) - 0.5) / (1 + k);
+        f.b[axis][k] = (random_fraction(&seed) - 0.5) / (1 + k);
       }
     CagCurve *c;
     CagBounds box;

@@ -114,7 +114,7 @@ static double moved(const Subject *s, const CagSurface *f, int k, double t, doub
   return t;
 }
 
-static void look(const CagSurface *f, const double t[2], CagVec3 d[3]) {
+static void evaluate(const CagSurface *f, const double t[2], CagVec3 d[3]) {
   CagVec3 e[4];
   OK(cag_surface_eval(f, t[0], t[1], 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, e, &err));
   d[0] = e[0];
@@ -128,7 +128,7 @@ static int match(const Subject *s, const CagSurface *f, size_t i, double slack, 
   const double lo[2] = {f->u0, f->v0}, hi[2] = {f->u1, f->v1};
   for (int steps = 0; steps < 50; steps++) {
     CagVec3 d[3];
-    look(f, t, d);
+    evaluate(f, t, d);
     const double gap = held(s, s->points[i]) - held(s, d[0]);
     if (fabs(gap) <= slack) return steps;
     double g[2], square = 0;
@@ -144,7 +144,7 @@ static int match(const Subject *s, const CagSurface *f, size_t i, double slack, 
     for (int h = 0; h < 30 && !(left < fabs(gap)); h++, part /= 2) {
       for (int k = 0; k < 2; k++)
         to[k] = moved(s, f, k, t[k], part * gap * g[k] / square * (hi[k] - lo[k]));
-      look(f, to, d);
+      evaluate(f, to, d);
       left = fabs(held(s, s->points[i]) - held(s, d[0]));
     }
     if (!(left < fabs(gap))) return -1;
@@ -197,7 +197,7 @@ static void check_parameters(const Subject *s, const Fit *f, double t[POINTS][2]
 // of the tangent; on a border, only if the whole border has one coordinate.
 static void correct(const Subject *s, const CagSurface *f, size_t i, double t[2]) {
   CagVec3 d[3];
-  look(f, t, d);
+  evaluate(f, t, d);
   const double range[2] = {f->u1 - f->u0, f->v1 - f->v0};
   const double rise[2] = {held(s, d[1]), held(s, d[2])};
   double way[2] = {-rise[1], rise[0]};

@@ -29,7 +29,7 @@ static double turn_of(CagVec3 a, CagVec3 b, CagVec3 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-static bool is_same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+static bool is_same_point(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 // Whether b is the corner after a: no point is to the right of the line, and no point on the line
 // is beyond b or before a.
@@ -40,7 +40,7 @@ static bool is_side(const CagVec3 *p, int n, CagVec3 a, CagVec3 b) {
                  length = cag_dot(cag_sub(b, a), cag_sub(b, a));
     if (turn < 0 || (turn == 0 && (along < 0 || along > length))) return false;
   }
-  return !is_same_place(a, b);
+  return !is_same_point(a, b);
 }
 
 // Finds the corners counter-clockwise from the lowest x, and the lowest y among these. Returns 0 if
@@ -56,7 +56,7 @@ static int corners_of(const CagVec3 *p, int n, CagVec3 *ring) {
     if (p[i].x < ring[0].x || (p[i].x == ring[0].x && p[i].y < ring[0].y)) ring[0] = p[i];
   for (int i = 0; i < n; i++)
     if (is_side(p, n, ring[count - 1], p[i])) {
-      if (is_same_place(p[i], ring[0])) break;
+      if (is_same_point(p[i], ring[0])) break;
       ring[count++] = p[i];
       i = -1;
     }
@@ -94,7 +94,7 @@ static void corners_in_the_plane_are_those_of_all_lines_through_two_points(void 
       OK(cag_hull_plane(q, (size_t)n, &ring, &got, &err));
       assert_int_equal(got, count);
       for (size_t k = 0; k < got; k++) assert_true(q[ring[k]].x >= q[ring[0]].x);
-      while (turned && first < got && !is_same_place(p[ring[first]], expected[0])) first++;
+      while (turned && first < got && !is_same_point(p[ring[first]], expected[0])) first++;
       for (size_t k = 0; k < got; k++) near_vec(p[ring[(first + k) % got]], expected[k], 0);
       free(ring);
     }
@@ -200,7 +200,7 @@ static void corners_in_space_are_those_of_all_planes_through_three_points(void *
     double volume = 0;
     for (int i = 0; i < n; i++) {
       bool again = false;
-      for (int j = 0; j < i; j++) again |= is_same_place(p[i], p[j]);
+      for (int j = 0; j < i; j++) again |= is_same_point(p[i], p[j]);
       corners += !again && is_corner(&planes, p[i]);
     }
     for (int turned = 0; turned < 2; turned++) {

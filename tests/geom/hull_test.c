@@ -508,7 +508,7 @@ static void spirals_of_arcs_need_few_pairs(void **state) {
 
 // --- Flat triangles, segments and points ---
 
-static CagVec3 random_place(uint64_t *state, double size) {
+static CagVec3 random_location(uint64_t *state, double size) {
   double x[3];
   for (int i = 0; i < 3; i++) x[i] = between(state, -size, size);
   return cag_vec3(x[0], x[1], x[2]);
@@ -555,15 +555,15 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
     size_t n[2], line_count = 0;
     CagParts parts[2] = {{0}, {0}};
     CagCurve *lines[MOST];
-    const CagVec3 away = random_place(&seed, k % 4 == 0 ? 0.5 : 3);
+    const CagVec3 away = random_location(&seed, k % 4 == 0 ? 0.5 : 3);
     for (int side = 0; side < 2; side++) {
       n[side] = 1 + (size_t)(k / (side ? 3 : 1)) % MOST;
       CagMesh *m;
       OK(cag_mesh_new(3 * n[side], n[side], false, false, false, &m, &err));
       for (uint32_t i = 0; i < n[side]; i++) {
-        const CagVec3 middle = random_place(&seed, 2);
+        const CagVec3 middle = random_location(&seed, 2);
         for (uint32_t j = 0; j < 3; j++) {
-          CagVec3 p = cag_add(middle, random_place(&seed, 1));
+          CagVec3 p = cag_add(middle, random_location(&seed, 1));
           if (k % 5 == 0) p.z = side ? 1 : 0; // parallel planes
           if (side) p = cag_add(p, away);
           if (k % 7 == 1 && side && j > 0) p = t[side][i][0]; // points
@@ -652,9 +652,9 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
     CagVec3 foot;
     OK(cag_mesh_new(3 * n, n, false, false, false, &m, &err));
     for (uint32_t i = 0; i < n; i++) {
-      const CagVec3 middle = random_place(&seed, 3);
+      const CagVec3 middle = random_location(&seed, 3);
       for (uint32_t j = 0; j < 3; j++) {
-        m->positions[3 * i + j] = t[i][j] = cag_add(middle, random_place(&seed, 2));
+        m->positions[3 * i + j] = t[i][j] = cag_add(middle, random_location(&seed, 2));
         m->triangles[3 * i + j] = 3 * i + j;
       }
     }

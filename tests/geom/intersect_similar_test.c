@@ -81,7 +81,9 @@ static CagVec3 image_point(const CagTransform *t, CagVec3 p) {
   return out;
 }
 
-static double share(const CagCurve *c, double t) { return (t - c->start) / (c->end - c->start); }
+static double domain_fraction(const CagCurve *c, double t) {
+  return (t - c->start) / (c->end - c->start);
+}
 
 // Checks that each intersection has its image at the same fraction of the domain, and that there
 // are no others.
@@ -100,7 +102,7 @@ static void assert_images(const CagCurve *a, const CagMeeting *m, size_t n, cons
     assert_false(taken[nearest]);
     taken[nearest] = true;
     assert_int_equal(o[nearest].multiplicity, m[i].multiplicity);
-    const double at = share(a, m[i].t), now = share(image, o[nearest].t);
+    const double at = domain_fraction(a, m[i].t), now = domain_fraction(image, o[nearest].t);
     const double off = fabs(now - (back ? 1 - at : at));
     assert_true(off < 1e-7 || (a->closed && fabs(off - 1) < 1e-7));
   }

@@ -440,7 +440,7 @@ static void arcs_meet_where_both_circles_pass(void **state) {
 
 // --- Random curves ---
 
-static CagVec3 random_place(uint64_t *seed, double size, bool space) {
+static CagVec3 random_location(uint64_t *seed, double size, bool space) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(seed, -size, size);
   p.y = uniform(seed, -size, size);
@@ -455,7 +455,7 @@ static CagCurve *random_curve(uint64_t *seed, int kind, bool space) {
   const int dimension = space ? 3 : 2;
   CagCurve *c = NULL, *parts[2];
   for (int i = 0; i < 7; i++) {
-    p[i] = random_place(seed, 3, space);
+    p[i] = random_location(seed, 3, space);
     w[i] = uniform(seed, 0.5, 2);
   }
   const double turn = uniform(seed, -3, 3), a = uniform(seed, 0.5, 3), b = uniform(seed, 0.5, 3);
@@ -483,7 +483,7 @@ static CagCurve *random_curve(uint64_t *seed, int kind, bool space) {
   return c;
 }
 
-static CagVec3 place(const CagCurve *c, double t) {
+static CagVec3 curve_point(const CagCurve *c, double t) {
   CagVec3 p;
   OK(cag_curve_point(c, fmin(c->end, fmax(c->start, t)), &p, &err));
   return p;
@@ -496,16 +496,16 @@ static void random_planes_meet_where_signs_change(void **state) {
   for (int i = 0; i < 160; i++) {
     CagCurve *c = random_curve(&seed, i % KINDS, i % 3 != 0);
     CagPlane plane;
-    const CagVec3 normal = random_place(&seed, 1, true);
-    OK(cag_plane(random_place(&seed, 1, true), normal, &plane, &err));
+    const CagVec3 normal = random_location(&seed, 1, true);
+    OK(cag_plane(random_location(&seed, 1, true), normal, &plane, &err));
     CagMeeting *m;
     size_t n, wanted = 0;
     OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
     enum { STEPS = 3000 };
-    double last = cag_dot(cag_sub(place(c, c->start), plane.point), plane.normal);
+    double last = cag_dot(cag_sub(curve_point(c, c->start), plane.point), plane.normal);
     for (int k = 1; k <= STEPS; k++) {
       const double t = c->start + (c->end - c->start) * k / STEPS;
-      const double here = cag_dot(cag_sub(place(c, t), plane.point), plane.normal);
+      const double here = cag_dot(cag_sub(curve_point(c, t), plane.point), plane.normal);
       if (last * here < 0) {
         assert_true(wanted < n);
         // The intersection is within the same step.
@@ -516,7 +516,7 @@ static void random_planes_meet_where_signs_change(void **state) {
     }
     assert_int_equal(n, wanted);
     for (size_t k = 0; k < n; k++) {
-      near_vec(place(c, m[k].t), m[k].point, 1e-12);
+      near_vec(curve_point(c, m[k].t), m[k].point, 1e-12);
       NEAR(cag_dot(cag_sub(m[k].point, plane.point), plane.normal), 0, 1e-10);
       assert_true(m[k].multiplicity == 1 && m[k].t2 == 0);
     }
@@ -537,7 +537,7 @@ static void random_curves_meet_where_polylines_cross(void **state) {
     c[1] = random_curve(&seed, i / KINDS % KINDS, false);
     for (int k = 0; k < 2; k++)
       for (int j = 0; j <= STEPS; j++)
-        p[k][j] = place(c[k], c[k]->start + (c[k]->end - c[k]->start) * j / STEPS);
+        p[k][j] = curve_point(c[k], c[k]->start + (c[k]->end - c[k]->start) * j / STEPS);
     CagMeeting *m;
     size_t n, wanted = 0;
     OK(cag_curve_intersect(c[0], c[1], &m, &n, &err));
@@ -553,8 +553,8 @@ static void random_curves_meet_where_polylines_cross(void **state) {
     assert_int_equal(n, wanted);
     all += n;
     for (size_t k = 0; k < n; k++) {
-      near_vec(place(c[0], m[k].t), m[k].point, 1e-9);
-      near_vec(place(c[1], m[k].t2), m[k].point, 1e-9);
+      near_vec(curve_point(c[0], m[k].t), m[k].point, 1e-9);
+      near_vec(curve_point(c[1], m[k].t2), m[k].point, 1e-9);
       assert_true(m[k].multiplicity == 1 && (k == 0 || m[k - 1].t <= m[k].t));
     }
     // Exchanged curves meet at the same points.
@@ -586,8 +586,8 @@ static void curves_of_space_meet_where_they_were_put(void **state) {
     double t[2];
     for (int k = 0; k < 2; k++)
       t[k] = c[k]->start + (c[k]->end - c[k]->start) * uniform(&seed, 0.05, 0.95);
-    const CagVec3 p = place(c[0], t[0]);
-    const CagTransform shift = cag_translate(cag_sub(p, place(c[1], t[1])));
+    const CagVec3 p = curve_point(c[0], t[0]);
+    const CagTransform shift = cag_translate(cag_sub(p, curve_point(c[1], t[1])));
     OK(cag_curve_transform(c[1], &shift, &moved, &err));
     CagMeeting *m;
     size_t n;
@@ -636,7 +636,7 @@ static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
     if (i >= KINDS) { // in space, nothing else meets
       OK(cag_curve_intersect(part[0], part[2], &m, &n, &err));
       assert_int_equal(n, 1);
-      near_vec(m[0].point, place(c, t[2]), 1e-8);
+      near_vec(m[0].point, curve_point(c, t[2]), 1e-8);
       free(m);
     }
     for (int k = 0; k < 3; k++) cag_curve_release(part[k]);
@@ -675,7 +675,7 @@ static void touches_just_outside_of_an_end_are_found_at_the_end(void **state) {
     OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
     assert_int_equal(n, 1);
     NEAR(m[0].t, end, 1e-4);
-    near_vec(m[0].point, place(c, m[0].t), 1e-14);
+    near_vec(m[0].point, curve_point(c, m[0].t), 1e-14);
     near_vec(m[0].point, cag_vec3(0, 0, 0), 1e-4);
     free(m);
     for (int turned = 0; turned < 2; turned++) {

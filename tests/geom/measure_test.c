@@ -100,7 +100,7 @@ static CagStatus waves(void *context, double u, double v, int n, CagVec3 *out, C
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(waves, context, u, vs, nv, n, out, e);
+  return row_by_points(waves, context, u, vs, nv, n, out, e);
 }
 
 static CagSurface *formula(double u0, double u1, double v0, double v1) {
@@ -172,7 +172,7 @@ typedef struct Integrals {
 } Integrals;
 
 // V is 1/3 of the flux of the position vector. Moments are fluxes along their own axes.
-static void add_place(const CagSurface *s, double u, double v, double weight, Integrals *out) {
+static void add_sample(const CagSurface *s, double u, double v, double weight, Integrals *out) {
   CagVec3 d[4];
   OK(cag_surface_eval(s, u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err));
   const CagVec3 n = cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]);
@@ -197,9 +197,9 @@ static Integrals integrals_of(const CagSurface *s, const double *ku, int nu, con
       const double hv = (kv[j / PARTS + 1] - kv[j / PARTS]) / PARTS;
       for (int a = 0; a < 8; a++)
         for (int b = 0; b < 8; b++)
-          add_place(s, ku[i / PARTS] + hu * (i % PARTS + NODE[a]),
-                    kv[j / PARTS] + hv * (j % PARTS + NODE[b]), WEIGHT[a] * WEIGHT[b] * hu * hv,
-                    &sum);
+          add_sample(s, ku[i / PARTS] + hu * (i % PARTS + NODE[a]),
+                     kv[j / PARTS] + hv * (j % PARTS + NODE[b]), WEIGHT[a] * WEIGHT[b] * hu * hv,
+                     &sum);
     }
   return sum;
 }

@@ -45,7 +45,7 @@ static CagStatus waves_eval(void *context, double u, double v, int n, CagVec3 *o
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(waves_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(waves_eval, context, u, vs, nv, n, out, e);
 }
 static CagStatus wave_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
   (void)context;

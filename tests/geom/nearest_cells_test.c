@@ -158,7 +158,7 @@ static CagStatus bump(void *context, double u, double v, int n, CagVec3 *out, Ca
 }
 static CagStatus bump_row(void *context, double u, const double *vs, size_t nv, int n, CagVec3 *out,
                           CagError *err) {
-  return row_by_places(bump, context, u, vs, nv, n, out, err);
+  return row_by_points(bump, context, u, vs, nv, n, out, err);
 }
 
 static CagSurface *patch(int p, int q, bool rational) {

@@ -36,7 +36,7 @@ static inline double distance_at(const Dense *d, double u, double v) {
 }
 
 // Moves to the closest neighbor, and shortens the steps when none is closer.
-static inline double creep(const Dense *d, double u, double v, double du, double dv) {
+static inline double descend(const Dense *d, double u, double v, double du, double dv) {
   const CagSurface *s = d->s;
   double best = distance_at(d, u, v);
   for (int round = 0; round < 90; round++) {
@@ -73,7 +73,7 @@ static inline double dense_distance(const CagSurface *s, CagVec3 p, int nu, int 
         const int x = i + k / 3 - 1, y = j + k % 3 - 1;
         lowest = x < 0 || y < 0 || x > nu || y > nv || at[i][j] <= at[x][y];
       }
-      if (lowest) best = fmin(best, creep(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
+      if (lowest) best = fmin(best, descend(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
     }
   return best;
 }

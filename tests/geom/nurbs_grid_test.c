@@ -39,7 +39,7 @@ static CagSurface *random_surface(int p, int q, bool rational, double size, bool
 }
 
 // Parameters, sorted or not, which include the ends.
-static void set_places(double from, double to, size_t n, bool sorted, double *out) {
+static void set_parameters(double from, double to, size_t n, bool sorted, double *out) {
   for (size_t i = 0; i < n; i++) out[i] = uniform(from, to);
   for (size_t i = 0; sorted && i < n; i++)
     out[i] = from + (to - from) * ((double)i + 0.5) / (double)n;
@@ -102,8 +102,8 @@ static void grids_have_the_values_of_single_places(void **state) {
     // Few columns, or more than fit in a block.
     const size_t nu = (size_t)whole(2, ROWS),
                  nv = (size_t)(round % 3 ? whole(2, 9) : whole(60, COLUMNS));
-    set_places(s->u0, s->u1, nu, round % 2, us);
-    set_places(s->v0, s->v1, nv, round / 2 % 2, vs);
+    set_parameters(s->u0, s->u1, nu, round % 2, us);
+    set_parameters(s->v0, s->v1, nv, round / 2 % 2, vs);
     for (int what = 0; what < 8; what++) check_grid(s, us, nu, vs, nv, what, size, pole);
     cag_surface_release(s);
   }
@@ -127,8 +127,8 @@ static void flat_nets_have_no_normals(void **state) {
     OK(cag_surface_bezier(net, NULL, nu, nv, &s, &err));
     CagVec3 points[15], normals[15];
     double us[3], vs[5];
-    set_places(0, 1, 3, false, us);
-    set_places(0, 1, 5, false, vs);
+    set_parameters(0, 1, 3, false, us);
+    set_parameters(0, 1, 5, false, vs);
     OK(cag_surface_eval_frames(s, us, 3, vs, 5, points, NULL, NULL, normals, &err));
     for (int i = 0; i < 15; i++) near_vec(normals[i], cag_vec3(0, 0, 0), 0);
     cag_surface_release(s);
@@ -152,7 +152,7 @@ static void places_without_weight_are_refused(void **state) {
       CagSurface *s;
       OK(cag_surface_bezier(net, weights, 2, nv, &s, &err));
       for (size_t n = 1; n <= 20; n++) {
-        set_places(0, 1, n, true, vs);
+        set_parameters(0, 1, n, true, vs);
         for (int what = 0; what < 3; what++) {
           const CagStatus status =
               what == 2

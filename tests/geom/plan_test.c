@@ -147,7 +147,7 @@ static double edge_use(const Parabolic *f, const CagTessellation *how, double h,
 typedef double Use(const Parabolic *f, const CagTessellation *how, double h, double m);
 
 // The ratio of the planned grid to the smallest one that satisfies the limits.
-static double share_of_smallest(const Parabolic *f, int turn, const CagTessellation *how,
+static double ratio_to_smallest(const Parabolic *f, int turn, const CagTessellation *how,
                                 Use *use) {
   enum { MOST = 400 };
   const Leaf leaf = only_leaf(f, turn, how);
@@ -188,7 +188,7 @@ static void grids_are_little_larger_than_the_smallest(void **state) {
       const double fine = exp(uniform(-2, 2));
       const CagTessellation how =
           limits(cases[c].tolerance * fine, cases[c].angle * fine, cases[c].max_edge * fine);
-      const double share = share_of_smallest(&f, k % 8, &how, cases[c].use);
+      const double share = ratio_to_smallest(&f, k % 8, &how, cases[c].use);
       if (!(share <= cases[c].most)) fail_msg("case %zu: %g times as many", c, share);
       sum += share / 64;
     }
@@ -372,10 +372,10 @@ static CagStatus ripple_eval(void *context, double u, double v, int n, CagVec3 *
 
 static CagStatus ripple_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  return row_by_places(ripple_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(ripple_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
 // Only the limits for normals and edge lengths detect waves below the tolerance.
 static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
@@ -394,7 +394,7 @@ static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
     r.wave[k % 2] = uniform(10, 60);
     r.wave[1 - k % 2] = k % 3 ? 0 : slow;
     r.fade[k / 2 % 2] = uniform(0, 0.9);
-    const CagSurfaceFunction f = {ripple_eval, ripple_row, keep, &r};
+    const CagSurfaceFunction f = {ripple_eval, ripple_row, release_nothing, &r};
     OK(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err));
     sum += check_plan(s, &how);
     cag_surface_release(s);

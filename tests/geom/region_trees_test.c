@@ -40,7 +40,7 @@ typedef struct Leaf {
   size_t n;                 // 0: not a convex polygon
 } Leaf;
 
-static CagRegion *take_loop(CagCurve *c) {
+static CagRegion *region_of_loop(CagCurve *c) {
   CagRegion *r;
   OK(cag_region_new(c, NULL, 0, &r, &err));
   cag_curve_release(c);
@@ -57,7 +57,7 @@ static Leaf convex_leaf(const CagVec3 *p, size_t n) {
   for (size_t i = 0; i < n; i++) leaf.corners[i] = p[turned ? n - 1 - i : i];
   CagCurve *c;
   OK(cag_curve_polyline(leaf.corners, n, true, 2, &c, &err));
-  leaf.region = take_loop(c);
+  leaf.region = region_of_loop(c);
   return leaf;
 }
 
@@ -98,7 +98,7 @@ static Leaf disc(void) {
   const double start = half ? random_below(8) * M_PI / 4 : 0;
   CagCurve *arc, *c;
   OK(cag_curve_arc(radius, radius, start, start + (half ? M_PI : 2 * M_PI), &frame, &arc, &err));
-  if (!half) return (Leaf){.region = take_loop(arc)};
+  if (!half) return (Leaf){.region = region_of_loop(arc)};
   CagVec3 p, q;
   OK(cag_curve_point(arc, arc->start, &p, &err));
   OK(cag_curve_point(arc, arc->end, &q, &err));
@@ -106,7 +106,7 @@ static Leaf disc(void) {
   OK(cag_curve_line(q, p, 2, &parts[1], &err));
   OK(cag_curve_join(parts, 2, &c, &err));
   for (int i = 0; i < 2; i++) cag_curve_release(parts[i]);
-  return (Leaf){.region = take_loop(c)};
+  return (Leaf){.region = region_of_loop(c)};
 }
 
 // Bezier curves of degree 1 to 3 whose control points run steadily around a center.
@@ -134,7 +134,7 @@ static Leaf beziers(void) {
   }
   OK(cag_curve_join(parts, (size_t)n, &c, &err));
   for (int i = 0; i < n; i++) cag_curve_release(parts[i]);
-  return (Leaf){.region = take_loop(c)};
+  return (Leaf){.region = region_of_loop(c)};
 }
 
 static Leaf any_leaf(void) {

@@ -286,7 +286,7 @@ static CagRobot *make_in(const Sample *s, bool fixed, double unit) {
 static CagRobot *make(const Sample *s, bool fixed) { return make_in(s, fixed, 1); }
 
 static uint32_t seed = 7;
-static double random_share(void) {
+static double random_fraction(void) {
   seed = seed * 1664525 + 1013904223;
   return (double)(seed >> 8) / (1 << 24);
 }
@@ -388,8 +388,8 @@ static void find_all_solutions(const Sample *s, double unit, int poses) {
   for (int i = 0; i < poses; i++) {
     double q[6];
     for (size_t j = 0; j < s->n; j++)
-      q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
-                                  : (2 * random_share() - 1) * 3.1;
+      q[j] = s->rows[j].kind == P ? (50 + 400 * random_fraction()) / unit
+                                  : (2 * random_fraction() - 1) * 3.1;
     check_pose(s, plain, plain, q);
     check_pose(s, built, plain, q);
   }
@@ -436,7 +436,8 @@ static void all_ways_to_a_point_are_found(void **state) {
         CagTransform target, at;
         CagInverse all;
         for (size_t j = 0; j < s->n; j++)
-          q[j] = s->rows[j].kind == P ? 50 + 400 * random_share() : (2 * random_share() - 1) * 3.1;
+          q[j] = s->rows[j].kind == P ? 50 + 400 * random_fraction()
+                                      : (2 * random_fraction() - 1) * 3.1;
         cag_robot_forward(r, q, &target);
         const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
         cag_robot_inverse_point(r, p, NULL, &all);
@@ -512,7 +513,7 @@ static void free_joints_stand_where_they_are_wished(void **state) {
         unsigned free = 0;
         for (size_t i = 0; i < s->n; i++)
           q[i] = s->rows[i].kind == P ? poses[k].q[i] : poses[k].q[i] * DEGREE;
-        for (size_t i = 0; i < s->n; i++) near[i] = q[i] + 0.2 * random_share();
+        for (size_t i = 0; i < s->n; i++) near[i] = q[i] + 0.2 * random_fraction();
         cag_robot_forward(r, q, &target);
         cag_robot_inverse(r, &target, near, &all);
         if (all.status != CAG_INVERSE_SINGULAR)
@@ -549,9 +550,9 @@ static void folded_links_turn_as_they_are_wished(void **state) {
     double q[3] = {100, 100, 100}, near[3];
     CagTransform target, pose;
     CagInverse all;
-    q[first] = 2 * random_share() - 1;
+    q[first] = 2 * random_fraction() - 1;
     q[first + 1] = (180 + 40) * DEGREE;
-    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_share() - 1;
+    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
     cag_robot_inverse_point(r, p, near, &all);
@@ -574,7 +575,7 @@ static void hands_over_the_first_axis_are_found(void **state) {
     double q[6];
     CagTransform target;
     CagInverse all;
-    for (int i = 0; i < 5; i++) q[i] = 2 * random_share() - 1;
+    for (int i = 0; i < 5; i++) q[i] = 2 * random_fraction() - 1;
     q[2] = M_PI - 2 * q[1]; // 7 cos(q2) + 7 cos(q2 + q3) = 0
     cag_robot_forward(r, q, &target);
     cag_robot_inverse(r, &target, NULL, &all);
@@ -604,7 +605,7 @@ static void turns_and_places_are_told_apart(void **state) {
     double q[6];
     CagTransform target;
     const CagTransform turned = cag_dh(0.4, 0, 0, 0), leaning = cag_dh(0, 0, 0, 0.4);
-    for (size_t i = 0; i < s->n; i++) q[i] = s->rows[i].kind == P ? 100 : 2 * random_share() - 1;
+    for (size_t i = 0; i < s->n; i++) q[i] = s->rows[i].kind == P ? 100 : 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const double beyond = 2 * r->reach;
     // A planar arm cannot lean out of its plane.
@@ -636,8 +637,8 @@ static void turns_that_place_nothing_are_free(void **state) {
     double q[3], near[3];
     CagTransform target, pose;
     CagInverse all;
-    for (size_t i = 0; i < 3; i++) q[i] = s.rows[i].kind == P ? 100 : 2 * random_share() - 1;
-    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_share() - 1;
+    for (size_t i = 0; i < 3; i++) q[i] = s.rows[i].kind == P ? 100 : 2 * random_fraction() - 1;
+    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
     if (at_point) cag_robot_inverse_point(r, p, near, &all);
@@ -684,8 +685,8 @@ static void stretched_and_folded_arms_are_found(void **state) {
       CagTransform target, at;
       CagInverse all;
       for (size_t j = 0; j < s->n; j++)
-        q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
-                                    : (2 * random_share() - 1) * 3.1;
+        q[j] = s->rows[j].kind == P ? (50 + 400 * random_fraction()) / unit
+                                    : (2 * random_fraction() - 1) * 3.1;
       q[arms[k % count].joint] = (arms[k % count].straight + (pose % 2 ? 180 : 0)) * DEGREE;
       cag_robot_forward(r, q, &target);
       cag_robot_inverse(r, &target, NULL, &all);

@@ -30,7 +30,7 @@ static double random_number(uint64_t *state) {
   return (double)(*state >> 11) / 9007199254740992.0;
 }
 
-static void random_place(const CagRobot *r, uint64_t *state, double *q) {
+static void random_joints(const CagRobot *r, uint64_t *state, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = l->low + random_number(state) * (l->high - l->low);
@@ -63,7 +63,7 @@ static void poses_of_chains_are_found_within_the_limits(void **state) {
       double q[20], found[20], again[20];
       CagTransform wanted;
       CagRobotSearch search = {0};
-      random_place(robots[k], &seed, q);
+      random_joints(robots[k], &seed, q);
       cag_robot_forward(robots[k], q, &wanted);
       assert_true(cag_robot_search(robots[k], &wanted, &search, found).solved);
       assert_reaches(robots[k], found, &wanted, 1e-9);
@@ -100,7 +100,7 @@ static void the_unit_of_length_does_not_matter(void **state) {
   for (int i = 0; i < 200; i++) {
     double places[7], q[3][7];
     CagRobotFound found[3];
-    random_place(robots[0], &seed, places);
+    random_joints(robots[0], &seed, places);
     for (int k = 0; k < 3; k++) {
       CagTransform wanted;
       const CagRobotSearch search = {0};
@@ -342,7 +342,7 @@ static double between(uint64_t *state, double low, double high) {
 
 // Steps the first n joints through a grid over the limits, including the ends; the others are not
 // changed. Returns false when all have been visited.
-static bool next_place(const CagRobot *r, size_t n, size_t *at, double *q) {
+static bool next_configuration(const CagRobot *r, size_t n, size_t *at, double *q) {
   size_t i = 0;
   while (i < n && ++at[i] == PROBES) at[i++] = 0;
   for (size_t k = 0; k < n; k++) {
@@ -391,7 +391,7 @@ static void check_workspace(const CagRobot *r, const CagWorkspace *w, size_t n, 
   cag_robot_home(r, q);
   for (bool more = true; more;) {
     CagTransform tool;
-    more = next_place(r, n, at, q);
+    more = next_configuration(r, n, at, q);
     cag_robot_forward(r, q, &tool);
     const CagVec3 p = cag_vec3(tool.m[0][3], tool.m[1][3], tool.m[2][3]);
     const double d = distance_of(r, w, p);

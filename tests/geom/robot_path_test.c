@@ -45,7 +45,7 @@ static CagRobot *arm_of(const Row *rows, size_t n) {
   return r;
 }
 
-static void random_place(const CagRobot *r, double *q) {
+static void random_joints(const CagRobot *r, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = uniform(l->low, l->high);
@@ -99,8 +99,8 @@ static void the_nearest_solution_of_a_branch_is_taken(void **state) {
     CagInverse all;
     CagRobotFound found;
     CagRobotGoal goal = {.near = trial % 5 ? near : NULL};
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_home(r, home);
     if (trial % 3 == 1) goal.shoulder = trial % 4 < 2 && has.shoulder ? 1 : 0;
     if (trial % 3 == 2) goal.wrist = trial % 4 < 2 ? 1 : -1;
@@ -143,8 +143,8 @@ static void points_are_reached_by_the_nearest_way(void **state) {
     CagInverse all;
     CagRobotFound found;
     const CagRobotGoal goal = {.near = near, .position_only = true};
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_forward(r, q, &t);
     const CagVec3 p = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
     cag_robot_inverse_point(r, p, near, &all);
@@ -247,8 +247,8 @@ static void one_step_ends_where_many_do(void **state) {
     CagRobot *r = arms[trial % ARMS];
     double a[6], b[6], few[2][6], many[N][6];
     CagTransform from, to;
-    random_place(r, a);
-    random_place(r, b);
+    random_joints(r, a);
+    random_joints(r, b);
     const double part = uniform(0.2, 0.9);
     for (int i = 0; i < 6; i++) b[i] = a[i] + part * (b[i] - a[i]);
     cag_robot_forward(r, a, &from);
@@ -313,7 +313,7 @@ static void singular_places_are_told_by_their_step(void **state) {
 }
 
 // The number after "(at " in the message.
-static double told_place(void) {
+static double reported_position(void) {
   const char *at = strstr(err.message, "(at ");
   assert_non_null(at);
   return atof(at + 4);
@@ -344,7 +344,7 @@ static void paths_end_where_their_branch_does(void **state) {
     assert_int_equal(cag_robot_line_path(r, &from, &to, n, &way, q[0], &err), CAG_E_DEGENERATE);
     assert_string_equal(cag_error_info(err.id)->reason, "path-jumps");
     assert_int_equal(err.index, (long)ceil(end));
-    assert_true(told_place() <= end && told_place() >= end - left);
+    assert_true(reported_position() <= end && reported_position() >= end - left);
     assert_non_null(strstr(err.message, "the limit of joint 1 stands"));
     assert_non_null(strstr(err.message, "before step"));
     // The reach of 500 ends at x = sqrt(500^2 - 100^2).
@@ -352,7 +352,7 @@ static void paths_end_where_their_branch_does(void **state) {
     assert_int_equal(cag_robot_line_path(r, &from, &far, n, &way, q[0], &err), CAG_E_DEGENERATE);
     assert_string_equal(cag_error_info(err.id)->reason, "path-leaves");
     assert_int_equal(err.index, (long)ceil(leaves));
-    assert_true(told_place() <= leaves + 1e-3 && told_place() >= leaves - left);
+    assert_true(reported_position() <= leaves + 1e-3 && reported_position() >= leaves - left);
   }
   const CagTransform poses[] = {from, at_point(300, 50), to, far};
   FAILS_AT(cag_robot_follow(r, poses, 3, &way, q[0], &err), "path-jumps", 2);
@@ -387,7 +387,7 @@ static void slides_end_paths_as_well(void **state) {
   const CagRobotWay way = {.near = near, .position_only = true};
   FAILS_AT(cag_robot_line_path(r, &from, &to, 9, &way, q[0], &err), "path-jumps", 3);
   // From 50 to 210 in 8 steps of 20; two and a half steps are within the limit.
-  assert_true(told_place() <= 2.5 + 1e-6 && told_place() > 2.5 - 1.0 / 2048);
+  assert_true(reported_position() <= 2.5 + 1e-6 && reported_position() > 2.5 - 1.0 / 2048);
   assert_non_null(strstr(err.message, "the limit of joint 2 stands"));
   const double inside[] = {90 * DEGREE, 94};
   cag_robot_forward(r, inside, &to);

@@ -51,7 +51,7 @@ static CagRobot *random_arm(size_t n, unsigned slides, double low, double high) 
   return random_arm_with_screws(n, slides, 0, low, high);
 }
 
-static void random_place(const CagRobot *r, double *q) {
+static void random_joints(const CagRobot *r, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = uniform(l->low, l->high);
@@ -103,7 +103,7 @@ static void free_motion_is_what_the_rows_leave(void **state) {
     const size_t n = 7 + (size_t)trial % 6;
     CagRobot *r = random_arm(n, trial % 3 ? 1u << trial % 7 : 0, -2, 2);
     double q[JOINTS], dq[JOINTS], x[JOINTS], out[JOINTS], rows[6][JOINTS];
-    random_place(r, q);
+    random_joints(r, q);
     for (size_t i = 0; i < n; i++) {
       dq[i] = uniform(-1, 1);
       x[i] = dq[i] / unit_of(r, i);
@@ -131,7 +131,7 @@ static void near_solutions_are_found_by_the_shortest_way(void **state) {
     bool held[JOINTS] = {0};
     size_t count, rank;
     CagTransform wanted;
-    random_place(r, q);
+    random_joints(r, q);
     // In every other trial, one joint is at a limit.
     const size_t limited = (size_t)uniform(0, (double)n);
     if (trial % 2) q[limited] = trial % 8 < 4 ? -limit : limit;
@@ -172,7 +172,7 @@ static void solutions_are_turned_as_near_as_limits_let(void **state) {
     CagRobot *r = random_arm_with_screws(6, 0, screws, low, high);
     double there[6], near[6], found[6];
     CagTransform wanted;
-    random_place(r, there);
+    random_joints(r, there);
     for (int i = 0; i < 6; i++) near[i] = trial % 3 ? there[i] + uniform(-9, 9) : uniform(-40, 40);
     cag_robot_forward(r, there, &wanted);
     const CagRobotSearch search = {.near = near, .starts = 20};
@@ -259,7 +259,7 @@ static void wishes_are_met_as_far_as_the_tool_lets(void **state) {
     CagRobot *r = random_arm(n, trial % 3 == 1 ? 4 : 0, -2.5, 2.5);
     double q[JOINTS], near[JOINTS], found[JOINTS], wish[JOINTS], rows[6][JOINTS];
     CagTransform wanted, got;
-    random_place(r, q);
+    random_joints(r, q);
     for (size_t i = 0; i < n; i++) q[i] /= 2;
     cag_robot_forward(r, q, &wanted);
     for (size_t i = 0; i < n; i++) near[i] = q[i] + uniform(-0.3, 0.3);
@@ -358,8 +358,8 @@ static void alternatives_come_nearer(void **state) {
     double q[JOINTS], near[JOINTS], found[2][JOINTS], apart[2] = {0};
     CagTransform wanted;
     size_t steps[2];
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_forward(r, q, &wanted);
     for (size_t k = 0; k < 2; k++) {
       const CagRobotSearch search = {.near = near, .alternatives = 20 * k};

@@ -26,16 +26,16 @@ static CagVec3 random_vector(double most) {
   return cag_vec3(x, y, uniform(-most, most));
 }
 
-static CagVec3 place(const Subject *s, double x, double y) {
+static CagVec3 subject_point(const Subject *s, double x, double y) {
   return cag_madd(cag_madd(s->origin, x, s->axis[0]), y, s->axis[1]);
 }
 
 static CagVec3 point(const Subject *s, double t) {
   switch (s->kind) {
-  case ELLIPSE: return place(s, s->a * cos(t), s->b * sin(t));
-  case PARABOLA: return place(s, s->a * t * t, 2 * s->a * t);
-  case HYPERBOLA: return place(s, s->a * cosh(t), s->b * sinh(t));
-  default: return place(s, s->a * t, s->b * t);
+  case ELLIPSE: return subject_point(s, s->a * cos(t), s->b * sin(t));
+  case PARABOLA: return subject_point(s, s->a * t * t, 2 * s->a * t);
+  case HYPERBOLA: return subject_point(s, s->a * cosh(t), s->b * sinh(t));
+  default: return subject_point(s, s->a * t, s->b * t);
   }
 }
 

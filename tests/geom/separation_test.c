@@ -106,7 +106,7 @@ typedef struct Shape {
 
 static int freedom_of(const Shape *s) { return s->surface ? 2 : s->curve ? 1 : 0; }
 
-static CagVec3 place_of(const Shape *s, const double *x) {
+static CagVec3 shape_point(const Shape *s, const double *x) {
   CagVec3 p = s->point;
   if (s->surface) OK(cag_surface_point(s->surface, x[0], x[1], &p, &err));
   else if (s->curve) OK(cag_curve_point(s->curve, x[0], &p, &err));
@@ -128,14 +128,14 @@ static Window domain_of(const Shape *s) {
 
 // Computes points on a grid over the window, and their parameters. Curves have as many points as
 // surfaces.
-static int places_in(const Shape *s, const Window *w, CagVec3 *p, double (*x)[2]) {
+static int grid_points(const Shape *s, const Window *w, CagVec3 *p, double (*x)[2]) {
   int n = 0;
   const int rows = s->surface ? ROWS : s->curve ? MOST_PLACES : 2, columns = s->surface ? ROWS : 1;
   for (int i = 0; i < rows; i++)
     for (int k = 0; k < columns; k++, n++) {
       x[n][0] = w->low[0] + (w->high[0] - w->low[0]) * i / (rows - 1);
       x[n][1] = s->surface ? w->low[1] + (w->high[1] - w->low[1]) * k / (columns - 1) : 0;
-      p[n] = place_of(s, x[n]);
+      p[n] = shape_point(s, x[n]);
     }
   return n;
 }
@@ -158,7 +158,8 @@ static double distance_by_grids(const Shape *a, const Shape *b, int rounds) {
   Window window[2] = {domain_of(a), domain_of(b)};
   double best = INFINITY;
   for (int round = 0; round < rounds; round++) {
-    const int n = places_in(a, &window[0], p[0], x[0]), m = places_in(b, &window[1], p[1], x[1]);
+    const int n = grid_points(a, &window[0], p[0], x[0]),
+              m = grid_points(b, &window[1], p[1], x[1]);
     int at[2] = {0, 0};
     double least = INFINITY;
     for (int i = 0; i < n; i++)

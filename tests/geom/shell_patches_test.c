@@ -19,7 +19,7 @@ typedef struct Side {
   CagVec3 origin, x, y;
 } Side;
 
-static CagVec3 place(const Side *s, double x, double y) {
+static CagVec3 side_point(const Side *s, double x, double y) {
   return cag_madd(cag_madd(s->origin, x, s->x), y, s->y);
 }
 
@@ -79,7 +79,7 @@ static void add_side(Faces *f, const Side *side, int most, bool planar) {
     for (size_t j = 0; j < m; j++) {
       CagVec3 corner[4];
       for (size_t k = 0; k < 4; k++)
-        corner[k] = place(side, lines[0][i + k / 2], lines[1][j + k % 2]);
+        corner[k] = side_point(side, lines[0][i + k / 2], lines[1][j + k % 2]);
       f->at[f->n++] = planar ? region(corner) : patch(corner);
     }
 }

@@ -45,7 +45,7 @@ static CagStatus twist_eval(void *context, double u, double v, int n, CagVec3 *o
 
 static CagStatus twist_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(twist_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(twist_eval, context, u, vs, nv, n, out, e);
 }
 
 static CagSurface *twisted(Twist *t) {

@@ -56,7 +56,7 @@ typedef struct Way {
   bool turns;
 } Way;
 
-static CagVec3 place(const Way *w, CagVec3 p, double t) {
+static CagVec3 moved_point(const Way *w, CagVec3 p, double t) {
   if (w->turns) {
     CagTransform turn;
     OK(cag_rotate(w->axis, w->from + t * w->angle, w->through, &turn, &err));
@@ -90,7 +90,7 @@ static void add_triangle(Sums *s, const Way *w, const CagVec3 corner[3], double 
     const CagVec3 p = cag_madd(cag_madd(corner[0], a, x), b, y);
     for (int k = 0; k < 3 * STEPS; k++) {
       const double t = (k / 3 + NODES[k % 3]) / STEPS;
-      const CagVec3 at = place(w, p, t);
+      const CagVec3 at = moved_point(w, p, t);
       const double part = WEIGHTS[i / 3] * WEIGHTS[i % 3] * (1 - a) * twice * WEIGHTS[k % 3] /
                           STEPS * density(w, p, t);
       const double c[3] = {at.x, at.y, at.z};

@@ -5,7 +5,7 @@
 #include "geom/curve/circles.h"
 #include "geom/curve/function.h"
 
-static CagVec3 random_place(double size) {
+static CagVec3 random_location(double size) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(-size, size);
   p.y = uniform(-size, size);
@@ -60,7 +60,7 @@ static CagCurve *random_spline(void) {
   double w[N], knots[N + 4] = {-2, -2, -2, -2, 0, 0, 0, 3, 3, 3, 3};
   CagCurve *c;
   for (int i = 0; i < N; i++) {
-    p[i] = random_place(3);
+    p[i] = random_location(3);
     w[i] = uniform(0.5, 2);
   }
   knots[4] = uniform(-1.8, -0.5);
@@ -74,7 +74,7 @@ static CagCurve *random_plane_curve(int kind) {
   const CagTransform f = plane_frame(uniform(-2, 2), uniform(-2, 2), uniform(-3, 3));
   CagVec3 p[5];
   CagCurve *c;
-  for (int i = 0; i < 5; i++) p[i] = random_place(3);
+  for (int i = 0; i < 5; i++) p[i] = random_location(3);
   switch (kind) {
   case 0: OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err)); return c;
   case 1: OK(cag_curve_bezier(p, NULL, 5, 2, &c, &err)); return c;
@@ -233,11 +233,11 @@ static void tangents_of_joined_curves_are_those_of_each(void **state) {
   (void)state;
   seed = 64;
   for (int i = 0; i < 200; i++) {
-    CagVec3 net[7], p = random_place(5);
+    CagVec3 net[7], p = random_location(5);
     CagCurve *c[3];
     CagTangentLine *lines[3];
     size_t n[3];
-    for (int k = 0; k < 7; k++) net[k] = random_place(3);
+    for (int k = 0; k < 7; k++) net[k] = random_location(3);
     if (i % 4 == 1) p = cag_lerp(net[2], net[3], uniform(1.2, 3));
     if (i % 4 == 2) p = cag_lerp(net[4], net[3], uniform(1.2, 3));
     OK(cag_curve_bezier(net, NULL, 4, 2, &c[0], &err));
@@ -266,7 +266,7 @@ static void lines_have_no_tangents_from_their_extensions(void **state) {
   seed = 65;
   for (int i = 0; i < 300; i++) {
     const double size = pow(10, uniform(-6, 6)), s = uniform(-2, 3);
-    const CagVec3 a = random_place(size), b = random_place(size), p = cag_lerp(a, b, s);
+    const CagVec3 a = random_location(size), b = random_location(size), p = cag_lerp(a, b, s);
     CagCurve *c;
     CagTangentLine *lines;
     size_t n;
@@ -290,7 +290,7 @@ static void circles_touch_at_any_size(void **state) {
   seed = 66;
   for (int i = 0; i < 300; i++) {
     const double size = pow(10, i % 3 * 6 - 6.0);
-    const CagVec3 a = random_place(100 * size), e = cag_unit(random_place(1));
+    const CagVec3 a = random_location(100 * size), e = cag_unit(random_location(1));
     const double r = size * uniform(0.5, 2), s = size * uniform(0.5, 2), much = 1e-6 * size;
     const double apart[5] = {fabs(r - s) - much, fabs(r - s), uniform(fabs(r - s) + much, r + s),
                              r + s, r + s + much};

@@ -281,14 +281,14 @@ static CagStatus formula_eval(void *context, double u, double v, int n, CagVec3 
 
 static CagStatus formula_row(void *context, double u, const double *vs, size_t nv, int n,
                              CagVec3 *out, CagError *e) {
-  return row_by_places(formula_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(formula_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *formula(Formula **f, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  CagSurfaceFunction function = {formula_eval, formula_row, keep, f};
+  CagSurfaceFunction function = {formula_eval, formula_row, release_nothing, f};
   OK(cag_surface_function(&function, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }

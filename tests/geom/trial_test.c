@@ -321,14 +321,14 @@ static CagStatus sheet_eval(void *context, double u, double v, int n, CagVec3 *o
 
 static CagStatus sheet_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(sheet_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(sheet_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *surface_of(Sheet *sheet, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  const CagSurfaceFunction f = {sheet_eval, sheet_row, keep, sheet};
+  const CagSurfaceFunction f = {sheet_eval, sheet_row, release_nothing, sheet};
   OK(cag_surface_function(&f, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }

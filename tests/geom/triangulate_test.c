@@ -112,7 +112,7 @@ static int64_t turn_of(const int a[2], const int b[2], const int c[2]) {
   return (int64_t)(b[0] - a[0]) * (c[1] - a[1]) - (int64_t)(b[1] - a[1]) * (c[0] - a[0]);
 }
 
-static int by_place(const void *a, const void *b) {
+static int compare_points(const void *a, const void *b) {
   const int *p = a, *q = b;
   return p[0] != q[0] ? p[0] - q[0] : p[1] - q[1];
 }
@@ -156,7 +156,7 @@ static void no_corner_lies_within_the_circle_of_a_triangle(void **state) {
     const int size = round % 2 ? 60 : 6; // small ones have many cocircular corners
     for (int i = 0; i < POINTS; i++)
       for (int k = 0; k < 2; k++) p[i][k] = (int)floor(uniform(-size, size));
-    qsort(p, POINTS, sizeof *p, by_place);
+    qsort(p, POINTS, sizeof *p, compare_points);
     size_t n = convex_hull(p, POINTS, hull), triangles;
     double xy[2 * POINTS * 2];
     for (size_t i = 0; i < 2 * n; i++) xy[i] = hull[i / 2][i % 2];

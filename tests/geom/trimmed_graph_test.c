@@ -56,8 +56,8 @@ static CagTransform random_move(void) {
 
 // Area, moments, and the fluxes that add up to volumes.
 enum { SUMS = 14 };
-static void add_place(const Polynomial *f, const CagTransform *move, double x, double y, double w,
-                      double sum[SUMS]) {
+static void add_sample(const Polynomial *f, const CagTransform *move, double x, double y, double w,
+                       double sum[SUMS]) {
   const double h = 1e-3; // fourth-order differences, which are exact for these degrees
   const double fx = (8 * (value(f, x + h, y) - value(f, x - h, y)) -
                      (value(f, x + 2 * h, y) - value(f, x - 2 * h, y))) /
@@ -91,8 +91,8 @@ static void sum_over(const Polynomial *f, const CagTransform *move, const Disks 
       const double w = simpson * d->at[disk][2] / OUTWARD * r * 2 * M_PI / AROUND;
       for (int j = 0; j < AROUND; j++) {
         const double a = 2 * M_PI * j / AROUND;
-        add_place(f, move, d->at[disk][0] + r * cos(a), d->at[disk][1] + r * sin(a), disk ? -w : w,
-                  sum);
+        add_sample(f, move, d->at[disk][0] + r * cos(a), d->at[disk][1] + r * sin(a), disk ? -w : w,
+                   sum);
       }
     }
 }

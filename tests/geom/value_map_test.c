@@ -28,7 +28,7 @@ static CagStatus hills(void *context, double x, double y, int n, CagVec3 *out, C
 }
 static CagStatus hills_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(hills, context, u, vs, nv, n, out, e);
+  return row_by_points(hills, context, u, vs, nv, n, out, e);
 }
 
 // Monge's formulas, with the normal upward.

@@ -246,7 +246,7 @@ static bool rules_out(size_t index, const CagBuiltin *row, const CagSignature *s
   return !(cag_types_taken(row, s, parameter) & (CagTypes)1 << type);
 }
 
-static bool gives(const Call *call, size_t parameter) {
+static bool has_argument(const Call *call, size_t parameter) {
   for (size_t i = 0; i < call->count; i++)
     if (call->arguments[i].parameter == parameter) return true;
   return false;
@@ -263,7 +263,7 @@ static void vary(Run *r, size_t index, const CagBuiltin *row, const CagSignature
                rules_out(index, row, s, a->parameter, call->count, samples[k].type));
     }
     for (size_t p = 1; p < s->count; p++) {
-      if (gives(call, p) || s->positional_only[p] || call->count == 0) continue;
+      if (has_argument(call, p) || s->positional_only[p] || call->count == 0) continue;
       snprintf(before, sizeof before, ", %s: ", s->parameters[p]);
       run_with(r, s, text, call, call->close, call->close, before, samples[k].text,
                rules_out(index, row, s, p, call->count, samples[k].type));

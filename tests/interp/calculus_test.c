@@ -418,7 +418,7 @@ static double extrapolated(const Part *p, double x) {
 
 // An extension of QUADPACK, for steps between an end of a part and the nearest point: compares the
 // function at 2^-36 of the width from the end. Returns whether the part becomes doubtful.
-static bool look_beside(Asked *asked, const Integral *g, Part *p, int end, double wanted) {
+static bool check_beside(Asked *asked, const Integral *g, Part *p, int end, double wanted) {
   const double width = p->to - p->from, by = ldexp(width, -36);
   const double t = end < 0 ? p->from + by : p->to - by;
   if (t == p->from || t == p->to) return false;
@@ -433,7 +433,7 @@ static bool look_beside(Asked *asked, const Integral *g, Part *p, int end, doubl
 // QUADPACK's qag: the part with the largest error is halved until the sum of the errors is below
 // 1e-11 of the result, or below 100 rounding units of the sum of sizes. Parts with an error below
 // 50 rounding units are not divided. If both halves suddenly have no error, their common end is
-// doubtful; so are the ends and the middle of the range if `look_beside` says so. There, eighths
+// doubtful; so are the ends and the middle of the range if `check_beside` says so. There, eighths
 // are cut off, with an error at least proportional to their width.
 static double qag(Asked *asked, const Integral *g) {
   static Part parts[5000];
@@ -465,7 +465,7 @@ static double qag(Asked *asked, const Integral *g) {
           const double place = end < 0 ? parts[i].from : parts[i].to;
           if ((place == a || place == b || place == center) && !parts[i].doubted &&
               parts[i].to - parts[i].from > narrowest)
-            found |= look_beside(asked, g, &parts[i], end, wanted);
+            found |= check_beside(asked, g, &parts[i], end, wanted);
         }
       if (!found) return value;
       continue;

@@ -245,7 +245,7 @@ static void topics_refer_to_what_is_told(void **state) {
   cag_session_free(s);
 }
 
-static void tell_failure(void *context, const CagTestFailure *f) {
+static void report_failure(void *context, const CagTestFailure *f) {
   (void)context;
   print_error("%s: %s; expected %s, got %s\n", f->test, f->message, f->expected ? f->expected : "",
               f->got ? f->got : "");
@@ -257,7 +257,7 @@ static void examples_of_words_run(void **state) {
   CagTestCounts counts = {0};
   const char *word, *example;
   cag_test_options_init(&options);
-  options.failure = tell_failure;
+  options.failure = report_failure;
   for (size_t i = 0; cag_doc_word_row(i, &word, NULL, &example); i++) {
     assert_true(strstr(example, "print ") || strstr(example, "show ") ||
                 strstr(example, "assert "));

@@ -31,7 +31,7 @@ static const char *accessor(const cJSON *root, const char *bytes, const cJSON *o
   return bytes + (size_t)number_of(view, "byteOffset");
 }
 
-static CagTransform place_of(const cJSON *node) {
+static CagTransform node_transform(const cJSON *node) {
   CagTransform t = cag_transform_identity();
   if (cJSON_HasObjectItem(node, "rotation")) {
     const double x = element(node, "rotation", 0), y = element(node, "rotation", 1);
@@ -101,7 +101,7 @@ static void check_gltf(const Scene *s, const cJSON *root, const char *bytes, siz
     assert_int_equal((int)element(top, "children", node - 1), node);
     assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(found, "name")),
                         s->parts[i].name ? s->parts[i].name : "part");
-    const CagTransform place = place_of(found);
+    const CagTransform place = node_transform(found);
     const cJSON *primitive =
         item(item(root, "meshes", (size_t)number_of(found, "mesh")), "primitives", 0);
     const cJSON *attributes = cJSON_GetObjectItem(primitive, "attributes");

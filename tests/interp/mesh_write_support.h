@@ -71,14 +71,15 @@ static inline CagMesh *random_mesh(size_t vertices, size_t triangles, int featur
   return m;
 }
 
-static inline bool same_place(const CagMesh *m, uint32_t a, uint32_t b) {
+static inline bool same_position(const CagMesh *m, uint32_t a, uint32_t b) {
   const CagVec3 p = m->positions[a], q = m->positions[b];
   return (float)p.x == (float)q.x && (float)p.y == (float)q.y && (float)p.z == (float)q.z;
 }
 
 static inline bool shrinks(const CagMesh *m, size_t t) {
   const uint32_t *k = m->triangles + 3 * t;
-  return same_place(m, k[0], k[1]) || same_place(m, k[1], k[2]) || same_place(m, k[2], k[0]);
+  return same_position(m, k[0], k[1]) || same_position(m, k[1], k[2]) ||
+         same_position(m, k[2], k[0]);
 }
 
 typedef struct Scene {

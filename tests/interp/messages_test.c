@@ -259,7 +259,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
 }
 
 // The diagnostics of a failing script as text.
-static void all_said(const char *script, char *said, size_t size) {
+static void all_diagnostics(const char *script, char *said, size_t size) {
   CagSession *s;
   first_error(&s, script);
   FILE *f = fmemopen(said, size, "w");
@@ -284,7 +284,7 @@ static void chains_of_calls_are_told(void **state) {
     snprintf(script, sizeof script,
              "f(n) =\n  if n == 0 then 1 / n\n  else 1 + f(n - 1)\nprint f(%zu)", n);
     char said[8192];
-    all_said(script, said, sizeof said);
+    all_diagnostics(script, said, sizeof said);
     // All except the call in `print` are calls of f by f.
     size_t skipped = 0;
     const char *omitted = strstr(said, "= ... ");
@@ -309,7 +309,7 @@ static void calls_in_tail_position_are_told(void **state) {
     snprintf(script, sizeof script,
              "f(n) =\n  if n == 0 then 1 / n\n  else f(n - 1)\nx = f(%zu) + 1\nprint x", n);
     char said[8192];
-    all_said(script, said, sizeof said);
+    all_diagnostics(script, said, sizeof said);
     size_t skipped = 0;
     const char *omitted = strstr(said, "= ... ");
     if (omitted)

@@ -83,7 +83,7 @@ typedef struct Answer {
   char type[32], text[256];
 } Answer;
 
-static void take(void *context, const char *text, const char *type) {
+static void store_answer(void *context, const char *text, const char *type) {
   Answer *a = context;
   snprintf(a->text, sizeof a->text, "%s", text);
   snprintf(a->type, sizeof a->type, "%s", type);
@@ -119,7 +119,7 @@ static CagSession *quiet_session(void) {
 static const char *evaluate(CagSession *s, const char *text, int *status, Answer *out) {
   CagErrorView e;
   *out = (Answer){"", ""};
-  *status = cag_session_input(s, text, strlen(text), take, out);
+  *status = cag_session_input(s, text, strlen(text), store_answer, out);
   if (*status == CAG_STATUS_OK) return undefined(out->text) ? "an undefined number" : NULL;
   if (cag_session_error_count(s) == 0) return "the script fails without an error";
   cag_session_error(s, 0, &e);

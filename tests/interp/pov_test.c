@@ -385,7 +385,7 @@ static void center_of_light(const CagImage *image, int channel, double *x, doubl
 
 // A red ball to the right (+X) and a green one above (+Z) of the center of a camera that looks
 // along +Y. The picture is not reflected, and both are at the projected positions.
-static void check_places(bool orthographic) {
+static void check_positions(bool orthographic) {
   static const CagVec3 red = {40, 0, -6}, green = {-22, 30, 28};
   Fixture f;
   CagImage image;
@@ -440,8 +440,8 @@ static void tiny_scenes_look_like_large_ones(void **state) {
 static void pictures_are_not_mirrored_and_match_the_camera(void **state) {
   (void)state;
   if (!have_povray()) skip();
-  check_places(false);
-  check_places(true);
+  check_positions(false);
+  check_positions(true);
 }
 
 static void a_white_face_square_to_a_sun_of_strength_1_is_white(void **state) {

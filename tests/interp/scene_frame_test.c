@@ -181,7 +181,7 @@ static void standard_views_have_their_directions(void **state) {
 // --- The studio ---
 
 // The position of a light along the camera's right, up, and backward directions, in radii.
-static CagVec3 place_of(const CagScene *s, size_t i) {
+static CagVec3 light_position(const CagScene *s, size_t i) {
   const CagVec3 center = cag_lerp(s->bounds.min, s->bounds.max, 0.5);
   const double radius = cag_norm(cag_sub(s->bounds.max, s->bounds.min)) / 2;
   const CagVec3 d = cag_scaled(cag_sub(s->lights[i].position, center), 1 / radius);
@@ -208,7 +208,7 @@ static void studio_lights_go_with_the_camera_and_the_scene(void **state) {
       const CagVec3 center = cag_lerp(s->bounds.min, s->bounds.max, 0.5);
       assert_int_equal(l->kind, CAG_LIGHT_AREA);
       is_point(l->direction, cag_unit(cag_sub(center, l->position)), "direction");
-      const CagVec3 p = place_of(s, i);
+      const CagVec3 p = light_position(s, i);
       if (k == 0) first[i] = p;
       is_point(p, first[i], "place");
       assert_true(cag_norm(p) > 2 && l->size > radius && l->size < 4 * radius);

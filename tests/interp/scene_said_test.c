@@ -45,7 +45,7 @@ static void combine(Said *inner, const Said *outer) {
 static int below(int n) { return (int)uniform(0, n); }
 
 // Sets another attribute of the shape or group, by appending to the script.
-static void say(char *script, Said *holds) {
+static void set_attribute(char *script, Said *holds) {
   Said more = nothing;
   char text[120];
   const int kind = below(12);
@@ -114,7 +114,7 @@ static void what_is_said_nearer_holds(void **state) {
       Said group = nothing;
       const int sayings = below(4);
       if (level > 0) strcat(script, " |> group()");
-      for (int k = 0; k < sayings; k++) say(script, level == 0 ? &holds : &group);
+      for (int k = 0; k < sayings; k++) set_attribute(script, level == 0 ? &holds : &group);
       if (level > 0) combine(&holds, &group);
     }
     strcat(script, "]: g]");

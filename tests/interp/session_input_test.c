@@ -112,7 +112,7 @@ static void documents_of_names(void **state) {
 
 static char given[400];
 
-static void give_name(void *context, const char *name) {
+static void append_name(void *context, const char *name) {
   (void)context;
   strcat(given, name);
   strcat(given, " ");
@@ -127,7 +127,7 @@ static void members_are_those_of_the_value(void **state) {
   input(s, "p = {width: 3, depth: {a: 1, b: 2}}; r = 0..3; import std.materials as mat");
   for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
     given[0] = 0;
-    cag_session_members(s, members[i][0], give_name, NULL);
+    cag_session_members(s, members[i][0], append_name, NULL);
     if (strcmp(given, members[i][1]) != 0) fail_msg("%s: %s", members[i][0], given);
     assert_int_equal(cag_session_error_count(s), 0);
   }

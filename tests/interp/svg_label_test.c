@@ -45,7 +45,7 @@ typedef struct Area {
   CagBounds box;
 } Area;
 
-static void take(Area *a, double x, double y) { cag_bounds_add(&a->box, cag_vec3(x, y, 0)); }
+static void extend_area(Area *a, double x, double y) { cag_bounds_add(&a->box, cag_vec3(x, y, 0)); }
 
 // Each alignment of a text, with and without a mark, along many directions and in many sizes. The
 // text is next to its point: the closest edge of the letters is at the distance (plus the radius of
@@ -100,17 +100,17 @@ static void texts_stand_beside_their_points(void **state) {
           is_near(cy, -y, within, "center");
         }
         Area area = {CAG_BOUNDS_EMPTY};
-        take(&area, at.x, at.y);
+        extend_area(&area, at.x, at.y);
         const double wide = 4 * LETTER * size, left = sx > 0 ? 0 : sx < 0 ? -wide : -wide / 2;
         for (int k = 0; k < 4; k++) {
           const double along_text = left + (k & 1 ? wide : 0),
                        over = k & 2 ? CAPITALS * size : -DROP * size;
-          take(&area, x + along_text * c - over * s, y + along_text * s + over * c);
+          extend_area(&area, x + along_text * c - over * s, y + along_text * s + over * c);
         }
         if (mark) {
           const double r = (MARK + 0.1) * size; // half of its stroke is outside
-          take(&area, at.x - r, at.y - r);
-          take(&area, at.x + r, at.y + r);
+          extend_area(&area, at.x - r, at.y - r);
+          extend_area(&area, at.x + r, at.y + r);
         }
         is_near(box.min.x, area.box.min.x, 1e-9 * size, "left");
         is_near(box.max.x, area.box.max.x, 1e-9 * size, "right");

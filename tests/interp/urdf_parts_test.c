@@ -257,7 +257,7 @@ static void trees_without_one_root_are_refused(void **state) {
 
 // --- Masses ---
 
-static CagTransform random_place(double size) {
+static CagTransform random_transform(double size) {
   CagTransform t, move;
   CagVec3 axis, at;
   axis.x = uniform(-1, 1);
@@ -289,7 +289,7 @@ static void bodies_weigh_the_same_in_every_form(void **state) {
   (void)state;
   seed = 51;
   for (int round = 0; round < 20; round++) {
-    const CagTransform place = random_place(round % 2 ? 100 : 30000);
+    const CagTransform place = random_transform(round % 2 ? 100 : 30000);
     const double a = uniform(10, 200), b = uniform(10, 200), c = uniform(10, 200), density = 2700;
     CagUrdfShape shape = {.kind = CAG_URDF_BOX, .place = place, .size = {a, b, c}};
     CagSolid *box, *moved;
@@ -360,7 +360,7 @@ static void joined_bodies_add_up_about_the_origin(void **state) {
     double mass = 0, first[3] = {0}, about[3][3] = {{0}};
     for (int i = 0; i < 2 + round % 5; i++) {
       CagUrdfShape s = {.kind = i % 2 ? CAG_URDF_BOX : CAG_URDF_CYLINDER,
-                        .place = random_place(300)};
+                        .place = random_transform(300)};
       s.size[0] = uniform(10, 100);
       s.size[1] = uniform(10, 100);
       s.size[2] = uniform(10, 100);

@@ -77,7 +77,7 @@ static char *run(const char *text, const char *urdf) {
 }
 
 // The next n numbers of a printed text.
-static const char *take_numbers(const char *text, double *x, int n) {
+static const char *read_numbers(const char *text, double *x, int n) {
   for (int i = 0; i < n; i++) {
     text += strcspn(text, "-0123456789");
     char *end;
@@ -154,12 +154,12 @@ static void read_joint(const char *text, const char *end, Joint *j) {
   assert_true(attribute(text, end, "joint", "type", j->type));
   assert_true(attribute(text, end, "parent", "link", j->parent));
   assert_true(attribute(text, end, "child", "link", j->child));
-  if (attribute(text, end, "origin", "rpy", value)) take_numbers(value, rpy, 3);
+  if (attribute(text, end, "origin", "rpy", value)) read_numbers(value, rpy, 3);
   Frame rx = turned(x, rpy[0]), ry = turned(y, rpy[1]), rz = turned(z, rpy[2]);
   Frame yx = product(&ry, &rx);
   j->origin = product(&rz, &yx);
-  if (attribute(text, end, "origin", "xyz", value)) take_numbers(value, j->origin.p, 3);
-  if (attribute(text, end, "axis", "xyz", value)) take_numbers(value, j->axis, 3);
+  if (attribute(text, end, "origin", "xyz", value)) read_numbers(value, j->origin.p, 3);
+  if (attribute(text, end, "axis", "xyz", value)) read_numbers(value, j->axis, 3);
   if (attribute(text, end, "limit", "lower", value)) j->low = strtod(value, NULL);
   if (attribute(text, end, "limit", "upper", value)) j->high = strtod(value, NULL);
   if (attribute(text, end, "limit", "effort", value)) j->effort = strtod(value, NULL);
@@ -269,7 +269,7 @@ static void check_same(const char *definitions, const char *urdf) {
   const char *at = printed;
   for (int i = 0; i < POSES; i++) {
     double m[16];
-    at = take_numbers(at, m, 16);
+    at = read_numbers(at, m, 16);
     Frame f = forward(chain, n, q[i]);
     for (int row = 0; row < 3; row++) {
       for (int column = 0; column < 3; column++)
@@ -440,7 +440,7 @@ static double number_after(const char *text, const char *mark) {
   const char *at = strstr(text, mark);
   if (!at) fail_msg("no %s", mark);
   double x;
-  take_numbers(at + strlen(mark), &x, 1);
+  read_numbers(at + strlen(mark), &x, 1);
   return x;
 }
 
@@ -461,7 +461,7 @@ static void masses_are_those_of_the_shapes(void **state) {
   assert_true(fabs(number_after(text, "izz=\"") - m * (0.2 * 0.2 + 0.05 * 0.05) / 12) < 1e-12);
   const char *inertial = strstr(text, "<inertial>");
   double center[3];
-  take_numbers(strstr(inertial, "xyz=\"") + 5, center, 3);
+  read_numbers(strstr(inertial, "xyz=\"") + 5, center, 3);
   assert_true(fabs(center[0] - 0.2) < 1e-12 && fabs(center[1]) < 1e-12 && fabs(center[2]) < 1e-12);
   free(text);
   // Two cylinders of water end to end are equivalent to one.
@@ -486,7 +486,7 @@ static double volume_of_plain(const char *link, const char *end, int *count) {
     double side[3];
     ++*count;
     if (attribute(at, close, "box", "size", size)) {
-      take_numbers(size, side, 3);
+      read_numbers(size, side, 3);
       sum += side[0] * side[1] * side[2];
     } else {
       assert_true(attribute(at, close, "cylinder", "radius", radius));

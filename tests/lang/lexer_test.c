@@ -15,8 +15,8 @@ static void numbers_have_digits_on_both_sides_of_the_point(void **state) {
   value_is("0..5", "(.. 0 5)");
   value_is("0.5..1.5", "(.. 0.5 1.5)");
   value_is("0..<5", "(..< 0 5)");
-  expect_mend("x = .5\n", "E0111", "0.5");
-  expect_mend("x = 5.\n", "E0111", "5.0");
+  expect_help("x = .5\n", "E0111", "0.5");
+  expect_help("x = 5.\n", "E0111", "5.0");
 }
 
 static double value_of(const char *number, CagExprKind kind) {
@@ -67,12 +67,12 @@ static void units_scale_before_rounding(void **state) {
 
 static void an_unknown_unit_gets_the_nearest(void **state) {
   (void)state;
-  expect_mend("x = 45degrees", "E0109", "45deg");
-  expect_mend("x = 3inch", "E0109", "3in");
-  expect_mend("x = 3parsec", "E0109", "3 * parsec");
-  expect_mend("x = 45°", "E0109", "45deg");
-  expect_mend("x = 1_000_", "E0112", "1_000");
-  expect_mend("x = 1e999", "E0110", "inf");
+  expect_help("x = 45degrees", "E0109", "45deg");
+  expect_help("x = 3inch", "E0109", "3in");
+  expect_help("x = 3parsec", "E0109", "3 * parsec");
+  expect_help("x = 45°", "E0109", "45deg");
+  expect_help("x = 1_000_", "E0112", "1_000");
+  expect_help("x = 1e999", "E0110", "inf");
 }
 
 static void names_are_compared_after_nfc(void **state) {
@@ -95,8 +95,8 @@ static void texts_know_their_escapes(void **state) {
   assert_memory_equal(e->as.text.bytes, wanted, strlen(wanted));
   release(&p);
   value_is("`C:\\data {x}\nnext`", "\"C:\\\\data {x}\\nnext\"");
-  expect_mend("x = \"\\x41\"", "E0106", "\\u{41}");
-  expect_mend("x = \"\\u{d800}\"", "E0107", "hexadecimal");
+  expect_help("x = \"\\x41\"", "E0106", "\\u{41}");
+  expect_help("x = \"\\u{d800}\"", "E0107", "hexadecimal");
 }
 
 static void texts_hold_expressions_to_any_depth(void **state) {
@@ -398,7 +398,7 @@ static void numbers_at_the_limits_of_exact_arithmetic(void **state) {
   // Zeros after the digits that fit, in integers and fractions.
   value_is("12345678901234567890000", "1.2345678901234568e+22");
   value_is("1.00000000000000000000000000", "1");
-  expect_mend("x = 1e308_0", "E0112", "");
+  expect_help("x = 1e308_0", "E0112", "");
 }
 
 static void long_texts_are_read_whole(void **state) {

@@ -122,9 +122,9 @@ static void newlines_do_not_count_inside_brackets(void **state) {
 
 static void what_does_not_chain_shows_its_mend(void **state) {
   (void)state;
-  expect_mend("x = 1 < 2 < 3", "E0133", "1 < 2 and 2 < 3");
-  expect_mend("x = 0..2..10", "E0134", "0..10 by 2");
-  expect_mend("x = 10 by 2", "E0135", "0..10 by 2");
+  expect_help("x = 1 < 2 < 3", "E0133", "1 < 2 and 2 < 3");
+  expect_help("x = 0..2..10", "E0134", "0..10 by 2");
+  expect_help("x = 10 by 2", "E0135", "0..10 by 2");
 }
 
 static void the_repl_asks_for_more_when_something_is_open(void **state) {

@@ -5,9 +5,9 @@
 static void unknown_names_are_all_found_with_the_nearest(void **state) {
   (void)state;
   expect_errors("height = 1\nprint hieght\nf(x) = xs + y1\n", "E0201 2:7, E0201 3:8, E0201 3:13");
-  expect_mend("height = 1\nprint hieght", "E0201", "height");
-  expect_mend("print revolv(1)", "E0201", "revolve");
-  expect_mend("print Sin", "E0201", "sin");
+  expect_help("height = 1\nprint hieght", "E0201", "height");
+  expect_help("print revolv(1)", "E0201", "revolve");
+  expect_help("print Sin", "E0201", "sin");
 }
 
 static void tops_see_each_other_in_any_order(void **state) {
@@ -92,8 +92,8 @@ static void nothing_is_given_twice(void **state) {
 static void imported_names_are_checked(void **state) {
   (void)state;
   expect_errors("import m: glazed, puma560\nimport n as k\nx = [glazed, puma560, k.glazed]", "");
-  expect_mend("import m: glaced", "E0245", "glazed");
-  expect_mend("import m\nx = m.glaced", "E0245", "glazed");
+  expect_help("import m: glaced", "E0245", "glazed");
+  expect_help("import m\nx = m.glaced", "E0245", "glazed");
   expect_errors("import m: _a\nimport n\nx = n._b", "E0246 1:11, E0246 3:7");
   expect_errors("import m: glazed\nx = m.glazed", "E0201 2:5");
   expect_errors("import m\nf(m) = m.anything\n", ""); // the parameter hides the module

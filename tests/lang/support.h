@@ -127,7 +127,7 @@ static inline void expect_errors(const char *text, const char *errors) {
 }
 
 // Checks that the first error has this code, and its help contains these words.
-static inline void expect_mend(const char *text, const char *code, const char *help) {
+static inline void expect_help(const char *text, const char *code, const char *help) {
   Parsed p = resolve_text(text);
   assert_true(p.errors.count >= 1);
   assert_string_equal(cag_error_info(p.errors.items[0].id)->code, code);
