@@ -578,7 +578,7 @@ static void what_is_shown_is_named_and_counted(void **state) {
     assert_memory_equal(at, begins[i], strlen(begins[i]));
     at += strlen(begins[i]);
   }
-  assert_memory_equal(at, "ball: the list ", 15); // named after the list in its expression
+  assert_memory_equal(at, "ball: the list ", 15); // named after the first name in its expression
   size_t count = 0;
   for (const char *c = lines; *c; c++) count += *c == '\n';
   assert_int_equal(count, 7);
