@@ -3,15 +3,15 @@
 # only a build run again. The last line is `N passed, N failed, N skipped`; the exit status is 0 if nothing failed. A test is skipped, that
 # is, neither passed nor failed, if it needs a tool that is missing. A suite that crashes or prints no counts adds one failure.
 #
-# Suites run side by side, one for each processor, except those that measure how soon something ends: these run alone, afterwards.
+# Suites run in parallel, one per processor, except those that measure how soon an operation ends: these run alone, afterwards.
 #
-# `run_all.sh --suite FOLDER NUMBER` runs one suite of the list FOLDER/suites, shows its output when something is wrong with it, and writes its
-# counts to FOLDER/NUMBER.
+# `run_all.sh --suite FOLDER NUMBER` runs one suite of the list FOLDER/suites, shows its output if it fails, and writes its counts to
+# FOLDER/NUMBER.
 set -u
 cd "$(dirname "$0")/.."
 tab=$(printf '\t')
 
-# add NAME PASSED FAILED SKIPPED STATUS: tells the result of a suite, and shows its output when something is wrong with it.
+# add NAME PASSED FAILED SKIPPED STATUS: reports the result of a suite, and shows its output if it failed.
 add() {
   suite_failed=$3
   [ "$5" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
@@ -21,7 +21,7 @@ add() {
     [ "$4" -eq 0 ] || [ "$suite_failed" -gt 0 ] || grep -e '^skipped: ' -e ' is skipped: ' -e '^\[  SKIPPED \] [a-z_0-9]*$' "$log" | sort -u
     echo "$1: $2 passed, $suite_failed failed, $4 skipped"
   } > "$log.shown"
-  cat "$log.shown" # in one piece: other suites write as well
+  cat "$log.shown" # in one piece, because other suites write as well
   echo "$2 $suite_failed $4" > "$counts"
 }
 
@@ -94,12 +94,12 @@ language_suites() {
   done
 }
 
-# Those that take longest begin first.
+# The slowest ones start first.
 points=${MEMORY_POINTS:-3}
 alone='limits output signals'
 if [ -n "${SANITIZED:-}" ]; then
   case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
-  # Three scripts take 12 s each without sanitizers, and four times that with them.
+  # Three scripts take 12 s each without sanitizers, and four times as long with them.
   language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
   suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
   suite counted "sanitized tests/fuzz/memory limits" "'$SANITIZED/tests/fuzz/memory' -l -n 3"
@@ -132,7 +132,7 @@ for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mes
   interp/builtin "interp/session cli"; do
   suite check "analyzer $part" "make -s analyze ANALYZED='$part'"
 done
-# The geometry core takes as long as all the others together: `make tidy` looks at it as well.
+# The geometry core takes as long as all other folders together; `make tidy` covers it as well.
 for part in base lang cli interp/vm interp/builtin interp/formats interp/session "interp/check interp/doc interp/render interp/scene"; do
   if command -v clang-tidy > /dev/null; then
     suite check "tidy $part" "make -s tidy TIDIED='$part'"

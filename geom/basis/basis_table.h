@@ -11,8 +11,9 @@
 
 #include "geom/basis/knots.h"
 
-// Index of the non-empty interval that contains t. With `left`, at the last knot, and at the end of
-// the usable range, a knot belongs to the interval before it. Fails with "parameter-range".
+// Index of the non-empty interval that contains t. A knot belongs to the interval before it if
+// `left` is set, at the last knot, and at the end of the usable range. Fails with
+// "parameter-range".
 CagStatus cag_basis_interval(const double *knots, size_t count, int p, double t, bool left,
                              size_t *out, CagError *err);
 // All functions of degrees 0..p at t in the interval: out[q * (count - 1) + i], i < count - 1 - q.

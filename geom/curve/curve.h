@@ -153,7 +153,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out,
 // Signed area (counter-clockwise positive) and centroid of a closed plane curve, by Green's
 // theorem, 1e-10 relative.
 CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, CagError *err);
-// Tests whether the curve lies in a plane or on a line, within 1e-9 of its size. plane may be NULL.
+// Whether the curve lies in a plane or on a line, within 1e-9 of its size. plane may be NULL.
 CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagError *err);
 CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err);
 CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out,
@@ -172,17 +172,16 @@ CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurv
 // The same, with a range of angles (radians) or of numbers.
 CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool angular,
                                      CagCurve **out, CagError *err);
-// The curve without the stretches on which it rests in one point, for sweeping along it. The domain
-// stays the same. A curve that rests throughout is returned unchanged.
+// The curve without the stretches on which it rests at one point, for sweeping along it. The domain
+// stays the same. A curve that is a single point is returned unchanged.
 CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *err);
 // Turns a space curve that lies in z = 0, up to rounding, into a plane curve, in place. There must
 // be no other reference to it.
 void cag_curve_lay_flat(CagCurve *c);
-// The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
-// revolve.
 // The curve's image in the plane of the frame's x and y axes, in these coordinates: a plane curve.
 CagStatus cag_curve_flatten(const CagCurve *c, const CagTransform *frame, CagCurve **out,
                             CagError *err);
+// The curve as a space curve (dimension 3).
 CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);
 
 // Parameters of a polyline that stays within `tolerance` of the curve and turns by at most `angle`

@@ -26,7 +26,7 @@ CagStatus cag_triad_derivative(const CagVec3 m[3], const CagVec3 dm[3], double o
 // the parameter step h: c[1] h + c[2] h^2 + c[3] h^3 + ..
 typedef struct CagPlaneContact {
   double c[4];
-  int order;         // order of contact: 0 crosses at an angle, 1 touches ..; -1: lies in the plane
+  int order; // order of contact: 0 crosses at an angle, 1 touches, ..; -1: lies in the plane
   int before, after; // side of the plane before and after t: -1, 0 (in the plane), 1
 } CagPlaneContact;
 CagStatus cag_curve_contact(const CagCurve *c, double t, CagVec3 normal, CagPlaneContact *out,

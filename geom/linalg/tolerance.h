@@ -4,13 +4,13 @@
 // units. A double has a relative error of 1e-16. Three levels follow from it:
 //
 // - CAG_ROUNDING is the rounding error of some thousand operations, with a margin of 10. Values
-//   that should be 0 and are below it are 0.
-// - CAG_COINCIDENT is where two points, lengths, or parameters count as one that were computed in
-//   different ways, or written in a file or a script with ten digits or more.
-// - CAG_PARALLEL is the sine of the angle below which directions that were found in such ways count
-//   as parallel, and a turn as none.
+//   below it count as 0.
+// - CAG_COINCIDENT is the distance below which points, lengths, or parameters count as equal if
+//   they were computed in different ways, or written to a file or script with at least ten digits.
+// - CAG_PARALLEL is the sine of the angle below which such directions count as parallel, and
+//   rotations as 0.
 //
-// A file that needs another tolerance defines it, and says why it differs.
+// A file that needs another tolerance defines it, and states why it differs.
 
 #ifndef CAG_GEOM_TOLERANCE_H
 #define CAG_GEOM_TOLERANCE_H

@@ -21,7 +21,7 @@ bool cag_march_partials(CagMarch *m, int k, const CagMarchNode *node, int order,
 bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out);
 // Moves the parameters so that the point comes to x, to first order.
 void cag_march_move(CagMarch *m, int k, const CagMarchTangent *t, CagVec3 x, CagMarchNode *node);
-// Tests whether the node lies within the outline of side k, or of both sides.
+// Whether the node lies within the outline of side k, or of both sides.
 bool cag_march_belongs_to(CagMarch *m, int k, const CagMarchNode *node, bool *out);
 bool cag_march_belongs(CagMarch *m, const CagMarchNode *node);
 

@@ -6,11 +6,11 @@
 #include "geom/meet/section.h"
 
 // Adds the intersection curves to the list, joined end to end: exact lines and conics if possible,
-// else cubics within the tolerance (0: a millionth of the size). Isolated points of contact give no
-// curves. Loops smaller than a 50th of the smaller surface are found from a point inside them at
-// which the surfaces are parallel; of several loops closer together than that, some may be missed.
-// Fails with "overlap" if the surfaces coincide in some part, and with "sizes-apart" if one is a
-// thousand times larger.
+// and cubics within the tolerance otherwise (0: a millionth of the size). Isolated points of
+// contact are not curves. Loops smaller than a 50th of the smaller surface are found from a point
+// inside them at which the surfaces are parallel. If several loops are closer together than that,
+// some may be missed. Fails with "overlap" if the surfaces coincide in some part, and with
+// "sizes-apart" if one is a thousand times larger.
 //
 //   interrupt  nonzero stops with CAG_E_CALLBACK; may be NULL
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,

@@ -5,7 +5,7 @@
 
 #include "geom/solid/csg.h"
 
-// Tests whether the surfaces are pieces of one quadric that bound a solid together with flat faces:
+// Whether the surfaces are pieces of one quadric that bound a solid together with flat faces:
 // either all pieces left by a box or a range of z, or patches cut perpendicular to the axis.
 bool cag_solid_has_quadric_body(CagSurface *const *pieces, size_t n);
 // Makes this solid: the part within the box or range on the side of the quadric that contains its

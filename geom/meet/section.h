@@ -20,9 +20,9 @@ typedef struct CagLevel {
   double zero;           // smaller values are rounding errors; 0: estimated from the values
   double constant, unit; // data of other functions
   int which;
-  // The function jumps or bends at breaks, so each patch between them has its own values. It is not
-  // a number where the surface has no normal, including along an edge that is a pole; it is
-  // extrapolated there from nearby points.
+  // The function jumps or bends at breaks, so each patch between them has its own values. Where the
+  // surface has no normal, including along an edge that is a pole, the value is NaN, and is
+  // extrapolated from nearby points.
   bool sided;
 } CagLevel;
 // Signed distance from a plane.
@@ -71,8 +71,9 @@ CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, Cag
 
 // Adds sections with a plane to the list. The section of a surface includes touching curves, edges,
 // and creases in the plane. The section of a solid is the outline of the part on the negative side
-// of the plane, so its curves are closed; a plane that only touches the solid may give none. The
-// tolerance is for curves that are neither lines nor conics; 0 means a millionth of the size.
+// of the plane, so its curves are closed. If the plane only touches the solid, the section may be
+// empty. The tolerance is for curves that are neither lines nor conics; 0 means a millionth of the
+// size.
 CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
                               CagCurveList *out, CagError *err);
 CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tolerance,

@@ -38,8 +38,8 @@ static inline CagExact cag_exact_difference(CagExactSpace *s, CagExact a, CagExa
 CagExact cag_exact_step(CagExactSpace *s, double a, double b);
 // a d - b c
 CagExact cag_exact_minor(CagExactSpace *s, CagExact a, CagExact b, CagExact c, CagExact d);
-// The double nearest to x / w, w > 0; the lower one in a tie; 0 below 2^-960. Equal quotients give
-// equal doubles, and the result is monotone.
+// The double nearest to x / w, w > 0; the lower one in a tie; 0 below 2^-960. Equal quotients
+// result in equal doubles, and the result is monotone.
 double cag_exact_quotient(CagExactSpace *s, CagExact x, CagExact w);
 
 #endif

@@ -3,9 +3,8 @@
 // Chains are recognized by their structure, regardless of how they are described (either
 // convention, fixed links between the joints, base and tool):
 //
-//   a spherical wrist          the axes of joints 4, 5, and 6 intersect in a point; joints 1 to 3
-//   are
-//                              revolute, in any arrangement, or two revolute and one prismatic
+//   a spherical wrist          the axes of joints 4, 5, and 6 intersect at a point; joints 1 to 3
+//                              are revolute, in any arrangement, or two revolute and one prismatic
 //   two intersecting axes      five joints; the axes of joints 4 and 5 intersect
 //   axes 2, 3, and 4 parallel  six joints, or five; axes 5 and 6 are each perpendicular to the
 //                              previous one

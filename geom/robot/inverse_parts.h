@@ -71,8 +71,7 @@ static inline double inverse_d(const InverseRow *row, double q) {
   return row->turns ? row->shift : q + row->shift;
 }
 
-// Length in the plane. Lengths here are so far from overflow and underflow that they can be
-// squared.
+// Length in the plane. Lengths here are far enough from overflow and underflow to be squared.
 static inline double inverse_length(double x, double y) { return sqrt(x * x + y * y); }
 
 static inline CagVec3 inverse_turn_z(CagVec3 v, double s, double c) {

@@ -11,14 +11,14 @@ typedef enum CagWorkspaceKind {
   CAG_WORKSPACE_SPHERICAL,   // two revolute joints with intersecting axes, and a slide away from
                              // the intersection
   CAG_WORKSPACE_OFFSET,      // the same with a shoulder offset (the Stanford arm)
-  CAG_WORKSPACE_PLANAR,      // revolute joints with parallel axes: a disc or ring
+  CAG_WORKSPACE_PLANAR,      // revolute joints with parallel axes: a disk or ring
   CAG_WORKSPACE_SCARA,       // the same with a slide along the axes
   CAG_WORKSPACE_ARTICULATED, // waist, shoulder, and elbow: a shell about the shoulder
   CAG_WORKSPACE_OTHER
 } CagWorkspaceKind;
 
-// The region reached by one point of the robot: the tool's origin if the joints of the wrist turn
-// about it, else the point where the wrist's axes intersect.
+// The region reached by one point of the robot: the tool's origin if the joints of the wrist rotate
+// about it, or else the point where the wrist's axes intersect.
 typedef struct CagWorkspace {
   CagWorkspaceKind kind;
   bool of_wrist;

@@ -1,8 +1,8 @@
 // Solids without faces: solids bounded by meshes, half spaces and other unbounded solids, and set
 // operations.
 //
-// A set operation keeps its operands for exporters with native set operations. Everything else is
-// answered by a mesh: the operands are tessellated to the tolerance and combined by
+// A set operation keeps its operands for exporters with native set operations. Everything else uses
+// a mesh: the operands are tessellated to the tolerance and combined by
 // cag_mesh_boolean. Transformed copies of an operation share its core, so they are meshed only
 // once.
 //
@@ -62,7 +62,7 @@ CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *
 // form is constant or not finite.
 CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *err);
 // The solid bounded by a closed mesh, oriented outward. Fails with "mesh-open" and an open edge,
-// "mesh-flat". A mesh without triangles gives the empty solid.
+// and with "mesh-flat". A mesh without triangles results in the empty solid.
 CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err);
 
 // The form of a half space or quadric in world coordinates; false: another kind.

@@ -1,4 +1,4 @@
-// The kinds of solids: a table with what differs between them.
+// The kinds of solids: a table of their differences.
 
 #ifndef CAG_GEOM_SOLID_KIND_H
 #define CAG_GEOM_SOLID_KIND_H
@@ -13,28 +13,28 @@ typedef struct CagSolidBody {
   CagVec3 area_centroid;
 } CagSolidBody;
 
-// Scales k along a solid's own axes that leave it one of its kind, with other sizes.
+// The scales k along a solid's own axes that preserve its kind, and change only its sizes.
 typedef enum CagSolidScaling {
   CAG_SCALES_NOT,       // none
   CAG_SCALES_EACH_AXIS, // positive ones
   CAG_SCALES_UPRIGHT,   // k[0] = k[1]
   CAG_SCALES_EVENLY,    // k[0] = k[1] = k[2]
-  CAG_SCALES_MIRRORED   // the same but for signs
+  CAG_SCALES_MIRRORED   // equal except for signs
 } CagSolidScaling;
 
 typedef struct CagSolidKindRow {
   const char *name; // "box"
   CagSolidScaling scaling;
   int size_axes[3];   // the axes along which the sizes a, b, and c are measured
-  bool turns_about_z; // a turn about its own z axis leaves it the same
-  // Whether mirrors in the planes of its own axes leave it the same.
+  bool turns_about_z; // a rotation about its own z axis does not change it
+  // Whether reflections in the planes of its own axes do not change it.
   bool (*is_symmetric)(const CagSolid *s); // NULL: no
-  // Writes what it is, with the sizes a, b, and c: "sphere, radius 10".
+  // Writes its description with the sizes a, b, and c: "sphere, radius 10".
   void (*describe)(const CagSolid *s, const double size[3], char *buffer, size_t n);
   // The measures of a primitive in its own coordinates.
   CagSolidBody (*body)(const CagSolid *s); // NULL: integrals over its faces
-  // How far a point is outside of a primitive in its own coordinates; negative inside.
-  double (*beyond)(const CagSolid *s, CagVec3 p); // NULL: asked of its mesh
+  // The distance of a point from a primitive in its own coordinates; negative inside.
+  double (*beyond)(const CagSolid *s, CagVec3 p); // NULL: its mesh is used
   // Bounds in the world.
   CagStatus (*bounds)(const CagSolid *s, CagBounds *out, CagError *err); // NULL: of its faces
 } CagSolidKindRow;

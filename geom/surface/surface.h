@@ -24,8 +24,8 @@ static inline size_t cag_partial(int n, int i, int j) {
 typedef struct CagSurfaceKind {
   const char *name; // "nurbs", "bezier", "revolution", "extrusion", "ruled", "quadric", "torus",
                     // "tube", "planar" ...
-  // All partials of total order <= n at (u, v): out[(n + 1) * (n + 1)]; entries with i + j > n are
-  // not written. Limits from the given sides.
+  // All partials of total order <= n at (u, v): out[(n + 1) * (n + 1)], as limits from the given
+  // sides. Entries with i + j > n are not written.
   CagStatus (*eval)(const CagSurface *s, double u, double v, int n, CagSide side_u, CagSide side_v,
                     CagVec3 *out, CagError *err);
   // Points and, unless NULL, first partials at (us[i], vs[j]), index i * nv + j. NULL: eval is

@@ -168,8 +168,8 @@ static inline double tess_mix(double a, double b, size_t k, size_t n) {
 // Diagonals that are equal to rounding are cut from a to c, so that moved copies of a shape are cut
 // alike.
 static inline bool tess_cut_ac(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d) {
-  const double alike = 1e-6; // relative, of the squares; coordinates far from the origin are
-                             // rounded to less
+  const double alike = 1e-6; // relative, of the squares; the rounding of coordinates far from the
+                             // origin is smaller
   CagVec3 ac = cag_sub(c, a), bd = cag_sub(d, b);
   return cag_dot(ac, ac) <= cag_dot(bd, bd) * (1 + alike);
 }

@@ -38,8 +38,8 @@ typedef struct TessExcess {
 CagStatus cag_tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
                              TessExcess *out, CagError *err);
 
-// Whether the surface is known only by samples. Formulas, and surfaces made from them, may do
-// anything between two samples; surfaces with an exact form are well behaved between breaks.
+// Whether the surface is known only by samples. Functions, and surfaces made from them, may have
+// any values between two samples, but surfaces with an exact form are well behaved between breaks.
 bool cag_tess_is_known_by_points(const CagSurface *s);
 
 // Whether the surface is farther from the triangles than the tolerance at some point of a fixed

@@ -1,7 +1,7 @@
 // Angles: the trigonometric functions and their inverses.
 //
-// Angles are kept in degrees, so the reduction to a quarter turn is exact, and with it the values
-// 0, 1/2 and 1.
+// Angles are kept in degrees, so the reduction to a quarter turn is exact, and so are the values 0,
+// 1/2, and 1.
 
 #include "interp/builtin/support.h"
 
@@ -33,13 +33,13 @@ bool cag_angles_tan(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 0, CAG_ERR_not_finite, "is infinite at %sdeg",
                          cag_number_text(a, digits));
   }
-  // At odd multiples of 45deg, where sine and cosine differ by rounding only, the quotient is 1.
+  // At odd multiples of 45deg, sine and cosine differ only by rounding; the quotient is set to 1.
   double rest = fmod(fabs(a), 90);
   *result = cag_number(rest == 45 ? copysign(1, s / c) : s / c + 0.0);
   return true;
 }
 
-// Reads a number of -1..1; what is outside by rounding counts as the end.
+// Reads a number in -1..1. A value that is outside only by rounding is set to the end.
 static bool read_cosine(CagCall *call, double *x) {
   static const double OUTSIDE = 1e-12;
   if (!cag_arg_number(call, 0, x)) return false;

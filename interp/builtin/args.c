@@ -1,5 +1,5 @@
-// Reading the arguments of built-ins: each reader checks the type and the value, and where that
-// fails sets an error that names the parameter, what it may be, and what was found.
+// Reads the arguments of built-ins. Each reader checks the type and the value. If a check fails,
+// the reader sets an error that names the parameter, what was expected, and what was found.
 
 #include <limits.h>
 #include <math.h>
@@ -117,7 +117,7 @@ bool cag_arg_integer(CagCall *call, int argument, long low, long high, long *out
     else snprintf(expected, sizeof expected, "a whole number in %ld..%ld", low, high);
     return cag_fail_value(call, argument, expected);
   }
-  // (double)LONG_MAX rounds up to 2^63, which is no long.
+  // (double)LONG_MAX rounds up to 2^63, which does not fit a long.
   *out = x >= (double)LONG_MAX ? LONG_MAX : (long)x;
   return true;
 }
@@ -205,7 +205,7 @@ bool cag_arg_choice(CagCall *call, int argument, const char *const *choices, int
 
 bool cag_arg_function(CagCall *call, int argument, CagValue *out) {
   *out = call->values[argument];
-  // Curves and surfaces can be called as well.
+  // Curves and surfaces can be called, too.
   if (cag_is_function(*out) || out->type == CAG_CURVE || out->type == CAG_SURFACE) return true;
   return cag_fail_type(call, argument, "a function");
 }
@@ -261,7 +261,7 @@ bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *
   CagVec3 *points = cag_hold(call, cag_malloc(list->length * sizeof *points));
   int highest = 2;
   for (size_t i = 0; i < list->length; i++) {
-    // Packed vectors are read where they lie, without a value for each.
+    // Packed vectors are read in place, without creating a value for each.
     int d = (int)list->dim;
     bool good;
     if (d == 2 || d == 3) {
@@ -289,13 +289,13 @@ bool cag_arg_numbers(CagCall *call, int argument, const double **out, size_t *n)
     return cag_fail_type(call, argument, "a list of numbers");
   if (!cag_arg_list(call, argument, &list)) return false;
   if (list->dim == 1 || list->length == 0) {
-    // A range's list is kept by the argument's place.
+    // The garbage collector keeps the list of a range because the argument now refers to it.
     call->values[argument] = cag_object(CAG_LIST, list);
     *out = list->as.numbers;
     *n = list->length;
     return true;
   }
-  // Numbers alone are packed: here one element is none.
+  // A list of numbers alone would be packed, so one of the elements is not a number.
   size_t i = 0;
   while (cag_list_get(call->vm, list, i).type == CAG_NUMBER) i++;
   return cag_fail_element(call, argument, i, cag_list_get(call->vm, list, i), "numbers");

@@ -11,7 +11,7 @@
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
 
-// Checks the range of a number. Infinite ends of ranges are not written in messages.
+// Checks the range of a number. Messages omit infinite ends of ranges.
 static bool check_range(CagCall *call, int argument, const CagParameterType *type, double x,
                         const char *noun) {
   if (!type->ranged) return true;
@@ -28,7 +28,7 @@ static bool check_range(CagCall *call, int argument, const CagParameterType *typ
 static bool bind_number(CagCall *call, int argument, const CagParameterType *type, double *out) {
   const bool finite = type->kind == CAG_BIND_FINITE;
   if (!cag_arg_number(call, argument, out)) return false;
-  // Of a number that is both infinite and out of range, the range is what matters.
+  // If a number is both infinite and out of range, the message is about the range.
   if (finite && !isfinite(*out) && (!type->ranged || *out > type->low))
     return cag_fail_value(call, argument,
                           type->above_low && type->low == 0 ? "a finite number greater than 0"
@@ -97,7 +97,7 @@ static bool bind_argument(CagCall *call, int argument, const CagParameterType *t
   return false;
 }
 
-// The default of an argument that was not given. The field is zero.
+// Sets the default of an omitted argument. The field is zero before.
 static void set_default(const CagParameterTypes *types, const CagParameterType *type,
                         char *structure) {
   void *field = structure + type->offset;
@@ -141,6 +141,6 @@ bool cag_bind_field(CagCall *call, int argument, void *structure) {
 
 bool cag_bind_fits(const CagCall *call, size_t size) {
   const CagParameterTypes *types = cag_signature_types(cag_builtin_signature_of(call->builtin));
-  // The structure may end with padding.
+  // The structure may have padding at its end.
   return size >= types->size && size < types->size + _Alignof(max_align_t);
 }

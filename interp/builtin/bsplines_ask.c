@@ -1,5 +1,5 @@
-// The spans of a B-spline curve and the control points behind them; circles as NURBS; pictures of
-// control polygons and curvature.
+// The spans of a B-spline curve and the control points that affect them, circles as NURBS, and
+// pictures of control polygons and curvature.
 
 #include <limits.h>
 
@@ -10,7 +10,7 @@
 #include "interp/builtin/curves.h"
 #include "interp/builtin/support.h"
 
-// The B-spline of a Bezier or B-spline curve; NULL: it is none, and the error is set.
+// Returns the B-spline data of a Bezier or B-spline curve, or NULL with the error set.
 static const CagNurbs *nurbs_of(CagCall *call, const CagCurve *c) {
   const CagNurbs *nurbs = cag_nurbs_data(c);
   if (!nurbs) cag_fail_no_data(call, c, "control points");
@@ -32,15 +32,15 @@ bool cag_bsplines_spans(CagCall *call, const struct cag_bsplines_spans *a, CagVa
   return true;
 }
 
-// Of a closed curve a control point acts about its own place, and where that passes the seam, about
-// the other end too: the ranges come one after the other.
+// A control point of a closed curve can affect two ranges, one on each side of the seam. Ranges
+// that meet are joined.
 bool cag_bsplines_support(CagCall *call, const struct cag_bsplines_support *a, CagValue *result) {
   const CagNurbs *c = nurbs_of(call, a->C);
   long i;
   if (!c || !cag_arg_integer(call, 1, 0, (long)c->distinct - 1, &i)) return false;
   const size_t p = (size_t)c->degree;
   CagBuilder *list = cag_builder_new(call->vm);
-  double from = 0, to = 0; // the range in the making, empty at first
+  double from = 0, to = 0; // the current range, empty at first
   for (size_t k = (size_t)i; k < c->count; k += c->distinct) {
     const double start = fmax(c->knots[k], c->base.start);
     const double end = fmin(c->knots[k + p + 1], c->base.end);
@@ -80,7 +80,7 @@ bool cag_bsplines_acting_points(CagCall *call, const struct cag_bsplines_acting_
   return true;
 }
 
-// The points that act on a span lie on one line, to rounding.
+// Whether the points that affect a span are collinear up to rounding.
 static bool collinear(const CagNurbs *c, size_t span) {
   const double *h = c->homogeneous + 4 * (span - (size_t)c->degree);
   CagVec3 first = {0}, far = {0};
@@ -142,11 +142,11 @@ bool cag_bsplines_denominator(CagCall *call, const struct cag_bsplines_denominat
 #define HALF_TURN 180
 #define FULL_TURN 6.283185307179586 // 2 pi
 
-// q equal arcs of degree 2 from the angle `from` over the sweep (radians), knots 0..q: the corners
-// of the polygon around, with the cosine of half an arc for weight, and the points where it
-// touches.
-static bool give_arcs(CagCall *call, double radius, double from, double sweep, size_t q,
-                      const CagTransform *frame, CagValue *result) {
+// Returns q equal arcs of degree 2 over the sweep (radians) from the angle `from`, with knots 0..q.
+// The control points alternate between points of tangency and corners of the circumscribed polygon;
+// the weight of a corner is the cosine of half an arc.
+static bool arcs_result(CagCall *call, double radius, double from, double sweep, size_t q,
+                        const CagTransform *frame, CagValue *result) {
   const size_t n = 2 * q + 1;
   const bool whole = sweep == FULL_TURN;
   CagCurve *c = NULL;
@@ -173,7 +173,7 @@ bool cag_bsplines_nurbs_circle(CagCall *call, const struct cag_bsplines_nurbs_ci
                                CagValue *result) {
   CagTransform frame;
   return cag_circle_frame(call, a->center, a->normal, &frame) &&
-         give_arcs(call, a->radius, a->start, FULL_TURN, (size_t)a->segments, &frame, result);
+         arcs_result(call, a->radius, a->start, FULL_TURN, (size_t)a->segments, &frame, result);
 }
 
 bool cag_bsplines_nurbs_arc(CagCall *call, const struct cag_bsplines_nurbs_arc *a,
@@ -194,8 +194,8 @@ bool cag_bsplines_nurbs_arc(CagCall *call, const struct cag_bsplines_nurbs_arc *
         "one piece of degree 2 must span less than 180 degrees, found %s in %ld; use more `segments`",
         cag_number_text(fabs(sweep), text), a->segments);
   return cag_geometry_ok(call, status) &&
-         give_arcs(call, a->radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
-                   (size_t)a->segments, &frame, result);
+         arcs_result(call, a->radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
+                     (size_t)a->segments, &frame, result);
 }
 
 // --- Pictures ---
@@ -221,10 +221,10 @@ bool cag_bsplines_control_net(CagCall *call, const struct cag_bsplines_control_n
   return cag_curve_result(call, status, &out, result);
 }
 
-// Teeth of a comb for each piece where nothing is said.
+// The default number of comb teeth for each piece.
 #define TEETH 20
 #define TEETH_MAX 1000000
-// Length of the longest tooth, as part of the size of the curve, where nothing is said.
+// The default length of the longest tooth, as a fraction of the curve's size.
 #define LONGEST_TOOTH 0.25
 
 typedef struct Comb {
@@ -255,8 +255,8 @@ static bool add_line(CagCall *call, CagStatus status, CagCurve **line, CagBuilde
   return cag_curve_result(call, status, line, &v) && cag_builder_add(call->vm, list, v);
 }
 
-static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
-                      CagValue *result) {
+static bool comb_result(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
+                        CagValue *result) {
   CagVec3 *tips = cag_hold_array(call, comb->n, sizeof *tips);
   CagBuilder *list = cag_builder_new(call->vm);
   CagCurve *line = NULL;
@@ -287,5 +287,5 @@ bool cag_bsplines_curvature_comb(CagCall *call, const struct cag_bsplines_curvat
   if (!cag_geometry_ok(call, make_comb(c, &comb, &most, call->err))) return false;
   if (!cag_given(call, 2) && most > 0)
     scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
-  return give_comb(call, c, &comb, scale, result);
+  return comb_result(call, c, &comb, scale, result);
 }

@@ -15,7 +15,7 @@ bool cag_bsplines_uniform_knots(CagCall *call, const struct cag_bsplines_uniform
   return true;
 }
 
-// The degree, for which the knots must be at least degree + 2, ascending and finite.
+// Reads the degree. At least degree + 2 finite, ascending knots are required.
 static bool read_degree(CagCall *call, CagNumbers knots, int degree_at, int order_at, int *degree) {
   const double *x = knots.items;
   const size_t count = knots.count;
@@ -61,7 +61,7 @@ bool cag_bsplines_classify_knots(CagCall *call, const struct cag_bsplines_classi
     return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                          "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2,
                          count);
-  // The range may be empty, which only a curve minds; multiplicities may be too high.
+  // An empty domain and high multiplicities are allowed here, because only curves exclude them.
   char text[32];
   CagBuilder *list = cag_builder_new(call->vm);
   size_t segments = 0;
@@ -91,14 +91,15 @@ bool cag_bsplines_classify_knots(CagCall *call, const struct cag_bsplines_classi
 // --- Values ---
 
 typedef struct Basis {
-  const double *knots, *weights; // weights: NULL, or one for each function
+  const double *knots, *weights; // weights: NULL, or one for each basis function
   size_t count, n;
   int degree, derivative;
   bool left;
-  double *rows, *work; // derivative + 1 rows of n; degree + 2
+  double *rows, *work; // rows: derivative + 1 rows of n numbers; work: degree + 2 numbers
 } Basis;
 
-// R_i = h_i N_i / S: the rule of Leibniz on R_i S = h_i N_i, with the sums S of the derivatives.
+// R_i = h_i N_i / S. Differentiates R_i S = h_i N_i by the Leibniz rule; `sums` are S and its
+// derivatives.
 static CagStatus make_rational(const Basis *b, double t, CagError *err) {
   char text[32];
   const size_t n = b->n;
@@ -148,8 +149,8 @@ static bool check_basis_weights(CagCall *call, CagNumbers weights, size_t n) {
   return cag_geometry_ok(call, status);
 }
 
-// One row, or as many as there are parameters.
-static bool give_basis(CagCall *call, const Basis *b, CagValue *result) {
+// Returns one row, or a row for each parameter of a list.
+static bool basis_result(CagCall *call, const Basis *b, CagValue *result) {
   const double *list = NULL;
   double t, *out;
   size_t rows = 1;
@@ -183,7 +184,7 @@ bool cag_bsplines_basis(CagCall *call, const struct cag_bsplines_basis *a, CagVa
   const size_t size = (size_t)(b.derivative + 1) * b.n;
   b.rows = cag_hold_array(call, size + (size_t)b.degree + 2, sizeof *b.rows);
   b.work = b.rows + size;
-  return give_basis(call, &b, result);
+  return basis_result(call, &b, result);
 }
 
 bool cag_bsplines_basis_triangle(CagCall *call, const struct cag_bsplines_basis_triangle *a,
@@ -208,7 +209,7 @@ bool cag_bsplines_basis_triangle(CagCall *call, const struct cag_bsplines_basis_
 
 // --- Pieces ---
 
-// Record of one interval: its functions with their coefficients.
+// The record of one interval: its functions and their coefficients.
 static CagValue piece_record(CagCall *call, const double *x, size_t count, int p, size_t at,
                              bool local, double *table) {
   static const char *const names[] = {"interval", "functions", "coefficients", "matrix"};
@@ -222,7 +223,7 @@ static CagValue piece_record(CagCall *call, const double *x, size_t count, int p
     cag_builder_add(vm, functions, cag_number((double)i));
     cag_builder_add(vm, rows, cag_vector(vm, table + (i + k - at) * width, width));
   }
-  // Rows of the matrix: powers from the highest down; columns: the functions.
+  // The rows of the matrix are powers in descending order; the columns are functions.
   for (size_t power = width; power-- > 0;) {
     double *out;
     CagValue row = cag_list_numbers(vm, last - first + 1, &out);
@@ -252,7 +253,7 @@ bool cag_bsplines_basis_pieces(CagCall *call, const struct cag_bsplines_basis_pi
 
 // --- Dependency ---
 
-// Indices low..high within 0..most, as a list.
+// The indices low..high, restricted to 0..most, as a list.
 static CagValue indices(CagCall *call, long low, long high, long most) {
   double *out;
   low = low < 0 ? 0 : low;
@@ -272,7 +273,7 @@ bool cag_bsplines_basis_dependency(CagCall *call, const struct cag_bsplines_basi
     return cag_fail_call(call, 1, CAG_ERR_value, "takes a degree up to %d", CAG_MAX_DEGREE);
   CagBuilder *needs = cag_builder_new(call->vm), *feeds = cag_builder_new(call->vm);
   for (long q = 0; q <= p; q++) {
-    // Of degree q there are count + p - q functions.
+    // There are count + p - q functions of degree q.
     const long most = count + p - q - 1;
     if (!cag_builder_add(call->vm, needs, indices(call, i, i + p - q, most)) ||
         !cag_builder_add(call->vm, feeds, indices(call, i - q, i, most)))
@@ -285,7 +286,7 @@ bool cag_bsplines_basis_dependency(CagCall *call, const struct cag_bsplines_basi
 
 // --- Refinement ---
 
-// Most numbers in the tables of one refinement: 800 MB.
+// The maximum of numbers in the tables of one refinement: 800 MB.
 #define TABLE_MAX 1e8
 
 bool cag_bsplines_oslo(CagCall *call, const struct cag_bsplines_oslo *a, CagValue *result) {
@@ -315,7 +316,8 @@ bool cag_bsplines_oslo(CagCall *call, const struct cag_bsplines_oslo *a, CagValu
 
 // --- Phantom vertices ---
 
-// What holds at an end of a uniform B-spline: a derivative (0: the point) and its value.
+// A condition at an end of a uniform B-spline: the order of a derivative (0: the point) and its
+// value.
 typedef struct EndCondition {
   int derivative;
   CagVec3 value;
@@ -341,9 +343,10 @@ static bool read_end(CagCall *call, int argument, CagVec3 end_point, int dimensi
   return true;
 }
 
-// The point before points[0] (step 1) or behind points[n - 1] (step -1): of the degree + 1 points
-// that act at the end the outermost, so that the condition holds. Weights come from the basis at
-// the end of uniform knots.
+// Finds the phantom point before the first point or after the last one, so that the end condition
+// holds. The condition is linear in the degree + 1 control points at the end, of which the phantom
+// is the outermost. Its weights are the basis functions (or their derivatives) at the end of
+// uniform knots.
 static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n, int p, bool last,
                          double *work, CagVec3 *out, CagError *err) {
   const size_t k = (size_t)p, count = 2 * k + 2;
@@ -357,7 +360,7 @@ static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n,
                        weights);
   CagVec3 sum = c->value;
   for (size_t i = 0; i < k; i++) {
-    // Known points from the end inwards have the weights 1, 2, .. from the phantom's.
+    // Counted from the end inward, the known points have the weights next to that of the phantom.
     const CagVec3 known = last ? points[n - 1 - i] : points[i];
     sum = cag_madd(sum, -weights[last ? k - 1 - i : 1 + i], known);
   }

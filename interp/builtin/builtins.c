@@ -1,9 +1,9 @@
 // The table of all built-ins.
 //
-// cag_builtins has the rows of all families, which tools/rows.awk makes from interp/builtin/*.rows.
-// Here the rows of one name are brought together, and their signatures are parsed. Both happen once,
-// when the table is first used, and nothing of it changes afterwards, so that any number of machines
-// may share it. The order of names is that of their first rows.
+// cag_builtins holds the rows of all families, which tools/rows.awk generates from
+// interp/builtin/*.rows. This file groups the rows by name and parses their signatures. Both happen
+// once, when the table is first used. The table does not change afterwards, so any number of
+// machines may share it. Names are in the order of their first rows.
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -60,7 +60,7 @@ typedef struct Table {
   CagHashIndex index; // of names
 } Table;
 
-// Made once per process at the first use, and never freed. If memory runs out, the table stays
+// Built once per process at the first use, and never freed. If memory runs out, the table stays
 // empty, and the next use tries again.
 static Table table;
 static CagArena table_arena;
@@ -79,7 +79,7 @@ static size_t find_name(const char *name) {
   return (size_t)-1;
 }
 
-// Numbers the names in the order of their first rows and counts the rows of each.
+// Numbers the names in the order of their first rows, and counts the rows of each.
 static size_t *number_names(CagSignature *signatures) {
   size_t *name_of = table_alloc(table.row_count, sizeof *name_of);
   for (size_t r = 0; r < table.row_count; r++) {
@@ -195,7 +195,7 @@ void cag_builtin_served(size_t index, CagString *out) {
   const Name *name = &table.names[index];
   uint64_t mask = 0;
   for (size_t row = 0; row < name->count; row++) mask |= table.rows[name->first + row].first;
-  // Two tags are called a function.
+  // A closure and a built-in are both called a function, so one of the two tags is enough.
   if (mask & CAG_TYPE_BIT(CLOSURE)) mask &= ~CAG_TYPE_BIT(BUILTIN);
   bool any = false;
   for (size_t type = 0; mask >> type != 0 && type < CAG_TYPE_COUNT; type++) {

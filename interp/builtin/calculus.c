@@ -1,8 +1,8 @@
-// Integrals, extremes and roots of a function of the script over a range.
+// Integrals, extrema, and roots of a function of the script over a range.
 //
 // Methods: adaptive Gauss-Kronrod quadrature with 7 and 15 points (QUADPACK's QAG), and Brent's
-// minimizer and root finder (Algorithms for Minimization without Derivatives, 1973). A range of
-// angles calls the function with angles; inside, and in integrals, angles are then radians.
+// minimizer and root finder (Algorithms for Minimization without Derivatives, 1973). Over a range
+// of angles, the function is called with angles; integrals are with respect to radians.
 
 #include <float.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static bool fail_result(const Subject *f, CagValue y, const char *expected) {
                        cag_value_words(f->call->vm, y, found, sizeof found));
 }
 
-// The value as a number; of a function that gives angles their degrees.
+// Evaluates the function as a number; an angle is returned in degrees.
 static bool evaluate_number(const Subject *f, double x, double *y) {
   CagValue v;
   if (!evaluate(f, x, &v)) return false;
@@ -59,8 +59,8 @@ static bool evaluate_number(const Subject *f, double x, double *y) {
 
 // --- integrate ---
 
-// Kronrod's points of [-1, 1], from the outermost to the middle; every second one is Gauss's.
-// (QUADPACK, qk15.)
+// The Kronrod points of [-1, 1] from the outermost to the middle; every second one is a Gauss point
+// (QUADPACK, qk15).
 enum { KRONROD = 8 };
 static const double POINTS[KRONROD] = {
     0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
@@ -76,7 +76,7 @@ static const double GAUSS_WEIGHTS[KRONROD / 2] = {
     0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
     0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
 
-// The integrand may give vectors: they are integrated component by component.
+// The integrand may be a vector, which is integrated component by component.
 enum { COMPONENTS_MOST = CAG_MAX_PACKED };
 
 typedef struct Integrand {
@@ -84,19 +84,21 @@ typedef struct Integrand {
   size_t components; // 0: not known before the first value
   bool vector;
   enum { BOTH_FINITE, END_INFINITE, START_INFINITE, BOTH_INFINITE } kind;
-  double at_end[2 * KRONROD - 1]; // the weights that extrapolate a piece to its high end
+  double at_end[2 * KRONROD -
+                1]; // weights that extrapolate from the points of a piece to its high end
 } Integrand;
 
 typedef struct Piece {
   double low, high;
   double value[COMPONENTS_MOST];
-  double ends[2][COMPONENTS_MOST]; // of the polynomial through the points: low, high
-  double error, magnitude;         // estimate; integral of the absolute value
-  int doubted; // the end beside which a kink may be hidden: -1 low, 1 high; 0: neither
+  double ends[2][COMPONENTS_MOST]; // the interpolating polynomial at the low and high end
+  double error, magnitude;         // estimated error; integral of the absolute value
+  int doubted; // the end near which a kink may be hidden: -1 low, 1 high; 0: neither
 } Piece;
 
-// The place x of the substitution's variable t, and dx/dt: t itself on a finite range; start + t/(1
-// - t), end - t/(1 - t) on 0..1; t/(1 - t^2) on -1..1.
+// Returns x at the substitution's variable t, and its derivative dx/dt. x is t on a finite range,
+// start + t/(1 - t) or end - t/(1 - t) with t in 0..1 on a half-infinite one, and t/(1 - t^2) with
+// t in -1..1 on the whole line.
 static double substituted(const Integrand *g, double t, double *slope) {
   double rest = 1 - t;
   switch (g->kind) {
@@ -130,7 +132,7 @@ static bool integrand_at(Integrand *g, double t, double *out) {
   return true;
 }
 
-// Both rules on one piece.
+// Applies both rules to one piece.
 static bool measure(Integrand *g, Piece *p) {
   double middle = 0.5 * (p->low + p->high), half = 0.5 * (p->high - p->low);
   double gauss[COMPONENTS_MOST] = {0}, y[COMPONENTS_MOST];
@@ -151,8 +153,8 @@ static bool measure(Integrand *g, Piece *p) {
   }
   for (size_t c = 0; c < g->components; c++)
     p->error = fmax(p->error, fabs(p->value[c] - gauss[c]));
-  // The difference of the rules is far larger than the error of the better one where both are good
-  // (QUADPACK's estimate).
+  // If both rules are good, their difference far exceeds the error of the better one (QUADPACK's
+  // estimate).
   static const double SCALE = 200;
   if (p->magnitude > 0 && p->error > 0) {
     double ratio = SCALE * p->error / p->magnitude;
@@ -161,7 +163,7 @@ static bool measure(Integrand *g, Piece *p) {
   return true;
 }
 
-// A piece whose ends are neighbors, or whose error is that of rounding, is not divided.
+// A piece is not divided if its ends are adjacent numbers or its error is only rounding.
 static bool can_be_divided(const Piece *p, double narrowest) {
   static const double ROUNDING = 50 * DBL_EPSILON;
   double middle = 0.5 * (p->low + p->high);
@@ -169,13 +171,13 @@ static bool can_be_divided(const Piece *p, double narrowest) {
          p->error > ROUNDING * p->magnitude;
 }
 
-// The pieces lie in a list of the heap on top of the root stack, so that a run that ends within the
-// function leaves nothing behind.
+// The pieces are stored in a list of the heap, on top of the root stack, so that a run that ends
+// within the function leaks nothing.
 typedef struct Pieces {
   CagVm *vm;
   Piece *at;
   size_t count, capacity;
-  double narrowest; // what is narrower is not divided
+  double narrowest; // pieces narrower than this are not divided
 } Pieces;
 
 enum { PIECES_FIRST = 32, PIECES_MOST = 4096 };
@@ -192,11 +194,11 @@ static void grow(Pieces *p, size_t capacity) {
   p->capacity = capacity;
 }
 
-// What the pieces add up to, and the one to divide next; (size_t)-1: none can be.
+// The totals over all pieces, and the piece to divide next; (size_t)-1 if none can be divided.
 typedef struct Survey {
   double error, size;
-  double wanted,
-      tolerable; // errors: with the latter the result is given when nothing can be divided
+  double wanted;    // the error at which the division ends
+  double tolerable; // an error that is accepted when no piece can be divided further
   size_t worst;
 } Survey;
 
@@ -214,25 +216,24 @@ static Survey survey(const Integrand *g, const Pieces *pieces) {
     if (worse && can_be_divided(p, pieces->narrowest)) s.worst = i;
   }
   for (size_t c = 0; c < g->components; c++) s.size = fmax(s.size, fabs(total[c]));
-  // Where positive and negative parts cancel, their size bounds what rounding allows.
+  // If positive and negative parts cancel, rounding is relative to their sizes, not to the sum.
   s.wanted = fmax(fmax(RELATIVE * s.size, ROUNDING * magnitude), FLOOR);
   s.tolerable = fmax(TOLERABLE * magnitude, FLOOR);
   return s;
 }
 
 // --- Kinks beside the ends of pieces ---
-//
-// Between the ends of a piece and the rule's outermost points, a kink or a step is not seen. It is
-// beside the place where a piece was divided if both parts have suddenly almost no error. Then the
-// parts are divided again close to that place, until what may be hidden there is small enough. At
-// the ends of the first pieces, the function is compared with what the points extrapolate to.
+// The rule cannot see a kink or a step between an end of a piece and its outermost points. If a
+// piece is divided next to a kink, both parts suddenly have almost no error. Such parts are divided
+// again near their common end until what may be hidden there is small enough. At the ends of the
+// first pieces, the function is compared with the extrapolation from the points.
 
-// From a piece's end to the outermost point, as a part of half its width.
+// The distance from a piece's end to the outermost point, as a fraction of half the width.
 #define BLIND (1 - POINTS[0])
-// Where the function is compared, from the end as a part of the width.
+// The distance from the end at which the function is compared, as a fraction of the width.
 #define PROBE 0x1p-36
 
-// Lagrange's polynomials of the rule's points, from the lowest, at the high end.
+// The Lagrange polynomials of the rule's points, from the lowest, at the high end.
 static void fill_end_weights(double *weights) {
   enum { COUNT = 2 * KRONROD - 1 };
   double x[COUNT];
@@ -244,7 +245,8 @@ static void fill_end_weights(double *weights) {
   }
 }
 
-// Looks at one end of a piece; *found: something is hidden there, and the piece is doubted.
+// Compares one end of a piece with the extrapolation. If something is hidden there, sets *found and
+// marks the end as doubted.
 static bool probe_end(Integrand *g, Piece *p, int end, double wanted, bool *found) {
   static const double ROUNDING = 1e-7;
   const double width = p->high - p->low;
@@ -261,7 +263,8 @@ static bool probe_end(Integrand *g, Piece *p, int end, double wanted, bool *foun
   return true;
 }
 
-// Looks at the ends of the first pieces, `middle` being that of both, unless they are too narrow.
+// Compares the outer ends and `middle`, the common end of the first two pieces, unless the pieces
+// are too narrow.
 static bool probe_ends(Integrand *g, Pieces *pieces, double middle, bool *found) {
   const double wanted = survey(g, pieces).wanted;
   double low = INFINITY, high = -INFINITY;
@@ -284,7 +287,7 @@ static bool probe_ends(Integrand *g, Pieces *pieces, double middle, bool *found)
   return true;
 }
 
-static void keep_doubts(const Piece *parent, Piece *low, Piece *high) {
+static void inherit_doubts(const Piece *parent, Piece *low, Piece *high) {
   static const double SUDDEN = 1e-8, HIDDEN = 0.05;
   const double most = SUDDEN * parent->error;
   double share = HIDDEN;
@@ -301,7 +304,7 @@ static void keep_doubts(const Piece *parent, Piece *low, Piece *high) {
   if (high->doubted) high->error = fmax(high->error, share * parent->error);
 }
 
-// Where to divide a piece.
+// Returns the parameter at which to divide a piece.
 static double cut_of(const Piece *p) {
   static const double NEAR = 0.125;
   const double width = p->high - p->low;
@@ -310,7 +313,7 @@ static double cut_of(const Piece *p) {
                           : 0.5 * (p->low + p->high);
 }
 
-// Divides the piece with the largest error until the sum of errors is small enough.
+// Divides the piece with the largest error until the sum of the errors is small enough.
 static bool refine(Integrand *g, Pieces *pieces) {
   for (;;) {
     Survey s = survey(g, pieces);
@@ -327,7 +330,7 @@ static bool refine(Integrand *g, Pieces *pieces) {
     p->high = cut_of(&parent);
     *q = (Piece){.low = p->high, .high = parent.high};
     if (!measure(g, p) || !measure(g, q)) return false;
-    keep_doubts(&parent, p, q);
+    inherit_doubts(&parent, p, q);
   }
 }
 
@@ -349,7 +352,7 @@ static bool integrate(Integrand *g, double sign, CagValue *result) {
   Pieces pieces = {.vm = vm};
   double low, high;
   choose_substitution(g, &low, &high);
-  // A singularity that matters still in so small a part of the range has no integral.
+  // If a piece this small still matters, it contains a singularity that is not integrable.
   static const double SMALLEST_PART = 0x1p-150;
   pieces.narrowest = SMALLEST_PART * (high - low);
   grow(&pieces, PIECES_FIRST);
@@ -386,10 +389,11 @@ typedef struct Extreme {
   double x, y;
 } Extreme;
 
-// Brent's minimizer in [a, c] from the point m between them.
+// Brent's minimizer in [a, c]; starts from the point m between them.
 static bool brent_minimum(const Subject *f, double sign, double a, double c, Extreme *m) {
   static const double GOLDEN = 0.3819660112501051; // (3 - sqrt 5) / 2
-  static const double RELATIVE = 1.5e-8; // root of the rounding error: a minimum is no sharper
+  static const double RELATIVE =
+      1.5e-8; // square root of the rounding error: a minimum is not sharper
   static const double ABSOLUTE = 1e-14;
   enum { STEPS_MOST = 200 };
   double x = m->x, fx = m->y, w = x, fw = fx, v = x, fv = fx, step = 0, before = 0;
@@ -398,8 +402,8 @@ static bool brent_minimum(const Subject *f, double sign, double a, double c, Ext
     if (fabs(x - middle) <= 2 * small - 0.5 * (c - a)) break;
     bool golden = true;
     if (fabs(before) > small) {
-      // The vertex of the parabola through x, w, v, if it lies inside and moves less than half of
-      // the step before last.
+      // The vertex of the parabola through x, w, and v, if it lies inside and moves less than half
+      // the step before the last one.
       double r = (x - w) * (fx - fv), q = (x - v) * (fx - fw), p = (x - v) * q - (x - w) * r;
       q = 2 * (q - r);
       if (q > 0) p = -p;
@@ -434,8 +438,8 @@ static bool brent_minimum(const Subject *f, double sign, double a, double c, Ext
   return true;
 }
 
-// The least value of sign * f: a scan in equal steps, then Brent's method about each of the lowest
-// valleys that the scan shows.
+// Finds the least value of sign * f: scans in equal steps, then applies Brent's method to each of
+// the lowest valleys of the scan.
 static bool least(Subject f, double sign, CagValue *result) {
   enum { SCAN = 128, VALLEYS = 4 };
   double y[SCAN + 1];
@@ -499,10 +503,12 @@ static bool fail_same_sign(const Subject *f, double fa, double fb) {
   return false;
 }
 
-// Brent's root finder: b is the best place, the root lies between b and c, a was the b before.
+// Brent's root finder. b is the best estimate, the root lies between b and c, and a is the previous
+// b.
 static bool brent_root(const Subject *f, double a, double fa, double b, double fb, double *root) {
   enum { STEPS_MOST = 1000 };
-  // Of a root at 0 so much of the range is good enough.
+  // For a root at 0, where relative precision means nothing: this fraction of the range is close
+  // enough.
   static const double PART = 1e-4 * DBL_EPSILON;
   double least_step = PART * fabs(b - a);
   double c = a, fc = fa, step = b - a, before = step;
@@ -513,7 +519,7 @@ static bool brent_root(const Subject *f, double a, double fa, double b, double f
     *root = b;
     if (fabs(half) <= small || fb == 0) return true;
     if (fabs(before) >= small && fabs(fa) > fabs(fb)) {
-      // Secant, or inverse quadratic interpolation.
+      // Secant step, or inverse quadratic interpolation.
       double s = fb / fa, p, q;
       if (a == c) p = 2 * half * s, q = 1 - s;
       else {

@@ -1,4 +1,5 @@
-// Questions to conics, to lines by their equations, and to plane curves by their coordinates.
+// Properties of conics, of lines given by equations, and of plane curves in terms of their
+// coordinates.
 
 #include <math.h>
 
@@ -8,15 +9,15 @@
 #include "interp/builtin/conics.h"
 #include "interp/builtin/support.h"
 
-// Lines whose directions differ by less than this sine are parallel; equations whose entries agree
-// to this share are of one line.
+// Lines are parallel if the sine of the angle between them is below this. Two equations describe
+// the same line if their entries agree to this relative tolerance.
 #define PARALLEL 1e-12
 
 // --- Classification ---
 
 static CagValue angle_value(double radians) { return cag_angle(cag_degrees_shown(radians)); }
 
-// A row of numbers, none of them -0.
+// A list of numbers, without negative zeros.
 static CagValue row_value(CagCall *call, const double *x, size_t n) {
   double *row;
   CagValue list = cag_list_numbers(call->vm, n, &row);
@@ -40,7 +41,7 @@ static CagValue lines_value(CagCall *call, const CagConicClass *k) {
   return cag_list_values(call->vm, lines, k->line_count);
 }
 
-// Points of the conic's plane as the script sees them: in space where the plane lies there.
+// Points of the conic's plane as the script sees them: in space if the conic has a frame.
 static CagValue plane_points(CagCall *call, const CagVec3 *p, size_t n, const CagTransform *frame) {
   CagVec3 moved[2];
   for (size_t i = 0; i < n; i++) moved[i] = frame ? cag_transform_point(frame, p[i]) : p[i];
@@ -51,7 +52,8 @@ static CagValue plane_point(CagCall *call, CagVec3 p, const CagTransform *frame)
   return frame ? cag_point(call->vm, cag_transform_point(frame, p), 3) : cag_point(call->vm, p, 2);
 }
 
-// The conic of a curve of the plane, or of space with the frame of its plane.
+// Reads a conic: that of a plane curve, or that of a space curve together with the frame of its
+// plane.
 static bool read_placed_conic(CagCall *call, CagConic *out, CagTransform *frame, bool *placed) {
   const CagValue v = call->values[0];
   const CagCurve *c = v.type == CAG_CURVE ? CAG_AS_SHAPE(v)->as.curve : NULL;
@@ -60,7 +62,8 @@ static bool read_placed_conic(CagCall *call, CagConic *out, CagTransform *frame,
                  : cag_arg_conic(call, 0, out);
 }
 
-// The values of the text: turned by the angle that removes the xy term, then moved to the center.
+// The standard form of the textbook: rotated by the angle that removes the xy term, then moved to
+// the center.
 static CagValue standard_value(CagCall *call, const CagConicClass *k) {
   static const char *const names[] = {"angle", "coefficients", "alpha", "beta", "kappa"};
   CagValue values[] = {angle_value(k->book_angle), cag_vector(call->vm, k->rotated, 6), cag_none(),
@@ -100,7 +103,7 @@ bool cag_conics_classify(CagCall *call, CagValue *result) {
                        standard_value(call, &k),
                        matrix_value(call, &conic),
                        placed ? cag_transform_value(vm, frame) : cag_none()};
-  // Conics of the plane need no frame.
+  // Conics given in the plane need no frame.
   *result = cag_record_new(vm, names, values, sizeof values / sizeof *values - (placed ? 0 : 1));
   return true;
 }
@@ -147,7 +150,7 @@ bool cag_conics_meet_lines(CagCall *call, const struct cag_conics_meet_lines *a,
   if (hypot(hypot(x, y), w) <= PARALLEL * hypot(np, p[2]) * hypot(nq, q[2])) {
     values[0] = cag_text_c(call->vm, "coincident");
   } else if (fabs(w) <= PARALLEL * np * nq) {
-    // The common direction as a point at infinity.
+    // The common direction, as a point at infinity.
     const double ideal[3] = {x, y, 0};
     values[0] = cag_text_c(call->vm, "parallel");
     values[2] = row_value(call, ideal, 3);
@@ -266,7 +269,7 @@ bool cag_conics_points_at(CagCall *call, const struct cag_conics_points_at *a, C
   if (!check_plane_curve(call, a->C)) return false;
   if (x == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value, "needs either `x` or `y`");
-  // One of x and y is given, the other is 0.
+  // Either x or y is given, and the other is 0.
   const CagPlane plane = {cag_vec3(a->x, a->y, 0), cag_vec3(x, !x, 0)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(a->C, &plane, &meetings, &n, call->err)))
     return false;
@@ -290,7 +293,7 @@ static bool derivatives_at(CagCall *call, const CagCurve *c, CagVec3 out[3]) {
 bool cag_conics_slope(CagCall *call, const struct cag_conics_slope *a, CagValue *result) {
   CagVec3 d[3];
   if (!derivatives_at(call, a->C, d)) return false;
-  const double vertical = 1e-15; // what is left of a zero by rounding
+  const double vertical = 1e-15; // what rounding may leave of a zero
   *result =
       fabs(d[1].x) <= vertical * fabs(d[1].y) ? cag_none() : cag_number(d[1].y / d[1].x + 0.0);
   return true;
@@ -308,9 +311,9 @@ bool cag_conics_signed_curvature(CagCall *call, const struct cag_conics_signed_c
   return true;
 }
 
-// --- Formulas through points ---
+// --- Curves through points by coefficients ---
 
-#define DEGREE_MAX 30 // as the row of fit_formula says
+#define DEGREE_MAX 30 // also stated in the row of fit_formula
 
 bool cag_conics_fit_formula(CagCall *call, const struct cag_conics_fit_formula *a,
                             CagValue *result) {

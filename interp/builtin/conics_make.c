@@ -1,4 +1,4 @@
-// Conics made: by their axes, their equation, through points, as arcs, and as points.
+// Constructors of conics: from axes, equations, points, and tangents; arcs; points along a conic.
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
@@ -11,7 +11,7 @@
 #define FAIL_DOMAIN(call, argument, ...)                                                           \
   cag_fail_core(call, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, __VA_ARGS__)
 
-// The parameter where x or y is reached; x on the upper half.
+// Finds the parameter at which x or y has the value; for x, on the upper half.
 typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is_x, double *t);
 
 static bool parabola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
@@ -27,13 +27,13 @@ static bool hyperbola_at(CagCall *call, double a, double b, double value, bool i
   if (is_x && value < a)
     return FAIL_DOMAIN(
         call, "x", "the right branch begins at x = %.17g; it has no point at x = %.17g", a, value);
-  // asinh of y keeps its digits near the vertex, where acosh of x loses them.
+  // asinh of y is accurate near the vertex, where acosh of x is not.
   *t = asinh(is_x ? sqrt((value - a) * (value + a)) / a : value / b);
   return true;
 }
 
-// Exactly one of the range, x, and y is given: the range stands three places before x, and y after
-// it. Sets the range of the parameter, radians if it is an angle.
+// Exactly one of the range, x, and y must be given. The range is three parameters before x, and y
+// follows x. Sets the range of the parameter; angles become radians.
 static bool find_range(CagCall *call, int x_at, double a, double b, Inverse inverse,
                        CagRangeEnds *range) {
   const bool x = cag_given(call, x_at), y = cag_given(call, x_at + 1);
@@ -81,7 +81,7 @@ bool cag_conics_hyperbola(CagCall *call, const struct cag_conics_hyperbola *a, C
 
 // --- By equation ---
 
-// 6 numbers, or 3 rows of a symmetric matrix.
+// Reads an equation from 6 numbers, or from the 3 rows of a symmetric matrix.
 static bool read_equation(CagCall *call, int argument, CagConic *out) {
   CagList *list;
   if (!cag_arg_list(call, argument, &list)) return false;
@@ -166,7 +166,7 @@ bool cag_conics_conic_through(CagCall *call, CagValue *result) {
   size_t n;
   int dimension;
   if (call->count > 1) {
-    // Five points one by one.
+    // Five points as five arguments.
     CagVec3 five[5];
     if (call->count != 5)
       return cag_fail_call(call, -1, CAG_ERR_value, "expects 5 points, or one list of them");
@@ -261,7 +261,7 @@ bool cag_conics_conic_segment(CagCall *call, const struct cag_conics_conic_segme
 
 // --- Points ---
 
-// An arc in the axes of its ellipse: angle from..to of the parameter.
+// An arc relative to the axes of its ellipse, with its parameter range.
 typedef struct Axes {
   CagVec3 center, x, y; // unit vectors
   double a, b, from, to;
@@ -272,8 +272,9 @@ static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   double rate;
   if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
     return cag_fail_call(call, 0, CAG_ERR_value, "accepts this `by` only for circles and ellipses");
-  // Any two conjugate half diameters will do for an arc; from them to the axes the angle shifts.
-  const double same = 1e-9; // cosine of axes perpendicular to each other, and angles that are one
+  // An arc may be stored with any two conjugate half diameters. Its principal axes are at a shifted
+  // angle.
+  const double same = 1e-9; // cosine of perpendicular axes; difference of equal angles
   if (fabs(cag_dot(x, y)) > same * cag_norm(x) * cag_norm(y)) {
     const double shift = atan2(2 * cag_dot(x, y), cag_dot(x, x) - cag_dot(y, y)) / 2;
     const CagVec3 axis = cag_madd(cag_scaled(x, cos(shift)), sin(shift), y);
@@ -296,7 +297,7 @@ static CagVec3 axes_point(const Axes *k, double x, double y) {
   return cag_madd(cag_madd(k->center, x, k->x), y, k->y);
 }
 
-// The polar angle of the point with this parameter: in its quadrant.
+// The polar angle of the point at this parameter, in the same quadrant.
 static double polar_angle(const Axes *k, double t) {
   double s, c;
   cag_sincos(t, &s, &c);
@@ -343,10 +344,11 @@ static bool by_length(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) 
   return cag_geometry_ok(call, status);
 }
 
-// Halvings that exhaust a double's digits.
+// Enough bisections to exhaust a double's digits.
 #define HALVINGS 100
 
-// The point of abscissa x between t = low, where it is less, and high.
+// Finds the point with abscissa x by bisection. The abscissa is smaller at t = low and larger at
+// high.
 static CagStatus find_x(const CagCurve *c, double x, double low, double high, CagVec3 *out,
                         CagError *err) {
   for (int i = 0; i < HALVINGS; i++) {
@@ -383,7 +385,7 @@ static bool by_parameter(CagCall *call, const CagCurve *c, size_t n, CagVec3 *ou
 
 bool cag_conics_conic_points(CagCall *call, const struct cag_conics_conic_points *a,
                              CagValue *result) {
-  // In the order of the words of `by`.
+  // In the order of the choices of `by`.
   static bool (*const make[])(CagCall *, const CagCurve *, size_t,
                               CagVec3 *) = {by_parameter, by_angle, by_length, by_rational, by_x};
   const CagCurve *c = cag_curve_conic_branch(a->C) ? cag_curve_conic_branch(a->C) : a->C;

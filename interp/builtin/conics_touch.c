@@ -1,4 +1,4 @@
-// Circles and lines that touch, fillets and rounded corners.
+// Tangent circles and lines, fillets, and rounded corners.
 
 #include <string.h>
 
@@ -11,13 +11,13 @@
 
 #define FULL_TURN 6.283185307179586 // 2 pi
 
-// The curve itself, or of a conic the one branch that it has.
+// Returns the only branch of a conic, or the curve itself.
 static const CagCurve *branch_of(const CagCurve *c) {
   const CagCurve *branch = cag_curve_conic_branch(c);
   return branch ? branch : c;
 }
 
-// A line, taken whole, or the circle of a circle or arc.
+// Reads a line, which is extended to both sides, or the full circle of a circle or arc.
 static bool read_touched(CagCall *call, int argument, CagTouched *out) {
   CagCurve *c;
   const CagVec3 *p;
@@ -42,7 +42,7 @@ static bool read_touched(CagCall *call, int argument, CagTouched *out) {
                        "expects lines, circles, or arcs of circles in the plane");
 }
 
-// "inside" or "outside", or a list of two such.
+// Reads "inside" or "outside", or a list of two of these.
 static bool read_contact(CagCall *call, int argument, bool inside[2]) {
   static const char *const words[] = {"outside", "inside", NULL};
   int word;

@@ -1,11 +1,11 @@
-// Errors of the script's own, and what looks at values and errors on their way.
+// Errors raised by scripts, and functions that observe values and errors.
 
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
 bool cag_control_error(CagCall *call, const struct cag_control_error *a, CagValue *result) {
   (void)result;
-  // As it stands, without a name before it.
+  // The script's message is shown unchanged, without the name of a function.
   return cag_vm_fail(call->vm, CAG_ERR_user, "%s", a->message);
 }
 

@@ -1,9 +1,9 @@
-// What curves answer at one parameter, and their data.
+// Properties of curves at one parameter, and their data.
 
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/curves.h"
 
-static bool give_point(CagCall *call, const CagCurve *c, double t, CagValue *result) {
+static bool point_result(CagCall *call, const CagCurve *c, double t, CagValue *result) {
   CagVec3 p;
   if (!cag_geometry_ok(call, cag_curve_point(c, t, &p, call->err))) return false;
   *result = cag_point(call->vm, p, c->dimension);
@@ -14,7 +14,7 @@ bool cag_curves_at(CagCall *call, const struct cag_curves_at *a, CagValue *resul
   const CagCurve *c = a->C;
   double t;
   return cag_arg_parameter(call, 1, c->angular, c->start, c->end, a->unit, &t) &&
-         give_point(call, c, t, result);
+         point_result(call, c, t, result);
 }
 
 bool cag_curves_derivative(CagCall *call, const struct cag_curves_derivative *a, CagValue *result) {
@@ -38,7 +38,7 @@ bool cag_curves_tangent(CagCall *call, const struct cag_curves_tangent *a, CagVa
   return true;
 }
 
-// The frame at the parameter; `bent`: it must have a normal.
+// The Frenet frame at the parameter. If `bent` is set, the frame must have a normal.
 static bool frame_at(CagCall *call, const CagCurve *c, bool bent, CagFrenet *out) {
   double t;
   if (!cag_arg_at(call, c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, out, call->err)))
@@ -124,11 +124,11 @@ bool cag_curves_end(CagCall *call, CagValue *result) {
 
 bool cag_curves_start_point(CagCall *call, const struct cag_curves_start_point *a,
                             CagValue *result) {
-  return give_point(call, a->C, a->C->start, result);
+  return point_result(call, a->C, a->C->start, result);
 }
 
 bool cag_curves_end_point(CagCall *call, const struct cag_curves_end_point *a, CagValue *result) {
-  return give_point(call, a->C, a->C->end, result);
+  return point_result(call, a->C, a->C->end, result);
 }
 
 bool cag_fail_no_data(CagCall *call, const CagCurve *c, const char *what) {
@@ -167,7 +167,7 @@ bool cag_curves_points(CagCall *call, const struct cag_curves_points *a, CagValu
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < nurbs.distinct; i++) {
     const double *h = nurbs.homogeneous + 4 * i;
-    // A point of weight 0 has no place.
+    // A point with weight 0 is at infinity and has no coordinates.
     CagValue p = h[3] > 0 ? cag_point(call->vm, cag_project(h), c->dimension) : cag_none();
     if (!cag_builder_add(call->vm, list, p)) return false;
   }

@@ -1,4 +1,4 @@
-// Curves made of other curves: backwards, in parts, joined, in another form.
+// Curves derived from other curves: reversed, split, joined, and converted.
 
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
@@ -29,7 +29,7 @@ bool cag_curves_reparametrize(CagCall *call, const struct cag_curves_reparametri
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-// The parts, with what was said about the whole.
+// Returns the parts as a list; they inherit the attributes of the whole.
 static CagValue parts_value(CagCall *call, const CagCurveList *parts) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < parts->count; i++) {
@@ -75,7 +75,7 @@ bool cag_curves_to_nurbs(CagCall *call, const struct cag_curves_to_nurbs *a, Cag
   return cag_changed_curve_result(call, cag_curve_to_nurbs(a->C, &out, call->err), &out, result);
 }
 
-// No limit of the turn: only the distance counts.
+// Any angle between tangents is allowed; only the distance counts.
 #define ANY_TURN 3.14159265358979323846
 
 bool cag_curves_polygonize(CagCall *call, const struct cag_curves_polygonize *a, CagValue *result) {
@@ -93,7 +93,7 @@ bool cag_curves_polygonize(CagCall *call, const struct cag_curves_polygonize *a,
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-// --- Another form of the same points ---
+// --- Other representations ---
 
 bool cag_bsplines_to_bezier(CagCall *call, const struct cag_bsplines_to_bezier *a,
                             CagValue *result) {
@@ -104,7 +104,8 @@ bool cag_bsplines_to_bezier(CagCall *call, const struct cag_bsplines_to_bezier *
   return true;
 }
 
-// Most times that a degree is raised or a knot inserted or taken away at once, as rows say.
+// The maximum number of repeated degree elevations and knot insertions or removals, as stated in
+// the rows.
 #define TIMES_MAX 1000
 
 bool cag_bsplines_elevate(CagCall *call, const struct cag_bsplines_elevate *a, CagValue *result) {
@@ -130,10 +131,10 @@ bool cag_bsplines_insert_knot(CagCall *call, const struct cag_bsplines_insert_kn
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-// Part of the size of the curve within which a knot counts as one without effect.
+// A knot is redundant if removing it moves the curve by less than this fraction of its size.
 #define WITHOUT_EFFECT 1e-9
 
-// Where no tolerance is given, it is a part of the size.
+// If no tolerance is given, uses a fraction of the curve's size.
 static bool tolerance_of_size(CagCall *call, const CagCurve *c, double part, double *tolerance) {
   CagBounds box;
   if (cag_given(call, 2)) return true;
@@ -175,7 +176,7 @@ bool cag_bsplines_clamp_ends(CagCall *call, const struct cag_bsplines_clamp_ends
   return cag_changed_curve_result(call, cag_curve_clamp(a->C, &out, call->err), &out, result);
 }
 
-// --- Curves near it ---
+// --- Offsets ---
 
 bool cag_bsplines_deviation(CagCall *call, const struct cag_bsplines_deviation *a,
                             CagValue *result) {
@@ -192,7 +193,7 @@ bool cag_bsplines_approximate(CagCall *call, const struct cag_bsplines_approxima
   return cag_changed_curve_result(call, status, &out, result);
 }
 
-// How exact an offset is where nothing is said, as part of its curve's size.
+// The default tolerance of an offset, as a fraction of the curve's size.
 #define OFFSET_TOLERANCE 1e-6
 
 bool cag_bsplines_offset(CagCall *call, const struct cag_bsplines_offset *a, CagValue *result) {

@@ -1,4 +1,4 @@
-// Lines, circles, ellipses and helices.
+// Constructors of lines, circles, ellipses, and helices.
 
 #include "interp/builtin/curves.h"
 
@@ -21,7 +21,8 @@ bool cag_curves_polyline(CagCall *call, const struct cag_curves_polyline *a, Cag
 
 // --- Circles and ellipses ---
 
-// A frame at the center with z along the normal. Of a normal along Z its x is X, else x is level.
+// A frame at the center with z along the normal. Its x axis is horizontal, or X if the normal is
+// parallel to Z.
 static CagStatus level_frame(CagVec3 center, CagVec3 normal, CagTransform *out, CagError *err) {
   CagVec3 x = cag_cross(cag_vec3(0, 0, 1), normal);
   if (x.x == 0 && x.y == 0) x = cag_vec3(1, 0, 0);
@@ -46,9 +47,10 @@ bool cag_ranged_curve_result(CagCall *call, CagStatus status, bool backwards, Ca
   return cag_curve_result(call, status, &reversed, result);
 }
 
-// The arc over a range of angles in degrees; from the larger to the smaller one it runs clockwise.
-static bool give_arc(CagCall *call, double a, double b, CagRangeEnds range, CagPoint center,
-                     CagPoint normal, CagValue *result) {
+// Returns the arc over a range of angles in degrees. If the range is descending, the arc runs
+// clockwise.
+static bool arc_result(CagCall *call, double a, double b, CagRangeEnds range, CagPoint center,
+                       CagPoint normal, CagValue *result) {
   CagTransform frame;
   CagCurve *c = NULL;
   if (!cag_circle_frame(call, center, normal, &frame)) return false;
@@ -58,23 +60,23 @@ static bool give_arc(CagCall *call, double a, double b, CagRangeEnds range, CagP
 }
 
 bool cag_curves_circle(CagCall *call, const struct cag_curves_circle *a, CagValue *result) {
-  return give_arc(call, a->radius, a->radius, (CagRangeEnds){0, 360, true}, a->center, a->normal,
-                  result);
+  return arc_result(call, a->radius, a->radius, (CagRangeEnds){0, 360, true}, a->center, a->normal,
+                    result);
 }
 
 bool cag_curves_arc(CagCall *call, const struct cag_curves_arc *a, CagValue *result) {
   if (!a->range.angle) return cag_fail_type(call, 1, "a range of angles");
-  return give_arc(call, a->radius, a->radius, a->range, a->center, a->normal, result);
+  return arc_result(call, a->radius, a->radius, a->range, a->center, a->normal, result);
 }
 
 bool cag_curves_ellipse(CagCall *call, const struct cag_curves_ellipse *a, CagValue *result) {
   if (!a->range.angle) return cag_fail_type(call, 2, "a range of angles");
-  return give_arc(call, a->a, a->b, a->range, a->center, a->normal, result);
+  return arc_result(call, a->a, a->b, a->range, a->center, a->normal, result);
 }
 
 // --- Through three points ---
 
-// Three points are on one line when their triangle is flatter than this share of its sides.
+// Points are collinear if the height of their triangle is below this fraction of its sides.
 #define FLAT_TRIANGLE 1e-12
 
 static CagStatus circumcircle(const CagVec3 p[3], CagVec3 *center, CagVec3 *normal, CagError *err) {
@@ -84,7 +86,7 @@ static CagStatus circumcircle(const CagVec3 p[3], CagVec3 *center, CagVec3 *norm
     return cag_fail(
         err, CAG_E_ARGUMENT, CAG_ERR_collinear, "", -1,
         "the three points are collinear (or two are the same), so no circle passes through them");
-  // (|a|^2 b - |b|^2 a) x n / 2 |n|^2 leads from the first point to the center.
+  // (|a|^2 b - |b|^2 a) x n / 2 |n|^2 is the vector from the first point to the center.
   CagVec3 w = cag_sub(cag_scaled(b, cag_dot(a, a)), cag_scaled(a, cag_dot(b, b)));
   *center = cag_madd(p[0], 1 / (2 * nn), cag_cross(w, n));
   *normal = n;
@@ -120,7 +122,8 @@ bool cag_curves_arc_through(CagCall *call, const struct cag_curves_arc_through *
   CagTransform frame;
   CagCurve *c = NULL;
   if (!cag_geometry_ok(call, circumcircle(p, &center, &normal, call->err))) return false;
-  // The first point is at angle 0, and the normal is such that the second comes before the third.
+  // The first point is at angle 0. The normal is chosen such that the second point precedes the
+  // third.
   CagVec3 x = cag_sub(p[0], center), y = cag_cross(normal, x), last = cag_sub(p[2], center);
   double radius = cag_norm(x);
   double sweep = atan2(cag_dot(last, cag_unit(y)), cag_dot(last, cag_unit(x)));

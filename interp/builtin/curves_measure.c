@@ -1,4 +1,4 @@
-// Measures of whole curves and regions, and their division.
+// Measures of whole curves and regions, and division of curves.
 
 #include <string.h>
 
@@ -40,7 +40,7 @@ static double step(const CagCurve *c, size_t i, size_t n) {
   return i == n ? c->end : c->start + (c->end - c->start) * ((double)i / (double)n);
 }
 
-// Points that are evaluated together: few enough to stay near the processor.
+// The number of points that are evaluated together: few enough to stay in the cache.
 #define SAMPLE_BATCH 512
 
 bool cag_curves_sample(CagCall *call, const struct cag_curves_sample *a, CagValue *result) {
@@ -52,7 +52,7 @@ bool cag_curves_sample(CagCall *call, const struct cag_curves_sample *a, CagValu
   cag_root_push(call->vm, list); // a curve may be a function of the script
   for (size_t from = 0; ok && from < count; from += SAMPLE_BATCH, to += SAMPLE_BATCH * dimension) {
     const size_t m = count - from < SAMPLE_BATCH ? count - from : SAMPLE_BATCH;
-    // Vectors of a list in space lie as those of the core do.
+    // Points in space are evaluated directly into the list, whose layout is that of CagVec3.
     CagVec3 *out = dimension == 3 ? (CagVec3 *)to : points;
     for (size_t i = 0; i < m; i++) t[i] = step(a->C, from + i, count - 1);
     ok = cag_geometry_ok(call, cag_curve_eval_many(a->C, t, m, 0, out, call->err));
@@ -76,13 +76,13 @@ static CagStatus divide_by_length(const CagCurve *c, size_t n, double *t, CagErr
   return status;
 }
 
-// Steps of the search for the next point at a given chord, per part.
+// The number of search steps per part for the next point at a given chord length.
 #define CHORD_STEPS 64
-// Halvings that exhaust a double's digits.
+// Enough bisections to exhaust a double's digits.
 #define HALVINGS 60
 
-// The first parameter after `from` whose point is `chord` away from the point there; false when the
-// curve ends before.
+// Finds the first parameter after `from` whose point is at distance `chord` from the point at
+// `from`. *found is false if the curve ends before.
 static CagStatus next_chord(const CagCurve *c, double from, double chord, double stride,
                             bool *found, double *t, CagError *err) {
   CagVec3 p, q;
@@ -105,8 +105,8 @@ static CagStatus next_chord(const CagCurve *c, double from, double chord, double
   return status;
 }
 
-// Walks n - 1 chords; *rest is what the last chord to the end has more than `chord` (negative when
-// the curve ends too early).
+// Steps along n - 1 chords. *rest is the length of the last chord, which ends at the curve's end,
+// minus `chord`. It is negative if the curve ends too early.
 static CagStatus walk_chords(const CagCurve *c, size_t n, double chord, double *t, double *rest,
                              CagError *err) {
   double stride = (c->end - c->start) / ((double)n * CHORD_STEPS);
@@ -123,11 +123,11 @@ static CagStatus walk_chords(const CagCurve *c, size_t n, double chord, double *
   return status;
 }
 
-// Chords count as equal when they differ by less than this part of the length.
+// Chords are equal if they differ by less than this fraction of the curve's length.
 #define EQUAL_CHORDS 1e-12
 #define CHORD_ROUNDS 400
 
-// How much longer the chord before t[i] is than the one after it, with t[i] moved to x.
+// The chord before t[i] minus the chord after it, with t[i] moved to x.
 static CagStatus chord_excess(const CagCurve *c, const CagVec3 *p, size_t i, double x, CagVec3 *at,
                               double *out, CagError *err) {
   CagStatus status = cag_curve_point(c, x, at, err);
@@ -135,8 +135,8 @@ static CagStatus chord_excess(const CagCurve *c, const CagVec3 *p, size_t i, dou
   return status;
 }
 
-// Moves t[i] between its neighbors to where its two chords are equal. The chord before it is
-// shorter at the left neighbor, and longer at the right one.
+// Moves t[i] between its neighbors until its two chords are equal. At the left neighbor, the chord
+// before it is shorter; at the right one, it is longer.
 static CagStatus even_out(const CagCurve *c, CagVec3 *p, double *t, size_t i, CagError *err) {
   double low = t[i - 1], high = t[i + 1], excess;
   CagStatus status = CAG_OK;
@@ -150,7 +150,7 @@ static CagStatus even_out(const CagCurve *c, CagVec3 *p, double *t, size_t i, Ca
   return status ? status : cag_curve_point(c, t[i], &p[i], err);
 }
 
-// The excess at every inner point, and their largest.
+// Computes the excess at every inner point, and the largest absolute value.
 static CagStatus all_excesses(const CagCurve *c, size_t n, const double *t, CagVec3 *p, double *e,
                               double *worst, CagError *err) {
   CagStatus status = CAG_OK;
@@ -163,8 +163,8 @@ static CagStatus all_excesses(const CagCurve *c, size_t n, const double *t, CagV
   return status;
 }
 
-// A step of Newton's method for all inner points at once: the system has three diagonals. `next`
-// gets the parameters; false: they would not ascend.
+// One step of Newton's method for all inner points at once, with a tridiagonal system. `next`
+// receives the new parameters; *ok is false if they do not ascend.
 static CagStatus newton_chords(const CagCurve *c, size_t n, const double *t, const CagVec3 *p,
                                const double *e, double *room, double *next, bool *ok,
                                CagError *err) {
@@ -198,7 +198,8 @@ static CagStatus newton_chords(const CagCurve *c, size_t n, const double *t, con
   return CAG_OK;
 }
 
-// Any start: points are evened out one after the other until Newton's method takes over.
+// Works from any start: equalizes the chords of one point after the other until Newton's method
+// converges.
 static CagStatus equalize_chords(CagCall *call, const CagCurve *c, size_t n, double *t,
                                  double length, CagError *err) {
   const double enough = EQUAL_CHORDS * length;
@@ -224,8 +225,9 @@ static CagStatus equalize_chords(CagCall *call, const CagCurve *c, size_t n, dou
   return status;
 }
 
-// Points at equal distances, each the first one at its distance from the one before, where they
-// end at the curve's end. A curve that turns back may have none of these; then others.
+// Divides the curve into chords of equal length. Prefers chords whose ends are each the first point
+// at that distance from the one before. A curve that turns back may have no such division; then
+// another one is searched for.
 static CagStatus divide_by_chord(CagCall *call, const CagCurve *c, size_t n, double *t,
                                  CagError *err) {
   double length, low = 0, rest;
@@ -278,8 +280,8 @@ bool cag_curves_closest(CagCall *call, const struct cag_curves_closest *a, CagVa
 
 // --- Area ---
 
-// Signed area and centroid of a closed plane curve or a region, where it lies.
-// centroid: NULL where it is not wanted.
+// Signed area and centroid of a closed plane curve or a region, in its own plane. `centroid` may be
+// NULL.
 static bool read_area(CagCall *call, double *area, CagVec3 *centroid, int *dimension) {
   CagValue v = call->values[0];
   *dimension = 2;

@@ -1,4 +1,4 @@
-// Where curves meet curves, surfaces and planes.
+// Intersections of curves with curves, surfaces, and planes.
 
 #include "base/memory.h"
 #include "geom/curve/intersect.h"

@@ -1,4 +1,4 @@
-// Bezier and B-spline curves, and their bases as data.
+// Constructors of Bezier and B-spline curves, and their bases as data.
 
 #include <limits.h>
 #include <string.h>
@@ -35,7 +35,7 @@ bool cag_curves_bezier(CagCall *call, const struct cag_curves_bezier *a, CagValu
   return cag_curve_result(call, status, &c, result);
 }
 
-// Knots from a name or a list, the third argument.
+// Reads the knots, the third argument, from a name or a list.
 static bool read_knots(CagCall *call, size_t n, int degree, const CagVec3 *points,
                        const double **knots) {
   const size_t wanted = n + (size_t)degree + 1;
@@ -72,7 +72,8 @@ bool cag_curves_bspline(CagCall *call, const struct cag_curves_bspline *a, CagVa
     if (cag_given(call, 2) && a->knots.type != CAG_TEXT)
       return cag_fail_call(call, 2, CAG_ERR_value,
                            "takes no list of `knots` for a closed curve: they are uniform");
-    // A polygon that comes back to its first point has that once.
+    // A polygon that returns to its first point contains that point twice; the duplicate is
+    // dropped.
     const CagVec3 first = points[0], last = points[n - 1];
     const bool again = n > 2 && first.x == last.x && first.y == last.y && first.z == last.z;
     status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, call->err);
@@ -96,14 +97,14 @@ bool cag_curves_nurbs(CagCall *call, const struct cag_curves_nurbs *a, CagValue 
 
 // --- Bases as data ---
 
-// Knots so that their usable range is from..to.
+// Scales the knots such that their usable range is from..to.
 static void remap_knots(double *knots, size_t n, int degree, double from, double to) {
   const double a = knots[degree], b = knots[n];
   for (size_t i = 0; i < n + (size_t)degree + 1; i++)
     knots[i] = knots[i] == b ? to : from + (knots[i] - a) / (b - a) * (to - from);
 }
 
-// count, degree, kind, order, over
+// Arguments: count, degree, kind, order, over.
 bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   long count;
   int degree;

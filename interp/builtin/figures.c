@@ -1,4 +1,4 @@
-// Shapes that describe other shapes: labels, marks, and normals.
+// Annotations of shapes: labels, marks, and normals.
 
 #include "interp/builtin/shapes.h"
 
@@ -22,7 +22,7 @@ bool cag_figures_label(CagCall *call, const struct cag_figures_label *a, CagValu
 
 // --- Normals ---
 
-// The length of normals that say none, as a part of the surface's size.
+// The default length of normals, as a fraction of the surface's size.
 #define NORMAL_PART 0.08
 
 bool cag_figures_surface_normals(CagCall *call, const struct cag_figures_surface_normals *a,
@@ -36,7 +36,7 @@ bool cag_figures_surface_normals(CagCall *call, const struct cag_figures_surface
       cag_given(call, 2) ? a->scale : NORMAL_PART * cag_norm(cag_sub(box.max, box.min));
   CagBuilder *list = cag_builder_new(call->vm);
   for (long i = 0; i < a->n * a->n; i++) {
-    // A closed direction's last line is its first.
+    // In a closed direction, the last line would coincide with the first.
     double u = (double)(i / a->n) / (double)(s->closed_u ? a->n : a->n - 1);
     double v = (double)(i % a->n) / (double)(s->closed_v ? a->n : a->n - 1);
     CagVec3 p, normal;
@@ -46,7 +46,7 @@ bool cag_figures_surface_normals(CagCall *call, const struct cag_figures_surface
     v = v == 1 ? s->v1 : s->v0 + v * (s->v1 - s->v0);
     CagStatus status = cag_surface_eval(s, u, v, 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, &p, call->err);
     if (!cag_geometry_ok(call, status)) return false;
-    // Where there is no normal (the tip of a cone) no line stands.
+    // Skips points without a normal, such as the tip of a cone.
     if (cag_surface_normal(s, u, v, &normal, call->err)) continue;
     status = cag_curve_line(p, cag_madd(p, length, normal), 3, &c, call->err);
     if (!cag_curve_result(call, status, &c, &line) || !cag_builder_add(call->vm, list, line))

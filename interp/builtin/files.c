@@ -1,8 +1,7 @@
-// Data from files and as text: CSV, JSON, plain text.
+// Data from files and text: CSV, JSON, and plain text.
 //
-// Which files a script may read, and reading them, is the machine's business (cag_vm_open_file).
-// Both parsers work on the bytes of the whole file and report errors by line and column of the
-// file.
+// The machine decides which files a script may read, and reads them (cag_vm_open_file). Both
+// parsers work on the bytes of the whole file, and report errors by line and column.
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,11 +20,11 @@
 typedef struct Reader {
   CagCall *call;
   const char *path;
-  char *bytes; // held, NUL behind the end
+  char *bytes; // held; terminated by NUL
   const char *at, *end;
 } Reader;
 
-// "read_csv: points.csv, line 3, column 7: ..."
+// Sets an error such as "read_csv: points.csv, line 3, column 7: ...".
 static bool fail_at(Reader *r, const char *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static bool fail_at(Reader *r, const char *place, const char *format, ...) {
@@ -132,7 +131,7 @@ static void skip_line_end(Reader *r) {
   if (r->at < r->end && *r->at == '\n') r->at++;
 }
 
-// Reads the next row that is not an empty line. *found: whether there is one.
+// Reads the next row that is not empty. *found is false at the end of the file.
 static bool read_row(Csv *c, bool *found) {
   Reader *r = &c->r;
   while (r->at < r->end && (*r->at == '\n' || *r->at == '\r')) skip_line_end(r);
@@ -151,7 +150,7 @@ static bool read_row(Csv *c, bool *found) {
   return true;
 }
 
-// The names of the header: its cells as texts; a cell without a name is named by its place.
+// Reads the names of the header. A column without a name is named by its position.
 static bool read_names(Csv *c, CagText **names) {
   CagVm *vm = c->r.call->vm;
   for (size_t i = 0; i < c->count; i++) {
@@ -166,7 +165,7 @@ static bool read_names(Csv *c, CagText **names) {
   return true;
 }
 
-// A record of the row. All rows share the layout of the first.
+// Creates the record of a row. All rows share the layout of the first.
 static bool row_record(Csv *c, CagText **names, size_t columns, CagRecord **first, CagValue *out) {
   CagVm *vm = c->r.call->vm;
   if (c->count > columns)
@@ -186,7 +185,8 @@ static bool row_record(Csv *c, CagText **names, size_t columns, CagRecord **firs
 
 enum { ROWS_BETWEEN_CHECKS = 1 << 12 };
 
-// Rows as records where the first one, which has been read, is a header; else as lists.
+// Reads the rows: as records if the first row, which has been read, is a header, and as lists
+// otherwise.
 static bool read_rows(Csv *c, bool header, CagBuilder *built) {
   CagVm *vm = c->r.call->vm;
   const size_t columns = c->count;
@@ -231,7 +231,7 @@ bool cag_files_read_csv(CagCall *call, const struct cag_files_read_csv *a, CagVa
   return true;
 }
 
-// --- JSON in ---
+// --- Reading JSON ---
 
 static void skip_blank(Reader *r) {
   while (r->at < r->end && cag_is_space(*r->at)) r->at++;
@@ -257,7 +257,7 @@ static bool read_hex(Reader *r, unsigned *out) {
   return true;
 }
 
-// \uXXXX, two of them for a character beyond U+FFFF; the `\u` has been read.
+// Reads \uXXXX, or two of them for a character beyond U+FFFF. The `\u` has been read already.
 static bool read_unicode(Reader *r, CagString *s) {
   const char *place = r->at;
   unsigned high, low;
@@ -338,13 +338,13 @@ static int by_name(const void *a, const void *b) {
   return (f->place > g->place) - (f->place < g->place);
 }
 
-static int by_place(const void *a, const void *b) {
+static int by_position(const void *a, const void *b) {
   const Field *f = a, *g = b;
   return (f->place > g->place) - (f->place < g->place);
 }
 
-// Of fields with one name the last value holds, in the first one's place, as most readers of JSON
-// have it.
+// If a name occurs more than once, the last value is kept at the position of the first, as in most
+// JSON readers.
 static void join_fields(Fields *f) {
   if (f->count < 2) return;
   qsort(f->fields, f->count, sizeof *f->fields, by_name);
@@ -354,10 +354,10 @@ static void join_fields(Fields *f) {
     else f->fields[++kept] = f->fields[i];
   }
   f->count = kept + 1;
-  qsort(f->fields, f->count, sizeof *f->fields, by_place);
+  qsort(f->fields, f->count, sizeof *f->fields, by_position);
 }
 
-static CagValue give_fields(Reader *r, Fields *f) {
+static CagValue fields_value(Reader *r, Fields *f) {
   join_fields(f);
   CagText **names = cag_hold_array(r->call, f->count, sizeof(CagText *));
   CagValue *values = cag_hold_array(r->call, f->count, sizeof *values);
@@ -408,7 +408,7 @@ static bool read_json_record(Reader *r, int depth, CagValue *out) {
     while (next_is(r, ','));
     if (!next_is(r, '}')) return fail_at(r, r->at, "expected `,` or `}`");
   }
-  *out = give_fields(r, f);
+  *out = fields_value(r, f);
   cag_release_held(r->call, f);
   return true;
 }
@@ -458,7 +458,7 @@ bool cag_files_read_json(CagCall *call, const struct cag_files_read_json *a, Cag
   return r.at == r.end || fail_at(&r, r.at, "unexpected text after the value");
 }
 
-// --- JSON out ---
+// --- Writing JSON ---
 
 static bool write_json(CagCall *call, CagString *s, CagValue v, int depth);
 

@@ -1,10 +1,9 @@
 // Formulas in text: "a*cos(t)" becomes a function.
 //
-// A formula is arithmetic of numbers: its own parser reads it, so that errors are about the formula
-// and no name outside of the lists here can be reached, and writes it as an expression of the
-// language, which the machine compiles like any other. Numbers stand for radians where a
-// trigonometric function wants an angle: sin(t) is written sin((t) * 1rad), atan(t) as (atan(t)) /
-// 1rad.
+// Formulas contain only arithmetic of numbers. They have a parser of their own, so that errors
+// refer to the formula, and only the names listed here are accessible. The parser writes an
+// expression of the language, which the machine compiles. Numbers are radians where a trigonometric
+// function expects an angle: sin(t) becomes sin((t) * 1rad), and atan(t) becomes (atan(t)) / 1rad.
 //
 //     formula = sum
 //     sum     = product { ( "+" | "-" ) product }
@@ -20,8 +19,8 @@
 
 #include "interp/builtin/support.h"
 
-// Functions of formulas: X(name, fewest arguments, most, takes radians, gives radians). They are
-// built-ins of the same name.
+// Functions allowed in formulas, which are built-ins of the same name: X(name, minimum and maximum
+// number of arguments, takes radians, returns radians).
 #define MANY 100
 #define FUNCTIONS(X)                                                                               \
   X(sin, 1, 1, true, false)                                                                        \
@@ -68,7 +67,7 @@ static const Function functions[] = {
 static const char *const constants[] = {"pi", "tau"};
 #define CONSTANT_COUNT (sizeof constants / sizeof *constants)
 
-// --- Words ---
+// --- Names ---
 
 typedef struct Word {
   const char *s;
@@ -105,8 +104,8 @@ static bool is_letter(utf8proc_int32_t c) {
   return c == '_' || (category >= UTF8PROC_CATEGORY_LU && category <= UTF8PROC_CATEGORY_LO);
 }
 
-// The end of the name that begins at s: a letter, then letters, digits and combining marks. s
-// itself where none begins.
+// Returns the end of the name that begins at s: a letter, followed by letters, digits, and
+// combining marks. Returns s if there is no name.
 static const char *name_end(const char *s, const char *end) {
   const char *begin = s;
   while (s < end) {
@@ -169,8 +168,7 @@ static bool accept_char(Parser *p, char c) {
 static bool parse_sum(Parser *p);
 static bool parse_signed(Parser *p);
 
-// digits [ "." digits ] [ "e" sign digits ], with the digits on one side of the point left out
-// where one likes
+// digits [ "." digits ] [ "e" sign digits ]; the digits on one side of the point may be missing.
 static bool parse_number(Parser *p) {
   const char *from = p->at;
   double x;
@@ -209,7 +207,7 @@ static bool fail_unknown(Parser *p, Word w) {
   return false;
 }
 
-// sum { "," sum } ")" behind the name of a function and `(`
+// sum { "," sum } ")" after the name of a function and `(`
 static bool parse_arguments(Parser *p, const Function *f, const char *place) {
   size_t count = 0;
   write_text(p, f->gives_radians ? "(" : "");
@@ -274,7 +272,7 @@ static bool parse_power(Parser *p) {
 }
 
 static bool parse_signed(Parser *p) {
-  // Deeper formulas would be no formulas, and the parser is recursive.
+  // Limits the recursion of the parser; useful formulas are far less deep.
   enum { DEPTH_MOST = 200 };
   if (++p->depth > DEPTH_MOST)
     return fail_here(p, p->at, "brackets and signs nest deeper than %d", DEPTH_MOST);
@@ -290,7 +288,7 @@ static bool parse_signed(Parser *p) {
   return good;
 }
 
-// Operands of `next` joined by the operators, which are the same in the language.
+// Parses operands joined by operators, which are the same in the language.
 static bool parse_joined(Parser *p, const char *operators, bool (*next)(Parser *)) {
   if (!next(p)) return false;
   for (;;) {

@@ -1,5 +1,5 @@
-// Curve theory in the language: frames from derivatives, special points, contact with planes,
-// changes of the parameter, and helices by their constants.
+// Curve theory: frames from derivatives, special points, contact with planes, reparametrization,
+// and helices from their constants.
 
 #include <string.h>
 
@@ -42,7 +42,7 @@ bool cag_frenet_frenet_of(CagCall *call, CagValue *result) {
   return true;
 }
 
-// The parameter of the curve and the frame there, which must have a normal.
+// Reads the parameter of the curve and the frame there, which must have a normal.
 static bool read_bent(CagCall *call, const CagCurve *c, double *t, CagFrenet *out) {
   if (!cag_arg_at(call, c, t) || !cag_geometry_ok(call, cag_curve_frenet(c, *t, out, call->err)))
     return false;
@@ -75,7 +75,7 @@ bool cag_frenet_frame_derivative(CagCall *call, const struct cag_frenet_frame_de
   return true;
 }
 
-// Three vectors of space.
+// Reads three vectors of space.
 static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
   CagVec3 *given;
   size_t n;
@@ -109,11 +109,12 @@ bool cag_frenet_osculating_circle(CagCall *call, const struct cag_frenet_osculat
   if (!read_bent(call, a->C, &t, &f)) return false;
   const double radius = 1 / f.curvature;
   const CagVec3 center = cag_madd(f.point, radius, f.normal);
-  // From the point on in the direction of the curve.
+  // The circle begins at the point of contact, in the direction of the curve.
   const CagVec3 columns[4] = {cag_scaled(f.normal, -1), f.tangent, f.binormal, center};
   CagTransform frame = cag_transform_identity();
   frame.planar = a->C->dimension == 2;
-  // In the plane a curve that bends to the right has y on the right of x.
+  // In the plane, the frame of a curve that bends to the right is left-handed: y points to the
+  // right of x.
   for (int j = 0; j < 4; j++) {
     if (frame.planar && j == 2) continue;
     frame.m[0][j] = columns[j].x;
@@ -157,7 +158,7 @@ bool cag_frenet_plane_contact(CagCall *call, const struct cag_frenet_plane_conta
   return true;
 }
 
-// --- Of the whole ---
+// --- Whole curves ---
 
 static CagValue parameters_value(CagCall *call, const CagCurve *c, const CagParameters *list,
                                  bool ranges) {
@@ -191,7 +192,7 @@ bool cag_frenet_special_points(CagCall *call, const struct cag_frenet_special_po
   return true;
 }
 
-// --- Change of the parameter ---
+// --- Reparametrization ---
 
 bool cag_frenet_chain_derivatives(CagCall *call, CagValue *result) {
   CagVec3 *d, out[CAG_MAX_DERIVATIVE];
@@ -250,7 +251,7 @@ bool cag_frenet_constant_curve(CagCall *call, const struct cag_frenet_constant_c
   const double k = a->curvature, w = a->torsion;
   if (k < 0) return cag_fail_value(call, 0, "a curvature of at least 0");
   const bool bent = k > 0;
-  // In units of the larger of both, so that squares neither overflow nor vanish.
+  // In units of the larger of the two, so that squares neither overflow nor vanish.
   const double unit = fmax(k, fabs(w)), x = bent ? k / unit : 0, y = bent ? w / unit : 0;
   const double squares = x * x + y * y;
   const double radius = bent ? x / squares / unit : 0, rise = bent ? y / squares / unit : 0;

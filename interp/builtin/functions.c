@@ -1,7 +1,7 @@
-// Curves and surfaces by a formula: functions of the script called by geometry.
+// Curves and surfaces defined by functions of the script, which geometry calls.
 //
-// Points alone are asked for with plain numbers. Where derivatives are wanted, the parameters are
-// jets (interp/vm/jet.h), and the coordinates that the function gives hold their derivatives.
+// For points alone, the function is called with plain numbers. For derivatives, the parameters are
+// jets (interp/vm/jet.h), and the resulting coordinates contain the derivatives.
 
 #include <math.h>
 
@@ -16,14 +16,14 @@
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 
-// --- A function of the script as geometry holds it ---
+// --- A function of the script as data of the geometry core ---
 
 typedef struct Formula {
   CagVm *vm;
   size_t slot;     // where the machine keeps the function
-  bool angular[2]; // parameters that the script sees as angles
+  bool angular[2]; // the script sees these parameters as angles
   int variables;
-  size_t coordinates; // of its points, 0: not yet known
+  size_t coordinates; // of a point; 0: not yet known
 } Formula;
 
 static void formula_free(void *context) {
@@ -42,7 +42,7 @@ static Formula *formula_new(CagCall *call, CagValue function, int variables) {
   return f;
 }
 
-// Degrees of radians; whole degrees stay whole.
+// Converts radians to degrees. Whole degrees stay whole.
 static double degrees_of(double radians) {
   const double degrees = radians * DEGREES_PER_RADIAN, whole = rint(degrees);
   return fabs(degrees - whole) <= 4e-16 * fabs(whole) ? whole : degrees;
@@ -61,7 +61,7 @@ static void parameter_text(const Formula *f, const double *at, char *out, size_t
              x[1], f->angular[1] ? "deg" : "");
 }
 
-// --- What a function gives ---
+// --- Results of the function ---
 
 static bool fail_point(Formula *f, const double *at, CagValue given) {
   char where[96], found[160];
@@ -84,7 +84,8 @@ static bool fail_not_finite(Formula *f, const double *at, const char *what) {
                         "%s of the function at %s is not finite", what, where);
 }
 
-// Coordinate i of a point: a number or a jet of this evaluation. False: neither.
+// Reads a coordinate of a point: a number, or a jet of this evaluation. Returns false for anything
+// else.
 static bool coordinate(CagVm *vm, CagValue v, const CagSeries *like, CagSeries *out) {
   if (v.type == CAG_NUMBER) {
     cag_series_constant(like, v.as.number, out);
@@ -94,7 +95,7 @@ static bool coordinate(CagVm *vm, CagValue v, const CagSeries *like, CagSeries *
   return cag_series_of(v, like, out) || cag_fail_jet_level(vm);
 }
 
-// Reads a point into series. The error is set when that fails.
+// Reads a point into series. Returns false with the error set if that fails.
 static bool read_point(Formula *f, const double *at, CagValue given, const CagSeries *like,
                        CagSeries *out) {
   const CagList *l = given.type == CAG_LIST ? CAG_AS_LIST(given) : NULL;
@@ -114,8 +115,7 @@ static bool read_point(Formula *f, const double *at, CagValue given, const CagSe
   return true;
 }
 
-// Calls the function at the parameters with numbers, or with jets where derivatives are wanted, and
-// has what it gives read.
+// Calls the function with numbers, or with jets if derivatives are needed, and reads the result.
 static bool call_formula(Formula *f, const double *at, CagSeries *like,
                          bool (*read)(Formula *f, const double *at, CagValue given,
                                       const CagSeries *like, CagSeries *out),
@@ -139,7 +139,7 @@ static bool call_formula(Formula *f, const double *at, CagSeries *like,
   return ok;
 }
 
-// The status of a call that failed; the machine has the error.
+// Returns the status of a failed call. The machine holds the error.
 static CagStatus fail_callback(const CagVm *vm, CagError *err) {
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "%s",
                   vm->errors.count ? vm->errors.items[0].message : "the function failed");
@@ -173,7 +173,7 @@ static CagStatus curve_eval(void *context, double t, int order, CagVec3 *out, Ca
   return cag_vm_call_back(f->vm, answer_curve, &q) ? CAG_OK : fail_callback(f->vm, err);
 }
 
-// A range of the parameter with finite ends, which become radians if it is of angles.
+// Reads a parameter range with finite ends; angles become radians.
 static bool read_domain(CagCall *call, int argument, CagRangeEnds *out) {
   if (!cag_arg_interval(call, argument, &out->start, &out->end, &out->angle)) return false;
   if (!isfinite(out->start) || !isfinite(out->end))
@@ -188,7 +188,7 @@ bool cag_functions_curve(CagCall *call, const struct cag_functions_curve *a, Cag
   if (!read_domain(call, 1, &t)) return false;
   Formula *f = formula_new(call, a->f, 1);
   f->angular[0] = t.angle;
-  // The first point tells whether the curve is of the plane or of space.
+  // The first point determines whether the curve lies in the plane or in space.
   CagVec3 p;
   CagCurve *c = NULL;
   const CagCurveFunction geometry = {curve_eval, formula_free, f};
@@ -205,7 +205,7 @@ bool cag_functions_curve(CagCall *call, const struct cag_functions_curve *a, Cag
 // --- Curves from natural equations ---
 
 typedef struct Equations {
-  Formula *curvature, *torsion; // torsion NULL: none
+  Formula *curvature, *torsion; // torsion may be NULL
 } Equations;
 
 static void equations_free(void *context) {
@@ -286,7 +286,7 @@ typedef struct SurfaceQuestion {
   size_t nv;
   int order;
   CagVec3 *out;
-  bool row; // S, S_u, S_v of all vs; else all partials at the only one
+  bool row; // true: S, S_u, S_v at all vs; false: all partial derivatives at the only v
 } SurfaceQuestion;
 
 static CagVec3 coefficient(const CagSeries *x, size_t k, double factor) {

@@ -1,4 +1,4 @@
-// Geometry that built-ins hold: its release for each kind.
+// Geometry held by built-ins: how each kind is released.
 
 #include "interp/builtin/holds.h"
 
@@ -8,7 +8,7 @@
 #include "interp/builtin/shapes.h"
 #include "interp/vm/vm.h"
 
-// An array is held by the address of its items, in front of which their number stands.
+// An array is held by the address of its items, which follow their number in memory.
 #define X(Type, name)                                                                              \
   static void release_##name(void *what) { cag_##name##_release(what); }                           \
                                                                                                    \

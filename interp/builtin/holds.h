@@ -1,8 +1,7 @@
-// Geometry that built-ins hold (see builtin.h): single objects, and arrays of them.
+// Geometry held by built-ins (see builtin.h): single objects, and arrays of them.
 //
-//   cag_hold_curve(call, c)         releases c when the built-in ends; NULL is allowed
-//   cag_hold_curve_array(call, n)   n places for curves, all NULL; the curves in them are released
-//                                   with the array
+//   cag_hold_curve(call, c)         releases c when the built-in ends; c may be NULL
+//   cag_hold_curve_array(call, n)   an array of n curves, all NULL; its curves are released with it
 //
 // and the same for regions, surfaces, meshes, and solids. cag_release_held releases either early.
 
@@ -23,7 +22,7 @@
 CAG_HELD_GEOMETRY(X)
 #undef X
 
-// An empty list; the curves that it gets are released with it.
+// Returns an empty list. The curves that are added to it are released with it.
 CagCurveList *cag_hold_curve_list(CagCall *call);
 
 #endif

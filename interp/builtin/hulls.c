@@ -1,4 +1,4 @@
-// Convex hulls, curves on surfaces, and what is inside of and how far from shapes.
+// Convex hulls, curves on surfaces, containment, and distances.
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -40,7 +40,7 @@ static bool space_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
 typedef struct Cloud {
   CagVec3 *points;
   size_t n, capacity;
-  bool plane; // all of the plane
+  bool plane; // all points are in the plane z = 0
 } Cloud;
 
 static void release_cloud(void *cloud) { cag_free(((Cloud *)cloud)->points); }
@@ -51,9 +51,9 @@ static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagErr
   return CAG_OK;
 }
 
-// How finely a shape is replaced by points of it: part of its size.
+// The tolerance for replacing a shape by points, as a fraction of its size.
 #define HULL_TOLERANCE 1e-4
-// A point is on a boundary when it is nearer than this part of the size.
+// A point is on a boundary if it is closer than this fraction of the size.
 #define BOUNDARY 1e-9
 
 static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, CagError *err) {
@@ -168,9 +168,9 @@ bool cag_hulls_curve_on(CagCall *call, const struct cag_hulls_curve_on *a, CagVa
   return cag_curve_result(call, cag_curve_on_surface(s, a->C, &on, call->err), &on, result);
 }
 
-// --- Inside and apart ---
+// --- Containment and distance ---
 
-// A shape as parts. Surfaces, curves and meshes that were made for it live as long as it does.
+// A shape split into parts. It also owns the surfaces, curves, and meshes created for it.
 typedef struct Body {
   CagParts parts;
   CagCurveList curves;
@@ -198,7 +198,7 @@ static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s,
   return status;
 }
 
-// The inside of a region by triangles, its edge exactly.
+// Adds the inside of a region as triangles, and its edges exactly.
 static CagStatus body_add_region(const CagVm *vm, Body *b, const CagRegion *r,
                                  const CagTransform *place, double tolerance, CagError *err) {
   CagSurface *flat;
@@ -225,7 +225,7 @@ static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face,
              : body_add_surface(vm, b, face, tolerance, err);
 }
 
-// Set operations and bodies within meshes are as far away as their triangles.
+// The distance from set operations and bodies bounded by meshes is that from their triangles.
 static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                    CagError *err) {
   const CagTessellation how = tessellation_of(vm, tolerance);
@@ -236,7 +236,7 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   return status;
 }
 
-// Of an empty shape nothing is added.
+// An empty shape adds nothing.
 static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
                                 CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
@@ -286,7 +286,7 @@ bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagVa
   return true;
 }
 
-// One side of a distance: a point or shapes.
+// One argument of `distance`: a point, or shapes.
 typedef struct Side {
   bool point;
   CagVec3 p;
@@ -314,7 +314,7 @@ static bool read_side(CagCall *call, int argument, Side *out) {
 
 static size_t side_count(const Side *s) { return s->point ? 1 : s->shapes->length; }
 
-// Adds the point, or shape i.
+// Adds the point or the shape with index i.
 static CagStatus body_add_part(CagVm *vm, Body *b, const Side *side, size_t i, CagError *err) {
   return side->point ? cag_parts_add_point(&b->parts, side->p, err)
                      : body_add_shape(vm, b, cag_list_get(vm, side->shapes, i),
@@ -328,9 +328,9 @@ static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
   return status;
 }
 
-// Whether a body of the first holds any shape of the second. Where surfaces do not meet one point
-// of each shape tells.
-static bool swallows(CagCall *call, const Side *outer, const Side *inner, bool *yes) {
+// Whether a body of `outer` contains a shape of `inner`. The surfaces do not meet, so one point of
+// each shape decides.
+static bool encloses(CagCall *call, const Side *outer, const Side *inner, bool *yes) {
   for (size_t i = 0; !*yes && !outer->point && i < outer->shapes->length; i++) {
     const CagValue v = cag_list_get(call->vm, outer->shapes, i);
     if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
@@ -356,8 +356,8 @@ static bool measure(CagCall *call, Side side[2], double *out) {
   if (!cag_geometry_ok(call, status)) return false;
   bool within = false;
   if (*out == 0) return true;
-  if (!swallows(call, &side[0], &side[1], &within)) return false;
-  if (!within && !swallows(call, &side[1], &side[0], &within)) return false;
+  if (!encloses(call, &side[0], &side[1], &within)) return false;
+  if (!within && !encloses(call, &side[1], &side[0], &within)) return false;
   if (within) *out = 0;
   return true;
 }

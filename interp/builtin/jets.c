@@ -1,8 +1,9 @@
-// Built-ins on jets: their derivatives.
+// Derivatives of built-ins, by evaluating them with jets.
 //
-// A function here computes its value as the plain built-in does, which also finds the errors of
-// plain numbers, and then the parts above the value by the recurrences of jet.h. Names that are not
-// in the table have no derivative: the readers of arguments say so.
+// A function in this file first computes its value as the plain built-in does, which also detects
+// the errors of plain numbers. The coefficients above the value follow from the recurrences of
+// jet.h. Functions that are not in the table cannot be differentiated: their argument readers
+// report the error.
 
 #include "interp/vm/jet_builtins.h"
 
@@ -17,7 +18,7 @@
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 
-// Arguments of a call of a function in the table.
+// The maximum number of arguments of the functions in the table.
 #define ARGUMENTS_MOST 16
 
 static bool fail_at(CagCall *call, int argument) {
@@ -30,10 +31,10 @@ static bool fail_at(CagCall *call, int argument) {
 
 // --- Reading ---
 
-// Deeper values hold no coordinates.
+// Coordinates are not nested more deeply than this.
 #define DEPTH_MOST 100
 
-// The shape of the jets among the arguments.
+// Finds the shape of the jets among the arguments.
 static bool find_shape(CagValue v, CagSeries *like, int depth) {
   if (v.type == CAG_JET) {
     *like = cag_series_shape(CAG_AS_JET(v));
@@ -46,7 +47,7 @@ static bool find_shape(CagValue v, CagSeries *like, int depth) {
   return false;
 }
 
-// Without a jet, constants of order 0.
+// If there is no jet, the shape is that of constants, of order 0.
 static void shape_of_call(const CagCall *call, CagSeries *like) {
   like->variables = 1;
   like->order = 0;
@@ -59,7 +60,7 @@ static bool read_series(CagCall *call, CagValue v, const CagSeries *like, CagSer
   return cag_series_of(v, like, out) || cag_fail_jet_level(call->vm);
 }
 
-// What the built-in gives for plain numbers.
+// Calls the built-in with plain numbers.
 static bool plain_result(CagCall *call, CagValue *value) {
   CagValue plain[ARGUMENTS_MOST], *values = plain;
   if (call->count > ARGUMENTS_MOST) values = cag_hold_array(call, call->count, sizeof *values);
@@ -75,7 +76,7 @@ static CagValue jet_of_series(CagVm *vm, CagSeries *s, CagValue value) {
 
 // --- Functions of one number or angle ---
 
-// `x` in radians for angles; part 0 of out need not be set; an angle is given in radians.
+// An angle `x` is in radians, and so is a resulting angle. Coefficient 0 of `out` need not be set.
 typedef bool (*Unary)(const CagSeries *x, double degrees, double value, CagSeries *out);
 
 static bool unary(CagCall *call, Unary f, CagValue *result) {
@@ -176,13 +177,13 @@ static bool of_abs(const CagSeries *x, double degrees, double value, CagSeries *
   return true;
 }
 
-// value + integral of (a + b x^2)^r, the form of all inverse functions.
+// value + integral of (a + b x^2)^r, which covers all inverse functions.
 static bool inverse(const CagSeries *x, double a, double b, double r, double sign, CagSeries *out) {
   CagSeries square, slope;
   cag_series_multiply(x, x, &square);
   cag_series_scale(&square, b, &square);
   square.c[0] += a;
-  // Near the ends a - x^2 loses what the product keeps.
+  // Near the ends, a - x^2 loses digits that the product keeps.
   if (a == 1 && b == -1) square.c[0] = (1 - x->c[0]) * (1 + x->c[0]);
   if (a == -1 && b == 1) square.c[0] = (x->c[0] - 1) * (x->c[0] + 1);
   if (square.c[0] == 0 || !cag_series_power(&square, r, &slope)) return false;
@@ -220,7 +221,7 @@ static bool of_atanh(const CagSeries *x, double degrees, double value, CagSeries
   (void)value;
   return inverse(x, 1, -1, -1, 1, out);
 }
-// In radians both ways: the value is set afterwards.
+// A jet of an angle is already in radians; the value is set afterwards.
 static bool of_in_radians(const CagSeries *x, double degrees, double value, CagSeries *out) {
   (void)degrees;
   (void)value;
@@ -240,7 +241,7 @@ static bool of_in_degrees(const CagSeries *x, double degrees, double value, CagS
   X(atanh) X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(in_degrees) X(in_radians)
 // clang-format on
 
-// abs of an angle: the jet is read in radians, and given so.
+// For `abs` of an angle, both the argument and the result are in radians.
 #define X(name)                                                                                    \
   static bool jet_##name(CagCall *call, CagValue *result) { return unary(call, of_##name, result); }
 UNARY(X)
@@ -257,7 +258,7 @@ static bool jet_atan2(CagCall *call, CagValue *result) {
       !read_series(call, call->values[1], &like, &x))
     return false;
   if (x.c[0] == 0 && y.c[0] == 0) return fail_at(call, 0);
-  // The angle differs from atan(y / x), or from -atan(x / y), by a constant.
+  // The angle differs from atan(y / x), or from -atan(x / y), only by a constant.
   const bool steep = fabs(y.c[0]) > fabs(x.c[0]);
   CagSeries q;
   if (steep) cag_series_divide(&x, &y, &q);
@@ -268,7 +269,8 @@ static bool jet_atan2(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Root of the sum of squares; false where it is 0 and not constant. Scaled against overflow.
+// The root of the sum of squares, scaled against overflow. Returns false if it is 0 but not
+// constant.
 static bool root_of_squares(const CagSeries *x, size_t n, double value, CagSeries *out) {
   const CagSeries *like = &x[0];
   CagSeries sum, square;
@@ -311,8 +313,8 @@ static bool same_series(const CagSeries *a, const CagSeries *b) {
   return true;
 }
 
-// The argument or element that is the least or greatest. Two of them that differ in their
-// derivatives make a corner.
+// Selects the least or greatest argument or element. If two of them tie but have different
+// derivatives, the result has a corner, and the call fails.
 static bool jet_extreme(CagCall *call, CagValue *result) {
   CagValue value;
   CagSeries like, x, found = {0};
@@ -344,12 +346,12 @@ static bool jet_clamp(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Operators as the script has them, for what is a short formula.
+// An operator of the language, for short formulas.
 static bool op(CagCall *call, CagBinaryOp o, CagValue a, CagValue b, CagValue *out) {
   return cag_arithmetic(call->vm, o, a, b, out);
 }
 
-// a + t (b - a), of numbers, angles, vectors and lists of these.
+// a + t (b - a) for numbers, angles, vectors, and lists of these.
 static bool mix(CagCall *call, CagValue a, CagValue b, CagValue t, CagValue *result) {
   CagValue way, part;
   return op(call, CAG_OP_SUBTRACT, b, a, &way) && op(call, CAG_OP_MULTIPLY, way, t, &part) &&
@@ -372,7 +374,7 @@ static bool jet_along(CagCall *call, CagValue *result) {
   if (!(x >= 0 && x <= 1)) return cag_fail_value(call, 1, "a number in 0..1");
   const double place = x * steps;
   size_t i = (size_t)place;
-  // The elements are corners, but for the ends.
+  // Inner elements are corners, where the derivative is undefined.
   if (t.type == CAG_JET && place == (double)i && i > 0 && i + 1 < s.length) return fail_at(call, 1);
   if (i + 1 >= s.length && i > 0) i--;
   *result = cag_sequence_element(call->vm, &s, i);
@@ -390,7 +392,7 @@ static bool fold(CagCall *call, CagBinaryOp o, CagValue *result) {
     CagValue v = cag_sequence_element(call->vm, &s, i);
     CagType type = cag_plain_type(v);
     bool good = type == CAG_NUMBER || (o == CAG_OP_ADD && (type == CAG_ANGLE || type == CAG_LIST));
-    if (!good) { // not as an element that holds jets: its type is wrong
+    if (!good) { // fail_element would call it an element that holds jets, but its type is wrong
       char found[120];
       return cag_fail_call(call, 0, CAG_ERR_type, "expects %s, found %s at xs[%zu]",
                            o == CAG_OP_ADD ? "numbers, angles, or vectors" : "numbers",
@@ -430,7 +432,7 @@ static bool read_vector(CagCall *call, int argument, Vector *out) {
                        cag_value_words(call->vm, v, found, sizeof found));
 }
 
-// Both arguments, the shorter one of plane and space with z = 0.
+// Reads both arguments. If one is in the plane and the other in space, the first gets z = 0.
 static bool read_two(CagCall *call, Vector *a, Vector *b) {
   if (!read_vector(call, 0, a) || !read_vector(call, 1, b)) return false;
   if (a->n == 2 && b->n == 3) a->x[a->n++] = cag_number(0);
@@ -533,7 +535,7 @@ static bool jet_polar(CagCall *call, CagValue *result) {
   return center.type == CAG_UNSET || op(call, CAG_OP_ADD, center, *result, result);
 }
 
-// An answer that is a step: that of the values.
+// The result is a step function, so its derivatives are 0.
 static bool by_value(CagCall *call, CagValue *result) { return plain_result(call, result); }
 
 // --- Curves and surfaces at a parameter that is a jet ---
@@ -549,7 +551,8 @@ static CagValue point_value(CagVm *vm, const Point *p) {
   return cag_list_values(vm, x, p->n);
 }
 
-// A parameter as a series in the curve's or surface's own unit. False: of the wrong kind.
+// Reads a parameter as a series in the unit of the curve or surface. Fails if it has the wrong
+// type.
 static bool parameter_series(CagCall *call, int argument, bool angular, const CagSeries *like,
                              CagSeries *out) {
   CagValue v = call->values[argument];
@@ -566,7 +569,7 @@ static bool parameter_series(CagCall *call, int argument, bool angular, const Ca
   return true;
 }
 
-// Derivatives 0 .. most of the curve at the jet in argument 1, each a jet itself.
+// Computes the derivatives 0..most of the curve at the jet in argument 1. Each is a jet itself.
 static bool curve_jets(CagCall *call, int most, Point *out) {
   CagCurve *c = CAG_AS_SHAPE(call->values[0])->as.curve;
   CagVec3 d[CAG_MAX_DERIVATIVE + 1];
@@ -617,7 +620,7 @@ static bool jet_at(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Questions to curves, by the formulas of the moving frame.
+// The functions below apply the formulas of the moving frame, and accept only curves.
 static bool only_curves(CagCall *call) {
   return call->values[0].type == CAG_CURVE || cag_fail_differentiate(call, 0);
 }
@@ -652,7 +655,7 @@ static void cross(const Point *a, const Point *b, Point *out) {
   }
 }
 
-// v / |v| and |v|. False: the zero vector.
+// Computes v / |v| and |v|. Returns false for the zero vector.
 static bool normalize(Point *v, CagSeries *length) {
   double value = hypot(hypot(v->x[0].c[0], v->x[1].c[0]), v->x[2].c[0]);
   if (value == 0 || !root_of_squares(v->x, 3, value, length)) return false;
@@ -660,7 +663,7 @@ static bool normalize(Point *v, CagSeries *length) {
   return true;
 }
 
-// tangent, normal, binormal, and curvature and torsion, as far as `want` goes.
+// The quantities in the order in which they are computed.
 typedef enum Want { TANGENT, NORMAL, BINORMAL, CURVATURE, TORSION } Want;
 
 static bool frenet(CagCall *call, Want want, CagValue *result) {
@@ -669,7 +672,7 @@ static bool frenet(CagCall *call, Want want, CagValue *result) {
   if (!only_curves(call) || !curve_jets(call, want == TANGENT ? 1 : want == TORSION ? 3 : 2, d))
     return false;
   size_t n = d[0].n;
-  cross(&d[1], &d[2], &binormal); // of plane curves along z
+  cross(&d[1], &d[2], &binormal); // along z for plane curves
   if (!normalize(&d[1], &speed)) return fail_at(call, 1);
   if (want == TANGENT) {
     *result = point_value(call->vm, &d[1]);
@@ -710,7 +713,7 @@ bool cag_jet_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, si
   size_t rows, expected = shape.type == CAG_CURVE ? 1 : 2;
   if (shape.type == CAG_SOLID || n != expected)
     return cag_shape_call(vm, shape, arguments, n, result);
-  // The call of a shape is `at` by another name.
+  // Calling a shape is another way to call `at`.
   size_t index = cag_builtin_find("at");
   const CagBuiltin *row =
       cag_builtin_rows(index, &rows) + cag_builtin_select(index, shape.type, n + 1);
@@ -755,7 +758,7 @@ bool cag_jet_transform(CagVm *vm, const CagTransform *t, CagValue v, CagValue *r
   CagBuilder *b = cag_builder_new(vm);
   for (size_t i = 0; i < l->length; i++) {
     CagValue moved;
-    if (l->as.items[i].type == CAG_JET) // no point either: the plain call says what is wrong
+    if (l->as.items[i].type == CAG_JET) // not a point either: the plain call reports what is wrong
       return cag_transform_apply(vm, t, cag_without_jets(vm, v), result);
     if (!cag_jet_transform(vm, t, l->as.items[i], &moved)) return false;
     if (!cag_builder_add(vm, b, moved)) return false;
@@ -813,7 +816,7 @@ static bool refuse(CagCall *call, CagValue *result) {
 CagBuiltinFunction cag_jet_function(const CagCall *call, size_t index) {
   const size_t row = cag_builtin_jet(index);
   if (!row) {
-    // Rows that tell their types read the argument without asking again.
+    // Rows selected by type read the argument without checking it again.
     bool reads = call->count > 0 && call->values[0].type == CAG_JET && call->builtin->first != 0;
     return reads ? refuse : call->builtin->function;
   }

@@ -1,8 +1,8 @@
-// Lists: folds, maps, orders, and parts.
+// Lists: folds, maps, sorting, and parts.
 //
-// Everything here reads a list, or a range without making a list of it, and texts by their
-// characters where that says something. What a function of the script is called for may collect
-// garbage, so sources, builders and intermediate values stand on the root stack then.
+// These functions accept lists, ranges (without creating a list), and texts, as sequences of
+// characters, where that makes sense. A call of a function of the script may collect garbage, so
+// sources, builders, and intermediate values are put on the root stack before it.
 
 #include <limits.h>
 #include <string.h>
@@ -12,9 +12,9 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-// Loops that make no call of the script ask from time to time whether they may go on.
+// Loops that do not call the script check from time to time whether the run must stop.
 enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
-static bool may_go_on(CagCall *call, size_t step) {
+static bool check_stop(CagCall *call, size_t step) {
   return (step & (STEPS_BETWEEN_CHECKS - 1)) != STEPS_BETWEEN_CHECKS - 1 ||
          cag_keep_going(call->vm);
 }
@@ -32,7 +32,7 @@ bool cag_lists_len(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Neumaier's sum: the rounding errors are summed beside it.
+// Neumaier's summation, which adds up the rounding errors separately.
 typedef struct Sum {
   double total, lost;
 } Sum;
@@ -50,7 +50,7 @@ static bool sum_vectors(CagCall *call, const CagList *list, CagValue *result) {
     Sum s = {0};
     for (size_t i = 0; i < list->length; i++) {
       sum_add(&s, list->as.numbers[i * list->dim + j]);
-      if (!may_go_on(call, i)) return false;
+      if (!check_stop(call, i)) return false;
     }
     numbers[j] = sum_value(&s);
     if (!isfinite(numbers[j])) return cag_give_number(call, numbers[j], result);
@@ -59,7 +59,8 @@ static bool sum_vectors(CagCall *call, const CagList *list, CagValue *result) {
   return true;
 }
 
-// Vectors that are not packed: too long, or with others among them, which is an error.
+// Sums vectors that are not packed, because they are too long or because the list has other
+// elements, too. The latter is an error.
 static bool sum_long_vectors(CagCall *call, CagSequence *s, CagValue *result) {
   const double *x;
   size_t n, count = 0;
@@ -102,7 +103,7 @@ bool cag_lists_sum(CagCall *call, CagValue *result) {
                               : i == 0          ? "numbers, angles, or vectors"
                                                 : "numbers");
     sum_add(&sum, v.as.number);
-    if (!may_go_on(call, i)) return false;
+    if (!check_stop(call, i)) return false;
   }
   return type == CAG_ANGLE ? cag_give_angle(call, sum_value(&sum), result)
                            : cag_give_number(call, sum_value(&sum), result);
@@ -116,14 +117,14 @@ bool cag_lists_product(CagCall *call, CagValue *result) {
     CagValue v = cag_sequence_element(call->vm, &s, i);
     if (v.type != CAG_NUMBER) return cag_fail_element(call, 0, i, v, "numbers");
     product *= v.as.number;
-    if (!may_go_on(call, i)) return false;
+    if (!check_stop(call, i)) return false;
   }
   return cag_give_number(call, product, result);
 }
 
 // --- Maps and folds ---
 
-// A loop over a sequence that calls the script: what it holds stands on the root stack.
+// A loop over a sequence that calls the script. Its values are on the root stack.
 typedef struct Loop {
   CagCall *call;
   CagSequence source;
@@ -163,7 +164,7 @@ bool cag_lists_map(CagCall *call, CagValue *result) {
   return loop_close(&loop, good, result);
 }
 
-// Calls the function, which must give a bool, for x.
+// Calls the function, which must return a bool, for x.
 static bool test_element(Loop *loop, CagValue x, bool *answer) {
   CagValue y;
   if (!cag_call(loop->call->vm, loop->function, &x, 1, &y)) return false;
@@ -189,7 +190,7 @@ bool cag_lists_filter(CagCall *call, CagValue *result) {
   return loop_close(&loop, good, result);
 }
 
-// reduce, and scan where `build`.
+// reduce, and scan if `build` is set.
 static bool fold(CagCall *call, bool build, CagValue *result) {
   Loop loop;
   if (!loop_open(&loop, call, 2, build)) return false;
@@ -209,8 +210,8 @@ static bool fold(CagCall *call, bool build, CagValue *result) {
 bool cag_lists_reduce(CagCall *call, CagValue *result) { return fold(call, false, result); }
 bool cag_lists_scan(CagCall *call, CagValue *result) { return fold(call, true, result); }
 
-// any (wanted = true) and all (wanted = false): whether an element answers `wanted`; the first one
-// that does ends the search.
+// any (wanted = true) and all (wanted = false): searches for the first element whose answer is
+// `wanted`.
 static bool search(CagCall *call, bool wanted, CagValue *result) {
   Loop loop;
   bool with_function = cag_given(call, 1);
@@ -222,7 +223,7 @@ static bool search(CagCall *call, bool wanted, CagValue *result) {
     if (with_function) good = test_element(&loop, x, &answer);
     else if (x.type != CAG_BOOL)
       good = cag_fail_element(call, 0, i, x, "bools, or a function `f`,");
-    else good = may_go_on(call, i);
+    else good = check_stop(call, i);
     found = good && answer == wanted;
   }
   *result = cag_bool(found == wanted);
@@ -237,12 +238,12 @@ typedef struct SortItem {
   CagValue value, key;
 } SortItem;
 
-// Merges the sorted runs [0, middle) and [middle, n) of `items`; on equal keys the left one comes
-// first. Returns false if the run must stop.
+// Merges the sorted runs [0, middle) and [middle, n) of `items`. If keys are equal, the left one
+// comes first. Returns false if the run must stop.
 static bool merge(CagCall *call, const SortItem *items, size_t middle, size_t n, SortItem *out) {
   size_t i = 0, j = middle;
   for (size_t k = 0; k < n; k++) {
-    if (!may_go_on(call, k)) return false;
+    if (!check_stop(call, k)) return false;
     int order = -1;
     if (i < middle && j < n) cag_order(items[i].key, items[j].key, &order);
     else if (i == middle) order = 1;
@@ -251,8 +252,8 @@ static bool merge(CagCall *call, const SortItem *items, size_t middle, size_t n,
   return true;
 }
 
-// Bottom-up merge sort: stable. Returns the one of the two buffers that holds the result, or NULL
-// if the run must stop.
+// Stable bottom-up merge sort. Returns the buffer that holds the result, which is one of the two,
+// or NULL if the run must stop.
 static SortItem *sort_items(CagCall *call, SortItem *items, SortItem *spare, size_t n) {
   for (size_t run = 1; run < n; run *= 2) {
     for (size_t from = 0; from < n; from += 2 * run) {
@@ -267,8 +268,8 @@ static SortItem *sort_items(CagCall *call, SortItem *items, SortItem *spare, siz
   return items;
 }
 
-// The elements with their keys. What the script made is kept alive by two builders on the root
-// stack.
+// Collects the elements and their keys. Two builders on the root stack keep the values that the
+// script creates alive.
 static bool make_sort_items(CagCall *call, Loop *loop, CagBuilder *keys, bool by) {
   for (size_t i = 0; i < loop->source.length; i++) {
     CagValue x = cag_sequence_element(call->vm, &loop->source, i), key = x;
@@ -280,13 +281,13 @@ static bool make_sort_items(CagCall *call, Loop *loop, CagBuilder *keys, bool by
   return true;
 }
 
-// All keys must have one order: each is compared with the first.
+// All keys must be comparable: each is compared with the first.
 static bool check_keys(CagCall *call, const SortItem *items, size_t n) {
   int order;
   for (size_t i = 0; i < n; i++) {
     if (!cag_order(items[0].key, items[i].key, &order))
       return cag_fail_order(call, cag_given(call, 1) ? 1 : 0, items[0].key, items[i].key);
-    if (!may_go_on(call, i)) return false;
+    if (!check_stop(call, i)) return false;
   }
   return true;
 }
@@ -297,7 +298,7 @@ static bool sort_values(CagCall *call, const CagList *values, const CagList *key
   SortItem *buffer = cag_hold(call, cag_malloc((2 * n + 1) * sizeof *buffer));
   for (size_t i = 0; i < n; i++) {
     buffer[i] = (SortItem){cag_list_get(call->vm, values, i), cag_list_get(call->vm, keys, i)};
-    if (!may_go_on(call, i)) return false;
+    if (!check_stop(call, i)) return false;
   }
   if (!check_keys(call, buffer, n)) return false;
   const SortItem *sorted = sort_items(call, buffer, buffer + n, n);
@@ -321,7 +322,7 @@ bool cag_lists_sort(CagCall *call, CagValue *result) {
   if (good) values = cag_builder_finish(call->vm, loop.built);
   loop.built = NULL;
   loop_close(&loop, good, result);
-  // From here on nothing calls the script.
+  // The script is not called from here on.
   return good && sort_values(call, CAG_AS_LIST(values),
                              CAG_AS_LIST(cag_builder_finish(call->vm, keys)), result);
 }
@@ -443,14 +444,14 @@ bool cag_lists_index_of(CagCall *call, CagValue *result) {
       *result = cag_number((double)i);
       return true;
     }
-    if (call->vm->failed || !may_go_on(call, i)) return false;
+    if (call->vm->failed || !check_stop(call, i)) return false;
   }
   return true;
 }
 
 // --- Making lists ---
 
-// Part k of n - 1 of the way: the ends are exact, and whole steps stay whole.
+// The value at step k of n - 1. The ends are exact, and whole steps stay whole.
 static double step_between(double a, double b, long k, long n) {
   double way = b - a;
   if (k == n - 1) return b;
@@ -466,7 +467,7 @@ static CagValue vector_between(CagVm *vm, const CagList *a, const CagList *b, lo
   return v;
 }
 
-// The ends are two finite numbers, two angles, or two vectors of one length.
+// The ends must be two finite numbers, two angles, or two vectors of one length.
 static bool check_ends(CagCall *call) {
   CagValue a = call->values[0], b = call->values[1];
   const double *x;
@@ -494,7 +495,7 @@ bool cag_lists_linspace(CagCall *call, CagValue *result) {
     CagValue x = a;
     if (a.type == CAG_LIST) x = vector_between(call->vm, CAG_AS_LIST(a), CAG_AS_LIST(b), k, n);
     else x.as.number = step_between(a.as.number, b.as.number, k, n);
-    if (!cag_builder_add(call->vm, built, x) || !may_go_on(call, (size_t)k)) return false;
+    if (!cag_builder_add(call->vm, built, x) || !check_stop(call, (size_t)k)) return false;
   }
   *result = cag_builder_finish(call->vm, built);
   return true;
@@ -505,7 +506,7 @@ bool cag_lists_repeat(CagCall *call, CagValue *result) {
   if (!cag_arg_integer(call, 1, 0, LONG_MAX, &n)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
   for (long k = 0; k < n; k++)
-    if (!cag_builder_add(call->vm, built, call->values[0]) || !may_go_on(call, (size_t)k))
+    if (!cag_builder_add(call->vm, built, call->values[0]) || !check_stop(call, (size_t)k))
       return false;
   *result = cag_builder_finish(call->vm, built);
   return true;
@@ -534,7 +535,7 @@ bool cag_lists_pairs(CagCall *call, CagValue *result) {
 
 // --- Parts ---
 
-// Elements from .. from + count of the list, range or text at argument 0.
+// Returns elements from .. from + count of the sequence.
 static bool part(CagCall *call, const CagSequence *s, size_t from, size_t count, CagValue *result) {
   if (s->source.type == CAG_LIST) {
     *result = cag_list_slice(call->vm, s->source, from, count);
@@ -554,7 +555,7 @@ static bool part(CagCall *call, const CagSequence *s, size_t from, size_t count,
   return true;
 }
 
-// The sequence at argument 0 and the count at 1, at most its length.
+// Reads the sequence (argument 0) and the count (argument 1), which is limited to its length.
 static bool read_part(CagCall *call, CagSequence *s, size_t *n) {
   long wanted;
   if (!cag_arg_integer(call, 1, 0, LONG_MAX, &wanted) || !cag_sequence_open(call, 0, true, s))

@@ -1,14 +1,13 @@
 // Matrices as lists of rows, and polynomials: linear systems, eigenvalues, roots.
 //
-// Decompositions are LAPACK's, of large matrices those of geom/linalg/dense. A matrix counts as
-// singular where its reciprocal condition number is below the rounding error: its solution would be
-// noise.
+// Decompositions are LAPACK's; large matrices use geom/linalg/dense. A matrix counts as singular if
+// its reciprocal condition number is below the rounding error, because the solution would be noise.
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-// LAPACKE's complex type is C's.
+// Uses C's complex type for LAPACKE's.
 #include <lapacke.h>
 
 #include "geom/linalg/complex.h"
@@ -17,14 +16,14 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-// --- Reading and giving ---
+// --- Arguments and results ---
 
 typedef struct Matrix {
   size_t rows, columns;
   double *x; // by rows; held
 } Matrix;
 
-// Rows of a matrix, and numbers, after which the run is asked whether it must stop.
+// The number of rows or entries between two checks whether the run must stop.
 enum { ROWS_BETWEEN_CHECKS = 16, NUMBERS_BETWEEN_CHECKS = 1 << 18 };
 
 // A matrix of zeros.
@@ -40,7 +39,7 @@ static bool check_finite(CagCall *call, int argument, const Matrix *m) {
   return true;
 }
 
-// Row i of a matrix that is not a packed list: too long, or no row.
+// Reads row i of a list of rows.
 static bool read_row(CagCall *call, int argument, const CagList *list, size_t i, const double **x,
                      size_t *n) {
   CagValue row = cag_list_get(call->vm, list, i);
@@ -81,7 +80,8 @@ static bool read_square(CagCall *call, int argument, const char *help, Matrix *o
   return help && cag_fail_help(call->vm, "%s", help);
 }
 
-// A vector (as one column; *vector is set) or a matrix with so many rows.
+// Reads the right-hand side: a vector (as one column; sets *vector), or a matrix. It must have
+// `rows` rows.
 static bool read_right_side(CagCall *call, int argument, size_t rows, const char *as, Matrix *out,
                             bool *vector) {
   const double *x;
@@ -101,8 +101,8 @@ static bool read_right_side(CagCall *call, int argument, size_t rows, const char
                        out->rows);
 }
 
-// The first rows of m as a list of rows, or its only column as a vector.
-static CagValue give_rows(CagVm *vm, const Matrix *m, size_t rows, bool vector) {
+// Returns the first rows of m as a list of rows, or its only column as a vector.
+static CagValue rows_value(CagVm *vm, const Matrix *m, size_t rows, bool vector) {
   if (vector) return cag_vector(vm, m->x, rows);
   CagBuilder *built = cag_builder_new(vm);
   for (size_t i = 0; i < rows; i++)
@@ -110,13 +110,13 @@ static CagValue give_rows(CagVm *vm, const Matrix *m, size_t rows, bool vector) 
   return cag_builder_finish(vm, built);
 }
 
-static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagValue *result) {
+static bool matrix_result(CagCall *call, Matrix *m, size_t rows, bool vector, CagValue *result) {
   for (size_t i = 0; i < rows * m->columns; i++) {
     m->x[i] += 0.0; // never -0
     if (!isfinite(m->x[i])) return cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
     if (i % NUMBERS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
   }
-  *result = give_rows(call->vm, m, rows, vector);
+  *result = rows_value(call->vm, m, rows, vector);
   return true;
 }
 
@@ -139,7 +139,7 @@ static double norm_of_columns(const Matrix *m, double *sums) {
   return largest;
 }
 
-// The same as solve_system for a matrix that is large or has many right sides.
+// Does the same as solve_system for a matrix that is large or has many right-hand sides.
 static bool solve_large(CagCall *call, Matrix *a, Matrix *b) {
   const size_t n = a->rows;
   size_t *pivots = cag_hold_array(call, n, sizeof *pivots);
@@ -163,7 +163,7 @@ static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
   double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', n, n, a->x, n), reciprocal = 0;
   const lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, a->x, n, pivots);
   if (info < 0) cag_vm_out_of_memory(call->vm);
-  // Where a pivot is 0, the reciprocal is.
+  // If a pivot is 0, so is the reciprocal condition number.
   if (info == 0) LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, a->x, n, norm, &reciprocal);
   if (!(reciprocal > DBL_EPSILON)) return fail_singular(call);
   LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, columns, a->x, n, pivots, b->x, columns);
@@ -175,10 +175,10 @@ bool cag_matrices_solve(CagCall *call, CagValue *result) {
   bool vector;
   return read_square(call, 0, "least_squares takes any number of rows", &a) &&
          read_right_side(call, 1, a.rows, "rows", &b, &vector) && solve_system(call, &a, &b) &&
-         give_matrix(call, &b, b.rows, vector, result);
+         matrix_result(call, &b, b.rows, vector, result);
 }
 
-// Copies a matrix to one by columns, or back.
+// Copies a matrix to column-major order, or back.
 static bool copy_transposed(CagCall *call, const Matrix *m, bool back, double *columns) {
   for (size_t i = 0; i < m->rows; i++) {
     for (size_t j = 0; j < m->columns; j++) {
@@ -191,8 +191,7 @@ static bool copy_transposed(CagCall *call, const Matrix *m, bool back, double *c
   return true;
 }
 
-// Least squares by Householder reflections; x has as many rows as the larger of a's rows and
-// columns.
+// Solves least squares by Householder reflections. x has as many rows as the larger dimension of a.
 static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x, double cut) {
   Matrix turned = matrix_new(call, a->columns, a->rows);
   Matrix sides = matrix_new(call, x->columns, x->rows);
@@ -204,7 +203,7 @@ static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x,
 
 static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
   const size_t least = a->rows < a->columns ? a->rows : a->columns;
-  // Singular values, or diagonal entries, below this part of the largest count as 0.
+  // Singular values, or diagonal entries, below this fraction of the largest count as 0.
   const double cut = DBL_EPSILON * (double)x->rows;
   if (is_large((double)a->rows * (double)a->columns * (double)(least + x->columns)))
     return solve_large_least_squares(call, a, x, cut);
@@ -222,11 +221,12 @@ bool cag_matrices_least_squares(CagCall *call, CagValue *result) {
   bool vector;
   if (!read_matrix(call, 0, &a) || !read_right_side(call, 1, a.rows, "rows", &b, &vector))
     return false;
-  // The solution has `columns` rows and takes the place of the right side.
+  // The solution has `columns` rows and overwrites the right-hand side, so there must be room for
+  // both.
   const size_t room = a.rows > a.columns ? a.rows : a.columns;
   Matrix x = matrix_new(call, room, b.columns);
   memcpy(x.x, b.x, b.rows * b.columns * sizeof(double));
-  return solve_least_squares(call, &a, &x) && give_matrix(call, &x, a.columns, vector, result);
+  return solve_least_squares(call, &a, &x) && matrix_result(call, &x, a.columns, vector, result);
 }
 
 bool cag_matrices_multiply(CagCall *call, CagValue *result) {
@@ -247,10 +247,10 @@ bool cag_matrices_multiply(CagCall *call, CagValue *result) {
     }
     if (!cag_keep_going(call->vm)) return false;
   }
-  return give_matrix(call, &c, c.rows, vector, result);
+  return matrix_result(call, &c, c.rows, vector, result);
 }
 
-// Up to 3x3 by the rule of Sarrus: exact for small whole numbers.
+// By the rule of Sarrus for up to 3x3, which is exact for small whole numbers.
 static double small_determinant(const Matrix *m) {
   const double *x = m->x;
   if (m->rows == 1) return x[0];
@@ -283,7 +283,7 @@ bool cag_matrices_inverse(CagCall *call, CagValue *result) {
   if (!read_square(call, 0, NULL, &a)) return false;
   Matrix b = matrix_new(call, a.rows, a.rows);
   for (size_t i = 0; i < a.rows; i++) b.x[i * a.rows + i] = 1;
-  return solve_system(call, &a, &b) && give_matrix(call, &b, b.rows, false, result);
+  return solve_system(call, &a, &b) && matrix_result(call, &b, b.rows, false, result);
 }
 
 bool cag_matrices_transpose(CagCall *call, CagValue *result) {
@@ -292,14 +292,14 @@ bool cag_matrices_transpose(CagCall *call, CagValue *result) {
   Matrix b = matrix_new(call, a.columns, a.rows);
   if (!copy_transposed(call, &a, false, b.x)) return false;
   cag_release_held(call, a.x);
-  *result = give_rows(call->vm, &b, b.rows, false);
+  *result = rows_value(call->vm, &b, b.rows, false);
   return true;
 }
 
 // --- Eigenvalues ---
 
 static bool check_symmetric(CagCall *call, const Matrix *m) {
-  static const double RELATIVE = 1e-9; // what computing a symmetric matrix may have left
+  static const double RELATIVE = 1e-9; // the asymmetry that rounding may leave in a computed matrix
   double largest = 0;
   for (size_t i = 0; i < m->rows * m->rows; i++) largest = fmax(largest, fabs(m->x[i]));
   for (size_t i = 0; i < m->rows; i++)
@@ -314,10 +314,10 @@ static bool check_symmetric(CagCall *call, const Matrix *m) {
   return true;
 }
 
-// Eigenvectors have no sign of their own: the component largest in size is made positive.
+// The sign of an eigenvector is arbitrary: its largest component is made positive.
 static void orient(double *v, size_t n) {
   size_t largest = 0;
-  // Sizes that differ by rounding only do not decide.
+  // A component must be larger by more than rounding to count as the largest.
   static const double CLEARLY = 1 + 1e-9;
   for (size_t i = 1; i < n; i++)
     if (fabs(v[i]) > CLEARLY * fabs(v[largest])) largest = i;
@@ -332,7 +332,7 @@ bool cag_matrices_eigen(CagCall *call, CagValue *result) {
   double *values = cag_hold_array(call, n, sizeof *values);
   const bool large = is_large((double)n * (double)n * (double)n);
   if (large && !cag_geometry_ok(call, cag_symmetric_eigen(m.x, n, values, call->err))) return false;
-  // In column-major order the eigenvectors come out one after the other: the rows of what we give.
+  // In column-major order, eigenvectors are contiguous, so they are the rows of the result.
   if (!large &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
     return cag_fail_call(call, 0, CAG_ERR_convergence,
@@ -340,19 +340,20 @@ bool cag_matrices_eigen(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < n; i++) orient(m.x + i * n, n);
   for (size_t i = 0; i < n * n; i++) m.x[i] += 0.0;
   static const char *const names[] = {"values", "vectors"};
-  CagValue fields[] = {cag_vector(call->vm, values, n), give_rows(call->vm, &m, n, false)};
+  CagValue fields[] = {cag_vector(call->vm, values, n), rows_value(call->vm, &m, n, false)};
   *result = cag_record_new(call->vm, names, fields, 2);
   return true;
 }
 
 // --- Roots of polynomials ---
 //
-// The eigenvalues of the companion matrix are roots of a polynomial whose coefficients differ from
-// the given ones by rounding only. A root of multiplicity m is spread by that into m roots about
-// it, as far as the m-th root of the rounding error, with their mean at the root. So clusters are
-// sought: the mean of m neighbors, improved by Newton's method as a root of the derivative of
-// order m - 1, counts as a root of multiplicity m where the polynomial and its first m - 1
-// derivatives vanish there to rounding.
+// The roots are first computed as the eigenvalues of the companion matrix. They are the exact roots
+// of a polynomial whose coefficients differ from the given ones by rounding. This splits a root of
+// multiplicity m into m roots around it. Their distance is of the order of the m-th root of the
+// rounding error, and their mean is at the root. The algorithm therefore searches for clusters: it
+// takes the mean of m neighbors, and improves it by Newton's method as a root of the derivative of
+// order m - 1. The result counts as a root of multiplicity m if the polynomial and its first m - 1
+// derivatives vanish there up to rounding.
 
 typedef double complex Complex;
 typedef long double complex LongComplex;
@@ -361,14 +362,14 @@ typedef struct Roots {
   const double *c; // coefficients, c[degree] not 0, c[0] not 0
   size_t degree;
   Complex *z;   // eigenvalues
-  bool *done;   // which have been given to a root
-  size_t *near; // numbers of those not done, by distance from the one in question
+  bool *done;   // eigenvalues that are already assigned to a root
+  size_t *near; // indices of the remaining eigenvalues, sorted by distance from the current one
   Complex *found;
   size_t found_count;
 } Roots;
 
-// The derivative of this order, divided by its factorial, at z; *size the sum of the sizes of its
-// terms.
+// The derivative of the given order, divided by its factorial, at z. *size is the sum of the
+// absolute values of its terms.
 static LongComplex taylor_at(const Roots *r, LongComplex z, size_t order, long double *size) {
   LongComplex value = 0;
   long double sum = 0, distance = cabsl(z);
@@ -399,7 +400,7 @@ static LongComplex improve(const Roots *r, LongComplex z, size_t m) {
   return z;
 }
 
-// Whether z is a root of multiplicity m of a polynomial that differs by rounding.
+// Whether z is a root of multiplicity m of a polynomial that differs only by rounding.
 static bool vanishes(const Roots *r, LongComplex z, size_t m) {
   static const double ROUNDING = 16 * DBL_EPSILON; // of a coefficient, for each degree
   for (size_t k = 0; k < m; k++) {
@@ -410,8 +411,8 @@ static bool vanishes(const Roots *r, LongComplex z, size_t m) {
   return true;
 }
 
-// Fills near with the roots not done, by distance from root i, which comes first; gives their
-// number.
+// Fills `near` with the remaining eigenvalues, sorted by distance from number i, which comes first.
+// Returns their number.
 static size_t neighbors(Roots *r, size_t i) {
   size_t n = 0;
   for (size_t j = 0; j < r->degree; j++) {
@@ -427,15 +428,15 @@ static size_t neighbors(Roots *r, size_t i) {
   return n;
 }
 
-// The number of the conjugate of root i among those not done.
+// The index of the conjugate of eigenvalue i among the remaining ones.
 static size_t conjugate(const Roots *r, size_t i) {
   for (size_t j = 0; j < r->degree; j++)
     if (!r->done[j] && r->z[j] == conj(r->z[i])) return j;
   return i;
 }
 
-// Whether the first m neighbors are m of the same side, or closed under conjugation. *real: the
-// latter.
+// Whether the first m neighbors are all above the real axis, or are closed under conjugation, which
+// sets *real.
 static bool one_sided(const Roots *r, size_t m, bool *real) {
   size_t above = 0, below = 0;
   for (size_t k = 0; k < m; k++) {
@@ -446,7 +447,7 @@ static bool one_sided(const Roots *r, size_t m, bool *real) {
   return *real || above == m;
 }
 
-static void give_root(Roots *r, LongComplex z, size_t m, bool real) {
+static void add_root(Roots *r, LongComplex z, size_t m, bool real) {
   for (size_t k = 0; k < m; k++) {
     size_t i = r->near[k];
     if (!real) r->done[conjugate(r, i)] = true;
@@ -456,14 +457,14 @@ static void give_root(Roots *r, LongComplex z, size_t m, bool real) {
   }
 }
 
-// Tries the m roots nearest to the one in question as one root of multiplicity m.
-static bool take_cluster(Roots *r, size_t m) {
+// Tries to combine the m eigenvalues nearest to the current one into one root of multiplicity m.
+static bool try_cluster(Roots *r, size_t m) {
   bool real;
   if (!one_sided(r, m, &real)) return false;
   LongComplex mean = 0;
   for (size_t k = 0; k < m; k++) mean += r->z[r->near[k]];
   mean /= (long double)m;
-  // Members of a cluster lie closer together than to 0; wider ones are several roots.
+  // The members of a cluster are closer to each other than to 0; otherwise they are separate roots.
   static const double SPREAD = 0.25;
   for (size_t k = 0; k < m; k++)
     if (m > 1 && cabsl(r->z[r->near[k]] - mean) > SPREAD * cabsl(mean)) return false;
@@ -476,7 +477,7 @@ static bool take_cluster(Roots *r, size_t m) {
     z = mean;
   }
   if (m > 1 && !vanishes(r, z, m)) return false;
-  give_root(r, z, m, real);
+  add_root(r, z, m, real);
   return true;
 }
 
@@ -484,13 +485,13 @@ static void collect_roots(Roots *r) {
   for (size_t i = 0; i < r->degree; i++) {
     if (r->done[i] || cimag(r->z[i]) < 0) continue;
     size_t m = neighbors(r, i);
-    while (m > 1 && !take_cluster(r, m)) m--;
-    if (m == 1) take_cluster(r, 1);
+    while (m > 1 && !try_cluster(r, m)) m--;
+    if (m == 1) try_cluster(r, 1);
   }
 }
 
-// Eigenvalues of the companion matrix, conjugates side by side. x is scaled by a power of 2 so that
-// first and last coefficient weigh alike.
+// Computes the eigenvalues of the companion matrix, with conjugates next to each other. x is scaled
+// by a power of 2 to balance the first and last coefficients.
 static bool companion_roots(CagCall *call, Roots *r) {
   size_t n = r->degree;
   int exponent = 0;
@@ -521,7 +522,7 @@ static int compare_roots(const void *a, const void *b) {
 
 // All roots of the polynomial, sorted by real part, then imaginary part; *out is held.
 static bool all_roots(CagCall *call, CagNumbers coefficients, Complex **out, size_t *count) {
-  enum { DEGREE_MOST = 200 }; // beyond, coefficients say too little about the roots
+  enum { DEGREE_MOST = 200 }; // for higher degrees, the coefficients hardly determine the roots
   const double *c = coefficients.items;
   size_t n = coefficients.count;
   for (size_t i = 0; i < n; i++)
@@ -541,7 +542,7 @@ static bool all_roots(CagCall *call, CagNumbers coefficients, Complex **out, siz
              .near = cag_hold_array(call, room, sizeof *r.near)};
   if (degree > 0 && !companion_roots(call, &r)) return false;
   collect_roots(&r);
-  r.found_count += zeros; // their places are 0
+  r.found_count += zeros; // the roots at 0, which the memory already contains
   qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
   *out = r.found;
   *count = r.found_count;

@@ -1,4 +1,4 @@
-// Meshes: made of lists, asked for their data, checked, and made of other shapes.
+// Meshes: constructors from lists, data, checks, and tessellation.
 
 #include <string.h>
 
@@ -10,7 +10,7 @@
 #include "interp/builtin/solids.h"
 #include "interp/vm/vm.h"
 
-// A mesh, or that which bounds a polyhedron.
+// Reads a mesh, or the boundary mesh of a polyhedron.
 static bool read_mesh(CagCall *call, const CagMesh **m) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   *m = shape->as.mesh;
@@ -95,7 +95,7 @@ bool cag_solids_faces(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Where a mesh has no normals of its own: those of its triangles, weighted by their areas.
+// The vertex normals of a mesh without normals: those of the triangles, weighted by area.
 static const CagVec3 *hold_face_normals(CagCall *call, const CagMesh *m) {
   CagVec3 *sum = cag_hold_array(call, m->vertex_count, sizeof *sum);
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -169,7 +169,8 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
   }
 }
 
-// Grids are made for the longest edge, but flat faces and what is sewn to grids need not keep it.
+// Grids are created with the longest edge in mind, but flat faces and parts sewn to grids can
+// exceed it.
 static CagStatus keep_edges(CagMesh **mesh, const CagTessellation *how, CagError *err) {
   CagMesh *fine;
   if (!(how->max_edge > 0)) return CAG_OK;

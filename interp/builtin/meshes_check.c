@@ -1,9 +1,9 @@
-// What is wrong with faces as the boundary of a solid, in numbers.
+// Reports in numbers what prevents faces from being the boundary of a solid.
 
 #include "geom/mesh/check.h"
 #include "interp/builtin/solids.h"
 
-static bool give_check(CagCall *call, CagStatus status, const CagMeshCheck *c, CagValue *result) {
+static bool check_result(CagCall *call, CagStatus status, const CagMeshCheck *c, CagValue *result) {
   static const char *const names[] = {"vertices",
                                       "edges",
                                       "faces",
@@ -38,7 +38,7 @@ static bool give_check(CagCall *call, CagStatus status, const CagMeshCheck *c, C
 
 bool cag_checks_check_mesh(CagCall *call, const struct cag_checks_check_mesh *a, CagValue *result) {
   CagMeshCheck check = {0};
-  return give_check(call, cag_mesh_check(a->M, &check, call->err), &check, result);
+  return check_result(call, cag_mesh_check(a->M, &check, call->err), &check, result);
 }
 
 bool cag_checks_check_faces(CagCall *call, const struct cag_checks_check_faces *a,
@@ -49,5 +49,5 @@ bool cag_checks_check_faces(CagCall *call, const struct cag_checks_check_faces *
   if (!cag_arg_faces(call, 1, a->vertices.count, &counts, &indices, &faces)) return false;
   CagStatus status = cag_faces_check(a->vertices.items, a->vertices.count, indices, counts, faces,
                                      &check, call->err);
-  return give_check(call, status, &check, result);
+  return check_result(call, status, &check, result);
 }

@@ -9,7 +9,7 @@
 
 typedef struct Opener {
   CagCall *call;
-  const char *path; // of the mesh, whose folder other files lie in
+  const char *path; // the path of the mesh, in whose folder the other files are
 } Opener;
 
 typedef struct Opening {
@@ -25,8 +25,8 @@ static bool open_file(CagVm *vm, void *context) {
   return cag_vm_open_file(o->call, 0, o->path, o->bytes, o->size);
 }
 
-// Files that a mesh names are files of the script: the same places, the same limits. The reader of
-// the mesh holds memory of its own, so exhausted memory must not jump over it.
+// The files that a mesh refers to are subject to the same rules and limits as files that the script
+// reads. The mesh reader owns memory, so running out of memory must not jump past it.
 static CagStatus open_beside(void *context, const char *name, char **bytes, size_t *size,
                              CagError *err) {
   const Opener *o = context;
@@ -59,6 +59,6 @@ bool cag_mesh_files_read_mesh(CagCall *call, const struct cag_mesh_files_read_me
                       .context = &opener};
   CagMesh *m = NULL;
   CagStatus status = cag_mesh_read(&file, &m, call->err);
-  cag_release_held(call, bytes); // before the mesh has its value
+  cag_release_held(call, bytes); // early, because creating the value may need the memory
   return cag_mesh_result(call, status, &m, result);
 }

@@ -1,5 +1,5 @@
-// Numbers: elementary functions, rounding, extremes, and what works on angles and vectors as well
-// (abs, sign, min, max, clamp, mix, round).
+// Numbers: elementary functions, rounding, extrema, and functions that also accept angles and
+// vectors (abs, sign, min, max, clamp, mix, round).
 
 #include <string.h>
 
@@ -23,8 +23,8 @@ ELEMENTARY(floor)
 ELEMENTARY(ceil)
 #undef ELEMENTARY
 
-// The library's cbrt may miss by one unit in the last place, also for cubes: a step of Newton's
-// method mends that.
+// The library's cbrt can be off by one unit in the last place, even for cubes of whole numbers. A
+// step of Newton's method corrects that.
 static double cube_root(double x) {
   double y = cbrt(x), slope = 3 * y * y;
   return isnormal(slope) && isfinite(slope * y) ? y - (double)((long double)y * y * y - x) / slope
@@ -97,7 +97,7 @@ static CagValue round_value(CagValue v, int digits) {
   return v;
 }
 
-// Loops over long lists ask after so many elements whether they may go on.
+// Loops over long lists check after this many elements whether the run must stop.
 enum { STEPS_BETWEEN_CHECKS = 1 << 12 };
 
 static bool round_list(CagCall *call, CagValue value, int digits, int depth, CagValue *result) {
@@ -129,7 +129,7 @@ static bool round_list(CagCall *call, CagValue value, int digits, int depth, Cag
 }
 
 bool cag_numbers_round(CagCall *call, CagValue *result) {
-  // No double has digits beyond these places.
+  // Doubles have no digits beyond this position.
   enum { PLACES_MOST = 400 };
   long digits;
   if (!cag_arg_integer_or(call, 1, 0, -PLACES_MOST, PLACES_MOST, &digits)) return false;
@@ -140,7 +140,8 @@ bool cag_numbers_round(CagCall *call, CagValue *result) {
   return true;
 }
 
-// The least (sign = -1) or greatest (sign = 1) of the arguments, or of the one list.
+// The least (sign = -1) or greatest (sign = 1) of the arguments, or of the elements of a single
+// list.
 static bool extreme(CagCall *call, int sign, CagValue *result) {
   CagSequence s;
   bool of_list =
@@ -151,7 +152,7 @@ static bool extreme(CagCall *call, int sign, CagValue *result) {
   for (size_t i = 0; i < n; i++) {
     CagValue v = of_list ? cag_sequence_element(call->vm, &s, i) : call->values[i];
     int order;
-    // The first is compared with itself, so that a single value is checked too.
+    // The first is compared with itself, so that a single value is checked, too.
     if (!cag_order(v, i == 0 ? v : *result, &order))
       return cag_fail_order(call, of_list ? 0 : (int)i, i == 0 ? v : *result, v);
     if (i == 0 || order == sign) *result = v;

@@ -1,8 +1,8 @@
-// Pictures of a surface's quality: colors of curvature, zebra stripes, isophotes.
+// Pictures of surface quality: colors of curvature, zebra stripes, and isophotes.
 //
-// Colors are those of a mesh with a value at each vertex and a scale (CagColorScale), which every
-// transform and exporter knows. The meshes are white, so that viewers which multiply the colors
-// of vertices and material show them as they are.
+// The colors are those of a mesh with a value at each vertex and a color scale (CagColorScale),
+// which every transform and exporter supports. The meshes are white, because some viewers multiply
+// the colors of vertices and material.
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -28,14 +28,14 @@ static void release_meshes(void *what) {
   cag_free(m->items);
 }
 
-// No meshes yet; those that are added are released with the built-in.
+// Returns an empty list. Meshes that are added to it are released with the built-in.
 static Meshes *hold_meshes(CagCall *call) {
   Meshes *m = cag_hold_array(call, 1, sizeof *m);
   cag_hold_for(call, release_meshes, m);
   return m;
 }
 
-// Takes the mesh over.
+// Takes ownership of the mesh.
 static CagStatus add_mesh(Meshes *m, CagMesh *mesh, CagError *err) {
   if (!CAG_RESERVE(m->items, m->capacity, m->count + 1)) {
     cag_mesh_release(mesh);
@@ -45,7 +45,7 @@ static CagStatus add_mesh(Meshes *m, CagMesh *mesh, CagError *err) {
   return CAG_OK;
 }
 
-// All the shapes of the first argument, as a list that the caller roots.
+// Returns all shapes of the first argument as a list, which the caller must root.
 static bool read_shapes(CagCall *call, CagList **out) {
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, call->values[0], builder)) return false;
@@ -56,7 +56,7 @@ static bool read_shapes(CagCall *call, CagList **out) {
 typedef CagStatus (*MakeMesh)(const void *what, const CagShape *shape, CagValue v,
                               const CagTessellation *how, Meshes *out, CagError *err);
 
-// tolerance 0: that of each shape.
+// With tolerance 0, each shape has its own.
 static bool make_meshes(CagCall *call, double tolerance, MakeMesh make, const void *what,
                         Meshes *out) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
@@ -64,7 +64,7 @@ static bool make_meshes(CagCall *call, double tolerance, MakeMesh make, const vo
   if (call->vm->max_triangles > 0) how.max_triangles = call->vm->max_triangles;
   how.interrupt = cag_vm_stop(call->vm);
   if (!read_shapes(call, &shapes)) return false;
-  // Formulas are called back: the shapes stay.
+  // Surfaces may call functions of the script, so the list of shapes is rooted.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++) {
@@ -76,7 +76,7 @@ static bool make_meshes(CagCall *call, double tolerance, MakeMesh make, const vo
   return ok;
 }
 
-static bool give_mesh(CagCall *call, const Meshes *parts, CagColorScale scale, CagValue *result) {
+static bool mesh_result(CagCall *call, const Meshes *parts, CagColorScale scale, CagValue *result) {
   static const char *const names[] = {"color", "roughness", "ior"};
   static const double white[] = {1, 1, 1};
   const double matte_roughness = 0.6, matte_ior = 1.3;
@@ -117,7 +117,7 @@ static CagStatus value_mesh(const void *what, const CagShape *shape, CagValue v,
   return status;
 }
 
-// The size of all meshes, from which follows what curvature is rounding.
+// The size of all meshes, which determines the curvature that counts as rounding.
 static double size_of(const Meshes *m) {
   CagBounds all = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < m->count; i++) {
@@ -130,16 +130,16 @@ static double size_of(const Meshes *m) {
   return cag_norm(cag_sub(all.max, all.min));
 }
 
-// Curvatures below this part of the inverse size are none.
+// Curvatures below this fraction of 1 / size count as 0.
 #define FLAT 1e-7
 
-// A span with values of both signs is made symmetric, so that 0 has the middle color.
+// If the values have both signs, the range is made symmetric, so that 0 has the middle color.
 static void find_span(const Meshes *m, CagSurfaceValue kind, double *from, double *to) {
   double size = size_of(m), unit = size > 0 ? 1 / size : 1;
   double least = FLAT * (kind == CAG_VALUE_GAUSSIAN ? unit * unit : unit);
   if (kind == CAG_VALUE_SLOPE) least = FLAT;
   cag_mesh_value_span(m->items, m->count, least, from, to);
-  const double both = 0.02; // a sign that takes up less of the span does not count
+  const double both = 0.02; // a sign that covers a smaller fraction of the range is ignored
   if (*from<-both * * to && * to> - both * *from) {
     *to = fmax(*to, -*from);
     *from = -*to;
@@ -175,10 +175,10 @@ bool cag_quality_colored_by(CagCall *call, const struct cag_quality_colored_by *
   if (!said) find_span(parts, value, &from, &to);
   const bool diverging = a->colors == 2 || (a->colors == 0 && is_symmetric(from, to));
   CagColorScale scale = {diverging ? CAG_SCALE_DIVERGING : CAG_SCALE_SEQUENCE, from, to, 0};
-  return give_mesh(call, parts, scale, result);
+  return mesh_result(call, parts, scale, result);
 }
 
-// --- What a colored mesh says ---
+// --- Data of a colored mesh ---
 
 static bool check_colored(CagCall *call, const CagMesh *m) {
   return (m->scale.kind && m->uv) ||
@@ -220,7 +220,8 @@ typedef struct Zebra {
   int stripes;
 } Zebra;
 
-// Vertices along the narrowest stripe; the mirrored direction turns twice as fast as the normal.
+// The number of vertices across the narrowest stripe. The factor 2 below is due to the reflected
+// direction, which turns twice as fast as the normal.
 #define STRIPE_EDGES 2.5
 
 static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
@@ -233,7 +234,7 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
   if (v.type == CAG_SURFACE) status = cag_surface_tessellate(shape->as.surface, &fine, &mesh, err);
   else if (v.type == CAG_SOLID) status = cag_solid_tessellate(shape->as.solid, &fine, &mesh, err);
   else if (v.type == CAG_MESH && shape->as.mesh->normals) {
-    CagTransform still = cag_transform_identity(); // a copy of its own
+    CagTransform still = cag_transform_identity(); // the identity, to copy the mesh
     status = cag_mesh_transform(shape->as.mesh, &still, &mesh, err);
   } else
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
@@ -250,8 +251,8 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
   return status;
 }
 
-// `across` made perpendicular to the view; where none is said (0) the world's Z, or Y for a view
-// along it.
+// Makes `across` perpendicular to the view. By default (0), it is the world's Z, or Y if the view
+// is along Z.
 static bool find_across(CagCall *call, CagVec3 v, CagVec3 eye, CagVec3 *out) {
   const double parallel = 1e-9; // sine
   if (cag_norm(v) == 0) {
@@ -273,15 +274,15 @@ bool cag_quality_zebra(CagCall *call, const struct cag_quality_zebra *a, CagValu
   if (!find_across(call, a->across.at, z.eye, &z.across)) return false;
   Meshes *parts = hold_meshes(call);
   return make_meshes(call, a->tolerance, zebra_mesh, &z, parts) &&
-         give_mesh(call, parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
+         mesh_result(call, parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
 }
 
 // --- Isophotes ---
 
 #define LEVELS_MOST 1000
 
-// The cosines of the levels: of a count, angles evenly between 0 and 180 degrees, ends left out; of
-// a list, its angles. *out is held.
+// Reads the levels as cosines. A count means angles distributed evenly between 0 and 180 degrees,
+// without the ends. *out is held.
 static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
   const bool listed = call->values[argument].type == CAG_LIST;
   long count = 11;
@@ -304,7 +305,7 @@ static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
             i);
       angle = v.as.number * CAG_RADIANS_PER_DEGREE;
     }
-    // A right angle is where the outline is: its cosine is 0, not rounding.
+    // A right angle corresponds to the outline, so its cosine must be exactly 0.
     (*out)[i] = fabs(angle - straight / 2) < 1e-15 ? 0 : cos(angle);
   }
   return true;
@@ -327,7 +328,7 @@ static CagStatus isophotes_of(CagValue v, CagVec3 direction, double cosine, doub
   return status;
 }
 
-static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *result) {
+static bool curves_result(CagCall *call, const CagCurveList *list, CagValue *result) {
   CagBuilder *out = cag_builder_new(call->vm);
   for (size_t i = 0; i < list->count; i++)
     if (!cag_builder_add(call->vm, out,
@@ -351,7 +352,7 @@ bool cag_quality_isophotes(CagCall *call, const struct cag_quality_isophotes *a,
       ok = cag_geometry_ok(call, isophotes_of(cag_list_get(call->vm, shapes, i), direction,
                                               cosines[k], a->tolerance, list, call->err)) &&
            cag_keep_going(call->vm);
-  ok = ok && give_curves(call, list, result);
+  ok = ok && curves_result(call, list, result);
   cag_root_pop(call->vm, 1);
   return ok;
 }

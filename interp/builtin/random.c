@@ -1,8 +1,8 @@
-// Random numbers as pure values.
+// Random numbers as pure functions.
 //
-// The seed's bits fill the state of xoshiro256** (Blackman, Vigna 2018) through splitmix64, and the
-// upper 53 bits of each output make a number of [0, 1): whole-number arithmetic only, so one seed
-// gives one list on every machine.
+// splitmix64 expands the bits of the seed to the state of xoshiro256** (Blackman and Vigna 2018).
+// The upper 53 bits of each output are a number in [0, 1). All arithmetic is on integers, so a seed
+// has the same list on every machine.
 
 #include <string.h>
 
@@ -43,7 +43,7 @@ static double next_unit(Generator *g) {
   return (double)(next_bits(g) >> 11) * UNIT;
 }
 
-// What is drawn from: an interval, or with `by` the elements of the range.
+// The source of the numbers: an interval, or the elements of a range with `by`.
 typedef struct Source {
   double start, end;
   bool angle;
@@ -78,7 +78,7 @@ bool cag_random_random(CagCall *call, const struct cag_random_random *a, CagValu
   enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
   Source source;
   if (!read_source(call, a->over, &source)) return false;
-  // Whole seeds count as whole numbers, others by the bits of the double.
+  // Whole seeds count as integers, and others by the bits of the double.
   uint64_t bits;
   const double seed = a->seed + 0.0;
   if (seed == floor(seed) && fabs(seed) < 0x1p62) bits = (uint64_t)(int64_t)seed;

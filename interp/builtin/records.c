@@ -1,4 +1,4 @@
-// Records: their names and values, made from pairs and asked with a default; and the names of
+// Records: names and values, creation from pairs, and lookup with a default. Also the names of
 // types.
 
 #include <stdlib.h>
@@ -29,7 +29,7 @@ bool cag_records_get(CagCall *call, const struct cag_records_get *a, CagValue *r
 
 // --- record ---
 
-// The pair at index i: a list [name, value].
+// Reads the pair at index i, a list [name, value].
 static bool read_pair(CagCall *call, CagSequence *pairs, size_t i, CagText **name,
                       CagValue *value) {
   CagValue pair = cag_sequence_element(call->vm, pairs, i);
@@ -52,8 +52,9 @@ static int compare_names(const void *a, const void *b) {
   return (s > t) - (s < t);
 }
 
-// A name that stands twice, or NULL; equal names are one interned text.
-static const CagText *name_given_twice(CagCall *call, CagText *const *names, size_t n) {
+// Returns a name that occurs twice, or NULL. Texts are interned, so equal names have the same
+// address.
+static const CagText *repeated_name(CagCall *call, CagText *const *names, size_t n) {
   CagText **sorted = cag_hold_array(call, n, sizeof *sorted);
   memcpy(sorted, names, n * sizeof *sorted);
   qsort(sorted, n, sizeof *sorted, compare_names);
@@ -66,7 +67,7 @@ bool cag_records_record(CagCall *call, CagValue *result) {
   CagSequence pairs;
   if (!cag_sequence_open(call, 0, false, &pairs)) return false;
   size_t n = pairs.length;
-  // Before memory is taken: elements of long ranges are no pairs.
+  // Checks the first pair before allocating memory, because a long range has no pairs.
   CagText *name;
   CagValue value;
   if (n > 0 && !read_pair(call, &pairs, 0, &name, &value)) return false;
@@ -74,7 +75,7 @@ bool cag_records_record(CagCall *call, CagValue *result) {
   CagValue *values = cag_hold_array(call, n, sizeof *values);
   for (size_t i = 0; i < n; i++)
     if (!read_pair(call, &pairs, i, &names[i], &values[i])) return false;
-  const CagText *twice = name_given_twice(call, names, n);
+  const CagText *twice = repeated_name(call, names, n);
   if (twice)
     return cag_fail_call(call, 0, CAG_ERR_duplicate_field, "has the field \"%s\" twice",
                          twice->bytes);

@@ -1,12 +1,12 @@
-// Regions: pieces of the plane.
+// Regions of the plane.
 
 #include <string.h>
 
 #include "interp/builtin/curves.h"
 #include "interp/builtin/holds.h"
 
-// A closed plane curve from a curve or a list of points; *out has one reference. `argument` is
-// where it was given.
+// Reads a closed plane curve from a curve or a list of points. Messages name `argument`. *out has
+// one reference.
 static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   if (v.type == CAG_CURVE) {
     *out = cag_curve_retain(CAG_AS_SHAPE(v)->as.curve);
@@ -16,7 +16,7 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
     return cag_fail_call(call, argument, CAG_ERR_type,
                          "expects closed plane curves or lists of points, found %s",
                          cag_type_article(v));
-  // The list is read as if it were the argument itself.
+  // cag_arg_points reads an argument, so the list temporarily replaces it.
   CagValue kept = call->values[argument];
   CagVec3 *points;
   size_t n;
@@ -32,7 +32,7 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   return true;
 }
 
-// The loops of a list of curves.
+// Returns v if it is a nonempty list of curves, and NULL otherwise.
 static const CagList *list_of_curves(CagCall *call, CagValue v) {
   if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0 || CAG_AS_LIST(v)->length == 0) return NULL;
   const CagList *list = CAG_AS_LIST(v);
@@ -41,7 +41,7 @@ static const CagList *list_of_curves(CagCall *call, CagValue v) {
   return list;
 }
 
-// The region that the loops bound, the holes last, where it is.
+// Returns the region bounded by the loops, of which the last ones are holes, in its plane.
 static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t holes,
                        CagValue *result) {
   CagTransform frame;
@@ -120,11 +120,12 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
 
 // --- Set operations and offsets ---
 
-// What moves regions of the plane `place` into the plane `base`, where both are one plane. Operands
-// are counted from 1.
+// Computes the transform from the plane `place` to the plane `base`. Fails if they are not the same
+// plane. Messages count operands from 1.
 static CagStatus between_planes(const CagTransform *base, const CagTransform *place, size_t operand,
                                 CagTransform *out, CagError *err) {
-  const double same = 1e-9; // part of the distances by which the planes may differ
+  const double same =
+      1e-9; // tolerance for the distance between the planes, relative to the region's distance
   CagTransform back;
   CagStatus status = cag_transform_inverse(base, &back, err);
   if (status) return status;
@@ -141,15 +142,15 @@ static CagStatus between_planes(const CagTransform *base, const CagTransform *pl
   return CAG_OK;
 }
 
-// Operands of a set operation, read one after the other.
+// The operands of a set operation, which are read one after the other.
 typedef struct Operands {
   CagCall *call;
   CagTransform base; // the plane of the first region
   bool based;
-  CagValue first; // the first shape; unset: none yet
+  CagValue first; // the first shape; unset: none so far
 } Operands;
 
-// A region or closed plane curve in the plane of all; *out has one reference.
+// Reads a region or closed plane curve, in the common plane; *out has one reference.
 static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out) {
   if (v.type != CAG_REGION && v.type != CAG_CURVE)
     return cag_fail_call(o->call, -1, CAG_ERR_type, "expects regions, found %s as operand %zu",
@@ -170,7 +171,7 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
   return cag_geometry_ok(o->call, status);
 }
 
-// The union of the shapes of an operand; of none the empty region.
+// Returns the union of the shapes of an operand, or the empty region if there are none.
 static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
   CagRegion **parts = cag_hold_region_array(o->call, shapes->length);
   for (size_t i = 0; i < shapes->length; i++)
@@ -183,7 +184,7 @@ static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, Cag
   return cag_geometry_ok(o->call, status);
 }
 
-// A region, a closed plane curve, or the union of those of a group or list.
+// Reads a region, a closed plane curve, or a group or list of these, which are united.
 static bool read_operand(Operands *o, CagValue v, size_t operand, CagRegion **out) {
   if (v.type != CAG_LIST && v.type != CAG_GROUP) return read_shape(o, v, operand, out);
   CagBuilder *builder = cag_builder_new(o->call->vm);
@@ -222,7 +223,7 @@ bool cag_regions_intersect(CagCall *call, CagValue *result) {
 }
 
 bool cag_regions_offset(CagCall *call, const struct cag_regions_offset *a, CagValue *result) {
-  const double part = 1e-6; // of the size, where no tolerance is given
+  const double part = 1e-6; // the default tolerance, as a fraction of the size
   const CagShape *shape = CAG_AS_SHAPE(a->R);
   double tolerance = a->tolerance;
   CagRegion *out = NULL;

@@ -1,4 +1,4 @@
-// Loops of a region that are given in space: their common plane, and their images in it.
+// Loops given in space: their common plane, and their images in it.
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,10 +6,11 @@
 #include "geom/meet/section.h"
 #include "interp/builtin/curves.h"
 
-// Part of the size within which curves lie in a plane.
+// Tolerance for coplanar curves, as a fraction of the distance from the origin.
 #define WITHIN 1e-9
 
-// The plane through the foot of the origin, its normal towards the side of Z, or else Y or X.
+// Moves the plane's point to the foot of the perpendicular from the origin, and turns the normal
+// toward Z, or Y or X if it is horizontal.
 static CagPlane upright(const CagPlane *plane) {
   const CagVec3 n = plane->normal;
   const double least = 1e-9, first = fabs(n.z) > least ? n.z : fabs(n.y) > least ? n.y : n.x;
@@ -17,7 +18,7 @@ static CagPlane upright(const CagPlane *plane) {
   return (CagPlane){cag_scaled(normal, cag_dot(plane->point, normal)), normal};
 }
 
-static bool lies_in(const CagCurve *c, const CagPlane *plane, double size) {
+static bool is_coplanar(const CagCurve *c, const CagPlane *plane, double size) {
   enum { LOOKS = 32 };
   for (int i = 0; i < LOOKS; i++) {
     CagVec3 p;
@@ -29,7 +30,7 @@ static bool lies_in(const CagCurve *c, const CagPlane *plane, double size) {
   return true;
 }
 
-static double reach_of(const CagCurve *c) {
+static double distance_from_origin(const CagCurve *c) {
   const CagBounds b = c->kind->hull(c, c->start, c->end);
   return fmax(cag_norm(b.min), cag_norm(b.max));
 }
@@ -46,7 +47,7 @@ bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransf
     status = cag_curve_is_planar(loops[i], &common, i == 0 ? &plane : NULL, call->err);
     if (status || !common) break;
     if (i == 0) plane = upright(&plane);
-    common = lies_in(loops[i], &plane, reach_of(loops[i]));
+    common = is_coplanar(loops[i], &plane, distance_from_origin(loops[i]));
   }
   if (!cag_geometry_ok(call, status)) return false;
   if (!common) {

@@ -1,7 +1,8 @@
-// What several files of built-ins on robots share: reading of robots, joint values and poses.
+// Declarations shared by the built-ins on robots: reading of robots, joint values, and poses.
 //
-// A list q has one value for each joint: angles where it turns, numbers (millimeters) where it
-// slides. In the machine's memory q is radians and millimeters, at most CAG_ROBOT_JOINTS_MAX long.
+// A list q has one value for each joint: an angle for a revolute joint, and a number (millimeters)
+// for a prismatic one. The machine stores q in radians and millimeters, with at most
+// CAG_ROBOT_JOINTS_MAX values.
 
 #ifndef CAG_INTERP_BUILTIN_ROBOTS_H
 #define CAG_INTERP_BUILTIN_ROBOTS_H
@@ -9,16 +10,17 @@
 #include "geom/robot/robot.h"
 #include "interp/builtin/shapes.h"
 
-// --- Plain robots, of rods, drums and a foot: sizes as parts of the length of their skeleton ---
+// --- Default drawing of a robot by rods, drums, and a foot: sizes relative to the length of its
+// skeleton ---
 #define CAG_PLAIN_ROD_RADIUS 0.018
 #define CAG_PLAIN_DRUM_RADIUS 0.035
 #define CAG_PLAIN_DRUM_LENGTH 0.1
-#define CAG_PLAIN_SLIDE_SIDE 0.056 // of the square bar of a sliding joint
+#define CAG_PLAIN_SLIDE_SIDE 0.056 // the square bar of a prismatic joint
 #define CAG_PLAIN_FOOT_RADIUS 0.07
 #define CAG_PLAIN_FOOT_HEIGHT 0.012
-// Sections of the skeleton shorter than this part are not drawn.
+// Sections of the skeleton that are shorter than this fraction are not drawn.
 #define CAG_PLAIN_SHORT 1e-6
-// Linear light.
+// Colors in linear light.
 #define CAG_PLAIN_ROD_COLOR                                                                        \
   { 0.42, 0.44, 0.47 }
 #define CAG_PLAIN_DRUM_COLOR                                                                       \
@@ -28,25 +30,27 @@
 
 // --- Arguments ---
 bool cag_arg_robot(CagCall *call, int argument, CagRobot **out); // borrowed
-// Joint values; where `limits` the error outside-limits names the joint outside.
+// Reads joint values. If `limits` is set, values outside the limits cause the error outside-limits,
+// which names the joint.
 bool cag_arg_joints(CagCall *call, int argument, const CagRobot *r, bool limits, double *q);
-// The same, or home where the argument is not given or none.
+// Does the same, but returns the home position if the argument is omitted or none.
 bool cag_arg_joints_or_home(CagCall *call, int argument, const CagRobot *r, bool limits, double *q);
-// A pose of space: a rigid transform; else the error not-rigid.
+// Reads a pose, which must be a rigid transform of space; otherwise the error is not-rigid.
 bool cag_arg_pose(CagCall *call, int argument, CagTransform *out);
 bool cag_pose_of_value(CagCall *call, int argument, CagValue v, CagTransform *out);
-// A pose, or a point where the tool may be turned as it likes: the translation to it.
+// Reads a pose, or a point (as the translation to it) if the tool may have any orientation.
 bool cag_arg_target(CagCall *call, int argument, CagTransform *out, bool *point);
 
 // --- Results ---
 extern const char *const cag_joint_kinds[]; // names, by CagJointKind
 CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q);
-// One joint's value.
+// The value of one joint.
 CagValue cag_joint_value(const CagRobot *r, size_t joint, double q);
-// Text of a joint's value with its unit, for messages: "35deg", "120"; buffer of 48 bytes.
+// Formats a joint's value with its unit for messages, such as "35deg" or "120"; the buffer has 48
+// bytes.
 const char *cag_joint_text(const CagRobot *r, size_t joint, double q, char *buffer);
 
-// The group that `show robot` shows.
+// Returns the group that `show robot` displays.
 bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group);
 
 #endif

@@ -1,4 +1,4 @@
-// Questions to robots: where their frames are, how they move, what their motors do.
+// Properties of robots: frames, velocities, and the coupling of motors.
 
 #include <string.h>
 
@@ -27,7 +27,7 @@ const char *cag_joint_text(const CagRobot *r, size_t joint, double q, char *buff
   return buffer;
 }
 
-// A difference of joint values, with six digits.
+// Formats a difference of joint values with six digits.
 static const char *rounded_text(const CagRobot *r, size_t joint, double x, char *buffer) {
   bool turns = joint_turns(r, joint);
   snprintf(buffer, 48, "%.6g%s", turns ? x / CAG_RADIANS_PER_DEGREE : x, turns ? "deg" : "");
@@ -102,7 +102,7 @@ CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q) {
 
 // --- Frames ---
 
-// Checks a link's number: 0 (the base) .. the number of links.
+// Checks the number of a link: 0 (the base) .. the number of links.
 static bool read_frame(CagCall *call, int argument, const CagRobot *r, size_t fallback,
                        size_t *out) {
   long number = (long)fallback;
@@ -146,7 +146,7 @@ bool cag_robots_link_frames(CagCall *call, const struct cag_robots_link_frames *
 
 // --- Motion ---
 
-// The columns of the Jacobian in the axes of the world, or of the tool.
+// Computes the columns of the Jacobian in the axes of the world or of the tool.
 static void find_jacobian(const CagRobot *r, const double *q, bool of_tool, double (*columns)[6]) {
   if (of_tool) cag_robot_jacobian_tool(r, q, columns);
   else cag_robot_jacobian(r, q, columns, NULL);
@@ -235,7 +235,7 @@ bool cag_robots_null_motion(CagCall *call, const struct cag_robots_null_motion *
   return true;
 }
 
-// --- The chain's lines ---
+// --- Joint axes ---
 
 bool cag_robots_skeleton(CagCall *call, const struct cag_robots_skeleton *a, CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX];
@@ -309,9 +309,9 @@ bool cag_robots_violations(CagCall *call, const struct cag_robots_violations *a,
   return true;
 }
 
-// The map between joints and motors, or its linear part where `change` is true.
-static bool give_map(CagCall *call, const CagRobot *r, bool change,
-                     void (*map)(const CagRobot *, const double *, double *), CagValue *result) {
+// The map between joints and motors. If `change` is true, only its linear part.
+static bool map_result(CagCall *call, const CagRobot *r, bool change,
+                       void (*map)(const CagRobot *, const double *, double *), CagValue *result) {
   double q[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX], at_zero[CAG_ROBOT_JOINTS_MAX];
   const double zeros[CAG_ROBOT_JOINTS_MAX] = {0};
   if (!cag_arg_joints(call, 1, r, false, q)) return false;
@@ -326,10 +326,10 @@ static bool give_map(CagCall *call, const CagRobot *r, bool change,
 
 bool cag_robots_motor_values(CagCall *call, const struct cag_robots_motor_values *a,
                              CagValue *result) {
-  return give_map(call, a->robot, a->change, cag_robot_motors, result);
+  return map_result(call, a->robot, a->change, cag_robot_motors, result);
 }
 
 bool cag_robots_joint_values(CagCall *call, const struct cag_robots_joint_values *a,
                              CagValue *result) {
-  return give_map(call, a->robot, a->change, cag_robot_joints, result);
+  return map_result(call, a->robot, a->change, cag_robot_joints, result);
 }

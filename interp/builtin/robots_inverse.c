@@ -1,4 +1,5 @@
-// All joint values for a pose, by closed form, and the branch that joint values belong to.
+// Inverse kinematics in closed form: all joint values for a pose, and the branch that joint values
+// belong to.
 
 #include <string.h>
 
@@ -6,7 +7,7 @@
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
 
-// The branches that the arm has a choice of, as a record of 1 and -1.
+// The branches that the arm has, as a record of 1 and -1.
 static CagValue config_value(CagVm *vm, const CagConfiguration *c) {
   static const char *const all[] = {"shoulder", "elbow", "wrist"};
   const int signs[] = {c->shoulder, c->elbow, c->wrist};
@@ -21,7 +22,7 @@ static CagValue config_value(CagVm *vm, const CagConfiguration *c) {
   return cag_record_new(vm, names, values, n);
 }
 
-// Numbers, from 1, of the joints whose bits are set.
+// The numbers, counted from 1, of the joints whose bits are set.
 static CagValue free_value(CagVm *vm, unsigned free) {
   double joints[CAG_INVERSE_JOINTS_MAX];
   size_t n = 0;

@@ -1,4 +1,4 @@
-// Links and robots made, their members, and their printed form.
+// Constructors of links and robots, their members, and their printed form.
 
 #include <string.h>
 
@@ -7,14 +7,14 @@
 
 // --- Links ---
 
-// An optional speed or effort.
+// Checks an optional speed or effort.
 static bool check_rate(CagCall *call, int argument, double rate) {
   return !cag_given(call, argument) || rate > 0 ||
          cag_fail_value(call, argument, "a value greater than 0");
 }
 
-// Takes limits as a range of the joint's unit, and the home: where none is given 0 or the limit
-// next to it. They are the parameters 4 and 5.
+// Sets the limits, a range in the joint's unit, and the home value. The default home is 0, or the
+// nearest limit. The two are the parameters 4 and 5.
 static bool set_limits(CagCall *call, CagRobotLink *l, CagRangeEnds limits, double home) {
   const bool turns = l->kind == CAG_JOINT_REVOLUTE;
   const double unit = turns ? CAG_RADIANS_PER_DEGREE : 1;
@@ -27,8 +27,8 @@ static bool set_limits(CagCall *call, CagRobotLink *l, CagRangeEnds limits, doub
   return true;
 }
 
-// Checks a finished link; its shape, shapes or lists of them, is the parameter `shape`.
-static bool give_link(CagCall *call, const CagRobotLink *l, int shape, CagValue *result) {
+// Checks a finished link. The parameter with the index `shape` holds a shape, or lists of shapes.
+static bool link_result(CagCall *call, const CagRobotLink *l, int shape, CagValue *result) {
   const CagValue drawn = cag_given(call, shape) ? call->values[shape] : cag_none();
   if (drawn.type != CAG_NONE && !cag_shapes_collect(call, drawn, cag_builder_new(call->vm)))
     return false;
@@ -48,7 +48,7 @@ bool cag_robots_revolute(CagCall *call, const struct cag_robots_revolute *a, Cag
                     .effort = a->effort,
                     .screw = a->lead / (2 * M_PI)};
   return check_rate(call, 7, a->speed) && check_rate(call, 8, a->effort) &&
-         set_limits(call, &l, a->limits, a->home) && give_link(call, &l, 6, result);
+         set_limits(call, &l, a->limits, a->home) && link_result(call, &l, 6, result);
 }
 
 bool cag_robots_prismatic(CagCall *call, const struct cag_robots_prismatic *a, CagValue *result) {
@@ -64,17 +64,17 @@ bool cag_robots_prismatic(CagCall *call, const struct cag_robots_prismatic *a, C
     return cag_fail_call(call, -1, CAG_ERR_joint_limits,
                          "expects the travel of the joint as `limits`, such as limits: 0..300");
   return check_rate(call, 7, a->speed) && check_rate(call, 8, a->effort) &&
-         set_limits(call, &l, a->limits, a->home) && give_link(call, &l, 6, result);
+         set_limits(call, &l, a->limits, a->home) && link_result(call, &l, 6, result);
 }
 
 bool cag_robots_fixed_link(CagCall *call, const struct cag_robots_fixed_link *a, CagValue *result) {
   const CagRobotLink l = {.kind = CAG_JOINT_FIXED, .fixed = a->T};
-  return give_link(call, &l, 1, result);
+  return link_result(call, &l, 1, result);
 }
 
 // --- Robots ---
 
-// The links of a list as plain data, held.
+// Reads a list of links as plain data, which is held.
 static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
   *out = cag_hold_array(call, list->length, sizeof **out);
   for (size_t i = 0; i < list->length; i++) {
@@ -86,7 +86,7 @@ static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
   return true;
 }
 
-// Flattens lists of links in the list, so that what stands for several rows may be one element.
+// Flattens nested lists of links, so that an element may stand for several rows.
 static bool flatten_links(CagCall *call, CagValue v, CagBuilder *into, int depth) {
   if (v.type != CAG_LIST) return cag_builder_add(call->vm, into, v);
   if (!cag_may_nest(call, depth)) return false;
@@ -96,7 +96,7 @@ static bool flatten_links(CagCall *call, CagValue v, CagBuilder *into, int depth
   return true;
 }
 
-// Degrees (or millimeters) that one unit of a joint's memory form is.
+// The number of degrees (or millimeters) in one unit of a joint's stored value.
 static double shown_unit(const CagRobotLink *links, size_t n, size_t joint) {
   for (size_t i = 0, k = 0; i < n; i++) {
     if (links[i].kind == CAG_JOINT_FIXED || k++ != joint) continue;
@@ -137,8 +137,8 @@ static bool read_coupling_offset(CagCall *call, CagValue list, size_t joints, do
   return true;
 }
 
-// A matrix, or a record of `matrix` and `offset`; in degrees and millimeters as written. Sets the
-// coupling of the robot, held.
+// Reads a coupling: a matrix, or a record of `matrix` and `offset`, in degrees and millimeters.
+// Sets it in `spec`; its memory is held.
 static bool read_coupling(CagCall *call, CagValue v, CagRobotSpec *spec) {
   if (!cag_given(call, 5)) return true;
   CagValue rows = v, offset = cag_unset();

@@ -1,4 +1,4 @@
-// From poses to joint values: inverse kinematics, reach, and paths.
+// Joint values from poses: inverse kinematics, reach, and paths.
 
 #include "geom/robot/path.h"
 #include "interp/builtin/robots.h"
@@ -74,9 +74,9 @@ bool cag_robots_closest_pose(CagCall *call, const struct cag_robots_closest_pose
 
 // --- Paths ---
 
-// n places of the joints as a list of q.
-static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_t n,
-                        CagValue *result) {
+// Returns n sets of joint values as a list.
+static bool joints_list_result(CagCall *call, const CagRobot *r, const double *q, size_t n,
+                               CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t k = 0; k < n; k++)
     if (!cag_builder_add(call->vm, list, cag_joints_value(call->vm, r, q + k * r->joint_count)) ||
@@ -86,8 +86,8 @@ static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_
   return true;
 }
 
-// Room for n places of the joints, held.
-static double *take_places(CagCall *call, const CagRobot *r, size_t n) {
+// Allocates n sets of joint values, which are held.
+static double *joints_list_new(CagCall *call, const CagRobot *r, size_t n) {
   return cag_hold_array(call, n * r->joint_count, sizeof(double));
 }
 
@@ -97,12 +97,12 @@ bool cag_robots_joint_path(CagCall *call, const struct cag_robots_joint_path *a,
   if (!cag_arg_joints(call, 1, a->robot, true, from) ||
       !cag_arg_joints(call, 2, a->robot, true, to))
     return false;
-  double *q = take_places(call, a->robot, n);
+  double *q = joints_list_new(call, a->robot, n);
   for (size_t k = 0; k < n; k++) {
     const double t = (double)k / (double)(n - 1);
     for (size_t i = 0; i < joints; i++) q[k * joints + i] = (1 - t) * from[i] + t * to[i];
   }
-  return give_places(call, a->robot, q, n, result);
+  return joints_list_result(call, a->robot, q, n, result);
 }
 
 static bool going(void *vm) { return cag_keep_going(vm); }
@@ -120,12 +120,12 @@ bool cag_robots_line_path(CagCall *call, const struct cag_robots_line_path *a, C
                          way.position_only ? "a point, because the start is a point"
                                            : "a pose, because the start is a pose");
   if (!cag_arg_joints_or_home(call, 4, a->robot, false, near)) return false;
-  double *q = take_places(call, a->robot, n);
+  double *q = joints_list_new(call, a->robot, n);
   CagStatus status = cag_robot_line_path(a->robot, &from, &to, n, &way, q, call->err);
-  return cag_geometry_ok(call, status) && give_places(call, a->robot, q, n, result);
+  return cag_geometry_ok(call, status) && joints_list_result(call, a->robot, q, n, result);
 }
 
-// Poses, or points where the tool may be turned as it likes; *out is held.
+// Reads poses, or points if the tool may have any orientation; *out is held.
 static bool read_poses(CagCall *call, CagTransform **out, size_t *n, bool *points) {
   CagList *list;
   if (!cag_arg_list(call, 1, &list)) return false;
@@ -152,7 +152,7 @@ bool cag_robots_follow(CagCall *call, const struct cag_robots_follow *a, CagValu
   if (!cag_arg_joints_or_home(call, 2, a->robot, false, near) ||
       !read_poses(call, &poses, &n, &way.position_only))
     return false;
-  double *q = take_places(call, a->robot, n);
+  double *q = joints_list_new(call, a->robot, n);
   return cag_geometry_ok(call, cag_robot_follow(a->robot, poses, n, &way, q, call->err)) &&
-         give_places(call, a->robot, q, n, result);
+         joints_list_result(call, a->robot, q, n, result);
 }

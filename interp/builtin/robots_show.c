@@ -1,5 +1,4 @@
-// Robots to look at: the shapes of the links in the frames where the joints put them, or plain
-// rods and drums.
+// Drawings of robots: the shapes of the links in the current frames, or rods and drums.
 
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
@@ -14,7 +13,7 @@ typedef struct Drawing {
   double size;
 } Drawing;
 
-// Adds a body in one of the plain colors; takes over its reference.
+// Adds a body in one of the default colors, and takes over its reference.
 static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const double color[3]) {
   static const char *const names[] = {"color"};
   if (!cag_geometry_ok(d->call, status)) return false;
@@ -31,7 +30,7 @@ static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const doubl
   return add_body(d, status, &body, color);
 }
 
-// A square bar about the axis of a sliding joint.
+// Adds a square bar along the axis of a prismatic joint.
 static bool add_slide(Drawing *d, const CagTransform *frame) {
   CagSolid *bar = NULL, *placed = NULL;
   double side = CAG_PLAIN_SLIDE_SIDE * d->size;
@@ -55,7 +54,7 @@ static double length_of(const CagVec3 *points, size_t n) {
   return sum > 0 ? sum : 1;
 }
 
-// A robot none of whose links has a shape.
+// Draws a robot that has no shapes.
 static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const CagTransform *frames,
                        CagVec3 *points) {
   size_t n = cag_robot_skeleton(r, q, points);
@@ -105,12 +104,12 @@ static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue h
   return add_moved(d, &tool, holding);
 }
 
-static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
-                         CagValue *result) {
+static bool drawing_result(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
+                           CagValue *result) {
   Drawing d = {call, cag_builder_new(call->vm), 1};
   if (!draw(&d, v, q, holding)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
-  // Whose drawing it is, for formats that describe robots.
+  // Formats that describe robots need the robot of a drawing.
   CAG_AS_SHAPE(*result)->drawn = (CagRobotValue *)v;
   if (v->name->length) CAG_AS_SHAPE(*result)->name = v->name;
   return true;
@@ -123,7 +122,7 @@ bool cag_robots_posed(CagCall *call, const struct cag_robots_posed *a, CagValue 
   // Checked before it is moved, so that errors name this function.
   if (holding.type != CAG_NONE && !cag_shapes_collect(call, holding, cag_builder_new(call->vm)))
     return false;
-  return give_drawing(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);
+  return drawing_result(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);
 }
 
 bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
@@ -134,7 +133,7 @@ bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
                   &vm->core_error};
   cag_robot_home(CAG_AS_ROBOT(robot)->robot, q);
   const size_t held = vm->held_count;
-  const bool ok = give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
+  const bool ok = drawing_result(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
   cag_vm_release_held(vm, held);
   return ok;
 }

@@ -1,4 +1,4 @@
-// Workspaces as values, and chains from the axes of joints.
+// Workspaces as values, and Denavit-Hartenberg tables from joint axes.
 
 #include <string.h>
 
@@ -11,12 +11,12 @@
 
 // --- Workspace ---
 
-// Size of a dot of the cloud as a part of the cloud's.
+// The size of a dot relative to the size of the cloud.
 #define DOT 0.004
-// Points are in a plane when their heights differ by less than this part of the cloud.
+// Points are coplanar if their heights differ by less than this fraction of the cloud's size.
 #define FLAT 1e-9
 
-// A small octahedron at each point: the cloud as one mesh to show.
+// The cloud as one mesh for display, with a small octahedron at each point.
 static bool cloud_value(CagCall *call, const CagVec3 *points, size_t n, double radius,
                         CagValue *out) {
   static const double corners[6][3] = {{1, 0, 0},  {0, 1, 0}, {-1, 0, 0},
@@ -50,7 +50,7 @@ static CagBounds bounds_of(const CagVec3 *points, size_t n) {
   return b;
 }
 
-// The hull as a mesh, of points at one height as a region there; none where it has no inside.
+// The hull: a mesh, a region if all points are at one height, or none if it has no interior.
 static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const CagBounds *b,
                        CagValue *out) {
   CagMesh *m = NULL;
@@ -80,8 +80,8 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
 
 static CagValue number_or_none(bool known, double x) { return known ? cag_number(x) : cag_none(); }
 
-static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *points, size_t n,
-                           CagValue *result) {
+static bool workspace_result(CagCall *call, const CagRobot *r, const CagVec3 *points, size_t n,
+                             CagValue *result) {
   static const char *const names[] = {"kind",   "of",    "points", "hull", "cloud", "bounds",
                                       "center", "r_min", "r_max",  "hole", "volume"};
   static const char *const kinds[] = {"cartesian", "cylindrical", "spherical",   "spherical-offset",
@@ -111,7 +111,7 @@ static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *poin
   return true;
 }
 
-// robot, n
+// Arguments: robot, n.
 bool cag_robots_workspace(CagCall *call, const struct cag_robots_workspace *a, CagValue *result) {
   CagVec3 *points = cag_hold(call, cag_malloc((size_t)a->n * sizeof *points));
   for (size_t k = 0; k < (size_t)a->n; k++) {
@@ -122,7 +122,7 @@ bool cag_robots_workspace(CagCall *call, const struct cag_robots_workspace *a, C
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
     if (!cag_keep_going(call->vm)) return false;
   }
-  return give_workspace(call, a->robot, points, (size_t)a->n, result);
+  return workspace_result(call, a->robot, points, (size_t)a->n, result);
 }
 
 // --- Frames for joint axes ---
@@ -157,7 +157,8 @@ static bool read_axis(CagCall *call, int argument, CagValue v, size_t index, Cag
          read_field_point(call, argument, record, index, "direction", &out->direction);
 }
 
-// A frame on the first axis: its origin at the axis' point, x as near to the world's as may be.
+// A frame on the first axis: its origin is the point of the axis, and its x axis is as close as
+// possible to the world's.
 static bool default_base(CagCall *call, const CagJointAxis *axis, CagTransform *out) {
   CagVec3 z = cag_unit(axis->direction);
   const double nearly_x = 0.999999;
@@ -166,8 +167,8 @@ static bool default_base(CagCall *call, const CagJointAxis *axis, CagTransform *
   return cag_geometry_ok(call, cag_axes(axis->point, square, cag_cross(z, square), out, call->err));
 }
 
-static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagTransform *frames,
-                            size_t n, CagValue *result) {
+static bool assignment_result(CagCall *call, const CagRobotLink *links, const CagTransform *frames,
+                              size_t n, CagValue *result) {
   static const char *const names[] = {"table", "frames"};
   static const char *const columns[] = {"kind", "theta", "d", "a", "alpha"};
   CagVm *vm = call->vm;
@@ -186,7 +187,7 @@ static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagT
   return true;
 }
 
-// axes, end, base
+// Arguments: axes, end, base.
 bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   CagList *list = NULL;
   CagJointAxis end;
@@ -204,5 +205,5 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   const bool based = cag_given(call, 2);
   if (!(based ? cag_arg_pose(call, 2, &base) : default_base(call, &axes[0], &base))) return false;
   const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, call->err);
-  return cag_geometry_ok(call, status) && give_assignment(call, links, frames, n, result);
+  return cag_geometry_ok(call, status) && assignment_result(call, links, frames, n, result);
 }

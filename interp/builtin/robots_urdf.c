@@ -1,7 +1,7 @@
 // Robots from URDF files.
 //
-// Meshes are read as read_mesh reads them, by the same rules of where a script's files lie: names
-// are taken from the folder of the .urdf file, and those of ROS packages are looked for near it.
+// Meshes are read as by read_mesh, and the same rules restrict their locations. File names are
+// relative to the folder of the .urdf file; meshes of ROS packages are searched for near it.
 
 #include <stdio.h>
 #include <string.h>
@@ -14,13 +14,13 @@
 #include "interp/formats/urdf_read.h"
 #include "interp/vm/vm.h"
 
-// Held, with what it owns, until the call ends.
+// Held until the call ends, together with what it owns.
 typedef struct Import {
   CagCall *call;
   const char *path; // of the .urdf file
   const char *tip, *base;
   bool shapes;
-  CagUrdfTree tree; // its arena holds names of meshes as well
+  CagUrdfTree tree; // its arena also holds names of meshes
   CagUrdfRows rows;
   CagRobotLink *plain;
 } Import;
@@ -38,7 +38,7 @@ static bool ends_with(const char *file, const char *const *endings, size_t n) {
   return false;
 }
 
-// glTF's endings are the last two.
+// The last two are glTF.
 static const char *const mesh_endings[] = {".stl", ".obj", ".ply", ".gltf", ".glb"};
 static bool can_be_read(const char *file) { return ends_with(file, mesh_endings, 5); }
 static bool is_gltf(const char *file) { return ends_with(file, mesh_endings + 3, 2); }
@@ -49,8 +49,7 @@ static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, co
   return cag_fail_help(m->call->vm, "%s; to read only the chain, use `shapes: false`", help);
 }
 
-// Reads a mesh at this place. *found is false where there is no such file; the error is set then
-// too.
+// Reads the mesh at a path. If there is no such file, *found is false, and the error is set, too.
 static bool read_at(const Import *m, const char *path, CagValue *out, bool *found) {
   CagVm *vm = m->call->vm;
   size_t rows;
@@ -65,21 +64,21 @@ static bool read_at(const Import *m, const char *path, CagValue *out, bool *foun
   return false;
 }
 
-// Where a name may lie, as printf patterns of the folder of the .urdf file, the package and the
-// rest of the name.
-static const char *const package_places[] = {"%1$s%3$s", "%1$s%2$s/%3$s", "%1$s../%3$s",
-                                             "%1$s../../%2$s/%3$s"};
-static const char *const plain_places[] = {"%1$s%3$s"};
+// Where to search for a mesh, as printf patterns. The arguments are the folder of the .urdf file,
+// the package, and the rest of the name.
+static const char *const package_patterns[] = {"%1$s%3$s", "%1$s%2$s/%3$s", "%1$s../%3$s",
+                                               "%1$s../../%2$s/%3$s"};
+static const char *const plain_patterns[] = {"%1$s%3$s"};
 
 static bool read_near(Import *m, const CagUrdfBody *b, const char *package, int package_size,
                       const char *rest, CagValue *out) {
-  const char *const *places = package ? package_places : plain_places;
-  size_t n = package ? sizeof package_places / sizeof *package_places : 1;
+  const char *const *places = package ? package_patterns : plain_patterns;
+  size_t n = package ? sizeof package_patterns / sizeof *package_patterns : 1;
   const char *slash = strrchr(m->path, '/');
   CagArena *texts = &m->tree.arena;
   const char *folder = cag_arena_copy(texts, m->path, slash ? (size_t)(slash + 1 - m->path) : 0);
   const char *name = cag_arena_copy(texts, package ? package : "", (size_t)package_size);
-  // The longest place has three of them and "../../" and "/".
+  // The longest pattern contains all three, "../../", and "/".
   const size_t room = strlen(folder) + strlen(name) + strlen(rest) + 16;
   char *path = cag_arena_alloc(texts, room);
   for (size_t i = 0; i < n; i++) {
@@ -98,8 +97,8 @@ static bool read_near(Import *m, const CagUrdfBody *b, const char *package, int 
                        : "put the file at its path relative to the folder of the .urdf file");
 }
 
-// package://NAME/REST; else a path from the folder of the .urdf file. Absolute paths are of another
-// machine: their last name is looked for beside the file.
+// Reads package://NAME/REST, or a path relative to the folder of the .urdf file. An absolute path
+// refers to another machine, so only its last component is searched for, beside the .urdf file.
 static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
   static const char package[] = "package://", model[] = "model://", file[] = "file://";
   const char *name = b->file;
@@ -141,7 +140,7 @@ static bool make_body(Import *m, const CagUrdfBody *b, CagTransform *place, CagV
     return cag_solid_result(call, cag_solid_sphere(size[0], &s, call->err), &s, out);
   case CAG_URDF_BODY_MESH: break;
   }
-  // glTF says its own unit, which the reader has made millimeters.
+  // The unit of glTF is fixed, and the reader has converted it to millimeters.
   const double unit = is_gltf(b->file) ? 1 : 1000;
   CagTransform scale = cag_transform_identity();
   for (int i = 0; i < 3; i++) scale.m[i][i] = b->scale[i] * unit;
@@ -164,8 +163,8 @@ static CagRecord *material_of(CagVm *vm, const CagUrdfBody *b) {
   return CAG_AS_RECORD(cag_record_new(vm, names, values, named ? 2 : 1));
 }
 
-// What is drawn of a link: its visual bodies, or in their stead those for collisions where a visual
-// one is a mesh that cannot be read (Collada, mostly).
+// Returns the bodies to draw for a link: its visual bodies. If one of them is a mesh that cannot be
+// read (usually Collada), returns the collision bodies instead.
 static const CagUrdfBody *drawn_bodies(const CagUrdfNode *n) {
   for (const CagUrdfBody *b = n->visuals; b; b = b->next)
     if (b->kind == CAG_URDF_BODY_MESH && !can_be_read(b->file) && n->collisions)
@@ -192,7 +191,7 @@ static bool add_bodies(Import *m, const CagUrdfPlaced *placed, CagBuilder *into)
 
 // --- Links ---
 
-// The shape of a row, named as its link: none, one body, or a group.
+// The shape of a row, named like its link: none, one body, or a group.
 static bool make_shape(Import *m, const CagUrdfRow *row, CagValue *out) {
   CagVm *vm = m->call->vm;
   CagBuilder *bodies = cag_builder_new(vm);
@@ -242,7 +241,7 @@ static bool make_robot(Import *m, CagValue *result) {
   return true;
 }
 
-// --- The call ---
+// --- The built-in ---
 
 static bool read_chain(Import *m) {
   CagCall *call = m->call;

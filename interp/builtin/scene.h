@@ -1,4 +1,4 @@
-// What several files of built-ins on scenes share.
+// Declarations shared by the built-ins on scenes.
 
 #ifndef CAG_INTERP_BUILTIN_SCENE_H
 #define CAG_INTERP_BUILTIN_SCENE_H
@@ -6,8 +6,7 @@
 #include "interp/builtin/shapes.h"
 #include "interp/scene/scene.h"
 
-// A color from a text or [r, g, b]; `what` names it in messages. The argument is where it was
-// given.
+// Reads a color from a text or [r, g, b]. Messages call it `what` and name the argument.
 bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, CagColor *out);
 CagValue cag_color_value(CagVm *vm, CagColor c);
 

@@ -1,8 +1,8 @@
-// What is said about shapes: material, color, name, tolerance, line style.
+// Attributes of shapes: material, color, name, tolerance, and line style.
 //
-// What is said nearer to the shape holds: a material said of a group does not change that of a
-// shape in it. A color said alone is a record with that field only; a material said further out
-// then gives the rest, and a color said further out fills in a material without one.
+// The innermost attribute wins: the material of a group does not change that of a shape in it. A
+// color alone is stored as a material with only that field. It is completed by the material of an
+// enclosing group, and a color of an enclosing group completes a material without color.
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +46,7 @@ static bool check_texture(CagCall *call, const char *text) {
   return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
 
-// Checks one field; colors become [r, g, b].
+// Checks one field. Colors are converted to [r, g, b].
 static bool check_field(CagCall *call, const Field *f, CagValue *v) {
   CagColor c;
   double x = v->type == CAG_NUMBER ? v->as.number : -1;
@@ -98,7 +98,7 @@ static bool has_field(const CagRecord *r, const char *name) {
   return cag_record_get(r, name).type != CAG_UNSET;
 }
 
-// All fields of `base`, and the color.
+// Copies all fields of `base` and adds the color.
 static CagRecord *with_color(CagVm *vm, const CagRecord *base, CagValue color) {
   const char *names[FIELD_COUNT + 1];
   CagValue values[FIELD_COUNT + 1];
@@ -124,9 +124,9 @@ CagRecord *cag_material_combine(CagVm *vm, CagRecord *inner, CagRecord *outer) {
   return inner;
 }
 
-// --- Saying it ---
+// --- Setting attributes ---
 
-// A copy of a setting, camera or light with another value of a field.
+// Copies a setting, camera, or light with a new value of one field.
 static CagValue with_field(CagVm *vm, CagValue v, const char *name, CagValue value) {
   const CagSceneValue *old = CAG_AS_SCENE(v);
   const char *names[32];
@@ -145,7 +145,7 @@ static CagValue with_field(CagVm *vm, CagValue v, const char *name, CagValue val
   return copy;
 }
 
-// A shape, or a list of shapes as a group, copied to be changed.
+// Copies a shape, or a list of shapes as a group, in order to change it.
 static bool copy_shape(CagCall *call, CagValue *result) {
   CagValue v = call->values[0];
   if (v.type == CAG_LIST) {
@@ -158,7 +158,7 @@ static bool copy_shape(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
+static bool set_material(CagCall *call, CagRecord *material, CagValue *result) {
   CagValue v = call->values[0];
   if (v.type == CAG_SETTING && !strcmp(CAG_AS_SCENE(v)->kind, "ground")) {
     CagValue old = cag_record_get(CAG_AS_SCENE(v)->fields, "material");
@@ -175,7 +175,7 @@ static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
 
 bool cag_scenes_material(CagCall *call, const struct cag_scenes_material *a, CagValue *result) {
   CagRecord *material = NULL;
-  return check_material(call, a->m, &material) && say_material(call, material, result);
+  return check_material(call, a->m, &material) && set_material(call, material, result);
 }
 
 bool cag_scenes_color(CagCall *call, CagValue *result) {
@@ -183,7 +183,7 @@ bool cag_scenes_color(CagCall *call, CagValue *result) {
   CagColor c;
   if (!cag_color_read(call, 1, "color", call->values[1], &c)) return false;
   CagValue color = cag_color_value(call->vm, c);
-  return say_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
+  return set_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
 }
 
 bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue *result) {
@@ -219,7 +219,7 @@ bool cag_scenes_group(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < call->count; i++) {
     CagValue v = call->values[i];
     if (v.type == CAG_UNSET) continue;
-    // Groups stay whole, with what was said about them; lists are taken apart.
+    // Groups are kept with their attributes; lists are flattened.
     bool ok = v.type == CAG_GROUP ? cag_builder_add(call->vm, items, v)
                                   : cag_shapes_collect(call, v, items);
     if (!ok) return false;

@@ -1,4 +1,4 @@
-// Cameras, lights, sky, background and ground: records whose fields are checked and complete.
+// Cameras, lights, sky, background, and ground: records with checked and complete fields.
 
 #include <string.h>
 
@@ -31,7 +31,7 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
     cag_fail_call(call, argument, CAG_ERR_type,
                   "expects a color as `%s`: a CSS name, \"#0a8\", or [r, g, b]; found %s", what,
                   cag_type_article(v));
-    // Other programs take a fourth part for opacity.
+    // In some other programs, the fourth number is the opacity.
     return numbers && n == 4 &&
            cag_fail_help(call->vm,
                          "a color has no opacity; write material(G, { color: [%.6g, %.6g, %.6g], "
@@ -61,7 +61,7 @@ static bool scene_result(CagCall *call, CagType type, const char *kind, const ch
 
 // --- Camera ---
 
-// Pixels along one side: more would be 10 GB of picture.
+// The maximum number of pixels of one side. The next power of two would need pictures of 10 GB.
 #define PIXELS_MAX 65536
 
 static bool is_pixels(double x) { return x >= 1 && x <= PIXELS_MAX && x == floor(x); }
@@ -70,7 +70,7 @@ bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValu
   static const char *const names[] = {"eye",   "target", "up",    "fov",     "kind",
                                       "width", "size",   "focus", "aperture"};
   static const char *const kinds[] = {"perspective", "orthographic"};
-  const double widest = 179; // degrees: the tangent of the half grows without end towards 180
+  const double widest = 179; // degrees; the tangent of half the angle becomes infinite at 180
   double size[] = {1280, 720};
   if (cag_norm(cag_sub(a->eye.at, a->target.at)) == 0)
     return cag_fail_call(call, cag_given(call, 1) ? 1 : 0, CAG_ERR_view,
@@ -102,8 +102,8 @@ bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValu
 
 // --- Lights ---
 
-// A light of n fields, which are the parameters. The last two are the color, which is read here,
-// and the strength.
+// Returns a light with n fields, which are the parameters. The last two are the color, which is
+// read here, and the strength.
 static bool light_result(CagCall *call, const char *kind, const char *const *names,
                          CagValue *fields, size_t n, double strength, CagValue *result) {
   const int color = (int)n - 2;
@@ -130,7 +130,7 @@ bool cag_scenes_point_light(CagCall *call, const struct cag_scenes_point_light *
   return light_result(call, "point", names, fields, 3, a->strength, result);
 }
 
-// A light at a position that looks at a target, with its angle or size.
+// Returns a light at a position that is directed at a target, with its angle or size.
 static bool beam_result(CagCall *call, const char *kind, const char *const *names, CagVec3 position,
                         CagVec3 target, CagValue width, double strength, CagValue *result) {
   if (cag_norm(cag_sub(position, target)) == 0)

@@ -1,5 +1,5 @@
-// Shared by the built-ins of geometry: parameters that may be angles, points of plane or space,
-// results as records, and reading of shapes.
+// Functions shared by the geometry built-ins: parameters that may be angles, points of the plane or
+// space, results as records, and reading of shapes.
 
 #include "interp/builtin/shapes.h"
 
@@ -14,8 +14,8 @@
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
-// Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
-// stored double.
+// The conversion to radians rounds by at most half an ulp, so the decimal searched for is within
+// one ulp of the stored double.
 static bool same_angle(double degrees, double radians) {
   return fabs(degrees * CAG_RADIANS_PER_DEGREE - radians) <= DBL_EPSILON * fabs(radians);
 }
@@ -125,7 +125,7 @@ bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {
   *items = call->values;
   *n = call->count;
   if (*n > 1 || call->values[0].type != CAG_LIST) return true;
-  // A list's items stand in place unless it is packed, which lists of shapes never are.
+  // The items of a list can be used directly unless it is packed, which lists of shapes never are.
   CagList *list = CAG_AS_LIST(call->values[0]);
   if (list->dim != 0) return cag_fail_type(call, 0, "shapes, or one list of them");
   *items = list->as.items;
@@ -133,7 +133,7 @@ bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {
   return true;
 }
 
-// What a group says holds for those of its shapes that say nothing of their own.
+// Applies the attributes of a group to a shape in it that does not have its own.
 static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   const CagShape *own = CAG_AS_SHAPE(item);
   CagRecord *material = cag_material_combine(vm, own->material, group->material);
@@ -251,7 +251,7 @@ static void bounds_join(CagBounds *into, const CagBounds *b) {
   cag_bounds_add(into, b->max);
 }
 
-// Exact bounds of a placed region: those of its moved boundary.
+// The exact bounds of a placed region are those of its transformed boundary.
 static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimension,
                                CagError *err) {
   const CagTransform *place = &shape->placement;
@@ -270,7 +270,7 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
   return CAG_OK;
 }
 
-// *empty: nothing is left of the shape, and `err` says why.
+// If the shape is empty, sets *empty; `err` explains why.
 static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *empty,
                               CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);

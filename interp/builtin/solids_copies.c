@@ -1,4 +1,4 @@
-// Copies of shapes as groups: around an axis, in a row, mirrored.
+// Groups of copies: around an axis, in a row, and mirrored.
 
 #include "interp/builtin/solids.h"
 
@@ -25,7 +25,7 @@ bool cag_solids_around(CagCall *call, const struct cag_solids_around *a, CagValu
   CagBuilder *copies = cag_builder_new(call->vm);
   bool plane = axis.x == 0 && axis.y == 0 && through.z == 0;
   for (long i = 0; i < a->n; i++) {
-    // Whole degrees where there are, so that quarter turns are exact.
+    // In degrees, so that quarter turns are exact.
     double angle = 360.0 * (double)i / (double)a->n * CAG_RADIANS_PER_DEGREE;
     CagTransform t;
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;

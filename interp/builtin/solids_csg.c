@@ -1,4 +1,4 @@
-// Set operations of solids, half spaces, quadrics as bodies, and what a solid leaves of shapes.
+// Set operations of solids, half spaces, bodies bounded by quadrics, and clipping.
 
 #include <string.h>
 
@@ -10,15 +10,15 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// What was said of the material and tolerance of the first operand holds of the whole; names and
-// hiding are its own.
-static void say_body(CagValue to, const CagShape *from) {
+// The result has the material and tolerance of the first operand, but not its name and visibility.
+static void inherit_material(CagValue to, const CagShape *from) {
   CAG_AS_SHAPE(to)->material = from->material;
   CAG_AS_SHAPE(to)->tolerance = from->tolerance;
 }
 
-// Errors of a mesh come when the script has ended: then they tell where the solid was asked for.
-static void say_place(const CagCall *call, CagSolid *s) {
+// A mesh is made after the script has ended. If that fails, the message needs the location of the
+// set operation.
+static void record_location(const CagCall *call, CagSolid *s) {
   const CagSource *source;
   CagSpan span;
   if (!s->core || !cag_vm_place(call->vm, &source, &span)) return;
@@ -27,14 +27,14 @@ static void say_place(const CagCall *call, CagSolid *s) {
 
 // --- Materials of operands ---
 
-// Where operands have materials of their own, each face of the result has that of its operand:
-// labels of solids and meshes are numbers of records that the machine keeps. What none was said of
-// takes the material of the first.
+// If operands have materials of their own, each face of the result has the material of its operand.
+// The labels of solids and meshes are numbers of records that the machine keeps. Operands without a
+// material get that of the first.
 typedef struct Paint {
   CagVm *vm;
-  bool mixed;       // labels are needed: there is more than one material
-  CagRecord *first; // NULL: none
-  CagRecord *said;  // of the shape at hand
+  bool mixed;       // labels are needed, because there are several materials
+  CagRecord *first; // may be NULL
+  CagRecord *said;  // that of the current shape
 } Paint;
 
 CagRecord *cag_solids_material(const CagVm *vm, uint32_t label) {
@@ -55,7 +55,7 @@ static uint64_t hash_field(const CagText *name, CagValue v) {
   return numbers;
 }
 
-// Equal records have their fields in any order.
+// A sum, because equal records may have their fields in any order.
 static uint64_t hash_record(const CagRecord *r) {
   uint64_t sum = 0;
   for (size_t i = 0; i < r->layout->count; i++)
@@ -88,7 +88,7 @@ static bool find_label(CagVm *vm, void *context) {
   return true;
 }
 
-// The core holds memory while it asks for a label, so exhausted memory must not jump over it.
+// The core holds memory while it asks for a label, so running out of memory must not jump past it.
 static uint32_t relabel(void *context, uint32_t label) {
   const Paint *paint = context;
   Relabeling r = {paint, label};
@@ -100,7 +100,7 @@ static bool same_record(CagVm *vm, CagRecord *a, CagRecord *b) {
   return a == b || (a && b && cag_equal(vm, cag_object(CAG_RECORD, a), cag_object(CAG_RECORD, b)));
 }
 
-// Looks at the materials of all operands before any is read.
+// Finds the materials of all operands before any of them is read.
 static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *out) {
   *out = (Paint){.vm = call->vm};
   CagBuilder *builder = cag_builder_new(call->vm);
@@ -120,7 +120,7 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
 
 // --- Operands ---
 
-// The place of an operand in an error: "the second operand" would need words for all numbers.
+// Adds the number of the operand to an error, counted from 1.
 static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t index) {
   if (!status) return true;
   if (err->index < 0 && strcmp(err->argument, "surfaces") != 0) {
@@ -131,7 +131,7 @@ static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t in
   return cag_fail_geometry(call, err);
 }
 
-// Reads one body: a solid, a closed mesh or surface.
+// Reads one body: a solid, or a closed mesh or surface.
 static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagSurface *face;
@@ -166,12 +166,12 @@ static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands,
     return CAG_OK;
   }
   const CagStatus status = cag_solid_combine(op, operands, n, cag_vm_stop(call->vm), out, err);
-  if (!status) say_place(call, *out);
+  if (!status) record_location(call, *out);
   return status;
 }
 
-// A shape, or the union of those of a group or list: of none, an empty solid. `said`: the first of
-// them, if there is one.
+// Reads a shape, or a group or list, whose shapes are united. If there are none, the result is an
+// empty solid. `said` is the first shape, if any.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagValue *said) {
   CagList *shapes;
@@ -193,7 +193,7 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
 
 // --- union, difference, intersection ---
 
-// Operations of regions are rows of their own; a list or group is asked for the first shape in it.
+// Set operations on regions have rows of their own. The first shape of a list or group decides.
 static bool holds_region(CagVm *vm, CagValue v) {
   for (;;) {
     const CagList *items = v.type == CAG_GROUP ? CAG_AS_SHAPE(v)->as.items
@@ -204,7 +204,7 @@ static bool holds_region(CagVm *vm, CagValue v) {
   }
 }
 
-// Of operands that are empty lists and groups the next one tells.
+// Skips empty lists and groups, which are compatible with both.
 static bool is_of_regions(CagCall *call) {
   CagValue *items;
   size_t n;
@@ -246,8 +246,8 @@ static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
       return false;
   if (!cag_solid_result(call, combine(call, op, operands, n, &made, call->err), &made, result))
     return false;
-  if (said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
-  if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
+  if (said.type != CAG_UNSET) inherit_material(*result, CAG_AS_SHAPE(said));
+  if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have their own
   return true;
 }
 
@@ -259,16 +259,16 @@ bool cag_solids_intersection(CagCall *call, CagValue *result) {
   return operate(call, CAG_INTERSECTION, result);
 }
 
-// --- Sides ---
+// --- Half spaces ---
 
 bool cag_solids_half_space(CagCall *call, const struct cag_solids_half_space *a, CagValue *result) {
   CagSolid *s = NULL;
   const CagStatus status = cag_solid_half_space(&a->plane, &s, call->err);
-  if (!status) say_place(call, s);
+  if (!status) record_location(call, s);
   return cag_solid_result(call, status, &s, result);
 }
 
-// What lies between two heights.
+// The half spaces whose intersection is the slab between two heights.
 static CagStatus heights(double low, double high, CagSolid *out[2], CagError *err) {
   CagPlane floor = {{0, 0, low}, {0, 0, -1}}, roof = {{0, 0, high}, {0, 0, 1}};
   CagStatus status = cag_solid_half_space(&floor, &out[0], err);
@@ -293,7 +293,7 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
   }
   CagStatus status = cag_solid_quadric(q, &parts[0], call->err);
   if (!status) status = combine(call, CAG_INTERSECTION, parts, n, &made, call->err);
-  if (!status) say_place(call, made);
+  if (!status) record_location(call, made);
   return cag_solid_result(call, status, &made, result);
 }
 
@@ -313,7 +313,7 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   if (!cag_geometry_ok(c->call, status)) return false;
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
-  // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
+  // A part that is obviously outside is dropped. If only its mesh could show that, it is kept.
   bool outside = !cag_solid_reach(made, &reach, c->call->err) && !(reach.min.x <= reach.max.x);
   return outside || cag_builder_add(c->call->vm, into, value);
 }
@@ -324,7 +324,7 @@ static CagTessellation fineness(const Clip *c, const CagShape *shape) {
   return how;
 }
 
-// Takes the mesh over.
+// Takes ownership of the mesh.
 static bool add_clipped(const Clip *c, CagStatus status, CagMesh *m, CagValue v, CagBuilder *into) {
   CagValue value;
   if (!cag_mesh_result(c->call, status, &m, &value)) return false;
@@ -368,7 +368,7 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   case CAG_LABEL: return true; // left out
   default: break;
   }
-  // A mesh is a body where it is closed, else cut as a surface of its triangles.
+  // A closed mesh is clipped as a body, and any other as a surface of triangles.
   const CagMesh *mesh = CAG_AS_SHAPE(v)->as.mesh;
   if (cag_mesh_is_watertight(mesh, NULL)) return clip_solid(c, v, into);
   const CagTessellation how = fineness(c, CAG_AS_SHAPE(v));
@@ -377,7 +377,7 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   return add_clipped(c, status, m, v, into);
 }
 
-// Nothing of a shape: an empty solid of what has an inside, else an empty mesh.
+// Returns the empty result of clipping: a solid if the shape has an interior, and a mesh otherwise.
 static bool clipped_away(CagCall *call, CagValue *result) {
   const CagValue v = call->values[0];
   CagSolid *s = NULL;
@@ -393,7 +393,7 @@ bool cag_solids_is_empty(CagCall *call, CagValue *result) {
   CagList *shapes;
   const CagValue v = call->values[0];
   *result = cag_bool(false);
-  // The places of an intersection are records.
+  // The list that `intersection` returns for curves and surfaces has records.
   if (v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0 &&
       !cag_is_shape(cag_list_get(call->vm, CAG_AS_LIST(v), 0)))
     return true;

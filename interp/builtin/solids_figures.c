@@ -1,4 +1,4 @@
-// Shapes that explain other shapes: control nets, isolines, arrows, frames.
+// Shapes that illustrate other shapes: control nets, isolines, arrows, and frames.
 
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/solids.h"
@@ -34,7 +34,7 @@ static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, i
   double from = direction ? s->v0 : s->u0, to = direction ? s->v1 : s->u1;
   bool closed = direction ? s->closed_v : s->closed_u;
   bool poles[2] = {direction ? s->pole_v0 : s->pole_u0, direction ? s->pole_v1 : s->pole_u1};
-  // The last line of a closed direction is the first again.
+  // In a closed direction, the last line would coincide with the first.
   long last = closed ? n : n - 1;
   for (long i = 0; i < n; i++) {
     if ((i == 0 && poles[0]) || (i == last && poles[1])) continue;
@@ -55,8 +55,9 @@ bool cag_solids_isolines(CagCall *call, const struct cag_solids_isolines *a, Cag
          add_isolines(call, list, s, 1, a->nv) && cag_group_result(call, list, result);
 }
 
-// Proportions of an arrow: the shaft's radius by its length, the head's length and radius by the
-// shaft's radius, and the head's largest part of the whole.
+// The proportions of an arrow: the radius of the shaft relative to its length, the length and
+// radius of the head relative to the radius of the shaft, and the largest fraction of the arrow
+// that the head occupies.
 #define SHAFT 0.02
 #define HEAD_LENGTH 8
 #define HEAD_RADIUS 2.5
@@ -84,7 +85,7 @@ bool cag_solids_arrow(CagCall *call, const struct cag_solids_arrow *a, CagValue 
 }
 
 bool cag_solids_triad(CagCall *call, const struct cag_solids_triad *a, CagValue *result) {
-  // x, y, z in red, green, blue; linear light.
+  // The axes x, y, and z are red, green, and blue, in linear light.
   static const double colors[3][3] = {{0.7, 0.02, 0.02}, {0.03, 0.4, 0.03}, {0.02, 0.08, 0.7}};
   static const char *const names[] = {"color"};
   CagValue arrows[3];

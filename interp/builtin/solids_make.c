@@ -1,4 +1,4 @@
-// Solids: primitives, prisms, rods and closed shells.
+// Constructors of solids: primitives, prisms, rods, and closed shells.
 
 #include "geom/meet/quadric_body.h"
 #include "geom/solid/csg.h"
@@ -27,7 +27,7 @@ bool cag_solids_sphere(CagCall *call, const struct cag_solids_sphere *a, CagValu
   return cag_solid_result(call, cag_solid_sphere(a->radius, &s, call->err), &s, result);
 }
 
-// A cylinder or frustum about Z, on z = 0 or with its middle there.
+// A cylinder or frustum about Z, with its base or its middle at z = 0.
 static bool upright_result(CagCall *call, double height, double radius, double top, bool centered,
                            CagValue *result) {
   CagSolid *s = NULL, *moved = NULL;
@@ -64,7 +64,7 @@ CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSoli
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_same_points, "", -1,
                     "the two ends of the rod are the same point");
   CagVec3 side = cag_cross(cag_vec3(0, 0, 1), along);
-  // Nearly upright: any level direction does.
+  // If the axis is nearly vertical, any horizontal direction will do.
   if (cag_norm(side) <= 1e-12 * height) side = cag_vec3(1, 0, 0);
   CagTransform frame;
   CagSolid *standing = NULL;
@@ -86,7 +86,7 @@ bool cag_solids_torus(CagCall *call, const struct cag_solids_torus *a, CagValue 
   return cag_solid_result(call, cag_solid_torus(a->major, a->minor, &s, call->err), &s, result);
 }
 
-// The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
+// Collects the faces of a closed body: surfaces, and regions as planar surfaces.
 static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **faces) {
   for (size_t i = 0; i < shapes->length; i++) {
     CagValue v = cag_list_get(call->vm, shapes, i);
@@ -105,8 +105,8 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
   return true;
 }
 
-// Closes a list of surfaces: either they already close, or they are pieces of one quadric that flat
-// faces close.
+// Makes a solid of surfaces, which either are closed or are pieces of one quadric that planar faces
+// can close.
 static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSolid **out,
                              CagError *err) {
   CagStatus status = cag_solid_shell(faces, n, out, err);
@@ -133,7 +133,7 @@ static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *resul
   return true;
 }
 
-// The ten numbers of a form, or its rows.
+// Whether v is a quadratic form: ten numbers, or its rows.
 static bool is_form(CagValue v) {
   return v.type == CAG_LIST && ((CAG_AS_LIST(v)->dim == 1 && CAG_AS_LIST(v)->length == 10) ||
                                 (CAG_AS_LIST(v)->dim == 4 && CAG_AS_LIST(v)->length == 4));

@@ -1,10 +1,10 @@
-// Area, volume, centroid and inertia of solids, closed surfaces, meshes, and groups of these.
+// Area, volume, centroid, and inertia of solids, closed surfaces, meshes, and groups of these.
 
 #include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
 
-// Second moments (xx, yy, zz, xy, yz, zx) are about the body's own centroid: about a far origin
-// they would lose their digits.
+// The second moments (xx, yy, zz, xy, yz, zx) are about the body's own centroid, because they would
+// lose digits about a distant origin.
 typedef struct Body {
   double area, volume;
   double center[3];
@@ -24,7 +24,7 @@ static CagStatus solid_body(const CagSolid *s, double tolerance, Body *out, CagE
   return CAG_OK;
 }
 
-// From integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a point near the body.
+// Computes a body from the integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a point near it.
 static void set_body(const double terms[10], CagVec3 about, Body *out) {
   const double at[3] = {about.x, about.y, about.z};
   const double v = terms[0];
@@ -82,14 +82,14 @@ static CagStatus surface_body(const CagSurface *s, bool volume, Body *out, CagEr
   if (status) return status;
   status = cag_surface_volume_terms(near, terms, err);
   cag_surface_release(near);
-  // A surface that is inside out is the same body.
+  // A surface with inward normals bounds the same body.
   for (int i = 9; i >= 0; i--)
     if (terms[0] < 0) terms[i] = -terms[i];
   set_body(terms, middle, out);
   return status;
 }
 
-// The two as one body (Steiner's theorem).
+// Combines the two to one body (Steiner's theorem).
 static void join_bodies(Body *whole, const Body *part) {
   const double a = whole->volume, b = part->volume, v = a + b;
   whole->area += part->area;
@@ -161,7 +161,7 @@ bool cag_solids_volume(CagCall *call, CagValue *result) {
   return true;
 }
 
-// *empty: nothing is left of the shapes.
+// Sets *empty if nothing is left of the shapes.
 static bool read_massive(CagCall *call, Body *body, bool *empty) {
   if (!read_body(call, true, body)) return false;
   *empty = body->volume == 0 && body->area == 0;

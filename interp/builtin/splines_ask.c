@@ -1,4 +1,4 @@
-// Bases as matrices, the forms and the shape of cubic segments, joints, crossings with lines.
+// Bases as matrices, the forms and shape of cubic segments, joints, and intersections with lines.
 
 #include <string.h>
 
@@ -41,8 +41,7 @@ static void bezier_matrix(int n, double *product, double *c, double *d) {
     }
 }
 
-// One span of a uniform B-spline (Qin 1998, General matrix
-// representations for B-splines).
+// One span of a uniform B-spline (Qin 1998, General matrix representations for B-splines).
 static void bspline_matrix(int p, double *out) {
   const int k = p + 1;
   double factorial = 1;
@@ -67,13 +66,14 @@ static void parabolic_matrix(double a, double b, double *out) {
   memcpy(out, m, sizeof m);
 }
 
-// Entries of higher degrees are beyond what a double holds exactly. The first is also in a row.
+// The entries for higher degrees exceed the exact range of a double. The row states this limit,
+// too.
 #define BEZIER_MATRIX_MOST 50
 #define BSPLINE_MATRIX_MOST 15
 
 bool cag_splines_basis_matrix(CagCall *call, const struct cag_splines_basis_matrix *a,
                               CagValue *result) {
-  enum { BEZIER, BSPLINE, HERMITE, CATMULL_ROM, PARABOLIC }; // as the row has them
+  enum { BEZIER, BSPLINE, HERMITE, CATMULL_ROM, PARABOLIC }; // as in the row
   static const double hermite[16] = {2, -2, 1, 1, -3, 3, -2, -1, 0, 0, 1, 0, 1, 0, 0, 0};
   const bool parabolic = a->kind == PARABOLIC;
   const long most = a->kind == BEZIER    ? BEZIER_MATRIX_MOST
@@ -109,7 +109,7 @@ bool cag_splines_bezier_matrices(CagCall *call, const struct cag_splines_bezier_
   return true;
 }
 
-// A higher degree has no values that a double can tell apart. It is also in the row.
+// For higher degrees, doubles cannot distinguish the values. The row states this limit, too.
 #define BERNSTEIN_MOST 1000
 
 bool cag_splines_bernstein_maxima(CagCall *call, const struct cag_splines_bernstein_maxima *a,
@@ -167,7 +167,7 @@ bool cag_splines_polynomials(CagCall *call, const struct cag_splines_polynomials
 
 // --- Cubic segments ---
 
-// The ends of a segment of the plane and its vectors there, checked to have 2 numbers.
+// Reads the ends of a plane segment and the vectors there, which must have 2 numbers.
 static bool check_segment(CagCall *call, const CagPoint *v[4]) {
   const int dimension = v[0]->dimension;
   for (int i = 1; i < 4; i++)
@@ -227,7 +227,7 @@ bool cag_splines_hermite_by_curvature(CagCall *call,
   return true;
 }
 
-// The Bezier points of the segment that four points or vectors are in the form `from`.
+// Converts the four points or vectors of a segment, in the form `from`, to Bezier points.
 static void to_bezier_points(const CagVec3 g[4], int from, CagVec3 b[4]) {
   CagVec3 d0, d1;
   switch (from) {

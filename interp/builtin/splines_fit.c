@@ -1,4 +1,4 @@
-// B-splines from data: interpolation, least squares and its report.
+// B-splines from data: interpolation, least squares, and its report.
 
 #include "base/memory.h"
 #include "geom/curve/fit.h"
@@ -40,7 +40,7 @@ static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count)
                           count, d->degree, wanted, given);
 }
 
-// What both read, except the knots. The parameters are held.
+// Reads the arguments that both have in common, except the knots. The parameters are held.
 static bool read_data(CagCall *call, const CagPoints *points, int degree, int order, int parameters,
                       CagFitData *d) {
   double *own;
@@ -84,7 +84,7 @@ static bool fit(CagCall *call, CagFitReport *report, CagPoints *points, CagCurve
   if (!(slack >= 0))
     return cag_splines_fail(call, CAG_ERR_bad_parameter, "error", -1,
                             "the allowed error must be at least 0");
-  // Too many control points are told as that, not as the wrong number of knots.
+  // With too many control points, the error is about their number, not that of the knots.
   if ((size_t)count <= d.n && !read_knots(call, 5, &d, (size_t)count)) return false;
   CagStatus status = cag_curve_fit(&d, (size_t)count, fixed == 0, fixed >= 2 ? fixed - 2 : -1,
                                    slack, out, report, call->err);
@@ -99,7 +99,7 @@ bool cag_splines_fit(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Whether the data are rows of points, which are fitted by a surface.
+// Whether the data are rows of points, to be fitted by a surface.
 static bool is_grid(CagCall *call) {
   CagValue v = call->values[0];
   for (int level = 0; level < 2; level++) {
@@ -109,7 +109,8 @@ static bool is_grid(CagCall *call) {
   return v.type == CAG_LIST;
 }
 
-// The same question of a grid, with what both have: the ends are those of curves alone.
+// Reports on fitting a surface. Only the arguments that curves and surfaces have in common are
+// allowed.
 static bool report_surface(CagCall *call, CagValue *result) {
   size_t rows;
   const CagBuiltin *row = cag_builtin_rows(cag_builtin_find("fit_surface_report"), &rows);

@@ -1,4 +1,5 @@
-// Hermite curves, cubic splines with their end conditions, parabolic blends, polynomials.
+// Constructors of Hermite curves, cubic splines with end conditions, parabolic blends, and
+// polynomials.
 
 #include <string.h>
 
@@ -11,7 +12,7 @@
 bool cag_splines_check_points(CagCall *call, int argument, const CagPoints *points) {
   const CagList *list = CAG_AS_LIST(call->values[argument]);
   if ((int)list->dim == points->dimension) return true;
-  // Lists of points of one dimension are packed: here one is different.
+  // A list of points of one dimension would be packed, so one of them differs.
   const char *name = cag_parameter_name(call, argument);
   const double *x;
   size_t first = 0, size = 0;
@@ -80,7 +81,7 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
   return true;
 }
 
-// --- Points with parameters ---
+// --- Points and parameters ---
 
 typedef struct Data {
   const CagVec3 *points;
@@ -125,8 +126,8 @@ bool cag_splines_hermite(CagCall *call, const struct cag_splines_hermite *a, Cag
 
 // --- End conditions: records { type, start, finish, direction } ---
 
-static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue finish,
-                      bool direction, CagValue *result) {
+static bool ends_result(CagCall *call, const char *type, CagValue start, CagValue finish,
+                        bool direction, CagValue *result) {
   static const char *const names[] = {"type", "start", "finish", "direction"};
   CagValue values[] = {cag_text_c(call->vm, type), start, finish, cag_bool(direction)};
   *result = cag_record_new(call->vm, names, values, 4);
@@ -134,28 +135,28 @@ static bool give_ends(CagCall *call, const char *type, CagValue start, CagValue 
 }
 
 bool cag_splines_clamped(CagCall *call, const struct cag_splines_clamped *a, CagValue *result) {
-  return give_ends(call, "clamped", call->values[0], call->values[1], a->direction, result);
+  return ends_result(call, "clamped", call->values[0], call->values[1], a->direction, result);
 }
 
 bool cag_splines_relaxed(CagCall *call, CagValue *result) {
-  return give_ends(call, "relaxed", cag_none(), cag_none(), false, result);
+  return ends_result(call, "relaxed", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_cyclic(CagCall *call, CagValue *result) {
-  return give_ends(call, "cyclic", cag_none(), cag_none(), false, result);
+  return ends_result(call, "cyclic", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_anticyclic(CagCall *call, CagValue *result) {
-  return give_ends(call, "anticyclic", cag_none(), cag_none(), false, result);
+  return ends_result(call, "anticyclic", cag_none(), cag_none(), false, result);
 }
 
 bool cag_splines_ends(CagCall *call, const struct cag_splines_ends *a, CagValue *result) {
   const CagValue start = cag_given(call, 0) ? call->values[0] : cag_none();
   const CagValue finish = cag_given(call, 1) ? call->values[1] : cag_none();
-  return give_ends(call, "ends", start, finish, a->direction, result);
+  return ends_result(call, "ends", start, finish, a->direction, result);
 }
 
-// The tangent of one end from its field; a direction gets the natural speed of its segment.
+// Reads the tangent of one end from its field. A direction gets the natural speed of its segment.
 static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, CagCubicEnds *out) {
   const CagValue v = cag_record_get(r, end ? "finish" : "start");
   const CagValue direction = cag_record_get(r, "direction");
@@ -191,7 +192,7 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
 static bool read_ends(CagCall *call, CagValue ends, const Data *d, CagCubicEnds *out) {
   *out = (CagCubicEnds){.closing = CAG_CUBIC_ENDS};
   if (ends.type == CAG_UNSET) return true;
-  // relaxed, cyclic and anticyclic are taken uncalled as well.
+  // The functions relaxed, cyclic, and anticyclic are also accepted without a call.
   const CagRecord *r = ends.type == CAG_RECORD ? CAG_AS_RECORD(ends) : NULL;
   const CagValue type = r ? cag_record_get(r, "type") : cag_unset();
   if (type.type != CAG_TEXT)
@@ -205,7 +206,7 @@ static bool read_ends(CagCall *call, CagValue ends, const Data *d, CagCubicEnds 
   return true;
 }
 
-// One tension for all inner points, or one for each, held; NULL where there is none.
+// Reads one tension for all inner points, or one for each, which is held. NULL if there is none.
 static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
   *out = NULL;
   if (!cag_given(call, argument) || n < 3) return true;
@@ -250,7 +251,7 @@ static CagBlendEnds blend_ends(int ends, bool closed) {
   return closed ? CAG_BLEND_CLOSED : ends ? CAG_BLEND_PARABOLA : CAG_BLEND_OPEN;
 }
 
-// Ratios of the parabolas from one number or a list, held; NULL for "chord".
+// Reads the ratios of the parabolas from one number or a list, which is held. NULL for "chord".
 static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out) {
   static const char *const names[] = {"chord", NULL};
   const size_t count = ends == CAG_BLEND_CLOSED ? n : n > 2 ? n - 2 : 0;

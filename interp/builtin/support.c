@@ -1,4 +1,5 @@
-// What the families of built-ins share: results, sequences, order, mixing, and decimal rounding.
+// Functions shared by the families of built-ins: results, sequences, order, mixing, and decimal
+// rounding.
 
 #include "interp/builtin/support.h"
 
@@ -32,7 +33,7 @@ static bool all_finite(const CagCall *call) {
   return true;
 }
 
-// The arguments as they stand in a call, for messages, which show so many bytes of them.
+// Formats the arguments of a call for messages, which show at most this many bytes of them.
 #define ARGUMENTS_MOST 120
 static const char *print_arguments(CagCall *call) {
   CagString *out = cag_held_string(call);
@@ -46,8 +47,8 @@ static const char *print_arguments(CagCall *call) {
 }
 
 static bool check_result(CagCall *call, double x) {
-  // A result that is infinite because an argument was infinite is not an overflow. (The test for
-  // NaN comes first for the reason given in operators.c.)
+  // An infinite result of infinite arguments is not an overflow. (operators.c explains why the test
+  // for NaN comes first.)
   if (!isnan(x) && (isfinite(x) || !all_finite(call))) return true;
   return cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.*s",
                        isnan(x) ? "is undefined" : "overflows", ARGUMENTS_MOST,
@@ -64,7 +65,7 @@ bool cag_give_angle(CagCall *call, double degrees, CagValue *result) {
   return check_result(call, degrees);
 }
 
-// Records and lists of results nest less deep; deeper ones are the arguments' own.
+// Records and lists created by built-ins are less deep. Anything deeper is part of the arguments.
 #define RESULT_DEPTH 4
 
 static bool all_defined(const double *x, size_t n) {
@@ -96,7 +97,7 @@ static bool is_defined(CagValue v, int depth) {
   }
 }
 
-// Families whose results are parts of their arguments, which are defined.
+// Families whose results are parts of their arguments, which are known to be defined.
 static bool rearranges(const CagBuiltin *b) {
   return b->family && (strcmp(b->family, "Lists") == 0 || strcmp(b->family, "Records") == 0);
 }
@@ -174,7 +175,7 @@ bool cag_order(CagValue a, CagValue b, int *order) {
     return true;
   }
   if (a.type != CAG_TEXT) return false;
-  // The order of UTF-8 bytes is that of code points.
+  // The byte order of UTF-8 is the order of code points.
   const CagText *s = CAG_AS_TEXT(a), *t = CAG_AS_TEXT(b);
   size_t common = s->length < t->length ? s->length : t->length;
   int c = memcmp(s->bytes, t->bytes, common);
@@ -194,8 +195,8 @@ bool cag_fail_order(CagCall *call, int argument, CagValue a, CagValue b) {
 
 // --- Mixing ---
 
-// From the nearer end: exact at both ends, constant where a = b, and with fewer rounding errors
-// than (1 - t) a + t b, so that a tenth of the way from 1 to 2 is 1.1.
+// Starts from the nearer end. The result is exact at both ends, constant if a = b, and has smaller
+// rounding errors than (1 - t) a + t b. A tenth of the way from 1 to 2 is exactly 1.1, for example.
 double cag_mix_numbers(double a, double b, double t) {
   double way = b - a;
   if (!isfinite(way)) return (1 - t) * a + t * b;
@@ -266,15 +267,14 @@ bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *o
 
 // --- Decimal rounding ---
 
-// A double as the shortest decimal that reads back the same: 0.DIGITS times ten to the power of
-// `point`.
+// The shortest decimal that reads back as a double: 0.DIGITS times ten to the power of `point`.
 typedef struct Decimal {
   char digits[32];
   int count, point;
   bool negative;
 } Decimal;
 
-// 17 digits tell all doubles apart; 15 are always kept.
+// 17 digits distinguish all doubles; 15 always survive.
 enum { DIGITS_FEWEST = 1, DIGITS_KEPT = 15, DIGITS_MOST = 17 };
 
 static Decimal shortest_decimal(double x) {
@@ -292,7 +292,7 @@ static Decimal shortest_decimal(double x) {
   return d;
 }
 
-// Keeps the digits down to `places` behind the point, halves away from 0.
+// Rounds to `places` digits after the point, halves away from 0.
 static void round_digits(Decimal *d, int places) {
   int keep = d->point + places;
   if (keep >= d->count) return;
@@ -309,7 +309,7 @@ static void round_digits(Decimal *d, int places) {
     d->digits[i]++;
     return;
   }
-  // 9.99 has become 10.0.
+  // 9.99 becomes 10.0.
   memmove(d->digits + 1, d->digits, (size_t)d->count);
   d->digits[0] = '1';
   d->count++;
@@ -317,7 +317,7 @@ static void round_digits(Decimal *d, int places) {
 }
 
 double cag_round_decimal(double x, int digits) {
-  // From 2^52 on all doubles are whole.
+  // All doubles from 2^52 on are whole.
   static const double WHOLE = 4503599627370496;
   if (!isfinite(x) || x == 0 || (digits >= 0 && fabs(x) >= WHOLE)) return x + 0.0;
   if (digits == 0) return round(x) + 0.0;
@@ -340,7 +340,7 @@ void cag_print_fixed(CagString *out, double x, int digits) {
   for (int i = 0; i < d.count; i++) zero = zero && d.digits[i] == '0';
   if (zero) d.count = 0;
   if (d.negative && !zero) cag_string_add(out, "-", 1);
-  // Digit k stands before the point when k < point.
+  // Digit k is before the point if k < point.
   int whole = !zero && d.point > 0 ? d.point : 0;
   for (int k = 0; k < whole; k++) cag_string_add(out, k < d.count ? &d.digits[k] : "0", 1);
   if (whole == 0) cag_string_add(out, "0", 1);
@@ -360,7 +360,7 @@ static const char *skip_digits(const char *s, const char *end) {
   return s;
 }
 
-// The double of a text that is known to be a decimal number. strtod wants a NUL behind it.
+// Converts a text that is known to be a decimal number. strtod needs a NUL at its end.
 static bool convert_number(const char *s, size_t n, double *out) {
   char buffer[128], *copy = n < sizeof buffer ? buffer : cag_malloc(n + 1);
   if (!copy) return false;
@@ -376,7 +376,7 @@ bool cag_read_number(const char *s, size_t n, double *out) {
   const char *end = s + n;
   while (s < end && cag_is_space(*s)) s++;
   while (end > s && cag_is_space(end[-1])) end--;
-  // sign digits [ "." digits ] [ "e" sign digits ]; of the digits around the point one side may be
+  // sign digits [ "." digits ] [ "e" sign digits ]; the digits on one side of the point may be
   // missing.
   const char *from = s;
   if (s < end && (*s == '+' || *s == '-')) s++;
@@ -406,7 +406,7 @@ bool cag_read_number(const char *s, size_t n, double *out) {
 #define RADIANS_PER_DEGREE 0.017453292519943295
 
 void cag_sincos_degrees(double degrees, double *sine, double *cosine) {
-  // The rest to the nearest quarter turn is exact, and at most 45 degrees.
+  // The remainder to the nearest quarter turn is exact, and at most 45 degrees.
   double reduced = fmod(degrees, 360);
   double quarters = rint(reduced / 90);
   double rest = reduced - 90 * quarters;

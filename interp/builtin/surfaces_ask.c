@@ -1,4 +1,4 @@
-// What surfaces answer at one place, and their data.
+// Properties of surfaces at one point, and their data.
 
 #include "interp/builtin/surfaces.h"
 
@@ -111,8 +111,9 @@ bool cag_surfaces_knots(CagCall *call, const struct cag_surfaces_knots *a, CagVa
   return true;
 }
 
-// The net by rows of u: points, or weights where `dim` is 1.
-static bool give_net(CagCall *call, const CagSurfaceNurbsView *net, size_t dim, CagValue *result) {
+// The net by rows of u: points, or weights if `dim` is 1.
+static bool net_result(CagCall *call, const CagSurfaceNurbsView *net, size_t dim,
+                       CagValue *result) {
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < net->distinct_u; i++) {
     double *out;
@@ -132,12 +133,12 @@ static bool give_net(CagCall *call, const CagSurfaceNurbsView *net, size_t dim, 
 
 bool cag_surfaces_points(CagCall *call, const struct cag_surfaces_points *a, CagValue *result) {
   CagSurfaceNurbsView net;
-  return cag_surface_net(call, a->S, "control points", &net) && give_net(call, &net, 3, result);
+  return cag_surface_net(call, a->S, "control points", &net) && net_result(call, &net, 3, result);
 }
 
 bool cag_surfaces_weights(CagCall *call, const struct cag_surfaces_weights *a, CagValue *result) {
   CagSurfaceNurbsView net;
-  return cag_surface_net(call, a->S, "weights", &net) && give_net(call, &net, 1, result);
+  return cag_surface_net(call, a->S, "weights", &net) && net_result(call, &net, 1, result);
 }
 
 bool cag_surfaces_is_closed(CagCall *call, const struct cag_surfaces_is_closed *a,

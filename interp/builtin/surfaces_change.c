@@ -1,4 +1,4 @@
-// Measures of whole surfaces, and what is made of one: samples, curves, other forms.
+// Measures of whole surfaces, samples, curves on surfaces, and conversion.
 
 #include "base/memory.h"
 #include "geom/surface/trimmed.h"
@@ -25,7 +25,7 @@ bool cag_surfaces_volume(CagCall *call, const struct cag_surfaces_volume *a, Cag
   return true;
 }
 
-// Of the body within, or of an open surface itself.
+// The centroid of the body inside, or of an open surface itself.
 bool cag_surfaces_centroid(CagCall *call, const struct cag_surfaces_centroid *a, CagValue *result) {
   CagVec3 center;
   double terms[10] = {0}, area;
@@ -39,7 +39,7 @@ bool cag_surfaces_centroid(CagCall *call, const struct cag_surfaces_centroid *a,
   return true;
 }
 
-// Most points that one call makes.
+// The maximum number of points created by one call.
 #define POINTS_MAX 100000000
 
 static double step(double from, double to, size_t i, size_t n) {
@@ -96,7 +96,7 @@ static bool is_unrolled(const CagSurface *s) {
   return (cag_surface_placed_view(s, &inner, &map) ? inner : s)->unrolled;
 }
 
-// The four edges, one after the other in the sense of u to v, as one closed curve.
+// Joins the four edges to one closed curve, in the sense from u to v.
 static CagStatus outline(const CagSurface *s, CagCurve **out, CagError *err) {
   const struct {
     bool pole;

@@ -10,8 +10,8 @@ typedef struct Forms {
   double area; // E G - F^2
 } Forms;
 
-// A patch whose tangents are more nearly parallel than this, or one of which vanishes, has no
-// normal by them.
+// If the sine between the tangents is below this, or a tangent vanishes, they do not define a
+// normal.
 #define FLAT_SINE 1e-12
 
 static bool read_forms(CagCall *call, Forms *f) {
@@ -36,7 +36,8 @@ static bool read_forms(CagCall *call, Forms *f) {
   return true;
 }
 
-// The same where curvature is asked for, which a pole does not have by its partials.
+// Reads the forms for a curvature, which is undefined at a pole because it depends on partial
+// derivatives.
 static bool read_regular(CagCall *call, Forms *f) {
   if (!read_forms(call, f)) return false;
   return f->area > FLAT_SINE * FLAT_SINE * f->E * f->G ||
@@ -84,7 +85,7 @@ bool cag_surfaces_normal_curvature(CagCall *call, const struct cag_surfaces_norm
                                    CagValue *result) {
   Forms f;
   if (!read_regular(call, &f)) return false;
-  // The tangent x su + y sv below v.
+  // The tangent x su + y sv that is the projection of v.
   const CagVec3 v = a->V.at;
   double p = cag_dot(v, f.su), q = cag_dot(v, f.sv);
   double x = (f.G * p - f.F * q) / f.area, y = (f.E * q - f.F * p) / f.area;
@@ -97,7 +98,8 @@ bool cag_surfaces_normal_curvature(CagCall *call, const struct cag_surfaces_norm
 }
 
 // The curvatures are the eigenvalues of the second form in an orthonormal basis of the tangent
-// plane, a symmetric 2x2 matrix, which keeps the small one exact and the directions square.
+// plane, a symmetric 2x2 matrix. This keeps a small curvature exact and the directions
+// perpendicular.
 static void principal(const Forms *f, double k[2], CagVec3 direction[2]) {
   CagVec3 e1 = cag_unit(f->su), e2 = cag_cross(f->normal, e1);
   double x = cag_norm(f->su), c = cag_dot(f->sv, e1), d = cag_dot(f->sv, e2);
@@ -126,8 +128,8 @@ bool cag_surfaces_principal_curvatures(CagCall *call, CagValue *result) {
   return true;
 }
 
-// A curvature counts as 0 when it is this part of the larger one or, times the length of the
-// tangents, this small: rounding of second derivatives stays well below.
+// A curvature counts as 0 if it is below this fraction of the other one, or if its product with the
+// length of the tangents is below this. The rounding errors of second derivatives are well below.
 #define FLAT_CURVATURE 1e-9
 
 bool cag_surfaces_curvature_class(CagCall *call, CagValue *result) {

@@ -1,4 +1,4 @@
-// Surfaces from grids of points, and what can be unrolled.
+// Surfaces from grids of points, and the test for developable surfaces.
 
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-// Two whole numbers, or one for both.
+// Reads two whole numbers, or one for both.
 static bool read_pair(CagCall *call, int argument, long fallback, long low, long high,
                       long out[2]) {
   CagValue v = call->values[argument];
@@ -33,7 +33,7 @@ static bool read_pair(CagCall *call, int argument, long fallback, long low, long
   return true;
 }
 
-// Knots of `count` points, or none for what the function makes itself.
+// Reads the knots for `count` points. Without them, the core chooses the knots.
 static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGridData *g) {
   for (int k = 0; k < 2; k++) {
     CagValue v = cag_one_of_two(call, argument, k);
@@ -52,7 +52,7 @@ static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGr
   return true;
 }
 
-// Parameters by u or v: one for each row or column, or a table with one for each point.
+// Reads the parameters for u or v: one for each row or column, or a table with one for each point.
 static bool read_table(CagCall *call, int argument, CagValue v, int k, const CagGridData *g,
                        double *out) {
   const double *x;
@@ -72,7 +72,8 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
                                k ? 'v' : 'u', lines, g->r, g->s);
 }
 
-// A spacing, or a record of parameters u and v, of which one may be left to the chords.
+// Reads a spacing, or a record of parameters u and v. If one of the two is missing, it is computed
+// from chords.
 static bool read_parameters(CagCall *call, int argument, CagGridData *g) {
   static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
   static const char *const names[] = {"u", "v"};
@@ -92,7 +93,7 @@ static bool read_parameters(CagCall *call, int argument, CagGridData *g) {
   return true;
 }
 
-// The grid, its degrees, and the arguments at these places.
+// Reads the grid, its degrees, and the arguments with these indices.
 static bool read_data(CagCall *call, int parameters, int closed, CagGridData *g) {
   CagVec3 *points;
   long degree[2];
@@ -105,7 +106,7 @@ static bool read_data(CagCall *call, int parameters, int closed, CagGridData *g)
   return read_parameters(call, parameters, g);
 }
 
-// The planes of one direction: positions, or "auto".
+// Reads the positions of planes in one direction, or "auto".
 static bool read_positions(CagCall *call, int argument, CagValue v, CagGridData *g) {
   if (v.type == CAG_TEXT && strcmp(CAG_AS_TEXT(v)->bytes, "auto") == 0) return true;
   if (v.type == CAG_RANGE && !cag_as_list(call->vm, v, &v)) return false;
@@ -148,7 +149,7 @@ static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r
   return cag_uv_value(vm, table_value(vm, u, r, s), table_value(vm, v, r, s));
 }
 
-// Points of the surface less the data.
+// The points of the surface minus the data.
 static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
                       const CagGridReport *report, CagValue *out) {
   CagBuilder *rows = cag_builder_new(call->vm);
@@ -166,7 +167,7 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
   return true;
 }
 
-// As they can be given again.
+// The planes, in the form in which they can be passed as an argument.
 static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_t net[2]) {
   CagValue by[] = {cag_none(), cag_none()};
   if (!report->planes) return cag_none();
@@ -175,8 +176,8 @@ static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_
   return cag_uv_value(vm, by[0], by[1]);
 }
 
-static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,
-                        const size_t net[2], const CagGridReport *report, CagValue *result) {
+static bool report_result(CagCall *call, const CagSurface *s, const CagGridData *g,
+                          const size_t net[2], const CagGridReport *report, CagValue *result) {
   static const char *const names[] = {"surface", "parameters", "residuals", "rms",
                                       "largest", "rounds",     "planes"};
   CagValue values[] = {*result,
@@ -191,7 +192,7 @@ static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g
   return true;
 }
 
-// grid, degree, parameters, knots, closed
+// Arguments: grid, degree, parameters, knots, closed.
 bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
   CagGridData g = {0};
   CagSurface *s = NULL;
@@ -201,7 +202,7 @@ bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
 
 static void release_report(void *report) { cag_grid_report_free(report); }
 
-// grid, degree, count, parameters, knots, closed, ..., planes
+// Arguments: grid, degree, count, parameters, knots, closed, ..., planes.
 static bool fit(CagCall *call, long corrections, int fixed, double error, bool report,
                 CagValue *result) {
   CagGridData g = {.corrections = (int)corrections, .hold = (CagGridHold)fixed, .slack = error};
@@ -214,7 +215,7 @@ static bool fit(CagCall *call, long corrections, int fixed, double error, bool r
   cag_hold_for(call, release_report, found);
   CagStatus status = cag_surface_fit(&g, net[0], net[1], &s, found, call->err);
   return cag_surface_result(call, status, &s, result) &&
-         (!report || give_report(call, s, &g, net, found, result));
+         (!report || report_result(call, s, &g, net, found, result));
 }
 
 bool cag_surfaces_fit_surface(CagCall *call, const struct cag_surfaces_fit_surface *a,
@@ -246,7 +247,7 @@ bool cag_surfaces_grid_parameters(CagCall *call, const struct cag_surfaces_grid_
 
 // --- Developable surfaces ---
 
-// Places in each direction at which the Gaussian curvature is looked at, besides the breaks.
+// The Gaussian curvature is sampled at this many parameters in each direction, besides the breaks.
 #define PROBES 24
 
 bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_developable *a,
@@ -257,7 +258,7 @@ bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_dev
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
     for (int j = 0; j < PROBES; j++) {
-      // Off the ends, where poles lie, and off the middles, where knots like to be.
+      // The offset avoids the ends, where poles are, and the middles, where knots often are.
       double u = a->S->u0 + (a->S->u1 - a->S->u0) * (i + 0.431) / PROBES;
       double v = a->S->v0 + (a->S->v1 - a->S->v0) * (j + 0.567) / PROBES;
       CagVec3 d[9];

@@ -1,5 +1,4 @@
-// Surfaces and curves that the core makes several of, held until the built-in ends, and values of
-// results.
+// Memory for arrays of surfaces and curves, held until the built-in ends, and values of results.
 
 #include "base/memory.h"
 #include "interp/builtin/surfaces.h"

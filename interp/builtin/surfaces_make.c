@@ -1,4 +1,4 @@
-// Surfaces and solids made of curves and regions: turned, extruded, ruled, carried along a path.
+// Surfaces and solids from curves and regions: revolved, extruded, ruled, and swept along a path.
 
 #include <stdlib.h>
 
@@ -16,11 +16,11 @@ static CagTransform upright(void) {
   return t;
 }
 
-// An axis within this sine of the profile's plane, and this share of the profile's distance from
-// it, lies in it: rounding of frames stays well below.
+// The axis lies in the profile's plane if the sine of their angle, and its distance relative to
+// that of the profile, are below this. Rounding errors of frames are well below.
 #define AXIS_IN_PLANE 1e-9
 
-// Rows that take the region's own coordinates to (distance from the axis, height along it).
+// The map from the region's own coordinates to (distance from the axis, height along it).
 static CagTransform half_plane(const CagTransform *place, CagVec3 radial, CagVec3 axis,
                                CagVec3 through) {
   CagTransform t = cag_transform_identity();
@@ -35,8 +35,8 @@ static CagTransform half_plane(const CagTransform *place, CagVec3 radial, CagVec
   return t;
 }
 
-// Turns the region about an axis in its plane: its coordinates become distance from and height
-// along the axis, that is turned about Z, and placed with Z on the axis.
+// Revolves the region about an axis in its plane. Converts its coordinates to distance from and
+// height along the axis, revolves that about Z, and moves Z to the axis.
 bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,
                          CagVec3 axis, CagVec3 through, double from, double to, CagValue *result) {
   CagVec3 centroid;
@@ -72,7 +72,7 @@ bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransf
   return cag_solid_result(call, status, &placed, result);
 }
 
-// An angle a is 0..a (a..0 of a negative one).
+// Reads an angle a as 0..a, or as a..0 if it is negative.
 static bool read_turn(CagCall *call, int argument, double *from, double *to) {
   *from = 0;
   *to = FULL_TURN;
@@ -128,7 +128,7 @@ bool cag_surfaces_revolve(CagCall *call, const struct cag_surfaces_revolve *a, C
 
 // --- Extrusion ---
 
-// A height (along the section's normal), or a vector.
+// Reads a height (along the section's normal) or a vector.
 static bool read_way(CagCall *call, CagVec3 *way) {
   *way = cag_vec3(0, 0, 0);
   if (call->values[1].type == CAG_NUMBER) return cag_arg_finite(call, 1, &way->z);
@@ -136,7 +136,7 @@ static bool read_way(CagCall *call, CagVec3 *way) {
                                           : cag_fail_type(call, 1, "a height or a vector");
 }
 
-// The sides of a region, one for each of its curves, without caps.
+// The sides of a region without caps: one for each of its curves.
 static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
                           const CagRegion *region, CagVec3 way, const CagTransform *place,
                           CagValue *result) {
@@ -155,7 +155,7 @@ static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
   return cag_shapes_result(call, sides, result);
 }
 
-// `way` is in the region's own coordinates.
+// Extrudes along `way`, which is in the region's own coordinates.
 static bool extrude_region(CagCall *call, const struct cag_surfaces_extrude *a,
                            const CagRegion *region, CagVec3 way, const CagTransform *place,
                            CagValue *result) {
@@ -216,8 +216,8 @@ bool cag_surfaces_translational(CagCall *call, const struct cag_surfaces_transla
   return cag_surface_result(call, cag_surface_translational(a->A, a->B, &s, call->err), &s, result);
 }
 
-// The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
-// azimuth, and S_u x S_v points outward.
+// The semicircle from the north pole to the south pole revolved about Z: u is the polar angle, v is
+// the azimuth, and S_u x S_v points outward.
 bool cag_surfaces_sphere_surface(CagCall *call, const struct cag_surfaces_sphere_surface *a,
                                  CagValue *result) {
   CagCurve *meridian = NULL;

@@ -1,8 +1,8 @@
-// Mappings of parameters: curves, surfaces and bodies laid onto a surface, surfaces with other
-// parameters.
+// Maps by the parameters of a surface: curves, surfaces, and bodies laid onto it, and its
+// reparametrization.
 //
-// Those of curves and surfaces are made as functions of the language, so that they are
-// differentiated exactly; those of regions, solids and meshes are meshes.
+// Images of curves and surfaces are functions of the language, which makes their derivatives exact.
+// Images of regions, solids, and meshes are meshes.
 
 #include <string.h>
 
@@ -16,12 +16,12 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// The point over x, y at the height z: `o` is the surface's offset by 1, so that o - s is the
-// normal.
+// The point over x, y at height z. `o` is the surface offset by 1, so o - s is the normal.
 #define PLACE(x, y) "s(" x ", " y ")"
 #define LIFT(x, y, z) " + (" z ") * (o(" x ", " y ") - s(" x ", " y "))"
 
-// Whether u and v of the surface are angles: x and y of what is mapped are then radians.
+// Indexed by whether u and v of the surface are angles. In that case, the coordinates of the mapped
+// shape are radians.
 static const char *const CURVES[2][2] = {
     {"(c, s, o, r) => curve(t => s(c(t)[0], c(t)[1]), r)",
      "(c, s, o, r) => curve(t => s(c(t)[0], c(t)[1] * 1rad), r)"},
@@ -39,9 +39,9 @@ static const char *const SHEETS[2][2] = {
 
 #define LEAVES "expects a shape whose x and y are parameters of the surface as `G`"
 
-// What goes wrong within the functions made here is told of the mapping: their text is no part of
-// the script. Others keep their places.
-static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
+// An error in the generated functions is reported as an error of the mapping, because their text is
+// not part of the script. Other errors keep their locations.
+static bool fail_mapping(CagCall *call, int argument, const char *what) {
   CagDiagnostics *errors = &call->vm->errors;
   if (errors->count == 0 || !errors->items[0].source ||
       strcmp(errors->items[0].source->name, "<formula>") != 0)
@@ -49,11 +49,12 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
   const CagErrorId id = errors->items[0].id;
   const char *said = errors->items[0].message ? errors->items[0].message : "";
   said = cag_hold(call, cag_strdup(said));
-  if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
+  if (strncmp(said, "at: ", 4) == 0) said += 4; // the function that evaluates points of a surface
   return cag_fail_call(call, argument, id, "%s: %s", what, said);
 }
 
-// The curve's smooth pieces one by one: a function has no corners of its own.
+// Maps the smooth pieces of the curve separately, because the image, a function, cannot have
+// corners.
 static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue offset,
                       CagValue *result) {
   CagVm *vm = call->vm;
@@ -72,7 +73,7 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
   for (size_t i = 0; ok && i <= inner; i++) {
     CagValue piece, arguments[4] = {g, call->values[1], offset,
                                     cag_domain_value(vm, c->angular, cuts[i], cuts[i + 1])};
-    ok = cag_call(vm, lambda, arguments, 4, &piece) || tell_of_mapping(call, 0, LEAVES);
+    ok = cag_call(vm, lambda, arguments, 4, &piece) || fail_mapping(call, 0, LEAVES);
     if (!ok) break;
     pieces[i] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
     cag_hold_curve(call, pieces[i]);
@@ -94,7 +95,7 @@ static bool map_surface(CagCall *call, CagValue value, const CagSurface *s, CagV
   CagValue arguments[5] = {value, call->values[1], offset,
                            cag_domain_value(call->vm, g->angular_u, g->u0, g->u1),
                            cag_domain_value(call->vm, g->angular_v, g->v0, g->v1)};
-  return cag_call(call->vm, lambda, arguments, 5, result) || tell_of_mapping(call, 0, LEAVES);
+  return cag_call(call->vm, lambda, arguments, 5, result) || fail_mapping(call, 0, LEAVES);
 }
 
 static bool map_smooth(CagCall *call, CagValue g, const CagSurface *s, CagValue *result) {
@@ -130,7 +131,7 @@ static bool lies_flat(const CagMesh *m) {
   return true;
 }
 
-// Before it is laid on the surface a body is a mesh a good deal finer than the image has to be.
+// Before it is mapped, a body becomes a mesh with this fraction of the image's tolerance.
 #define FINER 0.25
 
 static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
@@ -139,7 +140,7 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
   CagMesh *flat = NULL, *image = NULL;
   CagStatus status = body_mesh(g, &how, &flat, call->err);
   if (!status && g.type != CAG_MESH && tolerance > 0) {
-    // The surface stretches what is drawn in its parameters: by how much, the domain tells.
+    // The domain's size tells how much the surface stretches shapes in its parameters.
     CagBounds box;
     status = cag_surface_bounds(s, &box, call->err);
     double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
@@ -158,7 +159,7 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
   return cag_mesh_result(call, status, &image, result);
 }
 
-// Maps of parameters know nothing of the curves that a surface is trimmed by.
+// The map ignores the curves that trim a surface, so trimmed surfaces are rejected.
 static bool refuse_trimmed(CagCall *call, CagValue g) {
   if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
     return true;
@@ -179,12 +180,12 @@ static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double toler
   return true;
 }
 
-// Each of a group or list.
+// Maps each shape of a group or list.
 static bool map_several(CagCall *call, const CagSurface *s, double tolerance, CagValue *result) {
   CagList *list;
   if (!cag_list_shapes(call, call->values[0], &list)) return false;
   CagBuilder *images = cag_builder_new(call->vm);
-  // Mapping the next one may call the script.
+  // Mapping the next one may call the script, so the list is rooted.
   cag_root_push(call->vm, cag_object(CAG_LIST, list));
   cag_root_push(call->vm, cag_builder_value(images));
   bool ok = true;
@@ -218,7 +219,7 @@ bool cag_surfaces_remap(CagCall *call, const struct cag_surfaces_remap *a, CagVa
                            u ? a->u : cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
                            v ? a->v : cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
   if (!cag_call(call->vm, lambda, arguments, 4, result))
-    return tell_of_mapping(call, 1, "expects a function that returns [u, v] of the surface as `f`");
+    return fail_mapping(call, 1, "expects a function that returns [u, v] of the surface as `f`");
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

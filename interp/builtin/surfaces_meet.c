@@ -1,4 +1,4 @@
-// Where surfaces meet curves, planes and each other, and where they are nearest to a point.
+// Intersections of surfaces with curves, planes, and surfaces, and closest points.
 
 #include "base/memory.h"
 #include "geom/meet/meet_curve.h"

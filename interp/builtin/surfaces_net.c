@@ -1,4 +1,4 @@
-// Bezier and B-spline surfaces of nets of control points, given by rows of u.
+// Bezier and B-spline surfaces from nets of control points, given by rows of u.
 
 #include <limits.h>
 #include <string.h>
@@ -75,12 +75,12 @@ bool cag_arg_closed(CagCall *call, int argument, bool closed[2]) {
 // --- Nets of control points ---
 
 typedef struct Net {
-  CagVec3 *points; // held, as the weights
-  double *weights; // NULL: none
+  CagVec3 *points; // held, like the weights
+  double *weights; // may be NULL
   size_t nu, nv;
 } Net;
 
-// The first argument, and the weights where they are given.
+// Reads the first argument, and the weights if they are given.
 static bool read_net(CagCall *call, int argument, Net *net) {
   CagList *rows;
   *net = (Net){0};
@@ -109,9 +109,9 @@ bool cag_surfaces_bezier_surface(CagCall *call, CagValue *result) {
   return cag_surface_result(call, status, &s, result);
 }
 
-// --- B-splines: degree, knots and closed are one value for both directions, or a list of two ---
+// --- B-splines: degree, knots, and closed are one value for both directions, or a list of two ---
 
-// `degree`, or one less than `order`.
+// Reads `degree`, or `order` minus one.
 static bool read_degree(CagCall *call, int degree, int order, int direction, int *out) {
   bool by_order = cag_given(call, order);
   *out = 3;
@@ -126,7 +126,7 @@ static bool read_degree(CagCall *call, int degree, int order, int direction, int
   return true;
 }
 
-// Knots of n points; *out is held.
+// Reads the knots for n points; *out is held.
 static bool read_knots(CagCall *call, int argument, int direction, size_t n, int degree,
                        double **out) {
   const double *x;
@@ -164,7 +164,7 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
   return true;
 }
 
-// net, degree, knots, closed, weights, order
+// Arguments: net, degree, knots, closed, weights, order.
 bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
   Net net;
   int degree[2];

@@ -1,4 +1,4 @@
-// Patches between given edges, corners and points: Coons and Hermite.
+// Patches between given edges, corners, and points: Coons and Hermite.
 
 #include <string.h>
 
@@ -39,7 +39,7 @@ static bool read_line(CagCall *call, int argument, CagValue line, const char *wh
   return true;
 }
 
-// rows x n vectors.
+// Reads rows x n vectors.
 static bool read_table(CagCall *call, int argument, size_t rows, size_t n, CagVec3 *out) {
   CagList *list;
   if (!cag_arg_list(call, argument, &list)) return false;

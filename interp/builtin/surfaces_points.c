@@ -1,5 +1,5 @@
-// Control points of Bezier and B-spline surfaces: which act where, what they are multiplied by,
-// edits of corners and edges, and the patches' other forms.
+// Control points of Bezier and B-spline surfaces: their ranges and basis functions, edits of
+// corners and edges, and other forms of the patches.
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +39,8 @@ static bool read_net(CagCall *call, const CagSurface *s, Net *n) {
   return true;
 }
 
-// u and v within the domain.
-static bool read_place(CagCall *call, const Net *n, int at, double t[2]) {
+// Reads u and v, which must be within the domain.
+static bool read_uv(CagCall *call, const Net *n, int at, double t[2]) {
   CagVec3 p;
   return cag_arg_uv(call, n->s, at, &t[0], &t[1]) &&
          cag_geometry_ok(call, cag_surface_point(n->s, t[0], t[1], &p, call->err));
@@ -66,7 +66,7 @@ bool cag_tensors_spans(CagCall *call, const struct cag_tensors_spans *a, CagValu
   return true;
 }
 
-// As of curves: a range, of a closed direction a list of ranges.
+// A range, or a list of ranges for a closed direction, as for curves.
 static CagValue support_value(CagVm *vm, const Axis *a, size_t i) {
   size_t p = (size_t)a->degree;
   double lo = a->knots[p], hi = a->knots[a->count], from = 0, to = 0;
@@ -99,7 +99,7 @@ static CagValue point_value(CagVm *vm, const double *h) {
   return h[3] > 0 ? cag_point(vm, cag_project(h), 3) : cag_none();
 }
 
-// Rows of points, which lie `stride` apart.
+// Returns rows of points; consecutive rows are `stride` numbers apart.
 static CagValue net_value(CagVm *vm, const double *h, size_t rows, size_t columns, size_t stride) {
   CagBuilder *table = cag_builder_new(vm);
   for (size_t i = 0; i < rows; i++) {
@@ -138,7 +138,7 @@ bool cag_tensors_acting_points(CagCall *call, const struct cag_tensors_acting_po
   Net n;
   double t[2];
   CagSide side[2];
-  if (!read_net(call, a->S, &n) || !read_place(call, &n, 1, t) ||
+  if (!read_net(call, a->S, &n) || !read_uv(call, &n, 1, t) ||
       !cag_arg_surface_sides(call, 3, side))
     return false;
   size_t span[2];
@@ -159,7 +159,7 @@ bool cag_tensors_acting_points(CagCall *call, const struct cag_tensors_acting_po
 
 // --- Basis ---
 
-// Values at t of the functions of all distinct points; held.
+// Evaluates the basis functions of all distinct points at t; held.
 static double *basis_line(CagCall *call, const Axis *a, double t) {
   double *out = cag_hold_array(call, a->distinct, sizeof *out);
   size_t p = (size_t)a->degree;
@@ -173,7 +173,7 @@ static double *basis_line(CagCall *call, const Axis *a, double t) {
 bool cag_tensors_basis(CagCall *call, const struct cag_tensors_basis *a, CagValue *result) {
   Net n;
   double t[2], sum = 0;
-  if (!read_net(call, a->S, &n) || !read_place(call, &n, 1, t)) return false;
+  if (!read_net(call, a->S, &n) || !read_uv(call, &n, 1, t)) return false;
   double *bu = basis_line(call, &n.axis[0], t[0]), *bv = basis_line(call, &n.axis[1], t[1]);
   size_t nu = n.axis[0].distinct, nv = n.axis[1].distinct;
   for (size_t i = 0; i < nu; i++)
@@ -198,7 +198,8 @@ bool cag_tensors_basis(CagCall *call, const struct cag_tensors_basis *a, CagValu
 
 // --- Numerator and denominator ---
 
-// The polynomial surface of the points times their weights, or of the weights as z.
+// The polynomial surface of the points times their weights, or, if `weights` is set, with the
+// weights as z.
 static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurface **out) {
   const CagSurfaceNurbsView *v = &n->view;
   CagVec3 *net = cag_hold(call, cag_malloc(v->nu * v->nv * sizeof *net));
@@ -247,11 +248,11 @@ bool cag_tensors_denominator(CagCall *call, const struct cag_tensors_denominator
 
 // --- Polynomials ---
 
-// Powers of one direction from Bernstein points, in place, of the parameter from 0 to `length`:
-// n + 1 lines, which lie `line` apart, of `width` points, which lie `across` apart.
+// Converts Bernstein points of one direction to power coefficients in place, for a parameter from 0
+// to `length`. There are n + 1 lines, `line` apart, of `width` points, `across` apart.
 static void to_powers(CagVec3 *b, int n, size_t line, size_t width, size_t across, double length) {
   for (size_t c = 0; c < width; c++, b += across) {
-    // Forward differences, each after the one that it is taken from.
+    // Forward differences, in descending order so that each uses the old value of its neighbor.
     for (int k = 1; k <= n; k++)
       for (int i = n; i >= k; i--)
         b[(size_t)i * line] = cag_sub(b[(size_t)i * line], b[(size_t)(i - 1) * line]);
@@ -274,7 +275,7 @@ static CagValue piece_powers(CagCall *call, const CagSurface *piece, double lu, 
   return table;
 }
 
-// The lengths of the spans; held.
+// Returns the lengths of the spans; held.
 static double *span_lengths(CagCall *call, const Axis *a) {
   double *lengths = cag_hold_array(call, a->count, sizeof *lengths), *next = lengths;
   for (size_t i = (size_t)a->degree; i < a->count; i++)
@@ -341,7 +342,7 @@ bool cag_tensors_hermite_matrix(CagCall *call, const struct cag_tensors_hermite_
   return true;
 }
 
-// A number scales what is there, a vector takes its place.
+// A number scales the current value, and a vector replaces it.
 static bool read_edit(CagCall *call, int argument, CagCornerEdit *e, int k) {
   e->factor[k] = 1;
   if (!cag_given(call, argument)) return true;
@@ -377,7 +378,7 @@ bool cag_tensors_set_point(CagCall *call, const struct cag_tensors_set_point *a,
 
 static const char *const sides[] = {"u0", "u1", "v0", "v1", NULL};
 
-// A number, or two for the ends of the edge.
+// Reads a number, or two for the ends of the edge.
 static bool read_shear(CagCall *call, int argument, double shear[2]) {
   const double *x;
   size_t n;
@@ -418,7 +419,7 @@ bool cag_tensors_bezier_join(CagCall *call, const struct cag_tensors_bezier_join
   return true;
 }
 
-// A list of two sides, or none.
+// Reads a list of two sides, or none.
 bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
   CagValue v = call->values[argument];
   *given = cag_given(call, argument);
@@ -452,7 +453,7 @@ bool cag_tensors_match_edge(CagCall *call, const struct cag_tensors_match_edge *
   return true;
 }
 
-// --- Flat and creased places ---
+// --- Flat and creased parts ---
 
 bool cag_tensors_creases(CagCall *call, const struct cag_tensors_creases *a, CagValue *result) {
   static const char *const names[] = {"at", "angle"};
@@ -476,16 +477,18 @@ bool cag_tensors_creases(CagCall *call, const struct cag_tensors_creases *a, Cag
   return true;
 }
 
-// Control points that miss their common plane by less than this part of their extent are in it.
+// Control points are coplanar if their distance from the plane is below this fraction of their
+// extent.
 #define FLAT 1e-9
 
-// Whether all acting points lie in a plane.
+// Whether all control points that affect the span are coplanar.
 static bool acting_flat(const Net *n, size_t su, size_t sv) {
   size_t p = (size_t)n->axis[0].degree, q = (size_t)n->axis[1].degree, nv = n->view.nv;
   const double *h = n->view.homogeneous;
   CagVec3 origin = cag_vec3(0, 0, 0), along = origin, normal = origin;
   double reach = 0;
-  // The farthest from the first, then the farthest from that line, then all from the plane.
+  // Finds the farthest point from the first, then the farthest from that line, then the largest
+  // distance from the plane.
   for (int pass = 0; pass < 3; pass++) {
     double most = 0;
     CagVec3 best = origin;

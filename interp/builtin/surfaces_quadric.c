@@ -1,4 +1,4 @@
-// Quadrics: by their ten numbers, by rows, and by name.
+// Quadrics from their ten numbers, rows, or names.
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-// --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
+// --- Bounds of an unbounded quadric: a box (a solid whose bounds count) or a range of z ---
 
 static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
   CagValue v = call->values[argument];
@@ -30,8 +30,8 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
   return box->min.z < box->max.z || cag_fail_value(call, argument, "an increasing range of z");
 }
 
-// One surface, or a group of the sheets or planes.
-static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
+// Returns one surface, or a group of the sheets or planes.
+static bool patches_result(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagBounds box;
   bool z_only, given;
   if (!read_within(call, within, &box, &z_only, &given)) return false;
@@ -46,9 +46,9 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
   return cag_shapes_result(call, list, result);
 }
 
-// --- By numbers ---
+// --- From numbers ---
 
-// Ten that are not all numbers, or neither ten nor four.
+// Reports a list that is not all numbers, or has neither ten numbers nor four rows.
 static bool fail_equation(CagCall *call, const CagList *list) {
   for (size_t i = 0; list->length == 10 && i < 10; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
@@ -82,10 +82,10 @@ bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) {
 
 bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
   CagQuadric q;
-  return cag_surfaces_read_form(call, &q) && give_patches(call, &q, 1, result);
+  return cag_surfaces_read_form(call, &q) && patches_result(call, &q, 1, result);
 }
 
-// --- By name: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
+// --- From names: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
 
 static double inverse_square(double x) { return 1 / (x * x); }
 
@@ -93,28 +93,28 @@ bool cag_surfaces_ellipsoid(CagCall *call, const struct cag_surfaces_ellipsoid *
                             CagValue *result) {
   const CagQuadric q = {
       {inverse_square(a->a), inverse_square(a->b), inverse_square(a->c), 0, 0, 0, 0, 0, 0, -1}};
-  return give_patches(call, &q, 3, result);
+  return patches_result(call, &q, 3, result);
 }
 
 bool cag_surfaces_hyperboloid(CagCall *call, const struct cag_surfaces_hyperboloid *a,
                               CagValue *result) {
   const CagQuadric q = {{inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0,
                          0, 0, 0, a->sheets == 1 ? -1 : 1}};
-  return give_patches(call, &q, 4, result);
+  return patches_result(call, &q, 4, result);
 }
 
 bool cag_surfaces_elliptic_cone(CagCall *call, const struct cag_surfaces_elliptic_cone *a,
                                 CagValue *result) {
   const CagQuadric q = {
       {inverse_square(a->a), inverse_square(a->b), -inverse_square(a->c), 0, 0, 0, 0, 0, 0, 0}};
-  return give_patches(call, &q, 3, result);
+  return patches_result(call, &q, 3, result);
 }
 
 // x^2/a^2 + sign y^2/b^2 + j z + k = 0
 static bool two_axes(CagCall *call, double a, double b, double sign, double j, double k,
                      CagValue *result) {
   const CagQuadric q = {{inverse_square(a), sign * inverse_square(b), 0, 0, 0, 0, 0, 0, j, k}};
-  return give_patches(call, &q, 2, result);
+  return patches_result(call, &q, 2, result);
 }
 
 bool cag_surfaces_paraboloid(CagCall *call, const struct cag_surfaces_paraboloid *a,
@@ -141,22 +141,23 @@ bool cag_surfaces_hyperbolic_cylinder(CagCall *call,
 
 bool cag_surfaces_parabolic_cylinder(CagCall *call, const struct cag_surfaces_parabolic_cylinder *a,
                                      CagValue *result) {
-  return give_patches(call, &(CagQuadric){{0, 1, 0, 0, 0, 0, -4 * a->a, 0, 0, 0}}, 1, result);
+  return patches_result(call, &(CagQuadric){{0, 1, 0, 0, 0, 0, -4 * a->a, 0, 0, 0}}, 1, result);
 }
 
 // --- Classification ---
 
-// The ball as an equation, negative inside.
+// The equation of a ball, negative inside.
 static bool sphere_equation(CagCall *call, const CagSolid *s, CagQuadric *q) {
   CagQuadric own = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -s->a * s->a}};
   return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, call->err));
 }
 
-// Places on a meridian at which it must be as far from the center as at its ends.
+// At this many points, a meridian must be as far from the center as at its ends.
 #define MERIDIAN_PROBES 9
-#define ON_SPHERE 1e-12 // part of the radius
+#define ON_SPHERE 1e-12 // fraction of the radius
 
-// The equation of a surface of revolution whose meridian is an arc about a point of the axis.
+// The equation of a surface of revolution whose meridian is an arc centered on the axis. Returns
+// false for any other surface.
 static bool turned_sphere(const CagSurface *s, CagQuadric *q) {
   const CagCurve *meridian;
   CagVec3 axis, through, d[2], p;

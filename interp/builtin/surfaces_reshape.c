@@ -1,12 +1,13 @@
-// Parts, finer nets and joins of surfaces; offsets and plates.
+// Parts, refinement, and joins of surfaces; offsets and plates.
 
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
-// One of `u:` and `v:`, the parameters from `at` on; *direction is which, *t its value.
-static bool read_place(CagCall *call, const CagSurface *s, int at, int *direction, double *t) {
+// Reads either `u:` or `v:`, the parameters `at` and at + 1. *direction tells which one; *t is its
+// value.
+static bool read_direction(CagCall *call, const CagSurface *s, int at, int *direction, double *t) {
   bool u = cag_given(call, at), v = cag_given(call, at + 1);
   *direction = u ? 0 : 1;
   if (u == v)
@@ -15,8 +16,8 @@ static bool read_place(CagCall *call, const CagSurface *s, int at, int *directio
            : cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, t);
 }
 
-// The region within closed plane curves, given as one region, curve or list of points, or as a list
-// of curves; *out has one reference of its own.
+// Reads the region bounded by closed plane curves. It is given as a region, curve, or list of
+// points, or as a list of curves. *out has one reference.
 static bool read_loops(CagCall *call, int argument, CagRegion **out) {
   CagValue v = call->values[argument];
   CagTransform place;
@@ -63,7 +64,7 @@ bool cag_surfaces_split(CagCall *call, const struct cag_surfaces_split *a, CagVa
   const CagSurface *s = a->S;
   int direction;
   double t;
-  if (!read_place(call, s, 1, &direction, &t)) return false;
+  if (!read_direction(call, s, 1, &direction, &t)) return false;
   const double low = direction == 0 ? s->u0 : s->v0, high = direction == 0 ? s->u1 : s->v1;
   if (!(t > low && t < high)) {
     const double shown = (direction == 0 ? s->angular_u : s->angular_v) ? 180 / M_PI : 1;
@@ -95,12 +96,13 @@ bool cag_surfaces_insert_knot(CagCall *call, const struct cag_surfaces_insert_kn
   CagSurface *out = NULL;
   int direction;
   double t;
-  if (!read_place(call, a->S, 1, &direction, &t)) return false;
+  if (!read_direction(call, a->S, 1, &direction, &t)) return false;
   CagStatus status = cag_surface_insert_knot(a->S, direction, t, (int)a->times, &out, call->err);
   return cag_changed_surface_result(call, status, &out, result);
 }
 
-// What is done in one direction: whether at all, and to which knots (NULL: midpoints).
+// Reads the refinement in one direction: whether there is any, and the knots to insert (NULL:
+// midpoints).
 static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {
   *out = (CagRefinement){CAG_REFINE_MIDPOINTS, NULL, 0};
   CagValue v = call->values[argument];

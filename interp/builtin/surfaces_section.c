@@ -1,4 +1,4 @@
-// Questions to the equation of a quadric, plane sections, and lines of curvature.
+// Properties of the equation of a quadric, plane sections, and contours of curvature.
 
 #include "geom/meet/section.h"
 
@@ -15,7 +15,7 @@
 // --- Quadrics ---
 
 static CagValue coefficients(CagVm *vm, CagQuadric q) {
-  for (int i = 0; i < 10; i++) q.c[i] += 0.0; // no -0
+  for (int i = 0; i < 10; i++) q.c[i] += 0.0; // replaces -0 by 0
   return cag_vector(vm, q.c, 10);
 }
 
@@ -87,7 +87,7 @@ bool cag_sections_moved(CagCall *call, const struct cag_sections_moved *a, CagVa
   return true;
 }
 
-// A plane, or a transform whose x and y axes and origin are a frame of it.
+// Reads a plane, or a transform whose x and y axes and origin are a frame of it.
 static bool read_frame(CagCall *call, int argument, CagTransform *frame) {
   CagPlane plane;
   if (call->values[argument].type == CAG_TRANSFORM) return cag_arg_transform(call, argument, frame);
@@ -111,7 +111,7 @@ bool cag_sections_section_conic(CagCall *call, CagValue *result) {
     zero = zero && conic.c[i] == 0;
     conic.c[i] += 0.0;
   }
-  // A plane that is part of the quadric gives no equation.
+  // A plane that is part of the quadric has no equation.
   if (!zero && !cag_geometry_ok(call, cag_curve_conic(&conic, &curve, call->err))) return false;
   frame.planar = false;
   CagValue values[] = {curve ? cag_curve_value(call->vm, curve) : cag_none(),
@@ -123,22 +123,23 @@ bool cag_sections_section_conic(CagCall *call, CagValue *result) {
 
 // --- Sections and outlines ---
 
-// The faces of a surface or solid; of other shapes none.
+// Returns the faces of a surface or solid; other shapes have none.
 static size_t faces_of(CagValue v, CagSurface *const **faces) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   *faces = v.type == CAG_SOLID ? shape->as.solid->faces : (CagSurface *const *)&shape->as.surface;
   return v.type == CAG_SURFACE ? 1 : v.type == CAG_SOLID ? shape->as.solid->face_count : 0;
 }
 
-// The curves that a section or outline has of one shape are added to a list.
+// Adds the curves of a section or outline of one shape to the list.
 typedef bool (*CurvesOf)(CagCall *call, CagValue shape, const void *question, CagCurveList *list);
 
-// The curves of all the shapes in the first argument.
-static bool give_curves(CagCall *call, CurvesOf curves_of, const void *question, CagValue *result) {
+// Collects the curves of all shapes in the first argument.
+static bool curves_result(CagCall *call, CurvesOf curves_of, const void *question,
+                          CagValue *result) {
   CagList *shapes;
   if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
   CagCurveList *list = cag_hold_curve_list(call);
-  // Formulas are called back: the shapes stay.
+  // Surfaces may call functions of the script, so the list of shapes is rooted.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++)
@@ -168,7 +169,7 @@ static bool section_of(CagCall *call, CagValue v, const void *question, CagCurve
 }
 
 bool cag_sections_section(CagCall *call, const struct cag_sections_section *a, CagValue *result) {
-  return give_curves(call, section_of, a, result);
+  return curves_result(call, section_of, a, result);
 }
 
 static bool contour_of(CagCall *call, CagValue v, const void *question, CagCurveList *list) {
@@ -188,7 +189,7 @@ bool cag_sections_contour(CagCall *call, const struct cag_sections_contour *a, C
   if (cag_given(call, 1) == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value,
                          "needs either the direction of the view, or the eye point as `from`");
-  return give_curves(call, contour_of, a, result);
+  return curves_result(call, contour_of, a, result);
 }
 
 bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvature_line *a,
@@ -205,7 +206,7 @@ bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvat
 
 #define CONTOUR_LEVELS_MOST 1000
 
-// One number, or a list or range of them; *out is held.
+// Reads one number, or a list or range of numbers; *out is held.
 static bool read_contour_levels(CagCall *call, int argument, double **out, size_t *n) {
   static const char what[] = "a finite number (1/mm, Gaussian 1/mm2), or a list of them";
   CagSequence levels = {.length = 1};
@@ -236,7 +237,7 @@ typedef struct ContourQuestion {
   double level, tolerance;
 } ContourQuestion;
 
-// `everywhere` stays true only where all of this shape has the curvature, too.
+// Clears `everywhere` unless all of this shape has the given curvature.
 static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, CagCurveList *out,
                                        bool *everywhere, CagError *err) {
   CagSurface *const *faces;
@@ -255,7 +256,7 @@ static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, Cag
   return status;
 }
 
-// The record of one level. `list` is empty before and after.
+// Creates the record of one level. `list` is empty before and after.
 static bool contour_record(CagCall *call, const CagList *shapes, const ContourQuestion *q,
                            CagCurveList *list, CagValue *result) {
   static const char *const names[] = {"level", "curves", "everywhere"};
@@ -282,14 +283,14 @@ bool cag_sections_curvature_contours(CagCall *call, const struct cag_sections_cu
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a surface");
   if (!read_contour_levels(call, 1, &levels, &n)) return false;
   CagCurveList *list = cag_hold_curve_list(call);
-  // Formulas are called back: the shapes and the records stay.
+  // Surfaces may call functions of the script, so the shapes and records are rooted.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   CagBuilder *out = cag_builder_new(call->vm);
   cag_root_push(call->vm, cag_builder_value(out));
   bool ok = true;
   for (size_t i = 0; ok && i < n; i++) {
     CagValue record = cag_none();
-    q.level = levels[i] + 0.0; // no -0
+    q.level = levels[i] + 0.0; // replaces -0 by 0
     ok = contour_record(call, shapes, &q, list, &record) && cag_builder_add(call->vm, out, record);
   }
   if (ok) *result = cag_builder_finish(call->vm, out);

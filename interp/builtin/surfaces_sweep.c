@@ -1,4 +1,4 @@
-// Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
+// Surfaces and solids swept by a section along a path or under transforms, and lofts.
 
 #include "geom/surface/loft.h"
 #include "interp/builtin/solids.h"
@@ -6,7 +6,7 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// Functions of the path's parameter are kept as series to this part of their size.
+// The relative tolerance of the series that approximate functions of the path's parameter.
 #define FIT_TOLERANCE 1e-12
 
 // --- Functions of the script as series ---
@@ -31,8 +31,8 @@ static bool call_sampled(CagVm *vm, void *question) {
   return cag_call(vm, s->call->values[s->argument], &at, 1, &q->answer) && cag_keep_going(vm);
 }
 
-// Calls the function, whose values are of the type `wanted`. Running out of memory in the script
-// must not leave the fit by a jump.
+// Calls the function, which must return a value of the type `wanted`. Running out of memory in the
+// script must not jump past the fit.
 static CagStatus call_at(const Sampled *s, double t, CagType wanted, const char *values,
                          CagValue *out, CagError *err) {
   Question q = {s, t, cag_none()};
@@ -71,7 +71,8 @@ static CagStatus sample_rows(void *context, double t, double *out, CagError *err
 
 static void release_series(void *series) { cag_chebyshev_release(series); }
 
-// Reads a number or angle that is reached at the end of the path, or a function of its parameter.
+// Reads a function of the path's parameter, or a number or angle that is reached at the end of the
+// path.
 static bool read_along(CagCall *call, int argument, const CagCurve *path, bool angles, double from,
                        CagAlong *out) {
   CagValue v = call->values[argument];
@@ -96,8 +97,8 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
 
 // --- Sections ---
 
-// What is swept: a curve for a surface, else a region of the plane. A region that stands in space
-// keeps its own coordinates.
+// The section to sweep: a curve for a surface, or a region for a solid. A region in space is used
+// in its own coordinates.
 typedef struct Section {
   const CagCurve *curve; // borrowed
   CagRegion *region;     // held
@@ -136,7 +137,7 @@ static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *
 
 static void release_motion(void *motion) { cag_motion_release(motion); }
 
-// Sweeps the section, and takes the motion over.
+// Sweeps the section, and takes ownership of the motion.
 static bool sweep_section(CagCall *call, const Section *section, CagMotion *motion, bool caps,
                           CagValue *result) {
   CagSolid *s = NULL;
@@ -218,7 +219,7 @@ bool cag_surfaces_tube(CagCall *call, const struct cag_surfaces_tube *a, CagValu
 
 // --- Lofts ---
 
-// A curve as it is, or the outline of a region without holes, placed and held.
+// Returns a curve, or the outline of a region without holes, which is placed and held.
 static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve **out) {
   if (v.type == CAG_CURVE) {
     *out = CAG_AS_SHAPE(v)->as.curve;

@@ -1,6 +1,6 @@
 // Texts: printed forms, parts, and case.
 //
-// Positions count code points; case follows Unicode's simple mappings.
+// Positions count code points. Case follows Unicode's simple mappings.
 
 #include <string.h>
 #include <utf8proc.h>
@@ -32,7 +32,7 @@ static bool print_list(CagCall *call, CagString *s, const CagList *list, int dig
   return true;
 }
 
-// Numbers and angles with so many places, alone or in lists.
+// Prints numbers and angles with `digits` places, alone or in lists.
 static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, int depth) {
   if (v.type == CAG_LIST) return print_list(call, s, CAG_AS_LIST(v), digits, depth + 1);
   if (v.type != CAG_NUMBER && v.type != CAG_ANGLE) {
@@ -69,7 +69,7 @@ bool cag_texts_number_of(CagCall *call, CagValue *result) {
 
 // --- Parts ---
 
-// Where `part` begins in [s, end), or NULL.
+// Returns the first occurrence of `part` in [s, end), or NULL.
 static const char *find_part(const char *s, const char *end, const CagText *part) {
   return memmem(s, (size_t)(end - s), part->bytes, part->length);
 }
@@ -96,7 +96,7 @@ bool cag_texts_split(CagCall *call, CagValue *result) {
   return true;
 }
 
-// Elements joined between two looks at the clock.
+// The number of elements that are joined between two checks whether the run must stop.
 enum { KEEP_GOING_EVERY = 4096 };
 
 bool cag_texts_join(CagCall *call, CagValue *result) {

@@ -1,4 +1,4 @@
-// `T * x`: the image of points, planes, shapes, cameras and lights, and of lists of these.
+// `T * x`: the image of points, planes, shapes, cameras, and lights, and of lists of these.
 
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
-// n vectors of 2, 3 or 4 numbers. Those of 2 stay plane under a planar transform.
+// Maps n vectors of 2, 3, or 4 numbers. Those of 2 stay in the plane if the transform is planar.
 static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x, size_t n,
                           size_t dim, size_t out_dim, double *out) {
   for (size_t i = 0; i < n; i++, x += dim, out += out_dim) {
@@ -72,7 +72,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
 }
 
 bool cag_transform_apply(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result) {
-  // The operator is `moved` by another name.
+  // The operator is another name for the built-in `moved`.
   size_t rows;
   CagValue values[] = {v, cag_unset()};
   CagCall call = {vm, cag_builtin_rows(cag_builtin_find("moved"), &rows), values, 2,

@@ -1,4 +1,4 @@
-// Questions to transforms: inverses, angles, classes, and homogeneous coordinates.
+// Properties of transforms: inverses, angles, classes, and homogeneous coordinates.
 
 #include <string.h>
 
@@ -113,7 +113,8 @@ bool cag_transforms_classify(CagCall *call, const struct cag_transforms_classify
 
 bool cag_transforms_homogeneous(CagCall *call, const struct cag_transforms_homogeneous *a,
                                 CagValue *result) {
-  // A point at infinity keeps its direction; any other is scaled, so that dividing gives it back.
+  // A point at infinity keeps its direction. Any other is multiplied by w, so that division by w
+  // restores it.
   double scale = a->w == 0 ? 1 : a->w;
   double h[] = {scale * a->P.at.x, scale * a->P.at.y, scale * a->P.at.z, a->w};
   for (int i = 0; i < 4; i++)

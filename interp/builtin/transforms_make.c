@@ -1,4 +1,4 @@
-// Transforms made of their own data: frames, turns, links, rows of numbers, pairs of points.
+// Constructors of transforms: frames, rotations, links, rows of numbers, and pairs of points.
 
 #include <string.h>
 
@@ -25,7 +25,7 @@ bool cag_transforms_reflect_point(CagCall *call, const struct cag_transforms_ref
   return cag_transform_result(call, CAG_OK, &t, a->P.dimension == 2, result);
 }
 
-// Rows of numbers, 2 to 4 of 2 to 4; *columns and *count tell the shape.
+// Reads 2 to 4 rows of 2 to 4 numbers; *count and *columns are the shape.
 static bool read_rows(CagCall *call, double m[4][4], size_t *count, size_t *columns) {
   CagList *list;
   if (!cag_arg_list(call, 0, &list)) return false;
@@ -51,7 +51,7 @@ bool cag_transforms_from_rows(CagCall *call, const struct cag_transforms_from_ro
   size_t rows, columns;
   if (!read_rows(call, m, &rows, &columns)) return false;
   const bool linear = a->kind == 1, square = rows == columns && rows > 0;
-  // Homogeneous in the plane: x, y and w; z stays as it is.
+  // Homogeneous in the plane, with x, y, and w; z does not change.
   const bool flat = square && rows == 3 && !linear;
   if (!(square || (rows == 3 && columns == 4)))
     return cag_fail_call(call, 0, CAG_ERR_value,
@@ -102,10 +102,10 @@ bool cag_transforms_axis_angle(CagCall *call, const struct cag_transforms_axis_a
                               &t, false, result);
 }
 
-// Turn about Z by the first angle, then about the turned Y by the second, then a step along the
-// turned axes; without `orient` only the position is kept.
-static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step, bool orient,
-                          CagValue *result) {
+// Rotates about Z by the first angle, then about the rotated Y axis by the second, and then
+// translates along the rotated axes. Without `orient`, only the translation is kept.
+static bool position_result(CagCall *call, double turn, double tilt, CagVec3 step, bool orient,
+                            CagValue *result) {
   CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
   CagTransform t = cag_transform_multiply(&tilted, &place);
   if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
@@ -114,12 +114,12 @@ static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step,
 
 bool cag_transforms_cylindrical(CagCall *call, const struct cag_transforms_cylindrical *a,
                                 CagValue *result) {
-  return give_position(call, a->theta, 0, cag_vec3(a->r, 0, a->z), a->orient, result);
+  return position_result(call, a->theta, 0, cag_vec3(a->r, 0, a->z), a->orient, result);
 }
 
 bool cag_transforms_spherical(CagCall *call, const struct cag_transforms_spherical *a,
                               CagValue *result) {
-  return give_position(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
+  return position_result(call, a->azimuth, a->polar, cag_vec3(0, 0, a->r), a->orient, result);
 }
 
 bool cag_transforms_dh(CagCall *call, const struct cag_transforms_dh *a, CagValue *result) {
@@ -148,7 +148,7 @@ bool cag_transforms_from_pairs(CagCall *call, const struct cag_transforms_from_p
 // --- solve_frame ---
 
 typedef struct Unknown {
-  const char *name; // the frame that is not known; NULL: not met yet
+  const char *name; // the unknown frame; NULL: not found yet
   int side;
   size_t at;
 } Unknown;
@@ -175,7 +175,7 @@ static bool read_side(CagCall *call, int side, const CagRecord *frames, Unknown 
   return true;
 }
 
-// Product of the frames of a side in [from, to), or up to its end.
+// The product of the frames of a side in [from, to), or up to its end.
 static CagTransform product(CagCall *call, int side, size_t from, size_t to,
                             const CagRecord *frames) {
   const CagList *names = CAG_AS_LIST(call->values[side]);

@@ -1,9 +1,10 @@
-// Transforms that also take first what they move: `translate(V)` is a transform, `translate(G, V)`
-// is `translate(V) * G`.
+// Transforms that optionally take the moved object first: `translate(V)` is a transform,
+// `translate(G, V)` is `translate(V) * G`.
 //
 // Each name has two rows in the table: one that makes the transform, and one whose first parameter
-// is what is moved. A list as first argument may be a vector or a list of shapes, which the table
-// cannot tell apart; the first row then finds the shapes and reads its arguments as the second.
+// is the moved object. A list as the first argument may be a vector or a list of shapes, which the
+// table cannot distinguish. If it holds shapes, the first row therefore reads its arguments like
+// the second one.
 
 #include <math.h>
 #include <string.h>
@@ -12,13 +13,13 @@
 #include "interp/builtin/support.h"
 #include "lang/foreign.h"
 
-// Reads the arguments from parameter `at` on.
+// Reads the arguments, beginning at parameter `at`.
 typedef bool (*MakeTransform)(CagCall *call, int at, CagTransform *out);
 
-// Most parameters that a row here has, and one more for what is moved.
+// The largest number of parameters of the rows here, plus one for the moved object.
 #define PARAMETERS_MAX 8
 
-// The row of the same function that has what is moved as its first parameter.
+// Returns the row of the same function whose first parameter is the moved object.
 static const CagBuiltin *moving_row(const CagBuiltin *row) {
   size_t n;
   const CagBuiltin *rows =
@@ -28,7 +29,7 @@ static const CagBuiltin *moving_row(const CagBuiltin *row) {
   return row;
 }
 
-// Whether v is a list, perhaps of lists, whose first element has one of the types in `mask`.
+// Whether v is a list, possibly nested, whose first element has one of the types in `mask`.
 static bool holds_types(CagVm *vm, CagValue v, uint64_t mask) {
   while (v.type == CAG_LIST) {
     const CagList *list = CAG_AS_LIST(v);
@@ -77,8 +78,8 @@ bool cag_transforms_translate(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_translate);
 }
 
-// An axis without an angle: three numbers (`dimension`) before a shape are meant as turns about x,
-// y and z.
+// Reports a missing angle. In front of a shape, three numbers (see `dimension`) are probably meant
+// as rotations about x, y, and z.
 static bool fail_angle(CagCall *call, int dimension, CagVec3 axis) {
   cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
   if (dimension < 3) return false;
@@ -92,25 +93,26 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   CagVec3 axis = {0, 0, 1}, about = {0, 0, 0};
   int axis_dimension = 2, about_dimension = 2;
   double angle;
-  // Without an axis the turn is about Z.
+  // Without an axis, the rotation is about Z.
   bool plain = call->values[at].type == CAG_ANGLE;
   int next = plain ? at : at + 1;
   if (!plain && !cag_arg_vec(call, at, &axis, &axis_dimension)) return false;
   if (!cag_given(call, next)) return fail_angle(call, at > 0 ? axis_dimension : 0, axis);
   if (!cag_arg_angle(call, next, &angle)) return false;
-  // By position it follows the angle; by its name it stands behind the place of an axis.
+  // By position, `about` follows the angle. By name, it follows the parameter for an angle after an
+  // axis.
   size_t place = (size_t)next + 1;
   if (plain && at > 0 && place + 1 < call->count && cag_given(call, (int)place + 1)) place++;
   if (place < call->count && cag_given(call, (int)place) &&
       !cag_arg_vec(call, (int)place, &about, &about_dimension))
     return false;
-  // What is moved about a line along Z stays in the plane of the drawing.
+  // A shape that is rotated about a line parallel to Z stays in its drawing plane.
   const bool upright = at > 0 && axis.x == 0 && axis.y == 0 && about.z == 0;
   return made(call, cag_rotate(axis, angle, about, out, call->err),
               upright || (plain && about_dimension == 2), out);
 }
 
-// The angles of `rpy` in radians, from a list of three.
+// Reads the angles of `rpy` from a list of three, in radians.
 static bool read_rpy(CagCall *call, int argument, double rpy[3]) {
   CagList *list;
   if (!cag_arg_list(call, argument, &list)) return false;
@@ -130,8 +132,8 @@ static bool read_rpy(CagCall *call, int argument, double rpy[3]) {
   return true;
 }
 
-// rotate(G, rpy: [a, b, c]): about x, then y, then z, which stay where they are. `place` is that of
-// the parameter; `about` stands before it, and before that what `rpy` is given in place of.
+// rotate(G, rpy: [a, b, c]): about the fixed axes x, y, and z, in this order. `place` is the index
+// of the parameter. `about` is before it, and the parameters that `rpy` replaces are before that.
 static bool rotate_rpy(CagCall *call, int place, CagValue *result) {
   double rpy[3];
   CagVec3 about;

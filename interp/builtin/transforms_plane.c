@@ -1,10 +1,10 @@
-// Planes, and points and lines in the plane.
+// Planes, and points and lines in a plane.
 
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 
-// Lines whose directions differ by less than this sine are parallel; lines of space that pass each
-// other by more than this share of their data's size do not meet. Both are some hundred roundings.
+// Lines are parallel if the sine of their angle is below this. Lines in space do not meet if their
+// distance exceeds this fraction of the size of their data. Both are some hundred rounding errors.
 #define LINE_TOLERANCE 1e-12
 
 bool cag_transforms_plane(CagCall *call, const struct cag_transforms_plane *a, CagValue *result) {
@@ -68,8 +68,9 @@ bool cag_transforms_distance_to_line(CagCall *call, const struct cag_transforms_
          cag_fail_call(call, -1, CAG_ERR_value, "expects points whose distances do not overflow");
 }
 
-// Size of the vector area of the closed polygon, and its centroid: shoelace sums taken from the first point,
-// which keeps them small. A polygon of space is taken as seen along its vector area.
+// The length of the vector area of the closed polygon, and its centroid. The shoelace sums are
+// relative to the first point, which keeps them small. A polygon in space is projected along its
+// vector area.
 static bool polygon_area(CagCall *call, CagPoints polygon, double *out, CagVec3 *centroid) {
   const CagVec3 *p = polygon.items;
   const size_t n = polygon.count;
@@ -119,7 +120,7 @@ bool cag_transforms_contains(CagCall *call, CagValue *result) {
   cag_hold_region(call, region);
   if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, call->err))) return false;
   p = cag_transform_point(&back, p);
-  // A point beside the region's plane is not in it; the rounding of placing it there is.
+  // The point must lie in the region's plane, up to the rounding errors of placing it there.
   bool beside = fabs(p.z) > 1000 * LINE_TOLERANCE * (1 + cag_norm(p));
   p.z = 0;
   if (!beside && !cag_geometry_ok(call, cag_region_contains(region, p, &inside, call->err)))

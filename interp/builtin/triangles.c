@@ -1,4 +1,4 @@
-// Triangular Bezier surfaces in barycentric coordinates; the surface itself is made by
+// Triangular Bezier surfaces in barycentric coordinates. The surface itself is made by
 // bezier_triangle.
 
 #include "geom/surface/triangle.h"
@@ -13,8 +13,8 @@ static CagValue net_value(CagVm *vm, const CagVec3 *net, int degree) {
   return cag_builder_finish(vm, rows);
 }
 
-// The net, and the coordinates W.
-static bool read_place(CagCall *call, CagVec3 **net, int *degree, const double **w) {
+// Reads the net and the coordinates W.
+static bool read_net(CagCall *call, CagVec3 **net, int *degree, const double **w) {
   size_t n;
   if (!cag_arg_numbers(call, 1, w, &n)) return false;
   if (n != 3)
@@ -29,7 +29,7 @@ bool cag_triangles_triangle_point(CagCall *call, CagValue *result) {
   int degree = 0;
   const double *w;
   CagTriangleJet jet = {0};
-  if (!read_place(call, &net, &degree, &w)) return false;
+  if (!read_net(call, &net, &degree, &w)) return false;
   if (!cag_geometry_ok(call, cag_triangle_at(net, degree, w, &jet, call->err))) return false;
   CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
   CagValue values[] = {cag_point(call->vm, jet.point, 3), cag_point(call->vm, jet.ds, 3),
@@ -63,7 +63,7 @@ bool cag_triangles_triangle_split(CagCall *call, CagValue *result) {
   CagVec3 *net = NULL;
   int degree = 0;
   const double *w;
-  if (!read_place(call, &net, &degree, &w)) return false;
+  if (!read_net(call, &net, &degree, &w)) return false;
   size_t n = cag_triangle_count(degree);
   CagVec3 *parts = cag_hold_array(call, 3 * n, sizeof *parts);
   CagStatus status = cag_triangle_split(

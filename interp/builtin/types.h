@@ -1,4 +1,4 @@
-// The rows of types that are not the language's own, for the table of types in types.c.
+// The rows of types outside the language, for the table of types in types.c.
 
 #ifndef CAG_INTERP_BUILTIN_TYPES_H
 #define CAG_INTERP_BUILTIN_TYPES_H
@@ -11,7 +11,7 @@ extern const CagValueType cag_type_camera, cag_type_light, cag_type_setting;
 extern const CagValueType cag_type_link, cag_type_robot;
 extern const CagValueType cag_type_image;
 
-// T * list: points, or anything that can be moved (transforms_apply.c).
+// T * list: points, or any objects that can be moved (transforms_apply.c).
 bool cag_move_list(CagCall *call, const CagTransform *t, CagValue list, CagValue *result);
 
 #endif

@@ -1,11 +1,11 @@
-// The types of what a scene has besides shapes: cameras, lights, and settings.
+// The types of scene objects other than shapes: cameras, lights, and settings.
 
 #include <string.h>
 
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/types.h"
 
-// Fields by name, as far as they are given: "sun, direction [1, 1, -2], ...".
+// Prints the fields that are set, with their names: "sun, direction [1, 1, -2], ...".
 static void print_staged(CagVm *vm, CagString *s, CagValue v) {
   const CagSceneValue *value = CAG_AS_SCENE(v);
   const char *noun = v.type == CAG_CAMERA ? " camera" : v.type == CAG_LIGHT ? " light" : "";
@@ -32,7 +32,7 @@ static const char *staged_member_name(CagVm *vm, CagValue v, size_t i) {
   return cag_type_record.member_name(vm, cag_object(CAG_RECORD, CAG_AS_SCENE(v)->fields), i);
 }
 
-// Cameras and lights are moved by their points and directions; sizes follow a uniform scale.
+// Moves the points and directions of cameras and lights. Sizes are scaled by a uniform scale.
 static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   static const char *const points[] = {"eye", "target", "position"};
   static const char *const vectors[] = {"up", "direction"};
@@ -64,7 +64,7 @@ static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagVal
     for (size_t k = 0; f.type == CAG_NUMBER && k < sizeof sizes / sizeof *sizes; k++)
       if (!strcmp(name, sizes[k])) fields[i] = cag_number(f.as.number * scale);
   }
-  // A camera needs a direction to look and one that is up.
+  // A camera needs a viewing direction and an up direction.
   if (is_flat || (v.type == CAG_CAMERA && cag_norm(cag_sub(images[0], images[1])) == 0))
     return cag_fail_call(call, 0, CAG_ERR_operand,
                          "cannot apply a projection to a camera or light");

@@ -108,7 +108,7 @@ const CagValueType cag_type_plane = {.print = print_plane,
 
 // --- Calls of built-ins ---
 
-// Calls a row from outside of built-ins, and releases what it holds.
+// Calls a row from outside of a built-in, and releases what it holds.
 static bool call_row(CagCall *call, CagValue *out) {
   const size_t held = call->vm->held_count;
   const bool ok = call->builtin->function(call, out);
@@ -116,7 +116,7 @@ static bool call_row(CagCall *call, CagValue *out) {
   return ok;
 }
 
-// A call of a built-in of one argument, for members that are functions as well.
+// Calls a built-in of one argument, for members that are functions as well.
 static bool call_unary(CagVm *vm, const char *function, CagValue v, CagValue *out) {
   size_t index = cag_builtin_find(function), count;
   if (index == (size_t)-1) return false;
@@ -127,7 +127,7 @@ static bool call_unary(CagVm *vm, const char *function, CagValue v, CagValue *ou
   return call_row(&call, out);
 }
 
-// c(t) and s(u, v).
+// Evaluates c(t) or s(u, v).
 bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t n,
                     CagValue *result) {
   size_t index = cag_builtin_find("at"), count, wanted = shape.type == CAG_CURVE ? 1 : 2;
@@ -144,7 +144,7 @@ bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t
   return call_row(&call, result);
 }
 
-// --- What all shapes have ---
+// --- Common to all shapes ---
 
 static void scan_shape(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
@@ -156,7 +156,7 @@ static void add_count(CagString *s, size_t n, const char *one, const char *many)
   cag_string_printf(s, "%zu %s", n, n == 1 ? one : many);
 }
 
-// The parts of a type that are the same for curves, surfaces, solids, and meshes.
+// The columns that are the same for the types of curves, surfaces, solids, and meshes.
 #define SHAPE(Type, name)                                                                          \
   static void retain_##name(CagObject *o) { cag_##name##_retain(((CagShape *)o)->as.name); }       \
   static void destroy_##name(CagObject *o) { cag_##name##_release(((CagShape *)o)->as.name); }     \

@@ -1,7 +1,7 @@
-// Vectors: products, lengths, angles between, and comparison within a tolerance.
+// Vectors: products, lengths, angles, and comparison within a tolerance.
 //
-// A vector is a list of numbers of any length; 2-D and 3-D ones may meet where a space vector is
-// meant, and the 2-D one then has z = 0.
+// A vector is a list of any number of numbers. 2-D and 3-D vectors can be combined; the 2-D one
+// then has z = 0.
 
 #include "interp/builtin/support.h"
 
@@ -20,10 +20,10 @@ static bool read_vector(CagCall *call, int argument, Vector *out) {
   return cag_arg_numbers(call, argument, &out->x, &out->n);
 }
 
-// Element i; behind the end of a plane vector 0.
+// Returns element i, or 0 after the end of a plane vector.
 static double element(Vector v, size_t i) { return i < v.n ? v.x[i] : 0; }
 
-// The arguments 0 and 1 as vectors of one length, which *n gets.
+// Reads the arguments 0 and 1 as vectors of one length, which is stored in *n.
 static bool read_two(CagCall *call, Vector *a, Vector *b, size_t *n) {
   if (!read_vector(call, 0, a) || !read_vector(call, 1, b)) return false;
   *n = a->n > b->n ? a->n : b->n;
@@ -33,15 +33,15 @@ static bool read_two(CagCall *call, Vector *a, Vector *b, size_t *n) {
                        "expects vectors of the same length, found %zu and %zu numbers", a->n, b->n);
 }
 
-// Root of the sum of squares of n numbers x[i * stride], scaled so that it neither overflows nor
-// vanishes on the way.
+// The root of the sum of squares of n numbers x[i * stride], scaled so that it neither overflows
+// nor underflows.
 static double norm_of(const double *x, size_t n) {
   double sum = 0, largest = 0;
   for (size_t i = 0; i < n; i++) {
     sum += x[i] * x[i];
     if (fabs(x[i]) > largest) largest = fabs(x[i]);
   }
-  // Squares of numbers between these bounds lose nothing.
+  // Numbers between these bounds can be squared without scaling.
   static const double SMALL = 1e-140, LARGE = 1e140;
   if ((largest > SMALL && largest < LARGE) || largest == 0 || isinf(largest)) return sqrt(sum);
   sum = 0;
@@ -85,8 +85,8 @@ bool cag_vectors_unit(CagCall *call, CagValue *result) {
   return true;
 }
 
-// distance is the same from either side: when the second argument is a shape, the row for shapes
-// gets it first.
+// distance is symmetric. If the second argument is a shape, the row for shapes is called with the
+// arguments swapped.
 static bool distance_to_shape(CagCall *call, CagValue *result) {
   size_t index = cag_builtin_find("distance"), rows;
   const CagBuiltin *row = cag_builtin_rows(index, &rows);
@@ -129,13 +129,14 @@ bool cag_vectors_angle_between(CagCall *call, CagValue *result) {
   if (isinf(na) || isinf(nb))
     return cag_fail_value(call, isinf(na) ? 0 : 1, "a vector of finite length");
   if (n == 2 || n == 3) {
-    // From sine and cosine: exact for multiples of 45deg, accurate near 0 and 180deg.
+    // From sine and cosine, which is exact for multiples of 45deg and accurate near 0 and 180deg.
     CagVec3 u = cag_vec3(a.x[0] / na, a.x[1] / na, element(a, 2) / na);
     CagVec3 v = cag_vec3(b.x[0] / nb, b.x[1] / nb, element(b, 2) / nb);
     *result = cag_angle(cag_atan2_degrees(cag_norm(cag_cross(u, v)), cag_dot(u, v)));
     return true;
   }
-  // Kahan: twice the angle in the triangle of the sum and the difference of the unit vectors.
+  // Kahan's formula: twice the angle in the triangle of the sum and the difference of the unit
+  // vectors.
   double sum = 0, difference = 0;
   for (size_t i = 0; i < n; i++) {
     double u = a.x[i] / na, v = b.x[i] / nb;
@@ -165,7 +166,7 @@ static bool near_transforms(const Nearness *by, const CagTransform *a, const Cag
   return all;
 }
 
-// Compares two values into *out; false with the error set where they are nothing to compare.
+// Compares two values into *out. Returns false with the error set if they cannot be compared.
 static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out);
 
 static bool near_lists(Nearness *by, const CagList *a, const CagList *b, bool *out) {
@@ -209,7 +210,7 @@ static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out) {
       cag_value_words(vm, a, left, sizeof left), cag_value_words(vm, b, right, sizeof right));
 }
 
-// A number of 0 or more; of angles also an angle.
+// Reads a number of at least 0, or, if the values may be angles, an angle.
 static bool read_tolerance(CagCall *call, int argument, double fallback, double *out) {
   CagValue v = call->values[argument];
   *out = fallback;
@@ -220,7 +221,7 @@ static bool read_tolerance(CagCall *call, int argument, double fallback, double 
 }
 
 bool cag_vectors_near(CagCall *call, CagValue *result) {
-  static const double TOLERANCE = 1e-9; // the default that the signature promises
+  static const double TOLERANCE = 1e-9; // the default stated in the signature
   Nearness by = {.call = call};
   bool near;
   if (!read_tolerance(call, 2, TOLERANCE, &by.tolerance) ||

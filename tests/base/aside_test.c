@@ -1,4 +1,4 @@
-// Work on a thread of its own, which the caller may leave behind.
+// Work on a separate thread, which the caller may abandon.
 
 #include <setjmp.h>
 #include <stdarg.h>

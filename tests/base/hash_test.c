@@ -1,4 +1,4 @@
-// Hashes and the index of numbered things.
+// Hashes, and the index of numbered items.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,7 +59,7 @@ static void numbers_are_found_by_their_hash(void **state) {
   cag_hash_free(&x);
 }
 
-// Also after the index grew, and where other hashes stand between and around its end.
+// Also after the index grows, and with other hashes between and around its end.
 static void numbers_of_one_hash_come_in_their_order(void **state) {
   (void)state;
   for (uint64_t hash = 0; hash < 64; hash++) {

@@ -1,4 +1,4 @@
-// Accounts: what is charged and credited, and what happens at the limit.
+// Memory accounts: charges, credits, and the limit.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +20,7 @@ static size_t chance(size_t n) {
   return (seed >> 8) % n;
 }
 
-// The account holds what malloc says of the blocks that there are, whatever was done to them.
+// The account equals the malloc sizes of all live blocks, after any operations.
 static void an_account_holds_the_usable_sizes_of_its_blocks(void **state) {
   (void)state;
   enum { N = 100 };
@@ -76,7 +76,7 @@ static void what_exceeds_the_limit_is_refused_like_exhausted_memory(void **state
   assert_non_null(block);
   memset(block, 7, 600000);
   assert_null(cag_malloc(400000 + 100));
-  // The old block stays when there is no room for the larger one.
+  // The old block is kept if there is no memory for the larger one.
   assert_null(cag_realloc(block, 1000100));
   assert_int_equal(block[599999], 7);
   char *text;
@@ -113,7 +113,7 @@ static void blocks_can_come_from_the_system_and_go_to_it(void **state) {
   (void)state;
   CagAccount a = {.limit = 1000};
   cag_account_lend(&a);
-  // What is adopted may exceed the limit.
+  // Adopted blocks may exceed the limit.
   char *system = malloc(5000);
   cag_adopt(system);
   assert_true(a.used >= 5000);

@@ -1,4 +1,4 @@
-// Characters of UTF-8 and texts in JSON.
+// UTF-8 characters, and JSON texts.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +18,7 @@ static void characters_are_counted_by_their_first_bytes(void **state) {
   (void)state;
   assert_int_equal(cag_utf8_count(mixed, strlen(mixed)), 4);
   assert_int_equal(cag_utf8_count(mixed, 0), 0);
-  assert_int_equal(cag_utf8_count(mixed, 2), 2); // the second is cut
+  assert_int_equal(cag_utf8_count(mixed, 2), 2); // the second is truncated
 }
 
 static void steps_lead_from_character_to_character(void **state) {

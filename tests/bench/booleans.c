@@ -1,5 +1,5 @@
-// Figures of set operations of meshes: spheres of many triangles, the same twice, many operands.
-// `booleans volumes` prints volumes of random operations instead.
+// Benchmarks of set operations of meshes: spheres of many triangles, identical operands, and many
+// operands. `booleans volumes` prints volumes of random operations instead.
 
 #include <math.h>
 #include <stdio.h>
@@ -83,7 +83,7 @@ static double random_number(void) {
   return (double)(state >> 11) / 9007199254740992.0;
 }
 
-// Volumes of random operations, to compare builds by: one to a line.
+// Prints volumes of random operations, one per line, to compare builds.
 static void print_volumes(void) {
   for (int i = 0; i < 30; i++) {
     const double x = random_number(), y = random_number(), z = random_number();

@@ -1,5 +1,5 @@
-// How long Tab takes in a session that has the whole library loaded: the slowest of several texts,
-// the best of some tries each. Writes microseconds and the text.
+// The time of Tab completion in a session with the whole library: the slowest of several texts, the
+// best of several tries each. Prints microseconds and the text.
 
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static bool load_library(CagSession *s) {
   return true;
 }
 
-// Seconds of the best try, and how many proposals there were.
+// Returns the seconds of the best try, and the number of proposals.
 static double measure(CagRepl *repl, const char *text, size_t *count) {
   double best = 1e9;
   for (int i = 0; i < TRIES; i++) {

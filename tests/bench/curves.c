@@ -1,10 +1,11 @@
-// Curves against SISL 4.6, in one run: evaluation, arc length, curves from data, closest point.
-// Built with SISL where its header is (CAG_SISL); without it the peer's column stays empty.
+// Curves compared with SISL 4.6, in one run: evaluation, arc length, curves from data, and closest
+// points. Uses SISL if its header is installed (CAG_SISL); otherwise, the column of the peer is
+// empty.
 //
-// The curve is a cubic of 20 control points on a bent helix, polynomial and rational. Every
-// figure is the best of five rounds over the same parameters, which are in no order. A sum of what
-// is computed is kept, so that nothing can be left out by the compiler, and where SISL computes the
-// same thing the two are compared.
+// The curve is a cubic of 20 control points on a bent helix, polynomial and rational. Every figure
+// is the best of five rounds over the same parameters, in random order. A sum of the results is
+// kept, so that the compiler cannot omit anything. Where SISL computes the same quantity, the two
+// are compared.
 
 #include <stdint.h>
 #include <stdio.h>
@@ -13,7 +14,7 @@
 
 #ifdef CAG_SISL
 #include <sisl.h>
-// It has these as macros.
+// SISL defines these as macros.
 #undef MAX
 #undef MIN
 #endif
@@ -28,9 +29,9 @@
 #define QUERIES 2000
 #define PIECES 100
 #define DATA 100000
-#define FITTED 1000 // control points of the least squares
+#define FITTED 1000 // control points of the least squares fit
 
-// Time of the processor: other programs must not count.
+// Processor time, so that other programs do not count.
 static double now(void) {
   struct timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -43,14 +44,15 @@ static void check(bool ok, const char *what) {
   exit(1);
 }
 
-// A multiplicative generator with the numbers of Park and Miller: the same parameters everywhere.
-static double random_share(void) {
+// Park and Miller's multiplicative generator: the same parameters on every machine.
+static double random_fraction(void) {
   static uint64_t state = 1;
   state = state * 48271 % 2147483647;
   return (double)state / 2147483647;
 }
 
-// name, our seconds, SISL's (0: not here), the least that SISL's time should be of ours (0: none).
+// name, our seconds, SISL's seconds (0: not available), the required ratio of SISL's time to ours
+// (0: none).
 static void report(const char *name, double ours, double sisl, double aim) {
   printf("%-52s %10.4f ms", name, 1e3 * ours);
   if (sisl > 0) printf("   SISL %10.4f ms   %6.2f times as fast", 1e3 * sisl, sisl / ours);
@@ -58,7 +60,7 @@ static void report(const char *name, double ours, double sisl, double aim) {
   putchar('\n');
 }
 
-// --- The curve, and SISL's twin of it ---
+// --- The curve, and its SISL counterpart ---
 
 typedef struct Subject {
   CagCurve *ours;
@@ -138,7 +140,7 @@ static double together(const Subject *s, const double *t, CagVec3 *out, double *
   return seconds;
 }
 
-// `order`: how many derivatives.
+// `order`: the number of derivatives.
 static double of_sisl(const Subject *s, const double *t, int order, double *sum) {
   *sum = 0;
 #ifdef CAG_SISL
@@ -168,13 +170,13 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// `order`: how the parameters lie. SISL, too, begins at the span where it was.
+// `order` describes the order of the parameters. SISL, too, starts from the previous span.
 static void measure_evaluation(const char *kind, const char *order, bool rational, bool sorted) {
   Subject s = make_subject(POINTS, rational);
   double *t = malloc(EVALUATIONS * sizeof *t);
   CagVec3 *out = malloc(3 * EVALUATIONS * sizeof *out);
   check(t && out, "no memory");
-  for (size_t i = 0; i < EVALUATIONS; i++) t[i] = s.start + (s.end - s.start) * random_share();
+  for (size_t i = 0; i < EVALUATIONS; i++) t[i] = s.start + (s.end - s.start) * random_fraction();
   if (sorted) qsort(t, EVALUATIONS, sizeof *t, ascending);
   double single = 0, many = 0, sisl = 0, sums[3];
   for (int round = 0; round < ROUNDS; round++) {
@@ -196,8 +198,8 @@ static void measure_evaluation(const char *kind, const char *order, bool rationa
 
 // --- The language's `sample` ---
 
-// `seconds`: what a script took for 10^6 points, measured from outside; SISL's points are at the
-// same equal steps.
+// `seconds`: the time of a script for 10^6 points, measured outside. SISL's points are at the same
+// equal steps.
 static void compare_sample(const char *kind, bool rational, double seconds) {
   Subject s = make_subject(POINTS, rational);
   double *t = malloc(EVALUATIONS * sizeof *t), sisl = 0, derivatives = 0, sum;
@@ -243,8 +245,8 @@ static void measure_length(void) {
 
 // --- Curves from data ---
 
-// A curve through all the data, and one of FITTED control points by least squares. The data lie on
-// a smooth curve, so that both have to come near: the first to rounding, the second to its spans.
+// A curve through all the data, and one of FITTED control points by least squares. The data are on
+// a smooth curve, so both must be close: the first up to rounding, the second up to its spans.
 static void measure_fits(void) {
   CagVec3 *points = malloc(DATA * sizeof *points);
   check(points != NULL, "no memory");
@@ -309,7 +311,8 @@ static void measure_closest(const char *name, bool rational) {
   double *theirs = malloc(QUERIES * sizeof *theirs);
   check(p && distance && theirs, "no memory");
   for (size_t i = 0; i < QUERIES; i++)
-    p[i] = cag_vec3(120 * random_share() - 60, 100 * random_share() - 50, 70 * random_share() - 10);
+    p[i] = cag_vec3(120 * random_fraction() - 60, 100 * random_fraction() - 50,
+                    70 * random_fraction() - 10);
   double ours = 0, sisl = 0, t;
   CagError err;
   for (int round = 0; round < ROUNDS; round++) {
@@ -334,7 +337,7 @@ static void measure_closest(const char *name, bool rational) {
   free_subject(&s);
 }
 
-// Arguments: seconds that scripts take to sample the polynomial and the rational curve.
+// Arguments: the seconds that scripts need to sample the polynomial and the rational curve.
 int main(int argc, char **argv) {
   measure_evaluation("cubic B-spline", "at random", false, false);
   measure_evaluation("cubic B-spline", "ascending", false, true);

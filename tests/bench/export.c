@@ -1,5 +1,6 @@
-// Times the mesh formats on 10^6 triangles, beside writing the same bytes with fwrite to the same
-// place. Both take turns, so that what else the machine does meets both; the best of each counts.
+// Times the mesh formats for 10^6 triangles, compared with writing the same bytes by fwrite to the
+// same location. The two alternate, so that other processes affect both equally; the best of each
+// counts.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +65,7 @@ static CagStatus write_gltf(const CagMeshPart *p, CagAtomicFile *f, CagError *e)
 static CagStatus write_3mf(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
   return cag_export_3mf(p, 1, f, e);
 }
-// A scene that owns what it has, as cag_scene_complete wants it.
+// Makes a scene that owns its contents, as cag_scene_complete requires.
 static CagStatus write_pov(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
   CagScene scene = {.items = calloc(1, sizeof *scene.items),
                     .item_count = 1,

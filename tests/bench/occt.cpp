@@ -1,6 +1,6 @@
-// The peer's side of the figures of tessellation, Open CASCADE: a line of tolerance, triangles and
-// seconds of the processor for each tolerance, on the surface of surfaces.c. The best of some rounds
-// is taken, as there; but of the finest, which takes it minutes, there is one.
+// The peer in the benchmarks of tessellation, Open CASCADE. Prints the tolerance, the number of
+// triangles, and the processor seconds for each tolerance, for the surface of surfaces.c. Takes the
+// best of several rounds, as there, but only one round for the finest tolerance, which needs minutes.
 
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@
 #include <TopoDS_Face.hxx>
 
 static const int side = 20, degree = 3, rounds = 5;
-static const double repeated = 1e-3; // the finest tolerance that is met in every round
+static const double repeated = 1e-3; // the finest tolerance that is measured in every round
 static const double angle = 0.5, sewing = 1e-7;
 
 static double now() {
@@ -41,8 +41,8 @@ static Handle(Geom_BSplineSurface) subject() {
   return new Geom_BSplineSurface(net, at, at, times, times, degree, degree);
 }
 
-// Debian's headers lack one that Poly_Triangulation.hxx needs; so the count is read from the text
-// form, where nodes and triangles follow this title.
+// Debian lacks a header that Poly_Triangulation.hxx needs. The count is therefore read from the text
+// form, where the numbers of nodes and triangles follow this title.
 static int triangles_of(const TopoDS_Face &face) {
   const std::string title = "Triangulations 1\n";
   std::ostringstream text;

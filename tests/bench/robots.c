@@ -1,5 +1,5 @@
-// Figures of robots: forward kinematics, Jacobian, and numerical inverse kinematics of random
-// reachable poses, beside the peer's, whose lines are read from the file named.
+// Benchmarks of robots: forward kinematics, Jacobian, and numerical inverse kinematics of random
+// reachable poses, compared with the peer, whose lines are read from the given file.
 
 #include <math.h>
 #include <stdio.h>
@@ -9,10 +9,10 @@
 #include "tests/bench/robots.h"
 
 #define REPEATS 20
-#define LONGEST 5e-3 // seconds that a pose may take
+#define LONGEST 5e-3 // the maximum seconds for a pose
 
 typedef struct Peer {
-  double fk, jacobian, solved, mean; // us, us, share, ms
+  double fk, jacobian, solved, mean; // us, us, fraction, ms
 } Peer;
 
 static CagRobot *make(const BenchChain *c) {
@@ -42,7 +42,7 @@ static CagRobot *make(const BenchChain *c) {
 static double q[BENCH_POSES][BENCH_JOINTS_MAX];
 static volatile double sink;
 
-// Best of several rounds, in microseconds a call.
+// The best of several rounds, in microseconds per call.
 static void time_forward(const CagRobot *r, double *forward, double *jacobian) {
   *forward = *jacobian = INFINITY;
   for (int round = 0; round < REPEATS; round++) {
@@ -64,7 +64,7 @@ static void time_forward(const CagRobot *r, double *forward, double *jacobian) {
   }
 }
 
-// Whether a place is within the limits and its pose is the one wanted.
+// Whether joint values are within the limits and lead to the target pose.
 static bool is_solution(const CagRobot *r, const CagTransform *wanted, const double *x) {
   CagTransform t;
   double by, position, rotation;
@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
     double forward, jacobian, solved, mean, longest;
     bool beside = peers && fscanf(peers, "%lf %lf %lf %lf", &peer.fk, &peer.jacobian, &peer.solved,
                                   &peer.mean) == 4;
-    bench_places(c, q);
+    bench_samples(c, q);
     time_forward(r, &forward, &jacobian);
     time_inverse(r, &solved, &mean, &longest);
     printf("%-15s fk %6.3f us", c->name, forward);

@@ -1,5 +1,5 @@
-// The chains, and the sequence of joint values, of the figures of robots: for our side in C and the
-// peer's in C++. Rows are classic Denavit-Hartenberg, in meters and degrees, with limits.
+// The chains and the sequence of joint values for the benchmarks of robots: for our side in C and
+// the peer's in C++. Rows are classic Denavit-Hartenberg, in meters and degrees, with limits.
 
 #ifndef CAG_BENCH_ROBOTS_H
 #define CAG_BENCH_ROBOTS_H
@@ -20,7 +20,8 @@ typedef struct BenchChain {
   BenchRow rows[BENCH_JOINTS_MAX];
 } BenchChain;
 
-// Panda and the arm of five joints are shifted from the makers' tables; limits are the makers'.
+// The tables of Panda and the arm of five joints differ from the makers' by a shift; limits are the
+// makers'.
 static const BenchChain bench_chains[] = {
     {"Puma 560",
      6,
@@ -83,8 +84,8 @@ static const BenchChain bench_chains[] = {
 };
 #define BENCH_CHAINS (sizeof bench_chains / sizeof *bench_chains)
 
-// Joint values in radians, evenly spread over the limits: the same for both sides.
-static inline void bench_places(const BenchChain *c, double (*q)[BENCH_JOINTS_MAX]) {
+// Joint values in radians, distributed evenly over the limits, the same for both sides.
+static inline void bench_samples(const BenchChain *c, double (*q)[BENCH_JOINTS_MAX]) {
   const double degree = 0.017453292519943295;
   uint64_t state = 12345;
   for (int k = 0; k < BENCH_POSES; k++)
@@ -95,8 +96,7 @@ static inline void bench_places(const BenchChain *c, double (*q)[BENCH_JOINTS_MA
     }
 }
 
-// Seconds of the processor that this program has taken: what other programs take meanwhile does not
-// count.
+// The processor time of this program in seconds, so that other programs do not count.
 static inline double bench_now(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -1,6 +1,6 @@
-// The peer's side of the figures of robots, Orocos KDL: a line of numbers for each chain, time of
-// forward kinematics and of the Jacobian (us), share solved by Newton-Raphson with joint limits (%)
-// and mean time (ms), on the same poses.
+// The peer in the benchmarks of robots, Orocos KDL. Prints a line of numbers for each chain: the time
+// of forward kinematics and of the Jacobian (us), the percentage of poses solved by Newton-Raphson
+// with joint limits, and the mean time (ms), for the same poses.
 
 #include <cmath>
 #include <cstdio>
@@ -34,7 +34,7 @@ static void run(const BenchChain &c) {
   KDL::ChainIkSolverVel_pinv rates(chain);
   KDL::ChainIkSolverPos_NR_JL inverse(chain, low, high, forward, rates, iterations,
                                       BENCH_TOLERANCE);
-  bench_places(&c, q);
+  bench_samples(&c, q);
   static KDL::JntArray places[BENCH_POSES];
   static KDL::Frame poses[BENCH_POSES];
   for (int k = 0; k < BENCH_POSES; k++) {

@@ -1,15 +1,15 @@
 #!/bin/sh
-# Figures of speed beside those of peers, measured in one run: `make bench`. Nothing here is a test.
+# Benchmarks compared with those of peers, in one run: `make bench`. These are not tests.
 #
-# Peers are asked for when they are installed (lua5.4, openscad, SISL by libsisl-dev, Open CASCADE by
-# libocct-modeling-algorithms-dev); without them their column is empty.
+# Peers are used if they are installed (lua5.4, openscad, SISL by libsisl-dev, Open CASCADE by libocct-modeling-algorithms-dev). Without
+# them, their column is empty.
 B=${BUILD:-build}
 CAG=$B/cag
 here=tests/bench
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 
-# Seconds of wall time that a command takes: the best of five.
+# The wall time of a command in seconds: the best of five.
 best() {
   b=
   for _ in 1 2 3 4 5; do
@@ -21,7 +21,7 @@ best() {
   done
   awk "BEGIN { printf \"%.4f\", $b / 1e6 }"
 }
-# name, our seconds, peer's name, peer's seconds, the most that the ratio should be
+# name, our seconds, the peer's name, the peer's seconds, the maximum ratio
 report() {
   if [ -n "$4" ]; then
     awk "BEGIN { printf \"%-44s %9.4f s   %-22s %9.4f s   ratio %6.2f   aim %s\n\", \"$1\", $2, \"$3\", $4, $2 / $4, \"$5\" }"
@@ -55,7 +55,7 @@ echo "--- the REPL, fmt and check"
 report "cag repl to its end, one expression" "$(best sh -c "echo 1 + 1 | $CAG repl")" "" "" "< 0.030 s"
 slowest=$("$B/tests/bench/complete")
 report "the slowest Tab: ${slowest#* }" "${slowest%% *}" "" "" "< 0.010 s"
-# A script of 100,000 lines: functions, shapes, records, comments.
+# A script of 100,000 lines: functions, shapes, records, and comments.
 awk 'BEGIN {
   for (i = 1; i <= 20000; i++) {
     print "/// part " i " of the row"
@@ -65,12 +65,12 @@ awk 'BEGIN {
     print "show part_" i "(row_" i ".size[0]) |> rotate(Z, row_" i ".angle), tube(curve_" i ", 0.5)"
   }
 }' > "$tmp/long.cag"
-# For fmt, which does not mind that names are defined again: our own scripts, again and again.
+# For fmt, which allows names to be defined more than once: our own scripts, repeated.
 for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do cat examples/*.cag examples/curves/*.cag stdlib/*.cag; done > "$tmp/many.cag"
 while [ "$(wc -l < "$tmp/many.cag")" -lt 100000 ]; do cat "$tmp/many.cag" "$tmp/many.cag" > "$tmp/more.cag" && mv "$tmp/more.cag" "$tmp/many.cag"; done
 head -n 100000 "$tmp/many.cag" > "$tmp/laid.cag"
 "$CAG" fmt "$tmp/laid.cag" > /dev/null
-# lines_a_second NAME AIM FILE COMMAND ...: by the seconds of the processor, the best of five.
+# lines_a_second NAME AIM FILE COMMAND ...: by processor time, the best of five.
 lines_a_second() {
   name=$1 aim=$2 file=$3
   shift 3
@@ -101,7 +101,7 @@ for format in stl ply glb gltf obj 3mf; do
   rm "$tmp/ball.$format"
 done
 
-# Seconds of the processor that a script takes: the best of five.
+# The processor time of a script in seconds: the best of five.
 cpu() {
   for _ in 1 2 3 4 5; do
     { /usr/bin/time -f "%U %S" "$CAG" run "$1" >/dev/null; } 2>&1 | awk 'END { print $1 + $2 }'
@@ -122,7 +122,7 @@ echo "--- robots, against Orocos KDL; aims: fk < 0.5 us, Jacobian < 1 us, ratios
 if [ -x "$B/tests/bench/robots_kdl" ]; then "$B/tests/bench/robots_kdl" > "$tmp/kdl"; fi
 "$B/tests/bench/robots" "$tmp/kdl"
 
-# Seconds that POV-Ray says it took to read a scene; it tells no less than a millisecond.
+# The seconds that POV-Ray reports for reading a scene, which are at least a millisecond.
 parse_time() {
   (cd "$tmp" && povray "+I$1" +Oread.png +W4 +H4 -D -GA +GSread.txt >/dev/null 2>&1
    sed -n 's/.*Parse Time:.*(\([0-9.]*\) seconds).*/\1/p' read.txt | awk '{ print ($1 > 0.001 ? $1 : 0.001) }' | head -n 1)
@@ -134,7 +134,7 @@ if peer povray; then
   report "POV-Ray reads 36 of them" "$(parse_time turned.pov)" "mesh2, 0.01 mm" "$(parse_time turned_mesh.pov)" "<= 0.05"
 fi
 
-# 200 small renders with two workers: how busy their two processors are, and what a row takes beside the renderer.
+# 200 small renders with two workers: the utilization of two processors, and the time of a row outside the renderer.
 if peer povray; then
   echo "--- batch"
   mkdir "$tmp/batch"
@@ -146,8 +146,8 @@ show sphere(10 + r)' > "$tmp/batch/ball.cag"
   { echo script,output,r
     for i in $(seq 200); do echo "ball.cag,b$i.json,$i"; done
   } > "$tmp/batch/exports.csv"
-  # What the batch and its processes computed, of what two processors could; beside it what the machine had idle and
-  # what others took meanwhile, by /proc/stat, so that a busy machine is not taken for an idle batch.
+  # The processor time of the batch and its processes, relative to that of two processors. Also the machine's idle time and that of other
+  # processes meanwhile, from /proc/stat, so that a busy machine is not mistaken for an idle batch.
   ticks() { awk '{ print $5 + $6, $2 + $3 + $4 + $5 + $6 + $7 + $8 + $9; exit }' /proc/stat; }
   for _ in 1 2 3; do
     before=$(ticks)

@@ -1,13 +1,12 @@
-// Surfaces against SISL 4.6 (grids of a bicubic surface) and Open CASCADE (its tessellation), in
-// one run. Built with SISL where its header is (CAG_SISL); Open CASCADE's figures are read from the
-// file that occt.cpp writes. Without a peer its column stays empty.
+// Surfaces compared with SISL 4.6 (grids of a bicubic surface) and Open CASCADE (tessellation), in
+// one run. Uses SISL if its header is installed (CAG_SISL). Open CASCADE's figures are read from
+// the file that occt.cpp writes. Without a peer, its column is empty.
 //
-// The surface has a net of 20 x 20 points, polynomial and rational. A grid is made in batches of
-// rows, by both into room that they use again, so that what is measured is not the memory. Times
-// are those of the processor, on one core: the best of some rounds for grids. What a tessellation
-// is off the surface is measured on samples that no choice of the tessellation's knows: each lies
-// in a known triangle's parameters, and its distance is that to the nearest of the triangles
-// around.
+// The surface has a net of 20 x 20 points, polynomial and rational. Both sides compute grids in
+// batches of rows into reused memory, so that memory is not measured. Times are processor times on
+// one core, the best of several rounds for grids. The deviation of a tessellation is measured at
+// samples that do not depend on its parameters: each sample is in the parameters of a known
+// triangle, and its distance is that to the closest triangle nearby.
 
 #include <stdint.h>
 #include <stdio.h>
@@ -17,7 +16,7 @@
 
 #ifdef CAG_SISL
 #include <sisl.h>
-// It has these as macros.
+// SISL defines these as macros.
 #undef MAX
 #undef MIN
 #endif
@@ -30,7 +29,7 @@
 #define SIDE 20
 #define DEGREE 3
 #define GRID 1000
-#define BATCH 40 // rows of the grid that are made together and then summed
+#define BATCH 40 // rows of the grid that are evaluated together and then summed
 
 static double now(void) {
   struct timespec t;
@@ -46,7 +45,7 @@ static void check(bool ok, const char *what) {
 
 static double best(double a, double b) { return a == 0 || b < a ? b : a; }
 
-// --- The surface, and SISL's twin of it ---
+// --- The surface, and its SISL counterpart ---
 
 typedef struct Subject {
   CagSurface *ours;
@@ -70,7 +69,7 @@ static Subject make_subject(bool rational) {
       const double h[4] = {w * p.x, w * p.y, w * p.z, w};
       net[i * SIDE + j] = p;
       weights[i * SIDE + j] = w;
-      // SISL's first direction is our v, in both the one that runs fastest; its normals are turned.
+      // SISL's first direction is our v; in both, it varies fastest. SISL's normals are opposite.
       memcpy(flat + stride * (size_t)(i * SIDE + j), h, stride * sizeof *h);
     }
   CagError err;
@@ -93,7 +92,7 @@ static void free_subject(Subject *s) {
 #endif
 }
 
-// --- Grids: points, first derivatives and unit normals ---
+// --- Grids: points, first derivatives, and unit normals ---
 
 typedef struct Grid {
   double at[GRID];
@@ -169,14 +168,14 @@ static void measure_grid(bool rational, double aim) {
 
 // --- Tessellation ---
 
-// Open CASCADE's mesh at one tolerance: of occt.cpp.
+// Open CASCADE's mesh at one tolerance, measured by occt.cpp.
 typedef struct Peer {
   double tolerance, seconds, triangles;
 } Peer;
 
-// The largest distance found of points of the surface to the mesh. Boxes of the parameter plane
-// hold the triangles that touch them; a point's foot lies in one of those at its parameters, but
-// for shear, which the neighboring boxes cover.
+// The largest distance found from points of the surface to the mesh. Boxes of the parameter plane
+// list the triangles that touch them. The foot of a point is in one of the triangles at its
+// parameters, except for shear, which the neighboring boxes cover.
 enum { BOXES = 512, AROUND = 1, TRIES = 2000000 };
 
 typedef struct Boxes {
@@ -234,8 +233,8 @@ static double distance_at(const Boxes *b, double u, double v, CagVec3 p) {
   return least;
 }
 
-// Park and Miller: the same parameters everywhere.
-static double random_share(void) {
+// Park and Miller's generator: the same parameters on every machine.
+static double random_fraction(void) {
   static uint64_t state = 1;
   state = state * 48271 % 2147483647;
   return (double)state / 2147483647;
@@ -246,7 +245,7 @@ static double largest_distance(const Subject *s, const CagMesh *m, size_t tries)
   double largest = 0;
   CagError err;
   for (size_t k = 0; k < tries; k++) {
-    double u = s->end * random_share(), v = s->end * random_share();
+    double u = s->end * random_fraction(), v = s->end * random_fraction();
     CagVec3 p;
     check(cag_surface_point(s->ours, u, v, &p, &err) == CAG_OK, err.message);
     largest = fmax(largest, distance_at(&b, u, v, p));
@@ -262,7 +261,7 @@ static void measure_mesh(const Subject *s, double tolerance, const Peer *peers, 
   CagError err;
   double seconds = 0;
   how.tolerance = tolerance;
-  how.angle = 0.5; // as Open CASCADE is asked for
+  how.angle = 0.5; // the same as for Open CASCADE
   for (int round = 0; round < ROUNDS; round++) {
     cag_mesh_release(m);
     double begin = now();
@@ -283,7 +282,7 @@ static void measure_mesh(const Subject *s, double tolerance, const Peer *peers, 
   cag_mesh_release(m);
 }
 
-// Argument: the file of Open CASCADE's figures, a line of tolerance, triangles, seconds for each.
+// Argument: the file of Open CASCADE's figures, each line with tolerance, triangles, and seconds.
 int main(int argc, char **argv) {
   Peer peers[8];
   size_t n = 0;

@@ -1,8 +1,8 @@
-# Input that is wrong: a message with its place, the right exit status, nothing written.
+# Invalid input: a message with its location, the correct exit status, and no output.
 
-# The output of an earlier run, which every failing export must leave alone.
+# The output of an earlier run, which a failing export must not change.
 printf 'earlier' > out.stl
-# fails FILE STATUS TEXT: run and export of the script end so, with this text.
+# fails FILE STATUS TEXT: run and export of the script must fail with this status and text.
 fails() {
   try run "$1"
   status "$2"

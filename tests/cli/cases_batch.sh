@@ -1,11 +1,11 @@
-# cag batch: rows of a table, journal, limits, tiles; cases_slurm.sh has the queue.
+# cag batch: rows of a table, journal, limits, and tiles. cases_slurm.sh covers the queue.
 
 script ball.cag 'param r = 10
 show sphere(r)'
 script endless.cag 'f(n) = f(n + 1)
 print f(0)'
 table() { cat > "$1"; }
-# The fields of a column of a report, row after row.
+# The fields of a column of a report, one row after the other.
 column() { cut -d, -f"$2" "$1" | tail -n +2 | tr '\n' ' ' | sed 's/ $//'; }
 column_is() { [ "$(column "$1" "$2")" = "$3" ] || wrong "column $2 of $1 is $(column "$1" "$2"), not $3"; }
 
@@ -270,7 +270,7 @@ try batch memory.csv --max-memory 64M
 status 1
 column_is memory.report.csv 8 5
 
-# A renderer that never ends, to be found by its odd argument.
+# A renderer that never ends, identified by its odd argument.
 mkdir hanging
 cat > hanging/povray <<'END'
 #!/bin/sh

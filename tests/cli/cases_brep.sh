@@ -1,12 +1,12 @@
-# Exact geometry in files, read back by Open CASCADE's DRAW: areas, volumes, lengths, and that it finds the shapes valid.
+# Exact geometry in files, read by Open CASCADE's DRAW: areas, volumes, lengths, and the validity of the shapes.
 #
-# Every shape is written as .step and .igs first; one run of DRAW then reads all of them. What is expected are closed
-# forms where there are some (the text after the shape), else what cag itself says (`-`): another program measured it.
+# Every shape is written as .step and .igs first. A single run of DRAW then reads all of them. Expected values are closed forms if there are
+# any (the text after the shape), or cag's own (`-`), measured by another program.
 
 draw_resources=/usr/share/opencascade/resources
 draw_program=$(ls /usr/bin/occt-draw-* 2>/dev/null | head -1)
 
-# Its plug-ins are looked for under the names that only the development packages have.
+# DRAW searches for its plug-ins under names that only the development packages have.
 run_draw() {
   mkdir -p draw_libraries
   for library in /usr/lib/*/libTK*.so.7.*.*; do
@@ -21,7 +21,7 @@ run_draw() {
     timeout $LONGEST "$draw_program" -b -f "$1" > draw_out 2>&1
 }
 
-# Areas to 1e-6 of the value and volumes likewise; the integrals of DRAW are asked for to 1e-10.
+# Areas and volumes must agree to 1e-6 of the value; the integrals of DRAW are computed to 1e-10.
 cat > measure.tcl <<'E2'
 pload MODELING DATAEXCHANGE
 proc mass {text} { return [lindex [regexp -inline {Mass :\s+(\S+)} $text] 1] }
@@ -46,7 +46,7 @@ proc report_line {name format} {
 }
 E2
 
-# shape NAME AREA VOLUME 'script that defines g'; VOLUME none: it is no body.
+# shape NAME AREA VOLUME 'script that defines g'. VOLUME none: it is not a body.
 shape() {
   printf '%s\nshow g\n' "$4" > "$1.cag"
   expected_area=$2 expected_volume=$3
@@ -83,7 +83,7 @@ shape shell 6 1 'p(x, y, z) = [x, y, z]
 g = solid([bilinear(p(0,0,0), p(0,1,0), p(1,0,0), p(1,1,0)), bilinear(p(0,0,1), p(0,1,1), p(1,0,1), p(1,1,1)),
   bilinear(p(0,0,0), p(0,0,1), p(1,0,0), p(1,0,1)), bilinear(p(0,1,0), p(0,1,1), p(1,1,0), p(1,1,1)),
   bilinear(p(0,0,0), p(0,0,1), p(0,1,0), p(0,1,1)), bilinear(p(1,0,0), p(1,0,1), p(1,1,0), p(1,1,1))])'
-# One long edge at the foot of a step meets two short ones.
+# One long edge at the foot of a step, next to two short ones.
 shape steps 10 2 'f(a, b, c, d) = bilinear(a, d, b, c)
 g = solid([f([0,0,0], [2,0,0], [2,1,0], [0,1,0]), f([0,0,1], [1,0,1], [1,1,1], [0,1,1]), f([1,0,1], [2,0,1], [2,1,1], [1,1,1]),
   f([0,0,0], [2,0,0], [2,0,1], [0,0,1]), f([0,1,0], [2,1,0], [2,1,1], [0,1,1]), f([0,0,0], [0,1,0], [0,1,1], [0,0,1]),
@@ -95,7 +95,7 @@ g = bspline_surface([for i in 0..5: [for j in 0..6: [c(i, j) * cos(i * 60deg), c
 shape rational - none 'g = bezier_surface([[[0,0,0], [0,10,3], [0,20,0]], [[10,0,4], [10,10,9], [10,20,2]], [[20,0,0], [20,10,2], [20,20,5]]],
   weights: [[1, 2, 1], [0.5, 3, 1], [1, 1, 2]])'
 shape region 310.1592653589793 none 'g = region(circle(10), holes: [[[-2, -1], [2, -1], [2, 1]]])'
-# Closed surfaces are solids, whichever way their normals look: 4/3 pi a b c; pi r^2 h; pi (R^2 - r^2) h; 4/3 pi (10^3 - 5^3).
+# Closed surfaces are solids, for any orientation of their normals: 4/3 pi a b c; pi r^2 h; pi (R^2 - r^2) h; 4/3 pi (10^3 - 5^3).
 shape ellipsoid - 251.32741228718345 'g = ellipsoid(3, 4, 5)'
 shape climbing 942.4777960769379 1570.7963267948965 'g = revolve(polyline([[0, 0], [10, 0], [10, 5], [0, 5]]))'
 shape descending 942.4777960769379 1570.7963267948965 'g = revolve(polyline([[0, 5], [10, 5], [10, 0], [0, 0]]))'
@@ -112,8 +112,8 @@ shape trimmed - none 'g = bspline_surface([for i in 0..5: [for j in 0..6: [i * 1
   |> trim([circle(0.8, center: [1.5, 2]), circle(0.3, center: [1.5, 2])])'
 # r^2 (cos u0 - cos u1) (v1 - v0), v around.
 shape trimmed_ball 229.5442203702878 none 'g = sphere_surface(10) |> trim([[1, 0.5], [3, 0.5], [3, 2], [1, 2]])'
-# Quadrics within boxes: a sphere without six caps, a cone of 45 degrees over a rectangle of 4 by 6, strips of a cylinder, and a cylinder
-# tilted by 45 degrees between horizontal planes.
+# Quadrics in boxes: a sphere without six caps, a cone of 45 degrees over a rectangle of 4 by 6, strips of a cylinder, and a cylinder
+# inclined by 45 degrees between horizontal planes.
 shape caged_ball 125.66370614359172 none 'g = ellipsoid(5, 5, 5, within: box([8, 8, 8], centered: true))'
 shape tent 33.941125496954278 none 'g = elliptic_cone(1, 1, 1, within: box([4, 6, 9]) |> translate([-2, -3, 0]))'
 shape strips 234.60083680112753 none 'g = elliptic_cylinder(20, 20, within: box([30, 34, 10], centered: true))'
@@ -121,7 +121,7 @@ shape leaning 17.771531752633464 none 'g = quadric([1, 0.5, 0.5, 0, -1, 0, 0, 0,
 shape boxed_hyperboloid - none 'g = hyperboloid(2, 1, 1, within: box([5, 3, 10], centered: true))'
 shape boxed_sheets - none 'g = hyperboloid(1, 1, 1, sheets: 2, within: box([3, 3, 4], centered: true)) |> rotate([1, 2, 3], 40deg)'
 shape boxed_paraboloid - none 'g = paraboloid(1, 1, within: box([2, 2, 10], centered: true))'
-# Their bodies, closed by flat faces: the ball without its caps, a pyramid of 4 by 6 under the cone, an oblique cylinder, and two bodies.
+# Their bodies, closed by planar faces: the ball without its caps, a pyramid of 4 by 6 under the cone, an oblique cylinder, and two bodies.
 shape ball_body 295.309709437441 435.634181297764 'g = solid(ellipsoid(5, 5, 5, within: box([8, 8, 8], centered: true)))'
 shape tent_body - - 'g = solid(elliptic_cone(1, 1, 1, within: box([4, 6, 9]) |> translate([-2, -3, 0])))'
 shape leaning_body 26.657297628950204 8.885765876316732 'g = solid(quadric([1, 0.5, 0.5, 0, -1, 0, 0, 0, 0, -1], within: -1..1))'
@@ -130,7 +130,7 @@ shape sheets_body - - 'g = solid(hyperboloid(1, 1, 1, sheets: 2, within: box([3,
 shape saddle_body - - 'g = solid(hyperbolic_paraboloid(1, 1, within: box([3, 2, 1])))'
 shape mirrored_body - - 'g = solid(hyperboloid(2, 1, 1, within: box([5, 3, 10]))) |> reflect(plane([0, 0, 0], [1, 1, 0]))'
 
-# line NAME LENGTH 'script that defines g' [options]: the expected numbers stand in place of those of a shape.
+# line NAME LENGTH 'script that defines g' [options]: the expected length and options replace the numbers of a shape.
 line() {
   printf '%s\nshow g\n' "$3" > "$1.cag"
   expected_length=$2
@@ -149,7 +149,7 @@ lines=
 line circle 62.83185307179586 'g = circle(10)'
 line spline - 'g = bspline([[0,0,0], [10,0,5], [10,10,0], [0,10,8], [3,3,3]])'
 line corners 7 'g = polyline([[0,0,0], [3,0,0], [3,4,0]])'
-# 2 pi n sqrt(r^2 + (p / 2 pi)^2), near it by the tolerance.
+# 2 pi n sqrt(r^2 + (p / 2 pi)^2), up to the tolerance.
 line helix 189.09193063303394 'g = helix(10, 5, 3)' 0.0001
 
 can_draw() {
@@ -312,7 +312,7 @@ status 0
 [ "$(grep -c ADVANCED_FACE many.step)" -eq 2002 ] || wrong 'faces are missing'
 [ "$(grep -c EDGE_CURVE many.step)" -eq 6000 ] || wrong 'edges are not shared'
 
-# Two sides of the face have the weights 2, 2, 2, and are polynomials; those of the others are 2, 1, 2.
+# Two sides of the face have the weights 2, 2, 2, and are polynomial; those of the others are 2, 1, 2.
 it 'an edge is rational only if its weights differ'
 script weights.cag 'show bspline_surface([[[0,0,0],[0,5,1],[0,9,0]],[[5,0,2],[5,5,1],[5,9,0]],[[9,0,0],[9,5,1],[9,9,1]]], degree: 2, weights: [[2,2,2],[1,3,1],[2,2,2]])'
 try export weights.cag -o weights.step

@@ -70,7 +70,7 @@ status 0
 says_nothing
 
 it 'so are the tests that expect no errors'
-# Those that hand what fails to a function (code, reason) mean the errors in them.
+# A call that passes the failing function to another function (code, reason) intends its errors.
 grep -rL --include='*.cag' -e 'expect error' -e '(() =>' "$root/tests/language" "$root/tests/vectors" | tr '\n' '\0' > right
 [ "$(tr -cd '\0' < right | wc -c)" -gt 30 ] || wrong "there are few"
 ran='cag check' && timeout $LONGEST xargs -0 "$CAG" check < right > out 2> err

@@ -1,4 +1,4 @@
-# compare, on pictures that are rendered here.
+# cag compare, with pictures rendered here.
 
 script red.cag 'show sphere(10) |> material({color: "#d04030"})'
 script blue.cag 'show sphere(10) |> material({color: "#3040d0"})'

@@ -1,7 +1,7 @@
-# Set operations as the renderer's own and as meshes: the same pictures.
+# Set operations by the renderer and as meshes: the pictures must be equal.
 
-# alike NAME SHAPE: renders the shape natively and as a mesh; the colors' root mean square difference is small. Edges
-# that are sampled differently are all that may differ.
+# alike NAME SHAPE: renders the shape natively and as a mesh. The root mean square difference of the colors must be small; only edges that
+# are sampled differently may differ.
 alike() {
   script "$1.cag" "param native = true
 give(s) = if native then s else tessellate(s, tolerance: 0.005)
@@ -42,7 +42,7 @@ try export glass.cag -o glass.pov
 status 0
 grep -q 'merge {' glass.pov || wrong 'no merge'
 
-# written WORD: the object that NAME of the file became.
+# written WORD: the kind of the object NAME in the file.
 written() { grep -q "^#declare $1 = $2" faces.pov || wrong "$1 is no $2"; }
 
 it 'operands whose faces coincide become a mesh in .pov, others the objects of the renderer'

@@ -1,18 +1,18 @@
-# JSON and CSV files that scripts read: what the formats allow, and the place of what they do not.
+# JSON and CSV files read by scripts: valid input, and the location of errors.
 
-# Reads 1.txt, 2.txt ... and prints the value or the message of each, a line for each file.
+# Reads 1.txt, 2.txt, ... and prints the value or the message of each, one per line.
 script read_all.cag 'param format = "json"
 param count = 1
 read(f) = if format == "json" then read_json(f) else read_csv(f, separator: ";")
 print join([for i in 1..count: attempt(() => "{read("{i}.txt")}", e => replace(e.message, "read_{format} cannot read \"{i}.txt\": ", ""))], "\n")'
-# The next file has this text, in the escapes of printf, and gives this value or message.
+# The next file has this text, in the escapes of printf, and the expected value or message.
 files=0
 case_of() {
   files=$((files + 1))
   printf "$1" > "$files.txt"
   printf '%s\n' "$2" >> expected
 }
-# Compares all the cases so far.
+# Compares all cases so far.
 as_expected() {
   try run read_all.cag -D format="$1" -D count="$files"
   status 0

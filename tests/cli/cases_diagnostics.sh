@@ -36,7 +36,7 @@ for field in '"severity":"error"' '"code":"E0201"' '"message":' '"file":"two.cag
 done
 
 it 'the JSON reads as JSON'
-# The program's own reader is the judge.
+# The program's own reader decides.
 sed -n 1p err > first.json
 script judge.cag 'e = read_json("first.json")
 print e.code, e.line, e.column, type_of(e.message)'

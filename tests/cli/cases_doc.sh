@@ -1,4 +1,4 @@
-# cag doc: on a terminal, and as a site.
+# cag doc: in a terminal, and as a site.
 
 it 'a function is told with parameters, defaults, errors and example'
 try doc insert_knot
@@ -112,7 +112,7 @@ fi
 it 'the pages are HTML'
 if needs xmllint; then
   ran='xmllint --html' code=0
-  # xmllint knows no elements of HTML 5, and its other remarks are what is looked for.
+  # xmllint does not know the elements of HTML 5; its other messages are checked.
   find site -name '*.html' -exec xmllint --html --noout {} + 2>&1 | grep 'error :' | grep -v 'Tag [a-z]* invalid' > err
   [ ! -s err ] || wrong 'xmllint finds errors'
 fi

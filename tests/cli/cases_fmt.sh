@@ -1,4 +1,4 @@
-# cag fmt: what it writes, what it leaves alone, --check and --diff.
+# cag fmt: its output, files that it does not change, --check, and --diff.
 
 printf 'a=1;b  = [ 1,2 ]   // two\n' > loose.cag
 printf 'a = 1\nb = [1, 2]  // two\n' > neat.expected

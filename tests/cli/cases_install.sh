@@ -30,7 +30,7 @@ it 'the static library has only names that begin with cag_'
 nm -g --defined-only "$prefix/lib/libcag.a" 2> /dev/null | awk 'NF == 3 { print $3 }' | grep -v '^cag_' | grep -v -e '^_' -e asan -e ubsan > others
 [ ! -s others ] || wrong "it also has $(head -n 3 others | tr '\n' ' ')"
 
-# The folders of the file are those of PREFIX, where it will be used; here they are below DESTDIR.
+# The folders in the file are those of PREFIX, where it will be used. Here, they are below DESTDIR.
 PKG_CONFIG_PATH=$prefix/lib/pkgconfig PKG_CONFIG_SYSROOT_DIR=
 export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR
 flags="--define-variable=prefix=$prefix"
@@ -50,7 +50,7 @@ builds() {
   status 0
 }
 
-# The program of tests/cli/embed.c with its output, and the files that it writes.
+# The program tests/cli/embed.c with its output, and the files that it writes.
 embeds() {
   rm -f vase.obj vase.mtl vase.png
   ran="$1 200" code=0
@@ -110,14 +110,14 @@ it 'a client interrupts a run'
 ran='embed_static_c, interrupted' code=0
 ./embed_static_c 'reduce(0..<1e12, 0, (a, b) => a + b)' > out 2> err &
 client=$!
-# The run is on a second thread.
+# The run is in a second thread.
 while kill -0 $client && [ "$(ls /proc/$client/task | wc -l)" -lt 2 ]; do sleep 0.1; done
 kill -INT $client
 wait $client || code=$?
 status 130
 grep -q '^error E[0-9]*: interrupted$' err || wrong 'it does not say that it was interrupted'
 
-# The examples of the documentation are whole programs, or the body of `main`.
+# The examples of the documentation are complete programs, or the body of `main`.
 it 'the example in cag.h compiles and works'
 {
   printf '#include <cag.h>\nint main(void) {\n'
@@ -163,7 +163,7 @@ mkdir -p files/parts
 : > files/y.png
 cd files || exit 1
 
-# proposes LINE WORDS: what the shell proposes behind a line, joined by spaces.
+# proposes LINE WORDS: the proposals of the shell after a line, joined by spaces.
 proposes() {
   ran="$shell: $1"
   [ "$2" = "$(paste -sd' ' out)" ] || wrong "expected $2, got $(paste -sd' ' out)"

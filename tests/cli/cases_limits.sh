@@ -19,7 +19,7 @@ status 5
 says 'memory.cag:1:'
 
 it '--max-memory bounds the texts of values that share their parts'
-# Each of 60 steps makes one list but doubles the length of the printed text.
+# Each of 60 steps makes one list, but doubles the length of the printed text.
 for text in 'json(f(60, "a"))' 'json(f(60, { a: none }))' 'text(f(60, 1), digits: 2)' 'text(f(60, "a"))' 'join(f(60, 1))' \
   '"{f(60, 1)}"'; do
   script shared.cag "f(n, t) = if n == 0 then t else f(n - 1, [t, t])
@@ -109,9 +109,9 @@ try eval 'join(0..1e9)' --max-time 0.3
 status 5
 says '--max-time'
 
-# --- Everything that runs for long ends soon after the limit ---
+# --- All long operations end soon after the limit ---
 
-# cag with a limit of a second, or of so many as within says, which must end it within two.
+# Runs cag with a limit of a second, or of $within seconds; it must end within two.
 soon() {
   begun=$(date +%s%N)
   try "$@" --max-time "${within:-1}"

@@ -1,9 +1,9 @@
-# Every command line of the manual and the README, in a folder that has the files they name. Pictures are made small and in
-# draft quality, and films short: what is tried is that the words are right.
+# Every command line of the manual and the README, in a folder with the files that they name. Pictures are small and in draft quality, and
+# films are short: the test is that the commands are valid.
 
 page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/geometry.md docs/getting-started.md docs/language.md docs/robots.md docs/scenes-and-files.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
 
-# The lines of the blocks of shell commands; and the commands within the text, other than those with a placeholder such as FILE.
+# The lines of shell blocks, and the commands in the text except those with a placeholder such as FILE.
 block_lines() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$1"; }
 inline_lines() {
   grep -o '`cag [^`]*`' "$1" | tr -d '`' | grep -v '[A-Z]\{4\}\|[AB]\.exr' | awk 'NF > 2 || $2 == "info" || $2 == "doc"' | grep -v -- '--[a-z-]*$'
@@ -29,7 +29,7 @@ shortened() {
     /^cag render/s/$/ --size 32x24 --quality draft/'
 }
 
-# The program is found as `cag`, as its reader has it.
+# The program is found as `cag`, as for a reader.
 mkdir -p bin
 ln -sf "$CAG" bin/cag
 (for page in $page_files; do

@@ -42,8 +42,8 @@ f(a) = a * x
 x'
 
 # fails_at WHAT NAME ARGUMENT ...: runs cag with the arguments once for each location that requests WHAT (memory, system), which fails
-# there. The first `beyond` locations are skipped. The program must end by itself, with its usual output or with an error message, and
-# any file that it leaves must be complete.
+# there. The first `beyond` locations are skipped. The program must end by itself, with its usual output or an error message, and any file
+# that it leaves must be complete.
 fails_at() {
   it "$1 fails: $2"
   what=$1
@@ -100,7 +100,7 @@ if [ -e fail_memory.so ]; then
   exhausts 'an unknown option' run --defnie vase.cag
   exhausts 'an invalid range of frames' render vase.cag -o a%d.png --frames 5..3
   exhausts 'tests' test --jobs 1 tested.cag long.cag --report report.xml
-  # The locations before an export are those of any run.
+  # The locations before an export are the same as in any run.
   for what in memory system; do
     CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_COUNT=before_$what "$CAG" run shapes.cag > out 2>&1
   done

@@ -1,7 +1,7 @@
-# Mesh files: written, read back by cag, and by programs that are not ours: assimp, admesh, unzip, xmllint, the Khronos
-# validator. Where a program is missing its tests are skipped.
+# Mesh files: written, read by cag, and read by other programs: assimp, admesh, unzip, xmllint, and the Khronos validator. Tests of missing
+# programs are skipped.
 
-# The validator comes from npm, once for a build folder. The version is the newest of the years since 2024.
+# The validator comes from npm, once per build folder. This is the newest version since 2024.
 validator=$BUILD/npm
 if have node && have npm && [ ! -d "$validator/node_modules/gltf-validator" ]; then
   mkdir -p "$validator"
@@ -22,7 +22,7 @@ can_trace() {
     return 1
   }
 }
-# What it must find no fault with.
+# The validator must not report any problem.
 validate() {
   ran="gltf-validator $*"
   NODE_PATH=$validator/node_modules timeout $LONGEST node "$here/gltf_validate.js" "$@" > out 2> err
@@ -31,7 +31,7 @@ validate() {
   [ "$(grep -c ': 0 errors, 0 warnings' out)" -eq $# ] || wrong 'the validator found faults'
 }
 
-# Closed bodies: a ball, a ring, a box, a lathe with corners, and copies that are turned, moved and mirrored.
+# Closed bodies: a ball, a ring, a box, a lathe with corners, and copies that are rotated, translated, and reflected.
 script bodies.cag 'rod_of(k) = rod(origin, [0, 2, 9], 1)
 show named(sphere(10), "ball") |> material({color: "white", transmission: 0.8, ior: 1.33, roughness: 0})
 show named(torus(4, 1), "ring <&\"") |> translate([0, 0, 30]) |> color("teal")
@@ -39,7 +39,7 @@ show box([3, 4, 5]) |> translate([40, 0, 0]) |> material({color: "gold", metalli
 show around(translate(rod_of(0), [25, 0, 0]), 7, axis: [1, 2, 3])
 show named(rows(torus(4, 1), 5, [9, 0, 0]), "chain") |> translate([0, 60, 0])
 show mirrored(translate(cone(5, 3), [0, 30, 0]), plane(origin, Y)) |> color("red")'
-# The same as one mesh, and the numbers that any file of it must give.
+# The same as one mesh, and the numbers for any file of it.
 cat > bodies_of.cag <<'E2'
 param file = "bodies.stl"
 rod_of(k) = rod(origin, [0, 2, 9], 1)
@@ -72,7 +72,7 @@ for format in stl obj ply glb gltf; do
   prints "$all_the_same"
   triangles=$(sed -n 's/^count //p' out)
 done
-# The binary STL tells its count in the bytes 80 to 83.
+# The count in a binary STL is in the bytes 80 to 83.
 it 'a .stl says how many triangles it has'
 [ "$(od -An -tu4 -j80 -N4 bodies.stl | tr -d ' ')" = "$triangles" ] || wrong 'it says another count'
 
@@ -115,7 +115,7 @@ exists "half/$first"
 no_temporaries half
 rmdir "half/$second"
 
-# Stopped by force at each of its renames in turn. What stands there is the first body or the second, never a mixture.
+# Killed at each of its renames in turn. The file is the first body or the second, never a mixture.
 it 'a .gltf that is killed between its renames has its own data'
 if can_trace; then
   script half/read.cag 'print round(volume(read_mesh("body.gltf")))'
@@ -139,7 +139,7 @@ try run bodies_of.cag -D 'file=für 100% von "mir" #1.gltf'
 status 0
 prints "$all_the_same"
 
-# A profile from the axis that climbs the outside gives a surface whose normals point inward. Volumes by Pappus.
+# A profile from the axis that ascends on the outside results in a surface with inward normals. Volumes are by Pappus.
 it 'closed surfaces and meshes face outward in every mesh file, whatever their normals'
 script inward.cag 'show revolve(polyline([[0, 0], [10, 0], [10, 5], [0, 5]]))
 show translate([30, 0, 0]) * revolve(polyline([[5, 1], [5, -1], [9, -1], [9, 1], [5, 1]]))
@@ -228,7 +228,7 @@ polyline([[-3, 0], [0, 4], [3, 0]], closed: true)|0.1|16 126.86989764584402 126.
 polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0.3|18 30 60
 PATHS
 
-# The normal turns by at most 15 degrees along an edge (tessellate.h), and the normal of a triangle lies among those of its corners.
+# The normal rotates by at most 15 degrees along an edge (tessellate.h), and the normal of a triangle is between those of its corners.
 it 'triangles follow the surface, also for surfaces of revolution, trimmed and thickened surfaces, and set operations' python3
 script lean.cag 'param which = 0
 profile = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
@@ -254,7 +254,7 @@ for which in 0 1 2 3 4 5 6 7 8 9; do
   python3 "$here/glb_lean.py" lean.glb 15 > lean || wrong "shape $which: $(cat lean)"
 done
 
-# The normals on the two sides of a cusp, or of a tip within the domain, have opposite limits.
+# The normals on the two sides of a cusp, or of a tip inside the domain, have opposite limits.
 it 'triangles at cusps have the normals of their sides' python3
 script cusps.cag 'param which = 0
 shapes = [
@@ -271,13 +271,14 @@ for which in 0 1 2 3 4 5; do
   python3 "$here/glb_lean.py" cusps.glb 30 > lean || wrong "shape $which: $(cat lean)"
 done
 
-# Its corner of three equal control points has no partials to cross; the plane has the normal [-1, -2, 2] / 3 there as elsewhere.
+# At its corner with three equal control points, the partial derivatives vanish. The plane has the normal [-1, -2, 2] / 3 there as
+# elsewhere.
 it 'normals in a .ply are those of the surface, also where control points coincide'
 script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]
 show bezier_surface([[f(0,0), f(0,0), f(0,2), f(0,3)], [f(0,0), f(1,1), f(1,2), f(1,3)], [f(2,0), f(2,1), f(2,2), f(2,3)], [f(3,0), f(3,1), f(3,2), f(3,3)]])'
 try export corner.cag -o corner.ply
 status 0
-# Six floats first, of 4 bytes each; then two more and three colors.
+# First six floats of 4 bytes each; then two more and three colors.
 size=$((8 * 4 + 3)) head=$(grep -abo end_header corner.ply | cut -d: -f1)
 count=$(sed -n 's/^element vertex //p' corner.ply | head -1)
 tail -c +$((head + 12)) corner.ply | head -c $((count * size)) > corner_vertices
@@ -353,7 +354,7 @@ for format in glb gltf 3mf; do
   [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
   try_command assimp export "bodies.$format" "of_$format.stl"
   status 0
-  # assimp leaves glTF's meters and Y up as they are: a .glb of its own is what we read.
+  # assimp does not convert glTF's meters and Y up, so cag reads a .glb that assimp wrote.
   case $format in
     3mf) try run bodies_of.cag -D "file=of_$format.stl" ;;
     *) script turned.cag "m = read_mesh(\"of_$format.stl\")
@@ -427,7 +428,7 @@ if needs unzip xmllint; then
   unzip -p open.3mf 3D/3dmodel.model | grep -q 'type="surface"' || wrong 'an open sheet is a model'
 fi
 
-# --- Reading: limits and places ---
+# --- Reading: limits and locations ---
 
 it 'read_mesh keeps the limit of triangles'
 script read.cag 'print len(faces(read_mesh("bodies.stl")))'

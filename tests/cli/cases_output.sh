@@ -1,4 +1,4 @@
-# Where outputs go, and outputs that cannot be written.
+# Output destinations, and outputs that cannot be written.
 
 script ball.cag 'print "printed"
 show sphere(10)'
@@ -182,8 +182,8 @@ code=$?
 status 0
 exists closed.svg
 
-# Capitals are twice as high as the middle one stands below its place; the text above has its foot as far above the place as
-# the text below has its head below.
+# The middle label is centered: its baseline is half the height of capitals below its point. The upper text is as far above its point as the
+# top of the lower text is below it.
 it 'a label above stands as far above its place as one below stands below'
 script labels.cag 'show line([0, 0], [40, 20])
 show label([10, 5], "Above", place: "above", size: 3), label([10, 5], "Center", place: "center", size: 3)
@@ -213,7 +213,7 @@ prints_exactly 'true 0 2
 
 # --- Exports that fail ---
 
-# fails_whole FORMAT SCRIPT WHY [OPTION ...]: tests that an export fails with the message, that it leaves neither a new nor a temporary
+# fails_whole FORMAT SCRIPT WHY [OPTION ...]: checks that an export fails with the message, that it leaves neither a new nor a temporary
 # file, and that an existing file does not change.
 fails_whole() {
   format=$1 why=$3

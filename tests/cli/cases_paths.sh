@@ -1,4 +1,4 @@
-# Operands that are folders, standard input, or nothing; options before the command; and colors on terminals.
+# Operands that are folders, standard input, or empty; options before the command; and colors in terminals.
 
 script one.cag 'print 1 // expect: 1'
 
@@ -133,7 +133,7 @@ code=$?
 status 0
 begins_with picture.png 89504e470d0a1a0a
 
-# Errors have colors on terminals that show them.
+# Errors are colored in terminals that support it.
 it 'colors in errors'
 script wrong.cag 'print sin(30)'
 colors() {

@@ -1,4 +1,4 @@
-# POV-Ray's own objects: each shape is written as the object named, is taken by POV-Ray, and looks like its mesh.
+# POV-Ray's native objects: each shape is written as the named object, accepted by POV-Ray, and looks like its mesh.
 
 quick='--size 96x72 --quality draft'
 lit='
@@ -6,8 +6,8 @@ show camera(eye: [90, -140, 90], target: [0, 0, 12], fov: 32deg)
 show sun(direction: [-1, 2, -2])
 show sky(["#404040", "#909090"])'
 
-# native NAME OBJECT 'script that defines g': written as OBJECT and not as a mesh, with the same picture as the mesh of
-# it within 0.02 mm. A pixel is 1 mm wide; they differ where the outline falls between pixels.
+# native NAME OBJECT 'script that defines g': the shape must be written as OBJECT and not as a mesh, with the same picture as its mesh with
+# a tolerance of 0.02 mm. A pixel is 1 mm wide; the pictures differ where the outline is between pixels.
 native() {
   printf '%s\nshow g |> color("teal")%s\n' "$3" "$lit" > "$1.cag"
   printf '%s\nshow tessellate(g, 0.02) |> color("teal")%s\n' "$3" "$lit" > "$1_mesh.cag"
@@ -24,7 +24,7 @@ native() {
   try compare "$1.exr" "$1_mesh.exr"
   most=$(awk '$1 ~ /^[RGB]$/ && $2 > most { most = $2 } END { print most + 0 }' out)
   awk "BEGIN { exit !($most < 0.01) }" || wrong "the root of the mean square difference is $most"
-  # It would also be small where nothing is to be seen.
+  # The difference would also be small for an empty picture.
   try compare "$1.exr" empty.exr
   status 1
 }
@@ -52,7 +52,7 @@ native tent bicubic_patch 'g = bezier_surface([for i in 0..2: [for j in 0..1: [2
 native tower quadric 'g = hyperboloid(12, 12, 15, within: 0..35)'
 native dish quadric 'g = paraboloid(5, 4, within: 0..30)'
 native saddle quadric 'g = hyperbolic_paraboloid(8, 6, within: box([50, 50, 60], centered: true)) |> translate([0, 0, 15])'
-# Stretched, sheared and mirrored: the same objects behind a matrix.
+# Stretched, sheared, and reflected: the same objects with a matrix.
 native stretched_vase lathe 'g = revolve(bspline([[0, 0], [20, 0], [16, 20], [5, 25], [13, 45]])) |> scale([1.5, 0.8, 1]) |> rotate(X, 20deg)'
 native mirrored_tyre lathe 'g = transform([[1, 0.3, 0, 0], [0, 1, 0.4, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) * revolve(rounded(polygon([[12, 0], [30, 0], [30, 20], [18, 24]]), 4)) |> reflect(plane([0, 0, 12], [1, 0, 3]))'
 native flat_bowl union 'g = revolve(polyline([[0, 2], [20, 0], [30, 25], [28, 25], [15, 5]])) |> scale([1, 0.6, 1.2])'
@@ -64,7 +64,7 @@ native oval_cut difference 'g = difference(revolve(rounded(polygon([[12, 0], [30
 
 native sheet polygon 'g = polygon([[-25, -20], [25, -20], [15, 20], [-25, 20]], holes: [[[-8, -8], [8, -8], [0, 8]]])'
 
-# curve NAME OBJECT 'script': a line of some thickness.
+# curve NAME OBJECT 'script': a line with a thickness.
 native_curve() {
   it "$1 is written as $2" povray
   printf '%s\nshow g |> line_style(radius: 2)%s\n' "$3" "$lit" > "$1.cag"
@@ -90,7 +90,7 @@ try export knot.cag -o knot.pov
 status 0
 grep -q 'normal_vectors' knot.pov || wrong 'there are no normals'
 
-# After whole turns, its ends look like those of a prism. If their number is even, the middle does, too.
+# After full turns, its ends look like those of a prism. With an even number of turns, so does the middle.
 it 'a body twisted by whole turns is not a prism'
 script screws.cag 'for_turns(n) = extrude(polygon([[0, 0], [9, 0], [0, 4]]), 20, twist: n * 360deg) |> translate([30 * n, 0, 0])
 show [for n in 1..4: for_turns(n)]'
@@ -111,7 +111,7 @@ grep -q '^// leaf: mesh$' lump.pov || wrong 'there is no comment of the leaf'
 sum=$(awk '/^\/\/ leaf/ { exit } /mesh2 \{/ { s += $4 } END { print s }' lump.pov)
 prints_exactly "$sum"
 
-# The full light is within 0.8 of the cone; it points along -[1, 2, 3] from [10, 20, 30], on whatever point of that line.
+# The full light is within 0.8 of the cone. It points along -[1, 2, 3] from [10, 20, 30], at any point of that line.
 it 'a spot light keeps its place, direction and cone'
 script spot.cag 'show box(9), spot_light([10, 20, 30], origin, angle: 40deg)'
 try export spot.cag -o spot.pov
@@ -122,7 +122,7 @@ grep -q 'spotlight radius 16 falloff 20 ' spot || wrong 'its cone is another'
 tr -d '<>,' < spot | awk '/point_at/ { for (i = 1; i < NF; i++) if ($i == "point_at") { x = 10 - $(i+1); y = 20 - $(i+2); z = 30 - $(i+3) }
   exit !(x > 0 && (y - 2*x)^2 + (z - 3*x)^2 < 1e-12) }' || wrong 'it points elsewhere'
 
-# At outlines smooth normals of meshes look away where their triangles do not yet.
+# At outlines, smooth normals of meshes face away before their triangles do.
 it 'opaque closed meshes take light on both sides, sheets and glass do not'
 script sides.cag 'c = [for a in 0..3: bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [0, -0.4, 0]], closed: true) |> rotate(Z, 40deg*a) |> translate([0, 0, 10*a])]
 show loft(c) |> named("blade")
@@ -135,7 +135,7 @@ sides() { awk -v name="$1" '/^object \{/ { inside = 1 } inside && $1 == name { m
 [ "$(sides glass)" -eq 0 ] || wrong 'the glass takes light on both sides'
 [ "$(sides sleeve)" -eq 0 ] || wrong 'the sleeve takes light on both sides'
 
-# sheets NAME 'script': no triangle is shaded on the side that the camera does not see, in perspective or without.
+# sheets NAME 'script': no triangle is shaded on the side that the camera does not see, in perspective or not.
 sheets() {
   it "$1: the camera sees the side that is shaded" python3
   script "$1.cag" "blade = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
@@ -157,8 +157,7 @@ sheets twisted_sleeve 'show extrude(blade, 20, twist: 90deg, caps: false)'
 sheets closed_blade 'show loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
 sheets far_sheet 'show translate(loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false), [20000, 30000, 10000])'
 
-# The renderer keeps vertices in single precision: 0.002 mm at 30 m. A pixel on an outline may fall to the other side,
-# so one in 10,000 may differ.
+# The renderer stores vertices in single precision: 0.002 mm at 30 m. A pixel on an outline may change sides, so one in 10,000 may differ.
 it 'what is far from the origin looks like the same at the origin' povray
 for at in '0, 0, 0' '20000, 30000, 10000'; do
   script "at_$at.cag" "c = bspline([[-5, 0, 0], [-2, 4, 0], [2, 4, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -2, 0]], closed: true)

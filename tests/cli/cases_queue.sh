@@ -1,5 +1,5 @@
-# cag batch --engine-queue slurm with programs in the place of Slurm's: what they are asked, and what their answers mean.
-# cases_slurm.sh has a real Slurm.
+# cag batch --engine-queue slurm with programs that replace Slurm's: the requests that they receive, and the meaning of their answers.
+# cases_slurm.sh uses a real Slurm.
 
 script ball.cag 'param r = 10
 show sphere(r)'
@@ -8,7 +8,7 @@ fake() {
   cat > "fake/$1"
   chmod +x "fake/$1"
 }
-# An sbatch that runs all elements at once. Its words are kept.
+# An sbatch that runs all elements at once. Its arguments are recorded.
 good_sbatch() {
   fake sbatch <<'END'
 #!/bin/sh
@@ -38,7 +38,7 @@ prints_exactly '3 done, 0 failed, 0 skipped (already done)'
 says "submitted Slurm job 17 with 3 tasks"
 held words '--array=0-1%2'
 held words '--cpus-per-task=3'
-# An element has two of the three tasks, each tried twice at most for 1.1 * 100 + 1 s, and a minute to begin: 8.4 minutes.
+# An element has two of the three tasks, each tried at most twice for 1.1 * 100 + 1 s, and a minute to start: 8.4 minutes.
 held words '--time=9'
 is_missing jobs.csv.slurm
 
@@ -116,7 +116,7 @@ status 0
 says 'Slurm does not respond (squeue: the controller is away), waiting'
 prints_exactly '2 done, 0 failed, 0 skipped (already done)'
 
-# A journal whose last line is a job that was handed in.
+# A journal whose last line is a submitted job.
 submitted='{"what":"submitted","key":"cag-1"}'
 it 'a job whose folder somebody removed: its rows are handed in again'
 good_sbatch

@@ -1,4 +1,4 @@
-# Pictures through POV-Ray, small and quick; and a POV-Ray that is missing or misbehaves.
+# Pictures by POV-Ray, small and fast; and a missing or failing POV-Ray.
 
 script ball.cag 'print "frame {frame} of {frames}, time {time}"
 show sphere(10) |> material({color: "#d04030"})
@@ -38,7 +38,7 @@ grep -q -a 'cag.script' ball.exr || wrong 'no script in the header'
 grep -q -a 'worldToCamera' ball.exr || wrong 'no camera in the header'
 
 it '--size sets the size' povray
-# Width and height stand big-endian behind the 16 first bytes of a PNG.
+# Width and height are big-endian, after the first 16 bytes of a PNG.
 [ "$(od -An -v -tx1 -j16 -N8 ball.png | tr -d ' \n')" = 0000004000000030 ] || wrong 'it is not 64 by 48'
 
 it 'a camera is chosen by name' povray
@@ -138,14 +138,14 @@ it 'there is no progress on a pipe' povray
 try render ball.cag -o quiet.png $quick
 says_nothing
 
-# Another program in the place of POV-Ray; the earlier picture must stay.
+# Another program replaces POV-Ray; the earlier picture must be kept.
 fake() {
   mkdir -p fake
   printf '#!/bin/sh\n%s\n' "$1" > fake/povray
   chmod +x fake/povray
 }
 printf earlier > kept.exr
-# stand_in STATUS TEXT: what comes of a render with it.
+# stand_in STATUS TEXT: checks the result of a render with it.
 stand_in() {
   ran="cag render with the povray of this test"
   PATH=$PWD/fake:$PATH timeout 60 "$CAG" render ball.cag -o kept.exr $quick > out 2> err
@@ -217,7 +217,7 @@ unset TMPDIR
 
 # --- Cameras ---
 
-# The mirrored scene through the mirrored camera is the same picture; the light is mirrored with them.
+# The reflected scene through the reflected camera is the same picture, including the light.
 script mirror.cag 'G = [sphere(10), translate(box([6, 4, 20]), [12, -9, 0]), translate(cylinder(14, 3), [-20, 5, 3])]
 param m = false
 flip(x) = if m then reflect(x, [1, 0.4, 0.3], [3, 1, 0]) else x
@@ -232,7 +232,7 @@ status 0
 try compare mirror_a.exr mirror_b.exr --threshold 0.02
 status 0
 
-# In the plane of the mirror, eye and target stay: the picture is turned over, left for right.
+# In the plane of the mirror, the eye and target are fixed: the picture is flipped from left to right.
 script flip.cag 'param m = false
 param side = 1
 show translate(sphere(6), [side * 10, 0, 0]) |> material({color: "#d04030"})
@@ -266,7 +266,7 @@ try render named.cag -o front_b.exr $quick
 try compare front_a.exr front_b.exr
 status 0
 
-# A rod that stands askew: the box along the axes is a cube 700 mm wide.
+# A slanted rod: its axis-parallel box is a cube 700 mm wide.
 script rod.cag 'show rotate(cylinder(1000, 4), Y, 45deg) |> translate([-353.55, 0, -353.55]) |> material({color: "black"})
 show background("white")
 show sun(direction: [0, 0, -1])'
@@ -282,8 +282,8 @@ python3 "$here/png_extent.py" rod_own.png 0.80 0.97 > extent || wrong "$(cat ext
 
 # --- Depth of field ---
 
-# A white edge behind the plane of focus, on black: a thin lens shows a point as a disc that is A |z - f| / z wide at the distance f,
-# so that the edge is smeared with the standard deviation of a disc across, a quarter of its diameter.
+# A white edge behind the plane of focus, on black. A thin lens shows a point as a disk of diameter A |z - f| / z at the distance f, so the
+# edge is blurred with the standard deviation of a disk's profile, a quarter of its diameter.
 script edge.cag 'param lens = 100
 param level = false
 show translate(box([4000, 1, 8000]), if level then [-2000, 1000, -8000] else [0, 1000, -4000]) |> material({color: "black", emission: [0.5, 0.5, 0.5], roughness: 1})
@@ -361,7 +361,7 @@ try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --
 status 0
 python3 "$here/png_specks.py" saddle.png > specks || wrong "saddle: $(cat specks)"
 
-# The floor of the studio is a little below what stands on it: the dark inside is not seen under the edge.
+# The floor of the studio is slightly below the objects on it: the dark inside must not be visible under the edge.
 it 'a sleeve meets the floor without dark specks' povray python3
 script standing.cag 'show revolve(line([200, 0, 0], [200, 0, 300]), angle: 180deg)'
 try render standing.cag -o standing.png --size 1440x1080 --region 420x60+560+655 --quality draft

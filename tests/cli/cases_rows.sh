@@ -1,11 +1,11 @@
-# cag batch: what rows may say, what they depend on, and how failed ones are told. cases_batch.sh has the rest.
+# cag batch: contents of rows, their dependencies, and reports of failed ones. cases_batch.sh covers the rest.
 
 script ball.cag 'param r = 10
 show sphere(r)'
 table() { cat > "$1"; }
 column() { cut -d, -f"$2" "$1" | tail -n +2 | tr '\n' ' ' | sed 's/ $//'; }
 column_is() { [ "$(column "$1" "$2")" = "$3" ] || wrong "column $2 of $1 is $(column "$1" "$2"), not $3"; }
-# wrong_rows COLUMNS, then lines ROW | MESSAGE: each row is the only wrong one of a table.
+# wrong_rows COLUMNS, followed by lines ROW | MESSAGE: each row is the only invalid one of a table.
 wrong_rows() {
   columns=$1
   while IFS='|' read -r row message; do
@@ -153,7 +153,7 @@ runs 2
 runs 0
 script lib/part.cag 'side = 5'
 runs 2
-: > two.stl # an output without bytes is none
+: > two.stl # an output without bytes does not count
 runs 1
 
 it 'a large file counts by its size and time'
@@ -189,7 +189,7 @@ status 1
 column_is much.report.csv 8 5
 is_missing much.stl
 
-# The processes of a batch, by the script that they run.
+# The processes of a batch, identified by their script.
 child_of() { grep -l -a "$1" /proc/[0-9]*/cmdline 2> /dev/null | cut -d/ -f3 | while read -r p; do
   tr '\0' ' ' 2> /dev/null < "/proc/$p/cmdline" | grep -q ' export ' && echo "$p"; done; }
 script endless.cag 'f(n) = f(n + 1)
@@ -212,7 +212,7 @@ code=$?
 status 1
 says 'E0917: row 1: killed by signal 9 (Killed); the system may have run out of memory'
 
-# The bar on a terminal: with counts of what is done, at work, failed, and the time that is left.
+# The progress bar in a terminal, with the counts of finished, running, and failed rows, and the remaining time.
 it 'a batch on a terminal shows its progress'
 if needs python3; then
   script slow.cag 'print sum([for i in 0..3e6: i])

@@ -1,4 +1,4 @@
-# run, eval, test and the REPL on a pipe.
+# run, eval, test, and the REPL through a pipe.
 
 script vase.cag 'param height = 120 in 50..300 "height of the vase"
 profile = bspline([[24, 0], [45, 0.3*height], [22, 0.7*height], [34, height]], degree: 3)

@@ -1,11 +1,11 @@
-# Ctrl-C and its like: status 130, nothing half-written.
+# Ctrl-C and similar signals: status 130, and no incomplete files.
 
 script endless.cag 'print "begun"
 f(n) = f(n + 1)
 print f(0)'
 script ball.cag 'show sphere(10)'
 mkdir temporary
-# Runs cag until a signal comes after so many seconds.
+# Runs cag until a signal arrives after this many seconds.
 interrupted() {
   signal=$1 after=$2
   shift 2
@@ -36,7 +36,7 @@ status 130
 
 it 'a second signal ends such a step at once'
 ran='cag run matrix.cag (SIGTERM twice)'
-# Without the alarm, which would end the program after two seconds, the step takes about a minute.
+# Without the alarm, which ends the program after two seconds, the step takes about a minute.
 (
   trap '' ALRM
   exec "$CAG" run matrix.cag
@@ -71,7 +71,7 @@ code=$?
 kill $sleeper 2> /dev/null
 status 130
 
-# A renderer that never ends, to be found by its odd argument.
+# A renderer that never ends, identified by its odd argument.
 mkdir slow
 cat > slow/povray <<'END'
 #!/bin/sh
@@ -148,9 +148,9 @@ wait $child
 code=$?
 status 130
 
-# --- Everything that runs for long ends soon after Ctrl-C ---
+# --- All long operations end soon after Ctrl-C ---
 
-# The geometry looks up and ends by itself; at the latest the alarm ends it, two seconds after the signal.
+# The geometry checks the flag and ends by itself. At the latest, the alarm ends it, two seconds after the signal.
 script heavy.cag 'show difference(sphere(100), translate(sphere(100), [30, 0.1, 0.2]))'
 script degree.cag 'c = bspline([for i in 0..5000: [i, sin(i * 1deg) * 100, i % 7]], degree: 999)
 print length(c)'

@@ -1,11 +1,11 @@
-# cag batch --engine-queue slurm, on a real Slurm of this one machine: its own munge, controller and node,
-# on loopback, in this folder; everything is shut down at the end. Skipped where that cannot be.
+# cag batch --engine-queue slurm on a real Slurm of this machine: its own munge, controller, and node, on the loopback interface, in this
+# folder. Everything is shut down at the end. Skipped if that is impossible.
 
 script ball.cag 'param r = 10
 show sphere(r)'
 printf 'script,output,r\nball.cag,a.stl,1\nball.cag,b.stl,2\nball.cag,c.stl,-3\n' > jobs.csv
 
-# All tests but this one need a Slurm.
+# All tests except this one need a Slurm.
 it 'a Slurm that is not there: the rows are reported, and can be run later'
 slurm_first=$test_name
 mkdir empty
@@ -33,7 +33,7 @@ mkdir -p slurm/controller slurm/node
 mungekey -c -k slurm/munge.key
 munged --key-file="$slurm/munge.key" --socket="$slurm/munge.socket" --pid-file="$slurm/munge.pid" --log-file="$slurm/munge.log" \
   --seed-file="$slurm/munge.seed" --num-threads=2 --force 2> /dev/null
-# Ports that no other test has.
+# Ports that no other test uses.
 port=$((20000 + $$ % 20000))
 cat > slurm/slurm.conf <<END
 ClusterName=test
@@ -68,8 +68,7 @@ MessageTimeout=5
 NodeName=localhost NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=60 State=UP
 END
-# A node looks for control groups unless it is told of those of the first kind, which it takes as they come: the
-# plugins above need none.
+# By default, a node searches for control groups. Those of version 1 are accepted unchanged; the plugins above need none.
 echo CgroupPlugin=cgroup/v1 > slurm/cgroup.conf
 SLURM_CONF=$slurm/slurm.conf
 export SLURM_CONF
@@ -143,7 +142,7 @@ try compare t.exr whole.exr
 status 0
 is_missing more.csv.tiles
 
-# A renderer that waits until a file is there.
+# A renderer that waits until a file exists.
 mkdir waiting
 cat > waiting/povray <<END
 #!/bin/sh
@@ -208,7 +207,7 @@ it 'a node that is lost: its rows are reported and can be resumed' povray
 rm -f go wait.csv.journal w?.*
 ran='cag batch --engine-queue slurm (the node dies)'
 begin_waiting
-# The node with all that runs on it: the elements, what waits for them, and the renderers.
+# The node with everything that runs on it: the elements, the processes that wait for them, and the renderers.
 stop node -KILL
 for process in /proc/[0-9]*; do
   if grep -q -a -e "$PWD/wait.csv.slurm" -e "$PWD/waiting/povray" "$process/cmdline" 2> /dev/null; then

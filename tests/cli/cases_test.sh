@@ -1,4 +1,4 @@
-# cag test: what it shows, several at a time, and its report in XML.
+# cag test: its output, parallel runs, and its report in XML.
 
 script good.cag 'print 1 + 1 // expect: 2'
 script bad.cag 'print "a<b" // expect: a>b'

@@ -1,4 +1,4 @@
-# Robots as URDF: accepted by urdfdom's check_urdf, written whole or not at all, read back as they were.
+# Robots as URDF: accepted by urdfdom's check_urdf, written completely or not at all, and recovered by reading.
 
 accepted() {
   needs check_urdf || return 0
@@ -213,7 +213,7 @@ show robot([revolute(a: 100, shape: said(translate(torus_surface(200, 50), [10, 
   revolute(a: 50, shape: said(translate(can, [0, 0, -25]), "blue")), revolute(a: 50, shape: said(circle(5), "blue"))])'
 
 # A torus has the volume 2 pi^2 R r^2 and, about its axis and a diameter, m (R^2 + 3/4 r^2) and m (R^2/2 + 5/8 r^2).
-# The cylinder has inward normals, and encloses the same volume; a curve has no mass.
+# The cylinder has inward normals, but encloses the same volume; a curve has no mass.
 it 'closed surfaces have the mass and inertia of what they enclose'
 try export masses.cag -o masses.urdf
 status 0

@@ -1,4 +1,4 @@
-# The command line itself: commands, options, help, wrong usage. Nothing of this runs a script.
+# The command line itself: commands, options, help, and invalid usage. No script is run.
 
 script ball.cag 'show sphere(10)'
 

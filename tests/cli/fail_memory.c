@@ -39,7 +39,7 @@ static int find_program(struct dl_phdr_info *info, size_t size, void *context) {
   return 1; // the first entry is the program
 }
 
-// Programs started by this one do not fail.
+// Programs started by this one are not affected.
 __attribute__((constructor)) static void begin(void) {
   const char *place = getenv("CAG_FAIL_PLACE");
   unsetenv("LD_PRELOAD");
@@ -248,7 +248,7 @@ int inotify_add_watch(int fd, const char *path, uint32_t mask) {
   FAIL(-1);
   return NEXT(inotify_add_watch)(fd, path, mask);
 }
-// These take as many arguments as there may be, as the system does.
+// They pass on the maximum number of arguments, like the system calls.
 int prctl(int option, ...) {
   FAIL(-1);
   unsigned long values[4];

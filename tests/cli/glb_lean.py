@@ -1,4 +1,4 @@
-"""glb_lean.py FILE DEGREES: fails if a triangle of a .glb leans by more from the normal of one of its corners."""
+"""glb_lean.py FILE DEGREES: fails if the angle between a triangle of a .glb and the normal at one of its corners exceeds DEGREES."""
 import json
 import math
 import struct

@@ -1,4 +1,4 @@
-// The Khronos validator over files: a line each with the numbers of errors and warnings, and of triangles.
+// Runs the Khronos validator on files. Prints a line for each with the numbers of errors, warnings, and triangles.
 const fs = require('fs');
 const path = require('path');
 const validator = require('gltf-validator');

@@ -1,18 +1,18 @@
-# What the command line's tests are written in:
+# The functions in which the tests of the command line are written:
 #
-#   it 'a missing script is status 3'      begins a test, and ends the one before
-#   try run missing.cag                    runs cag; its output is kept in the files `out` and `err`
-#   status 3                               what the exit status must be
-#   says 'missing.cag'                     a text that standard error must hold; `prints`: standard output
+#   it 'a missing script is status 3'      begins a test, and ends the previous one
+#   try run missing.cag                    runs cag; its output is captured in the files `out` and `err`
+#   status 3                               the expected exit status
+#   says 'missing.cag'                     a text that standard error must contain; `prints`: standard output
 #
-# A test fails at its first expectation that does not hold, and is shown with what was run. One that cannot be made here, or
-# not as a whole, is skipped:
+# A test fails at its first unmet expectation, and is shown with the command that was run. A test that cannot run here, or only in part, is
+# skipped:
 #
 #   it 'a picture is as said' povray       a program that the whole test needs: without it, `try` does nothing
 #   if needs admesh; then ...              a program that a part of the test needs
 #   skip 'it takes root'                   another reason
 #
-# It has neither passed nor failed, unless another of its expectations does not hold.
+# A skipped test has neither passed nor failed, unless another of its expectations is not met.
 
 test_name= test_state=
 
@@ -34,7 +34,7 @@ skip() {
   test_state=skipped
   echo "skipped: $test_name: $1"
 }
-# Tests whether the whole test is skipped. Its commands then do nothing.
+# Whether the whole test is skipped. If so, its commands do nothing.
 is_left_out() {
   [ "$test_state" = left_out ] || return 1
   code=0
@@ -50,8 +50,8 @@ needs() {
     }
   done
 }
-# For tests of files without read or write permission: root ignores permissions, so `try` runs cag without this privilege
-# until the test ends.
+# For tests of files without read or write permission: root ignores permissions, so `try` runs cag without this privilege until the test
+# ends.
 bound=
 needs_permissions() {
   [ "$(id -u)" -eq 0 ] || return 0
@@ -63,7 +63,7 @@ needs_permissions() {
     return 1
   }
 }
-# skip_behind NAME TEST REASON: skips all tests of cases_NAME.sh that stand behind this one.
+# skip_behind NAME TEST REASON: skips all tests of cases_NAME.sh after this one.
 skip_behind() {
   sed "1,/^ *it '$2'[a-z0-9 ]*\$/d" "$here/cases_$1.sh" | sed -n "s/^ *it '\(.*\)'[a-z0-9 ]*$/\1/p" > behind
   while IFS= read -r behind; do
@@ -83,7 +83,7 @@ wrong() {
   head -c 3000 err | sed 's/^/  err: /'
 }
 
-# Nothing here takes long: a run that hangs is ended and fails.
+# No command takes long: a run that hangs is killed and fails.
 LONGEST=120
 try() { with_input /dev/null "$@"; }
 with_input() {
@@ -95,7 +95,7 @@ with_input() {
   code=$?
   check_end
 }
-# Another command than cag.
+# Runs a command other than cag.
 try_command() {
   is_left_out && return
   ran=$*
@@ -116,18 +116,18 @@ prints() { grep -qF -e "$1" out || wrong "standard output lacks: $1"; }
 says_nothing() { [ ! -s err ] || wrong "standard error is not empty"; }
 prints_nothing() { [ ! -s out ] || wrong "standard output is not empty"; }
 prints_exactly() { [ "$(cat out)" = "$1" ] || wrong "standard output is not: $1"; }
-# A text of a pattern, for what varies.
+# A pattern, for variable text.
 says_like() { grep -q -e "$1" err || wrong "standard error has nothing like: $1"; }
 prints_like() { grep -q -e "$1" out || wrong "standard output has nothing like: $1"; }
 holds() { [ "$(cat "$1")" = "$2" ] || wrong "the file $1 does not hold: $2"; }
 same() { cmp -s "$1" "$2" || wrong "$1 differs from $2"; }
 exists() { [ -s "$1" ] || wrong "the file $1 is missing or empty"; }
 is_missing() { [ ! -e "$1" ] || wrong "the file $1 is there"; }
-# What a killed or failed run must not leave behind in a folder.
+# Checks that a killed or failed run leaves no temporary files in a folder.
 no_temporaries() { [ -z "$(ls -A "$1" | grep -e '\.tmp$' -e '^cag-' -e '^\.')" ] || wrong "temporaries are left in $1: $(ls -A "$1")"; }
 bytes_at_most() { [ "$(wc -c < "$1")" -le "$2" ] || wrong "$1 is longer than $2 bytes"; }
-# The first bytes of a file, as hexadecimal digits.
+# The first bytes of a file, in hexadecimal.
 begins_with() { [ "$(head -c $((${#2} / 2)) "$1" | od -An -v -tx1 | tr -d ' \n')" = "$2" ] || wrong "$1 does not begin with $2"; }
 
-# A script of this name and text.
+# Writes a script with this name and text.
 script() { printf '%s\n' "$2" > "$1"; }

@@ -1,4 +1,4 @@
-"""Runs hostile scripts, one per line of a file, under a limit of memory, and checks how much the process really takes.
+"""Runs hostile scripts, one per line of a file, under a limit of memory, and checks the actual memory of the process.
 
     hostile.py PROGRAM FILE [STEP [FIRST]]
 

@@ -1,4 +1,4 @@
-"""on_terminal.py COMMAND ...: runs a command whose standard error is a terminal, and prints what it writes there, a line for each redrawing."""
+"""on_terminal.py COMMAND ...: runs a command whose standard error is a terminal, and prints its output, one line for each redraw."""
 import os
 import pty
 import subprocess

@@ -1,7 +1,8 @@
-"""png_blur.py PICTURE APERTURE FOCUS DISTANCE FOV SHARE [level]: fails unless an edge at the distance is smeared as by a thin lens.
+"""png_blur.py PICTURE APERTURE FOCUS DISTANCE FOV FRACTION [level]: fails unless an edge at the distance is blurred as by a thin lens.
 
-The edge stands upright in the middle of the picture, or lies level in the middle of a square one. The standard deviation of the
-smear, in pixels, must be within SHARE of a quarter of the disc's diameter; the place of the edge may be off by twice that.
+The edge is vertical in the middle of the picture, or, with `level`, horizontal in the middle of a square one. The standard deviation of
+the blur, in pixels, must be a quarter of the disk's diameter, with a relative tolerance of FRACTION. The location of the edge may deviate
+by twice that.
 """
 import math
 import sys

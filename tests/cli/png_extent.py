@@ -1,4 +1,4 @@
-"""png_extent.py PICTURE LEAST MOST: fails unless what is dark spans between these shares of the picture, across or down."""
+"""png_extent.py PICTURE LEAST MOST: fails unless the dark part covers a fraction between these of the picture, horizontally or vertically."""
 import sys
 
 from png_read import read

@@ -1,4 +1,4 @@
-"""Reads the 8-bit PNG files that cag writes: read(path) gives width, height, channels, rows of bytes."""
+"""Reads the 8-bit PNG files that cag writes: read(path) returns width, height, channels, and rows of bytes."""
 import struct
 import zlib
 

@@ -1,4 +1,4 @@
-"""png_specks.py PICTURE: fails where single pixels are darker than both of their neighbors, across or down."""
+"""png_specks.py PICTURE: fails if single pixels are darker than both of their neighbors, horizontally or vertically."""
 import sys
 
 from png_read import read

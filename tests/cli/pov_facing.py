@@ -1,7 +1,7 @@
 """pov_facing.py FILE: fails if POV-Ray would shade a side of a triangle that its camera does not see.
 
-POV-Ray turns an interpolated normal around if it looks away from the ray. So the normals of a triangle must look to the
-camera, wherever on the triangle the ray ends, exactly if its front does. The file has one camera, which looks at meshes.
+POV-Ray reverses an interpolated normal that faces away from the ray. At every point of a triangle, the normal must therefore face the
+camera if and only if the front of the triangle does. The file has one camera, which looks at meshes.
 """
 import math
 import re
@@ -44,7 +44,7 @@ for mesh in re.findall(r"mesh2 \{.*?\n\}", text, re.S):
         face = cross(minus(p[1], p[0]), minus(p[2], p[0]))
         size, seen = math.hypot(*face), dot(face, rays[0])
         if size == 0 or abs(seen) < 1e-4 * size * math.hypot(*rays[0]):
-            continue  # seen edge-on: it covers nothing
+            continue  # seen edge-on, so it is invisible
         count += 1
         cosines = [dot(a, ray) / math.hypot(*ray) for a in n for ray in rays]
         wrong += any((c > 0) != (seen > 0) for c in cosines)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Tests of the command line: the real program, run on real files. BUILD is the folder of the build (default build).
-#   sh tests/cli/run.sh [NAME ...]      all the files cases_*.sh, or some: usage bad_input ...
+# Tests of the command line: runs the real program on real files. BUILD is the build folder (default build).
+#   sh tests/cli/run.sh [NAME ...]      all files cases_*.sh, or some: usage bad_input ...
 # The last line is `N passed, N failed, N skipped`.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,5 +1,5 @@
-// Checks a site in a folder: each link leads to a file and an anchor that are there, what the search
-// leads to as well, nothing is fetched from elsewhere, and all elements are closed in order.
+// Checks a site in a folder: the files and anchors of all links and search results exist, nothing is fetched
+// from elsewhere, and all elements are properly closed.
 //   node site_links.js FOLDER
 "use strict";
 const fs = require("fs");
@@ -23,7 +23,7 @@ function follow(file, url) {
   else if (anchor && !(ids.get(target) || new Set()).has(decodeURI(anchor))) wrong(file, `${url}: no such anchor`);
 }
 
-// Elements that have no end.
+// Elements without an end tag.
 const open_ended = new Set(["meta", "link", "input", "img", "br", "hr"]);
 
 function check_nesting(file, html) {

@@ -1,6 +1,6 @@
-// Types into a site's search in headless Chromium, and goes where it leads.
+// Types into the search field of a site in headless Chromium, and follows the result.
 //   node site_search.js CHROMIUM FOLDER WORD PAGE
-// Passes when Enter leads to PAGE, a path below the folder.
+// Passes if Enter leads to PAGE, a path below the folder.
 "use strict";
 const { spawn } = require("child_process");
 const fs = require("fs");
@@ -12,7 +12,7 @@ const profile = fs.mkdtempSync(path.join(os.tmpdir(), "cag-chromium-"));
 const browser = spawn(chromium, ["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--remote-debugging-pipe",
   `--user-data-dir=${profile}`], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
 
-// The browser is spoken to over two pipes, in JSON with a zero byte behind each message.
+// Communicates with the browser through two pipes, in JSON with a zero byte after each message.
 let number = 0, rest = "";
 const waiting = new Map();
 browser.stdio[4].on("data", (data) => {
@@ -65,7 +65,7 @@ function finish(error) {
     try {
       fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
     } catch {
-      // A process of the browser still writes there; the folder is a temporary one.
+      // A browser process may still write to the folder, which is temporary.
     }
     process.exit(error ? 1 : 0);
   });

@@ -15,7 +15,7 @@ def volume_of_tube(radius, length, turns):
     half = [(radius * math.cos(2 * math.pi * k / SIDES), radius * math.sin(2 * math.pi * k / SIDES))
             for k in range(-SIDES // 4, SIDES // 4 + 1)]
     pairs = list(zip(half, half[1:]))
-    # For half of the section, on one side of its middle: the first moment, and the integral of the squared width.
+    # The first moment of half of the section, and the integral of its squared width.
     moment = sum((x0 * y1 - x1 * y0) / 2 * (x0 + x1) / 3 for (x0, y0), (x1, y1) in pairs)
     squares = sum((y1 - y0) * (x0 * x0 + x0 * x1 + x1 * x1) / 3 for (x0, y0), (x1, y1) in pairs)
     volume = length * radius ** 2 * SIDES / 2 * math.sin(2 * math.pi / SIDES)

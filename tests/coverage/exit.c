@@ -1,5 +1,5 @@
-// Linked into the programs of `make coverage` with --wrap=_exit: a child that ends by _exit writes
-// its counters first.
+// Linked to the programs of `make coverage` with --wrap=_exit: a child process that ends by _exit
+// first writes its counters.
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Tests of the files for editors: all examples and the standard library are tokenized by the grammar of Visual Studio Code (node
-# and npm) and by the syntax of Vim, and what stands in script.cag has the scopes that it should. The last line is
-# `N passed, N failed, N skipped`: what needs a tool that is missing is skipped.
+# Tests of the files for editors: all examples and the standard library are tokenized by the grammar of Visual Studio Code (node and npm)
+# and by the syntax of Vim, and the scopes in script.cag are checked. The last line is `N passed, N failed, N skipped`. Tests that need a
+# missing tool are skipped.
 #
 #   BUILD=build sh tests/editors/run.sh
 set -u
@@ -12,7 +12,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 passed=0 failed=0 skipped=0
 
-# result NAME STATUS TEXT: counts, and shows the text of a failure.
+# result NAME STATUS TEXT: counts a test, and shows the text if it failed.
 result() {
   if [ "$2" = 0 ]; then
     passed=$((passed + 1))
@@ -23,19 +23,19 @@ result() {
   fi
 }
 
-# skip_part REASON COMMAND: counts the tests of this file between the lines `# COMMAND` and `# End: COMMAND`, which cannot be made here.
+# skip_part REASON COMMAND: counts the tests between the lines `# COMMAND` and `# End: COMMAND`, which cannot run here.
 skip_part() {
   count=$(sed -n "/^# $2\$/,/^# End: $2\$/p" tests/editors/run.sh | grep -cE '^ *(has|lacks|result) ')
   skipped=$((skipped + count))
   echo "skipped: $count tests of $2: $1"
 }
 
-# has FILE WORD SCOPE: a token of this text has a scope that ends with SCOPE.
+# has FILE WORD SCOPE: a token with this text must have a scope that ends with SCOPE.
 has() {
   awk -F '\t' -v word="$2" -v scope="$3" '$1 == word && (" " $2 "$") ~ ("[ ]" scope "[$]") { found = 1 } END { exit !found }' "$1"
   result "\`$2\` is $3" $? "$(awk -F '\t' -v word="$2" '$1 == word' "$1")"
 }
-# lacks FILE WORD SCOPE: none has.
+# lacks FILE WORD SCOPE: no token with this text may have it.
 lacks() {
   ! awk -F '\t' -v word="$2" -v scope="$3" '$1 == word && (" " $2 "$") ~ ("[ ]" scope "[$]") { found = 1 } END { exit !found }' "$1"
   result "\`$2\` is not $3" $?
@@ -51,7 +51,7 @@ done > "$work/missing"
 [ ! -s "$work/missing" ]
 result 'every built-in name is in both' $? "$(cat "$work/missing")"
 
-# The packages come from npm, once for a build folder.
+# The packages come from npm, once per build folder.
 packages=$build/npm-editors
 if command -v node > /dev/null && command -v npm > /dev/null && [ ! -d "$packages/node_modules/vscode-textmate" ]; then
   mkdir -p "$packages"
@@ -99,7 +99,7 @@ else
 fi
 # End: the grammar of Visual Studio Code
 
-# groups MODE FILE ...: what tokens.vim writes.
+# groups MODE FILE ...: the output of tokens.vim.
 groups() {
   MODE=$1
   shift

@@ -30,7 +30,7 @@ function tokenize(grammar, text, take) {
   return stack;
 }
 
-// Brackets and interpolations give what they hold a scope that says nothing of it.
+// The scopes of brackets and interpolations do not describe their contents.
 const own = (scopes) => scopes.filter((s) => s !== 'source.cag' && !s.startsWith('meta.'));
 
 async function main() {

@@ -1,5 +1,5 @@
-" Writes the syntax group of what is in the files given as arguments, to the file $OUT:
-"   $MODE = all      FILE:LINE:COLUMN: CHARACTER for each character that has none
+" Writes the syntax groups of the text in the files given as arguments to the file $OUT:
+"   $MODE = all      FILE:LINE:COLUMN: CHARACTER for each character without a group
 "   $MODE = groups   the words of each line with their group, WORD<tab>GROUP
 set nocompatible encoding=utf-8 nomore
 execute 'set runtimepath^=' . $EDITORS . '/vim'

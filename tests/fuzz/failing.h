@@ -1,5 +1,5 @@
-// Allocations that fail, for programs that the Makefile links with --wrap of the functions in
-// WRAPPED: only allocations of cag itself fail, not those of libraries.
+// Failing allocations, for programs that the Makefile links with --wrap of the functions in
+// WRAPPED. Only allocations of cag itself fail, not those of libraries.
 
 #ifndef CAG_TESTS_FUZZ_FAILING_H
 #define CAG_TESTS_FUZZ_FAILING_H
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static size_t made;     // allocations so far in this run
+static size_t made;     // number of allocations so far in this run
 static size_t failing;  // index of the first allocation that fails, from 1; 0: none
 static bool failing_on; // whether all later allocations fail as well
 

@@ -1,14 +1,15 @@
-// Calls of every built-in with nasty arguments, and scripts of the repository with words changed.
+// Calls every built-in with extreme and invalid arguments, and runs scripts of the repository with
+// changed words.
 //
 //     fuzz [ROUNDS [SEED [NAME]]]
 //
-// Each row of the tables of built-ins is called ROUNDS times (2) with arguments drawn from pools of
-// values at the edge of what is allowed and beyond it; then scripts of tests/language and examples
-// run with some of their words cut, doubled, exchanged or replaced by such values. All is drawn
-// from SEED (1), so that a run can be had again; NAME restricts it to one built-in. A script passes
-// when it ends by itself, within limits of time and memory, with an error of a known kind or with
-// output in which no number is undefined. Scripts run in children of this process: a crash or a
-// hang costs one script, which is shown.
+// Each row of the tables of built-ins is called ROUNDS times (default 2) with random arguments from
+// pools of extreme and invalid values. Then scripts of tests/language and examples run with some of
+// their words removed, doubled, exchanged, or replaced by such values. SEED (default 1) makes a run
+// reproducible. NAME restricts it to one built-in. A script passes if it ends by itself, within
+// limits of time and memory, with an error of a known kind or with output without undefined
+// numbers. Scripts run in child processes: a crash or a hang affects only one script, which is
+// shown.
 
 #include <ctype.h>
 #include <glob.h>
@@ -23,7 +24,8 @@
 #include "cag.h"
 #include "interp/vm/builtin.h"
 
-// Limits of one script. An error has to come within HANG seconds, which leaves room for sanitizers.
+// Limits of one script. An error must occur within HANG seconds, which includes a margin for
+// sanitizers.
 #define SECONDS 0.5
 #define MEMORY ((size_t)256 << 20)
 #define TRIANGLES 50000
@@ -31,7 +33,7 @@
 #define LONGEST 16384 // bytes of one script
 #define MUTATIONS 120 // mutated scripts in each round
 
-// --- Draws ---
+// --- Random numbers ---
 
 typedef struct Draws {
   uint64_t state;
@@ -210,7 +212,7 @@ static const char *any_value(Draws *d) {
   return p->values[draw(d, p->count)];
 }
 
-// Mostly of a type that a first argument may have.
+// Usually of a type that the first argument may have.
 static const char *first_value(Draws *d, uint64_t mask) {
   for (int tries = 0; mask && tries < 40; tries++) {
     const Pool *p = &pools[draw(d, POOL_COUNT)];
@@ -219,7 +221,7 @@ static const char *first_value(Draws *d, uint64_t mask) {
   return any_value(d);
 }
 
-// Mostly a number, an angle or a list, which most arguments are.
+// Usually a number, an angle, or a list, because most arguments are.
 static const char *further_value(Draws *d) {
   switch (draw(d, 6)) {
   case 0: return PICK(d, angles);
@@ -255,7 +257,8 @@ static size_t word_end(const char *text, size_t at, size_t n) {
   return end;
 }
 
-// Changes one word: cut, doubled, replaced by a value or by another word of the script.
+// Changes one word: removes it, doubles it, or replaces it by a value or another word of the
+// script.
 static size_t change(Draws *d, char *text, size_t n) {
   if (n < 2) return n;
   size_t from = draw(d, n), to = word_end(text, from, n), other = draw(d, n);
@@ -289,14 +292,14 @@ static bool read_script(const char *path, char *out, size_t *n) {
 
 // --- Running ---
 
-// What a child shares with its parent: the script that runs, and where it is in the sequence.
+// Memory shared by a child and its parent: the script that runs, and its position in the sequence.
 typedef struct Shared {
   size_t next, failed;
   uint64_t state;
   char script[LONGEST];
 } Shared;
 
-// The word nan, other than within a longer word.
+// Whether the text contains the word nan, not as part of a longer word.
 static bool undefined(const char *text) {
   for (const char *s = strstr(text, "nan"); s; s = strstr(s + 1, "nan"))
     if ((s == text || !isalpha((unsigned char)s[-1])) && !isalpha((unsigned char)s[3])) return true;
@@ -312,7 +315,7 @@ static const char *judge(CagSession *s, int status, const char *output, bool str
     cag_session_error(s, i, &e);
     if (!e.code || strcmp(e.code, "E0000") == 0 || strcmp(e.code, "E0399") == 0)
       return "an error without a code";
-    // error("") has the words of the script.
+    // error("") has the text of the script.
     if ((!e.message || !*e.message) && strcmp(e.code, "E0313") != 0)
       return "an error without words";
   }
@@ -349,7 +352,7 @@ static void run_script(Shared *shared, size_t length, bool strict) {
   free(output);
 }
 
-// One row and round after the other, then the mutations; from where the last child ended.
+// Runs the rows in each round, then the mutations. Continues where the last child ended.
 static size_t calls, mutations;
 
 typedef struct Row {
@@ -375,7 +378,7 @@ static void run_from(Shared *shared, const Row *rows, size_t count, const glob_t
   }
 }
 
-// Rows with arguments; of one name where it is given.
+// Collects rows with arguments, optionally of one name.
 static size_t gather(Row *out, const char *name) {
   size_t n = 0;
   for (size_t i = 0; i < cag_builtin_count(); i++) {
@@ -413,7 +416,7 @@ int main(int argc, char **argv) {
     if (child < 0) return 2;
     if (child == 0) {
       run_from(shared, rows, count, &scripts);
-      exit(0); // where sanitizers look for memory that is lost
+      exit(0); // sanitizers detect memory leaks here
     }
     int status;
     waitpid(child, &status, 0);

@@ -9,9 +9,8 @@
 // single point in the process itself: allocation number ALLOCATION fails, or with a minus sign all
 // allocations from this one on.
 //
-// With -l, no allocation fails, but the limit of memory is small: at the points, it rises from what
-// an empty script needs to that and 4 MiB, in steps that grow by the same factor. -a is then the
-// limit in bytes.
+// With -l, allocations do not fail, but the memory limit is small: at the points, it rises from
+// what an empty script needs to 4 MiB more, in geometric steps. -a is then the limit in bytes.
 //
 // A run passes if it ends with an error or with the output of the run without failures. The program
 // is linked with wrapped allocation functions, so only allocations of cag itself fail. Runs are
@@ -36,7 +35,7 @@
 #include "failing.h"
 
 #define SECONDS 10.0 // limit of one run
-#define HANG 60      // seconds until a run counts as endless
+#define HANG 60      // seconds until a run counts as hanging
 
 // Available only in builds with AddressSanitizer.
 __attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
@@ -60,7 +59,7 @@ static Job *jobs;
 static size_t job_count;
 static Shared *shared;
 static bool by_limit;                            // -l
-static size_t start_bytes;                       // limit of memory that an empty script needs
+static size_t start_bytes;                       // the memory limit that an empty script needs
 static char folder[] = "/tmp/cag-memory-XXXXXX"; // receives exports
 
 static size_t draw(uint64_t *state, size_t n) {
@@ -134,7 +133,7 @@ static void try_point(const Job *j, long point, int expected_status, const char 
   }
 }
 
-// The least limit of memory, to 1 KiB, with which an empty script runs.
+// Finds the lowest memory limit, to 1 KiB, with which an empty script runs.
 static size_t find_start_bytes(void) {
   const Job empty = {.name = "", .text = ""};
   size_t low = 0, high = (size_t)64 << 20, ignored;
@@ -149,7 +148,7 @@ static size_t find_start_bytes(void) {
   return high;
 }
 
-// The limit of memory at a point: 1 KiB to 4 MiB above the start.
+// The memory limit at a point: 1 KiB to 4 MiB above the start.
 static size_t limit_at(size_t point, size_t points) {
   return start_bytes + (size_t)(1024 * pow(4096, (double)point / (double)points));
 }
@@ -178,7 +177,7 @@ static void try_job(size_t points, uint64_t seed, long single) {
 }
 
 // Fails each allocation of the start of a session in turn, each in a new process, because the
-// tables of built-ins are made once per process.
+// tables of built-ins are created once per process.
 static void try_start(void) {
   static const Job start = {"the start of a session", "", NULL};
   jobs = (Job *)&start;
@@ -195,8 +194,8 @@ static void try_start(void) {
       const bool reached = (size_t)point <= allocations;
       free(output);
       shared->job = reached;
-      // If the first allocation fails, there is no session at all, and a second session has all its
-      // memory.
+      // If the first allocation fails, there is no session at all, and a second session has all the
+      // memory that it needs.
       if (point == 1)
         failing = 1, made = 0, shared->lost = cag_session_new(&(CagSessionOptions){0});
       else shared->lost = status == CAG_STATUS_OK && reached;

@@ -103,7 +103,7 @@ static void chord_knots_are_those_of_the_reference(void **state) {
   near_knots(knots, k3, 9);
   cag_knots_chord(even, 6, 3, knots);
   near_knots(knots, k4, 10);
-  // Runs of equal points still give good knots; points that are all equal give open ones.
+  // Runs of equal points still result in valid knots. If all points are equal, the knots are open.
   static const CagVec3 run[8] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                  {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
   cag_knots_chord(run, 8, 2, knots);
@@ -159,7 +159,7 @@ static void integrals_are_accurate_through_kinks(void **state) {
   OK(cag_integrate(powers, NULL, cuts, 3, 3, 1e-13, sum, &err));
   NEAR(sum[0], (pow(2, 21) + 1) / 21, 1e-9);
   NEAR(sum[2], exp(2) - exp(-1), 1e-10);
-  // The tolerance is that of the largest part; asked alone the kink is found.
+  // The tolerance is relative to the largest component; integrated alone, the kink is found.
   OK(cag_integrate(powers, NULL, cuts, 3, 2, 1e-13, sum, &err));
   NEAR(sum[1], (1.3 * 1.3 + 1.7 * 1.7) / 2, 1e-8);
 }
@@ -191,7 +191,7 @@ static void degrees_and_knots_are_checked(void **state) {
 
 // --- Random knot vectors ---
 
-// The function i of degree q by its recursive definition, over the interval that counts as t's.
+// The basis function i of degree q by its recursive definition, for t in the given interval.
 static double function_at(const double *x, size_t interval, size_t i, int q, double t) {
   if (q == 0) return i == interval;
   const double a = x[i + (size_t)q] - x[i], b = x[i + (size_t)q + 1] - x[i + 1];
@@ -209,7 +209,8 @@ static double derivative_at(const double *x, size_t interval, size_t i, int q, d
   return left - (b > 0 ? q / b * derivative_at(x, interval, i + 1, q - 1, t, order - 1) : 0);
 }
 
-// Ascending, with repetitions up to the degree inside; clamped or not. n functions of degree p.
+// Ascending knots for n functions of degree p, with inner repetitions up to the degree, clamped or
+// not.
 static void random_knots(double *x, size_t n, int p, bool clamp) {
   const size_t count = n + (size_t)p + 1;
   double t = uniform(-2, 2);
@@ -236,7 +237,7 @@ static void random_bases_follow_their_definition(void **state) {
     double x[16], table[5 * 16], derived[16], work[8], piece[25];
     random_knots(x, n, p, round % 2);
     for (int s = 0; s < 12; s++) {
-      // Knots, ends, and values between.
+      // At the knots, at the ends, and between them.
       const size_t k = (size_t)(uniform(0, (double)count - 1e-9));
       const double t = s < 6 ? x[k] : uniform(x[0], x[count - 1]);
       const bool left = s % 2;
@@ -281,7 +282,7 @@ static void random_bases_follow_their_definition(void **state) {
   }
 }
 
-// What evaluates curves agrees with the definition as well, also the pieces and an inserted knot.
+// Curve evaluation follows the definition, and so do the pieces and an inserted knot.
 static void random_splines_follow_their_definition(void **state) {
   (void)state;
   seed = 82;
@@ -290,7 +291,7 @@ static void random_splines_follow_their_definition(void **state) {
     const size_t n = (size_t)p + 1 + (size_t)(round % 5);
     double x[18], h[4 * 12], basis[6], derived[6 * 8], b[4 * 6], d[4 * 8], e[4 * 8];
     random_knots(x, n, p, round % 2);
-    // The usable range has to be there, and each span's functions.
+    // Some random vectors have no valid domain.
     if (cag_knots_check(x, n, p, &err)) continue;
     for (size_t i = 0; i < 4 * n; i++) h[i] = uniform(-2, 2);
     const double t = round % 3 ? uniform(x[p], x[n]) : x[p + 1];
@@ -307,7 +308,7 @@ static void random_splines_follow_their_definition(void **state) {
         NEAR(derived[k * (p + 1) + j], expected, 1e-10 * (1 + fabs(expected)));
       }
     }
-    // Value and derivatives of the spline from its piece.
+    // Value and derivatives of the spline, computed from its piece.
     cag_bspline_piece(h, x, p, span, b);
     cag_bspline_piece_derivatives(h, x, p, span, t, p + 2, d);
     const double length = x[span + 1] - x[span];
@@ -321,7 +322,7 @@ static void random_splines_follow_their_definition(void **state) {
         NEAR(d[4 * k + c], sum, 1e-9 * (1 + fabs(sum)));
         NEAR(e[4 * k + c] * scale, sum, 1e-9 * (1 + fabs(sum)));
       }
-    // After an insertion the spline is the same.
+    // Knot insertion does not change the spline.
     if (cag_knots_multiplicity(x, n, p, t) >= p || t >= x[n]) continue;
     double y[19], g[4 * 13];
     memcpy(y, x, sizeof(double) * (n + (size_t)p + 1));
@@ -348,7 +349,7 @@ static void random_splines_follow_their_definition(void **state) {
   }
 }
 
-// Each function of a vector is made of those of its refinement.
+// Each basis function is a combination of those on the refined knots.
 static void random_refinements_add_up(void **state) {
   (void)state;
   seed = 83;
@@ -435,7 +436,7 @@ static void random_pieces_keep_their_points(void **state) {
         NEAR(other[c], sum, 1e-12);
       }
     }
-    // w P = the homogeneous point: its derivatives by Leibniz's rule.
+    // w P = the homogeneous point, so its derivatives follow from the Leibniz rule.
     double h[4 * 6];
     CagVec3 d[6];
     for (int i = 0; i < 24; i++) h[i] = uniform(-1, 1);
@@ -470,7 +471,7 @@ static void each_rule_for_knots_is_checked(void **state) {
   OK(cag_degree_check(5, 4, &err));
   FAILS(cag_degree_check(2000, CAG_MAX_DEGREE + 1, &err), "order-range");
   OK(cag_degree_check(2000, CAG_MAX_DEGREE, &err));
-  // Spacing is judged to 1e-9 of the range.
+  // Knots count as uniform if they deviate by less than 1e-9 of the range.
   double knots[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   for (int i = 0; i < 8; i++) {
     knots[i] += 1e-9;
@@ -493,7 +494,7 @@ static void each_rule_for_knots_is_checked(void **state) {
 
 // --- Knots by the control polygon ---
 
-// Length of the polygon up to edge q, a broken number; edges count `least` at least.
+// The length of the polygon up to the fractional edge number q. Each edge counts at least `least`.
 static double walked(const CagVec3 *p, size_t n, double q, double least) {
   double sum = 0;
   for (size_t i = 0; i + 1 < n; i++) {
@@ -503,8 +504,8 @@ static double walked(const CagVec3 *p, size_t n, double q, double least) {
   return sum;
 }
 
-// The i-th inner knot has walked the share i / m of the edges; repeated points that would tear the
-// curve count a thousandth of the mean edge.
+// The i-th inner knot is at the fraction i / m of the edges. An edge between repeated points, which
+// would break the curve, counts a thousandth of the mean edge.
 static void chord_knots_walk_the_polygon(void **state) {
   (void)state;
   seed = 77;

@@ -1,5 +1,5 @@
-// What set operations make of faces: flat ones take as few triangles as their outlines need,
-// normals are those of the operands, and parts that touch have vertices of their own.
+// Faces of set operations: planar ones have as few triangles as their outlines allow, normals are
+// those of the operands, and parts that touch do not have vertices in common.
 
 #include "geom/boolean/boolean.h"
 #include "geom/linalg/transform.h"
@@ -12,9 +12,9 @@ static int random_int(int n) {
 }
 
 enum { CELLS = 4, ROW = CELLS + 2 };
-typedef bool Cells[ROW][ROW][ROW]; // with a rim of nothing
+typedef bool Cells[ROW][ROW][ROW]; // with an empty margin
 
-// A box with a normal for each side.
+// A box whose vertices have the normals of their sides.
 static CagMesh *box_with_normals(CagVec3 a, CagVec3 b) {
   static const uint32_t faces[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4,
                                      1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
@@ -41,8 +41,8 @@ static CagMesh *box_with_normals(CagVec3 a, CagVec3 b) {
   return m;
 }
 
-// The number of parts that the cells of a block of 2 x 2 x 2 with the given value form by their
-// common sides.
+// Counts the parts formed by the cells of a 2 x 2 x 2 block with the given value, where cells are
+// connected by their sides.
 static int parts_of_block(const bool block[8], bool value) {
   int part[8], count = 0;
   for (int i = 0; i < 8; i++) part[i] = i;
@@ -55,8 +55,9 @@ static int parts_of_block(const bool block[8], bool value) {
   return count;
 }
 
-// The triangles that the body of the cells needs: two for each corner, less two for each sphere,
-// and so on (Euler). Returns -1 if the body touches itself along an edge or in a corner.
+// The number of triangles needed for the body of the cells, by Euler's formula: two for each
+// corner, minus two for each sphere, and so on. Returns -1 if the body touches itself along an edge
+// or at a corner.
 static long triangles_needed(Cells g) {
   long corners = 0, euler = 0;
   for (int x = 0; x + 1 < ROW; x++)
@@ -71,7 +72,8 @@ static long triangles_needed(Cells g) {
           for (int i = 0; i < 8; i++) same = same && block[i] == block[i ^ bit];
           straight = straight || same;
         }
-        // Squares and edges of the boundary that run from this point in the positive directions.
+        // The squares and edges of the boundary that start at this point in the positive
+        // directions.
         for (int bit = 1; bit < 8; bit *= 2) faces += block[7] != block[7 ^ bit];
         for (int bit = 1; bit < 8; bit *= 2) {
           const int a = bit == 1 ? 2 : 1, b = bit == 4 ? 2 : 4;
@@ -85,7 +87,7 @@ static long triangles_needed(Cells g) {
   return 2 * (corners - euler);
 }
 
-// Whether each normal is that of its triangle, which is that of a side of a cell.
+// Checks that each normal is that of its triangle, which is that of a side of a cell.
 static void check_flat_normals(const CagMesh *m) {
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
@@ -103,7 +105,7 @@ static void boxes_of_a_grid_take_as_few_triangles_as_they_need(void **state) {
     Cells g = {{{false}}};
     CagTransform t = cag_transform_identity();
     double det = 1;
-    // Every other one sheared, with corners that are whole numbers.
+    // Every other trial is sheared, with integer corners.
     for (int i = 0; trial % 2 && i < 9; i++) t.m[i / 3][i % 3] = random_int(5) - 2;
     det = t.m[0][0] * (t.m[1][1] * t.m[2][2] - t.m[1][2] * t.m[2][1]) +
           t.m[0][1] * (t.m[1][2] * t.m[2][0] - t.m[1][0] * t.m[2][2]) +
@@ -143,7 +145,7 @@ static void boxes_of_a_grid_take_as_few_triangles_as_they_need(void **state) {
       NEAR(terms[0], count * fabs(det), 1e-10);
       check_flat_normals(body);
       const long needed = triangles_needed(g);
-      if (needed < 0) break; // what touches itself keeps the points along the touch
+      if (needed < 0) break; // where the body touches itself, the points are kept
       assert_int_equal(body->triangle_count, needed);
       checked++;
     }
@@ -152,15 +154,15 @@ static void boxes_of_a_grid_take_as_few_triangles_as_they_need(void **state) {
   assert_true(checked > 150);
 }
 
-// Two boxes at the origin whose sides lie in common planes, turned: how far points may be off their
-// planes by rounding is told by all of them, the first of which may be the origin.
+// Two rotated boxes at the origin with sides in common planes. The tolerance for points off their
+// planes must depend on all points, because the first may be the origin.
 static void turned_boxes_take_as_few_triangles_as_straight_ones(void **state) {
   (void)state;
   seed = 42;
   for (int trial = 0; trial < 40; trial++) {
     const double x = 1 + random_int(9), y = 1 + random_int(9), z = 1 + random_int(9);
     const CagVec3 o = cag_vec3(0, 0, 0), axis = cag_vec3(1 + random_int(5), random_int(5), 1);
-    // The second box makes the first one longer, or is a step on it.
+    // The second box extends the first one, or forms a step on it.
     const CagVec3 far = cag_vec3(2 * x, trial % 2 ? y : y + 1, z);
     CagMesh *boxes[2] = {box_with_normals(o, cag_vec3(x, y, z)),
                          box_with_normals(cag_vec3(x, 0, 0), far)};
@@ -185,16 +187,16 @@ static void turned_boxes_take_as_few_triangles_as_straight_ones(void **state) {
   }
 }
 
-// A plate whose top is divided among two materials along a line of short steps. Each point is off
-// the line of its neighbors by less than rounding; but where the line is bent as a whole all of its
-// points stay, and where it is straight all go.
+// A plate whose top is divided between two materials along a line of short steps. Each point is
+// closer to the line of its neighbors than the rounding tolerance. If the whole line is bent, all
+// its points must be kept; if it is straight, all must be removed.
 static void lines_between_materials_stay_where_they_are_bent(void **state) {
   (void)state;
   enum { STEPS = 40 };
   static const double BENDS[3] = {0, 2e-11, 1e-3}; // of the whole line
   for (int k = 0; k < 3; k++)
     for (int axis = 0; axis < 3; axis++) {
-      // The outline of the top: its corners and the ends of the line; the points of the line.
+      // The outline of the top (its corners and the ends of the line), and the points of the line.
       CagVec3 v[8 + STEPS - 1];
       uint32_t faces[24 + 2 * (STEPS + 3)], counts[7], n = 0;
       const double at[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -247,8 +249,8 @@ static void lines_between_materials_stay_where_they_are_bent(void **state) {
 
 // --- Bodies that touch themselves ---
 
-// The boundaries around a point of the cells of one part of a block, the part drawn in a little:
-// one more than the holes that the others leave it. The others hang together over sides and edges.
+// The number of boundaries around a grid point of one part of a block, slightly shrunk: one more
+// than the number of connected sets that the other cells form, connected by sides and edges.
 static int boundaries(const bool part[8]) {
   int group[8], count = 0;
   for (int i = 0; i < 8; i++) group[i] = i;
@@ -262,8 +264,8 @@ static int boundaries(const bool part[8]) {
   return count;
 }
 
-// The Euler characteristic of the surface of the cells, where cells that have an edge or a corner
-// in common, but no side, are apart.
+// The Euler characteristic of the surface of the cells. Cells that have only an edge or a corner in
+// common are separate.
 static long euler_of_cells(Cells g) {
   long euler = 0;
   for (int x = 0; x + 1 < ROW; x++)
@@ -342,7 +344,7 @@ static CagVec3 random_vector(void) {
   return cag_vec3(x, y, random_number());
 }
 
-// A tetrahedron whose corners have normals of their own in each face, or none.
+// A tetrahedron, optionally with normals for the corners of each face.
 static CagMesh *random_tetrahedron(bool normals) {
   static const uint32_t out[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
   CagVec3 v[4];
@@ -363,8 +365,8 @@ static CagMesh *random_tetrahedron(bool normals) {
   return m;
 }
 
-// Whether a triangle of m, turned or not, has the point with this normal, interpolated between its
-// corners, in the plane of a triangle with the normal `flat`.
+// Whether the point p lies on a triangle of m (reversed if `turned` is set) with this interpolated
+// normal. The triangle's plane has the normal `flat`.
 static bool has_normal(const CagMesh *m, bool turned, CagVec3 p, CagVec3 normal, CagVec3 flat) {
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
@@ -398,7 +400,7 @@ static void normals_are_interpolated(void **state) {
         const uint32_t *k = m->triangles + 3 * t;
         const CagVec3 *v = m->positions;
         const CagVec3 flat = cag_cross(cag_sub(v[k[1]], v[k[0]]), cag_sub(v[k[2]], v[k[0]]));
-        if (cag_norm(flat) < 1e-6) continue; // its plane is not to be told
+        if (cag_norm(flat) < 1e-6) continue; // its plane is undetermined
         for (int i = 0; i < 3; i++, checked++)
           assert_true(
               has_normal(a, false, v[k[i]], m->normals[k[i]], cag_unit(flat)) ||

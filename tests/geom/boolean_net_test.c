@@ -1,5 +1,5 @@
-// The triangulations in which faces of set operations are cut, against brute force: random points
-// of a small grid in tilted planes, and segments that cross, overlap and touch.
+// The triangulations used to cut the faces of set operations, compared with brute force: random
+// points of a small grid in tilted planes, and segments that cross, overlap, and touch.
 
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,7 @@ static int whole(int low, int high) { return low + (int)uniform(0, high - low + 
 
 #define MOST 24
 
-// A point of the plane as it is seen: (x / w, y / w).
+// A point in the projection plane: (x / w, y / w).
 typedef struct Rational {
   long x, y, w;
 } Rational;
@@ -34,7 +34,7 @@ typedef struct Trial {
   size_t n;
   int from[MOST], to[MOST]; // segments, by their points
   size_t segments;
-  Rational all[4 * MOST * MOST]; // points, and where segments meet, each once
+  Rational all[4 * MOST * MOST]; // the points, and the intersections of segments, each once
   size_t all_count;
 } Trial;
 
@@ -78,7 +78,7 @@ static void note_all(Trial *t) {
     }
 }
 
-// How many points lie within a segment, without its ends.
+// The number of points inside a segment, without its ends.
 static size_t count_within(const Trial *t, size_t segment) {
   const int a = t->from[segment], b = t->to[segment];
   const long ux = t->x[b] - t->x[a], uy = t->y[b] - t->y[a];
@@ -91,7 +91,7 @@ static size_t count_within(const Trial *t, size_t segment) {
   return count;
 }
 
-// --- What a net must be ---
+// --- Properties of a net ---
 
 static int turn(Trial *t, uint32_t a, uint32_t b, uint32_t c) {
   return cag_bool_turn(&t->points, a, b, c, t->axis);
@@ -104,7 +104,7 @@ static bool is_ahead(const Trial *t, uint32_t a, uint32_t b, uint32_t v) {
   return along > 0;
 }
 
-// Positive where the last corner is in the circle of the cell, of 1.
+// Positive if the last corner is inside the circle through the other three, in a cell of size 1.
 static double circle(const Trial *t, const uint32_t v[3], uint32_t d) {
   double m[3][3], value = 0, size = 0;
   for (int i = 0; i < 3; i++) {
@@ -119,8 +119,9 @@ static double circle(const Trial *t, const uint32_t v[3], uint32_t d) {
   return value / size;
 }
 
-// Cells run counter-clockwise, know their neighbors and fill the first triangle; edges that may be
-// flipped are those of a Delaunay triangulation. Returns the number of edges on the border.
+// Checks that cells run counter-clockwise, know their neighbors, and fill the first triangle. Edges
+// that may be flipped must satisfy the Delaunay condition. Returns the number of edges on the
+// border.
 static size_t check_cells(Trial *t, const uint32_t corners[3], bool improved) {
   const BoolCell *cells = bool_cells(&t->net);
   double area = 0, filled = 0;
@@ -152,12 +153,14 @@ static size_t check_cells(Trial *t, const uint32_t corners[3], bool improved) {
     const BoolCell *c = &cells[t->net.cell_of[v]];
     assert_true(c->v[0] == v || c->v[1] == v || c->v[2] == v);
   }
-  // Euler: as many cells as points inside twice, points on the border, less two.
+  // Euler's formula: the number of cells is twice the number of inner points, plus the points on
+  // the border, minus two.
   assert_int_equal(t->net.cells.n, 2 * t->net.vertices.n - border - 2);
   return border;
 }
 
-// Walks along a segment: each step is an edge on the way, fixed on both sides. Returns the steps.
+// Walks along a segment, and checks that each step is an edge on it, fixed on both sides. Returns
+// the number of steps.
 static size_t check_walk(Trial *t, uint32_t a, uint32_t b) {
   size_t steps = 0;
   for (uint32_t at = a, next; at != b; at = next, steps++) {
@@ -183,7 +186,8 @@ static size_t check_walk(Trial *t, uint32_t a, uint32_t b) {
   return steps;
 }
 
-// A step is an edge of the net that goes straight towards the end, whether a segment or not.
+// Checks that the step is an edge of the net toward the end of the walk, whether or not it is part
+// of a segment.
 static void check_step(Trial *t, uint32_t a, uint32_t b) {
   uint32_t expected = BOOL_NONE, cell;
   int e;
@@ -194,7 +198,7 @@ static void check_step(Trial *t, uint32_t a, uint32_t b) {
       if (v[k] != a && turn(t, a, b, v[k]) == 0 && is_ahead(t, a, b, v[k])) expected = v[k];
   }
   const uint32_t found = cag_bool_net_step(&t->net, a, b, &cell, &e);
-  // On the border the net may lie to the right of the step alone.
+  // On the border, the net may be only on the right of the step.
   bool left = false;
   for (size_t i = 0; i < t->net.cells.n; i++)
     for (int k = 0; k < 3; k++) {
@@ -206,13 +210,13 @@ static void check_step(Trial *t, uint32_t a, uint32_t b) {
 
 // --- Trials ---
 
-// Points of a triangle with a right angle at the origin, many of them on its border; the net begins
-// with the triangle itself, or with one far around.
+// Starts with points of a right triangle at the origin, many of them on its border. The first
+// triangle of the net is this triangle, or a large one around it.
 static void start(Trial *t, int side, bool far) {
   uint32_t corners[3];
   static const long around[3][2] = {{-40, -30}, {90, -35}, {-45, 110}};
   const long inner[3][2] = {{0, 0}, {side, 0}, {0, side}};
-  const bool right = whole(0, 1); // the net turns them round
+  const bool right = whole(0, 1); // the net reverses a clockwise triangle
   for (int k = 0; k < 3; k++) {
     const int from = right ? 2 - k : k;
     const long(*c)[2] = far ? &around[from] : &inner[from];
@@ -270,7 +274,7 @@ static void check_trial(Trial *t, int side, bool far) {
   assert_true(cag_bool_net_improve(&t->net));
   check_cells(t, corners, true);
   assert_int_equal(t->net.vertices.n, t->all_count + (far ? 3 : 0));
-  // Each edge that is fixed is part of a segment, so walks meet them all.
+  // Each fixed edge is part of a segment, so the walks pass all of them.
   size_t fixed = 0;
   for (size_t i = 0; i < t->net.cells.n; i++)
     for (int k = 0; k < 3; k++) {
@@ -289,7 +293,8 @@ static void check_trial(Trial *t, int side, bool far) {
       fixed += part;
     }
   for (size_t s = 0; s < t->segments; s++) {
-    // The cell to the left of a step: along the border that is the way with the net to its left.
+    // The cell to the left of a step. On the border, the step is taken in the direction that has
+    // the net on its left.
     const int a = t->from[s], b = t->to[s];
     const long x = t->x[a] + t->x[b], y = t->y[a] + t->y[b];
     const bool on_border = !far && ((t->x[a] == 0 && t->x[b] == 0) ||
@@ -303,7 +308,7 @@ static void check_trial(Trial *t, int side, bool far) {
   assert_true(fixed > 0 || t->segments == 0);
 }
 
-// The net and the points stay from one triangulation to the next.
+// The same net and points are reused for several triangulations.
 static void random_points_and_segments(void **state) {
   (void)state;
   Trial *t = calloc(1, sizeof *t);
@@ -334,8 +339,7 @@ static void random_points_and_segments(void **state) {
   free(t);
 }
 
-// A simple net refuses points that are seen in one place and segments that cross, and takes all
-// others.
+// A simple net rejects coincident points and crossing segments, and accepts all others.
 static void simple_nets(void **state) {
   (void)state;
   Trial *t = calloc(1, sizeof *t);
@@ -356,7 +360,7 @@ static void simple_nets(void **state) {
       const int x = whole(0, side), y = whole(0, side);
       bool there = false;
       for (size_t k = 0; k < t->n; k++) there = there || (t->x[k] == x && t->y[k] == y);
-      t->slope[0] = i; // seen in one place, but apart
+      t->slope[0] = i; // coincident in the projection, but apart in space
       const uint32_t v = cag_bool_points_add_far(&t->points, lifted(t, x, y));
       assert_int_equal(cag_bool_net_add_point(&t->net, v), !there);
       assert_int_equal(t->net.spoiled, there);

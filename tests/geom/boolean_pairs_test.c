@@ -1,4 +1,4 @@
-// Which faces of a set operation are compared, against all pairs.
+// The selection of pairs of faces for set operations, compared with all pairs.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,7 +59,8 @@ static CagBounds box_of(size_t face) {
   return box;
 }
 
-// Boxes as near as two slacks are a pair, once; with whole numbers many are just that near.
+// Boxes within twice the slack are reported as a pair, once. With integer coordinates, many are
+// exactly at this distance.
 static void pairs_are_those_whose_boxes_are_near(void **state) {
   (void)state;
   static Seen seen;
@@ -113,7 +114,7 @@ static void far_rays_meet_nothing(void **state) {
   stop();
 }
 
-// The first failure and the caller's wish to stop end the search.
+// The first failure or a request to stop ends the search.
 static void searches_end(void **state) {
   (void)state;
   static Seen seen;
@@ -133,7 +134,7 @@ static void searches_end(void **state) {
   stop();
 }
 
-// Points of the plane of a face, on a grid: in it, on its edges, outside.
+// Points in the plane of a face, on a grid: inside, on its edges, and outside.
 static void points_in_faces(void **state) {
   (void)state;
   seed = 9;

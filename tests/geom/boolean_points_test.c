@@ -1,5 +1,6 @@
-// Points of set operations and the questions that are asked of them, against fractions of whole
-// numbers: points where lines and planes of a small grid meet, so that most questions are close.
+// Points of set operations and the predicates on them, compared with exact fractions. The points
+// are intersections of lines and planes of a small grid, so most predicates are close to
+// degenerate.
 
 #include <math.h>
 #include <setjmp.h>
@@ -25,8 +26,8 @@ typedef struct Fraction {
 #define MOST 4000
 
 static BoolPoints points;
-static Fraction known[MOST]; // of the numbers of points
-static bool far[MOST];       // added without a look at the others
+static Fraction known[MOST]; // by point number
+static bool far[MOST];       // added without searching for an equal point
 
 static Fraction lowest(Fraction f) {
   Whole g = f.w;
@@ -43,7 +44,7 @@ static bool are_equal(const Fraction *a, const Fraction *b) {
          a->x[2] * b->w == b->x[2] * a->w;
 }
 
-// Checks the number that a point was given: the one of the same point before, or the next.
+// Checks the number of a new point: that of an equal point before, or the next free one.
 static void enter(uint32_t number, size_t count, Fraction f, bool is_far) {
   size_t expected = count;
   f = lowest(f);
@@ -57,12 +58,12 @@ static void enter(uint32_t number, size_t count, Fraction f, bool is_far) {
   far[number] = is_far;
   const CagVec3 at = points.at[number];
   const double w = (double)f.w;
-  // Numbers below 2^53: each quotient is rounded once.
+  // The numbers are below 2^53, so each quotient is rounded once.
   assert_true(at.x == (double)f.x[0] / w && at.y == (double)f.x[1] / w &&
               at.z == (double)f.x[2] / w);
 }
 
-// --- Fractions of points ---
+// --- Exact coordinates ---
 
 static Whole turned(const Fraction *a, const Fraction *b, const Fraction *c, int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -71,7 +72,7 @@ static Whole turned(const Fraction *a, const Fraction *b, const Fraction *c, int
          c->w * (a->x[i] * b->x[j] - a->x[j] * b->x[i]);
 }
 
-// The normal of the plane of three points, times a positive number.
+// The normal of the plane of three points, multiplied by a positive number.
 static void normal_of(const uint32_t plane[3], Whole n[3]) {
   for (int k = 0; k < 3; k++)
     n[k] = turned(&known[plane[0]], &known[plane[1]], &known[plane[2]], k);
@@ -128,7 +129,7 @@ static Fraction solution(Equation e[3]) {
   return f;
 }
 
-// --- Points of a grid, and those made of them ---
+// --- Grid points, and points constructed from them ---
 
 #define GIVEN 14
 
@@ -145,20 +146,20 @@ static void begin(int origin) {
   }
 }
 
-static uint32_t given(void) { return (uint32_t)whole(0, GIVEN - 1); }
+static uint32_t random_given(void) { return (uint32_t)whole(0, GIVEN - 1); }
 
 static uint32_t any(void) {
   for (;;) {
     const uint32_t i = (uint32_t)whole(0, (int)points.n - 1);
-    if (known[i].w < 3000) return i; // the products of more do not fit the numbers here
+    if (known[i].w < 3000) return i; // products of larger ones overflow
   }
 }
 
-// Three of the given points that are not on one line.
+// Three of the given points that are not collinear.
 static void random_plane(uint32_t plane[3]) {
   Whole n[3];
   do {
-    for (int k = 0; k < 3; k++) plane[k] = given();
+    for (int k = 0; k < 3; k++) plane[k] = random_given();
     normal_of(plane, n);
   } while (n[0] == 0 && n[1] == 0 && n[2] == 0);
 }
@@ -166,7 +167,7 @@ static void random_plane(uint32_t plane[3]) {
 static void add_crossing(void) {
   uint32_t plane[3];
   random_plane(plane);
-  const uint32_t a = given(), b = given();
+  const uint32_t a = random_given(), b = random_given();
   const Whole s = side_of(plane, &known[a]), t = side_of(plane, &known[b]);
   if (sign(s) * sign(t) >= 0) return;
   Fraction f = {.w = t - s};
@@ -186,7 +187,7 @@ static void add_meeting(void) {
   random_plane(plane);
   const BoolCut one = random_cut();
   BoolCut two = random_cut();
-  if (two.c == BOOL_NONE && whole(0, 1)) two.a = any(); // an edge to a point made before
+  if (two.c == BOOL_NONE && whole(0, 1)) two.a = any(); // an edge to a constructed point
   Equation e[3] = {plane_through(plane), cut_of(one), cut_of(two)};
   const Fraction f = solution(e);
   const size_t n = points.n;
@@ -219,7 +220,7 @@ static void add_put(void) {
 static void add_centroid(void) {
   uint32_t v[3];
   Fraction f = {.w = 3};
-  for (int k = 0; k < 3; k++) v[k] = k ? given() : any();
+  for (int k = 0; k < 3; k++) v[k] = k ? random_given() : any();
   for (int i = 0; i < 3; i++) f.w *= known[v[i]].w;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) f.x[k] += known[v[i]].x[k] * (f.w / 3 / known[v[i]].w);
@@ -227,7 +228,7 @@ static void add_centroid(void) {
   enter(cag_bool_points_centroid(&points, v), n, f, true);
 }
 
-// --- Questions ---
+// --- Predicates ---
 
 static void ask_once(void) {
   uint32_t v[4], m[3], n[3];
@@ -245,9 +246,9 @@ static void ask_once(void) {
   assert_int_equal(cag_bool_turn(&points, v[0], v[1], v[2], axis), sign(turned(a, b, c, axis)));
   assert_int_equal(cag_bool_normal_sign(&points, v, axis), sign(turned(a, b, c, axis)));
   assert_int_equal(cag_bool_side(&points, v, v[3]), sign(side_of(v, d)));
-  // Of one of the planes all points are given, as planes of operands are for the most part.
+  // For one of the planes, all points are given points, as for most planes of operands.
   random_plane(m);
-  for (int k = 0; k < 3; k++) n[k] = whole(0, 3) ? given() : v[k];
+  for (int k = 0; k < 3; k++) n[k] = whole(0, 3) ? random_given() : v[k];
   normal_of(m, p);
   normal_of(n, q);
   Whole dot = 0;
@@ -291,7 +292,7 @@ static void points_are_those_of_fractions(void **state) {
   }
 }
 
-// Zeros of both signs are one point; help points are new ones every time.
+// Zeros of both signs are one point. Auxiliary points are always new.
 static void zeros_and_far_points(void **state) {
   (void)state;
   assert_true(cag_bool_points_start(&points, 0));

@@ -1,5 +1,5 @@
-// Set operations of meshes: closed forms, identities between volumes, and what winds around random
-// points; many small operands on a grid of whole numbers, where everything is degenerate.
+// Set operations of meshes: closed forms, identities between volumes, and winding numbers of random
+// points. Many small operands on an integer grid cover the degenerate cases.
 
 #include "geom/boolean/boolean.h"
 
@@ -45,7 +45,7 @@ static CagMesh *tetrahedron(const CagVec3 corners[4]) {
   return mesh_of(corners, 4, turned(corners) > 0 ? out : in, threes, 4);
 }
 
-// Rings of n points from pole to pole; normals where wanted.
+// Rings of n points from pole to pole, optionally with normals.
 static CagMesh *ball(CagVec3 center, double radius, uint32_t n, bool normals) {
   CagMesh *m;
   const uint32_t rings = n / 2, south = n * (rings - 1);
@@ -109,7 +109,7 @@ static CagMesh *rotated(CagMesh *m, CagVec3 axis, double angle) {
   return moved(m, &t);
 }
 
-// Both, released.
+// Both meshes as one. Releases the operands.
 static CagMesh *together(CagMesh *a, CagMesh *b) {
   CagMesh *const parts[2] = {a, b};
   CagMesh *m;
@@ -161,8 +161,8 @@ static double operated_volume(CagSetOperation op, const CagMesh *a, const CagMes
   return v;
 }
 
-// How often a mesh winds around a point: the solid angles of its triangles (van Oosterom and
-// Strackee 1983). Knows nothing of the code under test.
+// The winding number of a mesh around a point, from the solid angles of its triangles (van Oosterom
+// and Strackee 1983). It is independent of the code under test.
 static double winding(const CagMesh *m, CagVec3 p) {
   double sum = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -190,7 +190,7 @@ static CagVec3 random_point(double size) {
   return cag_vec3(size * x, size * y, size * random_number());
 }
 
-static void assert_same_places(CagSetOperation op, const CagMesh *a, const CagMesh *b,
+static void assert_same_inside(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                                const CagMesh *m, double size, int points) {
   for (int i = 0; i < points; i++) {
     const CagVec3 p = cag_sub(random_point(size + 1.5), cag_vec3(0.713, 0.717, 0.719));
@@ -204,7 +204,7 @@ static void assert_same_places(CagSetOperation op, const CagMesh *a, const CagMe
   }
 }
 
-// All three operations on a pair; V(A|B) + V(A&B) = V(A) + V(B), V(A-B) + V(A&B) = V(A), and
+// Checks all three operations on a pair: V(A|B) + V(A&B) = V(A) + V(B), V(A-B) + V(A&B) = V(A), and
 // (A-B) | (A&B) is A again.
 static void check_pair(const CagMesh *a, const CagMesh *b, double size, int points) {
   CagMesh *m[3], *again;
@@ -213,7 +213,7 @@ static void check_pair(const CagMesh *a, const CagMesh *b, double size, int poin
   for (int op = 0; op < 3; op++) {
     m[op] = operated((CagSetOperation)op, a, b);
     v[op] = volume(m[op]);
-    assert_same_places((CagSetOperation)op, a, b, m[op], size, points);
+    assert_same_inside((CagSetOperation)op, a, b, m[op], size, points);
   }
   NEAR(v[CAG_UNION] + v[CAG_INTERSECTION], volume(a) + volume(b), tolerance);
   NEAR(v[CAG_DIFFERENCE] + v[CAG_INTERSECTION], volume(a), tolerance);
@@ -225,7 +225,7 @@ static void check_pair(const CagMesh *a, const CagMesh *b, double size, int poin
 
 // --- Boxes ---
 
-// Volumes, triangle counts of nothing, and the Euler characteristic of each result.
+// Checks the volumes and the Euler characteristic of each result; an empty result has no triangles.
 static void check_boxes(CagMesh *a, CagMesh *b, const double volumes[3], const long euler[3]) {
   for (int op = 0; op < 3; op++) {
     CagMesh *m = operated((CagSetOperation)op, a, b);
@@ -240,38 +240,38 @@ static void check_boxes(CagMesh *a, CagMesh *b, const double volumes[3], const l
 
 static void boxes_in_every_position(void **state) {
   (void)state;
-  // corner in corner
+  // overlapping corners
   check_boxes(cube(0, 0, 0, 2), cube(1, 1, 1, 2), (double[]){15, 7, 1}, (long[]){2, 2, 2});
-  // through each other: a tunnel leaves a ring
+  // one passes through the other: a tunnel leaves a ring
   check_boxes(cube(0, 0, 0, 3), box(cag_vec3(1, 1, -1), cag_vec3(2, 2, 4)), (double[]){29, 24, 3},
               (long[]){2, 0, 2});
   // apart
   check_boxes(cube(0, 0, 0, 1), cube(5, 0, 0, 1), (double[]){2, 1, 0}, (long[]){4, 2, 0});
-  // one in the other: a cavity
+  // one inside the other: a cavity
   check_boxes(cube(0, 0, 0, 3), cube(1, 1, 1, 1), (double[]){27, 26, 1}, (long[]){2, 4, 2});
   check_boxes(cube(1, 1, 1, 1), cube(0, 0, 0, 3), (double[]){27, 0, 1}, (long[]){2, 0, 2});
 }
 
 static void boxes_that_touch(void **state) {
   (void)state;
-  // the same
+  // identical
   check_boxes(cube(0, 0, 0, 1), cube(0, 0, 0, 1), (double[]){1, 0, 1}, (long[]){2, 0, 2});
-  // a common face, whole and in part
+  // a common face, entirely or partly
   check_boxes(cube(0, 0, 0, 1), cube(1, 0, 0, 1), (double[]){2, 1, 0}, (long[]){2, 2, 0});
   check_boxes(cube(0, 0, 0, 3), box(cag_vec3(3, 1, 1), cag_vec3(4, 2, 2)), (double[]){28, 27, 0},
               (long[]){2, 2, 0});
   check_boxes(cube(0, 0, 0, 2), cube(2, 1, 1, 2), (double[]){16, 8, 0}, (long[]){2, 2, 0});
-  // flush from inside: a pocket that reaches a face, a slot through two, a half
+  // flush from inside: a pocket that reaches one face, a slot through two, a half
   check_boxes(cube(0, 0, 0, 3), box(cag_vec3(1, 1, 1), cag_vec3(2, 2, 3)), (double[]){27, 25, 2},
               (long[]){2, 2, 2});
   check_boxes(cube(0, 0, 0, 3), box(cag_vec3(1, 0, 1), cag_vec3(2, 3, 3)), (double[]){27, 21, 6},
               (long[]){2, 2, 2});
   check_boxes(cube(0, 0, 0, 2), box(cag_vec3(0, 0, 0), cag_vec3(1, 2, 2)), (double[]){8, 4, 4},
               (long[]){2, 2, 2});
-  // a common edge, and a common corner: two bodies with vertices of their own
+  // a common edge, and a common corner: two bodies with separate vertices
   check_boxes(cube(0, 0, 0, 1), cube(1, 1, 0, 1), (double[]){2, 1, 0}, (long[]){4, 2, 0});
   check_boxes(cube(0, 0, 0, 1), cube(1, 1, 1, 1), (double[]){2, 1, 0}, (long[]){4, 2, 0});
-  // what is left are two bars with a common edge
+  // the difference is two bars with a common edge
   check_boxes(box(cag_vec3(0, 0, 0), cag_vec3(2, 2, 1)),
               together(box(cag_vec3(0, 0, 0), cag_vec3(1, 1, 1)),
                        box(cag_vec3(1, 1, 0), cag_vec3(2, 2, 1))),
@@ -280,7 +280,7 @@ static void boxes_that_touch(void **state) {
 
 static void solids_of_several_parts_and_cavities(void **state) {
   (void)state;
-  // A shell: the inner box inside out. A rod through it loses what is in the cavity's place.
+  // A shell, whose inner box is inside out. A rod through it loses the part inside the cavity.
   CagMesh *inner = cube(1, 1, 1, 3), *inside_out, *shell;
   OK(cag_mesh_flip(inner, &inside_out, &err));
   cag_mesh_release(inner);
@@ -290,7 +290,7 @@ static void solids_of_several_parts_and_cavities(void **state) {
   NEAR(operated_volume(CAG_DIFFERENCE, shell, rod), 98 - 2, 1e-12);
   NEAR(operated_volume(CAG_INTERSECTION, shell, rod), 2, 1e-12);
   NEAR(operated_volume(CAG_DIFFERENCE, rod, shell), 5, 1e-12);
-  // A plug that fills the cavity to its walls.
+  // A plug that exactly fills the cavity.
   CagMesh *plug = cube(1, 1, 1, 3);
   CagMesh *full = operated(CAG_UNION, shell, plug);
   NEAR(volume(full), 125, 1e-12);
@@ -330,7 +330,7 @@ static void cubes_turned_by_next_to_nothing(void **state) {
     }
 }
 
-// Nearly all triangles are cut, and most points fall together when they are rounded.
+// Nearly all triangles are cut, and most points coincide after rounding.
 static void balls_turned_by_next_to_nothing(void **state) {
   (void)state;
   const double angles[] = {1e-9, 1e-15, 3e-16};
@@ -387,7 +387,7 @@ static void a_drilled_box(void **state) {
   }
 }
 
-// Two unit spheres at the distance 1: the lens has the volume 5 pi / 12.
+// Two unit spheres at distance 1: the lens has the volume 5 pi / 12.
 static void the_lens_of_two_spheres(void **state) {
   (void)state;
   CagMesh *a = ball(cag_vec3(0, 0, 0), 1, 128, true),
@@ -399,7 +399,7 @@ static void the_lens_of_two_spheres(void **state) {
   CagMeshCheck c;
   OK(cag_mesh_check(lens, &c, &err));
   assert_true(c.closed && c.oriented && c.shells == 1);
-  // Normals are those of the spheres, on b's part of a difference turned.
+  // Normals are those of the spheres, reversed on b's part of a difference.
   CagMesh *bitten = operated(CAG_DIFFERENCE, a, b);
   size_t turned_normals = 0;
   for (size_t i = 0; i < bitten->vertex_count; i++) {
@@ -411,7 +411,7 @@ static void the_lens_of_two_spheres(void **state) {
     turned_normals += !on_a;
   }
   assert_true(turned_normals > 500);
-  // Along the edge a point has a vertex for each sphere; they are one point of the closed mesh.
+  // A point on the edge has a vertex for each sphere, but it is one point of the closed mesh.
   size_t twice = 0;
   for (size_t i = 0; i < bitten->vertex_count; i++) twice += bitten->weld[i] != i;
   assert_true(twice > 100 && twice < 1000);
@@ -427,10 +427,10 @@ static void balls_in_general_and_special_positions(void **state) {
   seed = 7;
   for (int i = 0; i < 12; i++) {
     CagMesh *a = ball(cag_vec3(0, 0, 0), 1, 24, i % 2);
-    CagMesh *b = i == 0   ? ball(cag_vec3(0, 0, 0), 1, 24, false)  // the same
+    CagMesh *b = i == 0   ? ball(cag_vec3(0, 0, 0), 1, 24, false)  // identical
                  : i == 1 ? ball(cag_vec3(0, 0, 1), 1, 24, true)   // poles on poles
-                 : i == 2 ? ball(cag_vec3(0, 0, 2), 1, 24, true)   // touching in a point
-                 : i == 3 ? ball(cag_vec3(0, 0, 0), 0.5, 24, true) // inside
+                 : i == 2 ? ball(cag_vec3(0, 0, 2), 1, 24, true)   // touching at a point
+                 : i == 3 ? ball(cag_vec3(0, 0, 0), 0.5, 24, true) // one inside the other
                           : ball(random_point(1), 1, 16 + 2 * (uint32_t)i, i % 3);
     if (i > 7) b = rotated(b, random_point(1), 1e-8);
     check_pair(a, b, 1, 2);
@@ -439,7 +439,7 @@ static void balls_in_general_and_special_positions(void **state) {
   }
 }
 
-// --- A grid of whole numbers ---
+// --- An integer grid ---
 
 static CagVec3 grid_point(int n) {
   const int x = random_int(n + 1), y = random_int(n + 1);
@@ -458,7 +458,7 @@ static CagMesh *grid_box(int n) {
 static CagMesh *grid_body(int n) {
   const int kind = random_int(3);
   if (kind == 0) return grid_box(n);
-  if (kind == 1) { // a sheared prism: often with faces along the diagonals
+  if (kind == 1) { // a sheared prism, often with faces along the diagonals
     const CagVec3 up = grid_point(2), a = grid_point(n - 2), b = grid_point(n - 2);
     const CagVec3 c = grid_point(n - 2);
     static const uint32_t faces[18] = {0, 2, 1, 3, 4, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 0, 3, 5};
@@ -486,8 +486,8 @@ static void bodies_on_a_grid(void **state) {
   }
 }
 
-// The corners of the pieces are rounded thirds. Snapping moves them off the plane of the cut by
-// less than a double can represent. A ray in this plane has to pass an edge on its true side.
+// The corners of the pieces are rounded thirds. Snapping moves them off the cutting plane by less
+// than a double can represent. A ray in this plane must pass an edge on the correct side.
 static void pieces_of_a_tetrahedron_join_again(void **state) {
   (void)state;
   const CagVec3 v[4] = {{3, 3, 0}, {2, 3, 3}, {1, 1, 2}, {3, 2, 2}};
@@ -504,7 +504,7 @@ static void pieces_of_a_tetrahedron_join_again(void **state) {
   cag_mesh_release(b);
 }
 
-// Operands that are results: parts that touch along edges and in points, faces cut in pieces.
+// Operands that are results: parts that touch along edges and at points, and subdivided faces.
 static void chains_on_a_grid(void **state) {
   (void)state;
   seed = 4;
@@ -522,7 +522,7 @@ static void chains_on_a_grid(void **state) {
   }
 }
 
-// Bodies of boxes on the grid: the cells that they have are counted.
+// Bodies of boxes on the grid, whose volume is a count of cells.
 static void cells_of_boxes_are_counted(void **state) {
   (void)state;
   enum { N = 4 };
@@ -553,7 +553,7 @@ static void cells_of_boxes_are_counted(void **state) {
   }
 }
 
-// --- Many ---
+// --- Many operands ---
 
 static void many_operands(void **state) {
   (void)state;
@@ -584,8 +584,8 @@ static void many_operands(void **state) {
 
 static void triangles_without_area_are_no_gap(void **state) {
   (void)state;
-  // A tetrahedron with a point more on an edge: one neighbor has it, the other does not, and a
-  // triangle without area between them closes the mesh.
+  // A tetrahedron with an additional point on an edge. Only one of the two faces at this edge has
+  // the point; a triangle without area between them closes the mesh.
   const CagVec3 v[5] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
   const uint32_t faces[18] = {0, 2, 4, 4, 2, 1, 0, 4, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
   CagMesh *a;
@@ -626,7 +626,7 @@ static void operands_that_bound_nothing(void **state) {
   cag_mesh_release(b);
 }
 
-// How often the mesh runs the edge from p to q.
+// Counts how often the mesh has the edge from p to q.
 static int runs(const CagMesh *m, CagVec3 p, CagVec3 q, long *triangle) {
   int count = 0;
   for (size_t t = 0; t < m->triangle_count; t++)
@@ -640,7 +640,7 @@ static int runs(const CagMesh *m, CagVec3 p, CagVec3 q, long *triangle) {
   return count;
 }
 
-// Messages tell an edge and how often it is run, and the triangle has it.
+// Messages name an edge and how often it occurs, and the reported triangle has it.
 static void messages_of_open_operands_are_true(void **state) {
   (void)state;
   CagMesh *a = cube(0, 0, 0, 9), *m;
@@ -648,7 +648,8 @@ static void messages_of_open_operands_are_true(void **state) {
     for (int twice = 0; twice < 2; twice++) {
       CagMesh *b = cube(1, 2, 3, 4);
       uint32_t *t = b->triangles + 3 * i;
-      if (twice) memcpy(t, b->triangles + 3 * ((i + 5) % 12), 3 * sizeof *t); // one more instead
+      if (twice)
+        memcpy(t, b->triangles + 3 * ((i + 5) % 12), 3 * sizeof *t); // an additional one instead
       else memcpy(t, b->triangles + 3 * --b->triangle_count, 3 * sizeof *t);
       FAILS_AMONG(cag_mesh_boolean(CAG_UNION, a, b, NULL, &m, &err), "mesh-open", 0, 11);
       CagVec3 p, q;
@@ -697,8 +698,8 @@ static void coordinates_have_limits(void **state) {
   cag_mesh_release(a);
 }
 
-// What is thinner than rounding may be inside out, anything else not. The limit, 1e-11 of the
-// largest coordinate times the area, is at a thickness of 1e-10 here.
+// An operand thinner than rounding may be inside out, but no other. The limit, 1e-11 of the largest
+// coordinate times the area, is at a thickness of 1e-10 here.
 static void thin_operands_may_be_turned(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -722,7 +723,7 @@ static void thin_operands_may_be_turned(void **state) {
   }
 }
 
-// Whichever operand of a list is open: it is named, and nothing is lost.
+// Whichever operand of a list is open is named, and no memory is lost.
 static void an_open_operand_among_many_is_named(void **state) {
   (void)state;
   CagMesh *list[6], *m;
@@ -737,7 +738,7 @@ static void an_open_operand_among_many_is_named(void **state) {
         assert_string_equal(err.argument, "meshes");
         list[bad]->triangle_count++;
       }
-  // Boxes in a row: unions, what the first has alone, and what all have.
+  // Boxes in a row: the union, the part that only the first has, and the part common to all.
   for (size_t n = 0; n <= 6; n++)
     for (int op = 0; op < 3; op++) {
       const double length = (double)n, all = n ? 1 + 0.7 * (length - 1) : 0;
@@ -759,14 +760,14 @@ static void exact_numbers(void **state) {
   (void)state;
   uint64_t limbs[4096];
   CagExactSpace s = {limbs, 0, 4096, false};
-  // (1 + 2^-52)(1 - 2^-52) - 1 = -2^-104, which doubles do not see
+  // (1 + 2^-52)(1 - 2^-52) - 1 = -2^-104, which doubles cannot represent
   const CagExact one = cag_exact(&s, 1);
   const CagExact p = cag_exact_product(&s, cag_exact(&s, 1 + 0x1p-52), cag_exact(&s, 1 - 0x1p-52));
   const CagExact d = cag_exact_difference(&s, p, one);
   assert_int_equal(d.sign, -1);
   assert_int_equal(cag_exact_sum(&s, d, cag_exact(&s, 0x1p-104)).sign, 0);
   assert_int_equal(cag_exact_sum(&s, cag_exact(&s, 1e300), cag_exact(&s, -1e-300)).sign, 1);
-  // Quotients are rounded as the processor rounds those of doubles, ties apart.
+  // Quotients are rounded like those of doubles, except for ties.
   seed = 3;
   for (int i = 0; i < 2000; i++) {
     s.used = 0;
@@ -774,7 +775,7 @@ static void exact_numbers(void **state) {
     const double w = (random_number() + 1e-3) * pow(10, random_int(40) - 20);
     assert_true(cag_exact_quotient(&s, cag_exact(&s, x), cag_exact(&s, w)) == x / w);
   }
-  // A tie: 1 + 2^-53 is half way between two doubles.
+  // A tie: 1 + 2^-53 is halfway between two doubles.
   const CagExact tie = cag_exact_sum(&s, cag_exact(&s, 1), cag_exact(&s, 0x1p-53));
   assert_true(cag_exact_quotient(&s, tie, cag_exact(&s, 1)) == 1);
   const CagExact above = cag_exact_sum(&s, tie, cag_exact(&s, 0x1p-200));
@@ -782,7 +783,7 @@ static void exact_numbers(void **state) {
   assert_false(s.full);
 }
 
-// A polygon with n corners and h holes takes n + 2 h - 2 triangles.
+// A polygon with n corners and h holes needs n + 2 h - 2 triangles.
 static void flat_faces_have_few_triangles(void **state) {
   (void)state;
   CagMesh *m, *a = cube(0, 0, 0, 2), *b = cube(2, 0, 0, 2), *c = cube(1, 1, 1, 2);
@@ -791,7 +792,7 @@ static void flat_faces_have_few_triangles(void **state) {
   assert_int_equal(m->vertex_count, 8);
   NEAR(volume(m), 16, 1e-14);
   cag_mesh_release(m);
-  m = operated(CAG_DIFFERENCE, a, c); // three squares, three L, three squares of the notch
+  m = operated(CAG_DIFFERENCE, a, c); // three squares, three L-shapes, three squares of the notch
   assert_int_equal(m->triangle_count, 3 * 2 + 3 * 4 + 3 * 2);
   NEAR(volume(m), 7, 1e-14);
   cag_mesh_release(m);
@@ -802,7 +803,7 @@ static void flat_faces_have_few_triangles(void **state) {
   cag_mesh_release(a);
   cag_mesh_release(b);
   cag_mesh_release(c);
-  // A drilled plate; its hole's walls keep to quads, however the cut ran across them.
+  // A drilled plate. The walls of its hole remain quads, regardless of how the cut crossed them.
   const uint32_t n = 40;
   a = cube(-2, -2, -2, 4);
   b = prism(n, 1, -3, 3);
@@ -814,13 +815,13 @@ static void flat_faces_have_few_triangles(void **state) {
   cag_mesh_release(b);
 }
 
-// Caps of 2,000 long triangles from one corner, one on the other and turned by next to nothing:
-// their edges would cross two million times.
+// Caps of 2,000 long triangles from one corner, one on the other and slightly rotated. Their edges
+// would cross two million times.
 static void fans_on_each_other(void **state) {
   (void)state;
   const uint32_t n = 2000;
   CagMesh *a = prism(n, 1, 0, 1), *b = rotated(prism(n, 1, 0, 1), cag_vec3(0, 0, 1), 1e-4);
-  for (int k = 0; k < 2; k++) { // both caps as fans
+  for (int k = 0; k < 2; k++) { // fans on both caps
     CagMesh *m = k ? b : a;
     for (uint32_t i = 1; i + 1 < n; i++) {
       const uint32_t at = 3 * (uint32_t)(m->triangle_count - 2 * (n - 2)) + 6 * (i - 1);
@@ -829,7 +830,7 @@ static void fans_on_each_other(void **state) {
     }
   }
   CagMesh *m = operated(CAG_INTERSECTION, a, b);
-  // The corners lie between: the 4,000-gon of both outlines.
+  // The corners alternate: the outlines form a 4,000-gon.
   assert_int_equal(m->triangle_count, 2 * (2 * n - 2) + 2 * 2 * n);
   const double turn = 1e-4, step = 2 * PI / n, in = cos(step / 2);
   const double area = n / 2.0 * in * in * 2 * (tan(turn / 2) + tan((step - turn) / 2));
@@ -839,7 +840,7 @@ static void fans_on_each_other(void **state) {
   cag_mesh_release(b);
 }
 
-// Each face keeps the label of its operand, and two labels are no one face.
+// Each face keeps the label of its operand. Faces with different labels are not merged.
 static void labels_stay_with_their_faces(void **state) {
   (void)state;
   CagMesh *m, *part[2] = {cube(0, 0, 0, 2), cube(2, 0, 0, 2)};

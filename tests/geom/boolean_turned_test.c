@@ -1,5 +1,5 @@
-// Set operations of bodies that were turned separately, so that faces meant to lie in one plane do
-// so only within rounding: volume and area are those of the bodies before they were turned.
+// Set operations of bodies that are rotated separately. Faces meant to be in one plane are so only
+// up to rounding. The expected volume and area are those of the original bodies.
 
 #include <stdbool.h>
 
@@ -10,7 +10,7 @@
 
 #define PI 3.14159265358979323846
 
-// --- Random numbers, the same each time ---
+// --- Reproducible random numbers ---
 
 static uint64_t seed;
 static double fraction(void) {
@@ -22,7 +22,7 @@ static double between(double low, double high) { return low + fraction() * (high
 
 // --- Bodies and motions ---
 
-// The prism of a polygon in the plane z = 0, standing on it.
+// The prism of a polygon in the plane z = 0, with its base there.
 static CagMesh *prism(const CagVec3 *outline, uint32_t n, double height) {
   CagVec3 v[128];
   uint32_t faces[6 * 64], counts[66];
@@ -47,7 +47,7 @@ static CagMesh *box(const int size[3]) {
   return prism(outline, 4, size[2]);
 }
 
-// Its corners on a circle, the first turned by `steps` corners.
+// A prism over a regular polygon, rotated by a number of corners.
 static CagMesh *regular_prism(uint32_t n, double radius, double height, int steps) {
   CagVec3 outline[64];
   for (uint32_t i = 0; i < n; i++) {
@@ -57,7 +57,7 @@ static CagMesh *regular_prism(uint32_t n, double radius, double height, int step
   return prism(outline, n, height);
 }
 
-// Takes the mesh over.
+// Takes ownership of the mesh.
 static CagMesh *moved(CagMesh *m, const CagTransform *t) {
   CagMesh *out;
   OK(cag_mesh_transform(m, t, &out, &err));
@@ -87,8 +87,8 @@ static Motion random_motion(void) {
   return m;
 }
 
-// The body shifted by `at` and then moved, in one of several ways that differ by rounding. Takes
-// the mesh over.
+// Shifts and then moves the body, in one of several ways that differ only by rounding. Takes
+// ownership of the mesh.
 static CagMesh *placed(CagMesh *body, CagVec3 at, const Motion *m) {
   const CagTransform shift = cag_translate(at);
   const CagTransform whole_way = cag_transform_multiply(&m->both, &shift);
@@ -109,7 +109,7 @@ static CagMesh *joined(CagSetOperation op, CagMesh *a, CagMesh *b) {
   return out;
 }
 
-// Within 1e-11 of the coordinates, of which none is beyond 100, times the area.
+// Checks volume and area within 1e-11 times the coordinates, which are at most 100, times the area.
 static void check(CagMesh *m, double volume, double area) {
   double terms[10] = {0};
   CagVec3 edge[2];
@@ -128,7 +128,7 @@ static void check(CagMesh *m, double volume, double area) {
 // --- Boxes on a grid ---
 
 #define SIDE 7
-typedef bool Grid[SIDE + 2][SIDE + 2][SIDE + 2]; // with a rim of nothing
+typedef bool Grid[SIDE + 2][SIDE + 2][SIDE + 2]; // with an empty margin
 
 static void apply(Grid g, CagSetOperation op, const int at[3], const int size[3]) {
   for (int x = 0; x < SIDE; x++)
@@ -177,8 +177,8 @@ static void boxes_on_a_turned_grid(void **state) {
   }
 }
 
-// Unturned boxes are exact; turned twice by 45 degrees, eleven of them took more than half a
-// minute.
+// Without rotation, boxes are exact. Rotated twice by 45 degrees, eleven of them took more than
+// half a minute.
 static void many_boxes_at_once(void **state) {
   (void)state;
   seed = 21;
@@ -198,7 +198,7 @@ static void many_boxes_at_once(void **state) {
   }
 }
 
-// --- Prisms, of few sides and of many as cylinders are ---
+// --- Prisms with few or many sides ---
 
 static void prisms_with_walls_in_common(void **state) {
   (void)state;
@@ -213,7 +213,7 @@ static void prisms_with_walls_in_common(void **state) {
     const CagVec3 foot = {0, 0, 0}, up = {0, 0, 1}, top = {0, 0, h};
     CagMesh *a = placed(regular_prism(n, r, h, 0), foot, &m);
     switch (trial / 7 % 5) {
-    case 0: // one on the other
+    case 0: // one on top of the other
       a = joined(CAG_UNION, a, placed(regular_prism(n, r, h, steps), top, &m));
       check(a, 2 * h * base, 2 * base + 2 * h * around);
       break;
@@ -225,19 +225,19 @@ static void prisms_with_walls_in_common(void **state) {
       a = joined(CAG_INTERSECTION, a, placed(regular_prism(n, r, h, steps), up, &m));
       check(a, (h - 1) * base, 2 * base + (h - 1) * around);
       break;
-    case 3: // what is left is the foot
+    case 3: // the difference is the foot
       a = joined(CAG_DIFFERENCE, a, placed(regular_prism(n, r, h, steps), up, &m));
       check(a, base, 2 * base + around);
       break;
-    default: // a bore whose ends lie in the faces
+    default: // a bore whose ends are in the faces
       a = joined(CAG_DIFFERENCE, a, placed(regular_prism(n, r / 2, h, 0), foot, &m));
       check(a, 0.75 * h * base, 1.5 * base + 1.5 * h * around);
     }
   }
 }
 
-// Corners in which more planes meet than fix a point. In every other trial the largest triangles of
-// the walls do not reach the apex.
+// Corners at which more than three planes meet. In every other trial, the largest triangles of the
+// walls do not reach the apex.
 static void pyramids_of_one_apex(void **state) {
   (void)state;
   seed = 23;
@@ -268,7 +268,7 @@ static void pyramids_of_one_apex(void **state) {
       OK(cag_mesh_from_faces(v, apex + 1, faces, counts, face_count, out, &err));
       *out = placed(*out, cag_vec3(1, 2, 3), &m);
     }
-    // The frustum: base and top, and the walls without their upper parts.
+    // The frustum: base, top, and the walls without their upper parts.
     const double base = n * r * r * sin(2 * PI / n) / 2, apothem = r * cos(PI / n);
     const double walls = n * r * sin(PI / n) * sqrt(1 + apothem * apothem);
     check(joined(CAG_DIFFERENCE, whole_one, part), base * (1 - low * low * low) / 3,

@@ -1,6 +1,7 @@
-// Integrals over the part of a box in which a form of second degree is negative, independent of the
-// library: closed forms along y, and along x and z the double exponential rule between the places
-// where the bounds change, at which the integrands have square roots and logarithms.
+// Integrals over the part of a box in which a quadratic form is negative, independent of the
+// library. The integration along y uses closed forms. The integrations along x and z use the double
+// exponential rule between the positions where the bounds change, because the integrands have
+// square roots and logarithms there.
 
 #ifndef CAG_TESTS_BOX_INTEGRAL_H
 #define CAG_TESTS_BOX_INTEGRAL_H
@@ -30,8 +31,7 @@ static inline void set_rule(BoxIntegral *b) {
   }
 }
 
-// Adds the roots of a t^2 + b t + c within lo..hi. Without real ones, adds the place nearest to the
-// complex ones.
+// Adds the roots of a t^2 + b t + c within lo..hi, or the real part of complex roots.
 static inline void roots_within(double a, double b, double c, double lo, double hi, double *cuts,
                                 int *n) {
   const double rest = b * b - 4 * a * c, q = b < 0 ? sqrt(rest) - b : -sqrt(rest) - b;
@@ -45,7 +45,7 @@ static inline int by_number(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// Integrals of 1, y, y^2 along y where the form is negative.
+// Integrals of 1, y, y^2 along y over the negative part of the form.
 static inline void along_y(const BoxIntegral *b, double x, double z, double out[3]) {
   const double *k = b->k;
   const double u = k[1], v = k[3] * x + k[4] * z + k[7];
@@ -118,7 +118,7 @@ static inline void touches(double a, double b, double c, double d, double e, dou
   roots_within(b * b - 4 * a * d, 2 * b * c - 4 * a * e, c * c - 4 * a * f, lo, hi, cuts, n);
 }
 
-static inline int places_of_z(const BoxIntegral *b, double *cuts) {
+static inline int cuts_of_z(const BoxIntegral *b, double *cuts) {
   const double *k = b->k, lo = b->box.min.z, hi = b->box.max.z;
   const double xs[2] = {b->box.min.x, b->box.max.x}, ys[2] = {b->box.min.y, b->box.max.y};
   int n = 0;
@@ -147,7 +147,7 @@ static inline void box_integrals(const CagQuadric *q, const CagBounds *box, doub
   double cuts[32];
   memcpy(b.k, q->c, sizeof b.k);
   set_rule(&b);
-  const int n = places_of_z(&b, cuts);
+  const int n = cuts_of_z(&b, cuts);
   for (int i = 0; i < INTEGRALS; i++) out[i] = 0;
   for (int i = 0; i + 1 < n; i++)
     for (int g = 0; g < POINTS; g++) {

@@ -1,12 +1,12 @@
-// Circles and lines that touch, fillets and rounded corners. Numbers are closed forms or those of
-// the reference on plane curves.
+// Tangent circles and lines, fillets, and rounded corners. The expected values are closed forms, or
+// those of the reference on plane curves.
 
 #include "conic_support.h"
 #include "geom/curve/circles.h"
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 
-// --- Circles and lines that touch ---
+// --- Tangent circles and lines ---
 
 static void a_corner_has_four_circles(void **state) {
   (void)state;
@@ -48,7 +48,8 @@ static void circles_touch_from_outside_and_inside(void **state) {
         NEAR(cag_norm(cag_sub(touch[1], center)), radius, 1e-12);
       }
   CagVec3 center, touch[2];
-  // Above the line y = -5 and outside the circle: center at height -4, 4 from the origin.
+  // Above the line y = -5 and outside the circle: the center is at height -4, at distance 4 from
+  // the origin.
   OK(cag_tangent_circle(&l, &a, 1, (CagTouchChoice){0}, &center, touch, &err));
   near_vec(center, cag_vec3(0, -4, 0), 1e-12);
   near_vec(touch[1], cag_vec3(0, -3, 0), 1e-12);
@@ -105,8 +106,8 @@ static void two_circles_have_up_to_four_tangents(void **state) {
   assert_int_equal(common_tangents(0.1, 1, 2), 0);
 }
 
-// The four tangents of two crossing ellipses with swapped axes
-// are symmetric: x + y = +-sqrt(5), x - y = +-sqrt(5) (a^2 + b^2 = 5).
+// The four tangents of two crossing ellipses with swapped axes are symmetric: x + y = +-sqrt(5), x
+// - y = +-sqrt(5) (a^2 + b^2 = 5).
 static void two_ellipses_have_their_tangents(void **state) {
   (void)state;
   const CagTransform f = plane_frame(0, 0, 0);
@@ -164,7 +165,7 @@ static void rounding_shortens_by_what_the_arcs_save(void **state) {
   OK(cag_curve_area(r, &x, &center, &err));
   NEAR(x, 12 + M_PI, 1e-12);
   cag_curve_release(r);
-  // The arcs of radius 2 meet: a circle.
+  // The arcs of radius 2 meet and form a circle.
   OK(cag_curve_rounded(c, 2, &r, &err));
   OK(cag_curve_area(r, &x, &center, &err));
   NEAR(x, 4 * M_PI, 1e-12);
@@ -176,7 +177,7 @@ static void rounding_shortens_by_what_the_arcs_save(void **state) {
 
 // --- Random circles and lines ---
 
-static CagVec3 random_place(double size) {
+static CagVec3 random_location(double size) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(-size, size);
   p.y = uniform(-size, size);
@@ -193,22 +194,22 @@ static double side_of(const CagTouched *line, CagVec3 p) {
   return line->d.x * (p.y - line->p.y) - line->d.y * (p.x - line->p.x);
 }
 
-// All choices, with the distances that touching means, and the side that was chosen.
+// Checks the distances of the tangent circles, and the chosen side, for all choices.
 static void random_circles_touch_as_chosen(void **state) {
   (void)state;
   seed = 17;
   int none[4] = {0}, made[4] = {0};
   for (int i = 0; i < 400; i++) {
     const double radius = uniform(0.2, 3);
-    const int kind = i % 4; // lines; line and circle; circle and line; circles
+    const int kind = i % 4; // two lines; line and circle; circle and line; two circles
     CagTouched t[2];
     for (int k = 0; k < 2; k++) {
       const bool round = k == 0 ? kind >= 2 : kind % 2;
-      t[k].p = random_place(3);
-      t[k].d = round ? cag_vec3(0, 0, 0) : random_place(2);
+      t[k].p = random_location(3);
+      t[k].d = round ? cag_vec3(0, 0, 0) : random_location(2);
       t[k].radius = round ? uniform(0.3, 2) : 0;
     }
-    CagVec3 found[2][2], touch[2]; // by .right, .near
+    CagVec3 found[2][2], touch[2]; // indexed by .right and .near
     for (int code = 0; code < 16; code++) {
       const CagTouchChoice c = {code & 1, code & 2, {code & 4, code & 8}};
       CagVec3 center = {0, 0, 0};
@@ -217,7 +218,7 @@ static void random_circles_touch_as_chosen(void **state) {
         reach[k] = t[k].radius == 0 ? radius
                    : c.inside[k]    ? fabs(t[k].radius - radius)
                                     : t[k].radius + radius;
-      // Whether there is a center: two circles about the centers meet, or the parallel meets one.
+      // A center exists if two circles about the centers meet, or the parallel line meets one.
       bool exists = true;
       double spare = 1;
       if (kind == 3) {
@@ -248,12 +249,12 @@ static void random_circles_touch_as_chosen(void **state) {
       const CagTouched *line = kind == 2 ? &t[1] : &t[0];
       const CagTouched between = {t[0].p, cag_sub(t[1].p, t[0].p), 0};
       assert_true((side_of(kind == 3 ? &between : line, center) < 0) == c.right);
-      // The near side of the second line is that from which the first comes.
+      // The near side of the second line is that from which the first arrives.
       if (kind == 0) {
         const double before = side_of(&t[1], cag_madd(t[0].p, -1e6, t[0].d));
         assert_true((side_of(&t[1], center) * before > 0) == c.near);
       }
-      // The earlier place of two.
+      // The earlier of the two points.
       if ((kind == 1 || kind == 2) && c.near)
         assert_true(cag_dot(cag_sub(found[c.right][0], center), line->d) >= 0);
     }
@@ -262,13 +263,13 @@ static void random_circles_touch_as_chosen(void **state) {
     assert_true(made[kind] > 200 && (kind == 0 || none[kind] > 100));
 }
 
-// Touching that rounding would undo is kept: the center lies between.
+// Circles that touch only up to rounding are accepted: the center is between them.
 static void circles_that_just_reach_are_found(void **state) {
   (void)state;
   seed = 18;
   for (int i = 0; i < 100; i++) {
     const double angle = uniform(-3, 3), radius = uniform(0.5, 2), r = uniform(0.5, 2);
-    const CagVec3 p = random_place(i % 2 ? 1e4 : 100), e = {cos(angle), sin(angle), 0},
+    const CagVec3 p = random_location(i % 2 ? 1e4 : 100), e = {cos(angle), sin(angle), 0},
                   n = {-e.y, e.x, 0};
     const double s = uniform(0.5, 2);
     const CagTouched a = {p, {0, 0, 0}, r};
@@ -305,7 +306,7 @@ static void circles_that_just_reach_are_found(void **state) {
 
 // --- Random tangent lines ---
 
-// Changes of sign of C' x (C - p) at dense samples.
+// Counts the sign changes of C' x (C - p) at dense samples.
 static size_t count_tangents(const CagCurve *c, CagVec3 p) {
   size_t count = 0;
   double last = 0;
@@ -330,10 +331,10 @@ static void tangents_from_random_points(void **state) {
     CagTangentLine *lines;
     size_t n;
     const CagTransform f = plane_frame(1, 0.5, 0.3);
-    for (int k = 0; k < 5; k++) net[k] = random_place(3);
+    for (int k = 0; k < 5; k++) net[k] = random_location(3);
     if (i % 2) OK(cag_curve_bezier(net, NULL, 5, 2, &c, &err));
     else OK(cag_curve_arc(2, 1, uniform(-3, 0), uniform(0.1, 3), &f, &c, &err));
-    const CagVec3 p = random_place(4);
+    const CagVec3 p = random_location(4);
     OK(cag_tangents_from_point(c, p, &lines, &n, &err));
     assert_int_equal(n, count_tangents(c, p));
     for (size_t k = 0; k < n; k++) {
@@ -345,7 +346,7 @@ static void tangents_from_random_points(void **state) {
       assert_true(k == 0 || lines[k - 1].t < lines[k].t);
     }
     free(lines);
-    // In a point of the curve its own tangent is one of them.
+    // At a point of the curve, one of the tangents is its own.
     const double t = c->start + (c->end - c->start) * uniform(0.2, 0.8);
     OK(cag_tangents_from_point(c, at(c, t), &lines, &n, &err));
     bool own = false;
@@ -372,13 +373,13 @@ static void tangents_from_random_points(void **state) {
   cag_curve_release(line);
 }
 
-// The largest n . x over an ellipse with axes along X and Y.
+// The maximum of n . x over an ellipse with axes along X and Y.
 static double support(CagVec3 center, double a, double b, double angle) {
   return center.x * cos(angle) + center.y * sin(angle) + hypot(a * cos(angle), b * sin(angle));
 }
 
-// A line with normal n touches an ellipse on either side. Two ellipses with one line on one side
-// have equal supports, else opposite ones.
+// A line with normal n touches an ellipse on either side. If the line is on the same side of two
+// ellipses, their supports are equal; otherwise, they are opposite.
 static size_t count_common(const CagVec3 c[2], const double a[2], const double b[2]) {
   size_t count = 0;
   double last[2] = {0, 0};
@@ -407,7 +408,7 @@ static void random_ellipses_have_their_common_tangents(void **state) {
     CagTangentLine *lines;
     size_t n;
     for (int k = 0; k < 2; k++) {
-      c[k] = random_place(2);
+      c[k] = random_location(2);
       a[k] = uniform(0.4, 2);
       b[k] = i % 2 ? a[k] : uniform(0.4, 2);
       const CagTransform f = plane_frame(c[k].x, c[k].y, 0);
@@ -431,7 +432,7 @@ static void random_ellipses_have_their_common_tangents(void **state) {
                     cag_norm(cag_sub(lines[j].q, lines[k].q)) > 1e-6);
     }
     free(lines);
-    // Of arcs those that touch within them.
+    // For arcs, only tangents at points of the arcs count.
     if (i % 2) {
       CagCurve *part;
       CagTangentLine *fewer;
@@ -455,14 +456,14 @@ static void random_ellipses_have_their_common_tangents(void **state) {
   assert_true(seen[0] > 0 && seen[2] > 0 && seen[4] > 0);
 }
 
-// Lines that touch the images of curves, of any size, are the images of those that touch.
+// Tangent lines of transformed curves, of any size, are the transformed tangent lines.
 static void tangent_lines_have_images(void **state) {
   (void)state;
   seed = 43;
   size_t seen = 0;
   for (int i = 0; i < 24; i++) {
     const double scale = pow(10, i % 3 * 6 - 6.0), ratio = 1 / scale;
-    // The axes keep one length, but not their right angle.
+    // The axes have equal lengths, but are not perpendicular.
     const double slant = i % 2 ? 0.3 : 0;
     CagTransform grow = cag_transform_identity();
     grow.m[0][0] = scale;
@@ -471,7 +472,7 @@ static void tangent_lines_have_images(void **state) {
     CagVec3 net[2][4];
     CagCurve *c[2], *image[2];
     for (int k = 0; k < 2; k++) {
-      for (int j = 0; j < 4; j++) net[k][j] = random_place(3);
+      for (int j = 0; j < 4; j++) net[k][j] = random_location(3);
       const CagTransform f = plane_frame(net[k][0].x, net[k][0].y, i % 8 == 7 ? 0 : 0.3);
       const double radius = uniform(0.5, 2);
       if (i % 4 == 3 || (i % 4 == 1 && k))
@@ -479,7 +480,7 @@ static void tangent_lines_have_images(void **state) {
       else OK(cag_curve_bezier(net[k], NULL, 4, 2, &c[k], &err));
       OK(cag_curve_transform(c[k], &grow, &image[k], &err));
     }
-    const CagVec3 p = random_place(4);
+    const CagVec3 p = random_location(4);
     for (int two = 0; two < 2; two++) {
       CagTangentLine *lines, *images;
       size_t n, m;
@@ -511,8 +512,8 @@ static void tangent_lines_have_images(void **state) {
   assert_true(seen > 40);
 }
 
-// Circles that touch have three tangents from outside and one from within; those of one center
-// have none.
+// Circles that touch have three common tangents from outside and one from inside. Concentric
+// circles have none.
 static void touching_circles_have_the_tangent_of_their_point(void **state) {
   (void)state;
   static const struct {
@@ -541,18 +542,20 @@ static void touching_circles_have_the_tangent_of_their_point(void **state) {
 
 // --- Random fillets ---
 
-// Between two lines: the arc leaves at radius tan(turn / 2) from the corner.
+// Between two lines, the arc begins at distance radius tan(turn / 2) from the corner.
 static void fillets_of_lines_are_closed_forms(void **state) {
   (void)state;
   seed = 51;
   for (int i = 0; i < 100; i++) {
-    const CagVec3 corner = random_place(3), before = random_place(3), after = random_place(3);
+    const CagVec3 corner = random_location(3), before = random_location(3),
+                  after = random_location(3);
     const CagVec3 a = cag_sub(corner, before), b = cag_sub(after, corner);
     const double across = a.x * b.y - a.y * b.x, turn = atan2(fabs(across), cag_dot(a, b));
     const double room = fmin(cag_norm(a), cag_norm(b)) / tan(turn / 2),
                  radius = room * uniform(0.1, 0.95);
     const double back = radius * tan(turn / 2);
-    // A third of the pairs cross before the end of the first and after the start of the second.
+    // In a third of the pairs, the lines cross before the end of the first and after the start of
+    // the second.
     const CagVec3 end = i % 3 ? corner : cag_madd(corner, 0.2, a);
     const CagVec3 start = i % 3 ? corner : cag_madd(corner, -0.3, b);
     CagCurve *p, *q, *arc;
@@ -581,7 +584,7 @@ static void fillets_of_lines_are_closed_forms(void **state) {
   }
 }
 
-// From a line to a circle and from a circle to a circle: the center has the right distances.
+// From a line to a circle, and from a circle to a circle: checks the distances of the center.
 static void fillets_of_arcs_touch_both(void **state) {
   (void)state;
   seed = 52;
@@ -589,7 +592,7 @@ static void fillets_of_arcs_touch_both(void **state) {
     const double r = uniform(1, 3), start = uniform(-1, 1), turn = uniform(0.4, 1.5);
     const bool left = i % 2, two = i % 4 >= 2;
     const double radius = uniform(0.05, 0.25), sign = left ? 1 : -1;
-    // b begins at angle `start` and runs counter-clockwise; a arrives there, turned by `turn`.
+    // b begins at angle `start` and runs counter-clockwise; a arrives there, rotated by `turn`.
     const CagTransform f = plane_frame(0, 0, 0);
     const CagVec3 corner = {r * cos(start), r * sin(start), 0};
     const double way = start + M_PI / 2 - sign * turn;
@@ -629,7 +632,7 @@ static void fillets_of_arcs_touch_both(void **state) {
   }
 }
 
-// The parallel of a curve at a distance to its left.
+// The point and tangent of the parallel curve at a distance to the left.
 static void parallel(const CagCurve *c, double t, double distance, CagVec3 *p, CagVec3 *tangent) {
   CagVec3 d[2];
   OK(cag_curve_eval(c, t, 1, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
@@ -637,7 +640,7 @@ static void parallel(const CagCurve *c, double t, double distance, CagVec3 *p, C
   *p = cag_madd(d[0], distance, cag_vec3(-tangent->y, tangent->x, 0));
 }
 
-// Between bent curves: where the parallels at the radius cross, and only there.
+// Fillets of curved parts are where the parallels at the radius cross, and only there.
 static void fillets_of_bent_curves_are_where_parallels_cross(void **state) {
   (void)state;
   enum { STEPS = 500 };
@@ -647,8 +650,8 @@ static void fillets_of_bent_curves_are_where_parallels_cross(void **state) {
   for (int round = 0; round < 150; round++) {
     CagVec3 v[4], w[4];
     for (int i = 0; i < 4; i++) {
-      v[i] = random_place(3);
-      w[i] = random_place(3);
+      v[i] = random_location(3);
+      w[i] = random_location(3);
     }
     w[0] = v[3];
     CagCurve *a, *b, *arc;
@@ -663,7 +666,8 @@ static void fillets_of_bent_curves_are_where_parallels_cross(void **state) {
       parallel(a, (double)i / STEPS, side * radius, &p[i], &along[i]);
       parallel(b, (double)i / STEPS, side * radius, &q[i], &beside[i]);
     }
-    // Crossings at no small angle, away from the ends and from where the parallels turn back.
+    // Counts only crossings at large angles, away from the ends and from where the parallels turn
+    // back.
     int crossings = 0;
     for (int i = 2; i + 3 < STEPS; i++)
       for (int j = 2; j + 3 < STEPS; j++) {
@@ -725,7 +729,8 @@ static void what_has_no_corner_is_refused(void **state) {
   cag_curve_release(a);
 }
 
-// A polyline in the plane or in space: each corner loses 2 r tan(turn / 2) and gains r turn.
+// A polyline in the plane or in space: each corner shortens it by 2 r tan(turn / 2) and adds r
+// turn.
 static void random_polylines_are_rounded(void **state) {
   (void)state;
   seed = 53;
@@ -735,10 +740,10 @@ static void random_polylines_are_rounded(void **state) {
     const size_t n = 6;
     for (size_t k = 0; k < n; k++) {
       const double angle = 2 * M_PI * (double)k / 6;
-      p[k] = cag_add(cag_vec3(4 * cos(angle), 4 * sin(angle), 0), random_place(0.8));
+      p[k] = cag_add(cag_vec3(4 * cos(angle), 4 * sin(angle), 0), random_location(0.8));
       if (space) p[k].z = uniform(-1, 1);
     }
-    if (i % 3 == 0) p[2] = cag_lerp(p[1], p[3], 0.4); // straight on
+    if (i % 3 == 0) p[2] = cag_lerp(p[1], p[3], 0.4); // straight
     const double radius = uniform(0.1, 0.5);
     double expected = 0, length;
     CagVec3 corner_in = {0, 0, 0};
@@ -760,7 +765,7 @@ static void random_polylines_are_rounded(void **state) {
     assert_true(r->closed == closed && r->dimension == c->dimension);
     OK(cag_curve_length(r, r->start, r->end, &length, &err));
     NEAR(length, expected, 1e-9);
-    // Smooth, and through the first point of the corner's arc.
+    // The result is smooth, and passes through the first point of the corner's arc.
     double *cuts, distance, t;
     size_t count;
     CagVec3 nearest;
@@ -783,11 +788,11 @@ static void random_polylines_are_rounded(void **state) {
   }
 }
 
-// A half disc: its two corners are right angles between a line and an arc.
+// A half disk, whose two corners are right angles between a line and an arc.
 static void corners_of_other_curves_are_rounded(void **state) {
   (void)state;
   const double R = 3, r = 0.5;
-  // The center is at height r above the diameter and R - r from the disc's center.
+  // The center is at height r above the diameter, and at distance R - r from the disk's center.
   const double x = sqrt((R - r) * (R - r) - r * r);
   const double expected = 2 * x + 2 * r * (M_PI - acos(r / (R - r))) + R * 2 * acos(r / (R - r));
   for (int first = 0; first < 3; first++) {
@@ -796,7 +801,7 @@ static void corners_of_other_curves_are_rounded(void **state) {
     double length;
     const CagVec3 a = {1 - R, 2, 0}, b = {1 + R, 2, 0}, middle = {1.3, 2, 0};
     size_t n = 0;
-    // The seam is at a corner, or within the line.
+    // The seam is at a corner, or inside the line.
     if (first == 2) OK(cag_curve_line(middle, b, 2, &parts[n++], &err));
     if (first == 1) OK(cag_curve_line(a, b, 2, &parts[n++], &err));
     OK(cag_curve_arc(R, R, 0, M_PI, &f, &parts[n++], &err));

@@ -6,7 +6,8 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-// A solid and its equation, negative inside; its gradient has the length 1 near the boundary.
+// A solid and its equation, negative inside. The gradient of the equation has length 1 near the
+// boundary.
 typedef struct Cutter {
   int kind;
   double a;
@@ -88,7 +89,7 @@ static CagSurface *patch(int kind) {
   return s;
 }
 
-// The area within by a grid of midpoints.
+// The area inside, by a grid of midpoints.
 static double area_within(const CagSurface *s, const Cutter *c) {
   const int n = 160;
   const double du = (s->u1 - s->u0) / n, dv = (s->v1 - s->v0) / n;
@@ -121,8 +122,8 @@ static int by_edge(const void *a, const void *b) {
                           : (p->high > q->high) - (p->high < q->high);
 }
 
-// Tests whether triangles meet at whole edges in opposite senses, except where the surface or the
-// solid ends, and gives the longest edge at the end of the solid.
+// Checks that triangles meet at whole edges in opposite directions, except at the boundaries of the
+// surface and the solid. Returns the longest edge at the boundary of the solid.
 static double check_edges(const CagMesh *m, const CagSurface *s, const Cutter *c,
                           double tolerance) {
   const size_t n = 3 * m->triangle_count;
@@ -144,7 +145,7 @@ static double check_edges(const CagMesh *m, const CagSurface *s, const Cutter *c
     const bool border = s && on_border(s, m->uv + 2 * ends[0]) && on_border(s, m->uv + 2 * ends[1]);
     if (same == 1 && !border) {
       for (int k = 0; k < 2; k++) NEAR(value_at(c, m->positions[ends[k]]), 0, 1e-7);
-      // The chord keeps to the tolerance, times the size by the least radius.
+      // The chord satisfies the tolerance, which is relative to the size and the smallest radius.
       const double off = value_at(c, cag_lerp(p, q, 0.5));
       if (c->kind != 1 && c->kind != 3) NEAR(off, 0, (c->kind > 3 ? 4 : 1.5) * tolerance);
       longest = fmax(longest, cag_norm(cag_sub(p, q)));
@@ -169,7 +170,7 @@ static void clipped_surfaces_are_the_parts_within(void **state) {
   for (int k = 0; k < 48; k++) {
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
     CagSurface *s = patch(k % 4);
-    // Some are so small that they lie within one triangle of the plane.
+    // Some are so small that they fit in one triangle of the plane.
     const Cutter c =
         cutter(k / 4 % 6, k % 4 == 0 && k >= 24 ? uniform(0.1, 0.2) : uniform(0.6, 1.1));
     CagMesh *m, *whole;
@@ -189,7 +190,7 @@ static void clipped_surfaces_are_the_parts_within(void **state) {
       const uint32_t *t = m->triangles + 3 * i;
       const CagVec3 a = m->positions[t[0]], b = m->positions[t[1]], d = m->positions[t[2]];
       const CagVec3 face = cag_cross(cag_sub(b, a), cag_sub(d, a));
-      const double least = 1e-7; // slivers at the cut
+      const double least = 1e-7; // ignore slivers at the cut
       for (int j = 0; j < 3; j++)
         if (cag_norm(face) > least) assert_true(cag_dot(cag_unit(face), m->normals[t[j]]) > 0.5);
     }
@@ -198,7 +199,8 @@ static void clipped_surfaces_are_the_parts_within(void **state) {
     const CagBounds box = cag_mesh_bounds(whole);
     CagBounds reach;
     OK(cag_solid_reach(c.solid, &reach, &err));
-    // A chord of a circle of the common size stands off by the tolerance: c^2 / 4 = 2 t (d / 2).
+    // The sagitta of a chord of a circle of the common size is the tolerance: c^2 / 4 = 2 t (d /
+    // 2).
     const double chord = sqrt(2 * how.tolerance * size_of_common(&box, &reach));
     if (longest > 0 && expected > 0.05) {
       assert_true(longest < 1.05 * chord);
@@ -211,7 +213,7 @@ static void clipped_surfaces_are_the_parts_within(void **state) {
   }
 }
 
-// A roof within a ball: its triangles have the normals of their own sides at the ridge, too.
+// A roof in a ball: at the ridge, too, triangles have the normals of their own sides.
 static void ridges_keep_both_normals(void **state) {
   (void)state;
   const CagVec3 profile[3] = {{-2, 0, -2}, {0, 0, 0}, {2, 0, -2}};
@@ -245,7 +247,7 @@ static void ridges_keep_both_normals(void **state) {
   cag_curve_release(line);
 }
 
-// A sheet of triangles with corners moved at random within z = 0, and its outline.
+// A sheet of triangles whose corners are moved randomly within z = 0, and its outline.
 static CagMesh *sheet(int n) {
   CagMesh *m;
   OK(cag_mesh_new((size_t)(n + 1) * (size_t)(n + 1), 2 * (size_t)n * (size_t)n, false, false, false,
@@ -317,8 +319,8 @@ static void sheets_cut_by_planes_are_exact(void **state) {
   }
 }
 
-// The boundary belongs to the solid: a sheet of two triangles in the plane of a face of a box, on
-// either side along each axis, keeps the face.
+// The boundary belongs to the solid: a sheet of two triangles in the plane of a face of a box keeps
+// the part inside the face, on either side along each axis.
 static void sheets_in_the_plane_of_a_face_keep_it(void **state) {
   (void)state;
   const double half = 0.2, shift[2] = {0.11, -0.23};
@@ -342,7 +344,7 @@ static void sheets_in_the_plane_of_a_face_keep_it(void **state) {
       OK(cag_solid_box(cag_vec3(2 * half, 2 * half, 2 * half), true, &at_origin, &err));
       OK(cag_solid_transform(at_origin, &place, &by, &err));
       OK(cag_mesh_clip(flat, by, &how, &out, &err));
-      // Corners are cut off by an edge of less than the chord.
+      // An edge shorter than the chord cuts off the corners.
       NEAR(cag_mesh_area(out), 4 * half * half, 2e-4);
       cag_mesh_release(out);
       cag_mesh_release(flat);
@@ -370,7 +372,7 @@ static void nothing_within_is_an_empty_mesh(void **state) {
     cag_mesh_release(out);
     cag_solid_release(by);
   }
-  // Limits and interrupts are kept.
+  // Limits and interrupts are respected.
   static volatile int stop = 1;
   how.max_triangles = 100;
   how.tolerance = 1e-5;
@@ -384,7 +386,7 @@ static void nothing_within_is_an_empty_mesh(void **state) {
   cag_solid_release(ball);
 }
 
-// Polylines and a ball: the pieces by the roots of |a + t (b - a)|^2 = r^2.
+// Polylines and a ball: the expected pieces are from the roots of |a + t (b - a)|^2 = r^2.
 static void clipped_polylines_are_exact(void **state) {
   (void)state;
   enum { CORNERS = 7 };
@@ -411,7 +413,7 @@ static void clipped_polylines_are_exact(void **state) {
       if (b * b <= a * c) continue;
       const double root = sqrt(b * b - a * c), low = fmax(0, (-b - root) / a),
                    high = fmin(1, (-b + root) / a);
-      if (high - low > 0 && high - low < 0.01) skip = true; // may be overlooked
+      if (high - low > 0 && high - low < 0.01) skip = true; // may be missed
       if (!(high > low)) continue;
       if (low == 0 && count > 0 && ends[count - 1][1] == i) ends[count - 1][1] = i + high;
       else ends[count][0] = i + low, ends[count++][1] = i + high;
@@ -425,7 +427,7 @@ static void clipped_polylines_are_exact(void **state) {
       }
     for (size_t i = 0; i < n; i++) cag_curve_release(pieces[i]);
     free(pieces);
-    // A curve that is within as a whole is kept as it is.
+    // A curve that lies entirely inside is not changed.
     CagSolid *large;
     OK(cag_solid_sphere(9, &large, &err));
     OK(cag_curve_clip(line, large, NULL, &pieces, &n, &err));

@@ -1,5 +1,5 @@
-// Conics by conditions, points and tangents, and arcs of triangles. Numbers are closed forms or
-// those of the reference on plane curves.
+// Conics from conditions, points, and tangents, and arcs in triangles. The expected values are
+// closed forms, or those of the reference on plane curves.
 
 #include "conic_support.h"
 #include "geom/curve/conic.h"
@@ -25,13 +25,13 @@ static void five_conditions_make_each_kind_of_conic(void **state) {
     for (int j = 0; j < 6; j++) NEAR(k.c[j], cases[i].k.c[j], 1e-12);
     OK(cag_conic_classify(&k, &class, &err));
     assert_string_equal(class.name, cases[i].name);
-    // The tangents' points need not be among the points.
+    // The points of the tangents need not be among the given points.
     OK(cag_conic_from_conditions(points + 2, 1, tangents, 2, CAG_CONIC_GENERAL, &k, &err));
     for (int j = 0; j < 6; j++) NEAR(k.c[j], cases[i].k.c[j], 1e-12);
   }
 }
 
-// With u and v along the axes: u^2 / a^2 + v^2 / b^2 = 1, and with - for a hyperbola.
+// With u and v along the axes: u^2 / a^2 + v^2 / b^2 = 1; the sign is - for a hyperbola.
 static void turned_conics_away_from_the_origin_have_their_equations(void **state) {
   (void)state;
   for (int i = 0; i < 24; i++) {
@@ -91,7 +91,7 @@ static void an_arc_of_a_triangle_bulges_as_its_weight_says(void **state) {
   double weight;
   OK(cag_conic_shoulder_weight(p, apex, q, cag_vec3(sqrt(0.5), sqrt(0.5), 0), &weight, &err));
   NEAR(weight, sqrt(0.5), 1e-14);
-  // A point of the unit circle off the middle gives the same weight.
+  // A point of the unit circle away from the middle results in the same weight.
   OK(cag_conic_shoulder_weight(p, apex, q, cag_vec3(0.8, 0.6, 0), &weight, &err));
   NEAR(weight, sqrt(0.5), 1e-14);
   OK(cag_conic_arc(p, apex, q, weight, 2, &c, &err));
@@ -108,7 +108,7 @@ static void an_arc_of_a_triangle_bulges_as_its_weight_says(void **state) {
 
 // --- Random conditions ---
 
-// Points and tangents of a random conic lead back to it.
+// Points and tangents of a random conic determine it.
 static void random_conditions_have_their_conic(void **state) {
   (void)state;
   seed = 501;
@@ -122,8 +122,8 @@ static void random_conditions_have_their_conic(void **state) {
     if (i % 5 == 0) s.center = cag_scaled(s.center, 10);
     const CagConic expected = equation(&s);
     static const size_t needed[4] = {5, 4, 3, 2};
-    // As many tangents as i says, each of which is two conditions; their points are among the
-    // points or not. The rest are points, and sometimes one more than needed.
+    // The number of tangents depends on i. Each of them is two conditions, and its point may be
+    // among the given points. The rest are points, sometimes one more than needed.
     const size_t m = (size_t)(i / 4 % 3) % (needed[shape] / 2 + 1);
     const bool listed = i % 3 == 0;
     const size_t extra = (size_t)(i / 12 % 2);
@@ -131,7 +131,7 @@ static void random_conditions_have_their_conic(void **state) {
     CagVec3 points[8];
     size_t n = 0;
     for (size_t k = 0; k < needed[shape] - m + extra; k++) {
-      // The parameters are spread over both branches of a hyperbola.
+      // The parameters are distributed over both branches of a hyperbola.
       const double t = 0.5 + 1.1 * (double)k + uniform(-0.2, 0.2);
       double u = 0, v = 0, du = 0, dv = 0;
       if (shape == CAG_CONIC_LINE) v = t - 1, dv = 1;
@@ -151,18 +151,18 @@ static void random_conditions_have_their_conic(void **state) {
     CagConic k;
     OK(cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err));
     same_conic(&k, &expected, 1e-8);
-    // C is 1, or what is first without it.
+    // C is 1, or the first coefficient that does not vanish.
     int unit = shape == CAG_CONIC_LINE ? 3 : 2;
     if (shape == CAG_CONIC_LINE && fabs(k.c[3]) < 1e-12) unit = 4;
     NEAR(k.c[unit], 1, 0);
     if (shape != CAG_CONIC_GENERAL) assert_true(k.c[1] == 0);
     if (shape == CAG_CONIC_CIRCLE) NEAR(k.c[0], k.c[2], 1e-12);
     if (shape == CAG_CONIC_LINE) assert_true(k.c[0] == 0 && k.c[2] == 0);
-    // One condition less is too few.
+    // With one condition fewer, the conic is undetermined.
     if (extra == 0 && n > 0 && !(listed && m > 0))
       FAILS(cag_conic_from_conditions(points, n - 1, tangents, m, shape, &k, &err),
             "too-few-conditions");
-    // A point off the conic contradicts.
+    // A point off the conic contradicts the other conditions.
     if (extra == 1) {
       points[n - 1] = cag_add(points[n - 1], cag_vec3(1e-4, 2e-4, 0));
       FAILS(cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err),
@@ -177,7 +177,7 @@ static void random_conditions_have_their_conic(void **state) {
         "too-few-conditions");
 }
 
-// Coefficients that only rounding makes are 0, and the first that is none is 1.
+// Coefficients due to rounding are 0, and the first that does not vanish is 1.
 static void conditions_leave_no_rounding(void **state) {
   (void)state;
   const CagVec3 upright[2] = {{0.1, 0.3, 0}, {0.1, 7.7, 0}},
@@ -222,7 +222,7 @@ static void random_shoulders_have_their_weight(void **state) {
     CagCurve *c;
     double found;
     OK(cag_conic_arc(t[0], t[1], t[2], weight, i % 2 ? 3 : 2, &c, &err));
-    // b0 p + b1 w apex + b2 q over the sum.
+    // (b0 p + b1 w apex + b2 q) / sum.
     const double b0 = (1 - s) * (1 - s), b1 = 2 * s * (1 - s) * weight, b2 = s * s;
     const CagVec3 expected = cag_scaled(
         cag_madd(cag_madd(cag_scaled(t[0], b0), b1, t[1]), b2, t[2]), 1 / (b0 + b1 + b2));
@@ -233,7 +233,7 @@ static void random_shoulders_have_their_weight(void **state) {
     OK(cag_conic_shoulder_weight(t[0], t[1], t[2], p, &found, &err));
     NEAR(found, weight, 1e-9 * weight);
     cag_curve_release(c);
-    // Points beyond each side, and off the plane.
+    // Points beyond each side, and outside the plane.
     const CagVec3 inside = cag_scaled(cag_add(cag_add(t[0], t[1]), t[2]), 1.0 / 3);
     for (int k = 0; k < 3; k++) {
       const CagVec3 side = cag_lerp(t[k], t[(k + 1) % 3], 0.4);

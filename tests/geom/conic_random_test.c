@@ -1,5 +1,5 @@
-// Random conics in any position: classes, branches, images, segments, and lines, by their
-// definitions.
+// Random conics in any position: classes, branches, images, segments, and lines, compared with
+// their definitions.
 
 #include "conic_support.h"
 #include "geom/curve/conic.h"
@@ -7,12 +7,12 @@
 
 // --- Random conics ---
 
-// Angles of lines differ by a multiple of a half turn, those of directions by one of a turn.
+// Angles of lines are equal modulo a half turn, and those of directions modulo a full turn.
 static void near_angle(double a, double b, double period, double tolerance) {
   NEAR(remainder(a - b, period), 0, tolerance);
 }
 
-// The parts of the answer that hold for every conic.
+// Checks the fields that every conic has.
 static void check_book_axes(const CagConic *c, const CagConicClass *k) {
   const double cosine = cos(k->book_angle), sine = sin(k->book_angle);
   double size = 0;
@@ -58,7 +58,8 @@ static void random_ellipses_and_hyperbolas_are_classified(void **state) {
                1e-12 / fabs(a - b) + (hyperbola ? 1e-12 : 0));
     const double square = hyperbola ? 1 + b * b / (a * a) : 1 - k.b * k.b / (k.a * k.a);
     NEAR(k.eccentricity * k.eccentricity, square, 1e-11);
-    // The sum of the distances of a point from the foci, or their difference, is the major axis.
+    // The sum or difference of the distances of a point from the foci is the length of the major
+    // axis.
     assert_int_equal(k.focus_count, 2);
     assert_true(cag_dot(cag_sub(k.foci[0], k.center), cag_vec3(cos(k.angle), sin(k.angle), 0)) > 0);
     const double t = uniform(-2, 2), u = hyperbola ? cosh(t) : cos(t),
@@ -87,7 +88,7 @@ static void random_parabolas_are_classified(void **state) {
     assert_true(k.angle > -M_PI && k.angle <= M_PI);
     near_angle(k.angle, s.angle, 2 * M_PI, 1e-11);
   }
-  // Into its opening: along -X it is 180deg.
+  // The angle is that of the opening: 180deg along -X.
   for (int sign = -1; sign <= 1; sign += 2) {
     const CagConic c = {{0, 0, 1.0 * sign, 4.0 * sign, 0, 0}};
     CagConicClass k;
@@ -96,7 +97,7 @@ static void random_parabolas_are_classified(void **state) {
   }
 }
 
-// One of the conic's lines is that through the point with the normal.
+// Checks that one of the conic's lines passes through the point with the given normal.
 static void has_line(const CagConicClass *k, CagVec3 through, double normal, size_t i) {
   const double *line = k->lines[i];
   NEAR(hypot(line[0], line[1]), 1, 1e-14);
@@ -118,7 +119,7 @@ static void random_lines_and_nothing_are_classified(void **state) {
     static const size_t lines[6] = {2, 2, 1, 0, 0, 0};
     const Standard s = random_standard(alpha, beta, 0, kappas[i % 6]);
     CagConic c = equation(&s);
-    if (i % 6 == 2) { // the square of a line, without digits lost in its constant
+    if (i % 6 == 2) { // the square of a line, avoiding cancellation in the constant
       const double p = -sin(s.angle), q = cos(s.angle), r = -p * s.center.x - q * s.center.y;
       c = (CagConic){{p * p, 2 * p * q, q * q, 2 * p * r, 2 * q * r, r * r}};
     }
@@ -130,7 +131,7 @@ static void random_lines_and_nothing_are_classified(void **state) {
     assert_true(k.has_center == (alpha != 0) && k.focus_count == 0);
     if (k.has_center) near_vec(k.center, s.center, 1e-11);
     if (i % 6 == 0) {
-      // u / a = +-v / b; in either order.
+      // u / a = +-v / b, in either order.
       const double turn = atan2(1 / b, 1 / a);
       const bool swapped =
           fabs(sin(s.angle + turn) * k.lines[0][0] - cos(s.angle + turn) * k.lines[0][1]) > 1e-6;
@@ -176,7 +177,7 @@ static void lines_of_axes_are_exact(void **state) {
   }
 }
 
-// The axis of a conic lies in (-90deg, 90deg], and parts of zero are positive.
+// The angle of an axis is in (-90deg, 90deg], and zero components are positive.
 static void upright_axes_are_at_90_degrees(void **state) {
   (void)state;
   static const CagConic upright[] = {{{4, 0, 1, 0, 0, -4}},
@@ -192,7 +193,8 @@ static void upright_axes_are_at_90_degrees(void **state) {
                  signbit(k.standard[2]) != (k.standard[2] < 0));
   }
   CagConicClass k;
-  // A term of 5e-7 of the largest never counts as rounding, however small the coefficients are.
+  // A term of 5e-7 of the largest never counts as rounding, no matter how small the coefficients
+  // are.
   OK(cag_conic_classify(&(CagConic){{0, 0, 0, 2e-9, 1e-15, 4e-9}}, &k, &err));
   NEAR(k.lines[0][1], 5e-7, 1e-12);
   OK(cag_conic_classify(&(CagConic){{0, 0, 0, 1e-15, 2e-9, 4e-9}}, &k, &err));
@@ -203,9 +205,9 @@ static void upright_axes_are_at_90_degrees(void **state) {
   NEAR(k.book_angle, -M_PI / 4, 0);
 }
 
-// Eigenvalues with a ratio of 1e-10 belong to an ellipse, with 1e-12 to a parabola; semi-axes with
-// a difference of 1e-10 to a circle, with 1e-8 not. Sums of 1e-13 of their terms are 0, of 1e-10
-// not.
+// Conics with a ratio of eigenvalues of 1e-10 are ellipses, with 1e-12 parabolas. Semi-axes that
+// differ by 1e-10 belong to a circle, by 1e-8 not. Sums of 1e-13 of their terms count as 0, of
+// 1e-10 not.
 static void limits_of_classes_are_relative(void **state) {
   (void)state;
   static const struct {
@@ -243,8 +245,8 @@ static void limits_of_classes_are_relative(void **state) {
   }
 }
 
-// The value of the image at the image of a point, with the homogeneous weight squared, is that of
-// the conic at the point.
+// The value of the image at the image of a point, multiplied by the square of the homogeneous
+// weight, is the value of the conic at the point.
 static void images_under_random_maps_keep_the_value(void **state) {
   (void)state;
   seed = 31;
@@ -266,7 +268,7 @@ static void images_under_random_maps_keep_the_value(void **state) {
       NEAR(value * h[3] * h[3], cag_conic_value(&c, cag_vec3(x, y, 0)), 1e-11);
     }
   }
-  // A flat map is refused, however it is turned; one that is only small is not.
+  // A singular map is rejected, however it is rotated; a map that only scales down is not.
   for (int i = 0; i < 50; i++) {
     CagTransform t = plane_frame(uniform(-2, 2), 1, uniform(-3, 3));
     const CagConic c = {{1, 0, 1, 0, 0, -1}};
@@ -294,7 +296,7 @@ static void polars_are_half_the_gradient(void **state) {
     q.y = uniform(-2, 2);
     cag_conic_polar(&c, p, line);
     cag_conic_polar(&c, q, other);
-    // Differences of a quadratic form are exact.
+    // Finite differences of a quadratic form are exact.
     const CagVec3 x = {1, 0, 0}, y = {0, 1, 0};
     NEAR(4 * line[0], cag_conic_value(&c, cag_add(p, x)) - cag_conic_value(&c, cag_sub(p, x)),
          1e-13);
@@ -339,7 +341,7 @@ static void branches_run_as_documented(void **state) {
           NEAR(cag_dot(d, e2), v, 1e-9);
           continue;
         }
-        // From the point of the line that is nearest to the center.
+        // Measured from the point of the line that is closest to the center.
         const double *line = k.lines[j];
         NEAR(line[0] * p.x + line[1] * p.y + line[2], 0, 1e-13);
         NEAR(line[0] * d.y - line[1] * d.x, end, 1e-12);
@@ -353,7 +355,7 @@ static void branches_run_as_documented(void **state) {
   FAILS(cag_conic_branches(&circle, 1, 1, out, &n, &err), "empty-range");
   FAILS(cag_conic_branches(&circle, 1, INFINITY, out, &n, &err), "empty-range");
   FAILS(cag_conic_branches(&circle, -INFINITY, 1, out, &n, &err), "empty-range");
-  // The second branch cannot be made: the first is given back.
+  // The second branch cannot be made; the first is released.
   FAILS(cag_conic_branches(&(CagConic){{1, 0, -1, 0, 0, -1}}, 0, 400, out, &n, &err), "domain");
   assert_int_equal(n, 0);
 }
@@ -384,7 +386,7 @@ static void curves_have_the_equation_that_they_were_made_from(void **state) {
     OK(cag_curve_to_nurbs(c, &exact, &err));
     OK(cag_conic_of_curve(exact, &k, &err));
     same_conic(&k, &expected, 1e-9);
-    // In a plane of space: the frame carries the equation's points to those of the curve.
+    // In a plane of space, the frame maps points of the equation to those of the curve.
     CagTransform frame, tilt, shift = cag_translate(cag_vec3(1, 2, 3));
     CagVec3 axis = {0, 0, 0};
     axis.x = uniform(-1, 1);
@@ -402,7 +404,7 @@ static void curves_have_the_equation_that_they_were_made_from(void **state) {
     const CagVec3 origin = cag_transform_point(&frame, cag_vec3(0, 0, 0));
     NEAR(x.z, 0, 1e-12);
     assert_true(z.z > 0);
-    // The way uphill is y.
+    // The y axis points uphill.
     if (fabs(z.z) < 1 - 1e-9) assert_true(y.z > 0);
     else near_vec(x, cag_vec3(1, 0, 0), 1e-12);
     near_vec(origin, cag_scaled(z, cag_dot(origin, z)), 1e-9);
@@ -414,7 +416,7 @@ static void curves_have_the_equation_that_they_were_made_from(void **state) {
       for (int j = 0; j < 6; j++) size = fmax(size, fabs(k.c[j]));
       NEAR(cag_conic_value(&k, flat), 0, 1e-8 * size * (1 + cag_dot(flat, flat)));
     }
-    // Two pieces are the conic if both belong to it.
+    // Two pieces together are the conic if both lie on it.
     const CagVec3 end = at(exact, exact->end), start = at(exact, exact->start);
     CagVec3 bend[3] = {end, cag_lerp(start, end, 2), cag_vec3(9, 9, 0)};
     CagCurve *parts[2] = {exact, NULL}, *as_nurbs;
@@ -431,7 +433,7 @@ static void curves_have_the_equation_that_they_were_made_from(void **state) {
   }
 }
 
-// A vertical plane has its upward y, and its normal in the half plane y > 0, or along X.
+// In a vertical plane, y points upward, and the normal is in the half plane y > 0, or along X.
 static void frames_of_vertical_planes_are_level(void **state) {
   (void)state;
   for (int i = 0; i < 16; i++) {
@@ -489,7 +491,7 @@ static void lines_and_other_curves_have_their_equation_or_none(void **state) {
   }
 }
 
-// y by the quadratic equation C y^2 + (B x + E) y + A x^2 + D x + F = 0.
+// y from the quadratic equation C y^2 + (B x + E) y + A x^2 + D x + F = 0.
 static void points_at_an_abscissa_solve_the_equation(void **state) {
   (void)state;
   seed = 77;
@@ -518,7 +520,8 @@ static void points_at_an_abscissa_solve_the_equation(void **state) {
       NEAR(cag_conic_value(&c, p), 0, 1e-13 * (1 + p.y * p.y));
     }
   }
-  // Where the tangent is upright, rounding of the larger terms is allowed for, and no more.
+  // Where the tangent is vertical, the rounding error of the larger terms is tolerated, but not
+  // more.
   const CagConic far[2] = {{{1, 0, 1, -2000, 0, 1e6 - 1}}, {{1, 0, 1, 0, -2000, 1e6 - 1}}};
   OK(cag_conic_point_at(&far[0], 1001 + 1e-10, true, &p, &err));
   near_vec(p, cag_vec3(1001, 0, 0), 1e-4);
@@ -531,8 +534,8 @@ static void points_at_an_abscissa_solve_the_equation(void **state) {
   FAILS(cag_conic_point_at(&(CagConic){{1, 0, 0, 0, 0, -1}}, 1, true, &p, &err), "domain");
 }
 
-// From one end to the other, with x monotone, on the conic and on the side of the upper or lower
-// root.
+// A segment runs from one end to the other with monotone x, on the conic, and on the side of the
+// upper or lower root.
 static void random_segments_stay_on_their_side(void **state) {
   (void)state;
   seed = 2024;
@@ -565,7 +568,7 @@ static void random_segments_stay_on_their_side(void **state) {
       continue;
     }
     if (kind == 3 && (from < s.center.x) != (to < s.center.x)) {
-      // The upper root changes lines at the center.
+      // At the center, the upper root changes from one line to the other.
       FAILS(cag_conic_segment(&c, from, to, upper, &curve, &err), "domain");
       continue;
     }
@@ -658,8 +661,8 @@ static void random_lines_meet_random_conics(void **state) {
   for (int kind = CAG_LINE_NONE; kind <= CAG_LINE_TWO; kind++) assert_true(counts[kind] >= 40);
 }
 
-// Touching is judged by the rounding of the terms, also far from the origin: 1e-13 of the radius
-// off is a touch, 1e-9 off is not.
+// Tangency is judged by the rounding of the terms, even far from the origin: a deviation of 1e-13
+// of the radius touches, and 1e-9 does not.
 static void lines_near_a_touch(void **state) {
   (void)state;
   seed = 3;
@@ -680,7 +683,7 @@ static void lines_near_a_touch(void **state) {
     assert_int_equal(kind, CAG_LINE_NONE);
     OK(cag_conic_line(&c, cag_madd(p, -off, outward), d, &kind, at, &err));
     assert_int_equal(kind, CAG_LINE_TWO);
-    // From far along the line the answer is the same.
+    // A distant point of the line leads to the same result.
     OK(cag_conic_line(&c, cag_madd(p, 100, d), d, &kind, at, &err));
     assert_int_equal(kind, CAG_LINE_TANGENT);
     NEAR(at[0], -100, 1e-4);
@@ -701,7 +704,7 @@ static void lines_near_a_touch(void **state) {
     assert_int_equal(kind, CAG_LINE_ONE);
     // q0 + q1 t = 0 with u / a = 0.3 + t, v / b = sign (t - 0.3)
     NEAR(at[0], 0, 1e-9);
-    // Parallel lines, along a direction that is off by rounding of an angle.
+    // Parallel lines, along a direction with the rounding error of an angle.
     const Standard lines = {0, 1, 0, 1, s.angle, s.factor, s.center};
     const CagConic parallel = equation(&lines);
     const CagVec3 way = {cos(s.angle + 3e-14), sin(s.angle + 3e-14), 0};
@@ -746,8 +749,8 @@ static void ranges_of_open_conics_have_their_limits(void **state) {
   FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, 0, 1, &bad, &c, &err), "not-finite");
 }
 
-// Random affine images, reversed, cut and with other domains: points, derivatives, and boxes, which
-// are exact.
+// Random affine images, reversed, trimmed, and with other domains: checks points, derivatives, and
+// boxes, which are exact.
 static void random_open_conics_keep_their_points(void **state) {
   (void)state;
   seed = 503;
@@ -793,7 +796,7 @@ static void random_open_conics_keep_their_points(void **state) {
     assert_true(box.min.x <= seen.min.x + 1e-12 * size && box.max.x >= seen.max.x - 1e-12 * size);
     assert_true(box.min.y <= seen.min.y + 1e-12 * size && box.max.y >= seen.max.y - 1e-12 * size);
     assert_true(box.min.z <= seen.min.z + 1e-12 * size && box.max.z >= seen.max.z - 1e-12 * size);
-    // The rational form has the same image, and derivatives those of the other domain.
+    // The rational form has the same image, and the derivatives for the new domain.
     CagCurve *exact;
     OK(cag_curve_to_nurbs(c, &exact, &err));
     for (int k = 0; k <= 6; k++) {

@@ -1,4 +1,4 @@
-// The negative side of random conics within rectangles: areas compared with integrals, for all
+// The negative side of random conics within rectangles. Compares areas with integrals for all
 // classes, with integer coefficients, and with conics far larger than the rectangle.
 
 #include "box_integral.h"
@@ -27,7 +27,8 @@ static CagConic product_of_lines(const double p[3], const double q[3], double si
                      sign * p[2] * q[2]}};
 }
 
-// General conics, integer ones, pairs of lines that cross, parabolas, parallel lines, ellipses.
+// General conics, conics with integer coefficients, crossing lines, parabolas, parallel lines, and
+// ellipses.
 static CagConic random_conic(int kind) {
   CagConic c;
   double p[3], q[3];
@@ -76,8 +77,8 @@ static void parts_have_the_area_of_the_negative_side(void **state) {
   assert_true(most >= 2);
 }
 
-// A circle of radius r that touches y = 0 in the origin: the part of a square of side 1 above it is
-// the integral of x^2 / (2 r) + x^4 / (8 r^3) + ..., and what is left is inside.
+// A circle of radius r that touches y = 0 at the origin. In a square of side 1 above, the part
+// outside the circle is the integral of x^2 / (2 r) + x^4 / (8 r^3) + ..., and the rest is inside.
 static void large_conics_keep_their_digits(void **state) {
   (void)state;
   const CagBounds box = {{0, 0, 0}, {1, 1, 0}};
@@ -90,8 +91,8 @@ static void large_conics_keep_their_digits(void **state) {
   }
 }
 
-// Two lines through the center of a square of side 2 bound two triangles; a circle within it is
-// one part, and its outside has a hole.
+// Two lines through the center of a square of side 2 bound two triangles. A circle inside the
+// square is one part, and its outside has a hole.
 static void parts_are_separate(void **state) {
   (void)state;
   const CagBounds box = {{-1, -1, 0}, {1, 1, 0}};
@@ -104,8 +105,8 @@ static void parts_are_separate(void **state) {
   assert_int_equal(n, 1);
   assert_near(area_of_parts(&outside, &box, &n), 4 - M_PI / 4, 1e-12, "hole");
   assert_int_equal(n, 1);
-  // A circle through all four corners contains the square, and one that touches all four sides is
-  // a disc.
+  // A circle through all four corners contains the square, and one that touches all four sides is a
+  // disk.
   const CagConic around = {{1, 0, 1, 0, 0, -2}}, touching = {{1, 0, 1, 0, 0, -1}};
   assert_near(area_of_parts(&around, &box, &n), 4, 1e-12, "through the corners");
   assert_near(area_of_parts(&touching, &box, &n), M_PI, 1e-12, "touching the sides");

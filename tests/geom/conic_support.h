@@ -1,4 +1,4 @@
-// What the tests of conics share: frames and points of the plane, and random conics in any
+// Helpers for the tests of conics: frames and points of the plane, and random conics in any
 // position.
 
 #ifndef CAG_TESTS_GEOM_CONIC_SUPPORT_H
@@ -24,8 +24,8 @@ static inline CagVec3 at(const CagCurve *c, double t) {
   return p;
 }
 
-// A conic by its standard position: alpha u^2 + beta v^2 + delta u = kappa along the axes u, v,
-// which are turned and moved.
+// A conic by its standard form alpha u^2 + beta v^2 + delta u = kappa in rotated and translated
+// axes u, v.
 typedef struct Standard {
   double alpha, beta, delta, kappa, angle, factor;
   CagVec3 center;
@@ -57,7 +57,7 @@ static inline Standard random_standard(double alpha, double beta, double delta, 
   return s;
 }
 
-// Proportional to the expected coefficients.
+// Checks that the coefficients are proportional to the expected ones.
 static inline void same_conic(const CagConic *k, const CagConic *expected, double tolerance) {
   double dot = 0, one = 0, two = 0;
   for (int i = 0; i < 6; i++) {

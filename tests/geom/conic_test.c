@@ -1,5 +1,5 @@
-// Conics: parabolas and hyperbolas as curves, and the general equation. Numbers are closed forms or
-// those of the reference on plane curves.
+// Conics: parabolas and hyperbolas as curves, and the general equation. The expected values are
+// closed forms, or those of the reference on plane curves.
 
 #include "conic_support.h"
 #include "geom/curve/conic.h"
@@ -8,7 +8,7 @@
 
 // --- Parabola and hyperbola as curves ---
 
-// One of each form, turned and moved.
+// One curve of each form, rotated and translated.
 static size_t arcs(CagCurve *out[5]) {
   const CagTransform f = plane_frame(3, -2, 0.7);
   OK(cag_curve_parabola(1.5, CAG_FORM_QUADRATIC, -1, 2, &f, &out[0], &err));
@@ -34,7 +34,8 @@ static void forms_have_the_points_of_the_text(void **state) {
   cag_curve_release(c);
 }
 
-// Richardson's extrapolation of central differences; what it loses is h^4 and rounding / h.
+// Richardson's extrapolation of central differences, whose error is of the order h^4 plus rounding
+// / h.
 static void derivatives_are_those_of_the_points(void **state) {
   (void)state;
   CagCurve *c[5];
@@ -77,7 +78,8 @@ static void an_arc_satisfies_its_equation_and_so_does_its_rational_form(void **s
   }
 }
 
-// A rational piece spans 2 of the hyperbolic parameter at most, and no piece is wasted.
+// A rational piece spans at most 2 of the hyperbolic parameter, and the number of pieces is
+// minimal.
 static void rational_hyperbolas_have_as_few_pieces_as_their_weights_allow(void **state) {
   (void)state;
   seed = 91;
@@ -130,7 +132,7 @@ static void boxes_hold_the_arc_and_touch_it(void **state) {
     for (int k = 0; k <= SAMPLES; k++)
       cag_bounds_add(&seen, at(c[i], fmin(c[i]->end, c[i]->start + (c[i]->end - c[i]->start) * k /
                                                                        (double)SAMPLES)));
-    // An extreme between two samples is missed by the square of their distance.
+    // The samples miss an extremum by the square of their distance.
     near_vec(box.min, seen.min, 1e-6);
     near_vec(box.max, seen.max, 1e-6);
     assert_true(box.min.x <= seen.min.x + 1e-13 && box.max.y >= seen.max.y - 1e-13);
@@ -190,7 +192,8 @@ static void recurrences_give_the_points_of_equal_parameters(void **state) {
 
 // --- The general conic ---
 
-// The types of the reference's table; each turned by several angles and moved keeps its type.
+// The types of the reference's table. Each keeps its type when rotated by several angles and
+// translated.
 static void types_do_not_depend_on_the_place(void **state) {
   (void)state;
   static const struct {
@@ -255,7 +258,7 @@ static void a_parabola_comes_to_its_standard_form(void **state) {
 
 static void small_and_far_conics_keep_their_type(void **state) {
   (void)state;
-  // Radius 1 about (1e5, 1e5): the constant has lost all but 5 digits of 1.
+  // Radius 1 about (1e5, 1e5): only 5 digits of 1 remain in the constant.
   const CagConic far = {{1, 0, 1, -2e5, -2e5, 2e10 - 1}};
   const CagConic small = {{1, 0, 1, 0, 0, -1e-18}};
   const CagConic thin = {{1, 0, 1e10, 0, 0, -1e10}};
@@ -388,7 +391,7 @@ static void a_segment_runs_between_its_abscissas(void **state) {
   near_vec(p[8], cag_vec3(4.678871044730245, 2.501566417909783, 0), 1e-12);
   near_vec(p[9], cag_vec3(5, 2.4764631758043167, 0), 1e-12);
   cag_curve_release(s);
-  // Clockwise above, counter-clockwise below, and the other way round when x falls.
+  // Clockwise above and counter-clockwise below, and reversed if x decreases.
   static const struct {
     double from, to;
     bool upper;

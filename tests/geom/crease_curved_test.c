@@ -1,4 +1,4 @@
-// Surfaces of curved cells with creases that meet a flat sheet: random comparisons with sections.
+// Creased surfaces of curved cells that meet a plane sheet: random comparisons with plane sections.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -16,7 +16,7 @@ static double total_length(const CagCurveList *list) {
   return sum;
 }
 
-// A net of curved cells, of which one direction may be smooth.
+// A net of curved cells, one direction of which may be smooth.
 static CagSurface *curved_net(int degree_u, int degree_v) {
   const double linear[] = {0, 0, 1, 2, 3, 3};
   const double quadratic[] = {0, 0, 0, 1, 2, 2, 2};
@@ -32,7 +32,7 @@ static CagSurface *curved_net(int degree_u, int degree_v) {
   return s;
 }
 
-// Counts curves that are not tiny: a corner of the net may lie behind the plane by less than the
+// Counts curves that are not tiny. A corner of the net may be behind the plane by less than the
 // length of any traced curve.
 static size_t count_long(const CagCurveList *l) {
   size_t n = 0;
@@ -44,8 +44,9 @@ static size_t count_long(const CagCurveList *l) {
   return n;
 }
 
-// Sections with planes are traced by a different method: as zeros of a function of one surface. A
-// tolerance bounds the distance of a curve; its length may differ by several tolerances.
+// Sections with planes are traced by a different method: as zeros of a function on one surface. The
+// tolerance bounds the distance between the curves, so their lengths may differ by several
+// tolerances.
 static void curved_nets_meet_a_flat_sheet_as_they_do_its_plane(void **state) {
   (void)state;
   seed = 3;

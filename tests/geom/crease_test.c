@@ -1,5 +1,5 @@
-// Creased surfaces that meet each other: random comparisons with the segments in which their flat
-// cells meet, by clipping lines.
+// Creased surfaces that meet each other: random comparisons with the intersection segments of their
+// planar cells, computed by clipping lines.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -10,7 +10,7 @@
 #define SEGMENTS 512
 #define SHORT 1e-5
 
-// Points a[i] + b[j]: all cells are parallelograms.
+// Points a[i] + b[j]; all cells are parallelograms.
 typedef struct Net {
   size_t n;
   CagVec3 a[NET], b[NET];
@@ -22,7 +22,7 @@ typedef struct Segments {
   double length, shortest;
 } Segments;
 
-// Narrows the stretch of the line p + t d that lies in the cell.
+// Restricts t to the part of the line p + t d inside the cell.
 static void clip(CagVec3 p, CagVec3 d, CagVec3 o, CagVec3 e, CagVec3 f, double t[2]) {
   const CagVec3 n = cag_cross(e, f), r = cag_sub(p, o);
   const double nn = cag_dot(n, n);
@@ -56,7 +56,7 @@ static void add_cells(const Net *s, size_t i, size_t j, const Net *w, size_t k, 
   out->n++;
 }
 
-// The segments, and how many curves they are end to end.
+// Finds the segments, and the number of curves that they form.
 static void find_segments(const Net *s, const Net *w, Segments *out) {
   *out = (Segments){.shortest = INFINITY};
   for (size_t i = 0; i + 1 < s->n; i++)
@@ -91,7 +91,7 @@ static CagSurface *surface_of(const Net *s) {
   return surface;
 }
 
-// Over the square of side 2 about the origin, turned as `frame` says.
+// A net over the square of side 2 about the origin, rotated to `frame`.
 static Net folded(size_t n, double height, const CagVec3 frame[3]) {
   Net s = {.n = n};
   for (size_t i = 0; i < n; i++)
@@ -109,7 +109,7 @@ static CagVec3 direction(void) {
 }
 
 static void turn(CagVec3 frame[3], double tilt) {
-  // Tilted against the last one.
+  // Tilted relative to the previous one.
   frame[2] = cag_unit(cag_madd(frame[2], tilt, direction()));
   frame[0] = cag_unit(cag_cross(frame[2], direction()));
   frame[1] = cag_cross(frame[2], frame[0]);
@@ -121,7 +121,7 @@ static bool is_end(const Segments *s, CagVec3 p) {
   return false;
 }
 
-// Polylines with the segments' ends as corners, all of them.
+// Checks that the curves are polylines whose corners are exactly the ends of the segments.
 static void compare(const Net *s, const Net *w) {
   Segments wanted;
   find_segments(s, w, &wanted);
@@ -182,10 +182,10 @@ static void creased_nets_meet_each_other_as_their_cells_do(void **state) {
   }
 }
 
-// --- Runs that meet in one point ---
+// --- Segments that meet at one point ---
 
-// Rays from one point that form pairs of straight lines. In every order and direction of the rays,
-// the lines continue straight.
+// Rays from one point that form pairs of straight lines. Regardless of the order and direction of
+// the rays, the lines must continue straight.
 #define LINES 4
 #define RAYS (2 * LINES)
 
@@ -250,7 +250,7 @@ static void lines_through_a_point_go_on_straight_in_every_order(void **state) {
   }
 }
 
-// Segments between few points with equal turns: edges of a cube, some of them removed.
+// Segments between few points with equal turning angles: edges of a cube, some of them removed.
 static void segments_are_joined_alike_in_every_order(void **state) {
   (void)state;
   enum { EDGES = 12 };

@@ -1,5 +1,5 @@
-// Surfaces that cross themselves: found where simple measures of random profiles, paths and tubes
-// tell so, and only there.
+// Self-intersecting surfaces: detected if and only if simple measures of random profiles, paths,
+// and tubes predict an intersection.
 
 #include "geom/meet/crossing.h"
 
@@ -11,7 +11,7 @@
 
 static char what[300];
 
-// Where the segments ab and cd cross, as fractions of both.
+// Intersects the segments ab and cd; `part` are the fractions along both.
 static bool cut(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d, double part[2]) {
   const CagVec3 u = cag_sub(b, a), v = cag_sub(d, c), w = cag_sub(c, a);
   const double det = u.x * v.z - u.z * v.x;
@@ -20,8 +20,8 @@ static bool cut(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d, double part[2]) {
   return part[0] > 0 && part[0] < 1 && part[1] > 0 && part[1] < 1;
 }
 
-// Three segments in the half plane y = 0, x > 0: the first and the last cross or not. The surface
-// is anywhere in space.
+// Three segments in the half plane y = 0, x > 0, of which the first and the last may cross. The
+// surface is anywhere in space.
 static void profiles_cross_where_their_segments_do(void **state) {
   (void)state;
   seed = 11;
@@ -34,7 +34,7 @@ static void profiles_cross_where_their_segments_do(void **state) {
     }
     double part[2];
     const bool crosses = cut(p[0], p[1], p[2], p[3], part);
-    // Decided by more than the spacing of the samples.
+    // Skips cases that the spacing of the samples does not decide.
     const double off = fmax(fmax(-part[0], part[0] - 1), fmax(-part[1], part[1] - 1));
     if (fabs(off) < 0.05) continue;
     CagTransform map;
@@ -56,7 +56,7 @@ static void profiles_cross_where_their_segments_do(void **state) {
     if (found != crosses) fail_msg("round %d: crosses %d, found %d", round, crosses, found);
     crosses ? crossing++ : clear++;
     if (found) {
-      // The place of the crossing, to the length of a sample.
+      // The location of the crossing, up to the spacing of the samples.
       double x, z;
       assert_int_equal(
           sscanf(what, "its profile crosses itself near %lf from the axis, %lf", &x, &z), 2);
@@ -104,8 +104,8 @@ static CagCurve *in_space(CagCurve *c) {
   return out;
 }
 
-// The smallest radius of curvature of an ellipse is b^2 / a. A circle reaches its radius towards
-// the center of curvature, an open arc no farther than its points.
+// The smallest radius of curvature of an ellipse is b^2 / a. A circle extends to its radius toward
+// the center of curvature, and an open arc only as far as its points.
 static void sweeps_fold_beyond_the_center_of_curvature(void **state) {
   (void)state;
   seed = 12;
@@ -122,14 +122,16 @@ static void sweeps_fold_beyond_the_center_of_curvature(void **state) {
     if (folds) {
       double times;
       assert_int_equal(sscanf(what, "its section reaches %lf times as far", &times), 1);
-      // The first place that folds, before the tightest one: at most as far, and by samples.
+      // The first fold is before the tightest point: at most as far, up to the spacing of the
+      // samples.
       assert_true(times > 0.99 && times < beyond * 1.006);
     }
     cag_surface_release(s);
     cag_curve_release(section);
     cag_curve_release(path);
   }
-  // On a circle all places are alike: 64 samples of the section meet its farthest point to 0.12 %.
+  // All points of a circle are equivalent. 64 samples of the section reach its farthest point
+  // within 0.12 %.
   for (int round = 0; round < 40; round++) {
     const double radius = uniform(2, 6), beyond = uniform(1.02, 3);
     CagCurve *path = in_space(ellipse(radius, radius, 0, 2, cag_vec3(0, 0, 0)));
@@ -152,7 +154,7 @@ static void sweeps_fold_beyond_the_center_of_curvature(void **state) {
   }
 }
 
-// The distance of a point of a helix from the next turn, over all of that turn.
+// The smallest distance of a point of a helix from the next turn.
 static double turn_distance(double radius, double pitch) {
   double least = INFINITY;
   for (int i = 0; i <= 20000; i++) {
@@ -174,7 +176,7 @@ static void tubes_meet_where_turns_are_nearer_than_they_are_thick(void **state) 
     CagSurface *s;
     OK(cag_curve_helix(radius, pitch, 2.5, 0, &path, &err));
     path = in_space(path);
-    // As a tube, and as a circle swept along and scaled.
+    // As a tube, and as a circle that is swept and scaled.
     if (round % 3 == 0) {
       OK(cag_surface_tube(path, thick, &s, &err));
     } else {
@@ -202,8 +204,8 @@ static void tubes_meet_where_turns_are_nearer_than_they_are_thick(void **state) 
   }
 }
 
-// Two straight parts beside each other, joined by a wide bend: a tube that gets thicker meets
-// itself where both radii together are the distance.
+// Two parallel straight parts joined by a wide bend. A tube of increasing radius meets itself where
+// the sum of both radii equals the distance.
 static void tapering_tubes_meet_where_they_are_thick(void **state) {
   (void)state;
   seed = 14;
@@ -215,7 +217,7 @@ static void tapering_tubes_meet_where_they_are_thick(void **state) {
     CagCurve *path, *section;
     const double knots[] = {0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 7, 7};
     OK(cag_curve_nurbs(p, NULL, 9, 2, knots, 3, &path, &err));
-    // Constant but for a taper that ends at less: the sum of both radii is the same along it.
+    // The radii vary so that the sum at opposite points is constant.
     const double both = apart * (round % 2 ? 1.03 : 0.97), end = uniform(0.2, 0.5) * both;
     section = ellipse(1, 1, 0, 2 * M_PI, cag_vec3(0, 0, 0));
     CagSurface *s = swept(section, path, &(CagAlong){both - end, end, NULL});

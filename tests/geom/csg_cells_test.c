@@ -1,5 +1,5 @@
-// Set operations of boxes on a grid, some of them around operations: bounds, mass and emptiness are
-// those of the cells that are in.
+// Set operations of boxes on a grid, some of them nested. The expected bounds, mass, and emptiness
+// are those of the occupied cells.
 
 #include "geom/solid/csg.h"
 #include "tests/geom/random.h"
@@ -7,7 +7,7 @@
 
 enum { SIDE = 7, MARGIN = 1, CELLS = SIDE + 2 * MARGIN };
 
-// Cells (x, y, z) of the grid that belong to a solid; a margin stays outside.
+// The cells (x, y, z) of the grid that belong to a solid; the margin stays empty.
 typedef struct Body {
   CagSolid *solid;
   bool in[CELLS][CELLS][CELLS];
@@ -39,7 +39,7 @@ static Body random_box(int longest) {
   return box_between(low, high);
 }
 
-// Releases the operands.
+// Takes ownership of the operands.
 static Body combined(CagSetOperation op, Body *operands, size_t n) {
   enum { MOST = 8 };
   Body out = operands[0];
@@ -72,7 +72,7 @@ static Body random_body(int depth, int longest) {
   return combined(op, operands, (size_t)n);
 }
 
-// Sums over cells and over the faces of cells that have the body on one side.
+// Sums over the cells, and over the faces between an occupied and an empty cell.
 typedef struct Sums {
   double volume, area, inertia[3][3];
   CagVec3 center, area_center;
@@ -117,7 +117,8 @@ static Sums sums_of(const Body *b) {
   return s;
 }
 
-// Of the body as it stands and of one turned, moved and scaled, which has its powers of the scale.
+// Checks the body itself, and a copy that is rotated, translated, and scaled, whose sums are
+// multiplied by powers of the scale.
 static void check_mass(const CagSolid *s, const Sums *sums, const CagTransform *place,
                        double scale) {
   CagMassProperties mass;
@@ -143,13 +144,13 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
   seed = 61;
   int empty = 0, separate = 0;
   for (int k = 0; k < 90; k++) {
-    // Small boxes keep away from each other more often.
+    // Small boxes are more often disjoint.
     const int longest = k % 4 == 0 ? 2 : 5;
     Body b = random_body(1 + k % 3, longest);
     const Sums sums = sums_of(&b);
     CagBounds box;
     bool none;
-    if (b.solid->face_count > 0) { // one box
+    if (b.solid->face_count > 0) { // a single box
       OK(cag_solid_is_empty(b.solid, &none, &err));
       assert_false(none);
       cag_solid_release(b.solid);
@@ -196,7 +197,7 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
   assert_true(separate > 10);
 }
 
-// Two boxes that have a face in common, which is none of their union.
+// Two boxes with a common face, which is not a face of their union.
 static void boxes_that_touch_have_one_surface(void **state) {
   (void)state;
   for (int k = 0; k < 6; k++) {
@@ -215,7 +216,7 @@ static void boxes_that_touch_have_one_surface(void **state) {
   }
 }
 
-// Copies that stand elsewhere share what an operation has; the last of them lets it go.
+// Copies at other locations share the operands; releasing the last copy releases them.
 static void the_last_copy_lets_operands_go(void **state) {
   (void)state;
   const int low[2][3] = {{0, 0, 0}, {1, 1, 1}}, high[2][3] = {{3, 4, 5}, {4, 5, 6}};
@@ -237,7 +238,7 @@ static void the_last_copy_lets_operands_go(void **state) {
   }
 }
 
-// A box without one of its sides, or with a notch in it, anywhere.
+// A box without one of its sides, or with a notch, at any location.
 static void cuts_across_a_side_move_that_side_alone(void **state) {
   (void)state;
   seed = 64;

@@ -1,4 +1,4 @@
-// Solids without faces: what operations keep, where they reach, which side points are on; clipping.
+// Solids without faces: which parts operations keep, extents, point classification, and clipping.
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static CagSolid *sphere(double radius) {
   return s;
 }
 
-// Takes the solid over.
+// Takes ownership of the solid.
 static CagSolid *moved(CagSolid *s, double x, double y, double z) {
   CagSolid *out = NULL;
   CagTransform t = cag_translate(cag_vec3(x, y, z));
@@ -31,7 +31,7 @@ static CagSolid *moved(CagSolid *s, double x, double y, double z) {
   return out;
 }
 
-// Takes both over.
+// Takes ownership of both.
 static CagSolid *combined(CagSetOperation op, CagSolid *a, CagSolid *b) {
   CagSolid *out = NULL;
   OK(cag_solid_combine(op, (CagSolid *[]){a, b}, 2, NULL, &out, &err));
@@ -60,7 +60,7 @@ static void operations_of_one_kind_are_one(void **state) {
   for (int i = 1; i < 50; i++) s = combined(CAG_UNION, s, moved(box(1), i, 0, 0));
   assert_int_equal(s->core->count, 50);
   NEAR(volume(s), 50, 1e-10);
-  // A moved one is kept whole: its operands stand elsewhere.
+  // A moved union is kept as one operand, because its operands are elsewhere.
   CagSolid *t = combined(CAG_UNION, moved(s, 0, 5, 0), box(1));
   assert_int_equal(t->core->count, 2);
   cag_solid_release(t);
@@ -93,7 +93,7 @@ static void reach_of_sides(void **state) {
   NEAR(b.max.z, 4, 1e-15);
   NEAR(b.min.z, -9, 1e-9);
   cag_solid_release(s);
-  // An ellipsoid turned about z by a: half of its width is sqrt(a^2 cos^2 + b^2 sin^2).
+  // For an ellipsoid rotated about z by a, half of the width is sqrt(a^2 cos^2 + b^2 sin^2).
   const CagQuadric q = {{(1.0 / 9 + 1) / 2, (1.0 / 9 + 1) / 2, 1, 1.0 / 9 - 1, 0, 0, 0, 0, 0, -1}};
   OK(cag_solid_quadric(&q, &s, &err));
   OK(cag_solid_reach(s, &b, &err));
@@ -108,7 +108,7 @@ static void bounds_of_differences_that_keep_their_sides(void **state) {
   CagSolid *s = combined(CAG_DIFFERENCE, box(4), moved(sphere(1), 2, 2, 4));
   OK(cag_solid_bounds(s, &b, &err));
   near_vec(b.max, cag_vec3(4, 4, 4), 0);
-  assert_null(s->core->mesh); // told without the operation
+  assert_null(s->core->mesh); // known without the operation
   cag_solid_release(s);
   s = combined(CAG_DIFFERENCE, box(4), moved(box(9), -1, -1, 3));
   OK(cag_solid_bounds(s, &b, &err));
@@ -121,8 +121,8 @@ static double *side_of_box(CagBounds *b, int axis, bool upper) {
   return axis == 0 ? &corner->x : axis == 1 ? &corner->y : &corner->z;
 }
 
-// Each of the six sides of a ball: a slab takes a cap away, a rod leaves the extreme on two sides
-// and takes them on four, a distant box takes nothing, and a half space cuts.
+// At each of the six extremes of a ball, a slab removes a cap, a rod keeps the extremes on two
+// sides and removes those on four, a distant box removes nothing, and a half space cuts.
 static void each_side_of_a_difference_is_cut_alone(void **state) {
   (void)state;
   const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -150,12 +150,12 @@ static void each_side_of_a_difference_is_cut_alone(void **state) {
         *side_of_box(&expected, axis, upper) += (cases[i].cut - 3) * (upper ? 1 : -1);
         s = combined(CAG_DIFFERENCE, moved(sphere(3), 10, -20, 30), tool);
         OK(cag_solid_bounds(s, &b, &err));
-        // Sides that the cut leaves are exact.
+        // The extremes that the cut does not affect are exact.
         near_vec(b.min, expected.min, 1e-9);
         near_vec(b.max, expected.max, 1e-9);
         cag_solid_release(s);
       }
-      // The reach of a half space that is square to an axis.
+      // The reach of a half space perpendicular to an axis.
       CagBounds reach;
       CagSolid *s = side_of(cag_madd(middle, 2, way), cag_scaled(way, 7));
       OK(cag_solid_reach(s, &reach, &err));
@@ -174,7 +174,7 @@ static void each_side_of_a_difference_is_cut_alone(void **state) {
       }
       cag_solid_release(s);
     }
-  // Two operands of which nothing is left.
+  // Two operands whose difference is empty.
   CagBounds b;
   CagSolid *none[2];
   for (int i = 0; i < 2; i++)
@@ -187,7 +187,7 @@ static void each_side_of_a_difference_is_cut_alone(void **state) {
 static CagStatus no_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side, CagError *e) {
   (void)context;
   (void)e;
-  double d = cag_norm(p) - leaf->a; // spheres where they stand
+  double d = cag_norm(p) - leaf->a; // placed spheres
   *side = fabs(d) < 1e-12 ? 0 : d < 0 ? -1 : 1;
   return CAG_OK;
 }
@@ -224,7 +224,8 @@ static void meshes_enclose_when_they_are_closed(void **state) {
   cag_solid_release(b);
 }
 
-// The mesh of a box of a, b, c, turned and moved: I = V / 12 diag(b^2 + c^2, ...) along its edges.
+// The mesh of a box with sides a, b, c, rotated and translated: I = V / 12 diag(b^2 + c^2, ...)
+// along its edges.
 static void meshes_have_the_inertia_of_boxes(void **state) {
   (void)state;
   const double e[3] = {2, 3, 5}, volume_of = 30;
@@ -270,7 +271,7 @@ static void what_is_empty_or_endless_says_so(void **state) {
   bool empty;
   OK(cag_solid_is_empty(s, &empty, &err));
   assert_true(empty);
-  // The union with a ball is the ball, and the ball without it, too.
+  // The union with a ball is the ball, and so is that with the ball removed.
   s = combined(CAG_UNION, sphere(2), s);
   OK(cag_solid_bounds(s, &b, &err));
   near_vec(b.max, cag_vec3(2, 2, 2), 1e-12);
@@ -290,7 +291,8 @@ static void what_is_empty_or_endless_says_so(void **state) {
   s = combined(CAG_UNION, sphere(1), side_of(cag_vec3(0, 0, 0), cag_vec3(1, 1, 0)));
   assert_int_equal(cag_solid_bounds(s, &b, &err), CAG_E_ARGUMENT);
   assert_string_equal(cag_error_info(err.id)->reason, "solid-unbounded");
-  // Cut by a ball it is the half ball and what the union adds of the other half.
+  // The intersection with a ball is the half ball and the part of the other half that the union
+  // adds.
   s = combined(CAG_INTERSECTION, s, sphere(3));
   NEAR(volume(s), 18 * M_PI + 2 * M_PI / 3, 20 * M_PI * 2e-3);
   cag_solid_release(s);
@@ -348,14 +350,14 @@ static void clipped_curves_end_on_the_solid(void **state) {
   cag_solid_release(by);
 }
 
-// --- Random trees of operations, against their operands' equations ---
+// --- Random trees of operations, compared with equations of their operands ---
 
-// A solid beside what it should be: an equation in the coordinates of its placement, or two parts.
+// A solid and its expected value: an equation in the coordinates of its placement, or two parts.
 typedef struct Model {
   CagSolid *solid;
-  int kind;          // of the equation; 10 and more: an operation
+  int kind;          // kind of the equation; 10 and more: an operation
   double a, b, c;    // sizes
-  CagTransform back; // from the world
+  CagTransform back; // from world coordinates
   int parts[2];
 } Model;
 
@@ -427,7 +429,7 @@ static CagSolid *primitive(Model *m) {
   return s;
 }
 
-// Gives the index of a tree of this depth.
+// Creates a tree of this depth, and returns its index.
 static int random_model(int depth) {
   Model m = {.kind = depth > 0 ? 10 + (int)between(0, 3) : (int)between(0, 8)};
   m.a = between(0.8, 2), m.b = between(0.3, 0.8), m.c = between(0.3, 1.5);
@@ -479,8 +481,8 @@ static void operations_hold_what_their_equations_say(void **state) {
                   p.z <= reach.max.z + slack);
     }
     cag_inside_free(inside);
-    // Pieces of a line: each is within, ends on the boundary or at an end of the line, and together
-    // they are as long as the part of the line that is within.
+    // Pieces of a line: each is inside, and its ends are on the boundary or at an end of the line.
+    // Together they are as long as the part of the line inside.
     const CagVec3 ends[2] = {{-4, between(-1, 1), 0.3}, {4, between(-1, 1), between(-1, 1)}};
     CagCurve *line, **pieces;
     size_t n;
@@ -512,7 +514,7 @@ static void operations_hold_what_their_equations_say(void **state) {
 
 // --- Meshes of random trees ---
 
-// A tree within a box that is turned, as the last model.
+// A tree inside a rotated box, as the last model.
 static const Model *random_body(int depth) {
   Model box = {.kind = 0}, top = {.kind = 12};
   models.n = 0;
@@ -546,7 +548,7 @@ static void meshes_of_operations_end_where_their_equations_say(void **state) {
     how.tolerance = 2e-2;
     OK(cag_csg_mesh(top->solid, &how, &m, &err));
     assert_true(m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL));
-    // Forms of hyperboloids are values, not distances.
+    // The forms of hyperboloids are not distances.
     for (size_t i = 0; i < m->vertex_count; i++)
       NEAR(model_value(top, m->positions[i]), 0, 1e-6 + 8 * how.tolerance);
     cag_mesh_volume_terms(m, terms);
@@ -564,7 +566,8 @@ static void meshes_of_operations_end_where_their_equations_say(void **state) {
       high = cag_vec3(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
       held++;
     }
-    // By strata of 0.375: the error's deviation is at most that of the cells at the boundary.
+    // Stratified sampling with cells of 0.375: the standard deviation is at most that of the cells
+    // at the boundary.
     const double slack =
         4 * sqrt(6 * pow(cbrt(sum) + step, 2) / (step * step) + 1) * pow(step, 3) / 2;
     NEAR(terms[0], sum, slack);
@@ -583,7 +586,7 @@ static void meshes_of_operations_end_where_their_equations_say(void **state) {
   assert_true(held > 300);
 }
 
-// A mesh of a copy that is scaled is that of the original at the tolerance of its scale.
+// The mesh of a scaled copy is that of the original, with the tolerance divided by the scale.
 static void tolerances_scale_with_copies(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {
@@ -605,7 +608,7 @@ static void tolerances_scale_with_copies(void **state) {
     cag_mesh_release(m);
     cag_mesh_release(n);
     cag_solid_release(copy);
-    // A stretched copy keeps the tolerance: points of its mesh lie on the ellipsoid or in the
+    // A stretched copy satisfies the tolerance: points of its mesh are on the ellipsoid or in the
     // planes.
     OK(cag_scale(cag_vec3(factor, 1, 2), cag_vec3(0, 0, 0), &scale, &err));
     OK(cag_solid_transform(b, &scale, &copy, &err));
@@ -633,8 +636,8 @@ static void tolerances_scale_with_copies(void **state) {
   }
 }
 
-// Planes turned at random bound a body, although the bounds of none of them tell it; without one of
-// them it is endless.
+// Random planes may bound a body although none of them does alone. Without one of them, the body is
+// unbounded.
 static void half_spaces_may_bound_a_body(void **state) {
   (void)state;
   seed = 68;
@@ -658,7 +661,7 @@ static void half_spaces_may_bound_a_body(void **state) {
       OK(cag_solid_is_empty(scaled, &empty, &err));
       assert_false(empty);
     } else {
-      // The corners by Cramer's rule, and the volume of the tetrahedron.
+      // The corners from Cramer's rule, and the volume of the tetrahedron.
       CagVec3 corner[4];
       CagBounds box = CAG_BOUNDS_EMPTY;
       for (int i = 0; i < 4; i++) {
@@ -686,8 +689,8 @@ static void half_spaces_may_bound_a_body(void **state) {
   }
 }
 
-// The form sum of (d_j (p - center))^2 / semi_j^2 - 1 over the first `ends` of three directions,
-// times sense.
+// The form sum of (d_j (p - center))^2 / semi_j^2 - 1 over the first `ends` of the three
+// directions, multiplied by `sense`.
 static CagQuadric form_within(const CagVec3 d[3], const double *semi, int ends, CagVec3 center,
                               double sense) {
   CagQuadric q = {{0}};
@@ -704,7 +707,7 @@ static CagQuadric form_within(const CagVec3 d[3], const double *semi, int ends, 
 
 static double part_of(CagVec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-// Ellipsoids, elliptic cylinders and slabs: in any direction, about an axis, and along the axes.
+// Ellipsoids, elliptic cylinders, and slabs, in any direction, about an axis, and along the axes.
 static void reach_of_turned_forms(void **state) {
   (void)state;
   seed = 21;
@@ -764,8 +767,8 @@ static void reach_of_turned_forms(void **state) {
   }
 }
 
-// The distance of a point from a form's surface is its value by its slope, which is taken by
-// differences here: less than the slack is on the surface.
+// The distance of a point from a quadric is its value divided by the gradient, here from
+// differences. Points within the slack are on the surface.
 static void sides_of_forms_have_a_slack_in_space(void **state) {
   (void)state;
   const double slack = 1e-4, h = 1e-3;
@@ -789,7 +792,7 @@ static void sides_of_forms_have_a_slack_in_space(void **state) {
       const CagVec3 step = {i == 0 ? h : 0, i == 1 ? h : 0, i == 2 ? h : 0};
       slope[i] =
           (cag_quadric_value(&q, cag_add(p, step)) - cag_quadric_value(&q, cag_sub(p, step))) /
-          (2 * h); // exact for a form of degree 2
+          (2 * h); // exact for a quadratic form
     }
     const CagVec3 n = cag_vec3(slope[0], slope[1], slope[2]);
     if (cag_norm(n) < 0.5) continue;
@@ -817,7 +820,7 @@ static uint32_t ten_times_more(void *context, uint32_t label) {
   return 10 * (label + 1);
 }
 
-// Copies with other labels have the same faces, edges and meshes.
+// Copies with other labels have the same faces, edges, and meshes.
 static void copies_with_other_labels_are_alike(void **state) {
   (void)state;
   for (int k = 0; k < 7; k++) {
@@ -829,7 +832,7 @@ static void copies_with_other_labels_are_alike(void **state) {
       cag_solid_release(s);
       s = rod;
     } else if (k < 4) {
-      s = combined(CAG_DIFFERENCE, s, rod); // labels of operands: none, or both
+      s = combined(CAG_DIFFERENCE, s, rod); // labels of operands: neither, or both
       if (k == 3) {
         labeled(s->core->operands[0], 4);
         labeled(s->core->operands[1], 6);

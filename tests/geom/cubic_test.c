@@ -1,5 +1,5 @@
-// Cubic splines, Hermite segments, blends, joints, hulls: numbers of the reference (05a) and
-// identities.
+// Cubic splines, Hermite segments, blends, joints, and hulls, compared with numbers of the
+// reference (05a) and identities.
 
 #include "geom/curve/cubic.h"
 #include "geom/curve/hulls.h"
@@ -33,7 +33,7 @@ static void clamped_splines_have_the_tangents_of_the_reference(void **state) {
   CagVec3 d[4];
   OK(cag_spacing_parameters(zigzag, 4, CAG_SPACING_CHORD, u, &err));
   OK(cag_cubic_tangents(zigzag, 4, u, &diagonal, NULL, d, &err));
-  // Five printed places.
+  // The reference prints five decimals.
   near_vec(d[1], cag_vec3(0.50543, -0.14772, 0), 1e-5);
   near_vec(d[2], cag_vec3(0.50543, -0.14772, 0), 1e-5);
   OK(cag_spacing_parameters(zigzag, 4, CAG_SPACING_UNIFORM, u, &err));
@@ -68,7 +68,7 @@ static void splines_pass_their_points_and_are_smooth(void **state) {
     }
 }
 
-// n = 2 and n = 3 leave no room for the general rows (reference 05a, 4).
+// For n = 2 and n = 3, there are no inner rows of the general system (reference 05a, 4).
 static void the_shortest_splines_are_the_reference_s(void **state) {
   (void)state;
   const CagVec3 two[2] = {{0, 0, 0}, {3, 4, 0}};
@@ -85,7 +85,7 @@ static void the_shortest_splines_are_the_reference_s(void **state) {
   ends = (CagCubicEnds){.closing = CAG_CUBIC_ENDS, .clamped = {true}, .tangent = {{1, 0, 0}}};
   OK(cag_cubic_tangents(two, 2, u, &ends, NULL, d, &err));
   near_vec(d[1], cag_vec3(1.5 * 0.6 - 0.5, 1.5 * 0.8, 0), 1e-15);
-  // Three points: P'_2 by hand from the two rows of the cyclic system, lengths 1 and 2.
+  // Three points: P'_2 by hand from the two rows of the cyclic system, with lengths 1 and 2.
   const double v[3] = {0, 1, 3};
   const CagVec3 three[3] = {{0, 0, 0}, {1, 3, 0}, {0, 0, 0}};
   ends = (CagCubicEnds){.closing = CAG_CUBIC_CYCLIC};
@@ -178,7 +178,7 @@ static void blends_have_the_points_of_the_reference(void **state) {
   cag_curve_release(c);
 }
 
-// Three points on a parabola: both arcs are that parabola, whatever the blend.
+// Three points on a parabola: both arcs are on that parabola, regardless of the blend.
 static void arcs_at_the_ends_are_parabolas(void **state) {
   (void)state;
   const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 4, 0}};
@@ -232,7 +232,8 @@ static double signed_curvature(const CagCurve *c, double t) {
   return (v.x * a.y - v.y * a.x) / pow(cag_norm(v), 3);
 }
 
-// The curvatures of a known segment lead back to it; every other answer has them too.
+// The curvatures of a known segment are among those that lead back to it, and all other solutions
+// have the same curvatures.
 static void end_curvatures_are_those_asked_for(void **state) {
   (void)state;
   const CagVec3 points[2] = {{0, 0, 0}, {2, 1, 0}}, dp = {1, 0, 0}, dq = {0.6, 0.8, 0};
@@ -282,7 +283,7 @@ static void joined_beziers_go_on_as_asked(void **state) {
   CagVec3 q[4];
   CagJoint j;
   OK(cag_curve_bezier(b, NULL, 4, 2, &c, &err));
-  // Reference 05a, 6, worked: the C2 continuation by a cubic.
+  // The worked example of reference 05a, 6: the C2 continuation by a cubic.
   OK(cag_bezier_join(c, 3, 2, 1, q, &err));
   near_vec(q[0], cag_vec3(3, 1, 0), 1e-14);
   near_vec(q[1], cag_vec3(2, -1, 0), 1e-14);
@@ -292,7 +293,7 @@ static void joined_beziers_go_on_as_asked(void **state) {
   OK(cag_curve_joint(c, next, 1e-9, &j, &err));
   assert_string_equal(cag_joint_class(&j), "C2");
   cag_curve_release(next);
-  // Twice the speed on the first side: G2, but not C1.
+  // The first side has twice the speed: G2, but not C1.
   OK(cag_bezier_join(c, 3, 2, 2, q, &err));
   OK(cag_curve_bezier(q, NULL, 4, 2, &next, &err));
   OK(cag_curve_joint(c, next, 1e-9, &j, &err));
@@ -300,7 +301,7 @@ static void joined_beziers_go_on_as_asked(void **state) {
   assert_false(j.c1);
   NEAR(j.ratio, 0.5, 1e-13);
   cag_curve_release(next);
-  // Back to where it came from: opposite tangents are not G1.
+  // A reversed continuation: opposite tangents are not G1.
   OK(cag_curve_reverse(c, &next, &err));
   OK(cag_curve_joint(c, next, 1e-9, &j, &err));
   assert_string_equal(cag_joint_class(&j), "C0");
@@ -333,7 +334,7 @@ static CagVec3 random_space(double size) {
   return cag_vec3(x, y, z);
 }
 
-// The gap is a difference of points of both hulls, and no difference is less far along it.
+// The gap is the difference of points of both hulls, and no difference is shorter along it.
 static void gaps_of_random_hulls_are_the_nearest_differences(void **state) {
   (void)state;
   seed = 403;
@@ -349,7 +350,7 @@ static void gaps_of_random_hulls_are_the_nearest_differences(void **state) {
       if (i < n) a[i].z = 0.5;
       if (i < m) b[i].z = 0.5;
     }
-    // Every fourth pair has a point in common: means of the corners.
+    // Every fourth pair has a common point: the means of the corners.
     CagVec3 mean = {0, 0, 0};
     for (size_t i = 0; i < n; i++) mean = cag_madd(mean, 1.0 / (double)n, a[i]);
     for (size_t i = 0; i < m; i++) mean = cag_madd(mean, -1.0 / (double)m, b[i]);
@@ -420,16 +421,16 @@ static void joints_are_told_by_the_derivatives_of_both_sides(void **state) {
   }
 }
 
-// Each kind of continuity holds to the tolerance, and not beyond.
+// Each kind of continuity is accepted up to the tolerance, but not beyond.
 static void joints_are_judged_to_the_tolerance(void **state) {
   (void)state;
   const double tolerance = 1e-3;
   for (int i = 0; i < 2; i++) {
     const double off = (i ? 1.05 : 0.95) * tolerance;
     const CagVec3 o = {0, 0, 0}, m = {-1, 0, 0}, l = {-2, 1, 0};
-    CagCurve *a = quadratic(l, m, o), *b; // derivatives in o: [2, 0], [0, 2]
+    CagCurve *a = quadratic(l, m, o), *b; // derivatives at o: [2, 0], [0, 2]
     CagJoint j;
-    // Straight on by the same derivatives, moved: the box is 4 + off wide and 1 high.
+    // A continuation with the same derivatives, but shifted. The box is 4 + off wide and 1 high.
     b = quadratic(cag_vec3(off * hypot(4, 1), 0, 0), cag_vec3(1 + off * hypot(4, 1), 0, 0),
                   cag_vec3(2, 1, 0));
     OK(cag_curve_joint(a, b, tolerance, &j, &err));
@@ -437,20 +438,20 @@ static void joints_are_judged_to_the_tolerance(void **state) {
     assert_int_equal(j.c1, i == 0);
     assert_int_equal(j.g1, i == 0);
     cag_curve_release(b);
-    // A first derivative longer by a part.
+    // The first derivative is longer by a fraction.
     b = quadratic(o, cag_vec3(1 + off, 0, 0), cag_vec3(2 + 2 * off, 1, 0));
     OK(cag_curve_joint(a, b, tolerance, &j, &err));
     assert_true(j.c0 && j.g1);
     assert_int_equal(j.c1, i == 0);
     cag_curve_release(b);
-    // A tangent turned.
+    // The tangent is rotated.
     b = quadratic(o, cag_vec3(cos(off), sin(off), 0), cag_vec3(2 * cos(off), 1 + 2 * sin(off), 0));
     OK(cag_curve_joint(a, b, tolerance, &j, &err));
     assert_true(j.c0);
     NEAR(j.angle, off, 1e-12);
     assert_int_equal(j.g1, i == 0);
     cag_curve_release(b);
-    // A second derivative longer by a part.
+    // The second derivative is longer by a fraction.
     b = quadratic(o, cag_vec3(1, 0, 0), cag_vec3(2, 1 + off, 0));
     OK(cag_curve_joint(a, b, tolerance, &j, &err));
     assert_true(j.c1 && j.g1);
@@ -460,7 +461,7 @@ static void joints_are_judged_to_the_tolerance(void **state) {
     cag_curve_release(b);
     cag_curve_release(a);
   }
-  // A segment that stands still at the joint has no ratio and no curvature there.
+  // A segment whose derivative at the joint is 0 has no ratio or curvature there.
   const CagVec3 o = {0, 0, 0}, p = {-1, 0, 0}, q = {1, 1, 0};
   CagCurve *a = quadratic(p, o, o), *b = quadratic(o, cag_vec3(1, 0, 0), q);
   CagJoint j;
@@ -485,7 +486,7 @@ static CagVec3 parabola_at(CagVec3 p, CagVec3 q, CagVec3 r, double a, double x) 
   return cag_madd(cag_madd(cag_scaled(p, f), g, q), h, r);
 }
 
-// Between two points the curve goes over linearly from one parabola to the next.
+// Between two points, the curve is a linear blend of two parabolas.
 static void random_blends_mix_two_parabolas(void **state) {
   (void)state;
   enum { MOST = 8 };
@@ -506,7 +507,7 @@ static void random_blends_mix_two_parabolas(void **state) {
     }
     for (size_t i = 0; i < n; i++)
       length[i] = given ? 1 : pow(cag_norm(cag_sub(p[(i + 1) % n], p[i])), power);
-    // Where the parabola about point i passes it.
+    // The parameter at which the parabola about point i passes it.
     for (size_t i = 0; i < n; i++)
       a[i] = !given   ? length[(i + n - 1) % n] / (length[(i + n - 1) % n] + length[i])
              : closed ? ratios[i]
@@ -560,7 +561,7 @@ static CagVec3 random_flat(double size) {
 
 static double across(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
-// Inflections are changes of sign of C' x C'', loops are points that the segment passes twice.
+// Inflections are sign changes of C' x C'', and loops are points that the segment passes twice.
 static void random_segments_have_their_shape(void **state) {
   (void)state;
   seed = 401;
@@ -600,7 +601,7 @@ static void random_segments_have_their_shape(void **state) {
       const CagVec3 v = derived(c, t, 1, CAG_SIDE_LEFT), a = derived(c, t, 2, CAG_SIDE_LEFT);
       NEAR(across(v, a), 0, 1e-8 * cag_norm(v) * cag_norm(a));
     }
-    // Two chords of a dense polyline cross where the segment meets itself.
+    // If the segment intersects itself, so do two chords of a dense polyline.
     enum { STEPS = 120 };
     CagVec3 p[STEPS + 1];
     bool crosses = false;
@@ -617,7 +618,7 @@ static void random_segments_have_their_shape(void **state) {
       assert_true(0 <= s.loop[0] && s.loop[0] < s.loop[1] && s.loop[1] <= 1);
       near_vec(at(c, s.loop[0]), at(c, s.loop[1]), 1e-9 * (1 + 10 * chord));
     }
-    // The same at any size.
+    // The result does not depend on the size.
     const double scale = round % 2 ? 1e-4 : 1e4;
     CagHermiteShape large;
     OK(cag_hermite_shape(cag_scaled(ends[0], scale), cag_scaled(ends[1], scale),
@@ -630,7 +631,7 @@ static void random_segments_have_their_shape(void **state) {
     cag_curve_release(c);
   }
   for (int i = 0; i < 4; i++) assert_true(seen[i] > 10);
-  // Tangents of 3 chords are within the limit.
+  // Tangents of 3 chords are below the limit.
   CagHermiteShape s;
   OK(cag_hermite_shape(cag_vec3(0, 0, 0), cag_vec3(2, 0, 0), cag_vec3(6, 0, 0), cag_vec3(0, 6, 0),
                        &s, &err));
@@ -641,7 +642,8 @@ static void random_segments_have_their_shape(void **state) {
   OK(cag_hermite_shape(cag_vec3(0, 0, 0), cag_vec3(2, 0, 0), cag_vec3(6.1, 0, 0), cag_vec3(0, 6, 0),
                        &s, &err));
   assert_false(s.within_limit);
-  // Cusps before the start and after the end are none: C' = (t - m)^2-like parabola's, moved.
+  // Cusps before the start and after the end do not count. The curve is [(t - m)^2, (t - m)^3],
+  // moved.
   for (int k = -1; k <= 3; k++) {
     const double m = 0.5 * k; // C = [(t - m)^2, (t - m)^3]
     const CagVec3 p = {m * m, -m * m * m, 0}, q = {(1 - m) * (1 - m), pow(1 - m, 3), 0};
@@ -652,7 +654,7 @@ static void random_segments_have_their_shape(void **state) {
   }
 }
 
-// All pairs of lengths that a search over one of them finds.
+// Finds all pairs of lengths that a search over one of the lengths finds.
 static void random_end_curvatures_have_all_their_lengths(void **state) {
   (void)state;
   seed = 402;
@@ -666,12 +668,12 @@ static void random_end_curvatures_have_all_their_lengths(void **state) {
     const double a = 6 * across(dp, d), b = 6 * across(d, dq), c = across(dp, dq);
     k[0] = uniform(-2, 2);
     k[1] = uniform(-2, 2);
-    if (round % 3) { // those of a segment
+    if (round % 3) { // the curvatures of a segment
       const double x = uniform(0.5, 9), y = uniform(0.5, 9);
       k[0] = (a - 2 * c * y) / (x * x);
       k[1] = (b - 2 * c * x) / (y * y);
     }
-    if (round % 7 < 2 && round % 10) k[round % 7] = 0; // an end that is straight
+    if (round % 7 < 2 && round % 10) k[round % 7] = 0; // a straight end
     const size_t n = cag_hermite_by_curvature(p, q, dp, dq, k, lengths);
     for (size_t i = 0; i < n; i++) {
       const double x = lengths[i][0], y = lengths[i][1];
@@ -745,7 +747,7 @@ static void random_polynomials_are_their_sums(void **state) {
       for (size_t i = n; i-- > 0;) sum = cag_madd(a[i], t, sum);
       near_vec(at(c, t), sum, 1e-10);
     }
-    // Cut in two, each piece has the coefficients of its own start.
+    // If a segment is split, each piece has the coefficients relative to its own start.
     const double cut = length * uniform(0.2, 0.8);
     OK(cag_curve_insert_knots(c, &cut, 1, &fine, &err));
     OK(cag_curve_coefficients(fine, &found, &pieces, &degree, &err));
@@ -777,7 +779,7 @@ static void random_polynomials_are_their_sums(void **state) {
   FAILS_AT(cag_curve_polynomial(broken, 2, 1, 2, &c, &err), "not-finite", 1);
 }
 
-// Each tangent becomes at most `limit` times the mean speed of the slower of its segments.
+// Each tangent is shortened to at most `limit` times the mean speed of the slower adjacent segment.
 static void long_tangents_are_shortened(void **state) {
   (void)state;
   seed = 404;
@@ -803,7 +805,7 @@ static void long_tangents_are_shortened(void **state) {
   }
 }
 
-// The derivatives at the joint are those asked for, for all orders and degrees.
+// The derivatives at the joint are the requested ones, for all orders and degrees.
 static void random_joints_go_on_as_asked(void **state) {
   (void)state;
   seed = 405;

@@ -1,4 +1,4 @@
-// Contour lines of curvature in the core: against closed forms, at jumps, poles and nowhere.
+// Contour lines of curvature in the core: closed forms, jumps, poles, and empty results.
 
 #include "geom/meet/curvature_contour.h"
 #include "geom/surface/reshape.h"
@@ -42,7 +42,8 @@ static void contours_of_a_torus_are_its_parallels(void **state) {
   cag_surface_release(torus);
 }
 
-// What has one curvature has it everywhere, and no curves, by whatever parameters.
+// If the curvature is constant, the contour is everywhere, and there are no curves. This does not
+// depend on the parametrization.
 static void constant_curvature_is_told(void **state) {
   (void)state;
   static const double level[] = {0.25, -0.5, -0.5, -0.5};
@@ -65,8 +66,8 @@ static void constant_curvature_is_told(void **state) {
   cag_solid_release(ball);
 }
 
-// A cone's larger curvature is cot w / s at s along its side, w its half angle: at the tip it has
-// none.
+// The larger curvature of a cone is cot w / s at the distance s along its side, where w is its half
+// angle. It is undefined at the tip.
 static void contours_come_up_to_the_tip_of_a_cone(void **state) {
   (void)state;
   CagCurve *side;
@@ -108,8 +109,8 @@ static void contours_do_not_depend_on_size_or_place(void **state) {
   cag_surface_release(torus);
 }
 
-// z = x^2 for x < 0 and 2 x^2 beyond, of order 3 over two knot intervals: the larger curvature
-// jumps from 2 to 4 at x = 0. By x it is 2 a / (1 + 4 a^2 x^2)^(3/2) on each side.
+// z = x^2 for x < 0 and 2 x^2 otherwise, of order 3 over two knot intervals. The larger curvature
+// jumps from 2 to 4 at x = 0. As a function of x, it is 2 a / (1 + 4 a^2 x^2)^(3/2) on each side.
 static void a_jump_over_the_level_has_no_curve(void **state) {
   (void)state;
   const double knots_u[] = {-1, -1, -1, 0, 1, 1, 1}, knots_v[] = {0, 0, 1, 1};
@@ -121,7 +122,7 @@ static void a_jump_over_the_level_has_no_curve(void **state) {
   OK(cag_surface_nurbs(net, NULL, 4, 2, 2, 1, knots_u, knots_v, &s, &err));
   bool everywhere;
   CagCurveList list = contours(s, CAG_CURVATURE_MAX, 3, &everywhere);
-  assert_int_equal(list.count, 1); // at one side only
+  assert_int_equal(list.count, 1); // on one side only
   double at = sqrt((pow(4.0 / 3, 2.0 / 3) - 1) / 16);
   CagVec3 p;
   OK(cag_curve_point(list.items[0], list.items[0]->start, &p, &err));
@@ -150,7 +151,8 @@ static double curvature_of_graph(const CagSurface *s, CagCurvature of, double u,
                                       : mean - half;
 }
 
-// Of graphs over the unit square by random heights, in few pieces: as many as the tolerance needs.
+// Random graphs over the unit square with few pieces: the contours have as many points as the
+// tolerance needs.
 static void contours_of_graphs_keep_the_tolerance(void **state) {
   (void)state;
   enum { N = 5 };
@@ -180,7 +182,8 @@ static void contours_of_graphs_keep_the_tolerance(void **state) {
         const double gx = curvature_of_graph(s, of, x + h, y) - curvature_of_graph(s, of, x - h, y);
         const double gy = curvature_of_graph(s, of, x, y + h) - curvature_of_graph(s, of, x, y - h);
         const double off = curvature_of_graph(s, of, x, y) - level;
-        // By the steepest way; near where the curvature stands still, by its second derivatives.
+        // Along the steepest direction; near a stationary point of the curvature, from its second
+        // derivatives.
         if (hypot(gx, gy) > 2e-3)
           assert_true(fabs(off) <= 2 * tolerance * hypot(gx, gy) / (2 * h) + 1e-4);
       }

@@ -1,4 +1,4 @@
-// Lines of curvature of ellipsoids: one of both confocal coordinates stays as it is (Dupin).
+// Lines of curvature of ellipsoids: one of the two confocal coordinates is constant (Dupin).
 
 #include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
@@ -6,7 +6,7 @@
 #include "geom/meet/curvature_line.h"
 #include "geom/solid/solid.h"
 
-// Squares of the semi-axes, descending, and the moved ellipsoid.
+// The squares of the semi-axes in descending order, and the moved ellipsoid.
 typedef struct Ellipsoid {
   double a[3];
   CagTransform back;
@@ -17,7 +17,7 @@ static Ellipsoid ellipsoid(double a, double b, double c, int order) {
   Ellipsoid e = {.a = {a * a, b * b, c * c}};
   CagTransform size = cag_transform_identity(), turn, move;
   CagSolid *ball;
-  // The axis of the parameters is that of any of the three.
+  // The axis of the parametrization may be any of the three.
   memset(size.m, 0, sizeof size.m);
   size.planar = false;
   size.m[3][3] = 1;
@@ -34,8 +34,8 @@ static Ellipsoid ellipsoid(double a, double b, double c, int order) {
   return e;
 }
 
-// Both roots other than 0 of x^2 / (a - r) + y^2 / (b - r) + z^2 / (c - r) = 1, ascending; the
-// roots are those of a cubic without constant, once p is on the ellipsoid.
+// The two nonzero roots of x^2 / (a - r) + y^2 / (b - r) + z^2 / (c - r) = 1, ascending. If p is on
+// the ellipsoid, the constant term of the cubic vanishes.
 static void confocal(const Ellipsoid *e, CagVec3 p, double out[2]) {
   const double *a = e->a, on = p.x * p.x / a[0] + p.y * p.y / a[1] + p.z * p.z / a[2];
   const double x = p.x * p.x / on, y = p.y * p.y / on, z = p.z * p.z / on;
@@ -47,14 +47,14 @@ static void confocal(const Ellipsoid *e, CagVec3 p, double out[2]) {
   out[1] = sum / 2 + root;
 }
 
-// The whole line on which one coordinate is `fixed`: four times that on which the other goes from
-// one end to the other, as lo + (hi - lo) sin^2.
+// The length of the whole line on which one coordinate is `fixed`: four times that of the part on
+// which the other coordinate runs from one end to the other, as lo + (hi - lo) sin^2.
 static double line_length(const Ellipsoid *e, double fixed, double lo, double hi) {
   enum { STEPS = 2000 };
   double sum = 0;
   for (int i = 0; i < STEPS; i++) {
     const double t = (i + 0.5) / STEPS * M_PI / 2, m = lo + (hi - lo) * sin(t) * sin(t);
-    // Of the three factors two vanish at the ends; these are (hi - lo) sin^2 and (hi - lo) cos^2.
+    // Two of the three factors vanish at the ends; these are (hi - lo) sin^2 and (hi - lo) cos^2.
     double rest = 1;
     for (int k = 0; k < 3; k++)
       if (e->a[k] != lo && e->a[k] != hi) rest *= fabs(e->a[k] - m);
@@ -63,7 +63,7 @@ static double line_length(const Ellipsoid *e, double fixed, double lo, double hi
   return 4 * sum;
 }
 
-// Each semi-axis is `more` to twice as much longer than the one before.
+// Each semi-axis is longer than the previous one by a factor of 1 + more to 1 + 2 more.
 static void check_ellipsoids(int rounds, double more) {
   int told = 0;
   for (int round = 0; round < rounds; round++) {
@@ -81,13 +81,13 @@ static void check_ellipsoids(int rounds, double more) {
     OK(cag_surface_principal(s, u, v, &found, &at, &err));
     assert_true(found);
     confocal(&e, cag_transform_point(&e.back, at.point), first);
-    // Not near the umbilics, where both are the middle square.
+    // Avoids umbilics, where both coordinates are the middle square.
     if (first[1] - first[0] < 0.1 * spread) {
       cag_surface_release(e.s);
       continue;
     }
     told++;
-    // Along the direction of the line the other coordinate changes.
+    // Along the direction of the line, the other coordinate changes.
     double step[2];
     const CagVec3 beside = cag_madd(at.point, 1e-3, at.direction[larger]);
     confocal(&e, cag_transform_point(&e.back, beside), step);
@@ -123,15 +123,14 @@ static void lines_on_ellipsoids_are_confocal(void **state) {
   check_ellipsoids(18, 0.3);
 }
 
-// Where both curvatures are nearly the same, lines pass the poles of the parameters on the same
-// way.
+// If both curvatures are almost equal, lines pass the poles of the parametrization in the same way.
 static void lines_on_nearly_round_ellipsoids_are_confocal(void **state) {
   (void)state;
   seed = 101;
   check_ellipsoids(30, 2e-4);
 }
 
-// Of a spheroid they are circles and whole meridians, which pass its poles.
+// The lines of a spheroid are circles and whole meridians, which pass its poles.
 static void lines_on_spheroids_are_circles_and_meridians(void **state) {
   (void)state;
   seed = 99;
@@ -159,7 +158,8 @@ static void lines_on_spheroids_are_circles_and_meridians(void **state) {
     }
     const bool circle = level < 1e-5;
     assert_true(circle || upright < 1e-5);
-    // The length of the ellipse by the trapezoidal rule, which is exact for periods.
+    // The length of the ellipse from the trapezoidal rule, which converges fast for periodic
+    // functions.
     for (int i = 0; i < 400; i++) {
       const double t = 2 * M_PI * i / 400;
       wanted += hypot(wide * sin(t), high * cos(t)) * 2 * M_PI / 400;
@@ -168,7 +168,7 @@ static void lines_on_spheroids_are_circles_and_meridians(void **state) {
     else assert_true(most > 0.9 * high && least < -0.9 * high);
     OK(cag_curve_length(curve, curve->start, curve->end, &length, &err));
     NEAR(length, wanted, 1e-4 * wanted);
-    // The other kind is another line.
+    // The other family has another line.
     cag_curve_release(curve);
     OK(cag_surface_curvature_line(e.s, u, v, !larger, &curve, &err));
     double other;
@@ -179,15 +179,15 @@ static void lines_on_spheroids_are_circles_and_meridians(void **state) {
   }
 }
 
-// A bowl with the profile r = wide t, z = deep t^2 + flare t^4, t in 0..1, about a random axis: its
-// vertex is a pole of the parameters, at the start or the end of any of both.
+// A bowl with the profile r = wide t, z = deep t^2 + flare t^4, t in 0..1, about a random axis. Its
+// vertex is a pole of the parametrization, at the start or the end of u or v.
 typedef struct Bowl {
   double wide, deep, flare, turn;
   CagTransform map, back;
   CagSurface *s;
 } Bowl;
 
-// The same with u and v exchanged, as a NURBS surface.
+// The same surface with u and v exchanged, as a NURBS surface.
 static CagSurface *exchanged(const CagSurface *s) {
   enum { MOST = 200 };
   CagSurface *exact, *out;
@@ -254,8 +254,9 @@ static double profile_length(const Bowl *b) {
   return sum / (3 * STEPS);
 }
 
-// Through the vertex of a bowl they go on to the opposite rim. If the bowl is not turned so far,
-// they end at the vertex, or just before it, where the curvatures are the same but for rounding.
+// Meridians continue through the vertex of a bowl to the opposite rim. If the surface is not
+// revolved far enough, they end at or just before the vertex, where the curvatures are equal up to
+// rounding.
 static void meridians_go_on_through_the_vertex(void **state) {
   (void)state;
   seed = 100;
@@ -277,7 +278,7 @@ static void meridians_go_on_through_the_vertex(void **state) {
     CagCurve *c;
     OK(cag_surface_curvature_line(b.s, u, v, larger, &c, &err));
     assert_false(c->closed);
-    // It takes few steps, even where it ends at the vertex.
+    // Few steps suffice, even if the line ends at the vertex.
     CagNurbsView steps;
     assert_true(cag_curve_nurbs_view(c, &steps));
     assert_true(steps.count < 4000);

@@ -1,4 +1,4 @@
-// The part of a Bezier piece that may lie near another one.
+// Clipping of Bezier pieces to the part that may be close to another one.
 
 #include "geom/curve/intersect_clip.h"
 #include "geom/curve/nurbs.h"
@@ -35,7 +35,7 @@ static void smooth_part(const CagCurve *c, double *from, double *to) {
   free(cuts);
 }
 
-// Each parameter stays at which the curves are as near as the slack.
+// Parameters at which the curves are within the slack are kept.
 static void what_is_near_enough_stays(void **state) {
   (void)state;
   seed = 511;
@@ -90,8 +90,8 @@ static double lower_side(const double *e, int n, double x) {
   return least;
 }
 
-// What is left in the plane is where the hull of the distances from both sides of the strip along
-// the chord of a reaches 0.
+// In the plane, the remaining part is where the hull of the distances from both sides of the strip
+// along the chord of a includes 0.
 static void what_is_left_is_where_the_hull_reaches_the_strip(void **state) {
   (void)state;
   seed = 512;
@@ -119,7 +119,7 @@ static void what_is_left_is_where_the_hull_reaches_the_strip(void **state) {
         const double w = q[4 * i + 3], d = cag_cross(chord, cag_madd(h, -w, start)).z;
         e[i] = side ? least * w - d : d - most * w;
       }
-      // A convex function: from where it is least, to either end.
+      // A convex function: searches from its minimum to either end.
       double place = 0, ends[2] = {0, 1};
       for (int i = 1; i <= n; i++)
         if (e[i] < lower_side(e, n, place)) place = (double)i / n;
@@ -143,7 +143,7 @@ static void what_is_left_is_where_the_hull_reaches_the_strip(void **state) {
     if (left) {
       NEAR(from, b0 + (b1 - b0) * low, 1e-10);
       NEAR(to, b0 + (b1 - b0) * high, 1e-10);
-      // Ends that nothing cuts off stay bit for bit.
+      // Ends that are not clipped stay bit for bit.
       assert_true(low > 0 || from == b0);
       assert_true(high < 1 || to == b1);
       cut[(low > 0) + 2 * (high < 1)]++;
@@ -156,7 +156,8 @@ static void what_is_left_is_where_the_hull_reaches_the_strip(void **state) {
   assert_true(apart > 40);
 }
 
-// A line in space is cut to a square prism about another, and never less than where they meet.
+// A line in space is clipped to a square prism about another one, but the common point always
+// remains.
 static void lines_are_cut_to_a_prism(void **state) {
   (void)state;
   seed = 513;
@@ -183,8 +184,8 @@ static void lines_are_cut_to_a_prism(void **state) {
   }
 }
 
-// Circles have no control points, the strip along a chord of no length has no direction, and a
-// control point of weight 0 has no place.
+// Circles have no control points, the strip along a chord of length 0 has no direction, and a
+// control point of weight 0 has no location.
 static void what_cannot_be_clipped_stays(void **state) {
   (void)state;
   const CagTransform f = cag_transform_identity();
@@ -216,7 +217,7 @@ static void what_cannot_be_clipped_stays(void **state) {
   for (int i = 0; i < 3; i++) cag_curve_release(c[i]);
 }
 
-// The strip along a line is closed: where another line ends on it, its end is left.
+// The strip along a line is closed: if another line ends on it, its end is kept.
 static void ends_on_the_strip_stay(void **state) {
   (void)state;
   CagCurve *a, *b;

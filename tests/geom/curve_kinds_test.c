@@ -1,5 +1,5 @@
-// The questions that every kind of curve answers, on random curves of all kinds against dense
-// samples.
+// The functions that every kind of curve provides, for random curves of all kinds, compared with
+// dense samples.
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -29,13 +29,13 @@ static void random_part(const CagCurve *c, double *a, double *b) {
 
 // --- Bounds of parts ---
 
-// By how much the point is outside of the box, in the coordinate where that is most.
+// How far the point is outside the box, in the coordinate with the largest excess.
 static double excess(const CagBounds *b, CagVec3 p) {
   const double x = fmax(b->min.x - p.x, p.x - b->max.x), y = fmax(b->min.y - p.y, p.y - b->max.y);
   return fmax(fmax(x, y), fmax(b->min.z - p.z, p.z - b->max.z));
 }
 
-// Of parts that bend little: how many, and the sum of the bounds as multiples of the truth.
+// For slightly curved parts: their number, and the sum of the ratios between bound and true value.
 static double looseness;
 static int bent_little;
 
@@ -72,7 +72,7 @@ static void parts_stay_within_their_bounds(void **state) {
       check_sag(c);
       cag_curve_release(c);
     }
-    // Straight kinds have none; the bound of an ellipse is that of its larger axis.
+    // Straight kinds have none. The bound of an ellipse is that of its larger axis.
     if (kind <= RING) assert_int_equal(bent_little, 0);
     else assert_true(bent_little > 100);
     assert_true(looseness <= (kind == ELLIPSE ? 2 : 1.45) * bent_little);
@@ -105,7 +105,7 @@ static void check_ranges(const CagCurve *c) {
         check_interval(r[k].y, v.y, size);
         check_interval(r[k].z, v.z, size);
         if (!narrow) continue;
-        // Nothing but rounding is left of the width.
+        // Only rounding contributes to the width.
         assert_true(r[k].x.hi - r[k].x.lo <= 1e-4 * size);
         assert_true(r[k].y.hi - r[k].y.lo <= 1e-4 * size);
         assert_true(r[k].z.hi - r[k].z.lo <= 1e-4 * size);
@@ -118,7 +118,7 @@ static void ranges_hold_the_derivatives_and_are_narrow(void **state) {
   (void)state;
   seed = 202;
   each_kind(40, check_ranges);
-  // Functions have none.
+  // Functions have no bounds.
   CagInterval3 r[2];
   CagCurve *c = random_curve(FUNCTION);
   assert_false(cag_curve_ranges(c, c->start, c->end, 1, r));
@@ -147,7 +147,7 @@ static void check_box(const CagCurve *c) {
   const double size = cag_norm(cag_sub(box.max, box.min));
   assert_true(excess(&box, found.min) <= 1e-10 * size);
   assert_true(excess(&box, found.max) <= 1e-10 * size);
-  // A summit between samples is above them by the square of their step, over the radius.
+  // A peak between samples exceeds them by the square of their step divided by the radius.
   const double most = 8 * step * step / fmin(size, 1) + 1e-10 * size;
   NEAR(box.min.x, found.min.x, most);
   NEAR(box.min.y, found.min.y, most);
@@ -180,7 +180,7 @@ static void check_closest(const CagCurve *c) {
       least = distance_at(c, p, c->start + step * i);
       best = c->start + step * i;
     }
-  // The golden section between the neighbors.
+  // Golden-section search between the neighbors.
   double low = best - step, high = best + step;
   for (int i = 0; i < 60; i++) {
     const double x = low + 0.382 * (high - low), y = low + 0.618 * (high - low);
@@ -190,7 +190,7 @@ static void check_closest(const CagCurve *c) {
   least = fmin(least, distance_at(c, p, low));
   assert_true(distance <= least + 1e-12);
   assert_true(distance >= least - 1e-6);
-  // Perpendicular, where neither an end nor a corner is nearest.
+  // Perpendicular, unless the closest point is an end or a corner.
   CagVec3 right[2], left[2];
   if (t <= c->start || t >= c->end) return;
   OK(cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, right, &err));
@@ -273,7 +273,7 @@ static void check_steps(const CagCurve *c) {
     CagVec3 right[2], left[2];
     assert_true(t[i] < t[i + 1]);
     while (cut + 1 < cut_count && cuts[cut + 1] <= t[i]) cut++;
-    assert_true(t[i + 1] <= cuts[cut + 1]); // breaks are in
+    assert_true(t[i + 1] <= cuts[cut + 1]); // breaks are included
     const CagVec3 p = at(c, t[i]), q = at(c, t[i + 1]);
     double most = 0;
     for (int k = 1; k < 8; k++)
@@ -287,7 +287,7 @@ static void check_steps(const CagCurve *c) {
     needed +=
         most > tolerance / 16 || turn > angle / 5 || t[i + 1] == cuts[cut + 1] || t[i] == cuts[cut];
   }
-  // Halving leaves steps that are half as long as they might be, and few shorter ones.
+  // Bisection produces steps that are up to twice too short, and few shorter ones.
   assert_true(needed * 4 >= n);
   free(t);
   free(cuts);
@@ -306,7 +306,7 @@ static void check_parts(const CagCurve *c) {
   const double middle = c->start + (c->end - c->start) / 2;
   const double a = uniform(c->start, middle), b = uniform(middle, c->end);
   if (b - a < 0.1 * (c->end - c->start)) return;
-  // A part has the same parameters, or its own at the same rate.
+  // A part has the same parameters, or new ones at the same rate.
   OK(cag_curve_trim(c, a, b, &made, &err));
   assert_int_equal(made->angular, c->angular);
   for (int i = 0; i <= 12; i++) {
@@ -318,7 +318,7 @@ static void check_parts(const CagCurve *c) {
     for (int k = 0; k < 4; k++) near_vec(q[k], p[k], 1e-8 * (1 + cag_norm(p[k])));
   }
   cag_curve_release(made);
-  // Backwards.
+  // The reversed curve.
   OK(cag_curve_reverse(c, &made, &err));
   assert_true(made->start == c->start && made->end == c->end);
   assert_int_equal(made->angular, c->angular);
@@ -334,7 +334,7 @@ static void check_parts(const CagCurve *c) {
       near_vec(cag_scaled(q[k], k % 2 ? -1 : 1), p[k], 1e-9 * (1 + cag_norm(p[k])));
   }
   cag_curve_release(made);
-  // Over another range: derivatives scale.
+  // Over another domain, the derivatives are scaled.
   const double from = uniform(-3, 3), rate = uniform(0.3, 3);
   OK(cag_curve_reparametrize(c, from, from + (c->end - c->start) / rate, &made, &err));
   assert_int_equal(made->closed, c->closed);
@@ -367,7 +367,8 @@ static void check_image(const CagCurve *c) {
     CagVec3 p[4], q[4];
     const double s = (i + (i < 20 ? 0.019 : 0)) / 20;
     derivatives(c, c->start + (c->end - c->start) * s, 3, p);
-    if (made->start != c->start || made->end != c->end) break; // a NURBS of its own
+    if (made->start != c->start || made->end != c->end)
+      break; // a NURBS curve with a parametrization of its own
     derivatives(made, c->start + (c->end - c->start) * s, 3, q);
     near_vec(q[0], cag_transform_point(&t, p[0]), 1e-12);
     for (int k = 1; k < 4; k++)
@@ -395,7 +396,8 @@ static void check_derivatives(const CagCurve *c) {
     derivatives(c, t + h, ORDER, right);
     for (int k = 0; k <= ORDER; k++) {
       const CagVec3 slope = cag_scaled(cag_sub(right[k], left[k]), 1 / (2 * h));
-      // The difference is off by h^2 / 6 times the third derivative, and by rounding over h.
+      // The error of the difference is h^2 / 6 times the third derivative, plus rounding divided by
+      // h.
       near_vec(slope, d[k + 1],
                h * h * (cag_norm(d[k + 3]) + cag_norm(d[k + 1])) +
                    1e-12 * (1 + cag_norm(d[k])) / h);
@@ -422,7 +424,7 @@ static CagCurve *random_loop(int kind) {
   if (kind == 0) return random_curve(RING);
   if (kind == 1) return random_curve(PERIODIC);
   if (kind == 2) return random_curve(ELLIPSE);
-  if (kind == 3) { // half a circle and its chord
+  if (kind == 3) { // a half circle and its chord
     CagTransform frame = random_frame();
     CagVec3 p, q;
     OK(cag_curve_arc(2, 2, 0, M_PI, &frame, &parts[0], &err));
@@ -481,8 +483,8 @@ static void closed_curves_of_all_kinds_go_on_over_the_seam(void **state) {
 
 // --- Many parameters at once ---
 
-// What is said of many parameters is said of each, and where it fails is that of the first that
-// does.
+// The results for many parameters are those for each one, and a failure is that of the first that
+// fails.
 static void many_parameters_are_like_one(void **state) {
   (void)state;
   enum { MANY = 6, ORDER = 2, EACH = ORDER + 1 };
@@ -494,7 +496,7 @@ static void many_parameters_are_like_one(void **state) {
       double t[MANY];
       CagVec3 many[MANY * EACH], one[EACH];
       for (int i = 0; i < MANY; i++) t[i] = c->start + uniform(0, 1) * (c->end - c->start);
-      // In most rounds one is before the start or behind the end.
+      // In most rounds, one parameter is outside the domain.
       const int at = (int)uniform(0, MANY - 1e-9);
       if (round % 3 == 1) t[at] = c->start - uniform(0.1, 2) * (c->end - c->start);
       if (round % 3 == 2) t[at] = c->end + uniform(0.1, 2) * (c->end - c->start);
@@ -514,7 +516,7 @@ static void many_parameters_are_like_one(void **state) {
   assert_true(refused > 60);
 }
 
-// --- Stops ---
+// --- Stationary points ---
 
 static void stops_are_taken_in_by_what_moves_after_them(void **state) {
   (void)state;
@@ -544,7 +546,8 @@ static void stops_are_taken_in_by_what_moves_after_them(void **state) {
     } else {
       assert_true(out->start == t[0]);
       NEAR(out->end, t[n - 1], 1e-14);
-      // Runs of moving parts, stretched over the stops before them; the last also over those after.
+      // Runs of moving parts are stretched over the stops before them; the last one also covers
+      // those after it.
       double from = t[0];
       for (size_t i = 0; i + 1 < n;) {
         if (stop[i]) {

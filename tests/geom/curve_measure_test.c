@@ -1,4 +1,4 @@
-// Lengths, bounds, areas, discretization and closest points against closed forms.
+// Lengths, bounds, areas, discretization, and closest points, compared with closed forms.
 
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
@@ -67,11 +67,11 @@ static void parabola_and_cusp_have_their_lengths(void **state) {
   exact = 2 * (13 * sqrt(13) - 8) / 27;
   NEAR(length_of(c), exact, 1e-10 * exact);
   OK(cag_curve_parameter_at_length(c, exact / 2, &t, &err));
-  NEAR(t, 0.5, 1e-5); // the speed is 0 there: s grows with (t - 1/2)^2
+  NEAR(t, 0.5, 1e-5); // the speed is 0 there, so s grows with (t - 1/2)^2
   cag_curve_release(c);
 }
 
-// Semicircle of the rational quadratic with weights 1, cos 60, 1 twice, radius 2.
+// A semicircle of radius 2 from two rational quadratics with the weights 1, cos 60deg, 1.
 static void a_rational_circle_has_length_and_area_of_the_circle(void **state) {
   (void)state;
   CagCurve *c = ellipse(2, 2, 0, 2 * M_PI), *exact;
@@ -130,7 +130,7 @@ static void bounds_are_tight(void **state) {
   near_vec(b.min, cag_vec3(0, 0, 0), 1e-9);
   near_vec(b.max, cag_vec3(1, 0.75, 0), 1e-9);
   cag_curve_release(c);
-  // An ellipse turned by 30 degrees: half width sqrt(a^2 cos^2 + b^2 sin^2).
+  // For an ellipse rotated by 30 degrees, half the width is sqrt(a^2 cos^2 + b^2 sin^2).
   CagCurve *turned;
   CagTransform turn;
   c = ellipse(3, 1, 0, 2 * M_PI);
@@ -183,7 +183,7 @@ static void planes_and_lines_are_recognized(void **state) {
   cag_curve_release(c);
 }
 
-// Every point of the curve, sampled densely, against the chord over it.
+// Compares dense samples of the curve with the chord over each part.
 static void check_polyline(const CagCurve *c, double tolerance, double angle) {
   double *t;
   size_t n;
@@ -235,7 +235,7 @@ static void polylines_keep_the_tolerance(void **state) {
   }
 }
 
-// A chord over the angle s stays within r (1 - cos(s / 2)).
+// A chord over the angle s deviates by r (1 - cos(s / 2)).
 static void a_circle_takes_the_fewest_points(void **state) {
   (void)state;
   CagCurve *c = ellipse(100, 100, 0, 2 * M_PI);
@@ -281,7 +281,7 @@ static void the_closest_point_is_the_global_one(void **state) {
     }
     cag_curve_release(c[i]);
   }
-  // The center of a circle is equally far from all of it.
+  // All points of a circle are equally far from its center.
   CagCurve *round = ellipse(2, 2, 0, 2 * M_PI), *exact;
   double distance;
   OK(cag_curve_closest(round, cag_vec3(0, 0, 0), NULL, NULL, &distance, &err));
@@ -296,7 +296,7 @@ static void the_closest_point_is_the_global_one(void **state) {
 }
 
 // Curves with peaks of speed and near cusps, compared with mpmath results of at least 40 digits:
-// ellipses 4 E(1 - b^2), the parabola with the middle weight w, and the cubic [0, 0], [1, 1], [k,
+// ellipses, 4 E(1 - b^2); the parabola with the middle weight w; and the cubic [0, 0], [1, 1], [k,
 // 1], [1, 0], which has a cusp at k = 0.
 static void lengths_of_uneven_speed_are_right(void **state) {
   (void)state;
@@ -320,7 +320,7 @@ static void lengths_of_uneven_speed_are_right(void **state) {
   cag_curve_release(c);
   OK(cag_curve_bezier(wave, (const double[]){1, 1e6, 1e12, 1e3}, 4, 2, &c, &err));
   NEAR(length_of(c), 4.0968825395385815, 1e-13);
-  // The lengths of its parts add up, wherever it is cut.
+  // The lengths of the parts add up, wherever the curve is cut.
   for (int k = 1; k < 20; k++) {
     const double t = k % 2 ? pow(10, -k) : 1 - pow(10, -k);
     double before, after;
@@ -340,7 +340,8 @@ static void lengths_of_uneven_speed_are_right(void **state) {
   }
 }
 
-// Weights times powers of a number give the same points at another speed, and so the same length.
+// Multiplying the weights by powers of a number changes the speed, but not the points or the
+// length.
 static void lengths_do_not_depend_on_the_speed(void **state) {
   (void)state;
   uint64_t random = 31;
@@ -367,7 +368,7 @@ static void lengths_do_not_depend_on_the_speed(void **state) {
   }
 }
 
-// As its middle weight grows, a conic approaches two sides of its triangle, so the area and second
+// As the middle weight grows, a conic approaches two sides of its triangle. The area and second
 // moments of the region between curve and chord approach those of the triangle.
 static void areas_of_uneven_speed_are_right(void **state) {
   (void)state;
@@ -392,8 +393,8 @@ static void areas_of_uneven_speed_are_right(void **state) {
   cag_curve_release(parts[1]);
 }
 
-// All of the curve but its end lies between the last two numbers of its domain: no parameter is
-// nearer to the middle than the ends are, and the search comes to an end.
+// The curve except for its end is between the last two numbers of its domain. No parameter is
+// closer to the middle than the ends, and the search must terminate.
 static void curves_within_the_last_digit_have_a_closest_point(void **state) {
   (void)state;
   const CagVec3 p[4] = {{0, 0, 0}, {1, 2, 0}, {3, 3, 0}, {4, 0, 0}};

@@ -1,4 +1,5 @@
-// Knot removal, degree reduction, bases as data, approximation, offsets, curves against surfaces.
+// Knot removal, degree reduction, bases as data, approximation, offsets, and curves against
+// surfaces.
 
 #include "geom/basis/basis_table.h"
 #include "geom/curve/approximate.h"
@@ -41,7 +42,7 @@ static void removing_an_inserted_knot_gives_the_curve_back(void **state) {
   }
 }
 
-// What a removal moves is bounded by the deviation it reports, and by the tolerance.
+// The deviation of a removal is bounded by the reported one, and by the tolerance.
 static void removing_a_knot_tells_what_it_moves(void **state) {
   (void)state;
   for (int rational = 0; rational < 2; rational++) {
@@ -79,8 +80,8 @@ static void reducing_an_elevated_curve_gives_it_back(void **state) {
   }
 }
 
-// The best chord of a parabola with control point height 2 in place of it leaves its largest
-// height, 1; the control points differ by 2.
+// A parabola with a control point of height 2 has height 1, which is its largest distance from the
+// chord. The control points differ by 2.
 static void reducing_tells_what_it_moves(void **state) {
   (void)state;
   static const CagVec3 v[3] = {{0, 0, 0}, {1, 2, 0}, {2, 0, 0}};
@@ -184,7 +185,7 @@ static void an_approximated_helix_is_within_the_tolerance(void **state) {
   cag_curve_release(h);
 }
 
-// The largest difference of the distance to c from |d|, over samples of the offset.
+// The largest deviation of the distance to c from |d|, over samples of the offset.
 static double offset_error(const CagCurve *c, const CagCurve *o, double d) {
   double most = 0;
   for (int i = 0; i <= 400; i++) {
@@ -223,7 +224,7 @@ static void offsets_of_circles_are_circles(void **state) {
   frame.planar = true;
   double length;
   OK(cag_curve_arc(5, 5, 0, 2 * M_PI, &frame, &c, &err));
-  OK(cag_curve_offset(c, 2, 1e-6, &o, &err)); // to the left is to the inside
+  OK(cag_curve_offset(c, 2, 1e-6, &o, &err)); // to the left is inward
   OK(cag_curve_length(o, o->start, o->end, &length, &err));
   NEAR(length, 6 * M_PI, 1e-12);
   assert_string_equal(o->kind->name, c->kind->name);
@@ -238,8 +239,8 @@ static void offsets_of_circles_are_circles(void **state) {
   cag_curve_release(c);
 }
 
-// Half a disc of radius 5: outside a line, half a circle of radius 6 and two quarter circles;
-// inside the line at y = 1 and the arc of radius 4 are cut where they meet.
+// A half disk of radius 5. The outer offset is a line, a half circle of radius 6, and two quarter
+// circles. Inside, the line at y = 1 and the arc of radius 4 are trimmed where they meet.
 static void corners_go_round_the_outside_and_are_cut_inside(void **state) {
   (void)state;
   static const CagVec3 v[4] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
@@ -263,7 +264,7 @@ static void corners_go_round_the_outside_and_are_cut_inside(void **state) {
   FAILS(cag_curve_offset(c, 5, 1e-6, &o, &err), "offset-collapses");
   cag_curve_release(c);
   for (int i = 0; i < 2; i++) cag_curve_release(side[i]);
-  // Of a polyline the outside has corners as well.
+  // For a polyline, the outer offset has corners, too.
   OK(cag_curve_polyline(v, 4, true, 2, &c, &err));
   OK(cag_curve_offset(c, -1, 1e-6, &o, &err));
   OK(cag_curve_length(o, o->start, o->end, &length, &err));
@@ -283,7 +284,7 @@ static void joining_keeps_the_knots_of_the_parts(void **state) {
   OK(cag_curve_to_nurbs(joined, &exact, &err));
   same_curve(joined, exact, 1e-12);
   assert_true(cag_curve_nurbs_view(exact, &is));
-  assert_int_equal(is.count, 9); // 6 + 4 less the joint
+  assert_int_equal(is.count, 9); // 6 + 4 minus the joint
   cag_curve_release(exact);
   cag_curve_release(joined);
   cag_curve_release(part[0]);
@@ -296,8 +297,8 @@ static void lines_meet_a_torus_in_up_to_four_points(void **state) {
   (void)state;
   CagSurface *s;
   OK(cag_surface_torus(10, 3, &s, &err));
-  // The height of a line along x through the tube: 4 crossings through the hole, 2 at its side;
-  // none beyond.
+  // A line along x at various heights through a torus meets it in 4 points through the hole, 2 at
+  // the side, and none beyond.
   static const struct {
     CagVec3 p, q;
     size_t n;
@@ -318,8 +319,8 @@ static void lines_meet_a_torus_in_up_to_four_points(void **state) {
   cag_surface_release(s);
 }
 
-// A helix of radius 3 about the y axis of a wavy bicubic patch crosses it wherever its height does:
-// counted against the sign changes of a fine sampling of y = f(x, z), a plane here.
+// A helix of radius 3 about the y axis crosses a bicubic patch wherever its height does. The patch
+// is a plane here, and the crossings are counted as sign changes of dense samples of y = f(x, z).
 static void a_helix_meets_a_patch_as_often_as_its_plane(void **state) {
   (void)state;
   CagSurface *s;
@@ -336,7 +337,7 @@ static void a_helix_meets_a_patch_as_often_as_its_plane(void **state) {
   assert_int_equal(meetings(s, h, 1e-7, 0), n);
   free(m);
   cag_curve_release(h);
-  // A line within the surface.
+  // A line that lies in the surface.
   OK(cag_curve_line(cag_vec3(-20, -20, 4), cag_vec3(20, 20, 14), 3, &c, &err));
   CagSurfaceMeeting *none;
   FAILS(cag_surface_intersect_curve(s, c, &none, &n, &err), "overlap");
@@ -344,7 +345,8 @@ static void a_helix_meets_a_patch_as_often_as_its_plane(void **state) {
   cag_surface_release(s);
 }
 
-// Two polylines are farthest apart at a corner of either, at the same part of their domains.
+// The largest distance between two polylines is at a corner of one of them, at the same fraction of
+// their domains.
 static void deviations_of_polylines_are_at_their_corners(void **state) {
   (void)state;
   enum { MOST = 12 };

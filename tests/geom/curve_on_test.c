@@ -1,5 +1,5 @@
-// Curves on surfaces, random ones: places and derivatives against the surface and differences,
-// breaks against sign changes along the plane curve, sides against the limits from either side.
+// Random curves on surfaces: points and derivatives compared with the surface and with differences,
+// breaks with sign changes along the plane curve, and one-sided values with limits.
 
 #include <stdio.h>
 
@@ -13,7 +13,7 @@
 
 enum { TORUS, PATCH, CLOSED_NET, BOX_WALL, TUBE, LATHE, OFFSET, TURNED_WALL, KINDS };
 
-// A patch with breaks of all degrees of smoothness: its knots are simple, double and triple.
+// A patch with breaks of all degrees of smoothness: its knots are simple, double, and triple.
 static CagSurface *patch(void) {
   enum { NU = 9, NV = 8 };
   const double ku[] = {-1, -1, -1, -1, 0, 1, 1, 2, 2, 3, 3, 3, 3};
@@ -38,7 +38,7 @@ static CagSurface *closed_net(void) {
   return s;
 }
 
-// Corners are breaks, and the seam is one of them.
+// The corners are breaks, and the seam is one of them.
 static CagSurface *box_wall(void) {
   const CagVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {4, 2, 0}, {1, 3, 0}, {-1, 1, 0}};
   CagCurve *outline, *timed;
@@ -81,13 +81,13 @@ static CagSurface *surface_of(int kind) {
 
 // --- Plane curves ---
 
-// Of [lo, hi], or with `closed` also some turns beside it.
+// A value in [lo, hi], or, with `closed`, up to a few turns beside it.
 static double coordinate(double lo, double hi, bool closed) {
   const double beside = closed ? 1.7 : 0;
   return lo + (hi - lo) * uniform(-beside, 1 + beside);
 }
 
-static CagVec3 place(const CagSurface *s) {
+static CagVec3 random_parameters(const CagSurface *s) {
   const double u = coordinate(s->u0, s->u1, s->closed_u);
   return cag_vec3(u, coordinate(s->v0, s->v1, s->closed_v), 0);
 }
@@ -97,7 +97,7 @@ static CagCurve *plane_curve(const CagSurface *s, int kind) {
   CagCurve *c;
   double weights[6];
   for (int i = 0; i < 6; i++) {
-    p[i] = place(s);
+    p[i] = random_parameters(s);
     weights[i] = uniform(0.5, 2);
   }
   const double smooth[] = {0, 0, 0, 0, 0.3, 0.8, 1, 1, 1, 1};
@@ -115,7 +115,7 @@ static double home(double x, double lo, double hi, bool closed) {
   return fmin(fmax(x, lo), hi);
 }
 
-static CagVec3 place_on(const CagSurface *s, const CagCurve *plane, double t) {
+static CagVec3 surface_point(const CagSurface *s, const CagCurve *plane, double t) {
   CagVec3 at, p;
   OK(cag_curve_point(plane, t, &at, &err));
   OK(cag_surface_point(s, home(at.x, s->u0, s->u1, s->closed_u),
@@ -127,8 +127,7 @@ static CagVec3 place_on(const CagSurface *s, const CagCurve *plane, double t) {
 
 enum { ORDER = 4 };
 
-// Each derivative is that of the one before, by differences of the fourth order; h: how far they
-// reach.
+// Compares each derivative with fourth-order differences of the previous one; h is their reach.
 static void check_derivatives(const CagCurve *c, double t, double h, const char *what) {
   CagVec3 d[ORDER + 1], at[4][ORDER + 1];
   const double step[4] = {-h, -h / 2, h / 2, h};
@@ -144,7 +143,7 @@ static void check_derivatives(const CagCurve *c, double t, double h, const char 
     const CagVec3 wide = cag_scaled(cag_sub(at[3][k], at[0][k]), 1 / (2 * h)),
                   near = cag_scaled(cag_sub(at[2][k], at[1][k]), 1 / h);
     const CagVec3 slope = cag_madd(near, 1.0 / 3, cag_sub(near, wide));
-    // How far the two differ tells the error of the differences.
+    // The difference between the two estimates is the error of the finite differences.
     const double error = cag_norm(cag_sub(near, wide)) + 1e-13 * scale[k] / h;
     if (cag_norm(cag_sub(slope, d[k + 1])) > 1e-3 * scale[k + 1] + 0.3 * error)
       fail_msg("%s: derivative %d at %g is [%g %g %g], differences [%g %g %g]", what, k + 1, t,
@@ -152,7 +151,7 @@ static void check_derivatives(const CagCurve *c, double t, double h, const char 
   }
 }
 
-// From either side the derivatives are the limits of those beside, as far as both are smooth.
+// One-sided derivatives are the limits of those nearby, if both are smooth.
 static void check_side(const CagCurve *c, double t, CagSide side, double room, const char *what) {
   CagVec3 here[ORDER], beside[2][ORDER];
   const double h = (side == CAG_SIDE_RIGHT ? 1e-4 : -1e-4) * room;
@@ -167,7 +166,7 @@ static void check_side(const CagCurve *c, double t, CagSide side, double room, c
   }
 }
 
-// Places where a coordinate of the plane curve passes a break or a seam.
+// Finds the parameters at which a coordinate of the plane curve crosses a break or a seam.
 static size_t find_passes(const CagSurface *s, const CagCurve *plane, double *out) {
   enum { STEPS = 4000, MOST = 64 };
   size_t count = 0;
@@ -227,7 +226,7 @@ static void check_breaks(const CagSurface *s, const CagCurve *plane, const CagCu
     const double room = cuts[i + 1] - cuts[i];
     assert_true(room > 0);
     if (room < 1e-4) continue;
-    // Breaks are exact but for rounding.
+    // Breaks are exact up to rounding.
     check_side(c, cuts[i] + 1e-6 * room, CAG_SIDE_RIGHT, room, what);
     check_side(c, cuts[i + 1] - 1e-6 * room, CAG_SIDE_LEFT, room, what);
     for (int k = 0; k < 2; k++)
@@ -235,7 +234,7 @@ static void check_breaks(const CagSurface *s, const CagCurve *plane, const CagCu
   }
   free(own);
   free(cuts);
-  // No more are given than there is room for.
+  // The results are limited to the available space.
   double some[3] = {NAN, NAN, NAN};
   assert_int_equal(c->kind->breaks(c, some, 2), count - 2);
   assert_true(isnan(some[2]) && isnan(some[0]) == (count < 3) && isnan(some[1]) == (count < 4));
@@ -255,10 +254,10 @@ static void curves_on_surfaces_are_as_their_parts_tell(void **state) {
       const double t = c->start + (c->end - c->start) * i / 40;
       CagVec3 p;
       OK(cag_curve_point(c, t, &p, &err));
-      near_vec(p, place_on(s, plane, t), 1e-11);
+      near_vec(p, surface_point(s, plane, t), 1e-11);
     }
-    assert_int_equal(c->closed, cag_norm(cag_sub(place_on(s, plane, c->start),
-                                                 place_on(s, plane, c->end))) < 1e-9);
+    assert_int_equal(c->closed, cag_norm(cag_sub(surface_point(s, plane, c->start),
+                                                 surface_point(s, plane, c->end))) < 1e-9);
     check_breaks(s, plane, c, what);
     cag_curve_release(c);
     cag_curve_release(plane);
@@ -266,7 +265,7 @@ static void curves_on_surfaces_are_as_their_parts_tell(void **state) {
   }
 }
 
-// Images, affine and projective, and the curve reversed, in part and over another range.
+// Images, affine and projective, and the curve reversed, trimmed, and over another domain.
 static void images_of_curves_on_surfaces_are_those_of_their_points(void **state) {
   (void)state;
   seed = 52;
@@ -290,7 +289,7 @@ static void images_of_curves_on_surfaces_are_those_of_their_points(void **state)
     assert_true(other[1]->start == a && other[1]->end == b);
     for (int i = 0; i <= 20; i++) {
       const double x = a + (b - a) * i / 20;
-      const CagVec3 p = cag_transform_point(&t, place_on(s, plane, x));
+      const CagVec3 p = cag_transform_point(&t, surface_point(s, plane, x));
       const CagVec3 q = cag_transform_point(&turn, p);
       CagVec3 found;
       OK(cag_curve_point(image, x, &found, &err));
@@ -314,8 +313,8 @@ static void images_of_curves_on_surfaces_are_those_of_their_points(void **state)
   }
 }
 
-// A curve that touches the line on which the surface has an edge stays on one side of it; one that
-// ends at a seam, at whatever turn and in whatever direction, comes to it from its own side.
+// A curve that touches the line of an edge of the surface stays on one side of it. A curve that
+// ends at a seam, at any turn and in any direction, approaches it from its own side.
 static void sides_are_those_that_the_curve_comes_from(void **state) {
   (void)state;
   seed = 53;
@@ -335,7 +334,7 @@ static void sides_are_those_that_the_curve_comes_from(void **state) {
     check_side(c, 0.5, CAG_SIDE_LEFT, 0.3, "touch");
     cag_curve_release(c);
     cag_curve_release(plane);
-    // Straight to an edge, and back.
+    // Straight toward an edge, and back.
     const double aside = uniform(0.05, 0.4);
     const CagVec3 line[] = {{at + (round % 2 ? aside : -aside), 0.2, 0}, {at, 0.7, 0}};
     for (int back = 0; back < 2; back++) {
@@ -346,7 +345,7 @@ static void sides_are_those_that_the_curve_comes_from(void **state) {
       cag_curve_release(c);
       cag_curve_release(plane);
     }
-    // Along an edge it has no breaks, and rises with the wall.
+    // Along an edge, the curve has no breaks, and it rises with the wall.
     const CagVec3 upright[] = {{at, 0.2, 0}, {at, 0.7, 0}};
     double *cuts;
     size_t n;
@@ -368,7 +367,7 @@ static void curves_must_stay_on_the_surface(void **state) {
   CagCurve *plane, *c;
   const struct {
     CagVec3 a, b;
-    const char *says; // NULL: it serves
+    const char *says; // NULL: valid
   } CASES[] = {
       {{-1, 0, 0}, {3, 2, 0}, NULL},
       {{-1 - 1e-10, 0, 0}, {3 + 1e-10, 2 + 1e-10, 0}, NULL},
@@ -392,7 +391,7 @@ static void curves_must_stay_on_the_surface(void **state) {
       OK(cag_curve_eval(c, 0.3, CAG_MAX_PARTIAL, CAG_SIDE_RIGHT, d, &err));
       FAILS(cag_curve_eval(c, 0.3, CAG_MAX_PARTIAL + 1, CAG_SIDE_RIGHT, d, &err),
             "derivative-order");
-      // The plane on which the image is infinitely far away passes a point of the curve.
+      // The plane whose image is infinitely far away passes through a point of the curve.
       CagTransform t = cag_transform_identity();
       CagVec3 p;
       CagCurve *image;
@@ -411,9 +410,10 @@ static void curves_must_stay_on_the_surface(void **state) {
     cag_curve_release(plane);
   }
   cag_surface_release(s);
-  // Around a torus as often as it likes, but for a limit; closed where both are whole turns.
+  // The curve may run around a torus any number of times, up to a limit. It is closed if both
+  // directions are whole turns.
   OK(cag_surface_torus(4, 1.5, &torus, &err));
-  // Whole turns count, whatever the surface's parameters are.
+  // Whole turns count, regardless of the surface's parametrization.
   CagCurve *outline, *timed;
   const CagVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {1, 3, 0}};
   OK(cag_curve_polyline(corners, 3, true, 2, &outline, &err));

@@ -172,7 +172,7 @@ static CagCurve *random_spline(int p, size_t n, int kind) {
     OK(cag_curve_nurbs_closed(points, weight, n, p, 3, &c, &err));
     return c;
   }
-  // Clamped with uneven knots; uneven ones without clamping; uniform ones.
+  // Clamped with nonuniform knots; nonuniform knots without clamping; uniform knots.
   for (size_t i = 0; i < n + (size_t)p + 1; i++) {
     const double step = kind < 4 ? uniform(0.3, 1.2) : 0.5;
     const bool inside = i > (size_t)p && i <= n;
@@ -199,14 +199,14 @@ static void random_splines_keep_their_points(void **state) {
     CagCurve *c = random_spline(p, n, kind), *other, *half[2], *middle, **pieces;
     CagNurbsView v, w;
     assert_true(cag_curve_nurbs_view(c, &v));
-    // Elevation: each knot once more, of which the distinct ones stay.
+    // Degree elevation increases the multiplicity of each distinct knot by one.
     OK(cag_curve_elevate(c, 1 + round % 2, &other, &err));
     same_curve(other, c);
     assert_true(cag_curve_nurbs_view(other, &w));
     assert_int_equal(w.degree, p + 1 + round % 2);
     assert_true(w.rational == v.rational);
     cag_curve_release(other);
-    // The middles of all intervals; uniform knots stay so, and a closed curve closed.
+    // The midpoints of all intervals. Uniform knots stay uniform, and a closed curve stays closed.
     OK(cag_curve_insert_midpoints(c, &other, &err));
     same_curve(other, c);
     assert_true(cag_curve_nurbs_view(other, &w));
@@ -237,7 +237,7 @@ static void random_splines_keep_their_points(void **state) {
     cag_curve_release(other);
     FAILS(cag_curve_insert_knots(c, &c->start, 1, &other, &err), "parameter-range");
     FAILS(cag_curve_insert_knots(c, &c->end, 1, &other, &err), "parameter-range");
-    // Clamped, it starts in its first and ends in its last control point.
+    // A clamped curve begins at its first and ends at its last control point.
     OK(cag_curve_clamp(c, &other, &err));
     same_curve(other, c);
     assert_true(cag_curve_nurbs_view(other, &w));
@@ -248,7 +248,7 @@ static void random_splines_keep_their_points(void **state) {
     }
     assert_true(w.knots[0] == c->start && w.knots[p] == c->start);
     assert_true(w.knots[w.count] == c->end && w.knots[w.count + (size_t)p] == c->end);
-    // A knot that was inserted can be removed again.
+    // An inserted knot can be removed again.
     CagCurve *fine, *back;
     double deviation;
     OK(cag_curve_insert_knots(other, t, 1, &fine, &err));
@@ -276,7 +276,7 @@ static void random_splines_keep_their_points(void **state) {
     cag_curve_release(half[1]);
     FAILS(cag_curve_split(c, c->end, half, &err), "parameter-range");
     FAILS(cag_curve_elevate(c, -1, &other, &err), "order-range");
-    // Bezier pieces, one after the other.
+    // The Bezier pieces in order.
     size_t m;
     double cuts[32];
     OK(cag_curve_to_bezier(c, &pieces, &m, &err));
@@ -295,7 +295,7 @@ static void random_splines_keep_their_points(void **state) {
   }
 }
 
-// Elevated curves come down again.
+// Elevated curves can be reduced again.
 static void degrees_go_up_and_down(void **state) {
   (void)state;
   seed = 302;
@@ -318,7 +318,7 @@ static void degrees_go_up_and_down(void **state) {
 
 // --- Random composites ---
 
-// A line, an arc, a spline and a Bezier curve that go on from one another.
+// A line, an arc, a spline, and a Bezier curve, each of which begins where the previous one ends.
 static size_t random_pieces(CagCurve *out[4], bool space) {
   const double turn = uniform(0.5, 3), r = uniform(0.5, 2);
   const CagTransform f = cag_transform_identity();
@@ -351,7 +351,7 @@ static void random_composites_are_their_pieces(void **state) {
     double cuts[5] = {0};
     for (size_t i = 0; i < n; i++) cuts[i + 1] = cuts[i] + pieces[i]->end - pieces[i]->start;
     OK(cag_curve_join(pieces, n, &c, &err));
-    // Joined in two steps it is the same.
+    // Joining in two steps has the same result.
     OK(cag_curve_join(pieces, 2, &pair, &err));
     CagCurve *three[3] = {pair, pieces[2], pieces[3]};
     OK(cag_curve_join(three, 3, &nested, &err));
@@ -372,7 +372,7 @@ static void random_composites_are_their_pieces(void **state) {
     assert_true(part->start == from && part->end == to && !c->closed);
     CagBounds seen = CAG_BOUNDS_EMPTY;
     for (int k = 0; k <= 60; k++) {
-      // The ends of the pieces are met, from both sides.
+      // The ends of the pieces are included, from both sides.
       const double u = k % 12 == 0 && k < 60 ? cuts[k / 12] : fmin(c->end, c->end * k / 60);
       for (int side = 0; side < 2; side++) {
         size_t i = 0;
@@ -385,7 +385,8 @@ static void random_composites_are_their_pieces(void **state) {
         OK(cag_curve_eval(pieces[i], v, 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
         for (int m = 0; m < 3; m++) near_vec(d[m], e[m], 1e-9);
         OK(cag_curve_eval(exact, u, 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
-        near_vec(d[0], e[0], i == 1 ? 0.2 : 1e-9); // the arc's exact form has other parameters
+        near_vec(d[0], e[0],
+                 i == 1 ? 0.2 : 1e-9); // the arc's exact form is parametrized differently
         if (i != 1)
           for (int m = 1; m < 3; m++) near_vec(d[m], e[m], 1e-7 * (1 + cag_norm(e[m])));
         OK(cag_curve_eval(back, c->end - u, 2, side ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, e, &err));
@@ -414,7 +415,7 @@ static void random_composites_are_their_pieces(void **state) {
     const CagBounds box = c->kind->hull(c, c->start, c->end);
     assert_true(box.min.x <= seen.min.x + 1e-9 && box.min.y <= seen.min.y + 1e-9);
     assert_true(box.max.x >= seen.max.x - 1e-9 && box.max.y >= seen.max.y - 1e-9);
-    // A part of the box, within a few pieces.
+    // The box of a part that covers some of the pieces.
     const CagBounds less = c->kind->hull(c, from, to);
     assert_true(less.min.x >= box.min.x - 1e-9 && less.max.y <= box.max.y + 1e-9);
     for (int k = 0; k <= 8; k++) {
@@ -422,7 +423,7 @@ static void random_composites_are_their_pieces(void **state) {
       assert_true(p.x >= less.min.x - 1e-9 && p.x <= less.max.x + 1e-9);
       assert_true(p.y >= less.min.y - 1e-9 && p.y <= less.max.y + 1e-9);
     }
-    // Breaks: the joints and the inner knot of the spline, also where there is less room.
+    // Breaks: the joints and the inner knot of the spline, also with less space for results.
     double breaks[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
     const double expected[4] = {cuts[1], cuts[2], cuts[2] + 0.5, cuts[3]};
     assert_int_equal(c->kind->breaks(c, NULL, 0), 4);
@@ -443,7 +444,7 @@ static void random_composites_are_their_pieces(void **state) {
   }
 }
 
-// Curves whose domains go on from one another keep them, angles included; points add nothing.
+// Curves whose domains continue each other keep them, including angles. Points add nothing.
 static void domains_that_go_on_are_kept(void **state) {
   (void)state;
   const CagTransform f = cag_transform_identity();
@@ -473,7 +474,7 @@ static void domains_that_go_on_are_kept(void **state) {
   assert_true(cag_curve_resting_view(c, NULL));
   cag_curve_release(c);
   FAILS(cag_curve_join(NULL, 0, &c, &err), "too-few-curves");
-  // A plane curve and one of space are one of space.
+  // A plane curve and a space curve join to a space curve.
   CagCurve *space, *mixed[2] = {parts[0], NULL};
   OK(cag_curve_to_space(parts[1], &space, &err));
   mixed[1] = space;
@@ -487,7 +488,7 @@ static void domains_that_go_on_are_kept(void **state) {
   for (int i = 0; i < 3; i++) cag_curve_release(parts[i]);
 }
 
-// Lines and polylines make one polyline, closed when they come back.
+// Lines and polylines join to one polyline, which is closed if it returns to its start.
 static void straight_pieces_make_a_polyline(void **state) {
   (void)state;
   const CagVec3 p[5] = {{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {1, 3, 0}, {-1, 1, 0}};
@@ -506,7 +507,7 @@ static void straight_pieces_make_a_polyline(void **state) {
     assert_int_equal(n, closed ? 4 : 5);
     for (size_t i = 0; i < n; i++) near_vec(points[i], i < 4 ? p[i] : p[4], 0);
     cag_curve_release(c);
-    // With another speed they stay pieces.
+    // With different speeds, they remain separate pieces.
     CagCurve *slow[2] = {parts[0], NULL};
     OK(cag_curve_reparametrize(parts[1], 0, 3, &slow[1], &err));
     OK(cag_curve_join(slow, 2, &c, &err));
@@ -518,7 +519,7 @@ static void straight_pieces_make_a_polyline(void **state) {
     cag_curve_release(slow[1]);
     for (int i = 0; i < 3; i++) cag_curve_release(parts[i]);
   }
-  // There and back is not closed as a polyline; a closed polyline can be one of the parts.
+  // A line there and back is not a closed polyline. A closed polyline can be one of the parts.
   CagCurve *way[2], *c;
   OK(cag_curve_line(p[0], p[1], 2, &way[0], &err));
   OK(cag_curve_line(p[1], p[0], 2, &way[1], &err));
@@ -549,8 +550,8 @@ static CagCurve *circle(double r, double x, double y) {
   return c;
 }
 
-// A helix of 3 turns and pitch 2 crosses the plane x = 0 at the odd quarter turns, and the plane
-// x = radius touches it at the whole turns.
+// A helix of 3 turns and pitch 2 crosses the plane x = 0 at the odd quarter turns, and touches the
+// plane x = radius at the whole turns.
 static void a_helix_meets_planes(void **state) {
   (void)state;
   CagCurve *c;
@@ -579,7 +580,7 @@ static void a_helix_meets_planes(void **state) {
   cag_curve_release(c);
 }
 
-// Circles of radius 5 about (0, 0) and (6, 0) meet at (3, +-4); tangent ones once.
+// Circles of radius 5 about (0, 0) and (6, 0) meet at (3, +-4); tangent circles meet once.
 static void circles_meet(void **state) {
   (void)state;
   CagCurve *a = circle(5, 0, 0), *b = circle(5, 6, 0), *t = circle(2, 7, 0),
@@ -604,12 +605,12 @@ static void circles_meet(void **state) {
   for (int i = 0; i < 4; i++) cag_curve_release(all[i]);
 }
 
-// Two cubics with nine intersections (Bezout's bound), on y = x^3 - x and x = y^3 - y scaled to
-// meet nine times: T3(x) = y, T3(y) = x with the Chebyshev polynomial T3 has all nine at cosines.
+// Two cubics with nine intersections (Bezout's bound): T3(x) = y and T3(y) = x, where T3 is the
+// Chebyshev polynomial. All nine are at cosines.
 static void two_cubics_meet_nine_times(void **state) {
   (void)state;
   CagVec3 p[4], q[4];
-  // (x, 4 x^3 - 3 x) over -1.1..1.1 by blossoms: y = 4 abc - (a + b + c).
+  // (x, 4 x^3 - 3 x) over -1.1..1.1 from blossoms: y = 4 abc - (a + b + c).
   for (int i = 0; i < 4; i++) {
     double a = i > 0 ? 1.1 : -1.1, b = i > 1 ? 1.1 : -1.1, c = i > 2 ? 1.1 : -1.1;
     p[i] = cag_vec3((a + b + c) / 3, 4 * a * b * c - (a + b + c), 0);
@@ -650,7 +651,7 @@ static void polylines_meet_at_vertices_once(void **state) {
   cag_curve_release(b);
 }
 
-// An arc and polylines joined, each over a range of its own: at each corner the two limits are the
+// A joined arc and polylines, each over a domain of its own. At each corner, the two limits are the
 // directions before and after it.
 static void corners_within_joined_curves_have_both_limits(void **state) {
   (void)state;
@@ -690,7 +691,7 @@ static void corners_within_joined_curves_have_both_limits(void **state) {
       near_vec(before, i ? cag_unit(cag_sub(p[i], p[i - 1])) : cag_vec3(0, 1, 0), 1e-15);
       near_vec(after, cag_unit(cag_sub(p[i + 1], p[i])), 1e-15);
     }
-    // Fewer are written where there is room for fewer.
+    // Fewer results are written if there is less space.
     double few[MOST];
     for (size_t room = 0; room < found; room++) {
       few[room] = -77;

@@ -31,7 +31,7 @@ typedef enum Kind {
   KINDS
 } Kind;
 
-// A turn by random angles and a shift.
+// A rotation by random angles and a translation.
 static inline CagTransform random_frame(void) {
   const CagVec3 x = cag_unit(random_point(1)), other = random_point(1);
   const CagVec3 z = cag_unit(cag_cross(x, other)), y = cag_cross(z, x), at = random_point(3);
@@ -141,7 +141,7 @@ static inline void each_kind(int rounds, void (*check)(const CagCurve *c)) {
     }
 }
 
-// The points and derivatives at t; from the left at the end.
+// The point and derivatives at t; at the end of the domain, from the left.
 static inline void derivatives(const CagCurve *c, double t, int order, CagVec3 *d) {
   OK(cag_curve_eval(c, t, order, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
 }

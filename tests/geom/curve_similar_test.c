@@ -1,12 +1,13 @@
-// Curves of all kinds that are scaled and given another domain answer as before: what is a length
-// is scaled, and all else stays. Powers of two leave the digits alone, so no tolerance may show.
+// Curves of all kinds, scaled and with another domain, must behave the same: lengths are scaled,
+// and all other results are unchanged. Powers of two preserve all digits, so absolute tolerances
+// would show.
 
 #include "geom/curve/approximate.h"
 #include "tests/geom/curve_random.h"
 
 static double scale, from, range;
 
-// The image in scale, over [from, from + range].
+// The scaled curve, over [from, from + range].
 static CagCurve *image_of(const CagCurve *c) {
   CagTransform t;
   CagCurve *scaled, *out;
@@ -17,7 +18,9 @@ static CagCurve *image_of(const CagCurve *c) {
   return out;
 }
 
-static double share(const CagCurve *c, double t) { return (t - c->start) / (c->end - c->start); }
+static double domain_fraction(const CagCurve *c, double t) {
+  return (t - c->start) / (c->end - c->start);
+}
 
 static void each_image(int rounds, void (*check)(const CagCurve *c, const CagCurve *image)) {
   static const int powers[] = {-18, 15, -7, 9};
@@ -82,7 +85,7 @@ static void check_closest(const CagCurve *c, const CagCurve *image) {
   OK(cag_curve_closest(image, cag_scaled(p, scale), &u, &there, &away, &err));
   NEAR(away / scale, distance, 1e-12 * (1 + distance));
   near_vec(cag_scaled(there, 1 / scale), foot, 1e-6);
-  NEAR(share(image, u), share(c, t), 1e-6);
+  NEAR(domain_fraction(image, u), domain_fraction(c, t), 1e-6);
 }
 
 static void nearest_points_are_scaled(void **state) {
@@ -97,9 +100,10 @@ static void check_steps(const CagCurve *c, const CagCurve *image) {
   size_t n, m;
   OK(cag_curve_discretize(c, tolerance, angle, &t, &n, &err));
   OK(cag_curve_discretize(image, scale * tolerance, angle, &u, &m, &err));
-  // A step that is just long enough may be halved or not, by the rounding of a parameter.
+  // A step close to the limit may be halved or not, depending on the rounding of a parameter.
   assert_true(n <= m + 2 && m <= n + 2);
-  for (size_t i = 0; n == m && i < n; i++) NEAR(share(image, u[i]), share(c, t[i]), 1e-9);
+  for (size_t i = 0; n == m && i < n; i++)
+    NEAR(domain_fraction(image, u[i]), domain_fraction(c, t[i]), 1e-9);
   free(t);
   free(u);
 }
@@ -130,8 +134,8 @@ static void frames_are_the_same_and_curvatures_divided(void **state) {
   each_image(24, check_frames);
 }
 
-// Flattened to 1e-11 of its size a curve is plane, and with two directions straight; to 1e-4 it is
-// neither, unless it was so before.
+// A curve that is flattened to 1e-11 of its size is planar, and with two directions flattened, it
+// is straight. Flattened to 1e-4, it is neither, unless it was so before.
 static void check_flatness(const CagCurve *c, const CagCurve *image) {
   bool planar, straight;
   CagPlane plane;
@@ -147,7 +151,8 @@ static void check_flatness(const CagCurve *c, const CagCurve *image) {
     OK(cag_curve_transform(squeezed, &turn, &turned, &err));
     bool now;
     OK(cag_curve_is_planar(turned, &now, &plane, &err));
-    // With two directions squeezed to 1e-4, what leaves the plane may be less than 1e-9 or not.
+    // With two directions squeezed to 1e-4, the deviation from the plane may be less than 1e-9 or
+    // not.
     if (i != 2) assert_int_equal(now, planar || flat < 1e-9);
     if (now) {
       NEAR(cag_norm(plane.normal), 1, 1e-14);
@@ -170,7 +175,7 @@ static void flat_and_straight_curves_are_known(void **state) {
   each_image(24, check_flatness);
 }
 
-// Closed curves laid into a random plane. The area is that of fine chords, and scaled.
+// Closed curves in a random plane. The expected area is that of fine chords, scaled.
 static void check_area(const CagCurve *c, const CagCurve *image) {
   if (!c->closed) return;
   CagTransform squeeze, turn = random_frame();

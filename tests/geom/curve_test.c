@@ -1,4 +1,4 @@
-// Evaluation, forms and images of all kinds of curves.
+// Evaluation, representations, and images of all kinds of curves.
 
 #include "geom/basis/bernstein.h"
 #include "geom/curve/curve.h"
@@ -71,7 +71,7 @@ static void the_reference_curves_have_their_points_and_derivatives(void **state)
   }
 }
 
-// --- Curves to try identities on ---
+// --- Curves for testing identities ---
 
 static const CagVec3 zigzag[5] = {{0, 1, 0}, {1, 2, 1}, {2.5, 0, 0.5}, {4, 2, -1}, {5, 0, 0}};
 
@@ -108,7 +108,7 @@ static size_t samples(CagCurve *out[16]) {
   return n;
 }
 
-// Central differences of fourth order, step h: their error is about h^4 f''''' / 30.
+// Fourth-order central differences with step h, whose error is about h^4 f''''' / 30.
 static void derivatives_agree_with_differences(void **state) {
   (void)state;
   CagCurve *c[16];
@@ -200,7 +200,7 @@ static void projecting_the_curve_projects_its_points(void **state) {
     if (strcmp(c[i]->kind->name, "helix") == 0) {
       FAILS(cag_curve_transform(c[i], &t, &image, &err), "no-exact-form");
     } else {
-      // The image of an exact NURBS form has the parameters of that form.
+      // The image of an exact NURBS representation has its parameters.
       CagCurve *exact;
       OK(cag_curve_to_nurbs(c[i], &exact, &err));
       OK(cag_curve_transform(c[i], &t, &image, &err));
@@ -295,8 +295,8 @@ static void a_circle_as_nurbs_has_four_quarters(void **state) {
   cag_curve_release(exact);
 }
 
-// A Bezier curve of degree 60 whose points lie at i / 60 is the identity in x; in y it is t^60
-// where only the last point is not 0.
+// A Bezier curve of degree 60. Its x coordinates, i / 60, form the identity. Its y coordinate is
+// t^60, because only the last point is not 0.
 static void high_degrees_are_stable(void **state) {
   (void)state;
   CagVec3 p[61];
@@ -327,9 +327,8 @@ static void derivatives_above_the_degree_are_zero(void **state) {
   }
 }
 
-// (1 - t^2, 2t) / (1 + t^2): its y is 2 Im(...) with derivatives known in closed form; at t = 0 the
-// series of 2t / (1 + t^2) is 2 (t - t^3 + t^5 - ..), so the k-th derivative is 2 (+-1) k! at odd
-// k.
+// (1 - t^2, 2t) / (1 + t^2) has derivatives in closed form. At t = 0, the series of y = 2t / (1 +
+// t^2) is 2 (t - t^3 + t^5 - ..), so the k-th derivative is +-2 k! for odd k.
 static void rational_derivatives_of_any_order_are_right(void **state) {
   (void)state;
   static const CagVec3 p[3] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -397,7 +396,8 @@ static void tangents_have_their_limit_where_the_speed_is_zero(void **state) {
   OK(cag_curve_tangent(c, 1, CAG_SIDE_LEFT, &t, &err));
   near_vec(t, cag_vec3(0.6, 0.8, 0), 1e-12);
   cag_curve_release(c);
-  // (t^2, t^3) over -1..1 has a cusp at 0: the two limits are opposite; the curvature is infinite.
+  // (t^2, t^3) over -1..1 has a cusp at 0: the two limits are opposite, and the curvature is
+  // infinite.
   static const CagVec3 cusp[4] = {{1, -1, 0}, {-1.0 / 3, 1, 0}, {-1.0 / 3, -1, 0}, {1, 1, 0}};
   CagCurve *whole;
   CagFrenet f;
@@ -410,7 +410,7 @@ static void tangents_have_their_limit_where_the_speed_is_zero(void **state) {
   FAILS(cag_curve_frenet(c, 0, &f, &err), "curvature-undefined");
   cag_curve_release(c);
   cag_curve_release(whole);
-  // A point has no tangent.
+  // If all control points coincide, there is no tangent.
   static const CagVec3 point[3] = {{1, 1, 0}, {1, 1, 0}, {1, 1, 0}};
   OK(cag_curve_bezier(point, NULL, 3, 2, &c, &err));
   FAILS(cag_curve_tangent(c, 0.5, CAG_SIDE_RIGHT, &t, &err), "tangent-undefined");
@@ -427,7 +427,7 @@ static void parameters_outside_the_domain_fail_with_the_domain(void **state) {
   assert_string_equal(err.message, "`t` = 400deg lies outside the domain 0deg..360deg");
   assert_int_equal(err.status, CAG_E_DOMAIN);
   OK(cag_curve_point(c, -0.0, &p, &err));
-  OK(cag_curve_point(c, nextafter(2 * M_PI, 7), &p, &err)); // an ulp is rounding
+  OK(cag_curve_point(c, nextafter(2 * M_PI, 7), &p, &err)); // one ulp is rounding
   FAILS(cag_curve_point(c, NAN, &p, &err), "not-finite");
   cag_curve_release(c);
   OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 1, 0), 2, &c, &err));
@@ -440,7 +440,7 @@ static void parameters_outside_the_domain_fail_with_the_domain(void **state) {
 static void rounding_at_the_ends_of_a_domain_counts_as_the_end(void **state) {
   (void)state;
   const CagVec3 p = {1, 2, 3}, q = {-4, 5, 7};
-  const double ulp = 0x1p-52; // of 1; 16 of them count
+  const double ulp = 0x1p-52; // of 1; 16 of them are tolerated
   CagCurve *c, *part, *half[2];
   OK(cag_curve_line(p, q, 3, &c, &err));
   near_vec(at(c, 1 + 16 * ulp), q, 0);
@@ -451,7 +451,7 @@ static void rounding_at_the_ends_of_a_domain_counts_as_the_end(void **state) {
   FAILS(cag_curve_point(c, -INFINITY, &x, &err), "parameter-range");
   FAILS(cag_curve_point(c, INFINITY, &x, &err), "parameter-range");
   near_vec(at(c, 0.25), cag_lerp(p, q, 0.25), 1e-15);
-  // The whole is the curve itself; a part of it is not.
+  // Trimming to the whole domain returns the curve itself, but a part is a new curve.
   OK(cag_curve_trim(c, -8 * ulp, 1 + 8 * ulp, &part, &err));
   assert_ptr_equal(part, c);
   cag_curve_release(part);
@@ -478,7 +478,7 @@ static void rounding_at_the_ends_of_a_domain_counts_as_the_end(void **state) {
   FAILS(cag_curve_trim(c, -0.5, 0.5, &part, &err), "parameter-range");
   FAILS(cag_curve_trim(c, 0.5, 1.5, &part, &err), "parameter-range");
   FAILS(cag_curve_reparametrize(c, 3, 3, &part, &err), "empty-range");
-  // Halves at the ends: the curve, and a point.
+  // Splitting at an end results in the curve and a point.
   for (int i = 0; i < 2; i++) {
     OK(cag_curve_halves(c, i, half, &err));
     assert_ptr_equal(half[1 - i], c);
@@ -574,7 +574,7 @@ static void joining_wants_ends_that_meet(void **state) {
   cag_curve_release(c);
 }
 
-// Example 22 of reference 05b: a quarter circle joined with a quadratic spline.
+// Example 22 of reference 05b: a quarter circle joined to a quadratic spline.
 static void a_composite_has_an_exact_nurbs_form(void **state) {
   (void)state;
   static const CagVec3 spline[4] = {{2, 2, 0}, {4, 2, 0}, {6, 3, 0}, {7, 5, 0}};
@@ -588,7 +588,7 @@ static void a_composite_has_an_exact_nurbs_form(void **state) {
   assert_true(joined->start == 0 && joined->end == 3);
   OK(cag_curve_to_nurbs(joined, &exact, &err));
   for (int k = 0; k <= 30; k++) near_vec(at(exact, k / 10.0), at(joined, k / 10.0), 1e-13);
-  // Speeds 2 sqrt 2 and 4 at the joint.
+  // The speeds at the joint are 2 sqrt 2 and 4.
   CagVec3 d[2];
   OK(cag_curve_eval(joined, 1, 1, CAG_SIDE_LEFT, d, &err));
   near_vec(d[1], cag_vec3(2 * sqrt(2), 0, 0), 1e-12);
@@ -676,7 +676,7 @@ static void derivatives_keep_their_digits_between_close_knots(void **state) {
     OK(cag_curve_eval_many(c, &cases[i].t, 1, cases[i].orders, many, &err));
     for (int k = 0; k < cases[i].orders; k++) {
       const CagVec3 exact = {cases[i].expected[k][0], cases[i].expected[k][1], 0};
-      // Rounding of t between the knots is 2e-9 of their distance.
+      // The rounding of t between the knots is 2e-9 of their distance.
       near_vec(d[k + 1], exact, 1e-12 * cag_norm(exact));
       near_vec(many[k + 1], exact, 1e-12 * cag_norm(exact));
     }
@@ -686,7 +686,7 @@ static void derivatives_keep_their_digits_between_close_knots(void **state) {
   }
 }
 
-// Of evenly spaced points on a line a curve of any degree is that line.
+// If the control points are evenly spaced on a line, the curve is that line, for any degree.
 static void curves_have_at_most_the_greatest_degree(void **state) {
   (void)state;
   enum { N = CAG_MAX_DEGREE + 2 };

@@ -1,7 +1,7 @@
 // Compares meshes with their surfaces by dense sampling, for tests of tessellation.
 //
-// The search for a point starts with the triangles near its parameters, which give an upper bound
-// of the distance. All triangles are searched only if this bound exceeds the tolerance.
+// The search for a point starts with the triangles near its parameters, which provide an upper
+// bound of the distance. All triangles are searched only if this bound exceeds the tolerance.
 
 #ifndef CAG_TESTS_GEOM_DENSE_SUPPORT_H
 #define CAG_TESTS_GEOM_DENSE_SUPPORT_H
@@ -11,11 +11,11 @@
 #include "geom/tessellate/tessellate.h"
 #include "tests/geom/support.h"
 
-// --- Chance ---
+// --- Random numbers ---
 
 static uint64_t chance_state = 1;
 
-// Park and Miller: the same points everywhere.
+// Park and Miller's generator, which is the same on every machine.
 static inline double chance(void) {
   chance_state = chance_state * 48271 % 2147483647;
   return (double)chance_state / 2147483647;
@@ -84,8 +84,8 @@ static inline double distance_at(const Boxes *b, double u, double v, CagVec3 p, 
 
 enum { POINTS = 12000 };
 
-// Every fourth point is near to an end of the domain, every eighth on it.
-static inline double place(double from, double to, int k) {
+// Every fourth point is close to an end of the domain, and every eighth is on it.
+static inline double sample_parameter(double from, double to, int k) {
   double x = chance();
   if (k % 4 == 1) x = x * x * x * x;
   if (k % 4 == 2) x = 1 - x * x * x * x;
@@ -100,7 +100,7 @@ static inline double largest_distance(const CagSurface *s, const CagMesh *m, dou
   Boxes b = sort_into_boxes(m, s);
   cag_surface_trimmed_view(s, NULL, &region);
   for (int k = 0; k < POINTS; k++) {
-    double u = place(s->u0, s->u1, k), v = place(s->v0, s->v1, k / 8);
+    double u = sample_parameter(s->u0, s->u1, k), v = sample_parameter(s->v0, s->v1, k / 8);
     CagVec3 p;
     bool inside = true;
     if (region) OK(cag_region_contains(region, cag_vec3(u, v, 0), &inside, &err));

@@ -1,5 +1,5 @@
-// Dense and banded systems: solutions are checked by their residuals, and every function ends when
-// the flag of its thread is set.
+// Dense and banded systems: solutions are checked by their residuals. Every function ends when its
+// thread's stop flag is set.
 
 #include "geom/linalg/dense.h"
 
@@ -17,7 +17,7 @@
 #include "tests/geom/random.h"
 
 enum { N = 150 };
-static const double ROUNDING = 1e-10; // of systems of this size whose numbers are near 1
+static const double ROUNDING = 1e-10; // for systems of this size with entries near 1
 
 static volatile int flag;
 
@@ -74,7 +74,7 @@ static void lu_finds_a_column_of_zeros(void **state) {
   free(a);
 }
 
-// A diagonal matrix has the ratio of its extremes.
+// The condition number of a diagonal matrix is the ratio of its extremes.
 static void the_condition_of_a_diagonal_matrix_is_exact(void **state) {
   (void)state;
   CagError err;
@@ -88,8 +88,8 @@ static void the_condition_of_a_diagonal_matrix_is_exact(void **state) {
   free(a);
 }
 
-// The residual is square to all columns, and the solution to all of the null space: here the
-// matrix is the product of rows x rank and rank x columns.
+// The residual is perpendicular to all columns, and the solution to the null space. The matrix is a
+// product of rows x rank and rank x columns here.
 static void check_shortest(size_t rows, size_t columns, size_t rank) {
   CagError err;
   const size_t room = rows > columns ? rows : columns;
@@ -108,7 +108,7 @@ static void check_shortest(size_t rows, size_t columns, size_t rank) {
     for (size_t i = 0; i < rows; i++) sum += given[j * rows + i] * residual[i];
     assert_true(fabs(sum) < 1e-8);
   }
-  // What is square to the rows of `upper` is what x minus its fit by them leaves.
+  // The part of x perpendicular to the rows of `upper` is x minus its least squares fit by them.
   double *rows_of = malloc(columns * rank * sizeof *rows_of);
   for (size_t j = 0; j < columns; j++)
     for (size_t k = 0; k < rank; k++) rows_of[k * columns + j] = upper[j * rank + k];

@@ -1,5 +1,5 @@
-// Surfaces that ask another one: parts, exchanged parameters and offsets, against the surface
-// itself and closed forms.
+// Surfaces derived from another one (parts, exchanged parameters, and offsets), compared with the
+// original surface and closed forms.
 
 #include <stdio.h>
 
@@ -59,7 +59,7 @@ static CagSurface *surface_of(int kind) {
   return s;
 }
 
-// Ends of the smooth stretches of s within lo..hi, these included.
+// The ends of the smooth intervals of s within lo..hi, including lo and hi.
 static size_t expected_cuts(const CagSurface *s, int direction, double lo, double hi, double *out) {
   double *all;
   size_t n, count = 0;
@@ -95,7 +95,7 @@ static void assert_text(const CagSurface *s, const char *expected) {
   assert_string_equal(text, expected);
 }
 
-// The exact form of a part has its corners, its edges, and no points beside it.
+// The exact form of a part has the same corners and edges, and no other points.
 static void check_exact_part(const CagSurface *part) {
   CagSurface *exact;
   CagSurfaceNearest near;
@@ -124,7 +124,7 @@ static void parts_are_the_surface_over_smaller_ranges(void **state) {
     for (int k = 0; k < 2; k++) {
       const double lo = k ? s->v0 : s->u0, hi = k ? s->v1 : s->u1;
       const double a = some(lo, hi), b = some(lo, hi);
-      // Some begin or end where the whole does.
+      // Some begin or end at the ends of the whole.
       at[2 * k] = (round + k) % 3 ? fmin(a, b) : lo;
       at[2 * k + 1] = (round + k) % 3 == 2 ? hi : fmax(a, b);
     }
@@ -145,7 +145,7 @@ static void parts_are_the_surface_over_smaller_ranges(void **state) {
                       0);
     }
     assert_consistent(part);
-    // A part of a part is one of the whole.
+    // A part of a part is a part of the whole.
     MUST(cag_surface_part(part, at[0], (at[0] + at[1]) / 2, at[2], at[3], &smaller, err));
     MUST(cag_surface_part(s, at[0], (at[0] + at[1]) / 2, at[2], at[3], &direct, err));
     char text[160];
@@ -165,8 +165,7 @@ static void parts_are_the_surface_over_smaller_ranges(void **state) {
   }
 }
 
-// Ends that are those of the other direction are nothing special, and parameters that are those of
-// the exact form stay exactly so.
+// Coinciding limits in both directions are allowed. Parameters of the exact form stay exact.
 static void parts_of_extrusions_keep_their_parameters(void **state) {
   (void)state;
   seed = 75;
@@ -195,7 +194,7 @@ static void parts_of_extrusions_keep_their_parameters(void **state) {
   cag_surface_release(s);
 }
 
-// Where a range lies about zero makes no difference: parts of parts, and their exact forms.
+// Domains that include zero are not special: parts of parts, and their exact forms.
 static void parts_over_negative_ranges_have_exact_forms(void **state) {
   (void)state;
   seed = 76;
@@ -230,7 +229,7 @@ static void ranges_of_parts_are_checked(void **state) {
   (void)state;
   seed = 72;
   static const struct {
-    double at[4]; // in parts of both ranges
+    double at[4]; // as fractions of both domains
     const char *reason;
   } CASES[] = {
       {{0, 1, 0, 1}, NULL},
@@ -310,7 +309,7 @@ static void exchanged_parameters_exchange_everything(void **state) {
   }
 }
 
-// Between the two sides of a kink the derivatives from either side are those of the inner surface.
+// At a kink, the one-sided derivatives are those of the inner surface.
 static void sides_are_exchanged_as_well(void **state) {
   (void)state;
   const CagVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {4, 2, 0}, {1, 3, 0}};
@@ -348,7 +347,7 @@ static void sides_are_exchanged_as_well(void **state) {
 
 enum { HIGH = CAG_MAX_PARTIAL - 1, MANY = (CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1) };
 
-// All partials of two surfaces with the same parameters, of all orders.
+// Compares all partial derivatives of two surfaces with the same parameters.
 static void assert_same_partials(const CagSurface *a, const CagSurface *b, double u, double v,
                                  int order, double tolerance) {
   static CagVec3 x[MANY], y[MANY];
@@ -378,7 +377,8 @@ static CagSurface *ball(double radius) {
   return s;
 }
 
-// An offset of a torus is one with another minor radius; of a ball, a ball, also at its poles.
+// The offset of a torus is a torus with another minor radius. The offset of a ball is a ball, even
+// at its poles.
 static void offsets_of_tori_and_balls_are_tori_and_balls(void **state) {
   (void)state;
   seed = 74;
@@ -398,14 +398,14 @@ static void offsets_of_tori_and_balls_are_tori_and_balls(void **state) {
     else expected = ball(2 + side);
     MUST(cag_surface_offset(s, d, &o, err));
     for (int i = 0; i < 6; i++) {
-      // Well off the poles, where rounding grows.
+      // Far from the poles, where rounding errors grow.
       const double u = s->u0 + uniform(0.1, 0.9) * (s->u1 - s->u0);
       const double v = s->v0 + uniform(0.1, 0.9) * (s->v1 - s->v0);
       assert_same_partials(o, expected, u, v, round % (HIGH + 1), 1e-8);
       assert_same_partials(o, expected, u, v, 2, 1e-11);
     }
     if (round % 4 >= 2) {
-      // Where the normal is a limit, derivatives are those close by.
+      // Where the normal is a limit, derivatives are those at nearby points.
       assert_true(s->pole_u0 || s->pole_v0);
       for (int i = 0; i < 5; i++) {
         const double along = s->pole_v0 ? some(s->u0, s->u1) : some(s->v0, s->v1);
@@ -433,7 +433,7 @@ static void offsets_of_tori_and_balls_are_tori_and_balls(void **state) {
   }
 }
 
-// The tube of a horn torus reaches the axis, where the surface has no normal along a whole line.
+// The tube of a horn torus reaches the axis, where a whole parameter line has no normal.
 static void offsets_have_derivatives_on_the_axis_of_a_torus(void **state) {
   (void)state;
   CagSurface *s, *o, *expected;
@@ -457,14 +457,14 @@ static void offsets_have_derivatives_on_the_axis_of_a_torus(void **state) {
   cag_surface_release(s);
 }
 
-// Moved by whole numbers and back, or turned over twice: a surface of the same kind with the same
-// points. Other moves stay.
+// Translated by whole numbers and back, or flipped twice, a surface has the same kind and points as
+// before. Other transforms are kept.
 static void maps_that_undo_each_other_leave_the_surface(void **state) {
   (void)state;
   seed = 77;
   for (int kind = 0; kind < KINDS; kind++) {
     CagSurface *s = surface_of(kind), *base, *moved, *back;
-    MUST(cag_surface_transpose(s, &base, err)); // moved only as a whole
+    MUST(cag_surface_transpose(s, &base, err)); // transformed only as a whole
     const CagTransform away = cag_translate(cag_vec3(4, -8, 16));
     for (int axis = 0; axis < 3; axis++) {
       const double one = axis == 0 ? -4 : -3, two = axis == 1 ? 8 : 7, three = axis == 2 ? -16 : 5;
@@ -496,7 +496,7 @@ static void flipped_surfaces_have_their_breaks_in_reverse(void **state) {
   seed = 47;
   for (int round = 0; round < 12; round++) {
     const int direction = round % 2;
-    // A spline that is moved, with up to six pieces.
+    // A transformed spline with up to six pieces.
     double knots[12] = {0, 0, 0};
     const size_t n = 3 + (size_t)(round / 2);
     for (size_t i = 3; i < n; i++) knots[i] = knots[i - 1] + uniform(0.2, 1);
@@ -533,8 +533,8 @@ static void flipped_surfaces_have_their_breaks_in_reverse(void **state) {
   }
 }
 
-// The sides of a crease are told apart only exactly at it, also where the parameter of the crease
-// in the flipped surface is rounded.
+// The sides of a crease differ only exactly at its parameter, even if that parameter is rounded in
+// the flipped surface.
 static void flipped_surfaces_are_creased_exactly(void **state) {
   (void)state;
   seed = 53;

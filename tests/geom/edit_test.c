@@ -1,5 +1,5 @@
-// Control points, corners and edges of random surfaces changed: what has to change does, by its
-// definition, and the rest stays. Seams and creases in closed form.
+// Edits of control points, corners, and edges of random surfaces: the edited quantities change as
+// defined, and all others stay. Seams and creases are compared with closed forms.
 
 #include "geom/surface/edit.h"
 #include "geom/surface/reshape.h"
@@ -10,7 +10,7 @@ enum { NU = 5, NV = 6, PU = 2, PV = 3 };
 static const double KU[] = {0.5, 0.5, 0.5, 1.2, 2, 3.1, 3.1, 3.1};
 static const double KV[] = {-1, -1, -1, -1, -0.4, 0.5, 1.5, 1.5, 1.5, 1.5};
 
-// Over a domain that begins at neither 0 nor 1, without inner knots along v where `plain_v`.
+// The domain begins at neither 0 nor 1. With `plain_v`, there are no inner knots along v.
 static CagSurface *random_surface(bool rational, bool plain) {
   CagVec3 p[NU * NV];
   double w[NU * NV], ku[6], kv[8];
@@ -145,7 +145,8 @@ static void only_single_bicubic_patches_have_hermite_corners(void **state) {
 
 // --- Edges ---
 
-// Point, outward derivative across and derivative along a side at a fraction of it.
+// The point, the outward derivative across a side, and the derivative along it, at a fraction of
+// the side.
 static void edge_at(const CagSurface *s, int side, double f, CagVec3 out[3]) {
   CagVec3 d[4];
   const bool of_u = side < 2;
@@ -164,7 +165,7 @@ static void matched_surfaces_continue_each_other(void **state) {
   for (int side = 0; side < 4; side++)
     for (int other = 0; other < 4; other++)
       for (int round = 0; round < 4; round++) {
-        // Shear needs an edge of one piece.
+        // Shear requires an edge of one piece.
         const bool shears = round % 2;
         CagSurface *a = random_surface(round >= 2, shears), *b = random_surface(round == 3, false),
                    *t;
@@ -176,7 +177,7 @@ static void matched_surfaces_continue_each_other(void **state) {
         assert_true(seam.side[0] == side && seam.side[1] == other);
         const CagStatus status = cag_surface_match(a, b, &how, sides, &t, &err);
         if (status) {
-          // The weights of the neighbor would fall below 0.
+          // The weights of the neighbor would become negative.
           assert_string_equal(cag_error_info(err.id)->reason, "negative-weight");
         } else {
           for (int i = 0; i <= 10; i++) {
@@ -190,7 +191,7 @@ static void matched_surfaces_continue_each_other(void **state) {
                      cag_madd(cag_scaled(own[1], how.ratio), shear, own[2]), 1e-9);
           }
           assert_true(t->u0 == b->u0 && t->u1 == b->u1 && t->v0 == b->v0 && t->v1 == b->v1);
-          // Away from the edge the surface is the old one: at the side across it.
+          // Away from the edge, the surface is unchanged: checked on the opposite side.
           for (int i = 0; i <= 4; i++) {
             CagVec3 far[3], was[3];
             edge_at(t, other ^ 1, i / 4.0, far);
@@ -204,7 +205,7 @@ static void matched_surfaces_continue_each_other(void **state) {
       }
 }
 
-// The lines are those of a patch over 0..1 of the degree: its derivative inward is the degree times
+// The rows are those of a patch over 0..1 of the degree. Its inward derivative is the degree times
 // their difference, in homogeneous coordinates.
 static void joined_lines_start_a_neighbor(void **state) {
   (void)state;
@@ -224,7 +225,7 @@ static void joined_lines_start_a_neighbor(void **state) {
     }
     const int along = side < 2 ? PV : PU;
     assert_int_equal(n, shears ? along + 1 : side < 2 ? NV : NU);
-    // The other lines are anything: here the second again.
+    // The other rows are arbitrary; they repeat the second one here.
     for (int k = 0; k <= degree; k++)
       memcpy(net + 4 * n * (size_t)k, lines + (k ? 4 * n : 0), 4 * n * sizeof *net);
     CagVec3 p[5 * NV];
@@ -244,7 +245,8 @@ static void joined_lines_start_a_neighbor(void **state) {
       edge_at(a, side, i / 10.0, own);
       edge_at(b, 0, i / 10.0, next);
       const double shear = how.shear[0] + i / 10.0 * (how.shear[1] - how.shear[0]);
-      // Shear is by the fraction of the edge here as its range is by the parameter.
+      // The shear depends on the fraction of the edge in one case, and on the parameter in the
+      // other.
       near_vec(next[0], own[0], 1e-12);
       near_vec(cag_scaled(next[1], -1), cag_madd(cag_scaled(own[1], how.ratio), shear, own[2]),
                1e-10);
@@ -263,7 +265,7 @@ static void joined_lines_start_a_neighbor(void **state) {
   FAILS(cag_surface_join_lines(a, 1, 3, &how, &lines, &n, &err), "join-shear");
   how.shear[1] = 0;
   cag_surface_release(a);
-  // A line of points beside the edge that are the edge's.
+  // The row of points next to the edge coincides with the edge's.
   const CagVec3 p[] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}};
   OK(cag_surface_bezier(p, NULL, 3, 2, &a, &err));
   FAILS_AT(cag_surface_join_lines(a, 1, 3, &how, &lines, &n, &err), "join-degenerate", 1);
@@ -272,8 +274,8 @@ static void joined_lines_start_a_neighbor(void **state) {
 
 // --- Seams and creases ---
 
-// A square plate over x = -2 .. 0 and a quarter or so of a cylinder of radius r that goes on from
-// it, bent up by an angle.
+// A square plate over x = -2 .. 0, continued by about a quarter of a cylinder of radius r, which is
+// bent upward by an angle.
 static void seams_tell_angle_and_curvature(void **state) {
   (void)state;
   seed = 56;
@@ -283,7 +285,7 @@ static void seams_tell_angle_and_curvature(void **state) {
     CagSurface *plate, *tube, *bent, *turned;
     CagCurve *arc;
     CagTransform frame = cag_transform_identity(), up;
-    // x = r sin t, z = r (1 - cos t): in the frame of x along -Z and y along X, from the center.
+    // x = r sin t, z = r (1 - cos t): in the frame with x along -Z and y along X, about the center.
     frame.planar = false;
     memset(frame.m, 0, sizeof frame.m);
     frame.m[3][3] = 1;
@@ -298,7 +300,7 @@ static void seams_tell_angle_and_curvature(void **state) {
     OK(cag_rotate(cag_vec3(0, -1, 0), angle, cag_vec3(0, 0, 0), &up, &err));
     OK(cag_surface_transform(tube, &up, &bent, &err));
     CagSeam seam;
-    const int turn = round / 2 % 4; // as it is, v turned round, u and v exchanged, both
+    const int turn = round / 2 % 4; // unchanged, v reversed, u and v exchanged, both
     if (turn & 1) {
       OK(cag_surface_flip(bent, &turned, &err));
       cag_surface_release(bent);
@@ -316,7 +318,7 @@ static void seams_tell_angle_and_curvature(void **state) {
     NEAR(seam.gap, 0, 1e-12);
     NEAR(seam.angle, angle, 1e-7);
     NEAR(seam.curvature, 1 / r, 1e-9);
-    // S_u of the plate is 2, of the arc its radius.
+    // |S_u| of the plate is 2, and that of the arc is its radius.
     NEAR(seam.first, sqrt(4 + r * r - 4 * r * cos(angle)), 1e-7);
     assert_true(seam.c0 && seam.g1 == (angle == 0) && !seam.c1 && !seam.g2);
     cag_surface_release(plate);
@@ -326,7 +328,7 @@ static void seams_tell_angle_and_curvature(void **state) {
   }
 }
 
-// The largest gap and angle are those at the end of the edge, where two plates part.
+// The largest gap and angle are at the end of the edge, where two plates separate.
 static void seams_are_measured_up_to_their_ends(void **state) {
   (void)state;
   seed = 58;
@@ -345,7 +347,7 @@ static void seams_are_measured_up_to_their_ends(void **state) {
     NEAR(seam.angle, atan(lift / length), 1e-9);
     assert_true(!seam.c0 && !seam.g1 && !seam.c1 && !seam.g2 && !seam.reversed);
     cag_surface_release(other);
-    // One edge, and a twist about it.
+    // A common edge, and a rotation about it.
     OK(cag_surface_bilinear(cag_vec3(0, 0, 0), cag_vec3(0, length, 0),
                             cag_vec3(9, 0, first ? rise : 0), cag_vec3(9, length, first ? 0 : rise),
                             &other, &err));
@@ -364,7 +366,8 @@ static CagSurface *replaced(CagSurface *old, CagSurface *by) {
   return by;
 }
 
-// The parts of a surface, the second with another range of v, turned and of higher degree.
+// The parts of a surface, the second of which has another domain of v, is rotated, and has a higher
+// degree.
 static void joined_surfaces_run_over_both(void **state) {
   (void)state;
   seed = 59;
@@ -423,7 +426,7 @@ static void creases_have_the_angle_between_their_sides(void **state) {
   (void)state;
   seed = 57;
   for (int round = 0; round < 30; round++) {
-    // A profile of three straight edges, of degree 1 or raised, along y.
+    // A profile of three straight edges, of degree 1 or elevated, extruded along y.
     double turn[2], heading = uniform(-1, 1);
     CagVec3 p[8], at = {0, 0, 0};
     for (int i = 0; i < 4; i++) {
@@ -432,7 +435,7 @@ static void creases_have_the_angle_between_their_sides(void **state) {
       at = cag_madd(at, uniform(0.5, 2), cag_vec3(cos(heading), 0, sin(heading)));
       if (i < 2) heading += turn[i] = i == 0 && round % 3 == 0 ? 0 : uniform(-2, 2);
     }
-    // The knots are evenly spaced or not: only the tangents count.
+    // The knots may be uneven, because only the tangents count.
     const double ku[] = {2, 2, 2.5, 4, 7, 7}, kv[] = {0, 0, 1, 1};
     CagSurface *s, *t;
     OK(cag_surface_nurbs(p, NULL, 4, 2, 1, 1, ku, kv, &s, &err));

@@ -27,15 +27,15 @@ typedef enum Fault { FAULT_NONE, FAULT_MEMORY, FAULT_CALLBACK, FAULT_STOP } Faul
 static struct {
   Fault kind;
   size_t chances, at; // allocations or calls so far; index of the one with the fault
-  long blocks;        // allocated and not freed
-  double result;      // result of the operation, for comparing two runs
+  long blocks;        // allocated and not yet freed
+  double result;      // for comparing two runs
   volatile int stop;
 } fault;
 
-// Operations call this to add a number to their result.
+// Operations call this to combine a number with their result.
 static inline void fault_found(double x) { fault.result = 1.25 * fault.result + x; }
 
-// Tests whether this allocation or call has the fault. A function that has failed keeps failing.
+// Whether this allocation or call has the fault. A function that has failed keeps failing.
 static bool fault_falls(Fault kind) {
   if (fault.kind != kind) return false;
   const size_t chance = ++fault.chances;
@@ -47,13 +47,14 @@ static bool fault_in_allocation(void) {
   return fault_falls(FAULT_MEMORY);
 }
 
-// Blocks lie between two guards, which show writes outside of them.
+// Each block is between two guards, which detect writes outside of it.
 #define GUARD 32
 #define GUARD_BYTE 0x7f
 
 static int fault_problems;
 
-// Takes p, of GUARD bytes, the block, and GUARD bytes, and gives the block.
+// Fills the guards of p, which consists of GUARD bytes, the block, and GUARD bytes. Returns the
+// block.
 static void *guarded(void *p, size_t size) {
   if (!p) return NULL;
   char *block = (char *)p + GUARD;
@@ -63,7 +64,7 @@ static void *guarded(void *p, size_t size) {
   return block;
 }
 
-// The start of the block's allocation, and its size. Counts blocks with damaged guards.
+// Returns the start of the block's allocation, and its size. Counts blocks with damaged guards.
 static void *unguarded(void *block, size_t *size) {
   char *p = (char *)block - GUARD;
   bool whole = true;
@@ -106,7 +107,7 @@ void __wrap_free(void *p) {
   __real_free(p ? unguarded(p, &size) : NULL);
 }
 
-// Functions supplied by the caller call this; it fails if the fault is at this call.
+// Functions supplied by the caller call this. It fails if the fault is at this call.
 static inline CagStatus fault_in_call(CagError *e) {
   if (!fault_falls(FAULT_CALLBACK)) return CAG_OK;
   return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
@@ -138,8 +139,7 @@ static inline bool fault_is_reported(Fault kind, CagStatus status, const CagErro
   }
 }
 
-// Density of the faults: all of the first ones, then intervals that grow in proportion to the index
-// of the fault.
+// The positions of the faults: all of the first ones, then at intervals proportional to the index.
 typedef struct FaultSteps {
   size_t first, part;
 } FaultSteps;

@@ -1,5 +1,5 @@
-// How leaves become triangles: of plane patches that are cut into leaves by hand, so that grids of
-// any counts lie side by side.
+// Triangulation of leaves: plane patches are manually divided into leaves, so that grids with any
+// counts are next to each other.
 
 #include "tests/geom/leaf_support.h"
 
@@ -29,7 +29,7 @@ static void end(Filled *f) {
   free_faces(&f->cut);
 }
 
-// --- What holds for each triangle ---
+// --- Properties of each triangle ---
 
 static const double *uv_of(const CagMesh *m, size_t t, size_t k) {
   return m->uv + 2 * (size_t)m->triangles[3 * t + k];
@@ -55,7 +55,7 @@ static const Leaf *leaf_of(const Filled *f, size_t t) {
   return NULL;
 }
 
-// Triangles of a leaf have its area, and none is turned over.
+// The triangles of a leaf add up to its area, and none is reversed.
 static void check_tiling(const Filled *f) {
   double area[MOST_LEAVES] = {0};
   for (size_t t = 0; t < f->mesh->triangle_count; t++) {
@@ -72,7 +72,7 @@ static void check_tiling(const Filled *f) {
 
 // --- Grids ---
 
-// In both parameters no triangle is wider than a quadrilateral of its leaf.
+// In both parameters, no triangle is wider than a cell of its leaf's grid.
 static void check_widths(const Filled *f, const uint32_t (*planned)[2]) {
   for (size_t t = 0; t < f->mesh->triangle_count; t++) {
     const Leaf *l = leaf_of(f, t);
@@ -86,7 +86,7 @@ static void check_widths(const Filled *f, const uint32_t (*planned)[2]) {
   }
 }
 
-// Vertices inside of leaves are those of their grids, each once.
+// The vertices inside leaves are those of their grids, each once.
 static void check_inner_vertices(const Filled *f) {
   const CagMesh *m = f->mesh;
   size_t inner = 0, all = 0;
@@ -126,9 +126,9 @@ static bool is_at_corner(const Leaf *l, const double *uv) {
   return (uv[0] == l->from[0] || uv[0] == l->to[0]) && (uv[1] == l->from[1] || uv[1] == l->to[1]);
 }
 
-// Two triangles that are a quadrilateral of the grid meet in its shorter diagonal. At the corners
-// of a leaf with a side that is one edge, bands begin with the diagonal from the corner. Returns
-// how many quadrilaterals there were.
+// Two triangles that form a cell of the grid meet at its shorter diagonal. At the corners of a leaf
+// with a side of one edge, bands begin with the diagonal from the corner. Returns the number of
+// cells.
 static size_t check_diagonals(const Filled *f) {
   const CagMesh *m = f->mesh;
   size_t found = 0;
@@ -195,8 +195,8 @@ static double slant_at(const Leaf *l, const double *uv) {
   return uv[s->along] - s->slope * (uv[1 - s->along] - l->from[1 - s->along]);
 }
 
-// Strips side by side, whose slants go on from one to the next: each edge across a strip follows
-// them.
+// Adjacent strips whose slants continue from one to the next: each edge across a strip follows the
+// slant.
 static void edges_across_strips_follow_the_slants(void **state) {
   (void)state;
   seed = 32;

@@ -1,5 +1,5 @@
-// Interpolation and least squares: example 17 of the reference (05b), curves found again from their
-// own points, and bad data.
+// Interpolation and least squares: example 17 of the reference (05b), curves recovered from their
+// own points, and invalid data.
 
 #include "geom/basis/bspline.h"
 #include "geom/basis/regression.h"
@@ -69,7 +69,7 @@ static void a_held_coordinate_agrees_at_every_point(void **state) {
 
 #define MANY 200
 
-// Points of a B-spline of the same knots, at their own parameters: least squares find it again.
+// For points of a B-spline with the same knots and parameters, least squares recovers the spline.
 static void a_spline_is_found_again_from_its_points(void **state) {
   (void)state;
   const CagVec3 net[7] = {{0, 0, 0}, {1, 3, 1},  {3, -2, 2}, {4, 4, 0},
@@ -194,7 +194,7 @@ static CagVec3 random_point(void) {
   return p;
 }
 
-// The parameters of the points over [from, to] by their spacing.
+// The parameters of the points over [from, to], according to the spacing.
 static void spaced_parameters(const CagVec3 *p, size_t n, CagSpacing spacing, double from,
                               double to, double *out) {
   double sum = 0;
@@ -209,8 +209,8 @@ static void spaced_parameters(const CagVec3 *p, size_t n, CagSpacing spacing, do
   for (size_t i = 0; i < n; i++) out[i] = from + (to - from) * out[i] / sum;
 }
 
-// The residuals of a least squares fit are orthogonal to each basis function whose control point is
-// free, whatever the knots.
+// The residuals of a least squares fit are orthogonal to each basis function with a free control
+// point, for any knots.
 static void random_fits_are_least_squares(void **state) {
   (void)state;
   seed = 901;
@@ -245,7 +245,7 @@ static void random_fits_are_least_squares(void **state) {
     CagFitReport r;
     CagNurbsView v;
     if (cag_curve_fit(&d, count, keep, -1, 0, &c, &r, &err)) {
-      // Even knots may have a span without data.
+      // Uniform knots may have a span without data.
       assert_string_equal(cag_error_info(err.id)->reason, "fit-singular");
       assert_true(d.kind == CAG_FIT_OPEN);
       continue;
@@ -280,10 +280,10 @@ static void random_fits_are_least_squares(void **state) {
       near_vec(control(c, 0), p[0], 0);
       near_vec(control(c, count - 1), p[n - 1], 0);
     }
-    // Clamped knots: even ones, or as many data to each span, or the means of parameters.
+    // Clamped knots: uniform, with the same number of data in each span, or averages of parameters.
     const double from = expected[0], to = expected[n - 1];
     const size_t spans = count - (size_t)degree;
-    bool filled = true; // each span of even knots holds a parameter
+    bool filled = true; // each span of uniform knots contains a parameter
     for (size_t j = 0; j < spans; j++) {
       const double low = from + (to - from) * (double)j / (double)spans - 1e-12,
                    high = from + (to - from) * (double)(j + 1) / (double)spans + 1e-12;
@@ -345,7 +345,7 @@ static void random_points_are_passed_at_their_parameters(void **state) {
     for (size_t i = 0; i < n; i++) near_vec(at(c, fmin(c->end, u[i])), p[i], 1e-9);
     cag_curve_release(c);
     if (degree < 3) continue;
-    // Tangents at the ends, or everywhere.
+    // Tangents at the ends, or at all points.
     const bool all = round % 2;
     OK(cag_curve_interpolate(&d, v, all ? n : 2, &c, &err));
     spaced_parameters(p, n, d.spacing, c->start, c->end, u);
@@ -361,7 +361,7 @@ static void random_points_are_passed_at_their_parameters(void **state) {
   }
 }
 
-// x grows along the data: with it held, the curve is a graph that has each point's x at its
+// x increases along the data. With x fixed, the curve is a graph that has each point's x at its
 // parameter.
 static void random_coordinates_are_held(void **state) {
   (void)state;
@@ -415,8 +415,8 @@ static void random_coordinates_are_held(void **state) {
   FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "order-range");
 }
 
-// Evenly spaced data of degree 2 get even knots; data of which the even knots leave one without a
-// basis function of its own get averaged ones.
+// Evenly spaced data of degree 2 get uniform knots. If a point would not have a basis function of
+// its own on uniform knots, averaged knots are used.
 static void even_knots_are_for_even_data(void **state) {
   (void)state;
   const double even[7] = {0, 1, 2, 3, 4, 5, 6}, crowded[7] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 6};

@@ -1,5 +1,5 @@
-// Meshes of flat faces that stand in frames with any columns: outlines keep the tolerance in space
-// with few corners, and vertices have the normal of the plane and their places in the region.
+// Meshes of planar faces in frames with arbitrary columns. Outlines satisfy the tolerance in space
+// with few corners. Vertices have the normal of the plane and their coordinates in the region.
 
 #include "geom/surface/patches.h"
 #include "geom/tessellate/tessellate.h"
@@ -31,7 +31,7 @@ static CagVec3 column(const CagTransform *t, int k) {
 // The ring's outer circle is about the origin, its hole about (x, 0).
 static const double RADIUS = 3, HOLE = 1, HOLE_X = 0.5;
 
-// Checks a chord of one of the circles: how far the arc between its ends stands off.
+// Checks the distance of a chord of one of the circles from its arc.
 static void check_chord(const CagTransform *t, CagVec3 a, CagVec3 b, double tolerance) {
   const CagVec3 center = {hypot(a.x, a.y) > 2.5 ? 0 : HOLE_X, 0, 0};
   const CagVec3 p = cag_sub(a, center), q = cag_sub(b, center), sum = cag_add(p, q);
@@ -50,7 +50,7 @@ static void outlines_keep_the_tolerance_in_space(void **state) {
     const double size = exp(uniform(-3, 3));
     const CagTransform t = random_frame(size);
     const CagVec3 x = column(&t, 0), y = column(&t, 1), normal = cag_unit(cag_cross(x, y));
-    // The greatest length that a unit vector of the region has in space.
+    // The largest length in space of a unit vector of the region.
     double longest = 0;
     for (int i = 0; i < 720; i++) {
       const double angle = i * M_PI / 720;
@@ -81,7 +81,7 @@ static void outlines_keep_the_tolerance_in_space(void **state) {
       assert_true(cag_dot(n, normal) > 0);
       area += cag_norm(n) / 2;
       for (int e = 0; e < 3; e++) {
-        // Edges of one triangle are those of the outline.
+        // An edge that only one triangle has is part of the outline.
         const uint32_t p = v[e], q = v[(e + 1) % 3];
         int others = 0;
         for (size_t j = 0; j < 3 * m->triangle_count; j++)
@@ -93,7 +93,7 @@ static void outlines_keep_the_tolerance_in_space(void **state) {
     }
     const double whole = M_PI * (RADIUS * RADIUS - HOLE * HOLE) * cag_norm(cag_cross(x, y));
     assert_true(fabs(area - whole) <= 2 * M_PI * (RADIUS + HOLE) * longest * how.tolerance);
-    // Steps are even in the region, where the tolerance is shortest.
+    // Steps are uniform in the region, and the largest stretch determines their size.
     const double fewest = M_PI / acos(1 - how.tolerance / longest / RADIUS) +
                           M_PI / acos(1 - how.tolerance / longest / HOLE);
     assert_true((double)corners < 2 * fewest + 8);

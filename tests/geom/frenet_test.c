@@ -1,11 +1,11 @@
-// Curve theory against closed forms: the twisted cubic, cusps, waves, knots.
+// Curve theory compared with closed forms: the twisted cubic, cusps, waves, and knots.
 
 #include "geom/curve/frenet.h"
 #include "geom/curve/function.h"
 #include "random.h"
 #include "support.h"
 
-// The curve (t, t^2, t^3) at t: derivatives 1..3.
+// The derivatives 1..3 of the curve (t, t^2, t^3) at t.
 static void twisted(double t, CagVec3 d[3]) {
   d[0] = cag_vec3(1, 2 * t, 3 * t * t);
   d[1] = cag_vec3(0, 2, 6 * t);
@@ -42,7 +42,7 @@ static void frames_of_lines_and_of_nothing(void **state) {
   FAILS_AT(cag_frenet_of(d, &speed, &f, &err), "singular-point", 0);
 }
 
-// C(t) = t e with t = sin u: d^n sin u. And t = u^2 about u = 1 with C = t^4, which is u^8.
+// C(t) = t e with t = sin u has the derivatives of sin u. C = t^4 with t = u^2, at u = 1, is u^8.
 static void the_chain_rule_holds_to_any_order(void **state) {
   (void)state;
   CagVec3 d[8] = {{0, 0, 0}}, out[8];
@@ -62,7 +62,7 @@ static void the_chain_rule_holds_to_any_order(void **state) {
 
 static void a_triad_that_turns_has_a_skew_derivative(void **state) {
   (void)state;
-  // Turned by t about z and then by 2 t about its own x: the rates are those of the angular
+  // Rotated by t about z, and then by 2 t about its own x axis. The rates are those of the angular
   // velocity (2, sin 2t, cos 2t) in the triad.
   const double t = 0.7, c = cos(t), s = sin(t), C = cos(2 * t), S = sin(2 * t);
   const CagVec3 m[3] = {{c, s, 0}, {-s * C, c * C, S}, {s * S, -c * S, C}};
@@ -83,7 +83,7 @@ static void a_triad_that_turns_has_a_skew_derivative(void **state) {
   FAILS_AMONG(cag_triad_derivative(skew, dm, a, &err), "frame-not-orthonormal", 1, 2);
 }
 
-// Three vectors of length 1 at right angles, from a random turn about each axis.
+// Three perpendicular unit vectors, from random rotations about each axis.
 static void random_triad(CagVec3 m[3]) {
   const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; i++) m[i] = axes[i];
@@ -95,8 +95,9 @@ static void random_triad(CagVec3 m[3]) {
   }
 }
 
-// Derivatives w x m of a triad that turns, and the same with one entry of the matrix changed: the
-// first pair that does not agree is told by its larger number. And each way of not being a triad.
+// The derivatives w x m of a rotating triad, and the same with one entry changed: the error names
+// the larger index of the first pair that does not agree. Also all ways in which vectors are not a
+// triad.
 static void any_derivative_that_is_no_turn_is_refused(void **state) {
   (void)state;
   seed = 61;
@@ -151,12 +152,13 @@ static void contact_with_planes(void **state) {
   OK(cag_curve_contact(c, 0, cag_vec3(0, 0, -3), &k, &err));
   assert_true(k.order == 2 && k.after == -1 && k.before == 1);
   NEAR(k.c[3], -1, 1e-15);
-  // The osculating plane at 1/2 has the normal (3 t^2, -3 t, 1): there l = (t - 1/2)^3.
+  // The osculating plane at 1/2 has the normal (3 t^2, -3 t, 1); the distance from it is (t -
+  // 1/2)^3.
   OK(cag_curve_contact(c, 0.5, cag_vec3(0.75, -1.5, 1), &k, &err));
   assert_true(k.order == 2 && k.after == 1 && k.before == -1);
   NEAR(k.c[3], 1 / sqrt(0.75 * 0.75 + 1.5 * 1.5 + 1), 1e-14);
   cag_curve_release(c);
-  // A circle lies in its plane.
+  // A circle is planar.
   CagTransform frame = cag_transform_identity();
   OK(cag_curve_arc(2, 2, 0, 2 * M_PI, &frame, &c, &err));
   OK(cag_curve_contact(c, 1, cag_vec3(0, 0, 1), &k, &err));
@@ -169,7 +171,7 @@ static void expect_points(const CagParameters *list, const double *t, size_t n, 
   for (size_t i = 0; i < n; i++) NEAR(list->t[i], t[i], tolerance);
 }
 
-// The cusp (x^2, x^3), x = 2 t - 1; the twisted cubic has no special points at all.
+// The cusp (x^2, x^3), x = 2 t - 1. The twisted cubic has no special points.
 static void a_cusp_is_singular_and_nothing_else(void **state) {
   (void)state;
   static const CagVec3 cusp[4] = {{1, -1, 0}, {-1.0 / 3, 1, 0}, {-1.0 / 3, -1, 0}, {1, 1, 0}};
@@ -190,8 +192,8 @@ static void a_cusp_is_singular_and_nothing_else(void **state) {
   cag_curve_release(c);
 }
 
-// (t, sin 40 t): straight where sin 40 t = 0. (t, t^2 , sin 9 t): the torsion is 0 where its third
-// derivative is, cos 9 t = 0; the first is never straight there.
+// (t, sin 40 t) is straight where sin 40 t = 0. (t, t^2, sin 9 t) has torsion 0 where the third
+// derivative of the last coordinate is 0, that is, cos 9 t = 0, and is never straight there.
 static CagStatus wave(void *context, double t, int order, CagVec3 *out, CagError *e) {
   (void)e;
   const int dimension = *(const int *)context;
@@ -231,8 +233,8 @@ static void waves_are_straight_at_their_zeros_and_flat_where_they_twist_back(voi
   cag_curve_release(c);
 }
 
-// A quadratic B-spline of four points on a line and a turn has a straight piece; natural ends and
-// fourth order zeros (t, t^5) count.
+// A quadratic B-spline with four collinear points and a bend has a straight piece. Natural ends and
+// zeros of fourth order, as of (t, t^5), count.
 static void pieces_and_ends(void **state) {
   (void)state;
   static const CagVec3 p[5] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {3, 3, 0}};
@@ -246,7 +248,7 @@ static void pieces_and_ends(void **state) {
   assert_int_equal(s.points[CAG_STRAIGHT].count, 0);
   cag_special_points_free(&s);
   cag_curve_release(c);
-  // (t, t^4): a touch of straightness without a change of sides, at the start.
+  // (t, t^4): at the start, the curvature is 0, but does not change sign.
   static const CagVec3 quartic[5] = {{0, 0, 0}, {.25, 0, 0}, {.5, 0, 0}, {.75, 0, 0}, {1, 1, 0}};
   const double zero = 0;
   c = bezier(quartic, 5, 2);
@@ -254,7 +256,7 @@ static void pieces_and_ends(void **state) {
   expect_points(&s.points[CAG_STRAIGHT], &zero, 1, 0);
   cag_special_points_free(&s);
   cag_curve_release(c);
-  // A line is straight throughout, and nothing is said of its torsion beside its plane.
+  // A line is straight everywhere. It is planar, so its torsion is not reported separately.
   OK(cag_curve_line(cag_vec3(1, 2, 3), cag_vec3(4, 6, 8), 3, &c, &err));
   OK(cag_curve_special_points(c, &s, &err));
   assert_true(s.stretches[CAG_STRAIGHT].count == 2 && s.points[CAG_STRAIGHT].count == 0);
@@ -276,14 +278,14 @@ static double binomial(int n, int k) {
 static void power_coefficients(double f, int power, double low, double high, double *out) {
   for (int i = 0; i <= DEGREE; i++) {
     double sum = 0;
-    for (int j = 0; j <= i && j <= power; j++) // of t^j
+    for (int j = 0; j <= i && j <= power; j++) // for t^j
       sum += binomial(i, j) / binomial(DEGREE, j) * binomial(power, j) * pow(low, power - j) *
              pow(high - low, j);
     out[i] = f * sum;
   }
 }
 
-// (f[0] s^power[0], ...) in the axes of the frame, over s in [low, high].
+// The curve (f[0] s^power[0], ...) in the axes of the frame, over s in [low, high].
 static CagCurve *powers(const double f[3], const int power[3], double low, double high,
                         const CagTransform *frame) {
   double x[3][DEGREE + 1];
@@ -298,7 +300,7 @@ static CagCurve *powers(const double f[3], const int power[3], double low, doubl
   return scaled;
 }
 
-// With u = s^m, (a u, b u^2, c u^3) has the curvature 2 b / a^2 and the torsion 3 c / (a b).
+// With u = s^m, (a u, b u^2, c u^3) has the curvature 2 b / a^2 and the torsion 3 c / (a b) at 0.
 static void frames_of_powers_have_their_limits(void **state) {
   (void)state;
   seed = 501;
@@ -315,7 +317,7 @@ static void frames_of_powers_have_their_limits(void **state) {
           const CagVec3 x = cag_transform_vector(&frame, cag_vec3(1, 0, 0)),
                         y = cag_transform_vector(&frame, cag_vec3(0, 1, 0)),
                         z = cag_transform_vector(&frame, cag_vec3(0, 0, 1));
-          // Backwards along an even power, coming from the left.
+          // From the left, an even power runs backward.
           const double sense = where == 2 && m % 2 == 0 ? -1 : 1;
           CagVec3 tangent;
           OK(cag_curve_tangent(curve, 0, where == 2 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, &tangent,
@@ -342,7 +344,7 @@ static void frames_of_powers_have_their_limits(void **state) {
               straight++;
             }
           }
-          // Contact with the planes of two axes each.
+          // Contact with the planes of each two of the axes.
           const CagVec3 normals[3] = {x, y, z};
           for (int k = 0; k < 3; k++) {
             const int sign = (m + n + q + k) % 2 ? -1 : 1;
@@ -358,7 +360,7 @@ static void frames_of_powers_have_their_limits(void **state) {
   assert_true(cusps >= 10 && twisted >= 6 && straight >= 15);
 }
 
-// Where two powers are joined the looser contact counts, and each side has its own sign.
+// At a joint of two powers, the lower order of contact counts, and each side has its own sign.
 static void contact_at_a_joint_is_the_looser_of_both(void **state) {
   (void)state;
   const CagTransform frame = cag_transform_identity();
@@ -377,7 +379,7 @@ static void contact_at_a_joint_is_the_looser_of_both(void **state) {
         assert_int_equal(k.order, order);
         assert_int_equal(k.after, flip ? -1 : 1);
         assert_int_equal(k.before, flip == 2 ? 0 : left % 2 ? -1 : 1);
-        OK(cag_curve_reverse(c, &r, &err)); // the sides trade places
+        OK(cag_curve_reverse(c, &r, &err)); // exchanges the sides
         OK(cag_curve_contact(r, joint, cag_vec3(0, 1, 0), &k, &err));
         assert_int_equal(k.order, order);
         assert_int_equal(k.before, flip ? -1 : 1);
@@ -388,7 +390,7 @@ static void contact_at_a_joint_is_the_looser_of_both(void **state) {
       }
 }
 
-// At regular points by projections, and the torsion by the determinant of three derivatives.
+// At regular points, from projections; the torsion is a determinant of three derivatives.
 static void random_frames_are_those_of_the_derivatives(void **state) {
   (void)state;
   seed = 502;

@@ -1,15 +1,15 @@
-// Surfaces by functions of a test.
+// Surfaces defined by functions of a test.
 
 #ifndef CAG_TESTS_GEOM_FUNCTION_SUPPORT_H
 #define CAG_TESTS_GEOM_FUNCTION_SUPPORT_H
 
 #include "geom/surface/function.h"
 
-typedef CagStatus (*PlaceEval)(void *context, double u, double v, int n, CagVec3 *out,
+typedef CagStatus (*PointEval)(void *context, double u, double v, int n, CagVec3 *out,
                                CagError *err);
 
-// What eval_row of a CagSurfaceFunction gives, by its eval.
-static inline CagStatus row_by_places(PlaceEval eval, void *context, double u, const double *vs,
+// Implements eval_row of a CagSurfaceFunction by calling its eval.
+static inline CagStatus row_by_points(PointEval eval, void *context, double u, const double *vs,
                                       size_t nv, int n, CagVec3 *out, CagError *err) {
   for (size_t j = 0; j < nv; j++) {
     CagVec3 d[3] = {{0}}, *to = out + (n ? 3 * j : j);

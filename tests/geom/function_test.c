@@ -1,4 +1,4 @@
-// Curves and surfaces by functions of the caller: maps around them, errors, ownership.
+// Curves and surfaces defined by functions of the caller: transforms, errors, and ownership.
 
 #include "function_support.h"
 #include "geom/curve/function.h"
@@ -8,7 +8,7 @@
 #include "geom/surface/function.h"
 #include "support.h"
 
-// A circle of radius 2 in the plane z = 1, which fails behind `limit`.
+// A circle of radius 2 in the plane z = 1, which fails after `limit`.
 typedef struct Circle {
   double limit;
   int released;
@@ -58,7 +58,7 @@ static void a_function_that_fails_stays_with_its_caller(void **state) {
   assert_int_equal(c.released, 0);
 }
 
-// Derivatives of x / z for x = 2 cos t, z = 2 sin t + 3, from differentiating the quotient by hand.
+// The derivatives of x / z for x = 2 cos t, z = 2 sin t + 3, from the quotient rule.
 static void a_projection_has_the_derivatives_of_the_quotient(void **state) {
   (void)state;
   Circle c = {10, 0};
@@ -93,7 +93,7 @@ static void bounds_and_length_are_those_of_the_circle(void **state) {
   cag_curve_release(curve);
 }
 
-// u v over the unit square, and NaN at u = 1 where `broken`.
+// u v over the unit square; NaN at u = 1 if `broken` is set.
 static CagStatus saddle_eval(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
   (void)e;
   const bool broken = *(const bool *)context;
@@ -107,7 +107,7 @@ static CagStatus saddle_eval(void *context, double u, double v, int n, CagVec3 *
 }
 static CagStatus saddle_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  return row_by_places(saddle_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(saddle_eval, context, u, vs, nv, n, out, e);
 }
 
 static void points_that_are_not_finite_are_found(void **state) {
@@ -131,7 +131,7 @@ static void points_that_are_not_finite_are_found(void **state) {
   cag_surface_release(s);
 }
 
-// Curvature s / 4 and torsion 1 / 2 by numbers.
+// The curvature s / 4 and the torsion 1 / 2.
 static CagStatus spiral_eval(void *context, double s, int order, double *k, double *w,
                              CagError *e) {
   (void)context;
@@ -143,7 +143,7 @@ static CagStatus spiral_eval(void *context, double s, int order, double *k, doub
   return CAG_OK;
 }
 
-// The frame's equations again, by what the curve answers.
+// Checks Frenet's equations with the derivatives of the curve.
 static void a_natural_curve_has_its_curvature_and_torsion(void **state) {
   (void)state;
   CagCurve *c;
@@ -156,7 +156,7 @@ static void a_natural_curve_has_its_curvature_and_torsion(void **state) {
     OK(cag_curve_frenet(c, s, &f, &err));
     NEAR(f.curvature, s / 4, 1e-12 * s);
     NEAR(f.torsion, 0.5, 1e-11);
-    // The fourth derivative against differences of the third.
+    // Compares the fourth derivative with differences of the third.
     const double h = 1e-4;
     OK(cag_curve_eval(c, s, 6, CAG_SIDE_RIGHT, d, &err));
     CagVec3 third[4];
@@ -172,7 +172,7 @@ static void a_natural_curve_has_its_curvature_and_torsion(void **state) {
   FAILS(cag_curve_natural(&equations, 40, &frame, 3, &c, &err), "frame-not-orthonormal");
 }
 
-// Sums of a_k cos(k t) + b_k sin(k t), k = 0..WAVES, in each coordinate.
+// Sums of a_k cos(k t) + b_k sin(k t), k = 0..WAVES, for each coordinate.
 enum { WAVES = 9 };
 typedef struct Fourier {
   double a[3][WAVES + 1], b[3][WAVES + 1];
@@ -196,13 +196,13 @@ static CagStatus fourier_eval(void *context, double t, int order, CagVec3 *out, 
   return CAG_OK;
 }
 
-static double random_share(uint64_t *state) {
+static double random_fraction(uint64_t *state) {
   *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
   return (double)(*state >> 11) / 9007199254740992.0;
 }
 
-// The largest value of a coordinate, from the roots of its derivative: bisected between signs that
-// change over steps far shorter than the shortest wave.
+// The largest value of a coordinate, from the roots of its derivative. They are bisected between
+// sign changes at steps far shorter than the shortest wave.
 static double fourier_top(const Fourier *f, int axis, double sign) {
   enum { STEPS = 400 };
   double best = sign * fourier(f, axis, 0, 0);
@@ -226,8 +226,8 @@ static void bounds_of_random_waves_are_those_of_their_summits(void **state) {
     Fourier f = {.calls = 0};
     for (int axis = 0; axis < 3; axis++)
       for (int k = 0; k <= WAVES; k++) {
-        f.a[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
-        f.b[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
+        f.a[axis][k] = (random_fraction(&seed) - 0.5) / (1 + k);
+        f.b[axis][k] = (random_fraction(&seed) - 0.5) / (1 + k);
       }
     CagCurve *c;
     CagBounds box;
@@ -245,7 +245,7 @@ static void bounds_of_random_waves_are_those_of_their_summits(void **state) {
   }
 }
 
-// Kinks, poles of the derivative and flat stretches, where slopes tell nothing.
+// Kinks, poles of the derivative, and constant parts, where slopes are useless.
 static CagStatus rough_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
   (void)context;
   (void)e;
@@ -263,7 +263,7 @@ static void bounds_do_without_derivatives(void **state) {
   OK(cag_curve_function(&function, 3, 0, 1, false, &c, &err));
   OK(cag_curve_bounds(c, &box, &err));
   near_vec(box.min, cag_vec3(-0.7, -sqrt(0.7), 0), 1e-9);
-  near_vec(box.max, cag_vec3(0, 0, 0.25), 1e-7); // y: the root of the last bits of t
+  near_vec(box.max, cag_vec3(0, 0, 0.25), 1e-7); // y: the square root of the rounding error of t
   cag_curve_release(c);
 }
 
@@ -281,8 +281,8 @@ static CagStatus star_eval(void *context, double t, int order, CagVec3 *out, Cag
   return CAG_OK;
 }
 
-// The function is evaluated about once for each point that something needs, however often the
-// shape is moved, measured and meshed.
+// The function is evaluated about once for each required point, no matter how often the shape is
+// moved, measured, and tessellated.
 static void a_solid_of_a_function_asks_for_few_points(void **state) {
   (void)state;
   size_t calls = 0;

@@ -1,6 +1,5 @@
-// General position: operands that coincide by construction, and such that are just apart. Each pair
-// is tried as operands of every operation, at random scales and placements, also within deeper
-// operations.
+// General position: operands that coincide by construction, and operands slightly apart. Each pair
+// is tested with every operation, at random scales and placements, also inside nested operations.
 
 #include "geom/solid/general.h"
 #include "geom/solid/tessellate.h"
@@ -16,7 +15,7 @@ static CagTransform random_turn(void) {
   return cag_rpy(a[0], a[1], a[2]);
 }
 
-// The size of all operands is that of their upright box, so it depends on their turn.
+// The size of all operands is that of their axis-aligned box, so it depends on the rotation.
 static bool upright = false;
 
 static CagTransform random_similarity(void) {
@@ -30,7 +29,7 @@ static CagTransform random_similarity(void) {
   return cag_transform_multiply(&scale, &turn);
 }
 
-// Takes the solid over.
+// Takes ownership of the solid.
 static CagSolid *placed(CagSolid *s, const CagTransform *t) {
   CagSolid *out;
   OK(cag_solid_transform(s, t, &out, &err));
@@ -49,7 +48,7 @@ static CagSolid *turned(CagSolid *s, CagVec3 axis, double angle, CagVec3 about) 
   return placed(s, &t);
 }
 
-// Takes both over.
+// Takes ownership of both.
 static CagSolid *combined(CagSetOperation op, CagSolid *a, CagSolid *b) {
   CagSolid *out = NULL;
   OK(cag_solid_combine(op, (CagSolid *[]){a, b}, 2, NULL, &out, &err));
@@ -98,7 +97,7 @@ static CagSolid *quadric(const double c[10]) {
   return s;
 }
 
-// An ellipse carried along a direction and twisted, its curve from a random angle on.
+// An ellipse swept along a direction and twisted. Its curve begins at a random angle.
 static CagSolid *twisted(double a, double b, CagVec3 along, double twist) {
   const CagTransform level = cag_transform_identity();
   CagCurve *c;
@@ -127,7 +126,7 @@ static CagSolid *tetrahedron(const CagVec3 p[4]) {
   return s;
 }
 
-// Takes the operands over. Where both of them are does not matter, nor how large they are.
+// Takes ownership of the operands. Their location and size do not matter.
 static void expect(CagSolid *a, CagSolid *b, bool general, const char *what) {
   static const CagSetOperation operations[] = {CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION};
   const CagTransform together = random_similarity(), place = random_similarity(),
@@ -140,7 +139,7 @@ static void expect(CagSolid *a, CagSolid *b, bool general, const char *what) {
     b = swap;
   }
   if (uniform(0, 1) < 0.3) {
-    // In coordinates of another operation.
+    // In the coordinates of another operation.
     OK(cag_transform_inverse(&inner, &back, &err));
     b = combined(CAG_UNION, placed(b, &back), moved(sphere(0.013), 0.02, 0.01, 0));
     b = placed(b, &inner);
@@ -163,8 +162,8 @@ static void lone_solids_are_in_general_position(void **state) {
   }
 }
 
-// The roof of a box of size 2, and a face of a second body over it: in its plane, a bit above, and
-// in its plane but beside it.
+// The roof of a box of size 2, and a face of a second body: in its plane, slightly above, and in
+// its plane but beside it.
 static void flat_faces(void **state) {
   (void)state;
   seed = 71;
@@ -192,7 +191,7 @@ static void flat_faces(void **state) {
   }
 }
 
-// Boxes that are not turned, of which each has a face in a plane of the other, or a bit beside it.
+// Axis-parallel boxes, each with a face in a plane of the other, or slightly beside it.
 static void boxes_along_the_axes(void **state) {
   (void)state;
   seed = 78;
@@ -208,8 +207,8 @@ static void boxes_along_the_axes(void **state) {
   }
 }
 
-// How far two triangles of the plane z = 0 are apart across one of their edges: negative if they
-// overlap, by which the nearest of them would have to move.
+// The distance between two triangles of the plane z = 0 across one of their edges. It is negative
+// if they overlap; its size is the shortest translation that separates them.
 static double apart_by(const CagVec3 p[3], const CagVec3 q[3]) {
   double most = -INFINITY;
   for (int side = 0; side < 2; side++)
@@ -225,7 +224,7 @@ static double apart_by(const CagVec3 p[3], const CagVec3 q[3]) {
   return most;
 }
 
-// Tetrahedra on both sides of a plane, whose bases lie in it.
+// Tetrahedra on both sides of a plane, with their bases in it.
 static void triangles_of_one_plane_coincide_where_they_overlap(void **state) {
   (void)state;
   seed = 76;
@@ -244,7 +243,7 @@ static void triangles_of_one_plane_coincide_where_they_overlap(void **state) {
       p[side][3] = cag_vec3(x, y, side ? -1.1 : 0.9);
       const CagVec3 n = cag_cross(cag_sub(p[side][1], p[side][0]), cag_sub(p[side][2], p[side][0]));
       area = fmin(area, fabs(n.z));
-      // Faces look outwards.
+      // Faces are oriented outward.
       if ((n.z < 0) != (side == 1)) {
         const CagVec3 swap = p[side][1];
         p[side][1] = p[side][2];
@@ -259,8 +258,8 @@ static void triangles_of_one_plane_coincide_where_they_overlap(void **state) {
   assert_true(tried[0] > 60 && tried[1] > 60);
 }
 
-// Curved faces of one surface, cut and turned in different ways. Then a bit larger, and beside each
-// other on the same surface.
+// Curved faces of one surface, trimmed and rotated differently. Then one slightly larger, and both
+// next to each other on the same surface.
 static void curved_faces(void **state) {
   (void)state;
   seed = 72;
@@ -291,7 +290,7 @@ static void curved_faces(void **state) {
       b = moved(column(grown, grown * 0.6, cag_vec3(0.7 * 1.1, -0.4 * 1.1, 1.1)), 0.7 * lift,
                 -0.4 * lift, lift);
       break;
-    default: // parameters that cross at a slant
+    default: // oblique parameter lines
       a = twisted(1, 0.4, up, 1.5);
       b = twisted(grown, grown * 0.4, cag_vec3(0, 0, 1.17), 1.5 * 1.17);
       b = turned(moved(b, 0, 0, lift), up, 1.5 * lift, o);
@@ -301,7 +300,7 @@ static void curved_faces(void **state) {
   }
 }
 
-// A tetrahedron on a random triangle of a fine mesh is the only part that coincides with it.
+// Only a tetrahedron on a random triangle of a fine mesh coincides with the mesh.
 static void single_triangles_of_fine_meshes(void **state) {
   (void)state;
   seed = 73;
@@ -333,8 +332,8 @@ static void single_triangles_of_fine_meshes(void **state) {
     }
     expect(cag_solid_retain(body), b, k % 2 == 1, "one triangle");
   }
-  // Two fine meshes that have one triangle in common: a mesh, and its mirror image in one of its
-  // own triangles; and the image a bit away.
+  // Two fine meshes with one common triangle: a mesh, and its reflection in the plane of one of its
+  // triangles. Also with a small gap.
   for (int k = 0; k < 16; k++) {
     const uint32_t *t = m->triangles + 3 * (size_t)uniform(0, (double)m->triangle_count);
     const CagVec3 a = m->positions[t[0]], u = cag_sub(m->positions[t[1]], a),
@@ -357,8 +356,8 @@ static void single_triangles_of_fine_meshes(void **state) {
   cag_solid_release(ball);
 }
 
-// The limits: faces closer than 1e-4 of the size of all, at an angle below 1e-3, that overlap in
-// more than 1e-9 of the squared size.
+// The limits: faces closer than 1e-4 of the total size, at an angle below 1e-3, whose overlap is
+// larger than 1e-9 of the squared size.
 static void limits_of_coincidence(void **state) {
   (void)state;
   seed = 74;
@@ -367,21 +366,21 @@ static void limits_of_coincidence(void **state) {
     const bool general = k % 2;
     const CagVec3 o = cag_vec3(0, 0, 0), up = cag_vec3(0, 0, 1);
     const double factor = general ? 1.25 : 0.8;
-    // The distance: spheres with one center, radius and size known.
+    // The distance: concentric spheres of known radius and size.
     double size = 2 * sqrt(3), gap = factor * 1e-4 * size;
     expect(sphere(1), sphere(1 - gap), general, "distance of spheres");
-    // Of boxes, which span 2 by 2 by 4 together.
+    // Boxes that together span 2 by 2 by 4.
     size = sqrt(24), gap = factor * 1e-4 * size;
     CagSolid *b = turned(moved(box(1, 1, 2), 0, 0, 2 + gap), up, uniform(0, 6), o);
-    // The angle: two equal tetrahedra, the second turned about an edge parallel through the middle
-    // of a face.
+    // The angle: two equal tetrahedra, the second of which is rotated about an edge parallel
+    // through the center of a face.
     const CagVec3 p[4] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}, {0.1, 0.2, 1}};
     const CagVec3 q[4] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}, {0.2, 0.1, -1}};
     expect(box(2, 2, 2), b, general, "distance of boxes");
     const double way = uniform(0, 6), tilt = factor * 1e-3;
     expect(tetrahedron(p), turned(tetrahedron(q), cag_vec3(cos(way), sin(way), 0), tilt, o),
            general, "angle");
-    // The middle of the face is on the plane of the half space.
+    // The center of the face is on the plane of the half space.
     const double lean = asin(factor * 1e-3);
     const CagVec3 normal = cag_vec3(sin(lean) * cos(way), sin(lean) * sin(way), cos(lean));
     expect(tetrahedron(p), half_space(o, normal), general, "angle of a half space");
@@ -389,7 +388,7 @@ static void limits_of_coincidence(void **state) {
     gap = factor * 1e-4 * size * (k % 4 < 2 ? 1 : -1);
     expect(tetrahedron(p), half_space(cag_vec3(0, 0, gap), up), general,
            "distance of a half space");
-    // The area: boxes that stand on one plane and overlap in a strip as long as both.
+    // The area: boxes on a common plane that overlap in a strip as long as both.
     const double width = (general ? 0.8 : 1.25) * 1e-9 * (2 * 2 + 1 + 2 * 2);
     expect(box(1, 1, 1), moved(box(1, 1, 1), 1 - width, 0, 1), general, "area");
   }
@@ -407,17 +406,17 @@ static void sides_of_forms(void **state) {
     for (int i = 0; i < 10; i++) d[i] = sense * scale * c[i];
     const int which = k / 2 % 10;
     if (general) d[which] += sense * scale * (c[which] > 0 ? 0.1 : -0.1);
-    // A ball in the middle tells the size.
+    // A ball in the middle determines the size.
     CagSolid *a = combined(CAG_INTERSECTION, sphere(0.5), quadric(c));
     expect(a, quadric(d), general, "two quadrics");
-    // A quadric and faces of it.
+    // A quadric and its faces.
     const double r = uniform(0.5, 2), to = general ? 1.004 * r : r;
     const double ball[10] = {sense, sense, sense, 0, 0, 0, 0, 0, 0, -sense * to * to};
     const double tube[10] = {sense * scale,           sense * scale, 0, 0, 0, 0, 0, 0, 0,
                              -sense * scale * to * to};
     expect(sphere(r), quadric(ball), general, "a ball and its form");
     expect(moved(cylinder(2, r, r), 0, 0, -1), quadric(tube), general, "a cylinder and its form");
-    // A plane twice.
+    // The same plane twice.
     const CagVec3 n = cag_unit(cag_vec3(c[0], c[1], c[2])), p = cag_scaled(n, c[3]);
     a = combined(CAG_INTERSECTION, sphere(2), half_space(p, n));
     const CagVec3 at = general ? cag_madd(p, 0.01, n) : p;

@@ -1,4 +1,4 @@
-// Surfaces fitted to grids of points: the vectors of the reference (06b, 4) and identities.
+// Surfaces fitted to grids of points: golden numbers of the reference (06b, 4), and identities.
 
 #include "geom/surface/loft.h"
 #include "tests/geom/surface_support.h"
@@ -227,7 +227,7 @@ static void interpolation_meets_every_point(void **state) {
       assert_point(surface_at(s, i / 6.0, j / 5.0), data[6 * i + j], 1e-12, "uniform");
   assert_consistent(s);
   cag_surface_release(s);
-  // By the mean chords the corners and edges are still met where they are.
+  // With the mean chords, the corners and edges are still interpolated.
   g.spacing = CAG_GRID_CHORD;
   MUST(cag_surface_interpolate(&g, &s, err));
   assert_point(surface_at(s, 0, 0), data[0], 1e-12, "corner");
@@ -238,12 +238,13 @@ static void interpolation_meets_every_point(void **state) {
   g.degree_u = 3;
   MUST_FAIL(cag_surface_fit(&g, 8, 4, &s, NULL, err), "fit-underdetermined");
   for (int i = 0; i < 42; i++) data[i] = cag_vec3(1, 2, 3);
-  MUST(cag_surface_fit(&g, 4, 4, &s, NULL, err)); // a point: even parameters
+  MUST(cag_surface_fit(&g, 4, 4, &s, NULL, err)); // a point: uniform parameters
   cag_surface_release(s);
 }
 
-// Wigley's hull y = 5 (1 - (x/50)^2) (1 - (z/6)^2): with control points at x = -50, 0, 50 those of
-// 1 - s^2 over -1..1, which are 0, 2, 0, times those over 0..1, which are 1, 1, 0.
+// Wigley's hull y = 5 (1 - (x/50)^2) (1 - (z/6)^2). The control points are at x = -50, 0, 50. Their
+// heights are those of 1 - s^2 over -1..1, which are 0, 2, 0, times those over 0..1, which are 1,
+// 1, 0.
 enum { STATIONS = 8, DEPTHS = 7 };
 static void wigley(CagVec3 *data) {
   static const double x[STATIONS] = {-50, -41, -30, -12, 5, 22, 37, 50};
@@ -283,7 +284,7 @@ static void a_hull_in_its_stations_is_found_again(void **state) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       const double *h = view.homogeneous + 4 * (3 * i + j);
-      assert_true(h[0] == planes[i]); // to the bit: it is not solved for
+      assert_true(h[0] == planes[i]); // exactly, because it is not an unknown
       assert_near(h[1], i == 1 && j < 2 ? 10 : 0, 1e-12, "y");
       assert_near(h[2], -3 * j, 1e-12, "z");
     }
@@ -297,7 +298,7 @@ static void a_hull_in_its_stations_is_found_again(void **state) {
   cag_surface_release(s);
 }
 
-// Lengths times a power of two give the same fit in another unit, to the bit.
+// Multiplying lengths by a power of two results in exactly the same fit in another unit.
 static void a_fit_does_not_depend_on_the_unit(void **state) {
   (void)state;
   enum { R = 9, S = 7, N = R * S };
@@ -359,7 +360,8 @@ static void planes_that_cannot_hold_the_data_are_refused(void **state) {
   MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "coordinate-turns");
 }
 
-// Without planes: the border's own curves, the coordinate within the slack.
+// Without planes, the border is that of its own curves, and the fixed coordinate is within the
+// slack.
 static void parameters_move_to_the_coordinate(void **state) {
   (void)state;
   CagVec3 data[9 * 8];

@@ -1,6 +1,6 @@
-// Fits that hold a coordinate, compared with a second implementation: how parameters move to where
-// the surface has the data's coordinate, along which lines they are corrected, and which point of
-// the data is to blame where that fails.
+// Fits that hold a coordinate, compared with a second implementation: how parameters move to points
+// of the surface with the coordinate of the data, along which lines they are corrected, and which
+// data point an error names.
 
 #include <stdio.h>
 
@@ -48,13 +48,13 @@ static void set_points(Subject *s, double noise) {
         x[2] = (3 + a[2] * up) * sin(at);
       }
       for (int k = 0; k < 3; k++) x[k] += uniform(-noise, noise);
-      // Any of the coordinates may be the one that grows.
+      // Any of the coordinates may be the increasing one.
       const int first = s->g.hold == CAG_GRID_HOLD_X ? 0 : s->g.hold == CAG_GRID_HOLD_Y ? 2 : 1;
       s->points[i * s->g.s + j] = cag_vec3(x[first], x[(first + 1) % 3], x[(first + 2) % 3]);
     }
 }
 
-// Sizes, degrees, and knots that begin anywhere.
+// Sizes, degrees, and knots with any start.
 static void set_shape(Subject *s) {
   *s = (Subject){0};
   s->g.r = (size_t)whole(6, MOST - 1);
@@ -82,7 +82,7 @@ static void assert_says(const char *text) {
   if (!strstr(err.message, text)) fail_msg("\"%s\" has no \"%s\"", err.message, text);
 }
 
-// Larger or smaller by `factor`, which may be negative.
+// Scales the data by `factor`, which may be negative.
 static void scale(Subject *s, double factor) {
   for (size_t i = 0; i < s->g.r * s->g.s; i++) s->points[i] = cag_scaled(s->points[i], factor);
 }
@@ -114,7 +114,7 @@ static double moved(const Subject *s, const CagSurface *f, int k, double t, doub
   return t;
 }
 
-static void look(const CagSurface *f, const double t[2], CagVec3 d[3]) {
+static void evaluate(const CagSurface *f, const double t[2], CagVec3 d[3]) {
   CagVec3 e[4];
   OK(cag_surface_eval(f, t[0], t[1], 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, e, &err));
   d[0] = e[0];
@@ -122,13 +122,13 @@ static void look(const CagSurface *f, const double t[2], CagVec3 d[3]) {
   d[2] = e[cag_partial(1, 0, 1)];
 }
 
-// By steepest descent, in parts of the ranges; each step is halved until it helps. The number of
-// steps, or -1: it comes no nearer.
+// Steepest descent, relative to the domains; each step is halved until it improves the result.
+// Returns the number of steps, or -1 if it does not converge.
 static int match(const Subject *s, const CagSurface *f, size_t i, double slack, double t[2]) {
   const double lo[2] = {f->u0, f->v0}, hi[2] = {f->u1, f->v1};
   for (int steps = 0; steps < 50; steps++) {
     CagVec3 d[3];
-    look(f, t, d);
+    evaluate(f, t, d);
     const double gap = held(s, s->points[i]) - held(s, d[0]);
     if (fabs(gap) <= slack) return steps;
     double g[2], square = 0;
@@ -144,7 +144,7 @@ static int match(const Subject *s, const CagSurface *f, size_t i, double slack, 
     for (int h = 0; h < 30 && !(left < fabs(gap)); h++, part /= 2) {
       for (int k = 0; k < 2; k++)
         to[k] = moved(s, f, k, t[k], part * gap * g[k] / square * (hi[k] - lo[k]));
-      look(f, to, d);
+      evaluate(f, to, d);
       left = fabs(held(s, s->points[i]) - held(s, d[0]));
     }
     if (!(left < fabs(gap))) return -1;
@@ -154,8 +154,8 @@ static int match(const Subject *s, const CagSurface *f, size_t i, double slack, 
   return -1;
 }
 
-// Where `from` and the surface must lead, and how many steps that takes. Fails as the reason says,
-// at the point `at`.
+// Computes the parameters to which `from` and the surface must lead, and the number of steps.
+// Returns the expected reason of an error and the point `at`, if it fails.
 static const char *match_all(const Subject *s, const Fit *from, double slack, double t[POINTS][2],
                              int *steps, size_t *at, size_t *before) {
   *steps = 0;
@@ -193,11 +193,11 @@ static void check_parameters(const Subject *s, const Fit *f, double t[POINTS][2]
     }
 }
 
-// One correction: along the direction in which the coordinate stays, as far as brings the tangent
-// nearest; on a border only where the border has one coordinate.
+// One correction: moves in the direction in which the coordinate is constant, to the closest point
+// of the tangent; on a border, only if the whole border has one coordinate.
 static void correct(const Subject *s, const CagSurface *f, size_t i, double t[2]) {
   CagVec3 d[3];
-  look(f, t, d);
+  evaluate(f, t, d);
   const double range[2] = {f->u1 - f->u0, f->v1 - f->v0};
   const double rise[2] = {held(s, d[1]), held(s, d[2])};
   double way[2] = {-rise[1], rise[0]};
@@ -224,7 +224,7 @@ static void parameters_move_as_the_coordinate_says(void **state) {
     s.g.closed[1] = round % 4 == 2;
     s.g.spacing = round / 4 % 2 ? CAG_GRID_UNIFORM : CAG_GRID_MEAN;
     set_points(&s, round % 5 == 4 ? 0.3 : 0.02);
-    // The ends of some tubes are level, or nearly so.
+    // The ends of some tubes are horizontal, or nearly so.
     const double tilt = round % 3 ? pow(10, uniform(-12, -7)) : 0;
     for (size_t i = 0; i < s.g.r * s.g.s && round % 3 < 2; i++)
       for (int k = 0; k < 2; k++)
@@ -282,7 +282,7 @@ static void parameters_move_as_the_coordinate_says(void **state) {
   assert_true(matched > 300 && corrected > 300 && stuck > 50 && turned > 5);
 }
 
-// Without a slack the coordinate agrees but for rounding of its largest number.
+// Without slack, the coordinate agrees up to rounding relative to its largest value.
 static void rounding_is_allowed_without_a_slack(void **state) {
   (void)state;
   seed = 72;
@@ -318,7 +318,7 @@ static void rounding_is_allowed_without_a_slack(void **state) {
 
 // --- Planes ---
 
-// The mean over a line of points, and over their parameters.
+// The mean of a line of points, or of their parameters.
 static double mean(const Subject *s, int k, size_t line, bool of_parameters) {
   const size_t n = k ? s->g.r : s->g.s;
   double sum = 0;
@@ -329,8 +329,8 @@ static double mean(const Subject *s, int k, size_t line, bool of_parameters) {
   return sum / (double)n;
 }
 
-// The coordinate at a parameter: on the line through the stations next to it, the later of those
-// with one parameter.
+// The coordinate at a parameter, interpolated between the adjacent stations. If stations have the
+// same parameter, the last one counts.
 static double station(const Subject *s, int k, double t) {
   const size_t n = k ? s->g.s : s->g.r;
   for (size_t i = 1; i < n; i++) {
@@ -345,8 +345,8 @@ static double station(const Subject *s, int k, double t) {
   return mean(s, k, n - 1, false);
 }
 
-// Parameters of stations in part of the range, some of them repeated, and of single points beside
-// these.
+// The parameters of the stations, over a part of the domain and sometimes repeated; single points
+// differ from them.
 static void set_parameters(Subject *s, int k, double *out) {
   const size_t p = (size_t)(k ? s->g.degree_v : s->g.degree_u), n = k ? s->g.s : s->g.r;
   const double lo = s->knots[k][p], hi = s->knots[k][s->count[k]];
@@ -411,7 +411,7 @@ static void planes_pass_the_stations(void **state) {
       assert_int_equal(err.index, bad);
       refused++;
     }
-    // Noise that turns back is told elsewhere.
+    // Another test covers noise that makes stations descend.
     if (status) continue;
     for (size_t i = 0; i < count; i++) NEAR(f.report.planes[i], expected[i], 1e-11);
     done++;
@@ -420,7 +420,8 @@ static void planes_pass_the_stations(void **state) {
   assert_true(done > 100 && refused > 10);
 }
 
-// The planes lie across the direction in which the coordinate changes more from end to end.
+// The planes are perpendicular to the direction in which the coordinate changes more from end to
+// end.
 static void planes_follow_the_larger_extent(void **state) {
   (void)state;
   seed = 74;
@@ -455,7 +456,7 @@ static void planes_follow_the_larger_extent(void **state) {
 
 // --- Messages ---
 
-// Of degree 1 by 1 over 0, 1, ..., whose x are multiples of a half, so that nothing rounds.
+// Degree 1 by 1 over 0, 1, ...; x is a multiple of a half, so there is no rounding.
 static void set_steps(Subject *s, double step) {
   *s = (Subject){.g = {.r = 9, .s = 4, .degree_u = 1, .degree_v = 1, .hold = CAG_GRID_HOLD_X}};
   s->g.spacing = CAG_GRID_UNIFORM;
@@ -480,7 +481,7 @@ static void coordinates_off_by_the_slack_are_kept(void **state) {
         s.g.plane_count = 5;
         s.points[i].x += i % 2 ? 0.25 : -0.25;
         CagStatus status = fit(&s, over ? 0.2499 : 0.25, 0, &f);
-        // Beyond the planes it cannot be met.
+        // Points beyond the planes cannot be matched.
         const double x = s.points[i].x * (sign ? -1 : 1);
         if (over && (x < 0 || x > 4)) {
           assert_int_not_equal(status, CAG_OK);
@@ -501,7 +502,7 @@ static void coordinates_off_by_the_slack_are_kept(void **state) {
       }
 }
 
-// Of parameters given in order, or falling by more or less than a part in 1e9 of their range.
+// Given parameters that ascend, or descend by more or less than 1e-9 of their range.
 static void parameters_may_fall_by_rounding(void **state) {
   (void)state;
   seed = 75;
@@ -521,7 +522,7 @@ static void parameters_may_fall_by_rounding(void **state) {
       }
       s.g.parameters[d] = given[d];
       if (d != k) continue;
-      // Not on the edge of this direction.
+      // Not on an edge in this direction.
       size_t i = 0;
       while (on_border(&s, i, d) || on_border(&s, i - (d ? 1 : s.g.s), d))
         i = (size_t)whole(0, (int)(s.g.r * s.g.s) - 1);
@@ -566,7 +567,7 @@ static void a_coordinate_of_zero_is_held(void **state) {
   end(&f);
 }
 
-// By how much a station may fall below the one before.
+// The amount by which a station may fall below the previous one.
 static void stations_that_turn_back_are_told(void **state) {
   (void)state;
   static const double PLANES[2][5] = {{-1, 1, 2, 3, 5}, {1, -1, -2, -3, -5}};
@@ -609,7 +610,7 @@ static void planes_that_do_not_follow_each_other_are_told(void **state) {
         s.g.lines = CAG_GRID_PLANES_U;
         s.g.planes = planes;
         s.g.plane_count = 5;
-        // A first step back makes the planes fall, where the next one grows.
+        // After a first step back, the planes descend, and the next step ascends.
         FAILS_AT(fit(&s, 1, 0, &f), "planes-not-monotone", i == 1 && !equal ? 2 : (long)i);
         if (i > 1 || equal) {
           char text[100];

@@ -1,5 +1,5 @@
-// Surfaces through grids of random points, with the parameters and knots of the definitions, and
-// what grids are refused.
+// Surfaces through grids of random points, with parameters and knots according to the definitions,
+// and grids that are rejected.
 
 #include <stdio.h>
 
@@ -20,14 +20,14 @@ static int whole(int low, int high) { return low + (int)uniform(0, high - low + 
 static int degree_of(const Subject *s, int k) { return k ? s->g.degree_v : s->g.degree_u; }
 static size_t lines_of(const Subject *s, int k) { return k ? s->g.s : s->g.r; }
 
-// Points of a patch, a tube or a torus. Of some, the first row is one point.
+// Points of a patch, a tube, or a torus. In some cases, the first row is a single point.
 static void set_points(Subject *s, bool pole) {
   *s = (Subject){.g = s->g};
   s->g.r = (size_t)whole(5, MOST);
   s->g.s = (size_t)whole(5, MOST);
   s->g.degree_u = whole(1, 4);
   s->g.degree_v = whole(1, 4);
-  for (int k = 0; k < 2; k++) // of odd degrees and of even ones any number of points will do
+  for (int k = 0; k < 2; k++) // degree 4 is not used in closed directions
     if (s->g.closed[k] && degree_of(s, k) == 4) *(k ? &s->g.degree_v : &s->g.degree_u) = 2;
   for (size_t i = 0; i < s->g.r; i++)
     for (size_t j = 0; j < s->g.s; j++) {
@@ -45,7 +45,7 @@ static void set_points(Subject *s, bool pole) {
     }
 }
 
-// Of every second subject, own parameters.
+// Every second subject has parameters of its own.
 static void set_parameters(Subject *s, int k) {
   double at[MOST] = {0};
   const size_t n = lines_of(s, k);
@@ -54,8 +54,8 @@ static void set_parameters(Subject *s, int k) {
     s->parameters[k][i] = at[k ? i % s->g.s : i / s->g.s];
 }
 
-// The part of a line of points up to one of them; all of one place are spread evenly. A closed line
-// has the way back.
+// The length of a line of points up to one of them, as a fraction. Coincident points are
+// distributed evenly. A closed line includes the way back.
 static double part_of(const Subject *s, int k, size_t line, size_t upto) {
   const size_t n = lines_of(s, k), steps = s->g.closed[k] ? n : n - 1;
   double part = 0, all = 0;
@@ -82,7 +82,7 @@ static double parameter_of(const Subject *s, int k, size_t i) {
   return s->g.knots[k] ? s->knots[k][0] + sum * (s->knots[k][2 * MOST - 1] - s->knots[k][0]) : sum;
 }
 
-// The knots between the ends are means of as many parameters as the degree is.
+// The knots between the ends are averages of `degree` parameters.
 static void check_knots(const Subject *s, int k, const double *knots, double tolerance) {
   const size_t n = lines_of(s, k), p = (size_t)degree_of(s, k);
   for (size_t i = 0; i < n + p + 1; i++) {
@@ -147,7 +147,7 @@ static void surfaces_pass_all_points(void **state) {
   assert_true(given > 40 && poles > 30);
 }
 
-// Knots of the caller's, with parameters of theirs or by the spacing over the range of the knots.
+// Given knots, with given parameters or with those of the spacing over the domain of the knots.
 static void given_knots_are_kept(void **state) {
   (void)state;
   seed = 22;
@@ -159,7 +159,7 @@ static void given_knots_are_kept(void **state) {
     for (int k = 0; k < 2; k++) {
       const size_t n = lines_of(&s, k), p = (size_t)degree_of(&s, k);
       const double from = uniform(-3, 3), wide = uniform(1, 4);
-      // Even knots, at whose averages even points lie near enough.
+      // Uniform knots, whose averages are close enough to evenly spaced points.
       for (size_t i = 0; i < n + p + 1; i++) {
         const double at = i <= p ? 0 : i >= n ? 1 : (double)(i - p) / (double)(n - p);
         s.knots[k][i] = from + wide * at;
@@ -224,7 +224,7 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
         if (with) cag_grid_report_free(&report);
       }
       s.g = good;
-      // Parameters must grow.
+      // Parameters must ascend.
       for (size_t i = 1; i < *points; i++)
         for (int equal = 0; equal < 2; equal++) {
           for (size_t j = 0; j < 20; j++) s.parameters[k][j] = (double)(k ? j % 5 : j / 5);
@@ -235,7 +235,7 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
         }
       s.g = good;
     }
-    // Of fits, the number of control points.
+    // For fits, the number of control points.
     for (size_t n = 0; n < 7; n++) {
       const size_t count[2] = {k ? 4 : n, k ? n : 4};
       s.g.degree_u = s.g.degree_v = 1;
@@ -251,7 +251,7 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
       assert_int_equal(err.index, k);
     }
     s.g = good;
-    // Parameters beyond the knots by more than rounding.
+    // Parameters outside the knots by more than rounding.
     for (int over = 0; over < 4; over++)
       for (size_t i = 0; i < 20; i++) {
         set_parameters(&s, k);
@@ -279,8 +279,8 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
   }
 }
 
-// Of a row of points at one place, which the surface passes, the parameters stay: there is no way
-// to go.
+// Where a row of points coincides and the surface passes through it, the parameters do not change,
+// because there is no direction in which to move.
 static void poles_keep_their_parameters(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {

@@ -1,5 +1,5 @@
-// Fits to grids of random points: at the parameters that they report, what is left over is
-// orthogonal to all functions of the basis whose control points were free.
+// Fits to grids of random points. With the reported parameters, the residuals are orthogonal to all
+// basis functions with free control points.
 
 #include "geom/surface/loft.h"
 #include "tests/geom/random.h"
@@ -17,7 +17,7 @@ typedef struct Subject {
 
 static double entry(CagVec3 p, int i) { return i == 0 ? p.x : i == 1 ? p.y : p.z; }
 
-// The surface whose height is the function of number i of the basis of a direction.
+// The surface whose height is basis function number i of a direction.
 static CagSurface *function_of(const Subject *s, int direction, size_t i) {
   CagVec3 net[MOST * MOST];
   for (size_t k = 0; k < s->count[0] * s->count[1]; k++) {
@@ -37,7 +37,7 @@ static CagSurface *function_of(const Subject *s, int direction, size_t i) {
   return out;
 }
 
-// Values of the basis of a direction at all points: [function * rows + point].
+// The values of the basis of a direction at all points: [function * rows + point].
 static void fill(const Subject *s, int direction, double *out) {
   const size_t rows = s->g.r * s->g.s;
   for (size_t i = 0; i < s->count[direction]; i++) {
@@ -55,7 +55,8 @@ static bool is_end(const Subject *s, int direction, size_t i, size_t n) {
   return !s->g.closed[direction] && (i == 0 || i + 1 == n);
 }
 
-// edges: the edges were fitted to the border alone, and the corners to those of the data.
+// If `edges` is set, the edges were fitted to the border alone, and the corners are those of the
+// data.
 static void check(const Subject *s, bool edges) {
   const size_t rows = s->g.r * s->g.s;
   static double basis[2][MOST * MOST * MOST];
@@ -79,7 +80,7 @@ static void check(const Subject *s, bool edges) {
                           edges && is_end(s, 1, j, s->count[1])};
       double gradient[3] = {0, 0, 0};
       for (size_t k = 0; k < rows; k++) {
-        // Those of the same edge or corner.
+        // Only points of the same edge or corner.
         if (at[0] && k / s->g.s != (i ? s->g.r - 1 : 0)) continue;
         if (at[1] && k % s->g.s != (j ? s->g.s - 1 : 0)) continue;
         for (int c = 0; c < 3; c++)
@@ -95,7 +96,7 @@ static void end(Subject *s) {
   cag_grid_report_free(&s->report);
 }
 
-// Points of a patch, a tube or a torus, and noise.
+// Points of a patch, a tube, or a torus, with noise.
 static void set_points(Subject *s, double noise) {
   for (size_t i = 0; i < s->g.r; i++)
     for (size_t j = 0; j < s->g.s; j++) {
@@ -108,7 +109,7 @@ static void set_points(Subject *s, double noise) {
         p = cag_vec3((6 + 2 * cos(b)) * cos(a), (6 + 2 * cos(b)) * sin(a), 2 * sin(b));
       p.x += uniform(-noise, noise);
       p.y += uniform(-noise, noise);
-      // The ends of a tube are level.
+      // The ends of a tube are horizontal.
       if (s->g.closed[0] ? j > 0 && j + 1 < s->g.s : i > 0 && i + 1 < s->g.r)
         p.z += uniform(-noise, noise);
       s->points[i * s->g.s + j] = p;
@@ -125,8 +126,8 @@ static void set_sizes(Subject *s) {
   s->count[1] = (size_t)uniform(5, 6.99);
 }
 
-// The length of a line of points up to one of them, or of all of it with the way back of a closed
-// one, as a part of the whole; `across` tells the line.
+// The length of a line of points up to one of them, as a fraction of the whole, which includes the
+// way back of a closed line. `across` selects the line.
 static double part_of(const Subject *s, int k, size_t across, size_t upto) {
   const size_t n = k ? s->g.s : s->g.r;
   double part = 0, whole = 0;
@@ -183,7 +184,7 @@ static void held_coordinates_are_met_and_edges_fitted_to_the_border(void **state
   for (int round = 0; round < 36; round++) {
     Subject s[2];
     set_sizes(&s[0]);
-    // Of a tube, its height.
+    // The height of a tube.
     CagGridData *g = &s[0].g;
     g->closed[0] = round % 3 == 1;
     g->closed[1] = round % 3 == 2;
@@ -199,7 +200,7 @@ static void held_coordinates_are_met_and_edges_fitted_to_the_border(void **state
       check(&s[k], true);
     }
     moved += s[0].report.rounds > 0;
-    // Each correction brings the surface nearer.
+    // Each correction improves the fit.
     assert_int_equal(s[1].report.rounds, s[0].report.rounds + s[1].g.corrections);
     assert_true(s[1].report.rms < s[0].report.rms);
     for (int k = 0; k < 2; k++) end(&s[k]);
@@ -207,13 +208,13 @@ static void held_coordinates_are_met_and_edges_fitted_to_the_border(void **state
   assert_true(moved > 18);
 }
 
-// The place of a number between the stations 0, 1, ..., whose values are given.
+// Interpolates between the values at the stations 0, 1, ....
 static double between(const double *x, size_t n, double at) {
   const size_t i = at < (double)(n - 1) ? (size_t)at : n - 2;
   return x[i] + (at - (double)i) * (x[i + 1] - x[i]);
 }
 
-// Planes of the control points are told from the means of the stations, or given.
+// Planes of control points, computed from the means of the stations or given.
 static void control_points_lie_in_planes(void **state) {
   (void)state;
   seed = 33;
@@ -231,7 +232,7 @@ static void control_points_lie_in_planes(void **state) {
     set_points(&s, 0.1);
     const size_t n = k ? s.g.s : s.g.r, lines = k ? s.g.r : s.g.s, count = s.count[k];
     const size_t p = (size_t)(k ? s.g.degree_v : s.g.degree_u);
-    // Stations of the held coordinate, some of them level.
+    // The stations of the held coordinate; some of them are equal.
     double mean[MOST] = {0}, least = INFINITY, most = -INFINITY, given[MOST];
     for (size_t i = 0; i < n; i++) {
       const bool level = uniform(0, 1) < 0.5;
@@ -281,8 +282,9 @@ static bool on_border(const Subject *s, size_t i, int direction) {
   return !s->g.closed[direction] && (line == 0 || line + 1 == n);
 }
 
-// Of two fits, the second with one more correction: every point has moved to where the tangent
-// plane of the first is nearest, on a border along it, and with planes across their coordinate.
+// Compares two fits, the second of which has one more correction. Every point has moved to the
+// closest point of the first fit's tangent plane. On a border, it moves along the border; with
+// planes, perpendicular to their coordinate.
 static void check_step(const Subject *a, const Subject *b) {
   const CagSurface *s = a->fit;
   for (size_t i = 0; i < a->g.r * a->g.s; i++) {
@@ -319,7 +321,7 @@ static void corrections_are_steps_to_the_nearest_points(void **state) {
     s[0].g.closed[1] = round / 2 % 2;
     s[0].g.corrections = round / 4 % 4;
     set_points(&s[0], 0.1);
-    // Of some, the stations stay in their planes.
+    // In some cases, the stations stay in their planes.
     const bool held = round >= 48 && round % 4 < 3;
     if (held) {
       const int k = s[0].g.closed[0];

@@ -1,5 +1,5 @@
-// Operations on half spaces and quadrics, which may bound a body or not, against its corners and
-// closed forms.
+// Operations on half spaces and quadrics, which may be unbounded. Results are compared with the
+// corners and closed forms.
 
 #include "geom/solid/csg.h"
 #include "geom/solid/solid.h"
@@ -9,7 +9,7 @@
 
 enum { PLANES_MOST = 9, CORNERS_MOST = 84 };
 
-// Planes by unit normals that point out, at distances from a center within.
+// Planes as outward unit normals, with distances from a center inside.
 typedef struct Body {
   CagVec3 center, normal[PLANES_MOST];
   double off[PLANES_MOST];
@@ -32,8 +32,8 @@ static Body random_body(int n, double size, double far) {
   return b;
 }
 
-// Some direction leads away without an end: then one square to two of the normals does, or one
-// against them where there are fewer.
+// A body is unbounded if some direction leads away without end. If so, there is one perpendicular
+// to two of the normals, or opposite to a normal if there are fewer.
 static bool is_bounded(const Body *b) {
   for (int i = 0; i < b->n; i++)
     for (int j = 0; j < b->n; j++) {
@@ -47,7 +47,7 @@ static bool is_bounded(const Body *b) {
   return true;
 }
 
-// The corners, from the center, and on which planes they lie.
+// Computes the corners relative to the center, and the planes on which they are.
 static int corners_of(const Body *b, CagVec3 *out, int on[][3]) {
   int n = 0;
   for (int i = 0; i < b->n; i++)
@@ -74,8 +74,8 @@ typedef struct Measures {
   CagBounds box;
 } Measures;
 
-// Pyramids over the sides with their tips in the center. Each side is a fan about the middle of its
-// corners, whose triangles are those of corners that have two planes in common.
+// Sums pyramids over the sides with their tips at the center. Each side is a fan around the middle
+// of its corners, with a triangle for each two corners that have two planes in common.
 static Measures measures_of(const Body *b) {
   CagVec3 p[CORNERS_MOST];
   int on[CORNERS_MOST][3];
@@ -116,7 +116,7 @@ static CagSolid *half_space(const Body *b, int i, bool beyond) {
   return s;
 }
 
-// All at once, one after the other, in pairs, or as what is taken away.
+// Intersects all at once, one after the other, in pairs, or by differences.
 static CagSolid *intersection_of(const Body *b, int way) {
   CagSolid *part[PLANES_MOST], *s = NULL;
   size_t n = 0;
@@ -162,7 +162,7 @@ static void half_spaces_bound_what_their_corners_say(void **state) {
     }
     const Measures m = measures_of(&b);
     const double reach = cag_norm(cag_sub(m.box.max, m.box.min));
-    // Bodies that go on far beyond their center take part as bounded or not.
+    // Bodies that extend far beyond their center may be treated as bounded or not.
     if (reach > 50 * size) {
       cag_solid_release(s);
       continue;
@@ -181,7 +181,7 @@ static void half_spaces_bound_what_their_corners_say(void **state) {
   assert_true(bounded > 15 && unbounded > 5);
 }
 
-// The side below z = c + x s + y t, or above.
+// The half space below z = c + x s + y t, or above it.
 static CagSolid *slanted(double c, double s, double t, bool above, const CagTransform *place) {
   const double sense = above ? -1 : 1;
   CagPlane plane;
@@ -193,9 +193,9 @@ static CagSolid *slanted(double c, double s, double t, bool above, const CagTran
   return out;
 }
 
-// Between slanted planes, a cylinder over an ellipse has the volume of an upright one as high as
-// its axis is there. Over a paraboloid, a plane cuts off pi a b R^4 / 2. What is beyond the planes
-// is left out, or taken away.
+// Between slanted planes, a cylinder over an ellipse has the volume of an upright one with the
+// height of its axis. Over a paraboloid, a plane cuts off pi a b R^4 / 2. The parts beyond the
+// planes are left out by an intersection or a difference.
 static void slanted_planes_cut_quadrics(void **state) {
   (void)state;
   const double tolerance = 4e-3;

@@ -1,4 +1,4 @@
-// Helices by their definition, in every frame and direction.
+// Helices compared with their definition, in any frame and direction.
 
 #include "curve_random.h"
 
@@ -16,7 +16,7 @@ static Numbers random_numbers(int round) {
   return n;
 }
 
-// The point of the definition at the angle turned.
+// The defining point at a rotation angle.
 static CagVec3 by_definition(const Numbers *n, double angle) {
   const double r = n->radius + n->taper * angle / (2 * M_PI);
   return cag_vec3(r * cos(angle), r * sin(angle) * (n->turns < 0 ? -1 : 1),
@@ -30,8 +30,8 @@ static CagTransform random_map(void) {
   return t;
 }
 
-// A helix that is moved, cut, turned round and given another domain, with the map from its
-// parameter to the angle and its frame.
+// A helix that is transformed, trimmed, reversed, and reparametrized, with its frame and the map
+// from its parameter to the angle.
 typedef struct Sample {
   CagCurve *c;
   Numbers numbers;
@@ -112,7 +112,7 @@ static void points_are_those_of_the_definition(void **state) {
       OK(cag_curve_eval(s.c, t[i], ORDER, CAG_SIDE_RIGHT, one, &err));
       for (int k = 0; k <= ORDER; k++) near_vec(many[i * (ORDER + 1) + k], one[k], 0);
     }
-    // The numbers are told only of a helix whose parameter is the angle.
+    // Only a helix whose parameter is the angle has these numbers.
     Numbers told;
     CagTransform frame;
     const bool view =
@@ -129,8 +129,8 @@ static void points_are_those_of_the_definition(void **state) {
   }
 }
 
-// Boxes of parts hold their points, and are at most a third of the radius too wide. The bound of
-// the second derivative is that of the part's larger end.
+// Boxes of parts contain their points, and are at most a third of the radius too wide. The bound of
+// the second derivative is that of the larger end.
 static void parts_have_close_boxes_and_bends(void **state) {
   (void)state;
   seed = 72;
@@ -154,7 +154,7 @@ static void parts_have_close_boxes_and_bends(void **state) {
     const double growth = s.numbers.taper / (2 * M_PI);
     const double r = fmax(fabs(s.numbers.radius + growth * angle_at(&s, a)),
                           fabs(s.numbers.radius + growth * angle_at(&s, b)));
-    double stretch = 0; // of the frame, over all directions
+    double stretch = 0; // of the frame, maximum over all directions
     for (int i = 0; i < 180; i++) {
       const double angle = i * M_PI / 180;
       const CagVec3 from = cag_vec3(cos(angle), sin(angle), 0);

@@ -1,6 +1,6 @@
-// Convex hulls of few points, by trying all lines and planes through them: the points have whole
-// coordinates, so that every side is exact; turned and moved, they have the same hulls. Points that
-// are in a plane almost, up to rounding, have a closed hull, too.
+// Convex hulls of few points, compared with a search over all lines and planes through them. The
+// points have integer coordinates, so that every predicate is exact. Rotated and translated points
+// have the same hulls. Points that are almost coplanar, up to rounding, have a closed hull, too.
 
 #include "geom/linalg/transform.h"
 #include "geom/mesh/hull.h"
@@ -29,10 +29,10 @@ static double turn_of(CagVec3 a, CagVec3 b, CagVec3 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-static bool is_same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+static bool is_same_point(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// Whether b is the next corner after a: no point is to the right of the line, and none on it lies
-// beyond b or before a.
+// Whether b is the corner after a: no point is to the right of the line, and no point on the line
+// is beyond b or before a.
 static bool is_side(const CagVec3 *p, int n, CagVec3 a, CagVec3 b) {
   for (int i = 0; i < n; i++) {
     const double turn = turn_of(a, b, p[i]);
@@ -40,10 +40,11 @@ static bool is_side(const CagVec3 *p, int n, CagVec3 a, CagVec3 b) {
                  length = cag_dot(cag_sub(b, a), cag_sub(b, a));
     if (turn < 0 || (turn == 0 && (along < 0 || along > length))) return false;
   }
-  return !is_same_place(a, b);
+  return !is_same_point(a, b);
 }
 
-// Corners counter-clockwise from the lowest x, and y where several have it. 0: all are on one line.
+// Finds the corners counter-clockwise from the lowest x, and the lowest y among these. Returns 0 if
+// all points are collinear.
 static int corners_of(const CagVec3 *p, int n, CagVec3 *ring) {
   int count = 0;
   bool flat = true;
@@ -55,7 +56,7 @@ static int corners_of(const CagVec3 *p, int n, CagVec3 *ring) {
     if (p[i].x < ring[0].x || (p[i].x == ring[0].x && p[i].y < ring[0].y)) ring[0] = p[i];
   for (int i = 0; i < n; i++)
     if (is_side(p, n, ring[count - 1], p[i])) {
-      if (is_same_place(p[i], ring[0])) break;
+      if (is_same_point(p[i], ring[0])) break;
       ring[count++] = p[i];
       i = -1;
     }
@@ -93,7 +94,7 @@ static void corners_in_the_plane_are_those_of_all_lines_through_two_points(void 
       OK(cag_hull_plane(q, (size_t)n, &ring, &got, &err));
       assert_int_equal(got, count);
       for (size_t k = 0; k < got; k++) assert_true(q[ring[k]].x >= q[ring[0]].x);
-      while (turned && first < got && !is_same_place(p[ring[first]], expected[0])) first++;
+      while (turned && first < got && !is_same_point(p[ring[first]], expected[0])) first++;
       for (size_t k = 0; k < got; k++) near_vec(p[ring[(first + k) % got]], expected[k], 0);
       free(ring);
     }
@@ -103,7 +104,7 @@ static void corners_in_the_plane_are_those_of_all_lines_through_two_points(void 
 
 // --- Space ---
 
-// The planes of the faces: outward normals and offsets, each once.
+// The planes of the faces, each once: outward normals and offsets.
 typedef struct Planes {
   CagVec3 normal[2 * MOST];
   double offset[2 * MOST];
@@ -118,7 +119,7 @@ static void add_plane(Planes *planes, const CagVec3 *p, int n, int a, int b, int
     above |= side > 0;
     below |= side < 0;
   }
-  if (above == below) return; // points on both sides, or a normal of 0
+  if (above == below) return; // points on both sides, or a zero normal
   if (above) normal = cag_scaled(normal, -1);
   const double offset = cag_dot(normal, p[a]);
   for (int k = 0; k < planes->count; k++) {
@@ -138,7 +139,7 @@ static Planes planes_of(const CagVec3 *p, int n) {
   return planes;
 }
 
-// A point is a corner if the faces that it is in have it alone in common.
+// A point is a corner if it is the only common point of its faces.
 static bool is_corner(const Planes *planes, CagVec3 p) {
   double best = 0;
   int at[2 * MOST], n = 0;
@@ -163,7 +164,8 @@ static double volume_of(const CagMesh *m) {
   return volume;
 }
 
-// Closed, like a ball, and as far in every direction as the points.
+// Checks that the mesh is closed, is a topological sphere, and has the extent of the points in
+// every direction.
 static void check_body(const CagMesh *m, const CagVec3 *p, int n, double slack) {
   CagVec3 edge[2];
   assert_true(cag_mesh_is_watertight(m, edge));
@@ -198,7 +200,7 @@ static void corners_in_space_are_those_of_all_planes_through_three_points(void *
     double volume = 0;
     for (int i = 0; i < n; i++) {
       bool again = false;
-      for (int j = 0; j < i; j++) again |= is_same_place(p[i], p[j]);
+      for (int j = 0; j < i; j++) again |= is_same_point(p[i], p[j]);
       corners += !again && is_corner(&planes, p[i]);
     }
     for (int turned = 0; turned < 2; turned++) {

@@ -1,4 +1,5 @@
-// Convex hulls, side predicates, curves on surfaces and distances of meshes: closed forms.
+// Convex hulls, side predicates, curves on surfaces, and distances of meshes, compared with closed
+// forms.
 
 #include "geom/curve/function.h"
 #include "geom/distance/separation.h"
@@ -32,7 +33,7 @@ static double random_number(uint64_t *state) {
 
 static void sides_are_exact(void **state) {
   (void)state;
-  // 0.5 + k 2^-53: on the line x = y to the last bit, or beside it by one.
+  // 0.5 + k 2^-53: exactly on the line x = y, or beside it by one unit in the last place.
   const CagVec3 a = cag_vec3(12, 12, 0), b = cag_vec3(24, 24, 0);
   for (int i = 0; i < 64; i++)
     for (int k = 0; k < 64; k++) {
@@ -57,7 +58,7 @@ static void plane_hulls_run_counter_clockwise_without_straight_corners(void **st
   assert_int_equal(n, 4);
   assert_memory_equal(ring, expected, sizeof expected);
   free(ring);
-  // Tenths are not on one line to the last bit, but to rounding.
+  // Multiples of a tenth are collinear only up to rounding.
   CagVec3 tenths[31];
   for (int i = 0; i < 30; i++) tenths[i] = cag_vec3(0.1 * i, 0.3 * i, 0);
   tenths[30] = cag_vec3(5, 0, 0);
@@ -99,7 +100,7 @@ static void hulls_hold_all_points(void **state) {
       CagVec3 p = cag_vec3(random_number(&seed) - 0.5, random_number(&seed) - 0.5,
                            random_number(&seed) - 0.5);
       if (kind == 0) p = cag_unit(p); // all are corners
-      if (kind == 1)                  // many in planes and lines
+      if (kind == 1)                  // many are coplanar and collinear
         p = cag_vec3(floor(8 * p.x), floor(8 * p.y), floor(8 * p.z));
       points[i] = p;
     }
@@ -139,7 +140,8 @@ static void flat_sets_have_no_solid(void **state) {
 
 static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) {
   (void)state;
-  // u = a t, v = b t on [(R + r cos v) cos u, (R + r cos v) sin u, r sin v]: sums of waves.
+  // With u = a t and v = b t, [(R + r cos v) cos u, (R + r cos v) sin u, r sin v] is a sum of
+  // waves.
   const double major = 5, minor = 1, a = 2, b = 3;
   CagSurface *s;
   CagCurve *line, *c;
@@ -173,9 +175,9 @@ static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) 
   cag_surface_release(s);
 }
 
-// A curve rises and falls by 1e-4 above a line. The nearest of its many nearly equal minima is
-// found, compared with samples accurate to 1e-10. Too few pairs are an error, never an uncertain
-// distance.
+// A curve oscillates by 1e-4 above a line. The search must find the lowest of many nearly equal
+// minima, compared with samples accurate to 1e-10. If there are too few pairs, the result is an
+// error, never an uncertain distance.
 static void the_nearest_of_many_minima_is_found(void **state) {
   (void)state;
   enum { POINTS = 400, SAMPLES = 200000 };
@@ -228,11 +230,11 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   OK(cag_surface_tessellate(moved, &how, &m, &err));
   OK(cag_parts_add_mesh(&b, m, moved, how.tolerance, &err));
   OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, &foot, NULL, &err));
-  // The circles of both tori have a constant distance.
+  // The circles of both tori are at a constant distance.
   NEAR(distance, 5, 1e-12);
   NEAR(foot.z, 6, 1e-9);
   NEAR(hypot(foot.x, foot.y), 5, 1e-7);
-  // The distance is constant all around, which a few pairs cannot show.
+  // The distance is the same all around, which few pairs cannot prove.
   FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err), "convergence");
   const volatile int stop = 1, go = 0;
   FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, &stop, &err), "interrupted");
@@ -249,9 +251,9 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_surface_release(moved);
 }
 
-// --- The end of the search ---
+// --- Termination of the search ---
 
-// Along a curve that crosses the other shape all points of the crossing are as near.
+// If a curve crosses the other shape, all points of the intersection are equally close.
 static void shapes_that_meet_need_few_pairs(void **state) {
   (void)state;
   for (int i = 0; i < 8; i++) {
@@ -279,7 +281,7 @@ static void shapes_that_meet_need_few_pairs(void **state) {
 }
 
 typedef struct Calls {
-  int count, failing; // the call that fails, from 1; 0: none
+  int count, failing; // the call that fails, counted from 1; 0: none
 } Calls;
 
 static CagStatus fail_once(void *context, double t, int order, CagVec3 *out, CagError *e) {
@@ -291,7 +293,7 @@ static CagStatus fail_once(void *context, double t, int order, CagVec3 *out, Cag
   return CAG_OK;
 }
 
-// Whichever call it is: no later success covers it.
+// Whichever call fails, later successes do not hide it.
 static void a_function_that_fails_once_fails_the_search(void **state) {
   (void)state;
   Calls calls = {0};
@@ -304,14 +306,14 @@ static void a_function_that_fails_once_fails_the_search(void **state) {
   OK(cag_parts_add_point(&b, cag_vec3(0, 4, 0), &err));
   calls.count = 0;
   OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
-  NEAR(distance, 3, 1e-12); // straight above the point of t = 0
+  NEAR(distance, 3, 1e-12); // directly above the point at t = 0
   const int most = calls.count;
   assert_true(most > 0);
   for (int i = 1; i <= most; i++) {
     calls = (Calls){0, i};
     FAILS(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err),
           "function-failed");
-    assert_int_equal(calls.count, i); // and none is made after it
+    assert_int_equal(calls.count, i); // and no call follows
   }
   cag_parts_free(&a);
   cag_parts_free(&b);
@@ -333,7 +335,8 @@ static void add_surface(CagParts *parts, const CagSurface *s) {
   cag_mesh_release(m);
 }
 
-// Takes the surfaces. So few pairs tell the distance only if bounds show that no other is closer.
+// Takes ownership of the surfaces. So few pairs suffice only if bounds prove that no other pair is
+// closer.
 static double distance_by_few_pairs(CagSurface *s[2], size_t most, uint64_t *state) {
   CagParts parts[2] = {{0}, {0}};
   CagTransform move = cag_translate(cag_vec3(between(state, -9, 9), 2, 3)), turn;
@@ -366,7 +369,7 @@ static CagSurface *quadric(CagQuadricShape shape, double radius, double z, doubl
   return s;
 }
 
-// A rectangle with rounded corners, carried upwards.
+// A rectangle with rounded corners, extruded upward.
 static CagSurface *wall(double width, double depth, double radius) {
   CagCurve *outline;
   CagSurface *s;
@@ -405,12 +408,12 @@ static void shapes_at_a_constant_distance_need_few_pairs(void **state) {
                                    quadric(CAG_SHAPE_ELLIPTIC_CYLINDER, r + gap, 0, 8)};
     NEAR(distance_by_few_pairs(ball_in_pipe, 60, &random), gap, 1e-12);
     CagSurface *walls[2] = {wall(3, 2, 0.5), wall(3 + gap, 2 + gap, 0.5 + gap)};
-    // Beside the edges where flat and round parts meet there are more.
+    // Near the edges where flat and round parts meet, more pairs are needed.
     NEAR(distance_by_few_pairs(walls, 500, &random), gap, 1e-12);
   }
 }
 
-// All points of a circle, and of a helix, are as far from the axis.
+// All points of a circle, and of a helix, are equally far from the axis.
 static void curves_at_a_constant_distance_need_few_pairs(void **state) {
   (void)state;
   const CagTransform flat = cag_transform_identity();
@@ -438,8 +441,8 @@ static void curves_at_a_constant_distance_need_few_pairs(void **state) {
   }
 }
 
-// Waves whose minima differ by less than chords of the tolerance leave them: the first pairs that
-// are tried are hardly ever the nearest.
+// Waves whose minima differ by less than the chords deviate from them. The first pairs that are
+// tried are hardly ever the closest.
 static void the_nearest_of_alike_minima_is_certain(void **state) {
   (void)state;
   enum { POINTS = 90, SAMPLES = 9000 };
@@ -466,7 +469,7 @@ static void the_nearest_of_alike_minima_is_certain(void **state) {
     if (trial % 2) OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
     else OK(cag_parts_distance(&b, &a, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
     assert_true(distance <= least + 1e-9); // 1e-11 of the size
-    // Between samples a hundredth apart a wave of this height bends by less.
+    // Between samples a hundredth apart, a wave of this height deviates by less.
     assert_true(distance >= least - 1e-3 * most);
     cag_parts_free(&a);
     cag_parts_free(&b);
@@ -475,7 +478,7 @@ static void the_nearest_of_alike_minima_is_certain(void **state) {
   }
 }
 
-// A spiral of half circles about two centers, and one at a constant distance beside it.
+// A spiral of half circles about two centers, and a parallel curve beside it.
 static void spirals_of_arcs_need_few_pairs(void **state) {
   (void)state;
   enum { ARCS = 6 };
@@ -505,13 +508,14 @@ static void spirals_of_arcs_need_few_pairs(void **state) {
 
 // --- Flat triangles, segments and points ---
 
-static CagVec3 random_place(uint64_t *state, double size) {
+static CagVec3 random_location(uint64_t *state, double size) {
   double x[3];
   for (int i = 0; i < 3; i++) x[i] = between(state, -size, size);
   return cag_vec3(x[0], x[1], x[2]);
 }
 
-// The distance of p from the triangle, by its plane where the foot is inside, else by its edges.
+// The distance of p from the triangle: from its plane if the foot is inside, and from its edges
+// otherwise.
 static double from_triangle(CagVec3 p, const CagVec3 t[3]) {
   const CagVec3 n = cag_cross(cag_sub(t[1], t[0]), cag_sub(t[2], t[0]));
   double least = INFINITY;
@@ -526,8 +530,8 @@ static double from_triangle(CagVec3 p, const CagVec3 t[3]) {
   return inside ? fabs(cag_dot(cag_sub(p, t[0]), n)) / cag_norm(n) : least;
 }
 
-// Whether the segment from p to q passes through the triangle: p + x (q - p) = t0 + y u + z v by
-// Cramer's rule.
+// Whether the segment from p to q passes through the triangle: solves p + x (q - p) = t0 + y u + z
+// v by Cramer's rule.
 static bool passes_through(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
   const CagVec3 u = cag_sub(t[1], t[0]), v = cag_sub(t[2], t[0]), way = cag_sub(p, q),
                 to = cag_sub(p, t[0]);
@@ -538,9 +542,9 @@ static bool passes_through(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
   return x >= 0 && x <= 1 && y >= 0 && z >= 0 && y + z <= 1;
 }
 
-// Sets of triangles, or of segments or points as triangles with repeated corners. The distance is
-// that of a pair of points that are found: no corner and no point of an edge is nearer, the point
-// on the second is on it, and as far from the first.
+// Sets of triangles, or of segments or points as triangles with repeated corners. The computed
+// distance is that of a pair of points: no corner or point of an edge is closer, the point of the
+// second shape is on it, and the point of the first is at that distance.
 static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
   (void)state;
   enum { MOST = 12, STEPS = 16 };
@@ -551,15 +555,15 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
     size_t n[2], line_count = 0;
     CagParts parts[2] = {{0}, {0}};
     CagCurve *lines[MOST];
-    const CagVec3 away = random_place(&seed, k % 4 == 0 ? 0.5 : 3);
+    const CagVec3 away = random_location(&seed, k % 4 == 0 ? 0.5 : 3);
     for (int side = 0; side < 2; side++) {
       n[side] = 1 + (size_t)(k / (side ? 3 : 1)) % MOST;
       CagMesh *m;
       OK(cag_mesh_new(3 * n[side], n[side], false, false, false, &m, &err));
       for (uint32_t i = 0; i < n[side]; i++) {
-        const CagVec3 middle = random_place(&seed, 2);
+        const CagVec3 middle = random_location(&seed, 2);
         for (uint32_t j = 0; j < 3; j++) {
-          CagVec3 p = cag_add(middle, random_place(&seed, 1));
+          CagVec3 p = cag_add(middle, random_location(&seed, 1));
           if (k % 5 == 0) p.z = side ? 1 : 0; // parallel planes
           if (side) p = cag_add(p, away);
           if (k % 7 == 1 && side && j > 0) p = t[side][i][0]; // points
@@ -571,7 +575,7 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
       }
       if (k % 7 == 1 && side)
         for (size_t i = 0; i < n[side]; i++) OK(cag_parts_add_point(&parts[1], t[1][i][0], &err));
-      else if (k % 7 == 3 && side) // the second shape as the outlines of its triangles
+      else if (k % 7 == 3 && side) // the second shape consists of the outlines of its triangles
         for (size_t i = 0; i < n[side]; i++) {
           OK(cag_curve_polyline(t[side][i], 3, true, 3, &lines[i], &err));
           OK(cag_parts_add_curve(&parts[side], lines[i], 0.1, &err));
@@ -583,7 +587,7 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
     double least = INFINITY, out;
     bool meet = false;
     CagVec3 foot = {0, 0, 0};
-    // Outlines become one triangle without area for each side.
+    // Each side of an outline becomes a triangle without area.
     CagVec3 sides[3 * MOST][3];
     const CagVec3(*shape[2])[3] = {(const CagVec3(*)[3])t[0], (const CagVec3(*)[3])t[1]};
     if (line_count > 0) {
@@ -613,7 +617,7 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
       for (size_t i = 0; i < n[1]; i++) on = fmin(on, from_triangle(foot, shape[1][i]));
       for (size_t i = 0; i < n[0]; i++) back = fmin(back, from_triangle(foot, shape[0][i]));
       assert_true(out <= least + 1e-12);
-      assert_true(out >= least - 0.4); // an edge's points are 0.25 apart at most
+      assert_true(out >= least - 0.4); // the points of an edge are at most 0.25 apart
       NEAR(on, 0, 1e-7);
       NEAR(back, out, 1e-7);
     }
@@ -629,8 +633,8 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
   cag_parts_free(&one);
 }
 
-// Flat triangles and outlines against a sphere and a circle: the distance from the center less the
-// radius, and for the circle that of its points.
+// Flat triangles and outlines against a sphere and a circle: the distance from the center minus the
+// radius, and for the circle, the distance of its points.
 static void flat_shapes_are_measured_from_round_ones(void **state) {
   (void)state;
   enum { MOST = 8, POINTS = 720 };
@@ -648,9 +652,9 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
     CagVec3 foot;
     OK(cag_mesh_new(3 * n, n, false, false, false, &m, &err));
     for (uint32_t i = 0; i < n; i++) {
-      const CagVec3 middle = random_place(&seed, 3);
+      const CagVec3 middle = random_location(&seed, 3);
       for (uint32_t j = 0; j < 3; j++) {
-        m->positions[3 * i + j] = t[i][j] = cag_add(middle, random_place(&seed, 2));
+        m->positions[3 * i + j] = t[i][j] = cag_add(middle, random_location(&seed, 2));
         m->triangles[3 * i + j] = 3 * i + j;
       }
     }
@@ -660,7 +664,7 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
       for (size_t i = 0; i < n; i++) least = fmin(least, from_triangle(cag_vec3(0, 0, 0), t[i]));
       sphere = quadric(CAG_SHAPE_ELLIPSOID, r, 0, 0);
       add_surface(&round, sphere);
-      // Triangles that cross the sphere meet it; those within are as far as their farthest corner.
+      // Triangles that cross the sphere meet it. For triangles inside, the farthest corner counts.
       double farthest = 0;
       for (size_t i = 0; i < n; i++) {
         double corner = 0;
@@ -695,8 +699,8 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
   }
 }
 
-// Circles and segments of the plane against each other, and spheres within and beside spheres:
-// closed forms.
+// Circles and segments in the plane, and spheres inside and beside spheres, compared with closed
+// forms.
 static void round_shapes_have_their_closed_forms(void **state) {
   (void)state;
   uint64_t seed = 52;
@@ -716,7 +720,7 @@ static void round_shapes_have_their_closed_forms(void **state) {
     NEAR(out, fmax(0, fmax(apart - r - s, fabs(r - s) - apart)), 1e-9);
     cag_parts_free(&parts[1]);
     cag_curve_release(b);
-    // A segment beside the circle, its end nearest or a point within.
+    // A segment beside the circle: the closest point is an end or an inner point.
     const CagVec3 ends[2] = {{r + 0.3, -apart, 0}, {r + 0.3, k % 2 ? apart + 1 : -apart / 2, 0}};
     parts[1] = (CagParts){0};
     OK(cag_curve_polyline(ends, 2, false, 2, &b, &err));
@@ -729,7 +733,7 @@ static void round_shapes_have_their_closed_forms(void **state) {
   }
 }
 
-// --- Numbers without rounding ---
+// --- Exact arithmetic ---
 
 static CagExact number(CagExactSpace *s, uint64_t *state) {
   const double x = between(state, -1, 1);
@@ -745,7 +749,7 @@ static void exact_numbers_obey_the_laws_of_arithmetic(void **state) {
              d = number(&s, &seed);
     if (k % 5 == 0) b = cag_exact_negative(a);
     if (k % 7 == 0) c = cag_exact(&s, 0);
-    // (a + b) (c + d) = a c + b d + a d + b c, whatever the order; a d - b c.
+    // (a + b) (c + d) = a c + b d + a d + b c, in any order; a d - b c.
     const CagExact left = cag_exact_product(&s, cag_exact_sum(&s, a, b), cag_exact_sum(&s, d, c));
     const CagExact ac = cag_exact_product(&s, a, c), bd = cag_exact_product(&s, d, b),
                    ad = cag_exact_product(&s, a, d), bc = cag_exact_product(&s, c, b);
@@ -754,13 +758,13 @@ static void exact_numbers_obey_the_laws_of_arithmetic(void **state) {
     assert_int_equal(left.sign, right.sign);
     const CagExact minor = cag_exact_minor(&s, a, b, c, d);
     assert_int_equal(cag_exact_difference(&s, cag_exact_sum(&s, minor, bc), ad).sign, 0);
-    // A unit of 2^-700 decides.
+    // A unit of 2^-700 decides the sign.
     const CagExact unit = cag_exact(&s, ldexp(k % 2 ? 1 : -1, -700));
     const CagExact more = cag_exact_sum(&s, left, unit);
     assert_int_equal(cag_exact_difference(&s, more, right).sign, k % 2 ? 1 : -1);
     assert_false(s.full);
   }
-  // Steps of doubles, and their signs.
+  // Differences of adjacent doubles, and their signs.
   for (int k = 0; k < 2000; k++) {
     CagExactSpace s = {limbs, 0, 8192, false};
     const double x = between(&seed, -2, 2), y = k % 3 ? between(&seed, -2, 2) : nextafter(x, 3);
@@ -770,7 +774,7 @@ static void exact_numbers_obey_the_laws_of_arithmetic(void **state) {
   }
 }
 
-// The double nearest to a quotient: it lies within half a unit, compared without rounding.
+// The double closest to a quotient is within half a unit, compared exactly.
 static void quotients_are_rounded_once(void **state) {
   (void)state;
   uint64_t seed = 54, limbs[8192];
@@ -781,7 +785,7 @@ static void quotients_are_rounded_once(void **state) {
     if (w.sign == 0) continue;
     const double q = between(&seed, -1, 1);
     double half = 0;
-    if (k % 2) { // a quotient that is a double, or just between two
+    if (k % 2) { // a quotient that is a double, or halfway between two
       const double next = nextafter(q, 2);
       const int kind = k / 2 % 4;
       half = (next - q) / 2;
@@ -791,7 +795,7 @@ static void quotients_are_rounded_once(void **state) {
         wanted = cag_exact_sum(&s, wanted, cag_exact(&s, ldexp(kind == 2 ? 1 : -1, -120)));
       x = cag_exact_product(&s, wanted, w);
       const double got = cag_exact_quotient(&s, x, w);
-      // Of two as near the lower one.
+      // In a tie, the lower one.
       assert_true(got == (kind == 2 ? next : q));
       continue;
     }

@@ -1,4 +1,4 @@
-// Gaps of boxes with whole corners, of any size, are those of their sides.
+// Gaps between boxes with integer corners, of any size, compared with those of their sides.
 
 #include "geom/curve/hulls.h"
 #include "random.h"
@@ -6,7 +6,7 @@
 
 static int whole(int low, int high) { return low + (int)floor(uniform(0, high - low + 1)); }
 
-// The corners of a box in any order, some of them twice.
+// The corners of a box in any order, some of them repeated.
 static size_t corners(const int low[3], const int high[3], double scale, CagVec3 *out) {
   const size_t n = 8 + (size_t)whole(0, 2);
   for (size_t i = 0; i < n; i++) {
@@ -53,7 +53,7 @@ static void gaps_of_boxes_are_those_of_their_sides(void **state) {
   assert_true(meeting > 100);
 }
 
-// Contact is a part of the size of all points.
+// The tolerance for contact is relative to the size of all points.
 static void contact_depends_on_the_size(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {

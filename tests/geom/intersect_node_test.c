@@ -1,4 +1,4 @@
-// Curves through points where another curve crosses itself: each branch is met.
+// Curves through points where another curve intersects itself: each branch counts.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -6,9 +6,9 @@
 #include "geom/curve/curve.h"
 #include "geom/curve/intersect.h"
 
-// A bow of lines through the point, which its edges a b and c d have in their middles. `between`
-// and `after` more vertices stand on the edges b c and d a, so that the branches are any part of
-// the domain apart; it begins at any vertex.
+// A closed polyline that passes the node twice, in the middle of its edges a b and c d. There are
+// `between` and `after` additional vertices on the edges b c and d a, so that the two passes may be
+// any fraction of the domain apart. It begins at any vertex.
 static CagCurve *bow_at(CagVec3 node, int between, int after, bool spline) {
   enum { MOST = 16 };
   CagVec3 round[MOST], p[MOST];
@@ -35,7 +35,8 @@ static CagCurve *bow_at(CagVec3 node, int between, int after, bool spline) {
   return same;
 }
 
-// The meetings at the point: different pairs of parameters, both of which give it.
+// Counts the intersections at the node, which are different pairs of parameters whose points are
+// the node.
 static size_t count_at(const CagCurve *a, const CagCurve *b, const CagMeeting *m, size_t n,
                        CagVec3 at) {
   size_t found = 0;
@@ -62,7 +63,7 @@ static void every_branch_through_a_point_is_met(void **state) {
     CagCurve *bow = bow_at(node, round % 4, round / 4 % 6, round % 2), *other, *back;
     CagMeeting *m;
     size_t n;
-    // A line through the node, ending elsewhere; it may meet the sides of the bow as well.
+    // A line through the node, which may intersect other edges as well.
     const double way = uniform(-3, 3), before = uniform(0.2, 4), after = uniform(0.2, 4);
     const CagVec3 along = cag_vec3(cos(way), sin(way), 0);
     OK(cag_curve_line(cag_madd(node, -before, along), cag_madd(node, after, along), 2, &other,
@@ -86,7 +87,7 @@ static void every_branch_through_a_point_is_met(void **state) {
     assert_int_equal(found, 2);
     free(m);
     cag_curve_release(other);
-    // Two bows with the same node meet there on each pair of branches.
+    // Two such polylines with the same node meet there on each pair of branches.
     other = bow_at(node, round / 3 % 5, round / 5 % 3, round / 2 % 2);
     OK(cag_curve_intersect(bow, other, &m, &n, &err));
     assert_int_equal(count_at(bow, other, m, n, node), 4);

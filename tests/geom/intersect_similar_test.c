@@ -1,4 +1,5 @@
-// Curves that are moved, scaled, reversed and given other domains meet where they met before.
+// Curves that are transformed, scaled, reversed, and reparametrized meet at the images of the
+// original intersections.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -41,7 +42,7 @@ static CagCurve *random_curve(int kind, int dimension) {
   return c;
 }
 
-// A turn about z, or about three axes, a scale and a shift of some sizes.
+// A rotation about z or three axes, a scale, and a translation, of various sizes.
 static CagTransform random_similarity(int dimension, double scale) {
   CagTransform t = cag_transform_identity();
   const double yaw = uniform(-3, 3), pitch = uniform(-1.5, 1.5), roll = uniform(-3, 3);
@@ -61,7 +62,7 @@ static CagTransform random_similarity(int dimension, double scale) {
   return t;
 }
 
-// The image over another domain, perhaps run through backwards. Takes the curve over.
+// The image over another domain, optionally reversed. Takes ownership of the curve.
 static CagCurve *image_of(CagCurve *c, const CagTransform *t, bool back, double from, double to) {
   CagCurve *moved, *turned = NULL, *out;
   OK(cag_curve_transform(c, t, &moved, &err));
@@ -80,9 +81,12 @@ static CagVec3 image_point(const CagTransform *t, CagVec3 p) {
   return out;
 }
 
-static double share(const CagCurve *c, double t) { return (t - c->start) / (c->end - c->start); }
+static double domain_fraction(const CagCurve *c, double t) {
+  return (t - c->start) / (c->end - c->start);
+}
 
-// Each meeting has its image, at the same share of the domain, and no other is there.
+// Checks that each intersection has its image at the same fraction of the domain, and that there
+// are no others.
 static void assert_images(const CagCurve *a, const CagMeeting *m, size_t n, const CagCurve *image,
                           const CagMeeting *o, size_t count, const CagTransform *t, double scale,
                           bool back) {
@@ -94,11 +98,11 @@ static void assert_images(const CagCurve *a, const CagMeeting *m, size_t n, cons
     for (size_t k = 1; k < n; k++)
       if (cag_norm(cag_sub(o[k].point, p)) < cag_norm(cag_sub(o[nearest].point, p))) nearest = k;
     near_vec(o[nearest].point, p, 1e-8 * scale);
-    // No random curve crosses itself just where it meets the other.
+    // Random curves do not intersect themselves exactly where they meet the other curve.
     assert_false(taken[nearest]);
     taken[nearest] = true;
     assert_int_equal(o[nearest].multiplicity, m[i].multiplicity);
-    const double at = share(a, m[i].t), now = share(image, o[nearest].t);
+    const double at = domain_fraction(a, m[i].t), now = domain_fraction(image, o[nearest].t);
     const double off = fabs(now - (back ? 1 - at : at));
     assert_true(off < 1e-7 || (a->closed && fabs(off - 1) < 1e-7));
   }
@@ -123,7 +127,7 @@ static void similar_curves_meet_alike(void **state) {
     OK(cag_curve_intersect(c, d, &o, &count, &err));
     assert_images(a, m, n, c, o, count, &t, scale, back_a);
     free(o);
-    // Exchanged, t2 takes the place of t.
+    // If the curves are exchanged, so are t and t2.
     OK(cag_curve_intersect(d, c, &o, &count, &err));
     assert_int_equal(count, n);
     for (size_t i = 0; i < count; i++) {
@@ -179,7 +183,8 @@ static void similar_curves_meet_planes_alike(void **state) {
   assert_true(met > 3000);
 }
 
-// Segments in the plane: alone, first or last, or between others; as lines and as splines.
+// Segments that lie in the plane (alone, first or last, or between others), as lines and as
+// splines.
 static void segments_in_a_plane_are_refused(void **state) {
   (void)state;
   seed = 404;
@@ -221,14 +226,14 @@ static void segments_in_a_plane_are_refused(void **state) {
   }
 }
 
-// A closed curve that crosses a line, or a plane, where it starts, or a little before its end.
+// A closed curve that crosses a line, or a plane, at its start, or slightly before its end.
 static void crossings_at_a_seam_are_told_at_its_start(void **state) {
   (void)state;
   seed = 403;
   for (int round = 0; round < 400; round++) {
     const double scale = pow(10, uniform(-4, 4)), range = pow(10, uniform(-3, 3)),
                  from = uniform(-3, 3) * range, a = uniform(0.5, 2), b = uniform(0.5, 2);
-    // Parts of the domain from the seam.
+    // Distance from the seam, as a fraction of the domain.
     const double off = round % 4 == 3 ? pow(10, uniform(-8, -3)) : round % 4 == 2 ? 1e-11 : 0;
     const CagTransform t = random_similarity(2, scale);
     const double angle = -2 * M_PI * off;
@@ -237,7 +242,7 @@ static void crossings_at_a_seam_are_told_at_its_start(void **state) {
     CagCurve *ellipse, *line;
     OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &ellipse, &err));
     const CagVec3 seam = cag_vec3(a * cos(angle), b * sin(angle), 0);
-    if (round / 4 % 2) { // a spline does not run evenly: only the seam itself is known
+    if (round / 4 % 2) { // a spline has uneven speed, so only the parameter of the seam is known
       CagCurve *spline;
       if (off > 1e-11) {
         cag_curve_release(ellipse);
@@ -267,7 +272,7 @@ static void crossings_at_a_seam_are_told_at_its_start(void **state) {
     CagPlane plane;
     OK(cag_plane(at, cag_vec3(-along.y, along.x, 0), &plane, &err));
     OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
-    assert_int_equal(n, 2); // and on the other side
+    assert_int_equal(n, 2); // the other one is on the opposite side
     const double here = off > 1e-9 ? m[1].t : m[0].t;
     NEAR(here, expected, off > 1e-9 ? 1e-11 * (range + fabs(from)) : 0);
     free(m);

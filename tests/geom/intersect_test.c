@@ -1,4 +1,4 @@
-// Intersections of Bezier curves, all of them.
+// Intersections of Bezier curves: all of them must be found.
 
 #include "tests/geom/support.h"
 
@@ -12,8 +12,8 @@ static double binomial(int n, int k) {
   return b;
 }
 
-// The graph of the Chebyshev polynomial T_n over [-1, 1], whose Bernstein coefficients are
-// (-1)^(n - i) C(2n, 2i) / C(n, i); turned: x and y exchanged.
+// The graph of the Chebyshev polynomial T_n over [-1, 1], whose Bernstein coefficients are (-1)^(n
+// - i) C(2n, 2i) / C(n, i). If `turned` is set, x and y are exchanged.
 static CagCurve *chebyshev(int n, bool turned) {
   CagVec3 p[16];
   CagCurve *c;
@@ -58,7 +58,7 @@ static void a_line_meets_a_chebyshev_graph_n_times_or_touches_it(void **state) {
   for (int i = 0; i < n; i++) NEAR(m[i].point.x, -cos((2 * i + 1) * M_PI / (2 * n)), 1e-12);
   free(m);
   cag_curve_release(line);
-  // y = 1 touches the tops between, and meets the end.
+  // y = 1 touches the maxima, and meets the end.
   OK(cag_curve_line(cag_vec3(-2, 1, 0), cag_vec3(2, 1, 0), 2, &line, &err));
   OK(cag_curve_intersect(line, c, &m, &count, &err));
   assert_int_equal(count, (n + 1) / 2);
@@ -115,7 +115,7 @@ static CagCurve *as_spline(CagCurve *c) {
   return spline;
 }
 
-// Meets a and b, which it releases.
+// Intersects a and b, and releases them.
 static size_t meet(CagCurve *a, CagCurve *b, CagMeeting **out) {
   size_t n;
   OK(cag_curve_intersect(a, b, out, &n, &err));
@@ -164,8 +164,8 @@ static void tangents_of_a_circle_meet_it_once(void **state) {
 
 static void the_order_of_contact_is_told(void **state) {
   (void)state;
-  // The circle of curvature at a parabola's vertex has contact of order 4, a cubic's tangent at its
-  // inflection one of order 3.
+  // At a parabola's vertex, the circle of curvature has contact of order 4. At the inflection of a
+  // cubic, the tangent has contact of order 3.
   const CagVec3 parabola[] = {{-1, 1, 0}, {0, -1, 0}, {1, 1, 0}};
   const CagVec3 cubic[] = {{-1, -1, 0}, {-1.0 / 3, 1, 0}, {1.0 / 3, -1, 0}, {1, 1, 0}};
   CagCurve *c, *line;
@@ -182,14 +182,14 @@ static void the_order_of_contact_is_told(void **state) {
   free(m);
 }
 
-// y = x^n over [-1, 1] meets y = 0 with order n: at any size and place, with any domain.
+// y = x^n over [-1, 1] meets y = 0 with order n, at any size, location, and domain.
 static void orders_of_contact_do_not_depend_on_scale_place_and_domain(void **state) {
   (void)state;
   uint64_t seed = 94;
   for (int i = 0; i < 120; i++) {
     const int n = 1 + i % 4;
     CagVec3 p[5];
-    // The coefficients of (-1 (1 - t) + t)^n: signs that alternate.
+    // The coefficients of (-1 (1 - t) + t)^n have alternating signs.
     for (int k = 0; k <= n; k++) p[k] = cag_vec3(-1 + 2.0 * k / n, (n - k) % 2 ? -1 : 1, 0);
     const double size = pow(10, uniform(&seed, -3, 3)), angle = uniform(&seed, 0, 6),
                  range = pow(10, uniform(&seed, -2, 3)), start = uniform(&seed, -range, range),
@@ -236,7 +236,7 @@ static void orders_of_contact_do_not_depend_on_scale_place_and_domain(void **sta
   }
 }
 
-// Closed curves that touch a line, and each other, where they start and end.
+// Closed curves that touch a line, and each other, at their seams.
 static void touches_at_a_seam_are_one(void **state) {
   (void)state;
   uint64_t seed = 95;
@@ -246,7 +246,7 @@ static void touches_at_a_seam_are_one(void **state) {
     CagTransform frame = cag_translate(cag_vec3(x, 0, 0));
     frame.planar = true;
     CagCurve *c, *line;
-    OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &c, &err)); // starts in [x + a, 0]
+    OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &c, &err)); // begins at [x + a, 0]
     if (spline) c = as_spline(c);
     OK(cag_curve_line(cag_vec3(x + a, -2, 0), cag_vec3(x + a, 3, 0), 2, &line, &err));
     const double start = c->start, at_line = 0.4;
@@ -267,7 +267,7 @@ static void touches_at_a_seam_are_one(void **state) {
     assert_int_equal(m[0].multiplicity, 2);
     near_vec(m[0].point, cag_vec3(x + a, 0, 0), 1e-7);
     free(m);
-    // Across the seam it is two points.
+    // The line across the seam meets the curve at two points.
     OK(cag_plane(cag_vec3(x, 0, 0), cag_vec3(0, 1, 0), &plane, &err));
     OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
     assert_int_equal(n, 2);
@@ -278,12 +278,12 @@ static void touches_at_a_seam_are_one(void **state) {
   }
 }
 
-// Twice the area of a triangle with whole coordinates: exact.
+// Twice the area of a triangle with integer coordinates, which is exact.
 static double turn(CagVec3 a, CagVec3 b, CagVec3 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Crossings of two polylines; -1 where three points are on one line.
+// Counts the crossings of two polylines. Returns -1 if three points are collinear.
 static int count_crossings(const CagVec3 *p, size_t np, const CagVec3 *q, size_t nq) {
   int count = 0;
   for (size_t i = 0; i + 1 < np; i++)
@@ -296,7 +296,7 @@ static int count_crossings(const CagVec3 *p, size_t np, const CagVec3 *q, size_t
   return count;
 }
 
-// A polyline as a rational B-spline of degree 1 with weights far apart and uneven knots.
+// A polyline as a rational B-spline of degree 1 with very different weights and uneven knots.
 static CagCurve *rational_polyline(const CagVec3 *p, size_t n, uint64_t *seed) {
   double weights[8], knots[10];
   knots[0] = 0;
@@ -327,7 +327,7 @@ static void polylines_with_any_weights_cross_as_segments_do(void **state) {
   }
 }
 
-// Weights times powers of a number only change how a Bezier curve is run through.
+// Multiplying the weights by powers of a number changes only the parametrization of a Bezier curve.
 static void rational_beziers_meet_alike_however_they_are_run_through(void **state) {
   (void)state;
   uint64_t seed = 4;
@@ -353,8 +353,9 @@ static void rational_beziers_meet_alike_however_they_are_run_through(void **stat
   }
 }
 
-// Weights far apart turn the first curve back beside its fourth control point, so that it crosses
-// the second twice there. The number of crossings was counted on polygons of 4000 sides.
+// With very different weights, the first curve turns back near its fourth control point and crosses
+// the second one twice there. The expected number of intersections is from polygons with 4000
+// sides.
 static void curves_that_turn_back_meet_on_both_ways(void **state) {
   (void)state;
   const CagVec3 p[5] = {{4.204739901153635, 1.8536574175198615, 0},
@@ -377,8 +378,8 @@ static void curves_that_turn_back_meet_on_both_ways(void **state) {
   }
 }
 
-// Arcs of two circles in one plane of space. The wanted places are found from a place of the first
-// circle: they are those at the distance of the second radius from the second center.
+// Arcs of two circles in one plane of space. The expected points are constructed from one point of
+// the first circle: points at the distance of the second radius from the second center.
 static void arcs_meet_where_both_circles_pass(void **state) {
   (void)state;
   uint64_t seed = 5;
@@ -397,7 +398,7 @@ static void arcs_meet_where_both_circles_pass(void **state) {
     OK(cag_curve_arc(r, r, from[0], from[0] + sweep[0], &plane, &c[0], &err));
     frame = cag_transform_multiply(&plane, &shift);
     OK(cag_curve_arc(other, other, from[1], from[1] + sweep[1], &frame, &c[1], &err));
-    // The law of cosines in the triangle of the two centers and a place of both.
+    // The law of cosines in the triangle of the two centers and a common point.
     const double cosine = (d * d + r * r - other * other) / (2 * d * r);
     size_t wanted = 0;
     bool unsure = false;
@@ -413,7 +414,7 @@ static void arcs_meet_where_both_circles_pass(void **state) {
       }
       wanted += on;
     }
-    // Parts that nearly coincide but do not meet run along each other.
+    // Arcs that nearly coincide without crossing count as overlapping.
     if (unsure || (i % 3 == 0 && wanted < 2)) {
       cag_curve_release(c[0]);
       cag_curve_release(c[1]);
@@ -439,7 +440,7 @@ static void arcs_meet_where_both_circles_pass(void **state) {
 
 // --- Random curves ---
 
-static CagVec3 random_place(uint64_t *seed, double size, bool space) {
+static CagVec3 random_location(uint64_t *seed, double size, bool space) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(seed, -size, size);
   p.y = uniform(seed, -size, size);
@@ -454,7 +455,7 @@ static CagCurve *random_curve(uint64_t *seed, int kind, bool space) {
   const int dimension = space ? 3 : 2;
   CagCurve *c = NULL, *parts[2];
   for (int i = 0; i < 7; i++) {
-    p[i] = random_place(seed, 3, space);
+    p[i] = random_location(seed, 3, space);
     w[i] = uniform(seed, 0.5, 2);
   }
   const double turn = uniform(seed, -3, 3), a = uniform(seed, 0.5, 3), b = uniform(seed, 0.5, 3);
@@ -482,32 +483,32 @@ static CagCurve *random_curve(uint64_t *seed, int kind, bool space) {
   return c;
 }
 
-static CagVec3 place(const CagCurve *c, double t) {
+static CagVec3 curve_point(const CagCurve *c, double t) {
   CagVec3 p;
   OK(cag_curve_point(c, fmin(c->end, fmax(c->start, t)), &p, &err));
   return p;
 }
 
-// A plane meets a curve where the signed distance of dense samples changes its sign.
+// A plane meets a curve where the signed distance of dense samples changes sign.
 static void random_planes_meet_where_signs_change(void **state) {
   (void)state;
   uint64_t seed = 91;
   for (int i = 0; i < 160; i++) {
     CagCurve *c = random_curve(&seed, i % KINDS, i % 3 != 0);
     CagPlane plane;
-    const CagVec3 normal = random_place(&seed, 1, true);
-    OK(cag_plane(random_place(&seed, 1, true), normal, &plane, &err));
+    const CagVec3 normal = random_location(&seed, 1, true);
+    OK(cag_plane(random_location(&seed, 1, true), normal, &plane, &err));
     CagMeeting *m;
     size_t n, wanted = 0;
     OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
     enum { STEPS = 3000 };
-    double last = cag_dot(cag_sub(place(c, c->start), plane.point), plane.normal);
+    double last = cag_dot(cag_sub(curve_point(c, c->start), plane.point), plane.normal);
     for (int k = 1; k <= STEPS; k++) {
       const double t = c->start + (c->end - c->start) * k / STEPS;
-      const double here = cag_dot(cag_sub(place(c, t), plane.point), plane.normal);
+      const double here = cag_dot(cag_sub(curve_point(c, t), plane.point), plane.normal);
       if (last * here < 0) {
         assert_true(wanted < n);
-        // The one found lies in the same step.
+        // The intersection is within the same step.
         assert_true(fabs(m[wanted].t - t) <= 1.001 * (c->end - c->start) / STEPS);
         wanted++;
       }
@@ -515,7 +516,7 @@ static void random_planes_meet_where_signs_change(void **state) {
     }
     assert_int_equal(n, wanted);
     for (size_t k = 0; k < n; k++) {
-      near_vec(place(c, m[k].t), m[k].point, 1e-12);
+      near_vec(curve_point(c, m[k].t), m[k].point, 1e-12);
       NEAR(cag_dot(cag_sub(m[k].point, plane.point), plane.normal), 0, 1e-10);
       assert_true(m[k].multiplicity == 1 && m[k].t2 == 0);
     }
@@ -536,7 +537,7 @@ static void random_curves_meet_where_polylines_cross(void **state) {
     c[1] = random_curve(&seed, i / KINDS % KINDS, false);
     for (int k = 0; k < 2; k++)
       for (int j = 0; j <= STEPS; j++)
-        p[k][j] = place(c[k], c[k]->start + (c[k]->end - c[k]->start) * j / STEPS);
+        p[k][j] = curve_point(c[k], c[k]->start + (c[k]->end - c[k]->start) * j / STEPS);
     CagMeeting *m;
     size_t n, wanted = 0;
     OK(cag_curve_intersect(c[0], c[1], &m, &n, &err));
@@ -552,11 +553,11 @@ static void random_curves_meet_where_polylines_cross(void **state) {
     assert_int_equal(n, wanted);
     all += n;
     for (size_t k = 0; k < n; k++) {
-      near_vec(place(c[0], m[k].t), m[k].point, 1e-9);
-      near_vec(place(c[1], m[k].t2), m[k].point, 1e-9);
+      near_vec(curve_point(c[0], m[k].t), m[k].point, 1e-9);
+      near_vec(curve_point(c[1], m[k].t2), m[k].point, 1e-9);
       assert_true(m[k].multiplicity == 1 && (k == 0 || m[k - 1].t <= m[k].t));
     }
-    // The other way round they are the same places.
+    // Exchanged curves meet at the same points.
     CagMeeting *other;
     size_t again;
     OK(cag_curve_intersect(c[1], c[0], &other, &again, &err));
@@ -575,7 +576,7 @@ static void random_curves_meet_where_polylines_cross(void **state) {
   assert_true(all > 150);
 }
 
-// Curves of space meet in the point into which one of them is moved.
+// Space curves, one of which is translated to pass through a point of the other, meet there.
 static void curves_of_space_meet_where_they_were_put(void **state) {
   (void)state;
   uint64_t seed = 93;
@@ -585,8 +586,8 @@ static void curves_of_space_meet_where_they_were_put(void **state) {
     double t[2];
     for (int k = 0; k < 2; k++)
       t[k] = c[k]->start + (c[k]->end - c[k]->start) * uniform(&seed, 0.05, 0.95);
-    const CagVec3 p = place(c[0], t[0]);
-    const CagTransform shift = cag_translate(cag_sub(p, place(c[1], t[1])));
+    const CagVec3 p = curve_point(c[0], t[0]);
+    const CagTransform shift = cag_translate(cag_sub(p, curve_point(c[1], t[1])));
     OK(cag_curve_transform(c[1], &shift, &moved, &err));
     CagMeeting *m;
     size_t n;
@@ -597,7 +598,7 @@ static void curves_of_space_meet_where_they_were_put(void **state) {
     NEAR(m[0].t2, t[1], 1e-7);
     assert_int_equal(m[0].multiplicity, 1);
     free(m);
-    // 1e-6 apart they do not meet.
+    // At a distance of 1e-6, they do not meet.
     CagVec3 u, v;
     OK(cag_curve_tangent(c[0], t[0], CAG_SIDE_RIGHT, &u, &err));
     OK(cag_curve_tangent(c[1], t[1], CAG_SIDE_RIGHT, &v, &err));
@@ -614,7 +615,7 @@ static void curves_of_space_meet_where_they_were_put(void **state) {
   }
 }
 
-// A part of a curve runs along it; parts that only share an end meet there.
+// A part of a curve overlaps with it. Parts that have only an end in common meet there.
 static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
   (void)state;
   uint64_t seed = 94;
@@ -628,14 +629,14 @@ static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
     OK(cag_curve_trim(c, t[2], t[3], &part[2], &err));
     CagMeeting *m;
     size_t n;
-    // It takes a while to be sure: three kinds will do.
+    // The proof takes long, so three kinds must suffice.
     if (i == 0 || i == 4 || i == 5)
       FAILS(cag_curve_intersect(part[0], part[1], &m, &n, &err), "overlap");
     if (i == 0) FAILS(cag_curve_intersect(c, part[2], &m, &n, &err), "overlap");
-    if (i >= KINDS) { // in space nothing else meets
+    if (i >= KINDS) { // in space, nothing else meets
       OK(cag_curve_intersect(part[0], part[2], &m, &n, &err));
       assert_int_equal(n, 1);
-      near_vec(m[0].point, place(c, t[2]), 1e-8);
+      near_vec(m[0].point, curve_point(c, t[2]), 1e-8);
       free(m);
     }
     for (int k = 0; k < 3; k++) cag_curve_release(part[k]);
@@ -643,9 +644,9 @@ static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
   }
 }
 
-// The graph of x^2 + 3 x^3 over [from, to], run through either way, in plane or space.
+// The graph of x^2 + 3 x^3 over [from, to], in either direction, in the plane or in space.
 static CagCurve *graph_of_a_cubic(double from, double to, bool back) {
-  // Blossom: of x the mean, of x^2 the mean of the products of two, of x^3 the product.
+  // Blossoms: the mean for x, the mean of pairwise products for x^2, and the product for x^3.
   CagVec3 p[4];
   for (int i = 0; i < 4; i++) {
     const double u[3] = {i > 2 ? to : from, i > 1 ? to : from, i > 0 ? to : from};
@@ -665,7 +666,7 @@ static void touches_just_outside_of_an_end_are_found_at_the_end(void **state) {
   CagMeeting *m;
   size_t n;
   OK(cag_plane(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), &floor, &err));
-  // The vertex is 1e-6 before or within the domain, or at its end.
+  // The vertex is 1e-6 before or inside the domain, or at its end.
   for (int i = 0; i < 12; i++) {
     const double off = (i % 3 - 1) * 1e-6;
     const bool back = i / 3 % 2, left = i / 6;
@@ -674,7 +675,7 @@ static void touches_just_outside_of_an_end_are_found_at_the_end(void **state) {
     OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
     assert_int_equal(n, 1);
     NEAR(m[0].t, end, 1e-4);
-    near_vec(m[0].point, place(c, m[0].t), 1e-14);
+    near_vec(m[0].point, curve_point(c, m[0].t), 1e-14);
     near_vec(m[0].point, cag_vec3(0, 0, 0), 1e-4);
     free(m);
     for (int turned = 0; turned < 2; turned++) {
@@ -727,7 +728,8 @@ static void curves_that_lie_in_a_plane_or_run_along_each_other_are_refused(void 
   CagMeeting *m;
   size_t n;
   OK(cag_plane(cag_vec3(0, 0, 1), cag_vec3(0, 0, 1), &floor, &err));
-  // Within 2e-3 of a domain of 1 a piece of a polyline lies in the plane, or a tenth of that.
+  // A piece of a polyline of length 2e-3 relative to a domain of 1, or a tenth of that, lies in the
+  // plane.
   for (int i = 0; i < 2; i++) {
     const double reach = i ? 2e-4 : 2e-3;
     const CagVec3 p[4] = {{0, 0, 0}, {1, 0, 1}, {1 + 3 * reach, 0, 1}, {2, 0, 2}};
@@ -737,7 +739,7 @@ static void curves_that_lie_in_a_plane_or_run_along_each_other_are_refused(void 
     if (i == 0) FAILS(cag_curve_intersect_plane(c, &floor, &m, &n, &err), "overlap");
     cag_curve_release(c);
   }
-  // An arc in the plane, and one that leaves it.
+  // An arc in the plane, and one that leaves the plane.
   for (int i = 0; i < 2; i++) {
     CagTransform frame = cag_translate(cag_vec3(3, 2, 1));
     if (i) frame.m[2][0] = 1e-3;
@@ -756,9 +758,9 @@ static void curves_that_lie_in_a_plane_or_run_along_each_other_are_refused(void 
   }
 }
 
-// --- Formulas ---
+// --- Curves defined by functions ---
 
-// The graph of sin(rate t), or of 1 - 2 exp(-((t - middle) / width)^2) where there is a width.
+// The graph of sin(rate t), or of 1 - 2 exp(-((t - middle) / width)^2) if there is a width.
 typedef struct Graph {
   double rate, middle, width;
 } Graph;
@@ -769,7 +771,7 @@ static CagStatus graph_eval(void *context, double t, int order, CagVec3 *out, Ca
   double dip[CAG_MAX_DERIVATIVE + 1] = {0};
   const double x = t - g->middle;
   for (int k = 0; k <= order && g->width > 0; k++) {
-    // (exp(-x^2))' = -2 x exp(-x^2), and Leibniz' rule.
+    // (exp(-x^2))' = -2 x exp(-x^2), and the Leibniz rule.
     dip[k] =
         k == 0 ? -2 * exp(-x * x / (g->width * g->width))
                : -2 / (g->width * g->width) * (x * dip[k - 1] + (k > 1 ? (k - 1) * dip[k - 2] : 0));

@@ -1,4 +1,5 @@
-// Planes that touch curves of all kinds, and curves that touch each other: where, and once.
+// Planes that touch curves of all kinds, and curves that touch each other: the point is found,
+// once.
 
 #include "geom/curve/intersect.h"
 #include "tests/geom/curve_random.h"
@@ -39,7 +40,7 @@ static void planes_touch_where_the_height_turns(void **state) {
   assert_true(touches > 300);
 }
 
-// A curve of the plane.
+// A plane curve.
 static CagCurve *flat_curve(int kind) {
   CagVec3 p[6];
   double w[6];
@@ -58,7 +59,7 @@ static CagCurve *flat_curve(int kind) {
   return c;
 }
 
-// One curve is moved to where it has the point and the tangent of the other, and another curvature.
+// One curve is moved such that it has a point and tangent of the other, but another curvature.
 static void curves_touch_where_both_have_one_tangent(void **state) {
   (void)state;
   seed = 522;
@@ -106,7 +107,7 @@ static void curves_touch_where_both_have_one_tangent(void **state) {
   assert_true(touches > 150);
 }
 
-// Closed curves touch a line at their seam, or near it, over any domain: once.
+// Closed curves touch a line at or near their seam, over any domain, once.
 static void closed_curves_touch_lines_at_their_seam(void **state) {
   (void)state;
   seed = 523;

@@ -1,4 +1,4 @@
-// The invariants that sanitized builds assert: sound data pass, and data damaged in one respect do
+// The invariants that builds with sanitizers assert: valid data pass, and data with one defect do
 // not.
 
 #include "geom/basis/knots.h"
@@ -10,7 +10,7 @@ static void knots_are_finite_and_ascend(void **state) {
   (void)state;
   double knots[8] = {0, 0, 0, 0, 1, 1, 1, 1};
   assert_true(cag_check_knots(knots, 4, 3));
-  assert_false(cag_check_knots(knots, 3, 3)); // as many points as the degree
+  assert_false(cag_check_knots(knots, 3, 3)); // there are only as many points as the degree
   assert_false(cag_check_knots(knots, 4, 0));
   knots[5] = 0.5;
   assert_false(cag_check_knots(knots, 4, 3));
@@ -49,12 +49,12 @@ static void meshes_name_their_vertices(void **state) {
   assert_true(cag_check_mesh(m));
   m->triangles[5] = 4;
   assert_false(cag_check_mesh(m));
-  m->triangles[5] = 2; // twice
+  m->triangles[5] = 2; // a repeated corner
   assert_false(cag_check_mesh(m));
   m->triangles[5] = 3;
-  m->weld[3] = 1; // elsewhere
+  m->weld[3] = 1; // at another position
   assert_false(cag_check_mesh(m));
-  m->weld[0] = 3; // after it
+  m->weld[0] = 3; // a later vertex
   m->weld[3] = 3;
   assert_false(cag_check_mesh(m));
   memcpy(m->weld, weld, sizeof weld);

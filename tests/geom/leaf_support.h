@@ -1,4 +1,4 @@
-// Faces over 0..1 x 0..1 that are cut into leaves by hand.
+// Faces over 0..1 x 0..1 that are manually divided into leaves.
 
 #ifndef CAG_TESTS_GEOM_LEAF_SUPPORT_H
 #define CAG_TESTS_GEOM_LEAF_SUPPORT_H
@@ -19,7 +19,7 @@ typedef struct CutFaces {
   Tessellator t;
 } CutFaces;
 
-// Leaves that are added afterwards belong to this face.
+// Subsequent leaves belong to this face.
 static inline void add_face(CutFaces *c, CagSurface *s) {
   assert_true(c->t.face_count < FACES);
   c->s[c->t.face_count] = s;
@@ -37,7 +37,7 @@ static inline void add_leaf(CutFaces *c, const double from[2], const double to[2
   c->faces[c->t.face_count - 1].leaf_count++;
 }
 
-// Adds leaves that fill the rectangle, at most 2^depth.
+// Adds at most 2^depth leaves that fill the rectangle.
 static inline void add_random_leaves(CutFaces *c, const double from[2], const double to[2],
                                      int depth) {
   const double part = uniform(0.2, 0.8);

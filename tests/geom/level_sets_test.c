@@ -1,6 +1,6 @@
-// Curves on graphs z = f(x, y), as sections, isophotes, contours, curvature contours and meetings
-// of two surfaces give them, against marching squares in the plane of x and y: as many, as long,
-// and on the places where the function is 0.
+// Curves on graphs z = f(x, y), computed as sections, isophotes, contours, curvature contours, and
+// intersections of surfaces. Compares number, length, and location with marching squares in the x,
+// y plane.
 
 #include "geom/meet/curvature_contour.h"
 #include "geom/meet/curvature_line.h"
@@ -17,8 +17,8 @@ enum { NX = 168, NY = 112, NODES = (NX + 1) * (NY + 1) };
 
 // --- Graphs ---
 
-// Of degree p in both directions, with so many control points. At the means of knots as x and y of
-// control points, u is x and v is y.
+// A graph of degree p in both directions, with the given numbers of control points. Their x and y
+// are averages of knots, so u is x and v is y.
 static CagSurface *graph(int p, int nu, int nv, double rough) {
   double knots[2][24];
   CagVec3 net[14 * 14];
@@ -45,7 +45,7 @@ static CagSurface *graph(int p, int nu, int nv, double rough) {
   return s;
 }
 
-// What the curves are asked of.
+// The surfaces and the level for which curves are computed.
 typedef struct Question Question;
 struct Question {
   const CagSurface *s, *other;
@@ -99,8 +99,8 @@ static double value_at(const Question *q, double x, double y, CagVec3 *p) {
 
 // --- Marching squares ---
 
-// Runs: their number, length, and the length of each. Edges are numbered by the lower of their
-// nodes, those along x first.
+// The connected lines: their number and lengths. Edges of the grid are numbered by the lower of
+// their nodes, those along x first.
 typedef struct Runs {
   int count;
   double length, of[2 * NODES], largest;
@@ -135,7 +135,7 @@ static void connect(Runs *r, int e, int f) {
 
 static bool positive(int node) { return values[node] >= 0; }
 
-// False where two runs come so near to each other that it is open how they are connected.
+// Returns false if two lines are so close to each other that their connection is ambiguous.
 static bool march(const Question *q, Runs *r) {
   r->length = r->largest = 0;
   for (int i = 0; i <= NX; i++)
@@ -199,7 +199,7 @@ static CagStatus ask_meeting(const Question *q, CagCurveList *out, CagError *e) 
   return cag_surface_intersect(q->s, q->other, 0, NULL, out, e);
 }
 
-// An open curve ends on the edge of the rectangle, to rounding.
+// An open curve ends on the border of the rectangle, up to rounding.
 static void check_ends(const Question *q, const CagCurve *c, const Runs *runs, const char *what,
                        int round) {
   for (int end = 0; end < 2 && !c->closed; end++) {
@@ -214,8 +214,8 @@ static void check_ends(const Question *q, const CagCurve *c, const Runs *runs, c
   }
 }
 
-// Gives false where marching squares cannot tell. They cut corners by some thousandths of the
-// length.
+// Returns false if marching squares are inconclusive. Their length is too short by a few
+// thousandths, because they cut corners.
 static bool compare(const Question *q, Ask ask, const char *what, int round) {
   static Runs runs;
   CagCurveList list = {0};
@@ -304,7 +304,8 @@ static void meetings_are_level_sets(void **state) {
 
 // --- Lines of curvature ---
 
-// Along (dx, dy) the normal curvature is the principal one of this kind, and the direction is its.
+// Checks that the normal curvature along (dx, dy) is the larger or smaller principal curvature, and
+// that the direction is its.
 static void check_bend(const CagSurface *s, CagVec3 p, CagVec3 along, bool larger, int round) {
   CagVec3 d[9];
   OK(cag_surface_eval(s, fmin(fmax(p.x, 0), WIDE), fmin(fmax(p.y, 0), HIGH), 2, CAG_SIDE_RIGHT,
@@ -319,7 +320,7 @@ static void check_bend(const CagSurface *s, CagVec3 p, CagVec3 along, bool large
   const double k = bent(&of, d);
   if (!(fabs(second / first - k) < 1e-5 * (1 + fabs(k))))
     fail_msg("line %d: at [%g %g] curvature %g, not %g", round, p.x, p.y, second / first, k);
-  // Both forms are proportional: (L - k E) x + (M - k F) y = 0.
+  // In principal directions, (L - k E) x + (M - k F) y = 0.
   const double skew = ((1 + a * a) * x + a * b * y) * (m * x + n * y) -
                       (a * b * x + (1 + b * b) * y) * (l * x + m * y);
   if (!(fabs(skew) < 2e-4 * first))
@@ -345,7 +346,7 @@ static void lines_of_curvature_follow_principal_directions(void **state) {
                         i == 60 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
       OK(cag_surface_point(s, fmin(fmax(d[0].x, 0), WIDE), fmin(fmax(d[0].y, 0), HIGH), &q, &err));
       near_vec(d[0], q, 1e-6);
-      // Not at the ends, where an umbilic may be.
+      // Avoids the ends, where an umbilic may be.
       if (i > 2 && i < 58) check_bend(s, d[0], cag_unit(d[1]), larger, round);
     }
     double t;
@@ -362,7 +363,7 @@ static void lines_of_curvature_follow_principal_directions(void **state) {
       OK(cag_surface_principal(s, fmin(fmax(p.x, 0), WIDE), fmin(fmax(p.y, 0), HIGH), &found, &at,
                                &err));
       told += beside < 1e-9;
-      // At the edge, or at an umbilic.
+      // At the border, or at an umbilic.
       assert_true(beside < 1e-9 || at.k[1] - at.k[0] < 0.05);
     }
     cag_curve_release(c);

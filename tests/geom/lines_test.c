@@ -1,12 +1,13 @@
-// Lines of faces that share an edge: both get the corners of both, and as many steps as the denser
-// one needs, also if the faces run along the edge in opposite directions or at different speeds.
+// Mesh lines along a common edge of two faces: each gets the corners of both faces, and as many
+// steps as the denser one needs, even if the faces traverse the edge in opposite directions or at
+// different speeds.
 
 #include "tests/geom/leaf_support.h"
 
 static const double origin[2] = {0, 0}, far_corner[2] = {1, 1};
 
-// The shared edge at the parameter t, and a plane quadrilateral beside it. `bend`: how far the
-// parameter runs ahead of the length; the edge is straight all the same.
+// The point on the common edge at the parameter t, and a plane quadrilateral beside it. `bend`
+// tells how unevenly the parameter runs along the edge, which is straight in any case.
 static CagSurface *patch(CagVec3 p, CagVec3 q, CagVec3 off, int side, bool back, double bend) {
   enum { ROWS = 2, ALONG = 3 };
   CagVec3 net[ROWS * ALONG], turned[ROWS * ALONG];
@@ -54,7 +55,7 @@ static void begin(Joint *j, int k) {
   OK(cag_tess_make_nodes(&j->cut.t, &err));
 }
 
-// --- Steps that the faces need along the edge ---
+// --- Required steps along the edge ---
 
 // The fraction of the edge's length at a parameter of a face.
 static double length_at(const Joint *j, int face, double t) {
@@ -78,7 +79,7 @@ static bool is_beside(const Joint *j, int face, const Leaf *l) {
   return (int)l->face == face && (side % 2 ? l->to[side / 2] == 1 : l->from[side / 2] == 0);
 }
 
-// Steps that the leaves of a face need between two fractions of the length.
+// The number of steps that the leaves of a face need between two fractions of the length.
 static double needed(const Joint *j, int face, double from, double to) {
   const double a = parameter_at(j, face, from), b = parameter_at(j, face, to);
   const int along = 1 - j->side[face] / 2;
@@ -99,8 +100,8 @@ static void lines_of_an_edge_have_the_same_nodes(void **state) {
     Joint j;
     begin(&j, k);
     const Tessellator *t = &j.cut.t;
-    const double near = k / 32 % 2 ? 1e-7 : 1e-14; // parameters that are searched for, or not
-    // The corners of both faces' leaves, as fractions of the length.
+    const double near = k / 32 % 2 ? 1e-7 : 1e-14; // parameters that must be searched for, or not
+    // The corners of the leaves of both faces, as fractions of the length.
     double cuts[2 * MOST_LEAVES + 2];
     size_t n = 0, expected = 1;
     for (size_t l = 0; l < t->leaf_count; l++)
@@ -129,7 +130,7 @@ static void lines_of_an_edge_have_the_same_nodes(void **state) {
           cag_tess_node_vertex(t, line[1], node[1], j.side[1] % 2 == 0,
                                j.reversed ? i == 0 : i == expected - 1)};
       assert_int_equal(cag_tess_find(&j.cut.t, v[0]), cag_tess_find(&j.cut.t, v[1]));
-      // Between cuts, the steps along the first line are equal.
+      // Between corners, the steps along the first line are equal.
       if (i > 0 && i + 1 < expected && node[0]->corner == NO_INDEX) {
         const double before = node[0]->t - node[0][-1].t, after = node[0][1].t - node[0]->t;
         bool cut = false;
@@ -137,7 +138,7 @@ static void lines_of_an_edge_have_the_same_nodes(void **state) {
         if (!cut) NEAR(before, after, 1e-6);
       }
     }
-    // Each line keeps the very numbers of its own corners.
+    // Each line keeps its own corners exactly.
     for (size_t l = 0; l < t->leaf_count; l++)
       for (int f = 0; f < FACES; f++) {
         const Leaf *leaf = &j.cut.leaves[l];

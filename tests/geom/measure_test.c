@@ -1,5 +1,5 @@
-// Bounds, areas and volume terms of random surfaces, against searches without slopes and against
-// Gauss's quadrature of their definitions.
+// Bounds, areas, and volume terms of random surfaces, compared with derivative-free searches and
+// Gauss quadrature of their definitions.
 
 #include "geom/surface/function.h"
 #include "geom/surface/surface.h"
@@ -11,7 +11,8 @@ enum { NU = 5, NV = 6, PU = 2, PV = 3 };
 static const double KU[] = {0.5, 0.5, 0.5, 1.2, 2, 3.1, 3.1, 3.1};
 static const double KV[] = {-1, -1, -1, -1, -0.4, 0.5, 1.5, 1.5, 1.5, 1.5};
 
-// `rough`: how far its points are off a plane grid; folds have no smooth integrals.
+// `rough` is the deviation of its points from a plane grid. Integrals over folds would not be
+// smooth.
 static CagSurface *random_surface(bool rational, double rough) {
   CagVec3 p[NU * NV];
   double w[NU * NV];
@@ -36,7 +37,8 @@ static CagVec3 at(const CagSurface *s, double u, double v) {
 
 static double coordinate(CagVec3 p, int k) { return k == 0 ? p.x : k == 1 ? p.y : p.z; }
 
-// The largest of sign times a coordinate: from the best places of a grid by steps that get shorter.
+// The maximum of sign times a coordinate: starts from the best points of a grid, with decreasing
+// steps.
 static double extreme(const CagSurface *s, int axis, double sign) {
   enum { N = 24 };
   static double grid[N + 1][N + 1];
@@ -79,7 +81,7 @@ static double extreme(const CagSurface *s, int axis, double sign) {
   return best;
 }
 
-static int looks; // at second derivatives
+static int looks; // evaluations of second derivatives
 
 static CagStatus waves(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
   (void)context;
@@ -98,7 +100,7 @@ static CagStatus waves(void *context, double u, double v, int n, CagVec3 *out, C
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(waves, context, u, vs, nv, n, out, e);
+  return row_by_points(waves, context, u, vs, nv, n, out, e);
 }
 
 static CagSurface *formula(double u0, double u1, double v0, double v1) {
@@ -135,7 +137,7 @@ static void bounds_are_the_extremes(void **state) {
   }
 }
 
-// Newton's method finds tops within a few steps.
+// Newton's method finds extrema within a few steps.
 static void bounds_take_few_steps(void **state) {
   (void)state;
   seed = 64;
@@ -156,7 +158,7 @@ static void bounds_take_few_steps(void **state) {
 
 // --- Integrals ---
 
-// Gauss and Legendre's nodes of order 8 over 0..1.
+// Gauss-Legendre nodes of order 8 over 0..1.
 static const double NODE[] = {0.019855071751231884, 0.10166676129318664, 0.2372337950418355,
                               0.4082826787521751,   0.5917173212478249,  0.7627662049581645,
                               0.8983332387068134,   0.9801449282487681};
@@ -169,8 +171,8 @@ typedef struct Integrals {
   CagVec3 moment;
 } Integrals;
 
-// V = 1/3 of the flux of the place; moments by fluxes along their own axes.
-static void add_place(const CagSurface *s, double u, double v, double weight, Integrals *out) {
+// V is 1/3 of the flux of the position vector. Moments are fluxes along their own axes.
+static void add_sample(const CagSurface *s, double u, double v, double weight, Integrals *out) {
   CagVec3 d[4];
   OK(cag_surface_eval(s, u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err));
   const CagVec3 n = cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]);
@@ -195,9 +197,9 @@ static Integrals integrals_of(const CagSurface *s, const double *ku, int nu, con
       const double hv = (kv[j / PARTS + 1] - kv[j / PARTS]) / PARTS;
       for (int a = 0; a < 8; a++)
         for (int b = 0; b < 8; b++)
-          add_place(s, ku[i / PARTS] + hu * (i % PARTS + NODE[a]),
-                    kv[j / PARTS] + hv * (j % PARTS + NODE[b]), WEIGHT[a] * WEIGHT[b] * hu * hv,
-                    &sum);
+          add_sample(s, ku[i / PARTS] + hu * (i % PARTS + NODE[a]),
+                     kv[j / PARTS] + hv * (j % PARTS + NODE[b]), WEIGHT[a] * WEIGHT[b] * hu * hv,
+                     &sum);
     }
   return sum;
 }
@@ -211,7 +213,7 @@ static void check_integrals(const CagSurface *s, const Integrals *wanted, double
            tolerance * (1 + cag_norm(center)));
   OK(cag_surface_area(s, &same, NULL, &err));
   NEAR(same, area, 1e-14 * area);
-  // They are added to what is there.
+  // The terms are added to the previous values.
   for (int k = 0; k < 10; k++) terms[k] = k;
   OK(cag_surface_volume_terms(s, terms, &err));
   double most = 0;
@@ -227,7 +229,7 @@ static void integrals_are_those_of_the_definitions(void **state) {
     CagSurface *s = random_surface(round % 2, 0.2), *moved;
     CagTransform map;
     OK(cag_rotate(cag_vec3(1, -2, 0.5), uniform(0, 3), cag_vec3(1, 1, 1), &map, &err));
-    map.m[0][1] += 0.4; // a shear, and a mirror
+    map.m[0][1] += 0.4; // a shear and a reflection
     for (int k = 0; k < 4; k++) map.m[2][k] *= round % 3 ? 1 : -1;
     OK(cag_surface_transform(s, &map, &moved, &err));
     const Integrals own = integrals_of(s, ku, 3, kv, 3), other = integrals_of(moved, ku, 3, kv, 3);
@@ -243,7 +245,7 @@ static void integrals_are_those_of_the_definitions(void **state) {
   cag_surface_release(s);
 }
 
-// A flat rectangle by its region is the one by its corners.
+// A planar rectangle as a region has the same integrals as one given by its corners.
 static void flat_pieces_have_the_integrals_of_patches(void **state) {
   (void)state;
   seed = 63;

@@ -1,4 +1,5 @@
-// Where curves of two surfaces end: on an edge of one, and on the other, to rounding.
+// Ends of intersection curves of two surfaces: on an edge of one surface, and on the other one, up
+// to rounding.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -15,7 +16,7 @@ static double height(const Graph *g, double x, double y) {
 }
 
 static CagSurface *graph_surface(const Graph *g) {
-  // Parameters below zero, which make no difference.
+  // The domain is negative, which must not matter.
   const double knots[] = {-2.5, -2.5, -2.5, -1, -1, -1};
   CagVec3 net[9];
   CagSurface *s;
@@ -36,7 +37,7 @@ static double off_edges_of_graph(const Graph *g, CagVec3 p) {
   return fmin(x, y);
 }
 
-// In parts of the parallelogram's sides.
+// The distance from the sides of the parallelogram, as a fraction of the sides.
 static double off_edges_of_sheet(CagVec3 o, CagVec3 e, CagVec3 f, CagVec3 p) {
   const CagVec3 n = cag_cross(e, f), r = cag_sub(p, o);
   const double u = cag_dot(cag_cross(r, f), n) / cag_dot(n, n);

@@ -1,8 +1,8 @@
-// Where lines pierce trimmed surfaces.
+// Intersections of lines with trimmed surfaces.
 
 #include "tests/geom/ring_support.h"
 
-// A line pierces a ring where it passes its plane or graph inside of the outlines.
+// A line meets a ring where it passes its plane or graph inside the outlines.
 static void lines_pierce_rings_within_their_outlines(void **state) {
   (void)state;
   seed = 8;
@@ -13,7 +13,7 @@ static void lines_pierce_rings_within_their_outlines(void **state) {
     for (int i = 0; i < (base ? 15 : 40); i++) {
       const double x = uniform(0.1, 2.1), y = uniform(0, 1.9), in = inside_of(x, y, disk, hole);
       if (fabs(in) < 1e-6) continue;
-      // Slanted ones may pass a graph twice.
+      // Slanted lines may cross a graph twice.
       CagVec3 along = {0, 0, 3}, p = {x, y, 0};
       if (base) OK(cag_surface_point(base, x, y, &p, &err));
       else along = cag_vec3(uniform(-2, 2), uniform(-2, 2), 3);

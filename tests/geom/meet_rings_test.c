@@ -1,11 +1,11 @@
-// Where surfaces meet trimmed surfaces: random comparisons with samples.
+// Intersections of surfaces with trimmed surfaces, compared with samples.
 
 #include "tests/geom/ring_support.h"
 
 #include "geom/meet/meet_surface.h"
 
-// Upright cylinders and planes meet rings of a plane or a curved graph in arcs and lines over x and
-// y: as many and as long as many samples of these tell, and they end on the outlines.
+// Vertical cylinders and planes meet a plane or curved ring in arcs and lines over x and y.
+// Compares their number and length with dense samples, and checks that they end on the outlines.
 static void rings_are_met_within_their_outlines(void **state) {
   (void)state;
   seed = 6;
@@ -40,12 +40,12 @@ static void rings_are_met_within_their_outlines(void **state) {
       q = cag_vec3(p.x, p.y, 0);
       if (base && in > -0.02) OK(cag_surface_point(base, p.x, p.y, &q, &err));
       if (i > 0 && in > 0 && before > 0) length += cag_norm(cag_sub(q, last));
-      // Parts of a step, where it passes the outline.
+      // The fraction of a step inside the outline.
       if (i > 0 && (in > 0) != (before > 0))
         length += cag_norm(cag_sub(q, last)) * fmax(in, before) / fabs(in - before);
       if (i > 0 && in > 0 && before <= 0) runs++;
       if (i == 0) first = in;
-      // Lows and highs that hardly pass the outline cannot be told.
+      // Skips cases with extrema close to the outline.
       if (i > 0 && fabs(in) < 0.02) least = fmin(least, fabs(in - before) * SAMPLES);
       before = in;
       last = q;
@@ -82,13 +82,13 @@ static void rings_are_met_within_their_outlines(void **state) {
   assert_true(told > 8 && cut > 16);
 }
 
-// A round wall that does not pass the outlines meets the ring in its whole foot, or not at all.
+// A circular wall that does not cross the outlines meets the ring in a full circle, or not at all.
 static void walls_within_rings_meet_them_in_whole_circles(void **state) {
   (void)state;
   seed = 7;
   for (int round = 0; round < 12; round++) {
     const double disk[3] = {uniform(-1, 1), 0.5, 5}, hole[3] = {1, uniform(-1, 1), 1.5};
-    // About the hole, beside it, within it, or around all.
+    // Around the hole, beside it, inside it, or around everything.
     static const double OF[4][2] = {{2, 3}, {0.5, 1}, {0.3, 1}, {7, 9}};
     const double *of = OF[round % 4], r = uniform(of[0], of[1]);
     const double off = round % 4 == 1 ? 3 : 0, x = hole[0], y = hole[1] + off;

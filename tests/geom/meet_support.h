@@ -1,4 +1,4 @@
-// Shared by the tests of curves that meet surfaces.
+// Helpers for the tests of intersections of curves with surfaces.
 
 #ifndef CAG_TESTS_GEOM_MEET_SUPPORT_H
 #define CAG_TESTS_GEOM_MEET_SUPPORT_H
@@ -7,8 +7,8 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-// Counts the points at which the curve meets the surface. Asserts that every point is on both
-// within `near`, that the points are in order, and that they have the multiplicity, if it is not 0.
+// Counts the points at which the curve meets the surface. Checks that every point is on both within
+// `near`, that the points are in order, and that they have the multiplicity, if it is not 0.
 static inline size_t meetings(const CagSurface *s, const CagCurve *c, double near,
                               int multiplicity) {
   CagSurfaceMeeting *m;
@@ -26,7 +26,7 @@ static inline size_t meetings(const CagSurface *s, const CagCurve *c, double nea
   return n;
 }
 
-// z = f(x, y) over [0, 3] x [0, 2], a cubic net whose x and y are u and v.
+// The graph z = f(x, y) over [0, 3] x [0, 2], a cubic net whose x and y are u and v.
 static inline CagSurface *graph(void) {
   enum { NU = 6, NV = 5 };
   const double ku[] = {0, 0, 0, 0, 1, 2, 3, 3, 3, 3}, kv[] = {0, 0, 0, 0, 1, 2, 2, 2, 2};

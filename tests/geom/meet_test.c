@@ -1,4 +1,4 @@
-// Where curves meet surfaces: random comparisons with counts by whole numbers, and
+// Intersections of curves with surfaces, compared with exact counts for integer data, and with
 // closed forms.
 
 #include "tests/geom/meet_support.h"
@@ -13,14 +13,14 @@ static CagVec3 whole_point(double size) {
 #define POLYLINE 6
 #define NET 4
 
-// Knots of degree 1, uneven.
+// Uneven knots of degree 1.
 static void fill_knots(double *knots, size_t n) {
   knots[0] = knots[1] = 0;
   for (size_t i = 2; i <= n; i++) knots[i] = knots[i - 1] + pow(10, uniform(-2, 0));
   knots[n + 1] = knots[n];
 }
 
-// A polyline with weights far apart.
+// A polyline with very different weights.
 static CagCurve *polyline(const CagVec3 *p) {
   double weights[POLYLINE], knots[POLYLINE + 2];
   for (size_t i = 0; i < POLYLINE; i++) weights[i] = pow(10, uniform(-1, 1));
@@ -44,7 +44,7 @@ static double volume(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d) {
   return cag_dot(cag_sub(b, a), cag_cross(cag_sub(c, a), cag_sub(d, a)));
 }
 
-// Times a segment passes the parallelogram at o; -1 where that is a matter of rounding.
+// How often a segment crosses the parallelogram at o; -1 if rounding decides.
 static int passes(CagVec3 a, CagVec3 b, CagVec3 o, CagVec3 e, CagVec3 f) {
   const CagVec3 corner[4] = {o, cag_add(o, e), cag_add(o, cag_add(e, f)), cag_add(o, f)};
   const double h = volume(o, corner[1], corner[3], a), k = volume(o, corner[1], corner[3], b);
@@ -81,7 +81,7 @@ static void polylines_pass_a_flat_patch_as_segments_do(void **state) {
       wanted = k < 0 ? -1 : wanted + k;
     }
     if (wanted < 0) continue;
-    // The parallelogram as one rational piece: weights only change how it is run through.
+    // The parallelogram as one rational piece. The weights only change its parametrization.
     const double w = pow(10, uniform(-1, 1)), x = pow(10, uniform(-1, 1));
     const CagVec3 corners[4] = {o, cag_add(o, f), cag_add(o, e), cag_add(o, cag_add(e, f))};
     const double weights[4] = {1, w, x, w * x}, knots[4] = {0, 0, 1, 1};
@@ -91,7 +91,7 @@ static void polylines_pass_a_flat_patch_as_segments_do(void **state) {
   }
 }
 
-// Over a grid of whole numbers the heights of a net whose facets are flat: f(x) + g(y).
+// A net with planar cells: the heights over an integer grid are f(x) + g(y).
 static void polylines_pass_a_folded_net_as_segments_do(void **state) {
   (void)state;
   seed = 2;
@@ -149,7 +149,7 @@ static void lines_meet_a_ball_as_their_distance_tells(void **state) {
 
 // --- Curves and graphs ---
 
-// A cubic with an inner knot that runs over the rectangle, or also beside it.
+// A cubic with an inner knot over the rectangle; with `beside`, it may leave the rectangle.
 static CagCurve *over(bool beside) {
   const double knots[] = {0, 0, 0, 0, 0.4, 1, 1, 1, 1};
   CagVec3 p[5];
@@ -165,7 +165,7 @@ static CagCurve *over(bool beside) {
   return c;
 }
 
-// The height of the curve over the graph; NAN beside it. How far inside of the rectangle it is.
+// The height of the curve above the graph, or NAN outside; *inside is the distance from the border.
 static double height(const CagSurface *s, const CagCurve *c, double t, double *inside) {
   CagVec3 p, q;
   OK(cag_curve_point(c, t, &p, &err));
@@ -175,8 +175,8 @@ static double height(const CagSurface *s, const CagCurve *c, double t, double *i
   return p.z - q.z;
 }
 
-// All places where the height changes its sign; -1: two of them, or one and the edge of the
-// rectangle, are too near to each other to be told apart.
+// Finds all sign changes of the height. Returns -1 if two of them, or one and the border of the
+// rectangle, are too close to be distinguished.
 static int sign_changes(const CagSurface *s, const CagCurve *c, double *out) {
   enum { STEPS = 1500 };
   double before = NAN, last = NAN, inside;
@@ -184,7 +184,7 @@ static int sign_changes(const CagSurface *s, const CagCurve *c, double *out) {
   for (int i = 0; i <= STEPS; i++) {
     const double now = height(s, c, (double)i / STEPS, &inside);
     if (fabs(inside) < 0.01 && (isnan(now) || fabs(now) < 0.1)) return -1;
-    // A low between samples without a crossing.
+    // A minimum between samples that does not reach zero.
     if (fabs(before) < 0.003 && fabs(before) <= fabs(now) && fabs(before) <= fabs(last) &&
         (before < 0) == (now < 0) && (before < 0) == (last < 0))
       return -1;
@@ -216,7 +216,7 @@ static void curves_meet_graphs_where_their_height_is_zero(void **state) {
     double at[64];
     const int n = sign_changes(s, c, at);
     if (n >= 0) {
-      // As they are, or both moved, the surface seen through a map.
+      // Unchanged, or both transformed, the surface by a transform wrapper.
       if (round % 2) {
         OK(cag_surface_transform(s, &turn, &moved, &err));
         OK(cag_curve_transform(c, &turn, &with, &err));
@@ -246,8 +246,8 @@ static void curves_meet_graphs_where_their_height_is_zero(void **state) {
   assert_true(told > 75 && found > 75);
 }
 
-// A parabola over a saddle, z = x y: lifted by the lowest height they touch, once, with the order
-// 2; a cubic x^3 crosses the plane z = 0 with the order 3.
+// A parabola above a saddle, z = x y. Raised by the smallest height, it touches the saddle once,
+// with order 2. A cubic x^3 crosses the plane z = 0 with order 3.
 static void the_order_of_contact_is_told(void **state) {
   (void)state;
   seed = 5;
@@ -255,22 +255,22 @@ static void the_order_of_contact_is_told(void **state) {
   CagSurface *saddle;
   OK(cag_surface_bezier(corner, NULL, 2, 2, &saddle, &err));
   for (int round = 0; round < 60; round++) {
-    // Along the direction (a, b) through (p, q): over the saddle the height is
-    // z0 + k s^2 - (p + a s) (q + b s), which vanishes twice at s = (p b + q a) / (2 (k - a b)).
+    // Along the direction (a, b) through (p, q), the height above the saddle is z0 + k s^2 - (p + a
+    // s) (q + b s). It has a double root at s = (p b + q a) / (2 (k - a b)).
     const double p = uniform(-0.3, 0.3), q = uniform(-0.3, 0.3), a = uniform(-0.6, 0.6),
                  b = uniform(-0.6, 0.6), bend = uniform(0.6, 1.5) * (round % 2 ? 1 : -1);
     const double k = bend + a * b, half = (p * b + q * a) / 2, at = half / bend;
     if (fabs(at) > 0.9) continue;
     for (int lift = -1; lift <= 1; lift++) {
       const double z = p * q + half * half / bend - lift * 0.01 * bend;
-      // As a Bezier curve over s = -1 .. 1.
+      // The parabola as a Bezier curve over s = -1 .. 1.
       const CagVec3 net[] = {{p - a, q - b, z + k}, {p, q, z - k}, {p + a, q + b, z + k}};
       CagCurve *c;
       CagSurfaceMeeting *m;
       size_t n;
       OK(cag_curve_bezier(net, NULL, 3, 3, &c, &err));
       OK(cag_surface_intersect_curve(saddle, c, &m, &n, &err));
-      const double off = 0.1; // sqrt(0.01), by the height bend (s - at)^2 - lift 0.01 bend
+      const double off = 0.1; // sqrt(0.01), from the height bend (s - at)^2 - lift 0.01 bend
       const int wanted = lift < 0 ? 0 : lift == 0 ? 1 : (fabs(at - off) < 1) + (fabs(at + off) < 1);
       assert_int_equal(n, wanted);
       for (size_t i = 0; i < n; i++) {

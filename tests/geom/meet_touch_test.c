@@ -1,11 +1,11 @@
-// Graphs of polynomials whose difference is known: where they touch along curves or in points,
-// cross, do both, or share a piece; with parameters of all speeds.
+// Graphs of polynomials whose difference is known: they touch along curves or at points, cross, do
+// both, or overlap, with uneven parametrizations.
 
 #include "tests/geom/polynomial_support.h"
 
 #include "geom/meet/meet_surface.h"
 
-// Length of the part of a curve of the plane, lifted onto f, within the square.
+// The length of the part inside the square of a plane curve that is lifted onto f.
 typedef struct Path {
   bool round;
   CagVec3 from, way; // a line; or the center, and the radius in way.x
@@ -33,7 +33,7 @@ typedef struct Case {
   const char *name;
   Polynomial difference;
   Path paths[2];
-  int n; // of paths; -1: they share a piece
+  int n; // number of paths; -1: they overlap
   bool touches;
 } Case;
 
@@ -87,7 +87,7 @@ static void check_curves(const CagCurveList *list, const Polynomial *f, const Ca
       if (!(fabs(off) < 1e-5) || !(beside < near))
         fail_msg("round %d, %s: [%g %g %g] is off by %g, %g", round, is->name, p.x, p.y, p.z, off,
                  beside);
-      // Open ones end on an edge of the square.
+      // Open curves end on an edge of the square.
       const double edge = fmin(fmin(fabs(p.x), fabs(1 - p.x)), fmin(fabs(p.y), fabs(1 - p.y)));
       if ((k == 0 || k == 24) && !c->closed && is->n == 1) NEAR(edge, 0, 1e-7);
     }
@@ -121,7 +121,7 @@ static void graphs_meet_where_their_difference_is_zero(void **state) {
       check_curves(&list, &f, &is, &back, is.touches ? 1e-4 : 1e-5, round);
       cag_curve_list_free(&list);
       list = (CagCurveList){0};
-      if (is.n < 2) { // those that touch alone
+      if (is.n < 2) { // those that only touch
         Case only = is;
         if (!is.touches) only.n = 0;
         OK(cag_surface_touches(a, b, 0, NULL, &list, &err));
@@ -134,7 +134,7 @@ static void graphs_meet_where_their_difference_is_zero(void **state) {
   }
 }
 
-// Parallelograms of one plane share a piece or none, however their parameters run.
+// Coplanar parallelograms either overlap or are disjoint, regardless of their parametrization.
 static void flat_patches_of_one_plane_share_a_piece_or_none(void **state) {
   (void)state;
   seed = 62;
@@ -144,7 +144,7 @@ static void flat_patches_of_one_plane_share_a_piece_or_none(void **state) {
     const CagVec3 o = direction();
     const bool apart = round % 2;
     for (int k = 0; k < 2; k++) {
-      // Of sizes from 1 to 2, about centers that are near to each other or far away.
+      // The sizes are from 1 to 2, with centers close to each other or far apart.
       const double a = uniform(0, 6), w = uniform(0.5, 1), h = uniform(0.5, 1);
       const double off = k == 0 ? 0 : apart ? uniform(3, 4) : uniform(0.1, 0.4);
       const CagVec3 e = cag_madd(cag_scaled(x, w * cos(a)), w * sin(a), y);

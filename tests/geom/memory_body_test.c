@@ -28,7 +28,7 @@
 #include "geom/tessellate/split.h"
 
 #define QUESTION(name) static CagStatus name(const void *given, CagError *e)
-// The releases take the address because the caller evaluates it before the call that makes it.
+// They take the address because the caller evaluates it before the call that makes the object.
 static CagStatus drop_region(CagStatus status, CagRegion *const *made) {
   if (status) return status;
   fault_found((double)(*made)->count);
@@ -466,7 +466,7 @@ static void questions_to_solids_report_faults(void **state) {
     CagSolid *s;
     OK(KINDS[k].make(&s, &err));
     for (size_t q = 0; q < sizeof QUESTIONS / sizeof *QUESTIONS; q++) {
-      QUESTIONS[q].ask(s, &err); // set operations keep the mesh that they make
+      QUESTIONS[q].ask(s, &err); // set operations keep the mesh that they create
       try_faults(QUESTIONS[q].name, KINDS[k].name, QUESTIONS[q].ask, s);
     }
     cag_solid_release(s);
@@ -707,7 +707,7 @@ QUESTION(quadric_in_a_box) {
   return CAG_OK;
 }
 
-// A part of a paraboloid, whose body has faces if nothing fails.
+// A part of a paraboloid, which makes a body with faces if nothing fails.
 typedef struct Cut {
   CagSurface **pieces;
   size_t n;

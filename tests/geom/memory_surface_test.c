@@ -45,7 +45,7 @@ static CagStatus waves_eval(void *context, double u, double v, int n, CagVec3 *o
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(waves_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(waves_eval, context, u, vs, nv, n, out, e);
 }
 static CagStatus wave_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
   (void)context;
@@ -779,7 +779,7 @@ static void questions_to_a_surface_report_faults(void **state) {
   assert_int_equal(fault_problems, 0);
 }
 
-// These have cells of their own, and are not among the quick kinds.
+// These have their own cells, and are not among the quick kinds.
 static void nearest_points_of_swept_surfaces_report_faults(void **state) {
   (void)state;
   fault_problems = 0;

@@ -1,4 +1,4 @@
-// Faces as boundaries: counts of bodies that are known, whole and damaged.
+// Checks of faces as boundaries: counts for known bodies, intact and damaged.
 
 #include "geom/mesh/check.h"
 #include "tests/geom/random.h"
@@ -31,7 +31,7 @@ static void the_mesh_of_a_cube_is_the_same_body(void **state) {
   CagMeshCheck c;
   OK(cag_mesh_from_faces(cube_vertices, 8, cube_faces, fours, 6, &m, &err));
   OK(cag_mesh_check(m, &c, &err));
-  assert_int_equal(c.edges, 18); // six diagonals more
+  assert_int_equal(c.edges, 18); // with six more diagonals
   assert_int_equal(c.faces, 12);
   assert_int_equal(c.euler, 2);
   assert_true(c.solid);
@@ -64,7 +64,7 @@ static void inside_out_has_a_negative_volume(void **state) {
   NEAR(c.volume, -1, 1e-15);
 }
 
-// Two tetrahedra that share a corner: two shells, each of genus 0.
+// Two tetrahedra with a common corner: two shells, each of genus 0.
 static void bodies_that_touch_in_a_vertex_are_no_solid(void **state) {
   (void)state;
   const CagVec3 p[] = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
@@ -95,8 +95,8 @@ static void an_edge_of_three_faces_is_told(void **state) {
   assert_true(!c.closed && !c.oriented);
 }
 
-// A ring of 6 by 12 quadrilaterals, joined at both ends: a torus has 72 vertices, 144 edges, 72
-// faces. A vertex that no face names is not counted.
+// A ring of 6 by 12 quadrilaterals, joined at both ends: a torus with 72 vertices, 144 edges, and
+// 72 faces. A vertex that no face uses is not counted.
 static void a_torus_has_a_handle(void **state) {
   (void)state;
   enum { M = 6, N = 12 };
@@ -139,7 +139,7 @@ static void bad_faces_are_named(void **state) {
 
 // --- Random faces ---
 
-// How often a face runs from a to b.
+// Counts how often a face has the edge from a to b.
 static int runs(const uint32_t *face, uint32_t count, uint32_t a, uint32_t b) {
   int n = 0;
   for (uint32_t k = 0; k < count; k++) n += face[k] == a && face[(k + 1) % count] == b;
@@ -151,7 +151,7 @@ static bool names(const uint32_t *face, uint32_t count, uint32_t v) {
   return false;
 }
 
-// Joins the numbers of one part: all x become y.
+// Joins two parts: all numbers x become y.
 static void join_parts(size_t *part, size_t n, size_t x, size_t y) {
   for (size_t i = 0; i < n; i++)
     if (part[i] == x) part[i] = y;
@@ -166,8 +166,8 @@ static size_t count_parts(const size_t *part, size_t n) {
   return parts;
 }
 
-// All counts by looking at every pair of vertices and of faces. The faces are some of a cube and
-// of random ones, turned or not, and some twice.
+// All counts by comparing every pair of vertices and faces. The faces are some of a cube and random
+// ones, reversed or not, some of them repeated.
 static void counts_are_those_of_all_pairs(void **state) {
   (void)state;
   enum { MOST = 12, POINTS = 8 };
@@ -176,7 +176,7 @@ static void counts_are_those_of_all_pairs(void **state) {
   for (int k = 0; k < 600; k++) {
     uint32_t indices[4 * MOST], counts[MOST], *face[MOST], at = 0;
     size_t n = 0;
-    // All faces of the cube, or some of them; then others.
+    // All or some faces of the cube, followed by others.
     for (int f = 0; f < 6; f++)
       if (k % 3 == 0 || uniform(0, 1) < 0.6) {
         face[n] = indices + at, counts[n++] = 4;
@@ -216,7 +216,7 @@ static void counts_are_those_of_all_pairs(void **state) {
     for (uint32_t v = 0; v < POINTS; v++) {
       size_t fan[MOST];
       for (size_t f = 0; f < n; f++) fan[f] = names(face[f], counts[f], v) ? f : SIZE_MAX;
-      for (uint32_t w = 0; w < POINTS; w++) { // faces that share the edge from v to w
+      for (uint32_t w = 0; w < POINTS; w++) { // faces with the edge from v to w
         size_t first = SIZE_MAX;
         for (size_t f = 0; f < n; f++) {
           if (runs(face[f], counts[f], v, w) + runs(face[f], counts[f], w, v) == 0) continue;
@@ -249,7 +249,7 @@ static void counts_are_those_of_all_pairs(void **state) {
     }
     solids += c.solid;
     assert_int_equal(c.genus, (long)c.shells - (euler + (long)(fans - vertices)) / 2);
-    double volume = 0; // fans from the first corners, seen from a point that is none
+    double volume = 0; // fans from the first corners, seen from a point that is not a vertex
     for (size_t f = 0; f < n; f++)
       for (uint32_t i = 1; i + 1 < counts[f]; i++) {
         const CagVec3 tip = {0.3, -4, 7};
@@ -264,7 +264,7 @@ static void counts_are_those_of_all_pairs(void **state) {
   assert_true(solids > 100);
 }
 
-// Triangles of a welded mesh that are edges or points are left out.
+// Triangles of a welded mesh that degenerate to edges or points are ignored.
 static void shrunk_triangles_do_not_count(void **state) {
   (void)state;
   static const uint32_t triangles[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, // a tetrahedron

@@ -1,4 +1,4 @@
-// Meshes: checks, measures and changes, against bodies whose numbers are known.
+// Meshes: checks, measures, and operations, compared with bodies of known values.
 
 #include "geom/mesh/mesh.h"
 
@@ -81,7 +81,7 @@ static void normals_follow_a_transform_as_normals(void **state) {
   OK(cag_mesh_new(1, 0, true, false, false, &m, &err));
   double half = sqrt(0.5);
   m->positions[0] = cag_vec3(1, 0, 0);
-  m->normals[0] = cag_vec3(half, half, 0); // of the plane x + y = 1
+  m->normals[0] = cag_vec3(half, half, 0); // normal of the plane x + y = 1
   CagTransform stretch = cag_transform_identity();
   stretch.m[0][0] = -2; // it becomes -x/2 + y = 1
   OK(cag_mesh_transform(m, &stretch, &image, &err));
@@ -100,7 +100,7 @@ static void bad_faces_are_named(void **state) {
            "face-degenerate", 0);
   FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 3, 0}, &four, 1, &m, &err),
            "face-degenerate", 0);
-  // Two corners exchanged: a bow tie.
+  // With two corners exchanged, the face is a bow tie.
   FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 2, 3}, &four, 1, &m, &err),
            "face-degenerate", 0);
   CagVec3 line[4] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {NAN, 0, 0}};
@@ -123,7 +123,7 @@ static void a_concave_face_is_cut_within_its_outline(void **state) {
   cag_mesh_release(m);
 }
 
-// Triangles of the cube, each with corners of its own and a little noise.
+// The triangles of the cube, with separate corners and slight noise.
 static CagMesh *loose_cube(double noise) {
   CagMesh *m = cube(), *loose;
   OK(cag_mesh_new(36, 12, false, false, false, &loose, &err));
@@ -161,7 +161,7 @@ static void welding_closes_what_is_near(void **state) {
   cag_mesh_release(loose);
 }
 
-// A tessellated box has a vertex for each corner of each face, so that its edges are sharp.
+// A tessellated box has a vertex for each corner of each face, so its edges are sharp.
 static void welding_joins_vertices_across_sharp_edges(void **state) {
   (void)state;
   CagMesh *m = cube(), *doubled, *welded;
@@ -177,7 +177,7 @@ static void welding_joins_vertices_across_sharp_edges(void **state) {
   OK(cag_mesh_append((CagMesh *[]){doubled, doubled}, 2, &pair, &err));
   OK(cag_mesh_weld(pair, 0, &welded, &err));
   assert_int_equal(welded->vertex_count, 8);
-  assert_non_null(welded->normals); // all agree
+  assert_non_null(welded->normals); // all are equal
   assert_non_null(welded->uv);
   assert_null(welded->weld);
   cag_mesh_release(welded);
@@ -204,7 +204,7 @@ static void meshes_join_to_one(void **state) {
   double terms[10];
   cag_mesh_volume_terms(both, terms);
   NEAR(terms[0], 16, 1e-13);
-  NEAR(terms[1], 40, 1e-12); // of the second: 8 * 5
+  NEAR(terms[1], 40, 1e-12); // of the second one: 8 * 5
   cag_mesh_release(a);
   cag_mesh_release(b);
   cag_mesh_release(both);
@@ -218,8 +218,8 @@ static CagVec3 random_point(double size) {
   return cag_vec3(x[0], x[1], x[2]);
 }
 
-// Triangles with any corners out of few, with any of the arrays that a mesh may have. Corners may
-// be one point; `weld` then tells.
+// Random triangles between few points, with any of the arrays that a mesh may have. Vertices may
+// coincide; if so, `weld` is set.
 static CagMesh *random_soup(size_t vertices, size_t triangles, bool normals, bool uv, bool weld,
                             bool labels) {
   CagMesh *m;
@@ -248,7 +248,7 @@ static CagMesh *random_soup(size_t vertices, size_t triangles, bool normals, boo
 
 static uint32_t point_of(const CagMesh *m, uint32_t v) { return m->weld ? m->weld[v] : v; }
 
-// How often the directed edge from a to b is among the triangles, of welded vertices.
+// Counts the triangles with the directed edge from a to b, after welding.
 static int count_edge(const CagMesh *m, uint32_t a, uint32_t b) {
   int n = 0;
   for (size_t t = 0; t < m->triangle_count; t++)
@@ -258,8 +258,8 @@ static int count_edge(const CagMesh *m, uint32_t a, uint32_t b) {
   return n;
 }
 
-// Closedness and Euler's number by looking at every pair of vertices. Each second mesh is made
-// closed: every triangle once more, turned, for some of them.
+// Whether the mesh is closed and its Euler characteristic, from every pair of vertices. Every
+// second mesh is closed, because some of the triangles are repeated in reverse.
 static void edges_are_counted_as_by_hand(void **state) {
   (void)state;
   seed = 31;
@@ -329,7 +329,7 @@ static void a_fan_of_many_triangles_closes(void **state) {
     CagVec3 edge[2];
     assert_true(cag_mesh_is_watertight(m, edge));
     assert_int_equal(cag_mesh_euler_characteristic(m), 2);
-    // A third triangle at an edge, or one that is missing, opens it.
+    // An additional or missing triangle at an edge opens the mesh.
     const uint32_t first = m->triangles[0];
     m->triangle_count--;
     assert_false(cag_mesh_is_watertight(m, edge));
@@ -341,7 +341,7 @@ static void a_fan_of_many_triangles_closes(void **state) {
   }
 }
 
-// Tetrahedra: the integrals of 1, the coordinates and their products by a rule of four points that
+// Tetrahedra: the integrals of 1, the coordinates, and their products from a four-point rule that
 // is exact for the second degree.
 static void volume_terms_are_integrals(void **state) {
   (void)state;
@@ -373,8 +373,8 @@ static void volume_terms_are_integrals(void **state) {
   }
 }
 
-// The normal of a plane's vertices under any map is that of the plane's image, on the side that the
-// map makes the outer one.
+// A normal of a plane's vertices is mapped to that of the plane's image, on the side that the map
+// makes the outer one.
 static void normals_stay_square_to_images_of_planes(void **state) {
   (void)state;
   seed = 33;
@@ -399,7 +399,7 @@ static void normals_stay_square_to_images_of_planes(void **state) {
     for (int v = 0; v < 3; v++) near_vec(q[v], cag_transform_point(&t, p[v]), 0);
     const CagVec3 normal =
         cag_unit(cag_cross(cag_sub(q[c[1]], q[c[0]]), cag_sub(q[c[2]], q[c[0]])));
-    assert_int_equal(c[1] == 2, k % 2); // a mirror turns the triangle
+    assert_int_equal(c[1] == 2, k % 2); // a reflection reverses the triangle
     for (int v = 0; v < 3; v++) near_vec(image->normals[v], normal, 1e-9);
     if (m->uv) assert_memory_equal(image->uv, m->uv, 6 * sizeof *m->uv);
     if (m->labels) assert_int_equal(image->labels[0], m->labels[0]);
@@ -425,7 +425,7 @@ static void normals_stay_square_to_images_of_planes(void **state) {
   }
 }
 
-// Every array of the parts is found again behind those of the parts before.
+// Every array of the parts appears after those of the previous parts.
 static void joined_meshes_keep_their_arrays(void **state) {
   (void)state;
   seed = 34;
@@ -438,7 +438,7 @@ static void joined_meshes_keep_their_arrays(void **state) {
                  has_weld = uniform(0, 1) < 0.5, has_labels = uniform(0, 1) < 0.5;
       parts[i] = random_soup(4 + i, 3 + i, has_normals, has_uv, has_weld, has_labels);
       CagColorScale scale = {CAG_SCALE_STRIPES, 1, 2, 3};
-      const int other = k % 6; // one number that differs
+      const int other = k % 6; // one number differs
       if (i == 1 && other == 1) scale.kind = CAG_SCALE_SEQUENCE;
       if (i == 1 && other == 2) scale.from = 0;
       if (i == 1 && other == 3) scale.to = 4;
@@ -467,7 +467,7 @@ static void joined_meshes_keep_their_arrays(void **state) {
         if (uv) assert_memory_equal(all->uv + 2 * (v + j), m->uv + 2 * j, 2 * sizeof(double));
         if (weld) assert_int_equal(all->weld[v + j], v + point_of(m, j));
         if (!normals) continue;
-        // Parts without get those of their triangles, by area.
+        // Parts without normals get those of their triangles, weighted by area.
         CagVec3 sum = {0, 0, 0};
         for (size_t f = 0; f < m->triangle_count; f++) {
           const uint32_t *c = m->triangles + 3 * f;
@@ -497,8 +497,8 @@ static void joined_meshes_keep_their_arrays(void **state) {
   }
 }
 
-// Each vertex joins the nearest point before it that is no farther than the tolerance, found by
-// comparing all pairs.
+// Each vertex is welded to the closest previous point within the tolerance, compared with a search
+// over all pairs.
 static void welding_is_that_of_all_pairs(void **state) {
   (void)state;
   seed = 35;
@@ -507,7 +507,7 @@ static void welding_is_that_of_all_pairs(void **state) {
     const double tolerance = k % 4 == 0 ? 0 : k % 4 == 1 ? 0.5 : uniform(0.05, 1);
     CagMesh *m = random_soup(n, n, k % 2, k % 3 > 0, false, k % 5 > 0), *welded;
     for (size_t v = 0; v < n; v++) {
-      // On a grid of half units some distances are equal, and some are the tolerance.
+      // On a grid with half units, some distances are equal, and some equal the tolerance.
       if (k % 4 < 2) {
         CagVec3 *p = &m->positions[v];
         *p = cag_vec3(round(p->x) / 2, round(p->y) / 2, round(p->z) / 2);
@@ -558,8 +558,8 @@ static void welding_is_that_of_all_pairs(void **state) {
   }
 }
 
-// Polygons around a point of any plane, convex and not, first corner anywhere: the triangles turn
-// as the outline does and fill its area.
+// Convex and concave polygons around a point in any plane, with any first corner: the triangles
+// have the orientation of the outline and fill its area.
 static void polygons_of_any_plane_are_filled(void **state) {
   (void)state;
   seed = 36;
@@ -575,7 +575,7 @@ static void polygons_of_any_plane_are_filled(void **state) {
     }
     for (uint32_t i = 0; i < n; i++) twice += x[i] * y[(i + 1) % n] - x[(i + 1) % n] * y[i];
     const CagVec3 axis = random_point(1), far = random_point(5);
-    // Planes of each axis, seen from either side, and others.
+    // Axis-parallel planes, seen from either side, and others.
     if (k % 4 == 0) turn = cag_rpy(0, k % 8 ? 0 : M_PI, 0);
     else if (k % 4 == 1) turn = cag_rpy(k % 8 < 4 ? M_PI / 2 : -M_PI / 2, 0, 0);
     else if (k % 4 == 2) turn = cag_rpy(0, k % 8 < 4 ? M_PI / 2 : -M_PI / 2, 0);
@@ -601,7 +601,8 @@ static void polygons_of_any_plane_are_filled(void **state) {
     NEAR(sum, twice, 1e-12);
     cag_mesh_release(m);
   }
-  // A star that winds twice: all corners turn left, and it crosses itself. Corners in one line.
+  // A star that winds twice, whose corners all turn left although it intersects itself. Collinear
+  // corners.
   CagVec3 star[5];
   uint32_t five = 5, order[5] = {0, 2, 4, 1, 3};
   CagMesh *m;
@@ -611,13 +612,14 @@ static void polygons_of_any_plane_are_filled(void **state) {
   FAILS_AT(cag_mesh_from_faces(star, 5, order, &five, 1, &m, &err), "face-degenerate", 0);
 }
 
-// Halved edges keep shape, labels and closedness; what is linear over the triangles stays so.
+// Edge splitting preserves the shape, labels, and closedness, and linear functions over the
+// triangles.
 static void divided_triangles_keep_their_mesh(void **state) {
   (void)state;
   seed = 37;
   for (int k = 0; k < 60; k++) {
     CagMesh *m = k % 2 ? cube() : random_soup(8, 5, false, true, false, true), *fine;
-    if (k % 4 == 1) { // the cube with corners for each face, welded
+    if (k % 4 == 1) { // the cube with separate corners for each face, welded
       CagMesh *loose;
       OK(cag_mesh_new(36, 12, true, false, true, &loose, &err));
       for (uint32_t i = 0; i < 36; i++) {
@@ -634,7 +636,7 @@ static void divided_triangles_keep_their_mesh(void **state) {
       m = loose;
     }
     if (m->uv)
-      for (size_t v = 0; v < m->vertex_count; v++) { // linear functions of the place
+      for (size_t v = 0; v < m->vertex_count; v++) { // linear functions of the position
         const CagVec3 p = m->positions[v];
         m->uv[2 * v] = p.x + 2 * p.y + 1, m->uv[2 * v + 1] = p.z - p.y;
       }
@@ -670,7 +672,7 @@ static void divided_triangles_keep_their_mesh(void **state) {
       near_vec(fine->positions[fine->weld[v]], p, 0);
       for (size_t w = 0; w < v; w++)
         if (!memcmp(&fine->positions[w], &p, sizeof p)) {
-          assert_true(fine->weld[v] < v); // the first at the place
+          assert_true(fine->weld[v] < v); // the first vertex at this position
           break;
         }
     }
@@ -686,14 +688,14 @@ static void divided_triangles_keep_their_mesh(void **state) {
       FAILS(cag_mesh_split_edges(m, longest, made - 1, &fine, &err), "triangle-limit");
     cag_mesh_release(m);
   }
-  // Edges of the limit stay: a triangle of sides 3, 4 and 5 has one edge above 4.
+  // Edges as long as the limit are kept: a triangle with sides 3, 4, and 5 has one edge above 4.
   CagMesh *m, *fine;
   OK(cag_mesh_new(3, 1, true, false, false, &m, &err));
   m->positions[0] = cag_vec3(0, 0, 0);
   m->positions[1] = cag_vec3(3, 0, 0);
   m->positions[2] = cag_vec3(0, 4, 0);
   for (uint32_t v = 0; v < 3; v++) m->triangles[v] = v;
-  // Opposite normals have no mean: the middle has that of its first end.
+  // Opposite normals do not have a mean: the midpoint gets that of its first end.
   m->normals[0] = cag_vec3(0, 1, 0);
   m->normals[1] = cag_vec3(0, 0, 1);
   m->normals[2] = cag_vec3(0, 0, -1);
@@ -705,7 +707,7 @@ static void divided_triangles_keep_their_mesh(void **state) {
   near_vec(fine->positions[3], cag_vec3(1.5, 2, 0), 0);
   near_vec(fine->normals[3], cag_vec3(0, 0, 1), 0);
   cag_mesh_release(fine);
-  // Two long edges: the shorter diagonal divides what is left.
+  // If two edges are long, the shorter diagonal divides the rest.
   OK(cag_mesh_split_edges(m, 3.5, 10, &fine, &err));
   assert_int_equal(fine->triangle_count, 3);
   double most = 0;

@@ -1,4 +1,4 @@
-// Frames along random paths: what defines each kind of them, their derivatives, and their corners.
+// Frames along random paths: the defining property of each kind, derivatives, and corners.
 
 #include "geom/surface/motion.h"
 #include "geom/surface/motion_parts.h"
@@ -13,7 +13,7 @@ static CagVec3 anywhere(double size) {
   return p;
 }
 
-// A path of degree 5 that goes along a direction in waves, with inner knots; closed: periodic.
+// A wavy path of degree 5 along a direction, with inner knots; closed paths are periodic.
 static CagCurve *random_path(bool closed) {
   enum { N = 9, P = 5 };
   const double knots[N + P + 1] = {1, 1, 1, 1, 1, 1, 2, 2.5, 3.5, 4, 4, 4, 4, 4, 4};
@@ -44,7 +44,7 @@ static CagVec3 sum_at(const CagVec3 *series, int n, double h) {
 
 enum { ORDER = 5 };
 
-// The spokes without twist and scale, with their first derivatives.
+// The axes without twist and scale, with their first derivatives.
 static void bare(const CagCurve *c, const CagPathMotion *how, const CagMotionSeries *m, double t,
                  CagVec3 x[2], CagVec3 y[2], CagVec3 *z) {
   const double length = c->end - c->start;
@@ -60,7 +60,7 @@ static void bare(const CagCurve *c, const CagPathMotion *how, const CagMotionSer
     x[i] = cag_sub(cag_scaled(a[i], cos(angle)), cag_scaled(b[i], sin(angle)));
     y[i] = cag_add(cag_scaled(a[i], sin(angle)), cag_scaled(b[i], cos(angle)));
   }
-  // The turning back has a derivative, too: x' loses turn y, y' gains turn x.
+  // The untwisting has a derivative, too: x' loses turn y, and y' gains turn x.
   const CagVec3 x0 = x[0], y0 = y[0];
   x[1] = cag_madd(x[1], -turn, y0);
   y[1] = cag_madd(y[1], turn, x0);
@@ -71,7 +71,7 @@ static void check_series(const CagMotion *m, const CagCurve *c, double t) {
   CagMotionSeries at, beside;
   CagVec3 d[ORDER + 1];
   const double h = 1e-3 * (c->end - c->start);
-  // Both places on one side of all knots.
+  // Both parameters are on one side of all knots.
   double breaks[16];
   const size_t n = cag_motion_breaks(m, breaks, 16);
   for (size_t i = 0; i < n; i++)
@@ -91,7 +91,7 @@ static void check_series(const CagMotion *m, const CagCurve *c, double t) {
   }
 }
 
-// X turned about the axis of Z and the tangent.
+// X rotated about the axis perpendicular to Z and the tangent.
 static CagVec3 start_spoke(CagVec3 tangent) {
   CagTransform turn;
   OK(cag_rotate(cag_cross(cag_vec3(0, 0, 1), tangent), acos(tangent.z), cag_vec3(0, 0, 0), &turn,
@@ -117,7 +117,7 @@ static void frames_are_what_defines_them(void **state) {
     CagMotionSeries at;
     CagError refused;
     if (cag_motion_along(c, &how, &m, &refused)) {
-      // Frenet's frame may vanish, and the path may run along the direction.
+      // The Frenet frame may be undefined, and the path may run along the direction.
       assert_true(how.orient == CAG_ORIENT_FRENET || how.orient == CAG_ORIENT_UP);
       cag_curve_release(c);
       continue;
@@ -149,7 +149,8 @@ static void frames_are_what_defines_them(void **state) {
       switch (how.orient) {
       case CAG_ORIENT_RMF:
         if (i == 0) near_vec(x[0], home, 1e-12);
-        // It turns about the tangent not at all, or evenly to come home.
+        // Its rotation about the tangent is 0, or constant so that a closed path returns to its
+        // first frame.
         if (i == 0) drift = closed ? cag_dot(x[1], y[0]) : 0;
         NEAR(cag_dot(x[1], y[0]), drift, 1e-9);
         if (i == 11 && closed) near_vec(x[0], home, 1e-9);
@@ -185,8 +186,8 @@ static void frames_are_what_defines_them(void **state) {
   for (int k = 0; k < 4; k++) assert_true(made[k] > 10);
 }
 
-// Sections of both sides of a corner are one, in the plane that halves it; between corners they are
-// square to the path but for what tilts them.
+// At a corner, the sections of both sides coincide in the bisecting plane. Between corners, they
+// are perpendicular to the path, except for their tilt.
 static void corners_are_halved(void **state) {
   (void)state;
   seed = 42;
@@ -223,19 +224,19 @@ static void corners_are_halved(void **state) {
       const CagVec3 from = cag_unit(a[1]), to = cag_unit(b[1]);
       const CagVec3 across = cag_unit(cag_add(from, to));
       near_vec(in.origin[0], out.origin[0], 1e-12);
-      // The frame that comes home is turned back evenly, so that only the joint of ends differs.
+      // A frame on a closed path is rotated evenly, so only the joint of the ends differs.
       near_vec(in.x[0], out.x[0], end ? 1e-9 : 1e-11);
       near_vec(in.y[0], out.y[0], end ? 1e-9 : 1e-11);
       NEAR(cag_dot(in.x[0], across), 0, 1e-11);
       NEAR(cag_dot(in.y[0], across), 0, 1e-11);
-      // Seen along the path the section is the whole one.
+      // Seen along the path, the section has its full size.
       const CagVec3 x = cag_madd(in.x[0], -cag_dot(in.x[0], from), from);
       const CagVec3 y = cag_madd(in.y[0], -cag_dot(in.y[0], from), from);
       NEAR(cag_norm(x), 1, 1e-11);
       NEAR(cag_norm(y), 1, 1e-11);
       NEAR(cag_dot(x, y), 0, 1e-11);
     }
-    // Along a straight piece the spokes move on lines along it.
+    // Along a straight piece, the ends of the axes move on lines parallel to it.
     for (size_t i = 0; i <= n; i++) {
       CagMotionSeries s[3];
       for (int k = 0; k < 3; k++) {
@@ -260,8 +261,8 @@ static bool is_within(const CagInterval3 *range, CagVec3 p) {
   return true;
 }
 
-// The frame that cag_motion_at finds anywhere in an interval lies within the ranges of the
-// interval, and so do its Taylor coefficients. Short intervals have narrow ranges.
+// The frame that cag_motion_at computes anywhere in an interval is within the ranges of the
+// interval, and so are its Taylor coefficients. Short intervals have narrow ranges.
 static void ranges_hold_the_frames_of_an_interval(void **state) {
   (void)state;
   enum { N = 2, INTERVALS = 8, SAMPLES = 5 };
@@ -333,13 +334,13 @@ static void what_has_no_frame_is_told(void **state) {
   how.scale.end = 1;
   OK(cag_curve_polyline(turn, 3, false, 3, &back, &err));
   FAILS(cag_motion_along(back, &how, &m, &err), "path-turns-back");
-  // A frame that does not turn with the path does not mind a corner.
+  // A frame that does not rotate with the path allows corners.
   how.orient = CAG_ORIENT_FIXED;
   OK(cag_motion_along(back, &how, &m, &err));
   assert_false(cag_motion_has_corner(m));
   cag_motion_release(m);
   cag_curve_release(back);
-  // Of Frenet's frame the normals of both sides must be mirrored at a corner.
+  // The Frenet frame requires that the normals of both sides be mirrored at a corner.
   const CagVec3 net[] = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {2, 1, 1}, {3, 3, 3}};
   const double knots[] = {0, 0, 0, 1, 1, 2, 2, 2};
   how.orient = CAG_ORIENT_FRENET;

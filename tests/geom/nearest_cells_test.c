@@ -1,5 +1,6 @@
-// Cells of surfaces: their bounds hold for all of their points, they tell true places, and they
-// become tight as the cells get smaller, so that few of them decide which point is nearest.
+// Cells of surfaces for the search of the nearest point: their bounds hold for all of their points,
+// the points that they report are correct, and the bounds become tight as the cells shrink, so that
+// few cells suffice.
 
 #include "geom/surface/nearest_cells.h"
 
@@ -16,7 +17,7 @@ static CagVec3 cell_point(const CagDistanceCells *c, double u, double v) {
 static void check_cell(const CagDistanceCells *c, const CagDistanceCell *cell, const char *what) {
   const double rounding = 1e-12 * c->size * c->size;
   const bool tube = c->swept.tube;
-  // Anywhere, in the middle, and at the corners, where tangents are lowest.
+  // Random points, the middle, and the corners, where tangents are lowest.
   for (int k = 0; k < 17; k++) {
     const int corner = k - 13;
     const double x = k < 12 ? between(0, 1) : k == 12 ? 0.5 : corner & 1;
@@ -28,7 +29,7 @@ static void check_cell(const CagDistanceCells *c, const CagDistanceCell *cell, c
       fail_msg("%s: the bound %.17g is above %.17g at %g, %g", what, cell->bound, cag_dot(r, r), u,
                v);
   }
-  // What is known of the cell is so.
+  // The recorded properties of the cell are correct.
   const CagVec3 q = cell_point(c, cell->least_at[0], cell->least_at[1]);
   assert_point(q, cell->least_point, 1e-11 * (1 + c->size), what);
   const CagVec3 r = cag_sub(q, c->p);
@@ -43,9 +44,8 @@ static void check_cell(const CagDistanceCells *c, const CagDistanceCell *cell, c
   assert_true(!tube || cell->across);
 }
 
-// Halves the lowest cell until its bound is the squared distance but for a hundred millionth of the
-// size's square. Gives the number of cells that it took, none of which may be lower than those
-// before.
+// Divides the lowest cell until its bound differs from the squared distance by less than a hundred
+// millionth of the squared size. Returns the number of cells. Bounds must not decrease.
 static int cells_needed(const CagSurface *s, CagVec3 p, bool hinted, const char *what) {
   CagDistanceCells c;
   CagDistanceCell cell;
@@ -59,13 +59,13 @@ static int cells_needed(const CagSurface *s, CagVec3 p, bool hinted, const char 
     MUST(cag_distance_cells_next(&c, INFINITY, &cell, &found, err));
     assert_true(found && !cell.raw);
     check_cell(&c, &cell, what);
-    // Halves of swept cells keep the bound of the whole.
+    // The halves of swept cells keep the bound of the whole.
     if (c.swept.section) assert_true(cell.bound >= before - 1e-12 * c.size * c.size);
     before = fmax(before, cell.bound);
     count++;
     const double distance = nearest.distance * nearest.distance;
     if (cell.bound >= distance - 1e-8 * c.size * c.size) break;
-    // The search tells its best place as soon as it has it.
+    // The search reports its best point as soon as it is known.
     if (hinted && c.same && !c.exact) {
       c.hint[0] = nearest.u;
       c.hint[1] = nearest.v;
@@ -76,7 +76,7 @@ static int cells_needed(const CagSurface *s, CagVec3 p, bool hinted, const char 
   return count;
 }
 
-// At first a patch has the distance of the box of its control points.
+// The initial bound of a patch is the distance of the box of its control points.
 static void check_boxes(const CagDistanceCells *c) {
   CagSurfaceNurbsView v;
   if (!c->exact) return;
@@ -105,7 +105,7 @@ static void check_boxes(const CagDistanceCells *c) {
   }
 }
 
-// All cells together are the whole surface; halves are kept or not by their bound.
+// The cells together cover the whole surface; halves are kept or dropped depending on their bound.
 static void check_cover(const CagSurface *s, CagVec3 p, const char *what) {
   CagDistanceCells c;
   CagDistanceCell cell;
@@ -113,7 +113,7 @@ static void check_cover(const CagSurface *s, CagVec3 p, const char *what) {
   MUST(cag_distance_cells_make(&c, s, p, false, err));
   const CagSurface *of = c.exact ? c.exact : s;
   check_boxes(&c);
-  // Only surfaces of revolution have exact forms that run along them unevenly.
+  // Only surfaces of revolution have exact forms with another parametrization.
   assert_int_equal(c.same, strcmp(what, "torus") && strcmp(what, "sphere"));
   double whole = (of->u1 - of->u0) * (of->v1 - of->v0), area = 0, last = -INFINITY;
   for (int i = 0; i < 20; i++) {
@@ -123,7 +123,7 @@ static void check_cover(const CagSurface *s, CagVec3 p, const char *what) {
   for (;;) {
     MUST(cag_distance_cells_next(&c, INFINITY, &cell, &found, err));
     if (!found) break;
-    // A patch that was known by its box may have a lower bound of its own.
+    // A patch that was bounded by its box may have a lower bound of its own.
     if (!cell.whole) {
       assert_true(cell.bound >= last);
       last = cell.bound;
@@ -133,7 +133,7 @@ static void check_cover(const CagSurface *s, CagVec3 p, const char *what) {
   }
   assert_near(area, whole, 1e-12, what);
   cag_distance_cells_free(&c);
-  // None below 0, and no half that is not below the limit.
+  // With the limit 0, there are no cells, and only halves below the limit are kept.
   MUST(cag_distance_cells_make(&c, s, p, false, err));
   MUST(cag_distance_cells_next(&c, -INFINITY, &cell, &found, err));
   assert_false(found);
@@ -158,7 +158,7 @@ static CagStatus bump(void *context, double u, double v, int n, CagVec3 *out, Ca
 }
 static CagStatus bump_row(void *context, double u, const double *vs, size_t nv, int n, CagVec3 *out,
                           CagError *err) {
-  return row_by_places(bump, context, u, vs, nv, n, out, err);
+  return row_by_points(bump, context, u, vs, nv, n, out, err);
 }
 
 static CagSurface *patch(int p, int q, bool rational) {
@@ -202,7 +202,7 @@ static CagSurface *swept(bool round, bool plain, bool tilted) {
                              .twist = {0, plain ? 0 : 1.2, NULL},
                              .scale = {1, plain ? 1 : 0.6, NULL}};
   MUST(cag_curve_arc(0.9, round ? 0.9 : 0.4, 0, 2 * M_PI, &frame, &section, err));
-  if (tilted) { // over large and small parameters, too
+  if (tilted) { // also over large and small parameters
     CagCurve *timed;
     MUST(cag_curve_reparametrize(path, 30, 1030, &timed, err));
     cag_curve_release(path);
@@ -220,8 +220,8 @@ static CagSurface *swept(bool round, bool plain, bool tilted) {
 }
 
 enum { KINDS = 13, POINTS = 12 };
-// The most cells that a kind may take on average. Bounds that miss by the square of a cell's size
-// take some dozens, those that miss by its size take hundreds.
+// The maximum average number of cells for a kind. Bounds with errors of the square of a cell's size
+// need a few dozen, and those with errors of its size need hundreds.
 static CagSurface *surface_of(int kind, const char **name, int *most) {
   static const struct {
     const char *name;

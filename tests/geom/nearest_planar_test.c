@@ -1,5 +1,5 @@
-// Nearest points of flat pieces: a plate with a round hole, whose distances have closed forms, and
-// convex polygons under maps that shear, against the distances of their sides.
+// Closest points of planar pieces: a plate with a round hole, whose distances have closed forms,
+// and convex polygons under shears, compared with the distances of their sides.
 
 #include "random.h"
 #include "surface_support.h"
@@ -23,7 +23,7 @@ static CagTransform random_motion(void) {
   return cag_transform_multiply(&move, &turn);
 }
 
-// The nearest point of a rectangle about the origin with a hole in its middle, in the plane.
+// The closest point of a centered rectangle with a hole in its middle, in the plane.
 static CagVec3 nearest_of_plate(CagVec3 p) {
   const double r = hypot(p.x, p.y);
   if (r < RADIUS) return cag_vec3(p.x * RADIUS / r, p.y * RADIUS / r, 0);
@@ -85,7 +85,8 @@ static void nearest_points_of_mapped_triangles_are_their_own(void **state) {
     for (int k = 0; k < 3; k++) q[k] = cag_transform_point(&frame, corners[k]);
     const CagVec3 n = cag_unit(cag_cross(cag_sub(q[1], q[0]), cag_sub(q[2], q[0])));
     const CagVec3 p = cag_add(q[0], random_point(6));
-    // Within all sides: the foot on the plane; else the nearest point of a side.
+    // If the foot is inside all sides, it is the foot on the plane; otherwise, the closest point of
+    // a side.
     CagVec3 wanted = cag_madd(p, -cag_dot(cag_sub(p, q[0]), n), n);
     bool within = true;
     for (int k = 0; k < 3; k++) {

@@ -1,4 +1,4 @@
-// Random numbers, and a search for nearest points of surfaces that knows nothing of slopes.
+// Random numbers, and a derivative-free search for closest points of surfaces.
 
 #ifndef NEAREST_SUPPORT_H
 #define NEAREST_SUPPORT_H
@@ -7,7 +7,7 @@
 
 static uint64_t state_of_random;
 
-// In 0..1 (Knuth's linear congruential generator).
+// A number in 0..1 (Knuth's linear congruential generator).
 static inline double random_number(void) {
   state_of_random = state_of_random * 6364136223846793005u + 1442695040888963407u;
   return (double)(state_of_random >> 11) / 9007199254740992.0;
@@ -24,7 +24,7 @@ static inline CagVec3 anywhere(double size) {
   return cag_vec3(x, y, between(0, size));
 }
 
-// --- A search that knows nothing of slopes ---
+// --- Derivative-free search ---
 
 typedef struct Dense {
   const CagSurface *s;
@@ -35,8 +35,8 @@ static inline double distance_at(const Dense *d, double u, double v) {
   return cag_norm(cag_sub(surface_at(d->s, u, v), d->p));
 }
 
-// Steps to the nearest of the places around, shorter ones when there is none nearer.
-static inline double creep(const Dense *d, double u, double v, double du, double dv) {
+// Moves to the closest neighbor, and shortens the steps when none is closer.
+static inline double descend(const Dense *d, double u, double v, double du, double dv) {
   const CagSurface *s = d->s;
   double best = distance_at(d, u, v);
   for (int round = 0; round < 90; round++) {
@@ -58,7 +58,7 @@ static inline double creep(const Dense *d, double u, double v, double du, double
 }
 
 #define MOST_GRID 160
-// From the lowest places of a grid of so many intervals each way.
+// Starts from the lowest points of a grid with the given numbers of intervals.
 static inline double dense_distance(const CagSurface *s, CagVec3 p, int nu, int nv) {
   static double at[MOST_GRID + 1][MOST_GRID + 1];
   const Dense d = {s, p};
@@ -73,7 +73,7 @@ static inline double dense_distance(const CagSurface *s, CagVec3 p, int nu, int 
         const int x = i + k / 3 - 1, y = j + k % 3 - 1;
         lowest = x < 0 || y < 0 || x > nu || y > nv || at[i][j] <= at[x][y];
       }
-      if (lowest) best = fmin(best, creep(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
+      if (lowest) best = fmin(best, descend(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
     }
   return best;
 }

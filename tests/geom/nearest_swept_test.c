@@ -1,5 +1,5 @@
-// Nearest points of tubes, sweeps and extrusions: closed forms, and random ones against a dense
-// search; and the ranges of derivatives that they rest on.
+// Closest points of tubes, sweeps, and extrusions: closed forms, and random surfaces compared with
+// a dense search. Also the ranges of derivatives that the search depends on.
 
 #include "nearest_support.h"
 
@@ -55,7 +55,7 @@ static CagCurve *spine(int kind) {
   case SPLINE: c = spline(false); break;
   case RATIONAL: c = spline(true); break;
   case OVAL: MUST(cag_curve_arc(5, 3, 0, 2 * M_PI, in_space(), &c, err)); break;
-  default: { // a straight part and a quarter of a circle, which meet in a corner
+  default: { // a straight part and a quarter circle, which meet at a corner
     const CagVec3 side[2] = {{2, -4, 1}, {5, 0, 0}};
     MUST(cag_curve_polyline(side, 2, false, 3, &parts[0], err));
     MUST(cag_curve_arc(5, 5, 0, M_PI / 2, in_space(), &parts[1], err));
@@ -67,7 +67,7 @@ static CagCurve *spine(int kind) {
   return c;
 }
 
-// A part of a piece that is so short that all ranges exist.
+// A part of a piece that is short enough for all ranges to exist.
 static void short_part(const double *ends, double part[2]) {
   const double length = (ends[1] - ends[0]) * between(0, 0.05);
   part[0] = ends[0] + between(0, 1) * (ends[1] - ends[0] - length);
@@ -108,13 +108,13 @@ static CagMotion *random_motion(int kind, int orient) {
                        .scale = {1, between(0.5, 1.5), NULL}};
   CagCurve *path = spine(kind);
   CagMotion *m = NULL;
-  CagError refused; // a frame may not exist along the path
+  CagError refused; // there may be no frame along the path
   if (cag_motion_along(path, &how, &m, &refused)) m = NULL;
   cag_curve_release(path);
   return m;
 }
 
-// Gives the number of places that were compared: 0 where the ranges are not known.
+// Returns the number of compared points: 0 if the ranges are unknown.
 static int assert_motion_held(const CagMotion *m) {
   enum { ORDER = 3 };
   double *joints, part[2];
@@ -157,7 +157,7 @@ static CagStatus wave(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// A turn about the z axis that shrinks and moves.
+// A rotation about the z axis that shrinks and translates.
 static CagStatus spiral(void *context, double t, double *out, CagError *err) {
   (void)context, (void)err;
   const double size = exp(-t / 5), c = size * cos(t), s = size * sin(t);
@@ -199,9 +199,9 @@ static void ranges_hold_the_derivatives_of_motions_by_functions(void **state) {
 
 // --- Closed forms ---
 
-// Inside a tube about a helix, whose reach is larger than the radius, the distance is the radius
-// less that from the helix: points at a known distance from it are made. Also moved, scaled and
-// mirrored.
+// Inside a tube around a helix, closer than its reach, the distance is the radius minus the
+// distance from the helix. The test creates points at known distances, and also translates, scales,
+// and reflects the tube.
 static void points_inside_tubes_have_closed_forms(void **state) {
   (void)state;
   state_of_random = 31;
@@ -229,7 +229,7 @@ static void points_inside_tubes_have_closed_forms(void **state) {
     assert_near(found.distance, size * (radius - off), 1e-12, "distance of the moved one");
     assert_point(surface_at(moved, found.u, found.v), found.point, 1e-12, "place");
     cag_surface_release(moved);
-    // Stretched, the surface is at no constant distance of its middle.
+    // A stretched surface is not at a constant distance from its center line.
     CagTransform stretch = *in_space();
     stretch.m[i % 3][i % 3] = between(1.5, 2.5);
     const CagVec3 q = cag_transform_point(&stretch, p);
@@ -272,7 +272,7 @@ static CagSurface *random_tube(int kind) {
   return s;
 }
 
-// NULL: there is no such frame along the path.
+// Returns NULL if there is no such frame along the path.
 static CagSurface *random_sweep(int i) {
   CagMotion *m = random_motion(i % SPINES, i / SPINES % 4);
   CagSurface *s;
@@ -284,7 +284,7 @@ static CagSurface *random_sweep(int i) {
   return s;
 }
 
-// Turned and scaled about the z axis, beside which the section lies.
+// Rotated and scaled about the z axis, next to which the section is.
 static CagSurface *random_extrusion(void) {
   CagTransform aside = cag_translate(cag_vec3(between(-2, 2), between(-2, 2), 0));
   CagCurve *c = section(whole(0, 3)), *moved;
@@ -298,7 +298,7 @@ static CagSurface *random_extrusion(void) {
   return s;
 }
 
-// Beside the surface, and well within its box.
+// Beside the surface, or well inside its box.
 static CagVec3 near_or_far(const CagSurface *s, int i) {
   if (i % 3 == 0) return beside(s);
   const CagVec3 a = surface_at(s, between(s->u0, s->u1), between(s->v0, s->v1));
@@ -322,7 +322,7 @@ static void nearest_points_of_random_swept_surfaces_are_right(void **state) {
   state_of_random = 41;
   CagTransform oblique = *in_space();
   oblique.m[0][1] = 0.5;
-  oblique.m[1][1] = -1.5; // mirrors
+  oblique.m[1][1] = -1.5; // reflects
   for (int i = 0; i < 12 * SPINES; i++) {
     static const char *const names[] = {"tube", "sweep", "extrusion"};
     CagSurface *kinds[] = {random_tube(i % SPINES), random_sweep(i), random_extrusion()}, *moved;

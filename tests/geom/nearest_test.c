@@ -1,4 +1,5 @@
-// Nearest points of surfaces and curves: random shapes against a dense search, and closed forms.
+// Closest points of surfaces and curves: random shapes compared with a dense search, and closed
+// forms.
 
 #include "nearest_support.h"
 
@@ -7,7 +8,8 @@
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
-// The point lies on the surface where it says, and nothing that the dense search finds is nearer.
+// Checks that the point is on the surface at the reported parameters, and that the dense search
+// finds no closer one.
 static void assert_nearest(const CagSurface *s, const char *what, int turn) {
   CagSurfaceNearest found;
   const CagVec3 p = beside(s);
@@ -32,7 +34,7 @@ static CagSurface *random_net(bool bilinear, bool rational, bool creased) {
     net[k] = cag_add(cag_vec3(2 * (k / nv), 2 * (k % nv), 0), jitter);
     weights[k] = between(0.3, 3.3);
   }
-  // All inner knots at one place: creases of every kind, where there are enough of them.
+  // All inner knots coincide: creases of every kind, if there are enough knots.
   for (int i = 0; i < nu + p + 1; i++)
     ku[i] = i <= p ? 0 : i >= nu ? 1 : creased ? 0.4 : (double)(i - p) / (nu - p);
   for (int i = 0; i < nv + q + 1; i++) kv[i] = i <= q ? 0 : i >= nv ? nv - q : i - q;
@@ -63,8 +65,8 @@ static void nearest_points_of_tensor_surfaces_are_right(void **state) {
   }
 }
 
-// A long strip of one patch that winds along v, or across u when turned: bounds of its distance
-// hang on both degrees, and many places are nearest in their surroundings.
+// A long winding strip of one patch along v, or along u if turned. The bounds of its distance
+// depend on both degrees, and there are many local minima.
 static CagSurface *random_strip(bool turned, bool rational) {
   enum { LONG = 10 };
   const int p = whole(1, 2), q = whole(4, LONG - 1);
@@ -160,7 +162,8 @@ static void nearest_points_of_a_torus_have_closed_form(void **state) {
     CagSurface *s;
     CagSurfaceNearest found;
     MUST(cag_surface_torus(major, minor, &s, err));
-    // Every tenth on the axis, every tenth in the circle's middle: rings of nearest points.
+    // Every tenth point is on the axis, and every tenth on the center circle: rings of closest
+    // points.
     CagVec3 p = anywhere(8);
     if (i % 10 == 0) p = cag_vec3(0, 0, p.z);
     if (i % 10 == 5) p = cag_vec3(0, major, 0);
@@ -174,7 +177,7 @@ static void nearest_points_of_a_torus_have_closed_form(void **state) {
 }
 
 // For a point outside, the distance to a tube or an offset is that to its center line or base
-// surface less its radius or offset: moved tubes about circles and helices, and moved offsets of
+// surface, minus its radius or offset. Moved tubes around circles and helices, and moved offsets of
 // spheres and tori.
 static void tubes_and_offsets_have_closed_forms(void **state) {
   (void)state;
@@ -216,7 +219,8 @@ static void tubes_and_offsets_have_closed_forms(void **state) {
   }
 }
 
-// The line to the point is perpendicular to the surface to rounding, not to its square root.
+// The line to the point is perpendicular to the surface up to rounding, not only to its square
+// root.
 static void nearest_points_are_perpendicular(void **state) {
   (void)state;
   state_of_random = 99;
@@ -232,7 +236,7 @@ static void nearest_points_are_perpendicular(void **state) {
     const CagVec3 r = cag_sub(found.point, p);
     const double off_u = fabs(cag_dot(r, cag_unit(d[cag_partial(1, 1, 0)])));
     const double off_v = fabs(cag_dot(r, cag_unit(d[cag_partial(1, 0, 1)])));
-    // Not at creases.
+    // Except at creases.
     const double crease = 1e-3;
     if (u > 0 && u < 1 && v > 0 && v < 1 && fmax(off_u, off_v) < crease) {
       inner++;
@@ -243,8 +247,8 @@ static void nearest_points_are_perpendicular(void **state) {
   assert_true(inner > 40);
 }
 
-// Of a half of a square cut off along its diagonal: inside, beyond the cut, and over the cut-off
-// corner, where the whole surface is nearer.
+// Half of a square, cut along its diagonal. Points inside, beyond the cut, and above the cut-off
+// corner, where the whole surface would be closer.
 static void trimmed_surfaces_count_within_their_outlines(void **state) {
   (void)state;
   const CagVec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -298,7 +302,7 @@ static double curve_distance(const CagCurve *c, CagVec3 p, double t) {
   return cag_norm(cag_sub(p, q));
 }
 
-// Samples, and thirds of the intervals about the lowest of them.
+// Samples, and then ternary search around the lowest ones.
 static double dense_curve_distance(const CagCurve *c, CagVec3 p) {
   enum { SAMPLES = 300 };
   double best = INFINITY, at[SAMPLES + 1], h = (c->end - c->start) / SAMPLES;
@@ -329,7 +333,7 @@ static void nearest_points_of_curves_are_right_and_perpendicular(void **state) {
     if (distance > dense + 1e-9) fail_msg("curve %d: %.17g, but %.17g", i, distance, dense);
     MUST(cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, err));
     for (int k = 0; i % 5 == 2 && k < 7; k++) to_corner = fmin(to_corner, fabs(t - k));
-    // Rounding of coordinates of up to 12, whose differences are turned into a slope.
+    // Rounding errors of coordinates up to 12, whose differences are converted to a slope.
     if (t > c->start && t < c->end && to_corner > 0)
       assert_near(cag_dot(cag_sub(q, p), cag_unit(d[1])), 0, 3e-14, "leaning");
     cag_curve_release(c);

@@ -1,4 +1,4 @@
-// Nets of control points whose rows and columns may change places, or run the other way.
+// Nets of control points whose rows and columns can be exchanged or reversed.
 
 #ifndef CAG_TESTS_GEOM_NET_SUPPORT_H
 #define CAG_TESTS_GEOM_NET_SUPPORT_H
@@ -13,7 +13,7 @@ typedef struct Net {
   size_t n[2];
 } Net;
 
-// turn: bits 1 to change places, 2 and 4 to run the other way along u and v.
+// Bits of `turn`: 1 exchanges rows and columns, 2 and 4 reverse u and v.
 static inline CagSurface *surface_of(const Net *net, int turn) {
   CagVec3 flat[NET * NET];
   CagSurface *s;

@@ -1,5 +1,5 @@
-// Nets keep their functions when knots and degrees change. Values are those of the recursion of Cox
-// and de Boor, written here from its definition.
+// Knot and degree changes do not change the functions of nets. Values are computed by the Cox-de
+// Boor recursion, implemented here from its definition.
 
 #include "geom/surface/net.h"
 #include "tests/geom/random.h"
@@ -9,7 +9,7 @@ enum { MOST_WIDTH = 5, MOST_KNOTS = 64, PLACES = 23 };
 
 static int whole(int from, int to) { return from + (int)uniform(0, to + 1 - from); }
 
-// Basis function i of degree p. The interval is closed on the right instead where `left`.
+// Basis function i of degree p. If `left` is set, the interval is closed on the right instead.
 static double basis(const double *knots, size_t i, int p, double t, bool left) {
   if (p == 0) return left ? knots[i] < t && t <= knots[i + 1] : knots[i] <= t && t < knots[i + 1];
   const double up = knots[i + (size_t)p] - knots[i];
@@ -30,7 +30,7 @@ static void value(const CagNet *net, double t, bool left, double *out) {
 
 static size_t knot_count(const CagNet *net) { return net->count + (size_t)net->degree + 1; }
 
-// Up to 4 inner knots of any multiplicity up to the degree, ends clamped or not.
+// Up to 4 inner knots of any multiplicity up to the degree, with clamped or unclamped ends.
 static CagNet random_net(int degree, double start, double end) {
   double knots[MOST_KNOTS];
   size_t n = 0;
@@ -67,8 +67,8 @@ static CagNet copy_of(const CagNet *net) {
   return out;
 }
 
-// Both have the same values over [a, b] of the first, whose b is the end of its range or not, and
-// over the mapped range [c, d] of the second.
+// Checks that both have the same values: the first over [a, b], whose b may be the end of its
+// domain, and the second over the mapped range [c, d].
 static void assert_same(const CagNet *x, double a, double b, const CagNet *y, double c, double d) {
   assert_int_equal(x->width, y->width);
   for (int i = 0; i < PLACES; i++) {
@@ -96,7 +96,7 @@ static void inserted_knots_keep_the_values(void **state) {
     double t = uniform(start, end);
     double wanted = t;
     if (round % 3 == 0) {
-      // A knot that is there, or one within a billionth of the range beside it.
+      // An existing knot, or one within a billionth of the domain beside it.
       wanted = net.knots[(size_t)whole(net.degree, (int)net.count)];
       t = wanted + (round % 2 ? 0 : 4e-10 * (end - start));
     }
@@ -113,7 +113,7 @@ static void inserted_knots_keep_the_values(void **state) {
                          times_of(&old, old.knots[i]) + (old.knots[i] == wanted));
       assert_same(&old, start, end, &net, start, end);
       if (wanted > start && wanted < end) {
-        // Taken out again, the net is the old one.
+        // Removing the knot restores the old net.
         OK(cag_net_drop(&net, wanted, &err));
         assert_int_equal(net.count, old.count);
         assert_memory_equal(net.knots, old.knots, knot_count(&old) * sizeof *old.knots);
@@ -135,7 +135,7 @@ static void a_part_has_the_values_and_is_clamped(void **state) {
     double a = start, b = end;
     if (round % 4 > 0) a = uniform(start, start + 0.5 * (end - start));
     if (round % 4 > 1) b = uniform(a + 0.1 * (end - a), end);
-    // From knot to knot, or to places that are knots but for rounding.
+    // Between knots, or parameters that are knots up to rounding.
     if (round % 4 == 3) {
       const double from = net.knots[p + (size_t)whole(0, (int)(net.count - p) / 2)];
       if (from < b - 1e-3) a = from;
@@ -186,7 +186,7 @@ static void raised_degrees_keep_values_and_smoothness(void **state) {
     cag_net_free(&net);
     cag_net_free(&old);
   }
-  // Pieces that come apart have no common higher degree.
+  // Disconnected pieces do not have a common higher degree.
   CagNet net;
   OK(cag_net_new(1, 4, 1, &net, &err));
   const double knots[] = {0, 0, 0.5, 0.5, 1, 1}, data[] = {1, 2, 3, 4};
@@ -207,7 +207,7 @@ static void nets_get_one_degree_and_knot_vector(void **state) {
       nets[i] = random_net(whole(1, 3), 0, 1);
       OK(cag_net_trim(&nets[i], 0, 1, &err));
       if (i > 0 && nets[0].count > (size_t)nets[0].degree + 1) {
-        // One knot that all have.
+        // A knot that all of them have.
         const double t = nets[0].knots[nets[0].degree + 1];
         if (cag_net_multiplicity(&nets[i], t) == 0) OK(cag_net_insert(&nets[i], t, &err));
       }
@@ -221,7 +221,7 @@ static void nets_get_one_degree_and_knot_vector(void **state) {
       assert_memory_equal(nets[i].knots, nets[0].knots, knot_count(&nets[0]) * sizeof(double));
       assert_same(&old[i], 0, 1, &nets[i], 0, 1);
     }
-    // No knot more than one of them needs.
+    // No knot has a higher multiplicity than one of them needs.
     for (size_t k = 0; k < knot_count(&nets[0]); k++) {
       const double t = nets[0].knots[k];
       int most = 0;
@@ -254,7 +254,7 @@ static void ranges_move_and_turn_round(void **state) {
     cag_net_reverse(&net);
     NEAR(cag_net_start(&net), start, 1e-15 * 5);
     NEAR(cag_net_end(&net), end, 1e-15 * 5);
-    // Off the knots, where the sides would be exchanged.
+    // Away from the knots, where the sides would be exchanged.
     for (int i = 0; i < PLACES; i++) {
       double p[MOST_WIDTH], q[MOST_WIDTH];
       const double t = uniform(start, end);
@@ -292,7 +292,7 @@ static void interpolation_passes_the_data(void **state) {
       value(&net, at[i], i == n - 1, found);
       for (size_t c = 0; c < width; c++) NEAR(found[c], data[i * width + c], 1e-9);
     }
-    // Two conditions at one place, or too many within few knots, have no answer.
+    // Two conditions at one parameter, or too many within few knots, have no solution.
     at[n / 2] = at[n / 2 - 1];
     FAILS(cag_net_interpolate(&net, at, &err), "fit-singular");
     if (n > 2 * p + 2) {
@@ -352,7 +352,7 @@ static void surfaces_are_nets_of_rows_either_way(void **state) {
   cag_surface_release(s);
 }
 
-// An arc in pieces over its fraction, homogeneous and clamped.
+// An arc in pieces over its fraction, as a homogeneous, clamped net.
 static void a_curve_is_a_net_over_its_fractions(void **state) {
   (void)state;
   CagCurve *arc;

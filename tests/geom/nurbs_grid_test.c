@@ -1,5 +1,5 @@
-// Random NURBS surfaces on random grids: points, partials and normals together are those of single
-// places, and nothing is written beside them.
+// Random NURBS surfaces on random grids: points, partial derivatives, and normals are the same as
+// at single parameters, and nothing else is written.
 
 #include "geom/surface/frames.h"
 #include "tests/geom/random.h"
@@ -9,7 +9,7 @@ enum { MOST = 11, ROWS = 6, COLUMNS = 90 };
 
 static int whole(int low, int high) { return low + (int)uniform(0, high - low + 1); }
 
-// Bumps over a square of a size anywhere; with `pole`, the first row is one point.
+// Bumps over a square of any size and location; with `pole`, the first row is one point.
 static CagSurface *random_surface(int p, int q, bool rational, double size, bool pole) {
   CagVec3 net[MOST * MOST];
   double weights[MOST * MOST], knots[2][2 * MOST];
@@ -38,8 +38,8 @@ static CagSurface *random_surface(int p, int q, bool rational, double size, bool
   return s;
 }
 
-// In order or in none; ends among them.
-static void set_places(double from, double to, size_t n, bool sorted, double *out) {
+// Parameters, sorted or not, which include the ends.
+static void set_parameters(double from, double to, size_t n, bool sorted, double *out) {
   for (size_t i = 0; i < n; i++) out[i] = uniform(from, to);
   for (size_t i = 0; sorted && i < n; i++)
     out[i] = from + (to - from) * ((double)i + 0.5) / (double)n;
@@ -61,7 +61,7 @@ static void clear(Grid *g) {
 
 static void untouched(const CagVec3 *p) { assert_memory_equal(p, &UNTOUCHED, sizeof *p); }
 
-// What is asked for: 1: S_u, 2: S_v, 4: normals. Points always.
+// Bits of the requested results: 1: S_u, 2: S_v, 4: normals. Points are always computed.
 static void check_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
                        size_t nv, int what, double size, bool pole) {
   static Grid g;
@@ -99,11 +99,11 @@ static void grids_have_the_values_of_single_places(void **state) {
     const int p = whole(1, 5), q = round % 4 < 3 ? round % 4 + 1 : whole(4, 6);
     CagSurface *s = random_surface(p, q, round / 4 % 2, size, pole);
     double us[ROWS], vs[COLUMNS];
-    // Few columns, or more than fit into a block.
+    // Few columns, or more than fit in a block.
     const size_t nu = (size_t)whole(2, ROWS),
                  nv = (size_t)(round % 3 ? whole(2, 9) : whole(60, COLUMNS));
-    set_places(s->u0, s->u1, nu, round % 2, us);
-    set_places(s->v0, s->v1, nv, round / 2 % 2, vs);
+    set_parameters(s->u0, s->u1, nu, round % 2, us);
+    set_parameters(s->v0, s->v1, nv, round / 2 % 2, vs);
     for (int what = 0; what < 8; what++) check_grid(s, us, nu, vs, nv, what, size, pole);
     cag_surface_release(s);
   }
@@ -118,7 +118,7 @@ static void flat_nets_have_no_normals(void **state) {
     const size_t nu = (size_t)p + 1, nv = (size_t)q + 1;
     const double size = pow(10, uniform(-5, 5));
     CagVec3 net[MOST * MOST], along = {1, 2, -1};
-    // Lines all on one line, or all points of a row at one place.
+    // All lines coincide, or all points of a row coincide.
     for (size_t i = 0; i < nu * nv; i++) {
       const double x = (double)(i / nv), y = (double)(i % nv);
       net[i] = cag_scaled(along, size * (round % 3 == 0 ? x + 0.7 * y : round % 3 == 1 ? x : y));
@@ -127,15 +127,15 @@ static void flat_nets_have_no_normals(void **state) {
     OK(cag_surface_bezier(net, NULL, nu, nv, &s, &err));
     CagVec3 points[15], normals[15];
     double us[3], vs[5];
-    set_places(0, 1, 3, false, us);
-    set_places(0, 1, 5, false, vs);
+    set_parameters(0, 1, 3, false, us);
+    set_parameters(0, 1, 5, false, vs);
     OK(cag_surface_eval_frames(s, us, 3, vs, 5, points, NULL, NULL, normals, &err));
     for (int i = 0; i < 15; i++) near_vec(normals[i], cag_vec3(0, 0, 0), 0);
     cag_surface_release(s);
   }
 }
 
-// Weights of 0 in all that act at a place leave none there.
+// If all control points that affect a parameter have weight 0, there is no point.
 static void places_without_weight_are_refused(void **state) {
   (void)state;
   seed = 53;
@@ -152,7 +152,7 @@ static void places_without_weight_are_refused(void **state) {
       CagSurface *s;
       OK(cag_surface_bezier(net, weights, 2, nv, &s, &err));
       for (size_t n = 1; n <= 20; n++) {
-        set_places(0, 1, n, true, vs);
+        set_parameters(0, 1, n, true, vs);
         for (int what = 0; what < 3; what++) {
           const CagStatus status =
               what == 2

@@ -1,4 +1,5 @@
-// Points asked for together are those asked for one by one, bit for bit, whatever the processor.
+// Points evaluated together are bit for bit equal to those evaluated one by one, on every
+// processor.
 
 #include "tests/geom/support.h"
 

@@ -1,4 +1,4 @@
-// Closed meshes and surfaces are turned outward, cavities inward; what is open stays.
+// Closed meshes and surfaces are oriented outward, and cavities inward. Open ones are not changed.
 
 #include "tests/geom/support.h"
 
@@ -6,7 +6,7 @@
 #include "geom/tessellate/orient.h"
 
 static uint32_t state_of_random = 1;
-// Uniform in 0..1 (Numerical Recipes' linear congruence).
+// Uniform in 0..1 (the linear congruential generator of Numerical Recipes).
 static double random_unit(void) {
   state_of_random = state_of_random * 1664525u + 1013904223u;
   return (state_of_random >> 8) / 16777216.0;
@@ -23,7 +23,8 @@ static void add_face(Draft *d, const uint32_t *corners, size_t n, bool turned) {
   d->counts[d->face_count++] = (uint32_t)n;
 }
 
-// A box of quadrilaterals. inside_out: all of them are turned; mixed: each at random as well.
+// A box of quadrilaterals. With `inside_out`, all of them are reversed; with `mixed`, each randomly
+// as well.
 static void add_box(Draft *d, CagVec3 least, CagVec3 most, bool inside_out, bool mixed) {
   static const uint32_t SIDES[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -78,8 +79,8 @@ static void a_mesh_inside_out_is_turned_with_its_normals(void **state) {
   cag_mesh_release(given);
 }
 
-// Boxes within boxes, and boxes beside each other in them, each inside out or not: the volume is
-// that of the odd layers.
+// Nested boxes, some next to each other, each inside out or not. The volume is that of the odd
+// layers.
 static void nested_parts_alternate(void **state) {
   (void)state;
   static Draft d;
@@ -88,7 +89,7 @@ static void nested_parts_alternate(void **state) {
     double sum = 0;
     const size_t groups = 1 + (size_t)(4 * random_unit()), layers = 1 + (size_t)(5 * random_unit());
     const double wall = 0.01 + random_unit();
-    // All in one more box, in half of the rounds.
+    // In half of the rounds, one more box contains everything.
     const bool around = random_unit() < 0.5;
     for (size_t g = 0; g < groups; g++)
       for (size_t k = 0; k < layers; k++) {
@@ -109,11 +110,11 @@ static void nested_parts_alternate(void **state) {
   }
 }
 
-// Parts that begin at the same x as the one around them, in any order: each touches the box's side
-// from within with one corner, and the smallest may come first.
+// Parts that begin at the same x as the one around them, in any order. Each has a corner on the
+// box's side, from inside, and the smallest may be first.
 static void parts_that_begin_with_the_one_around_them_alternate(void **state) {
   (void)state;
-  // The corners of an octahedron along x, y and z, and its faces, outward.
+  // The corners of an octahedron on x, y, and z, and its faces, oriented outward.
   static const uint32_t FACES[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                        {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   static Draft d;
@@ -133,7 +134,7 @@ static void parts_that_begin_with_the_one_around_them_alternate(void **state) {
         sum += 512;
         continue;
       }
-      const double r = 4 - (double)order[k]; // of the octahedron: 4/3 r^3
+      const double r = 4 - (double)order[k]; // of the octahedron, whose volume is 4/3 r^3
       const uint32_t first = (uint32_t)d.vertex_count;
       for (int axis = 0; axis < 3; axis++)
         for (int sign = 1; sign >= -1; sign -= 2)
@@ -158,7 +159,7 @@ static void parts_beside_each_other_or_crossing_all_face_out(void **state) {
   add_box(&d, cag_vec3(0, 0, 0), cag_vec3(4, 4, 4), true, false);
   add_box(&d, cag_vec3(1, 1, 3), cag_vec3(2, 2, 5), true, false);  // crosses
   add_box(&d, cag_vec3(4, 0, 0), cag_vec3(5, 1, 1), true, false);  // touches along a face
-  add_box(&d, cag_vec3(9, 9, 9), cag_vec3(8, 8, 8), false, false); // given from its far corner
+  add_box(&d, cag_vec3(9, 9, 9), cag_vec3(8, 8, 8), false, false); // corners in reverse order
   CagMesh *m = outward(mesh_of(&d));
   NEAR(volume_of(m), 64 + 2 + 1 + 1, 1e-9);
   cag_mesh_release(m);
@@ -181,7 +182,7 @@ static void open_parts_stay_as_they_are(void **state) {
   cag_mesh_release(m);
 }
 
-// A vertex with one normal that a turned and a kept triangle share gets a second one.
+// If a reversed and an unchanged triangle share a vertex with a normal, the vertex is duplicated.
 static void triangles_that_disagree_share_no_normal_afterwards(void **state) {
   (void)state;
   static const uint32_t FACES[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}}; // last: inward
@@ -200,8 +201,8 @@ static void triangles_that_disagree_share_no_normal_afterwards(void **state) {
   cag_mesh_release(m);
 }
 
-// A lathe of random profiles from the axis to the axis, up the outside or down; volumes by Pappus
-// (the sum over the pieces of a profile of pi/3 dz (r0^2 + r0 r1 + r1^2)).
+// A lathe of random profiles from the axis to the axis, upward or downward. Volumes are by Pappus:
+// the sum over the pieces of a profile of pi/3 dz (r0^2 + r0 r1 + r1^2).
 static void closed_surfaces_are_turned_outward(void **state) {
   (void)state;
   for (int round = 0; round < 60; round++) {
@@ -238,8 +239,8 @@ static void closed_surfaces_are_turned_outward(void **state) {
   }
 }
 
-// An octahedron with corners at y = 0 around a tetrahedron with triangles whose middles are at
-// y = 0: rays through them meet edges and corners.
+// An octahedron with corners at y = 0 around a tetrahedron whose triangles have their centers at y
+// = 0: rays through these meet edges and corners.
 static void parts_level_with_corners_alternate(void **state) {
   (void)state;
   static const uint32_t FACES[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
@@ -269,9 +270,8 @@ static void parts_level_with_corners_alternate(void **state) {
   }
 }
 
-// Twelve triangles with three vertices each, all turned in, and a quadrilateral that is open; one
-// more triangle has two corners in one place, which is no part of any. Everything a mesh has goes
-// along.
+// Twelve inward triangles with three vertices each, an open quadrilateral, and a degenerate
+// triangle, which belongs to no part. All arrays of the mesh are preserved.
 static void all_arrays_go_along(void **state) {
   (void)state;
   static Draft d;
@@ -279,7 +279,7 @@ static void all_arrays_go_along(void **state) {
     memset(&d, 0, sizeof d);
     add_box(&d, cag_vec3(0, 0, 0), cag_vec3(1, 2, 3), round % 2 == 0, round % 3 == 0);
     add_box(&d, cag_vec3(5, 0, 0), cag_vec3(7, 2, 3), true, false);
-    d.face_count -= 5; // a side of the second box alone
+    d.face_count -= 5; // a single side of the second box
     d.index_count -= 20;
     CagMesh *plain = mesh_of(&d), *m, *out;
     const size_t n = plain->triangle_count;
@@ -308,7 +308,7 @@ static void all_arrays_go_along(void **state) {
     for (size_t t = 0; t <= n; t++) {
       const uint32_t *a = m->triangles + 3 * t, *b = out->triangles + 3 * t;
       const CagVec3 *p = m->positions;
-      // Triangles of the box look away from its middle; the others stay as they are.
+      // Triangles of the box point away from its center; the others are not changed.
       const CagVec3 normal = cag_cross(cag_sub(p[a[1]], p[a[0]]), cag_sub(p[a[2]], p[a[0]]));
       const bool turned = t < 12 && cag_dot(normal, cag_sub(p[a[0]], cag_vec3(0.5, 1, 1.5))) < 0;
       turned_count += turned;
@@ -328,8 +328,8 @@ static void all_arrays_go_along(void **state) {
   }
 }
 
-// A closed band of N by N quadrilaterals, glued as a torus or, turned over, as a Klein bottle: this
-// has no outside, and stays.
+// A closed band of N by N quadrilaterals, glued as a torus or, reversed, as a Klein bottle. The
+// latter has no outside, and is not changed.
 static void one_sided_meshes_stay_as_they_are(void **state) {
   (void)state;
   enum { N = 6 };
@@ -368,8 +368,8 @@ static void one_sided_meshes_stay_as_they_are(void **state) {
   }
 }
 
-// Two boxes with a common edge, of four triangles: both are closed together; turned on their own,
-// they are not. A sheet that ends at a box's edge leaves all open.
+// Two boxes with a common edge of four triangles: each is closed, but the edge is not that of two
+// triangles. A sheet that ends at a box's edge opens everything.
 static void edges_of_many_triangles(void **state) {
   (void)state;
   static Draft d;
@@ -397,7 +397,7 @@ static void edges_of_many_triangles(void **state) {
   }
 }
 
-// A part whose volume is only rounding error keeps its orientation, whichever it is.
+// A part whose volume is only rounding error keeps its orientation.
 static void flat_parts_stay_as_they_are(void **state) {
   (void)state;
   static Draft d;

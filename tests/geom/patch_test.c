@@ -1,5 +1,4 @@
-// Patches: the vectors of the reference (05a, 8 and 9; 06a, 6.9 and 6.10) and what follows from
-// them.
+// Patches: golden numbers of the reference (05a, 8 and 9; 06a, 6.9 and 6.10), and consequences.
 
 #include "geom/surface/patches.h"
 #include "tests/geom/random.h"
@@ -13,7 +12,7 @@ static CagCurve *spline(const CagVec3 *points, size_t n) {
   return c;
 }
 
-// coons-linear.ex12, ex12-grid: order 3 B-splines on open uniform knots; u of the vectors is u.
+// coons-linear.ex12, ex12-grid: B-splines of order 3 on open uniform knots.
 static void coons_of_example_12(void **state) {
   (void)state;
   CagVec3 v0[] = {{0, 0, 3}, {1, 1, 3}, {2, 1, 3}, {2, 1, 3}, {3, 0, 3}};
@@ -43,7 +42,7 @@ static void coons_of_example_12(void **state) {
   assert_transforms(s);
   cag_surface_release(exact);
   cag_surface_release(s);
-  // One edge against the others: named, with the mend.
+  // If one edge is reversed, the error names it and the fix.
   CagCurve *turned;
   MUST(cag_curve_reverse(c, &turned, err));
   CagError e;
@@ -57,7 +56,7 @@ static void coons_of_example_12(void **state) {
   cag_curve_release(d);
 }
 
-// Sides whose parameters do not run from 0 to 1: two parts of cubics, and lines between their ends.
+// Sides with domains other than 0..1: two parts of cubics, and lines between their ends.
 static void coons_patches_blend_sides_of_any_range(void **state) {
   (void)state;
   seed = 70;
@@ -119,7 +118,7 @@ static CagSurface *bicubic(const CagVec3 p[4], const CagVec3 pu[4], const CagVec
   return s;
 }
 
-// coons-bicubic.ex13 with its derivatives, and figures 33 to 35: heights of the middle.
+// coons-bicubic.ex13 with its derivatives, and figures 33 to 35: heights at the center.
 static void bicubic_patches_of_the_reference(void **state) {
   (void)state;
   const CagVec3 P[] = {{-100.0, 0.0, 100.0},
@@ -163,7 +162,7 @@ static void bicubic_patches_of_the_reference(void **state) {
   cag_surface_release(s);
 }
 
-// Adini's twists make a patch with straight edges the bilinear one.
+// With Adini's twists, a patch with straight edges is bilinear.
 static void adini_twists_keep_bilinear_patches(void **state) {
   (void)state;
   CagHermiteCorners c = {.p = {{{0, 0, 0}, {0, 2, 1}}, {{3, 0, -1}, {4, 5, 2}}}};
@@ -183,7 +182,7 @@ static void adini_twists_keep_bilinear_patches(void **state) {
   cag_surface_release(flat);
 }
 
-// hermite-surface.3x2: tangents, twists and samples; curvature continues over the knots.
+// hermite-surface.3x2: tangents, twists, and samples. The curvature is continuous at the knots.
 static void composite_surface_uniform(void **state) {
   (void)state;
   static const CagVec3 P[4][3] = {{{0.0, 0.0, 0.61}, {0.0, 1.0, 0.62}, {0.0, 2.0, 0.03}},
@@ -240,7 +239,8 @@ static void composite_surface_uniform(void **state) {
   cag_surface_release(s);
 }
 
-// hermite-surface.nonuniform: tangents, twists and samples; curvature continues over the knots.
+// hermite-surface.nonuniform: tangents, twists, and samples. The curvature is continuous at the
+// knots.
 static void composite_surface_nonuniform(void **state) {
   (void)state;
   static const CagVec3 P[4][3] = {{{0.0, 0.0, 0.08}, {0.0, 1.0, -0.31}, {0.0, 2.0, -0.26}},
@@ -301,7 +301,7 @@ static void composite_surface_nonuniform(void **state) {
   cag_surface_release(s);
 }
 
-// bezier-triangle: the vectors' points at barycentric coordinates.
+// bezier-triangle: the points at barycentric coordinates.
 static void bezier_triangles_of_the_reference(void **state) {
   (void)state;
   {
@@ -364,8 +364,9 @@ static CagVec3 on_ellipse(double a, double b, double t, CagVec3 center) {
   return cag_add(center, cag_vec3(a * cos(t), b * sin(t), 0));
 }
 
-// Between arcs of ellipses in parallel planes rulings join places of parallel tangents: those of a
-// at s and of b at t are where tan t = k tan s. The surface runs over all s that have both.
+// Between arcs of ellipses in parallel planes, rulings join points with parallel tangents: s on the
+// first curve and t on the second, where tan t = k tan s. The surface covers all s for which both
+// exist.
 static void developables_join_parallel_tangents(void **state) {
   (void)state;
   seed = 71;
@@ -401,13 +402,13 @@ static void developables_join_parallel_tangents(void **state) {
   }
 }
 
-// The angle with tan t = k tan s, k > 0, in the quadrant and turn of s.
+// The angle t with tan t = k tan s, k > 0, in the quadrant and turn of s.
 static double parallel_angle(double k, double s) {
   const double turn = M_PI * round(s / M_PI);
   return turn + atan(k * tan(s - turn));
 }
 
-// The same for whole ellipses that start at any angle: the seam of the second is passed.
+// The same for whole ellipses that begin at any angle: the rulings cross the seam of the second.
 static void developables_of_closed_curves_go_round(void **state) {
   (void)state;
   seed = 72;
@@ -438,7 +439,7 @@ static void developables_of_closed_curves_go_round(void **state) {
   }
 }
 
-// Rulings of an elliptic cylinder between two sections by planes, over all angles that both have.
+// Rulings of an elliptic cylinder between two plane sections, over all angles common to both.
 static void developables_of_oblique_sections_are_cylinders(void **state) {
   (void)state;
   seed = 73;
@@ -475,7 +476,7 @@ static void developables_of_oblique_sections_are_cylinders(void **state) {
       assert_near(fabs(cag_dot(n, out)), 1, 1e-9, "normal");
     }
     cag_surface_release(s);
-    // A curve and itself, and skew lines, have none.
+    // A curve and itself, or skew lines, have no rulings.
     MUST_FAIL(cag_surface_developable(c[0], c[0], &s, err), "no-rulings");
     for (int i = 0; i < 2; i++) cag_curve_release(c[i]);
     const double way = uniform(0.3, 2.8);
@@ -486,8 +487,8 @@ static void developables_of_oblique_sections_are_cylinders(void **state) {
   }
 }
 
-// A spline on a cone with its tip at the origin, or its image by x / (1 + n . x), which is on the
-// same rulings. Weights that grow by a factor only change where a parameter lies.
+// A spline on a cone with its tip at the origin, or its image under x / (1 + n . x), which has the
+// same rulings. Weights that grow by a constant factor only change the parametrization.
 static CagCurve *on_cone(const CagVec3 *points, const double *weights, size_t n, int degree,
                          const double *knots, CagVec3 image, double growth) {
   CagVec3 p[8];
@@ -526,8 +527,8 @@ static void developables_of_curves_on_a_cone_are_the_cone(void **state) {
     const CagVec3 none = {0, 0, 0};
     CagCurve *whole[2] = {on_cone(points, weights, n, degree, knots, none, 1),
                           on_cone(points, weights, n, degree, knots, image, growth)};
-    // Parts of both. The second is `growth` faster: where a ruling has s on the first, t / (1 - t)
-    // is s / (1 - s) / growth on it.
+    // Parts of both. The second is faster by the factor `growth`: a ruling at s on the first is at
+    // t on the second, where t / (1 - t) = s / (1 - s) / growth.
     CagCurve *part[2];
     double from = 0, to = 1;
     for (int k = 0; k < 2; k++) {
@@ -538,8 +539,9 @@ static void developables_of_curves_on_a_cone_are_the_cone(void **state) {
       to = fmin(to, g * high / (rest[1] + g * high));
     }
     CagSurface *s;
-    // The start of the first curve is in one plane with another place of the second, too: from
-    // there the rulings come to cross at a knot, where the second one's curvature jumps.
+    // The tangent plane at the start of the first curve contains another point of the second one,
+    // too. From there, the rulings begin to cross at a knot, where the second curve's curvature
+    // jumps.
     if (round == 12) {
       MUST_FAIL(cag_surface_developable(part[0], part[1], &s, err), "no-rulings");
       for (int k = 0; k < 2; k++) {
@@ -562,7 +564,7 @@ static void developables_of_curves_on_a_cone_are_the_cone(void **state) {
       assert_near(cag_dot(n0, cag_unit(p)), 0, 1e-9, "ruling");
     }
     if (one_piece) assert_consistent(s);
-    // Knots of the first curve are breaks.
+    // The knots of the first curve are breaks.
     double *cuts;
     size_t pieces;
     MUST(cag_surface_cuts(s, 1, &cuts, &pieces, err));

@@ -1,5 +1,5 @@
-// How finely the parts of a face are divided, before anything is made of it: compared with the
-// smallest grids that closed forms allow, and with those of the same face in other parameters.
+// The subdivision planned for the parts of a face, before a mesh is made: compared with the
+// smallest grids that closed forms allow, and with those of the same face with other parameters.
 
 #include "geom/surface/function.h"
 #include "geom/tessellate/trial.h"
@@ -28,9 +28,9 @@ static CagTessellation limits(double tolerance, double angle, double max_edge) {
   return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL};
 }
 
-// --- Nets whose rows and columns may change places, or run the other way ---
+// --- Nets whose rows and columns can be exchanged or reversed ---
 
-// A leaf in the parameters of the net itself.
+// Converts a leaf to the parameters of the net itself.
 static Leaf turned(const Leaf *leaf, int turn) {
   Leaf out = *leaf;
   for (int d = 0; d < 2; d++) {
@@ -43,7 +43,7 @@ static Leaf turned(const Leaf *leaf, int turn) {
   return out;
 }
 
-// How many leaves of p are leaves of q as well, and how many of them with the same counts.
+// Counts the leaves of p that are leaves of q as well, and those that also have the same counts.
 static void count_alike(const Planned *p, int turn_p, const Planned *q, int turn_q,
                         size_t alike[2]) {
   alike[0] = alike[1] = 0;
@@ -56,7 +56,7 @@ static void count_alike(const Planned *p, int turn_p, const Planned *q, int turn
     }
 }
 
-// A cap whose first row is one point, or a patch with one bump.
+// A cap whose first row is a single point, or a patch with one bump.
 static Net cap_or_bump(int k) {
   Net net = {.n = {3, 4}};
   const double wide = uniform(0.3, 1.5);
@@ -71,8 +71,8 @@ static Net cap_or_bump(int k) {
   return net;
 }
 
-// With rows or columns run through from the other end, the same parts are divided as finely: what
-// is a whole number but for rounding may be rounded up in one case.
+// Reversing rows or columns does not change the subdivision. A count that is whole up to rounding
+// may be rounded up in one of the cases.
 static void plans_do_not_depend_on_where_parameters_begin(void **state) {
   (void)state;
   size_t all = 0, same = 0, parts = 0;
@@ -127,18 +127,18 @@ static Leaf only_leaf(const Parabolic *f, int turn, const CagTessellation *how) 
   return leaf;
 }
 
-// Triangles of h x m are off by the second form of an edge over 8.
+// The deviation of h x m triangles is the second form of an edge divided by 8.
 static double parabolic_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
   const double a = f->bend[0] * h * h, b = f->bend[1] * m * m;
   return fmax(fabs(a + b), fmax(fabs(a), fabs(b))) / 8 / (0.9 * how->tolerance);
 }
 
-// The slopes are small: normals turn by them.
+// The slopes are small, so they are the rotation of the normals.
 static double turn_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
   return hypot(f->bend[0] * h, f->bend[1] * m) / how->angle;
 }
 
-// Edges of triangles may be as long as both sides.
+// Edges of triangles may be as long as both sides together.
 static double edge_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
   (void)f;
   return (h + m) / how->max_edge;
@@ -146,8 +146,8 @@ static double edge_use(const Parabolic *f, const CagTessellation *how, double h,
 
 typedef double Use(const Parabolic *f, const CagTessellation *how, double h, double m);
 
-// By how much the planned grid is larger than the smallest one that is used fully, or less.
-static double share_of_smallest(const Parabolic *f, int turn, const CagTessellation *how,
+// The ratio of the planned grid to the smallest one that satisfies the limits.
+static double ratio_to_smallest(const Parabolic *f, int turn, const CagTessellation *how,
                                 Use *use) {
   enum { MOST = 400 };
   const Leaf leaf = only_leaf(f, turn, how);
@@ -188,7 +188,7 @@ static void grids_are_little_larger_than_the_smallest(void **state) {
       const double fine = exp(uniform(-2, 2));
       const CagTessellation how =
           limits(cases[c].tolerance * fine, cases[c].angle * fine, cases[c].max_edge * fine);
-      const double share = share_of_smallest(&f, k % 8, &how, cases[c].use);
+      const double share = ratio_to_smallest(&f, k % 8, &how, cases[c].use);
       if (!(share <= cases[c].most)) fail_msg("case %zu: %g times as many", c, share);
       sum += share / 64;
     }
@@ -196,7 +196,7 @@ static void grids_are_little_larger_than_the_smallest(void **state) {
   }
 }
 
-// Edges need not be shorter than a fifth of the tolerance for the angle.
+// The tolerance for the angle does not force edges shorter than a fifth of the distance tolerance.
 static void angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance(void **state) {
   (void)state;
   seed = 63;
@@ -211,7 +211,7 @@ static void angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance(void 
 
 // --- Limits ---
 
-// Several pieces with knots anywhere: a bumpy sheet, or a twisted band whose lines meet aslant.
+// Several pieces with any knots: a bumpy sheet, or a twisted band with oblique parameter lines.
 static CagSurface *pieces(bool twisted) {
   enum { U = 6, V = 5 };
   CagVec3 p[U * V];
@@ -233,7 +233,7 @@ static CagSurface *pieces(bool twisted) {
   return s;
 }
 
-// Two flat sides and a round edge between them, which is sharper at one end.
+// Two planar sides and a round edge between them, which is sharper at one end.
 static CagSurface *round_edge(int k) {
   const double sharp = exp(uniform(0, 2.5)), wide = uniform(2, 6), lean = uniform(-1, 1);
   const CagVec3 profile[3] = {{0, 0, 0}, {wide, 0, 0}, {wide, 0, 4}};
@@ -250,9 +250,9 @@ static CagSurface *round_edge(int k) {
   return s;
 }
 
-// The largest turn of the normal, and length, of the edges of a leaf's quadrilaterals and of their
-// shorter diagonals. Short edges are free to turn, and diagonals of quadrilaterals with such a
-// side.
+// Finds the largest rotation of the normal along, and the largest length of, the edges of a leaf's
+// cells and their shorter diagonals. Short edges, and diagonals of cells with a short side, may
+// have any rotation.
 static void edges_of(const CagSurface *s, const Leaf *leaf, double free_of_turn, double *turn,
                      double *length) {
   enum { MOST = 300 };
@@ -260,7 +260,7 @@ static void edges_of(const CagSurface *s, const Leaf *leaf, double free_of_turn,
   assert_true(leaf->n[0] <= MOST && leaf->n[1] <= MOST);
   for (size_t i = 0; i <= leaf->n[0]; i++)
     for (size_t k = 0; k <= leaf->n[1]; k++) {
-      // A little inside of the leaf the normals are its own.
+      // Slightly inside the leaf, the normals are its own.
       const double x = fmin(fmax((double)i / leaf->n[0], 1e-6), 1 - 1e-6),
                    y = fmin(fmax((double)k / leaf->n[1], 1e-6), 1 - 1e-6),
                    u = leaf->from[0] + (leaf->to[0] - leaf->from[0]) * x,
@@ -315,7 +315,7 @@ static void check_leaves(const Planned *p, const CagSurface *s, const CagTessell
   NEAR(area, (s->u1 - s->u0) * (s->v1 - s->v0), 1e-9);
 }
 
-// Gives the number of quadrilaterals.
+// Returns the number of cells.
 static double check_plan(const CagSurface *s, const CagTessellation *how) {
   Planned p;
   plan(&p, s, how);
@@ -325,7 +325,7 @@ static double check_plan(const CagSurface *s, const CagTessellation *how) {
   return n;
 }
 
-// All leaves keep the limits; the bounds of quadrilaterals are what was needed for it.
+// All leaves satisfy the limits, with a bounded number of cells.
 static void leaves_keep_limits_with_few_quadrilaterals(void **state) {
   (void)state;
   static const struct {
@@ -349,9 +349,9 @@ static void leaves_keep_limits_with_few_quadrilaterals(void **state) {
   }
 }
 
-// Waves on a plane, which fade out along u or v.
+// Waves on a plane that decay along u or v.
 typedef struct Ripple {
-  double size[2], wave[2], high, slide, fade[2]; // slide: waves along x, that do not fade out
+  double size[2], wave[2], high, slide, fade[2]; // slide: waves along x that do not decay
 } Ripple;
 
 static CagStatus ripple_eval(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
@@ -372,12 +372,12 @@ static CagStatus ripple_eval(void *context, double u, double v, int n, CagVec3 *
 
 static CagStatus ripple_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  return row_by_places(ripple_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(ripple_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
-// Waves that are lower than the tolerance are seen by the normals and lengths of edges only.
+// Only the limits for normals and edge lengths detect waves below the tolerance.
 static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
   (void)state;
   double sum = 0;
@@ -394,7 +394,7 @@ static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
     r.wave[k % 2] = uniform(10, 60);
     r.wave[1 - k % 2] = k % 3 ? 0 : slow;
     r.fade[k / 2 % 2] = uniform(0, 0.9);
-    const CagSurfaceFunction f = {ripple_eval, ripple_row, keep, &r};
+    const CagSurfaceFunction f = {ripple_eval, ripple_row, release_nothing, &r};
     OK(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err));
     sum += check_plan(s, &how);
     cag_surface_release(s);

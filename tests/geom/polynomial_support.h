@@ -1,4 +1,4 @@
-// Graphs of polynomials of two variables over the unit square as surfaces.
+// Graphs of bivariate polynomials over the unit square, as surfaces.
 
 #ifndef CAG_TESTS_GEOM_POLYNOMIAL_SUPPORT_H
 #define CAG_TESTS_GEOM_POLYNOMIAL_SUPPORT_H
@@ -9,7 +9,7 @@
 
 enum { DEGREE = 4, SIDE = DEGREE + 1 };
 
-// Coefficients of x^i y^j.
+// The coefficients of x^i y^j.
 typedef struct Polynomial {
   double c[SIDE][SIDE];
 } Polynomial;
@@ -27,7 +27,7 @@ static inline Polynomial sum(const Polynomial *a, const Polynomial *b, double fa
   return out;
 }
 
-// Products up to the degree; higher terms vanish in all that is used.
+// The product up to the degree; all terms used are within it.
 static inline Polynomial product(const Polynomial *a, const Polynomial *b) {
   Polynomial out = {{{0}}};
   for (int i = 0; i < SIDE; i++)
@@ -47,8 +47,8 @@ static inline double value(const Polynomial *p, double x, double y) {
   return out;
 }
 
-// Over the unit square, with u = x per[0] and v = y per[1], from 0 or, where these are not 1, from
-// below; and moved.
+// The graph over the unit square, with u = x per[0] and v = y per[1]. The domains begin at 0, or
+// below it if the factors are not 1. The graph is translated.
 static inline CagSurface *graph(const Polynomial *p, const double per[2],
                                 const CagTransform *move) {
   CagVec3 net[SIDE * SIDE];
@@ -76,7 +76,7 @@ static inline CagVec3 direction(void) {
   return cag_unit(cag_vec3(x, y, uniform(-1, 1)));
 }
 
-// x - x0, y - y0, x - x0 + s (y - y0), a circle's equation.
+// The factors x - x0, y - y0, and x - x0 + s (y - y0), and the equation of a circle.
 static inline Polynomial line_x(double x0) { return (Polynomial){{{-x0}, {1}}}; }
 static inline Polynomial line_y(double y0) { return (Polynomial){{{-y0, 1}}}; }
 static inline Polynomial slanted(double x0, double y0, double slope) {

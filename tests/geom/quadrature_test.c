@@ -1,4 +1,5 @@
-// Integrals of kinks, cusps and peaks anywhere, by closed forms, and how many points they take.
+// Integrals of kinks, cusps, and peaks anywhere, compared with closed forms, and the number of
+// evaluations.
 
 #include "geom/basis/quadrature.h"
 #include "tests/geom/random.h"
@@ -12,7 +13,7 @@ typedef struct Bump {
   int calls;
 } Bump;
 
-// |x|, sqrt |x|, w / (w^2 + x^2) and e^x, each part with a factor of its own.
+// |x|, sqrt |x|, w / (w^2 + x^2), and e^x; each component has a factor.
 static CagStatus bump(void *context, double t, double *out, CagError *e) {
   (void)e;
   Bump *b = context;
@@ -47,7 +48,7 @@ static void integrals_keep_the_tolerance_with_few_points(void **state) {
     for (int k = 0; k < b.parts; k++) largest = fmax(largest, fabs(b.factor[k]));
     OK(cag_integrate(bump, &b, cuts, n, b.parts, tolerance, sum, &err));
     const double whole = antiderivative(&b, cuts[n - 1]) - antiderivative(&b, cuts[0]);
-    // Both rules may agree by chance about a kink or cusp, though neither is near.
+    // At a kink or cusp, both rules may agree by chance although neither is accurate.
     const double chance = b.shape < 2 ? 1e-5 + 4 * tolerance : 1e-14;
     for (int k = 0; k < b.parts; k++)
       NEAR(sum[k], b.factor[k] * whole, (tolerance + chance) * largest * whole);
@@ -57,8 +58,8 @@ static void integrals_keep_the_tolerance_with_few_points(void **state) {
     assert_int_equal(extra % 2, 0);
     if (extra / 2 > most[b.shape]) most[b.shape] = extra / 2;
   }
-  // A kink or cusp is bisected towards, by 2^-2 or 2^-1.5 of the error at a time; a peak down to
-  // its width; what is smooth not at all.
+  // Bisection toward a kink or cusp reduces the error by 2^-2 or 2^-1.5 at a time. A peak is
+  // bisected down to its width, and smooth functions are not bisected.
   assert_true(most[0] <= 25 && most[1] <= 50 && most[2] <= 40 && most[3] == 0);
   assert_true(most[0] >= 15 && most[1] >= 30 && most[2] >= 20);
 }

@@ -1,5 +1,5 @@
-// Bodies that pieces of quadrics bound: masses and flat faces compared with closed forms and with
-// integrals over the box.
+// Bodies bounded by pieces of quadrics: masses and planar faces, compared with closed forms and
+// with integrals over the box.
 
 #include "box_integral.h"
 #include "geom/meet/quadric_body.h"
@@ -35,7 +35,7 @@ static double volume_of(const CagSolid *s) {
   return mass.volume;
 }
 
-// The volume of a mesh with this tolerance. The mesh must be closed.
+// The volume of a mesh with this tolerance, which must be closed.
 static double volume_of_mesh(const CagSolid *s, double tolerance) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   double terms[10] = {0};
@@ -51,10 +51,10 @@ static double volume_of_mesh(const CagSolid *s, double tolerance) {
 #ifndef ROUNDS
 #define ROUNDS 2
 #endif
-// Pieces end in splines that are accurate to 1e-11 of the box.
+// Pieces end at splines that are accurate to 1e-11 of the box.
 #define EXACT 1e-9
 
-// Compares volume, center and inertia with integrals over the box, about its middle.
+// Compares volume, center, and inertia with integrals over the box, about its center.
 static void check_mass(const CagSolid *s, const CagQuadric *q, const CagBounds *box, double all,
                        double size) {
   CagMassProperties mass;
@@ -80,7 +80,7 @@ static void check_mass(const CagSolid *s, const CagQuadric *q, const CagBounds *
   }
 }
 
-// Compares the flat faces at both ends of z with the sections of the form.
+// Compares the planar faces at both ends of z with sections of the form.
 static void check_caps(const CagSolid *s, const CagQuadric *q, const CagBounds *box) {
   const CagVec3 size = cag_sub(box->max, box->min);
   double areas[2] = {0, 0};
@@ -99,7 +99,7 @@ static void check_caps(const CagSolid *s, const CagQuadric *q, const CagBounds *
               EXACT, "upper face");
 }
 
-// Tests whether the body has exact faces: pieces of the quadric and flat ones.
+// Checks that the body has exact faces: pieces of the quadric and planar ones.
 static void check_faces(const CagSolid *s) {
   size_t flat = 0;
   for (size_t i = 0; i < s->face_count; i++)
@@ -129,7 +129,7 @@ static void bodies_within_boxes_have_the_integrals_of_their_forms(void **state) 
     check_mass(s, &q, &box, size.x * size.y * size.z, cag_norm(size));
     check_caps(s, &q, &box);
     if (i < CURVED && i % 2 == 0) {
-      // A mesh approaches the body with its tolerance.
+      // A mesh approximates the body within its tolerance.
       CagMassProperties mass;
       MUST(cag_solid_mass(s, &mass, err));
       for (double tolerance = 1e-2; tolerance > 5e-4; tolerance /= 10)
@@ -141,7 +141,7 @@ static void bodies_within_boxes_have_the_integrals_of_their_forms(void **state) 
   assert_true(bodies > ROUNDS * CURVED / 2);
 }
 
-// Ellipsoids, hyperboloids, cones, elliptic paraboloids and cylinders with axes up to 0.3 rad off
+// Ellipsoids, hyperboloids, cones, elliptic paraboloids, and cylinders with axes up to 0.3 rad off
 // z.
 static void bodies_within_ranges_have_the_integrals_of_their_forms(void **state) {
   (void)state;
@@ -165,7 +165,7 @@ static void bodies_within_ranges_have_the_integrals_of_their_forms(void **state)
     CagBounds box;
     MUST(cag_solid_bounds(s, &box, err));
     check_faces(s);
-    // The integral's box is wider than the body, and the range decides its ends.
+    // The box of the integral is wider than the body, and the range determines the ends.
     const CagVec3 size = cag_sub(box.max, box.min);
     box.min = cag_vec3(box.min.x - 0.1, box.min.y - 0.1, range.min.z);
     box.max = cag_vec3(box.max.x + 0.1, box.max.y + 0.1, range.max.z);
@@ -179,14 +179,14 @@ static void bodies_within_ranges_have_the_integrals_of_their_forms(void **state)
 
 static void bodies_have_closed_forms(void **state) {
   (void)state;
-  // A ball of radius 5 in a cube of 8 loses six caps of height 1: pi h^2 (3 r - h) / 3 each.
+  // A ball of radius 5 in a cube of side 8 loses six caps of height 1: pi h^2 (3 r - h) / 3 each.
   const CagQuadric ball = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -25}};
   const CagBounds cube = {{-4, -4, -4}, {4, 4, 4}};
   CagSolid *s = body_of(&ball, &cube, false, NULL);
   const double volume = M_PI * (4 * 125 / 3.0 - 6 * 14 / 3.0);
   assert_near(volume_of(s) / volume, 1, 1e-9, "ball");
   cag_solid_release(s);
-  // Later transforms move the cut as well.
+  // Subsequent transforms move the cut as well.
   CagTransform turn, stretch;
   MUST(cag_rotate(cag_vec3(1, 2, 3), 0.7, cag_vec3(1, 0, 0), &turn, err));
   MUST(cag_scale(cag_vec3(1, 2, 0.5), cag_vec3(0, 0, 0), &stretch, err));
@@ -219,7 +219,7 @@ static void bodies_have_closed_forms(void **state) {
   cag_solid_release(s);
 }
 
-// An ellipsoid with semi-axes 3, 2 and 2, turned about the y axis, within a range that holds its
+// An ellipsoid with semi-axes 3, 2, and 2, rotated about the y axis, in a range that contains its
 // extremes in x and y.
 static void bounds_reach_the_extremes_between_the_caps(void **state) {
   (void)state;

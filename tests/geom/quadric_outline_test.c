@@ -1,5 +1,5 @@
-// Sheets of quadrics between random planes: the parameters of what is left against the planes
-// themselves, and its outlines.
+// Sheets of quadrics between random planes: the parameters of the remaining parts, compared with
+// the planes themselves, and their outlines.
 
 #include "geom/surface/quadric_within.h"
 #include "geom/surface/trimmed.h"
@@ -13,7 +13,7 @@ static bool is_about_axis(CagQuadricShape s) {
 
 static bool is_cylinder(CagQuadricShape s) { return s >= CAG_SHAPE_ELLIPTIC_CYLINDER; }
 
-// A sheet in a random position, and a patch of it whose points the tests evaluate.
+// A sheet in a random position, and a patch of it, whose points the tests evaluate.
 typedef struct Subject {
   CagQuadricSheet sheet;
   CagQuadricSide sides[CAG_QUADRIC_SIDES];
@@ -22,7 +22,7 @@ typedef struct Subject {
   size_t n;
 } Subject;
 
-// In one order: that in which arguments are evaluated differs between compilers.
+// In a fixed order, because the order in which compilers evaluate arguments differs.
 static CagVec3 random_vector(void) {
   CagVec3 v;
   v.z = random_in(-1, 1);
@@ -63,7 +63,7 @@ static CagVec3 point_of(const Subject *s, double u, double v) {
   return cag_transform_point(&s->sheet.frame, units[s->sheet.shape]);
 }
 
-// A side n . x <= d of the unit form.
+// Adds the half space n . x <= d of the unit form.
 static void add_side(Subject *s, CagVec3 n, double d) {
   CagTransform back;
   MUST(cag_transform_inverse(&s->sheet.frame, &back, err));
@@ -78,7 +78,7 @@ static double beyond(const CagQuadricSide *side, CagVec3 p) {
   return cag_dot(side->n, p) - side->d;
 }
 
-// By how much a point is beyond the side that it violates most; negative within all of them.
+// How far a point is beyond the side that it violates most; negative inside all sides.
 static double most_beyond(const Subject *s, CagVec3 p) {
   double most = -INFINITY;
   for (size_t i = 0; i < s->count; i++) most = fmax(most, beyond(&s->sides[i], p));
@@ -89,7 +89,7 @@ static double random_v(const Subject *s, double reach) {
   return random_in(fmax(s->sheet.v0, -reach), fmin(s->sheet.v1, reach));
 }
 
-// How many of the results have these parameters.
+// The number of results that contain these parameters.
 static int covering(const Subject *s, double u, double v) {
   int covers = 0;
   const int turns = is_about_axis(s->sheet.shape) ? 1 : 0;
@@ -107,7 +107,8 @@ static int covering(const Subject *s, double u, double v) {
   return covers;
 }
 
-// Points well within all planes are on one of the results, others on none. Returns how many are.
+// Checks that points well inside all planes are on one of the results, and others on none. Returns
+// the number of inner points.
 static int check_parameters(const Subject *s, int samples) {
   int within = 0;
   for (int i = 0; i < samples; i++) {
@@ -124,7 +125,7 @@ static int check_parameters(const Subject *s, int samples) {
   return within;
 }
 
-// The sine of the angle at which a plane crosses the sheet at a point of its unit form.
+// The sine of the angle between a plane and the sheet at a point of its unit form.
 static double crossing(const Subject *s, const CagQuadricSide *side, CagVec3 p) {
   const double *c = UNITS[s->sheet.shape];
   CagTransform back;
@@ -137,8 +138,8 @@ static double crossing(const Subject *s, const CagQuadricSide *side, CagVec3 p) 
   return cag_norm(cag_cross(side->n, cag_unit(cag_vec3(n[0], n[1], n[2]))));
 }
 
-// Every point of an outline is on a plane, or at an end of the sheet, and beyond no plane, within
-// the tolerance along the sheet. Returns how many control points it has.
+// Checks that every point of an outline is on a plane or at an end of the sheet, and beyond no
+// plane, within the tolerance along the sheet. Returns the number of control points.
 static size_t check_outline(const Subject *s, const CagCurve *loop) {
   const CagQuadricSheet *sheet = &s->sheet;
   CagNurbsView view;
@@ -215,7 +216,7 @@ static void planes_leave_what_is_within_them(void **state) {
     check(&s, 150, &sum);
     release_all(&s);
   }
-  // No more control points than the tolerance needs, by seven for a piece of degree 7.
+  // Limits of the number of control points. A piece of degree 7 adds seven.
   static const size_t ENOUGH[SHAPES] = {11920, 2576, 4663, 9151, 7956, 5933, 1050, 638, 1574};
   for (int i = 0; i < SHAPES; i++)
     assert_near((double)sum.points[i] / (double)ENOUGH[i], 1, 0.03, "control points");
@@ -246,7 +247,7 @@ static void boxes_in_special_positions_leave_what_is_within_them(void **state) {
   assert_true(sum.within > 20 * ROUNDS && sum.unbounded == 0);
 }
 
-// Planes across the axis, and those that contain it or rulings.
+// Planes perpendicular to the axis, and planes that contain it or rulings.
 static void pieces_between_lines_of_constant_parameters_are_patches(void **state) {
   (void)state;
   Count sum = {0};
@@ -273,7 +274,7 @@ static void pieces_between_lines_of_constant_parameters_are_patches(void **state
   assert_true(patches > 4 * ROUNDS && sum.unbounded > ROUNDS);
 }
 
-// A plane tangent to a saddle or a hyperboloid meets it in two lines that cross.
+// A plane tangent to a saddle or hyperboloid meets it in two crossing lines.
 static void pieces_that_touch_in_a_point_stay_apart(void **state) {
   (void)state;
   for (int round = 0; round < 8; round++) {
@@ -295,7 +296,7 @@ static void pieces_that_touch_in_a_point_stay_apart(void **state) {
     const double sign = above ? -1 : 1;
     add_side(&s, saddle ? cag_vec3(0, 0, sign) : cag_vec3(sign, 0, 0), saddle ? 0 : sign);
     check(&s, 400, &sum);
-    // What a hyperboloid has below its tangent plane goes round.
+    // The part of a hyperboloid below its tangent plane surrounds it.
     assert_int_equal(s.n, saddle || above ? 2 : 1);
     assert_int_equal(sum.loops, s.n);
     release_all(&s);

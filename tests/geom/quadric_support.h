@@ -13,7 +13,7 @@ static inline double random_in(double from, double to) {
   return from + (to - from) * (double)(state_of_random >> 11) / 9007199254740992.0;
 }
 
-// The 17 classes in their simplest form; the last ones have no real surface.
+// The 17 classes in their simplest form. The last ones have no real surface.
 static const double UNITS[][10] = {
     {1, 1, 1, 0, 0, 0, 0, 0, 0, -1},  {1, 1, -1, 0, 0, 0, 0, 0, 0, -1},
     {1, 1, -1, 0, 0, 0, 0, 0, 0, 1},  {1, 1, -1, 0, 0, 0, 0, 0, 0, 0},
@@ -27,7 +27,7 @@ static const double UNITS[][10] = {
 };
 enum { CLASSES = 17, REAL = 12 };
 
-// Semi-axes, then turned (a third of them not), then moved.
+// Applies semi-axes, a rotation (except to a third of them), and a translation.
 static inline CagQuadric random_quadric(const double unit[10], bool turned) {
   CagQuadric q, out;
   memcpy(q.c, unit, sizeof q.c);

@@ -1,4 +1,4 @@
-// Quadrics: the classes and numbers of the reference, invariance under motions, real pieces.
+// Quadrics: the classes and numbers of the reference, invariance under motions, and real pieces.
 
 #include "surface_support.h"
 
@@ -10,7 +10,7 @@ typedef struct Case {
   double semi[3];
 } Case;
 
-// quadric.std-* of the reference vectors, and the classes that they leave out (closed forms).
+// quadric.std-* of the golden vectors, and the classes that they omit (closed forms).
 static const Case CASES[] = {
     {"std-ellipsoid", {1, 4, 9, 0, 0, 0, 0, 0, 0, -36}, "ellipsoid", 3, 4, {6, 3, 2}},
     {"std-ellipsoid-of-revolution", {4, 4, 1, 0, 0, 0, 0, 0, 0, -16}, "ellipsoid", 3, 4, {2, 2, 4}},
@@ -128,15 +128,13 @@ static void every_class_is_told_as_in_the_reference(void **state) {
     assert_int_equal(f.rank3, CASES[i].rank3);
     assert_int_equal(f.rank4, CASES[i].rank4);
     for (int k = 0; k < 3; k++) assert_near(f.semi[k], CASES[i].semi[k], 1e-12, CASES[i].id);
-    // Standard equations stand in the world's axes already.
+    // Standard equations are aligned with the world's axes.
     if (f.rank3 >= 2 && strcmp(CASES[i].id, "std-paraboloid-of-revolution") != 0)
       for (int k = 0; k < 3; k++) assert_near(f.frame.m[k][k], 1, 1e-15, CASES[i].id);
   }
 }
 
-// Class, ranks and semi-axes do not change when the quadric is moved, its equation multiplied by a
-// negative number, or the drawing scaled to other units.
-// x^2/25 + y^2/9 + z^2/4 = 1, as a user writes it: no digit is lost to the units of the reduction.
+// x^2/25 + y^2/9 + z^2/4 = 1 has exact semi-axes: the reduction scales units without losing digits.
 static void round_semi_axes_come_out_round(void **state) {
   (void)state;
   const CagQuadric q = {{1 / 25.0, 1 / 9.0, 1 / 4.0, 0, 0, 0, 0, 0, 0, -1}};
@@ -145,6 +143,8 @@ static void round_semi_axes_come_out_round(void **state) {
   assert_true(f.semi[0] == 5 && f.semi[1] == 3 && f.semi[2] == 2);
 }
 
+// Class, ranks, and semi-axes do not change if the quadric is moved, its equation is multiplied by
+// a negative number, or the drawing is scaled to other units.
 static void classes_survive_motions_and_units(void **state) {
   (void)state;
   CagTransform turn, shift, scale, map;
@@ -171,7 +171,7 @@ static void classes_survive_motions_and_units(void **state) {
         found[j] = f.semi[j] / (ratio ? 1 : paraboloid ? sqrt(k) : k);
         expected[j] = CASES[i].semi[j];
       }
-      // A pair of planes has no first axis: 1 : b and 1 : 1/b are one.
+      // A pair of planes has no first axis: 1 : b and 1 : 1/b are equivalent.
       if (strcmp(f.name, "intersecting-planes") == 0 && found[1] > 1) found[1] = 1 / found[1];
       qsort(found, 3, sizeof *found, ascending);
       qsort(expected, 3, sizeof *expected, ascending);
@@ -223,7 +223,7 @@ typedef struct Param {
 } Param;
 
 #define DEG (M_PI / 180)
-// quadric.param-*: a = 3, b = 2, c = 1.5 where they stand.
+// quadric.param-*: a = 3, b = 2, c = 1.5, where they occur.
 static const Param PARAMS[] = {
     {CAG_SHAPE_ELLIPSOID,
      {3, 2, 1.5},
@@ -286,8 +286,8 @@ static void parametric_forms_have_the_points_of_the_reference(void **state) {
   }
 }
 
-// Points of all shapes, their exact NURBS forms and their images satisfy the equation that the
-// surface names.
+// Points of all shapes, their exact NURBS forms, and their images satisfy the equation of the
+// surface.
 static void assert_on_equation(const CagSurface *s, const CagQuadric *q) {
   double largest = 0;
   for (int k = 0; k < 10; k++) largest = fmax(largest, fabs(q->c[k]));
@@ -345,7 +345,7 @@ static void pieces_are_cut_at_the_range_of_z(void **state) {
   const CagBounds range = {{0, 0, -1}, {0, 0, 3}};
   CagSurface **list;
   size_t n;
-  // A sphere of radius 2 between z = -1 and its top: the zone's area is 2 pi r h.
+  // A sphere of radius 2 between z = -1 and its top: the area of the zone is 2 pi r h.
   const double sphere[10] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -4};
   n = patches(sphere, &range, true, &list);
   assert_int_equal(n, 1);
@@ -355,7 +355,7 @@ static void pieces_are_cut_at_the_range_of_z(void **state) {
   n = patches(sphere, NULL, false, &list);
   assert_area(list[0], 16 * M_PI);
   release(list, n);
-  // A cone x^2 + y^2 = z^2: two nappes that meet in the apex, of slant sqrt 2.
+  // A cone x^2 + y^2 = z^2: two nappes that meet at the apex, of slant sqrt 2.
   const double cone[10] = {1, 1, -1, 0, 0, 0, 0, 0, 0, 0};
   n = patches(cone, &range, true, &list);
   assert_int_equal(n, 2);
@@ -363,7 +363,7 @@ static void pieces_are_cut_at_the_range_of_z(void **state) {
   assert_area(list[1], M_PI * sqrt(2));
   assert_true(list[0]->pole_v0 && list[1]->pole_v1);
   release(list, n);
-  // Two sheets z^2 - x^2 - y^2 = 1; only the upper one reaches into -1..3.
+  // Two sheets z^2 - x^2 - y^2 = 1, of which only the upper one reaches -1..3.
   const double two[10] = {-1, -1, 1, 0, 0, 0, 0, 0, 0, -1};
   n = patches(two, &range, true, &list);
   assert_int_equal(n, 1);
@@ -389,7 +389,7 @@ static void pieces_within_a_box(void **state) {
   (void)state;
   const CagBounds box = {{-3, -2, -1}, {3, 2, 5}};
   CagSurface **list;
-  // z = x^2 - y^2: at all sides of the box.
+  // z = x^2 - y^2, which meets all sides of the box.
   const double saddle[10] = {1, -1, 0, 0, 0, 0, 0, 0, -1, 0};
   size_t n = patches(saddle, &box, false, &list);
   CagBounds part;
@@ -398,7 +398,7 @@ static void pieces_within_a_box(void **state) {
   assert_point(part.min, cag_vec3(-3, -2, -1), 1e-9, "saddle");
   assert_point(part.max, cag_vec3(3, 2, 5), 1e-9, "saddle");
   release(list, n);
-  // y^2 = 4 x: within |y| <= 2, so up to x = 1; between z = -1 and 5.
+  // y^2 = 4 x within |y| <= 2, so up to x = 1, and between z = -1 and 5.
   const double parabolic[10] = {0, 1, 0, 0, 0, 0, -4, 0, 0, 0};
   n = patches(parabolic, &box, false, &list);
   assert_bounds(list[0], cag_vec3(0, -2, -1), cag_vec3(1, 2, 5));
@@ -409,7 +409,7 @@ static void pieces_within_a_box(void **state) {
   assert_bounds(list[0], cag_vec3(1, -2, -1), cag_vec3(sqrt(5), 2, 5));
   assert_bounds(list[1], cag_vec3(-sqrt(5), -2, -1), cag_vec3(-1, 2, 5));
   release(list, n);
-  // Planes are cut exactly: x = +-2 in the box is 4 x 6; x = y meets it in 2 sqrt2 2 x 6.
+  // Planes are trimmed exactly: x = +-2 is 4 x 6 in the box, and x = y is 2 sqrt2 2 x 6.
   const double parallel[10] = {1, 0, 0, 0, 0, 0, 0, 0, 0, -4};
   n = patches(parallel, &box, false, &list);
   assert_int_equal(n, 2);
@@ -420,15 +420,15 @@ static void pieces_within_a_box(void **state) {
   assert_int_equal(n, 2);
   assert_area(list[1], 4 * sqrt(2) * 6);
   release(list, n);
-  // A corner cut off: x + y + z = 9 leaves the triangle at [3, 2, 5].
+  // x + y + z = 9 cuts off a corner: the triangle at [3, 2, 5].
   const double plane[10] = {0, 0, 0, 0, 0, 0, 1, 1, 1, -9};
   n = patches(plane, &box, false, &list);
   assert_area(list[0], sqrt(3) / 2);
   release(list, n);
 }
 
-// Elliptic cylinders within random boxes: their strips stay within, and are as
-// wide as the part of all angles that is in the box says.
+// Elliptic cylinders in random boxes: their strips are inside, and as wide as the range of angles
+// inside the box.
 static void cylinders_end_at_all_sides_of_a_box(void **state) {
   (void)state;
   enum { ANGLES = 20000 };
@@ -470,7 +470,7 @@ static void cylinders_end_at_all_sides_of_a_box(void **state) {
       assert_near(part.min.z, 1, slack, "bottom");
       assert_near(part.max.z, 3, slack, "top");
     }
-    // Each end of a strip lies between two angles.
+    // Each end of a strip is between two sampled angles.
     const double coarse = 8.0 / ANGLES;
     assert_near(sum / (2 * M_PI * radius * 2), (double)within / ANGLES, coarse, "area");
     release(list, n);
@@ -493,9 +493,9 @@ static void what_has_no_surface_says_why(void **state) {
   MUST_FAIL(cag_quadric_patches(&far, &box, false, &list, &n, err), "quadric-outside");
 }
 
-// Affine maps keep the class. Each standard form, its signs and zeros with other integers, is taken
-// through affine maps with small integers, which is exact: many of the matrices are nearly
-// singular.
+// Affine maps preserve the class. Each standard form, also with other integers as its signs and
+// zeros, is transformed by affine maps with small integers, which is exact. Many of the matrices
+// are nearly singular.
 static void integer_matrices_keep_their_class_under_congruence(void **state) {
   (void)state;
   static const struct {

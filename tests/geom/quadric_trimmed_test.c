@@ -1,4 +1,5 @@
-// Bounds of pieces of quadrics, trimmed by disks and whole, against walks to the farthest places.
+// Bounds of pieces of quadrics, whole or trimmed by disks, compared with a local search for the
+// extremes.
 
 #include "geom/surface/quadric.h"
 #include "geom/surface/trimmed.h"
@@ -40,7 +41,7 @@ static double height(const Subject *s, int axis, double sign, double u, double v
   return sign * (axis == 0 ? p.x : axis == 1 ? p.y : p.z);
 }
 
-// The highest place, by a walk from the highest sample, and how far inside it is.
+// Searches locally from the highest sample; *inside is the distance from the boundary.
 static double highest(const Subject *s, int axis, double sign, double *inside) {
   enum { N = 40 };
   double best = -INFINITY, u = 0, v = 0;
@@ -72,7 +73,7 @@ static double highest(const Subject *s, int axis, double sign, double *inside) {
   return best;
 }
 
-// The highest place of the outlines of disks, by walks along them.
+// The same along the outlines of the disks.
 static double highest_of_circles(const Subject *s, int axis, double sign) {
   enum { N = 200 };
   double best = -INFINITY;
@@ -98,7 +99,7 @@ static void set_subject(Subject *s, int round) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) s->frame.m[i][j] = uniform(-1, 1);
   for (int i = 0; i < 3; i++) s->frame.m[i][i] += s->frame.m[i][i] < 0 ? -1 : 1;
-  // u may be an angle; v of a cone or a cap begins off the tip, but not always.
+  // u may be an angle. v of a cone or a cap usually begins away from the tip.
   const bool cap = s->shape == CAG_SHAPE_ELLIPSOID;
   s->low[0] = uniform(-3, 0);
   s->high[0] = s->low[0] + uniform(2, 6);
@@ -149,7 +150,8 @@ static void bounds_are_reached(void **state) {
   assert_true(tops[0] > 30 && tops[1] > 5);
 }
 
-// Extremes and saddles of a coordinate are all the places inside where it stands still.
+// The critical points of a coordinate (extremes and saddles) are exactly its stationary points
+// inside.
 static void places_where_a_coordinate_stands_still(void **state) {
   (void)state;
   seed = 82;

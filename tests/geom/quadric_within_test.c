@@ -1,10 +1,10 @@
-// Quadrics within boxes and ranges of z: random ones of all classes against points that rays find,
-// areas against closed forms and sums over grids.
+// Quadrics in boxes and ranges of z: random quadrics of all classes, compared with the points found
+// by rays, and areas compared with closed forms and sums over grids.
 
 #include "geom/surface/trimmed.h"
 #include "quadric_support.h"
 
-// The (u, v) of a point of a quadric patch, by its own frame.
+// The (u, v) of a point of a quadric patch, from the patch's frame.
 static CagVec3 parameters_of(const CagSurface *patch, CagVec3 p) {
   CagTransform frame, back;
   CagQuadric q;
@@ -63,7 +63,8 @@ static bool lies_in(const CagBounds *box, CagVec3 p, double slack) {
   return true;
 }
 
-// Bounds, and points of the patches that count, are in the box and satisfy the equation.
+// Checks that bounds, and points of the patches within their outlines, are in the box and satisfy
+// the equation.
 static void check_points(CagSurface *const *list, size_t n, const CagQuadric *q,
                          const CagBounds *box, bool bounds_too) {
   double largest = 0;
@@ -89,7 +90,7 @@ static void check_points(CagSurface *const *list, size_t n, const CagQuadric *q,
   }
 }
 
-// Points of the quadric on a line along an axis; none that are double.
+// Finds the simple points of the quadric on a line parallel to an axis.
 static int ray(const CagQuadric *q, CagVec3 from, int axis, CagVec3 out[2]) {
   const CagVec3 e = cag_vec3(axis == 0, axis == 1, axis == 2);
   const double at = cag_quadric_value(q, from), up = cag_quadric_value(q, cag_add(from, e));
@@ -105,8 +106,8 @@ static int ray(const CagQuadric *q, CagVec3 from, int axis, CagVec3 out[2]) {
   return 2;
 }
 
-// Of the points that rays find, those well in the box must be on the result, those well outside it
-// must not. Returns how many were in the box.
+// Checks that points found by rays are on the result if they are well inside the box, and not if
+// they are well outside. Returns the number of points inside.
 static int check_rays(CagSurface *const *list, size_t n, const CagQuadric *q, const CagBounds *box,
                       const CagBounds *cast) {
   int within = 0;
@@ -160,7 +161,7 @@ static void boxes_cut_quadrics_of_all_classes(void **state) {
       continue;
     }
     check_points(list, n, &q, &box, i / CLASSES % 4 == 0);
-    // Double planes have no single points on rays.
+    // Double planes have no simple points on rays.
     cut += check_rays(list, n, &q, &box, &box) > 0 || class_id == REAL - 1;
     const CagBounds around = {cag_sub(box.min, cag_vec3(1, 1, 1)),
                               cag_add(box.max, cag_vec3(1, 1, 1))};
@@ -213,7 +214,8 @@ static size_t outline_points(const CagSurface *s) {
 // A paraboloid r^2 = t about an axis at a small angle a to the horizontal. With w perpendicular to
 // the axis, z = t sin a + w cos a and y = w sin a - t cos a. The planes z = 1 and z = -1 cut it in
 // circles of (x, w) with center - cot a / 2 and radius sqrt(cot^2 a / 4 +- 1 / sin a). The largest
-// y is sin^2 a / (4 cos a), at w = tan a / 2. The least y is at the far side of the larger circle.
+// y is sin^2 a / (4 cos a), at w = tan a / 2. The smallest y is at the far side of the larger
+// circle.
 static void outlines_that_are_nearly_level_stay_small(void **state) {
   (void)state;
   const double angles[] = {0.1, 0.01, 0.001};
@@ -231,7 +233,7 @@ static void outlines_that_are_nearly_level_stay_small(void **state) {
     assert_true(count > 0 && count < 20000);
     MUST(cag_surface_bounds(list[0], &b, err));
     const double r = sqrt(c * c / (4 * s * s) + 1 / s), far = -c / (2 * s) - r;
-    // Accurate to the rounding of the largest coordinate.
+    // Accurate up to the rounding of the largest coordinate.
     const double size = far * far, slack = 1e-11 + 1e-14 * size;
     assert_near(b.max.x, r, slack, "x");
     assert_near(b.min.x, -r, slack, "-x");
@@ -264,7 +266,7 @@ static void areas_within_boxes_have_closed_forms(void **state) {
   const double sphere[10] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -25};
   const CagBounds cube = {{-4, -4, -4}, {4, 4, 4}};
   assert_near(area_of(sphere, &cube, false), 2 * M_PI * 5 * (10 - 6), 1e-9, "sphere");
-  // A cone of 45 degrees over a square of 4 by 6: sqrt 2 of the square, for either nappe.
+  // A cone of 45 degrees over a rectangle of 4 by 6: sqrt 2 times its area, for each nappe.
   const double cone[10] = {1, 1, -1, 0, 0, 0, 0, 0, 0, 0};
   const CagBounds shaft = {{-2, -3, -9}, {2, 3, 9}};
   assert_near(area_of(cone, &shaft, false), 2 * sqrt(2) * 24, 1e-9, "cone");
@@ -277,15 +279,15 @@ static void areas_within_boxes_have_closed_forms(void **state) {
   const CagBounds slice = {{1, -9, 0}, {4, 9, 2}};
   const double arc = 2 * sqrt(5) + asinh(2) - sqrt(2) - asinh(1);
   assert_near(area_of(parabolic, &slice, false), 2 * 2 * arc, 1e-9, "parabolic cylinder");
-  // A cylinder of radius 1 whose axis leans by 45 degrees: a range of z of 2 is cut by level
-  // planes, so that all rulings are 2 sqrt 2 long.
+  // A cylinder of radius 1 whose axis is inclined by 45 degrees. Horizontal planes bound a range of
+  // z of 2, so all rulings are 2 sqrt 2 long.
   const double leaning[10] = {1, 0.5, 0.5, 0, -1, 0, 0, 0, 0, -1};
   const CagBounds range = {{0, 0, -1}, {0, 0, 1}};
   assert_near(area_of(leaning, &range, true), 2 * M_PI * 2 * sqrt(2), 1e-9, "leaning cylinder");
 }
 
-// A cone or hyperboloid with the semi-axes a, b, c turned by an angle about its second or first
-// axis meets planes of constant z in ellipses where the tangent of the angle is below c / a or c /
+// A cone or hyperboloid with the semi-axes a, b, c, rotated by an angle about its second or first
+// axis. Planes of constant z meet it in ellipses if the tangent of the angle is below c / a or c /
 // b.
 static void ranges_of_z_bound_what_is_less_tilted_than_its_cone(void **state) {
   (void)state;

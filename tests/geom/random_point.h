@@ -1,4 +1,4 @@
-// Random points of a cube about the origin.
+// Random points in a cube about the origin.
 
 #ifndef CAG_TESTS_GEOM_RANDOM_POINT_H
 #define CAG_TESTS_GEOM_RANDOM_POINT_H

@@ -1,5 +1,5 @@
-// Lower degrees and removed knots, which are nearest in the least squares sense: what they leave is
-// at right angles to whatever could be changed.
+// Degree reduction and knot removal, which are optimal in the least squares sense: residuals are
+// orthogonal to all changes that are possible.
 
 #include "curve_random.h"
 #include "geom/curve/nurbs_ops.h"
@@ -10,7 +10,7 @@ static double coordinate(const CagNurbsView *v, size_t i, int c) {
   return v->homogeneous[4 * i + c];
 }
 
-// The largest distance of points of one parameter, at samples.
+// The largest distance between points at the same parameter, from samples.
 static double apart(const CagCurve *a, const CagCurve *b) {
   double gap = 0;
   for (int i = 0; i <= 200; i++) {
@@ -27,7 +27,7 @@ static void random_net(CagVec3 *p, double *w, size_t n) {
   }
 }
 
-// The raised points are (i / p) g[i - 1] + (1 - i / p) g[i], p the degree.
+// The elevated control points are (i / p) g[i - 1] + (1 - i / p) g[i], where p is the degree.
 static void lower_degrees_are_nearest(void **state) {
   (void)state;
   seed = 831;
@@ -88,7 +88,7 @@ static CagCurve *spline_of(const CagNurbsView *v, const double *homogeneous) {
   return c;
 }
 
-// The points that a spline has once the knot is there again.
+// The control points of a spline after the knot is inserted again.
 static void inserted(const CagNurbsView *v, const double *homogeneous, double t, double *out) {
   CagCurve *c = spline_of(v, homogeneous), *fine;
   CagNurbsView f;
@@ -109,7 +109,7 @@ static void removed_knots_leave_the_nearest_curve(void **state) {
     const size_t n = (size_t)(p + 1 + INNER - 1 + times);
     CagVec3 net[MOST];
     double w[MOST], knots[2 * MOST], t = 0, deviation;
-    // Inner knots 1.., one of them several times.
+    // Inner knots 1, .., one of them with a higher multiplicity.
     size_t m = 0;
     const int chosen = round % INNER;
     for (int i = 0; i <= p; i++) knots[m++] = 0;
@@ -134,7 +134,8 @@ static void removed_knots_leave_the_nearest_curve(void **state) {
       most = fmax(most, cag_norm(cag_vec3(rest[4 * i], rest[4 * i + 1], rest[4 * i + 2])));
     NEAR(deviation, most, 1e-11);
     assert_true(apart(c, less) <= deviation * (1 + 1e-12));
-    // A point that acts on two others, and is neither of them, could be moved.
+    // A control point that affects two points after the insertion, neither of them entirely, is
+    // free. The residual is orthogonal to its effect.
     for (size_t k = 0; k + 1 < n; k++) {
       double net_moved[4 * MOST], along[3] = {0};
       int acts = 0;

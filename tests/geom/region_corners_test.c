@@ -1,11 +1,11 @@
-// Loops of set operations are divided only where they turn, and where a circle begins.
+// Loops of set operations are divided only at corners, and at the start of a circle.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
 #include "geom/curve/region.h"
 
-// Where the circles of a round begin.
+// The starts of the circles of a round.
 static CagVec3 seams[8];
 static int seam_count;
 
@@ -25,7 +25,7 @@ static CagRegion *disc(void) {
   return r;
 }
 
-// Corners in order about a center.
+// A polygon with corners in order around a center.
 static CagRegion *polygon(void) {
   enum { MOST = 6 };
   const int n = 3 + (int)uniform(0, MOST - 2.01);
@@ -43,7 +43,7 @@ static CagRegion *polygon(void) {
   return r;
 }
 
-// Whether the curve turns from one place to another, which are the same point, or is at a seam.
+// Whether the curve has a corner or a seam at two parameters with the same point.
 static bool is_corner(const CagCurve *c, double before, double after) {
   CagVec3 in, out, p;
   OK(cag_curve_tangent(c, before, CAG_SIDE_LEFT, &in, &err));

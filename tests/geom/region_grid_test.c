@@ -1,5 +1,5 @@
-// Loops along the lines of a small grid, which touch and share edges all the time, against sets of
-// cells.
+// Loops along the lines of a small grid, which often touch and have common edges, compared with
+// sets of cells.
 
 #include "geom/curve/region.h"
 #include "tests/geom/random.h"
@@ -14,7 +14,7 @@ typedef struct Shape {
 
 static int whole(int low, int high) { return (int)floor(uniform(low, high)); }
 
-// A rectangle, perhaps without one of its corners, turned either way and begun anywhere.
+// A rectangle, possibly without one of its corners, of any orientation and start.
 static Shape random_shape(int least) {
   Shape s = {.loop = NULL};
   const int w = whole(least, SIDE + 1), h = whole(least, SIDE + 1);
@@ -22,7 +22,7 @@ static Shape random_shape(int least) {
   const int a = w > 1 ? whole(1, w) : 0, b = h > 1 ? whole(1, h) : 0;
   const bool notched = a > 0 && b > 0 && uniform(0, 1) < 0.6;
   const bool flip_x = uniform(0, 1) < 0.5, flip_y = uniform(0, 1) < 0.5;
-  // Without the corner [a..w] x [b..h], before it is flipped.
+  // The corner [a..w] x [b..h] is missing, before it is flipped.
   const int notch[6][2] = {{0, 0}, {w, 0}, {w, b}, {a, b}, {a, h}, {0, h}};
   const int plain[4][2] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
   const int n = notched ? 6 : 4, first = whole(0, n), sense = uniform(0, 1) < 0.5 ? 1 : n - 1;
@@ -41,7 +41,7 @@ static Shape random_shape(int least) {
 }
 
 typedef struct Relation {
-  bool common, of_a, of_b; // cells of both, of the one alone, of the other alone
+  bool common, of_a, of_b; // cells of both, of the first alone, of the second alone
 } Relation;
 
 static Relation relation_of(const Shape *a, const Shape *b) {
@@ -54,7 +54,7 @@ static Relation relation_of(const Shape *a, const Shape *b) {
   return r;
 }
 
-// The region holds the cells that an odd number of shapes hold.
+// The region contains the cells that are in an odd number of shapes.
 static void check_cells(const CagRegion *r, const Shape *shapes, size_t n) {
   double area, expected = 0;
   for (int i = 0; i < CELLS; i++) {

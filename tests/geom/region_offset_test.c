@@ -1,4 +1,4 @@
-// Offsets of regions whose loops are of all kinds, against the distances of points.
+// Offsets of regions with loops of all kinds, compared with the distances of points.
 
 #include "tests/geom/random.h"
 #include "tests/geom/region_support.h"
@@ -7,7 +7,7 @@ static CagVec3 polar(CagVec3 center, double radius, double angle) {
   return cag_madd(center, radius, cag_vec3(cos(angle), sin(angle), 0));
 }
 
-// One piece whose ends meet at a corner.
+// A single piece whose ends meet at a corner.
 static CagCurve *drop_at(CagVec3 center) {
   const double turn = uniform(-M_PI, M_PI), open = uniform(0.3, 1.4), longest = uniform(3, 6);
   const CagVec3 p[4] = {center, polar(center, longest, turn - open),
@@ -17,7 +17,7 @@ static CagCurve *drop_at(CagVec3 center) {
   return c;
 }
 
-// A closed spline of degree 2 or 3, whose seam is smooth.
+// A closed spline of degree 2 or 3 with a smooth seam.
 static CagCurve *blob_at(CagVec3 center, int degree) {
   enum { POINTS = 7 };
   CagVec3 p[POINTS];
@@ -31,7 +31,7 @@ static CagCurve *blob_at(CagVec3 center, int degree) {
   return c;
 }
 
-// An ellipse, turned and perhaps mirrored, that may begin anywhere.
+// An ellipse, rotated and possibly reflected, with any start.
 static CagCurve *ellipse_at(CagVec3 center, bool mirrored) {
   const double turn = uniform(-M_PI, M_PI), a = uniform(1, 3), from = uniform(-3, 3);
   const double b = a * uniform(0.3, 1), c = cos(turn), s = sin(turn), sense = mirrored ? -1 : 1;
@@ -46,7 +46,7 @@ static CagCurve *ellipse_at(CagVec3 center, bool mirrored) {
   return out;
 }
 
-// A part of a circle or an ellipse and its chord, or the way over the center.
+// A part of a circle or an ellipse, closed by its chord or by two lines to the center.
 static CagCurve *segment_at(CagVec3 center, bool round, bool sector) {
   const double from = uniform(-3, 3), turn = uniform(0.8, 5.5), a = uniform(1.5, 2.5);
   const double b = round ? a : a * uniform(0.4, 1);
@@ -95,7 +95,7 @@ static void loops_of_all_kinds_keep_the_distance(void **state) {
     center.x = uniform(-5, 5);
     center.y = uniform(-5, 5);
     CagCurve *loop = loop_at(center, round % LOOPS);
-    if (round / LOOPS % 2) { // the other sense makes the same region
+    if (round / LOOPS % 2) { // the reversed loop bounds the same region
       CagCurve *back;
       OK(cag_curve_reverse(loop, &back, &err));
       cag_curve_release(loop);
@@ -109,7 +109,7 @@ static void loops_of_all_kinds_keep_the_distance(void **state) {
   }
 }
 
-// In a large disc the loop is a hole, which shrinks where the region grows.
+// In a large disk, the loop is a hole, which shrinks as the region grows.
 static void holes_of_all_kinds_keep_the_distance(void **state) {
   (void)state;
   seed = 312;
@@ -128,7 +128,7 @@ static void holes_of_all_kinds_keep_the_distance(void **state) {
   }
 }
 
-// Convex loops of length L about the area A grow to A + L d + pi d^2, corners or not.
+// The area A of a convex loop of length L becomes A + L d + pi d^2, with or without corners.
 static void convex_loops_grow_by_steiners_formula(void **state) {
   (void)state;
   seed = 313;

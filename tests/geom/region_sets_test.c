@@ -1,4 +1,5 @@
-// Set operations and offsets of regions, against closed forms and the points they hold.
+// Set operations and offsets of regions, compared with closed forms and the points that they
+// contain.
 
 #include "tests/geom/support.h"
 
@@ -32,7 +33,7 @@ static CagRegion *box(double x, double y, double w, double h) {
   return polygon(p, 4);
 }
 
-// A closed cubic B-spline about a point; the same for the same seed.
+// A closed cubic B-spline about a point, which depends only on the seed.
 static CagRegion *blob(double x, double y, unsigned seed) {
   enum { POINTS = 8 };
   CagVec3 p[POINTS];
@@ -61,7 +62,7 @@ static double free_area(CagRegion *r) {
   return area;
 }
 
-// Takes both operands over.
+// Takes ownership of both operands.
 static CagRegion *set(CagRegionOp op, CagRegion *a, CagRegion *b) {
   CagRegion *r;
   OK(cag_region_boolean(op, a, b, &r, &err));
@@ -92,14 +93,14 @@ static void check_loops(const CagRegion *r, size_t loops, size_t outer) {
 
 static void crossing_discs_share_a_lens_of_arcs(void **state) {
   (void)state;
-  // Two unit circles at the distance 1: 2 pi / 3 - sqrt(3) / 2.
+  // Two unit circles at distance 1: 2 pi / 3 - sqrt(3) / 2.
   const double lens = 2 * M_PI / 3 - sqrt(3) / 2;
   CagRegion *r = set(CAG_REGION_INTERSECTION, disc(0, 0, 1), disc(1, 0, 1));
   check_loops(r, 1, 1);
   NEAR(free_area(r), lens, 1e-12);
   NEAR(free_area(set(CAG_REGION_UNION, disc(0, 0, 1), disc(1, 0, 1))), 2 * M_PI - lens, 1e-12);
   r = set(CAG_REGION_DIFFERENCE, disc(0, 0, 1), disc(1, 0, 1));
-  // All of the boundary is on one of the circles: the arcs are arcs still.
+  // The entire boundary is on one of the circles, because arcs are preserved.
   for (int i = 0; i <= 50; i++) {
     const CagCurve *c = r->loops[0];
     CagVec3 p;
@@ -137,7 +138,7 @@ static void coincident_edges_vanish_between_and_stay_around(void **state) {
   r = set(CAG_REGION_DIFFERENCE, box(0, 0, 4, 4), box(0, 0, 2, 4));
   check_loops(r, 1, 1);
   NEAR(free_area(r), 8, 1e-14);
-  // Half discs that share an arc: cut from the whole one and put together again.
+  // Half disks with a common arc, cut from the whole one and united again.
   CagRegion *upper = set(CAG_REGION_INTERSECTION, disc(0, 0, 2), box(-3, 0, 6, 3)),
             *lower = set(CAG_REGION_DIFFERENCE, disc(0, 0, 2), box(-3, 0, 6, 3));
   NEAR(area_of(upper), 2 * M_PI, 1e-12);
@@ -152,7 +153,7 @@ static void pieces_that_touch_stay_pieces(void **state) {
   CagRegion *r = set(CAG_REGION_UNION, box(0, 0, 1, 1), box(1, 1, 1, 1));
   check_loops(r, 2, 2);
   NEAR(free_area(r), 2, 1e-14);
-  // A cross cut out of a square leaves four corners, and a frame around an island has two outlines.
+  // A cross cut from a square leaves four corners. A frame around an island has two outlines.
   r = set(CAG_REGION_DIFFERENCE, box(0, 0, 3, 3), box(1, -1, 1, 5));
   r = set(CAG_REGION_DIFFERENCE, r, box(-1, 1, 5, 1));
   check_loops(r, 4, 4);
@@ -161,7 +162,7 @@ static void pieces_that_touch_stay_pieces(void **state) {
   r = set(CAG_REGION_UNION, r, box(3, 3, 3, 3));
   check_loops(r, 3, 2);
   assert_true(holds(r, 0.5, 0.5) && !holds(r, 2, 2) && holds(r, 4, 4));
-  // Two triangular holes that touch in a point.
+  // Two triangular holes that touch at a point.
   const CagVec3 left[3] = {{1, 2, 0}, {4, 4, 0}, {1, 6, 0}},
                 right[3] = {{7, 2, 0}, {7, 6, 0}, {4, 4, 0}};
   CagRegion *holes = set(CAG_REGION_UNION, polygon(left, 3), polygon(right, 3));
@@ -200,9 +201,9 @@ static void an_empty_result_is_a_region_like_others(void **state) {
   assert_true(is_empty(grown_by(a, -1)));
   assert_true(is_empty(grown_by(a, -7)));
   FAILS(cag_region_offset(a, (double)NAN, 1e-6, &r, &err), "not-finite");
-  CagRegion *beside = disc(2, 0, 1); // they touch in a point
+  CagRegion *beside = disc(2, 0, 1); // they touch at a point
   assert_true(is_empty(combined(CAG_REGION_INTERSECTION, a, beside)));
-  // Set operations go on with it.
+  // The empty region is a valid operand.
   CagRegion *none = combined(CAG_REGION_DIFFERENCE, a, a);
   assert_true(is_empty(combined(CAG_REGION_UNION, none, none)));
   assert_true(is_empty(combined(CAG_REGION_INTERSECTION, a, none)));
@@ -225,7 +226,8 @@ static void an_empty_result_is_a_region_like_others(void **state) {
   cag_region_release(around);
 }
 
-// |A or B| + |A and B| = |A| + |B|, |A less B| + |A and B| = |A|, and points tell the same.
+// |A or B| + |A and B| = |A| + |B| and |A minus B| + |A and B| = |A|. The containment of points
+// agrees.
 static void check_identities(CagRegion *a, CagRegion *b, double tolerance) {
   CagRegion *u, *d, *m;
   OK(cag_region_boolean(CAG_REGION_UNION, a, b, &u, &err));
@@ -293,7 +295,7 @@ static void slivers_are_not_there(void **state) {
 
 static void thousands_of_edges_take_no_time(void **state) {
   (void)state;
-  // Two combs across each other: n teeth each, n * n crossings of teeth.
+  // Two crossing combs with n teeth each: n * n crossings of teeth.
   enum { TEETH = 40 };
   CagVec3 p[4 * TEETH], q[4 * TEETH];
   for (int i = 0; i < TEETH; i++)
@@ -339,15 +341,16 @@ static void holes_shrink_until_they_are_gone(void **state) {
 
 static void a_dumbbell_shrinks_to_two_pieces(void **state) {
   (void)state;
-  // Squares of side 4 with a bar of height 1 between: 1 off leaves the squares' inner squares of
-  // side 2, whose sides towards the bar bulge to the circles about the bar's corners.
+  // Squares of side 4 with a bar of height 1 between. The inner offset by 1 is squares of side 2,
+  // whose sides toward the bar bulge to circles about the bar's corners.
   CagRegion *r = set(CAG_REGION_UNION, box(0, 0, 4, 4), box(10, 0, 4, 4));
   r = set(CAG_REGION_UNION, r, box(3, 1.5, 8, 1));
   check_loops(r, 1, 1);
   r = grown(r, -1);
   check_loops(r, 2, 2);
-  // Beyond x = 3 lies, between the two circles of radius 1 about [4, 1.5] and [4, 2.5], what is at
-  // most at x = 4 - sqrt(1 - 0.25): the integral of 1 - sqrt(1 - s^2) over s in 0..0.5, twice.
+  // Beyond x = 3, the offset region is between the two circles of radius 1 about [4, 1.5] and [4,
+  // 2.5], up to x = 4 - sqrt(1 - 0.25). Its area is twice the integral of 1 - sqrt(1 - s^2) over s
+  // in 0..0.5.
   const double h = 0.5, bulge = 2 * (h - (h * sqrt(1 - h * h) + asin(h)) / 2);
   NEAR(free_area(r), 2 * (4 + bulge), 1e-12);
 }
@@ -365,7 +368,8 @@ static void offsets_of_splines_keep_the_distance(void **state) {
 
 static void an_ellipse_folds_where_it_is_sharp(void **state) {
   (void)state;
-  // The radius of curvature at the tips of x^2/25 + y^2 = 1 is 1/5: half off leaves two corners.
+  // The radius of curvature at the tips of x^2/25 + y^2 = 1 is 1/5, so an inner offset by one half
+  // has two corners.
   CagTransform frame = cag_transform_identity();
   CagCurve *c;
   CagRegion *r;
@@ -378,7 +382,7 @@ static void an_ellipse_folds_where_it_is_sharp(void **state) {
   cag_region_release(r);
 }
 
-// Random star-shaped polygons and shapes of lines and arcs grow and shrink by any distance.
+// Random star-shaped polygons and shapes of lines and arcs, with outer and inner offsets.
 static void random_shapes_keep_the_distance(void **state) {
   (void)state;
   seed = 71;
@@ -391,7 +395,7 @@ static void random_shapes_keep_the_distance(void **state) {
       const double radius = uniform(1, 3), angle = 2 * M_PI * i / POINTS;
       p[i] = cag_vec3(radius * cos(angle), radius * sin(angle), 0);
     }
-    if (round % 4 == 3) { // convex, with a vertex in an edge
+    if (round % 4 == 3) { // convex, with a vertex on an edge
       for (int i = 0; i < POINTS; i++) p[i] = cag_scaled(cag_unit(p[i]), 2.5);
       p[1] = cag_lerp(p[0], p[2], 0.3);
     }
@@ -405,7 +409,7 @@ static void random_shapes_keep_the_distance(void **state) {
     const double grow = uniform(0.05, 2), shrink = uniform(-1.2, -0.05);
     check_distances(r, grow, 1e-6);
     check_distances(r, shrink, 1e-6);
-    // Out and back in again a convex region is the same.
+    // A convex region that grows and shrinks again is the same.
     if (round % 4 == 3) {
       CagRegion *out, *back;
       double before, after;
@@ -421,11 +425,11 @@ static void random_shapes_keep_the_distance(void **state) {
   }
 }
 
-// --- Convex polygons against half planes ---
+// --- Convex polygons compared with half planes ---
 
 enum { MOST_CORNERS = 64 };
 
-// What of the polygon is to the left of the line from p in the direction d.
+// Clips the polygon to the left of the line from p in the direction d.
 static size_t clip_half_plane(CagVec3 *v, size_t n, CagVec3 p, CagVec3 d) {
   CagVec3 out[MOST_CORNERS];
   size_t m = 0;
@@ -445,7 +449,7 @@ static double area_of_corners(const CagVec3 *v, size_t n) {
   return twice / 2;
 }
 
-// Corners apart from each other at which the polygon turns.
+// Counts the distinct corners.
 static size_t count_corners(const CagVec3 *v, size_t n) {
   size_t found = 0;
   for (size_t i = 0; i < n; i++) found += cag_norm(cag_sub(v[i], v[(i + 1) % n])) > 1e-9;
@@ -463,13 +467,13 @@ static void convex_polygons_shrink_to_what_half_planes_leave(void **state) {
     const double sizes[] = {1, 1e-5, 1e6};
     const double size = sizes[round % 3];
     double angle = start;
-    for (size_t i = 0; i < n; i++) { // no gap reaches half a turn
+    for (size_t i = 0; i < n; i++) { // no gap reaches a half turn
       const double corner = cos(angle);
       p[i] = cag_scaled(cag_vec3(long_side * corner + 3, sin(angle), 0), size);
       angle += uniform(0.5, 1.5) * 4 / (double)n;
     }
     const double d = uniform(0.02, 0.9) * size;
-    // Corners on edges, and repeated in the other sense.
+    // With additional corners on edges, and in reverse.
     size_t m = 0;
     for (size_t i = 0; i < n; i++) {
       given[m++] = p[i];
@@ -488,7 +492,7 @@ static void convex_polygons_shrink_to_what_half_planes_leave(void **state) {
       k = clip_half_plane(rest, k, cag_madd(p[i], d, cag_vec3(-along.y, along.x, 0)), along);
     }
     const double expected = k > 2 ? area_of_corners(rest, k) : 0;
-    if (expected < 1e-6 * size * size && expected > 0) continue; // all but gone
+    if (expected < 1e-6 * size * size && expected > 0) continue; // almost empty
     CagRegion *r = polygon(given, m), *s;
     OK(cag_region_offset(r, -d, 1e-7 * size, &s, &err));
     if (expected == 0) {
@@ -530,13 +534,13 @@ static void the_limits_of_distances_are_parts_of_the_size(void **state) {
   FAILS(cag_region_offset(r, NAN, 1e-7, &s, &err), "not-finite");
   OK(cag_region_offset(r, 4.9e9, 1e-7, &s, &err));
   NEAR(free_area(s) / (M_PI * 4.9e9 * 4.9e9), 1, 1e-8);
-  // All but the whole width, the whole, and a little more.
+  // Nearly the whole width, the whole width, and slightly more.
   NEAR(free_area(grown_by(r, -1.4999)), 2e-4 * 1.0002, 1e-12);
   assert_true(is_empty(grown_by(r, -1.5)));
   assert_true(is_empty(grown_by(r, -1.500001)));
   assert_true(is_empty(grown_by(r, -4e9)));
   cag_region_release(r);
-  // A region without points stays one.
+  // An empty region stays empty.
   s = grown_by(r = set(CAG_REGION_DIFFERENCE, box(0, 0, 1, 1), box(-1, -1, 4, 4)), 1);
   assert_true(is_empty(s));
   cag_region_release(r);

@@ -1,4 +1,4 @@
-// Which points a region and its offsets hold.
+// Checks of the points in regions and their offsets.
 
 #ifndef CAG_TESTS_GEOM_REGION_SUPPORT_H
 #define CAG_TESTS_GEOM_REGION_SUPPORT_H
@@ -23,7 +23,7 @@ static inline double distance_to_boundary(const CagRegion *r, CagVec3 from) {
   return nearest;
 }
 
-// All of the boundary of the offset region is at the distance, on the right side.
+// Checks that the boundary of the offset region is at the distance, on the correct side.
 static inline void check_boundary(const CagRegion *r, const CagRegion *offset, double d,
                                   double tolerance) {
   enum { SAMPLES = 40 };
@@ -42,7 +42,8 @@ static inline void check_boundary(const CagRegion *r, const CagRegion *offset, d
   }
 }
 
-// Points of a grid are in the offset region just where they are within the distance.
+// Checks that points of a grid are in the offset region if and only if they are within the
+// distance.
 static inline void check_distances(CagRegion *r, double d, double tolerance) {
   CagRegion *g;
   CagBounds b;

@@ -1,4 +1,4 @@
-// Regions: orientation, holes, measures, and points inside.
+// Regions: orientation, holes, measures, and containment of points.
 
 #include "geom/curve/region.h"
 #include "random.h"
@@ -73,10 +73,10 @@ static void bad_holes_are_named(void **state) {
   FAILS_AT(cag_region_new(outer, overlap, 2, &r, &err), "region-crossing", 1);
   FAILS_AT(cag_region_new(outer, nested, 2, &r, &err), "region-crossing", 1);
   CagCurve *const twice[2] = {in, in};
-  FAILS_AT(cag_region_new(outer, twice, 2, &r, &err), "region-crossing", 1); // the second
+  FAILS_AT(cag_region_new(outer, twice, 2, &r, &err), "region-crossing", 1); // the second one
   assert_string_equal(err.message, "holes[0] and holes[1] are the same curve; omit one of them");
   FAILS_AT(cag_region_new(outer, &outer, 1, &r, &err), "hole-outside", 0);
-  // Behind a hole that is good.
+  // After a valid hole.
   CagCurve *const fine = circle(0.5, -4, -4);
   const struct {
     CagCurve *holes[3];
@@ -123,7 +123,7 @@ static void crossings_are_told_where_they_are(void **state) {
   cag_curve_release(c);
 }
 
-// --- Holes and loops that share edges: rectangles of a grid, counted by its cells ---
+// --- Holes and loops with common edges: rectangles of a grid, compared with its cells ---
 
 enum { GRID = 6, CELLS = GRID * GRID };
 
@@ -158,7 +158,7 @@ static CagCurve *turned_rectangle(const Rectangle *r, double angle) {
   return c;
 }
 
-// How the cells of two rectangles lie to each other.
+// The common and separate cells of two rectangles.
 typedef struct Cells {
   int common, first, second; // in both; in the first or the second only
 } Cells;
@@ -210,10 +210,10 @@ static void loops_that_overlap_are_refused_and_others_measured(void **state) {
     }
     for (int k = 0; k < 3; k++) cag_curve_release(c[k]);
   }
-  assert_true(holes > 100 && loops > 500); // both happen
+  assert_true(holes > 100 && loops > 500); // both occur
 }
 
-// A square in a ring in a square: even depths are outer loops.
+// A square in a ring in a square: loops at even depths are outer loops.
 static void loops_nest_by_the_even_odd_rule(void **state) {
   (void)state;
   CagCurve *loops[4] = {square(1, 0, 0, false), circle(2, 0, 0), square(3, 0, 0, true),
@@ -249,7 +249,7 @@ static void rounded_rectangles_are_exact(void **state) {
   assert_true(contains(r, 5, 1) && !contains(r, 5, 3) && contains(r, 4.4, 2.4) &&
               !contains(r, 4.5, 2.5));
   cag_region_release(r);
-  OK(cag_region_rectangle(4, 2, 1, &r, &err)); // a stadium: the short sides are gone
+  OK(cag_region_rectangle(4, 2, 1, &r, &err)); // a stadium without short sides
   OK(cag_region_area(r, &area, NULL, &err));
   NEAR(area, 4 + M_PI, 1e-12);
   cag_region_release(r);
@@ -297,7 +297,8 @@ static void mirrors_keep_the_orientation(void **state) {
 
 // --- Random regions ---
 
-// A star-shaped loop: a polygon, a closed spline, or lines and arcs in turn; in either sense.
+// A star-shaped loop of either orientation: a polygon, a closed spline, or alternating lines and
+// arcs.
 static CagCurve *random_loop(int kind, CagVec3 center, double low, double high, bool clockwise) {
   enum { POINTS = 8 };
   CagVec3 p[POINTS];
@@ -415,7 +416,7 @@ static void random_regions_have_the_measures_of_polygons(void **state) {
       OK(cag_curve_area(r->loops[k], &one, NULL, &err));
       assert_true((one > 0) == (k == 0) && r->outer[k] == 0);
     }
-    // A mirrored and stretched image.
+    // A reflected and stretched image.
     CagTransform t = cag_transform_identity();
     t.m[0][0] = -2;
     t.m[0][1] = 0.5;
@@ -423,7 +424,7 @@ static void random_regions_have_the_measures_of_polygons(void **state) {
     OK(cag_region_transform(r, &t, &moved, &err));
     OK(cag_region_area(moved, &whole, NULL, &err));
     NEAR(whole, 2 * area, 1e-9 * area);
-    // Points, also at the heights of vertices.
+    // Points, some at the heights of vertices.
     for (int i = 0; i < 120; i++) {
       CagVec3 p = {0, 0, 0};
       p.x = uniform(-5.5, 5.5);
@@ -440,7 +441,7 @@ static void random_regions_have_the_measures_of_polygons(void **state) {
       const CagVec3 q = cag_transform_point(&t, p);
       assert_true(contains(moved, q.x, q.y) == in);
     }
-    // Points of the boundary belong to it; those 1e-6 beside it are in or out.
+    // Points of the boundary are in the region. Points 1e-6 beside it are inside or outside.
     for (int i = 0; i < 20; i++) {
       CagVec3 d[2];
       const double u = outer->start + (outer->end - outer->start) * (i + 0.37) / 20;
@@ -478,7 +479,7 @@ static void loops_that_cross_are_named(void **state) {
   holes[1] = open;
   FAILS_AT(cag_region_new(outer, holes, 2, &r, &err), "region-not-closed", 1);
   FAILS(cag_region_new(open, NULL, 0, &r, &err), "region-not-closed");
-  // Even-odd: a square in a ring in a square.
+  // Even-odd rule: a square in a ring in a square.
   CagCurve *loops[3] = {in, around, outer};
   double area;
   OK(cag_region_from_loops(loops, 3, &r, &err));
@@ -516,7 +517,7 @@ static void figures_have_their_closed_forms(void **state) {
   assert_int_not_equal(cag_region_rectangle(6, 4, -0.1, &r, &err), CAG_OK);
   assert_int_not_equal(cag_region_rectangle(0, 4, 0, &r, &err), CAG_OK);
   assert_int_not_equal(cag_region_rectangle(6, -4, 0, &r, &err), CAG_OK);
-  OK(cag_region_rectangle(4, 4, 2, &r, &err)); // a disc
+  OK(cag_region_rectangle(4, 4, 2, &r, &err)); // a disk
   OK(cag_region_area(r, &x, NULL, &err));
   NEAR(x, 4 * M_PI, 1e-12);
   cag_region_release(r);
@@ -531,7 +532,7 @@ static void figures_have_their_closed_forms(void **state) {
   assert_int_not_equal(cag_region_regular_polygon(5, 0, &r, &err), CAG_OK);
 }
 
-// Bounds, areas and perimeters are those of all loops, in whatever order.
+// Bounds, areas, and perimeters include all loops, in any order.
 static void separate_loops_all_count(void **state) {
   (void)state;
   CagCurve *loops[3] = {circle(1, 0, 0), circle(2, 7, 1), circle(0.5, -3, -2)};

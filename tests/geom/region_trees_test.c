@@ -1,13 +1,13 @@
-// Random trees of set operations of regions: none fails, and areas are those of inclusion and
-// exclusion.
+// Random trees of set operations of regions: none of them fails, and areas agree with
+// inclusion-exclusion.
 //
 // A tree combines a few leaves, each of them several times, so that its operands share boundaries
-// that earlier operations have cut and rounded. The measure of a tree's result is the sum, over the
-// sets of its leaves, of a whole number times the area that the leaves of the set have in common.
-// That area is found without set operations where all leaves are convex polygons (by clipping), and
-// by one intersection of given leaves otherwise.
+// that earlier operations have cut and rounded. The area of the result is a sum over the sets of
+// leaves: a whole number times the common area of the leaves of the set. If all leaves are convex
+// polygons, clipping finds that area without set operations. Otherwise, a single intersection of
+// leaves finds it.
 //
-//   CAG_TREES=10000 build/tests/geom/region_trees_test      as many trees of each family
+//   CAG_TREES=10000 build/tests/geom/region_trees_test      runs this many trees of each family
 
 #include "tests/geom/support.h"
 
@@ -16,10 +16,10 @@
 #include "geom/curve/region.h"
 
 enum { LEAVES = 4, OPERATIONS = 6, CORNERS = 32, QUICK = 60 };
-// Areas agree to this part of the area of a box about all leaves.
+// Areas must agree up to this fraction of the area of a box around all leaves.
 #define SAME_AREA 1e-9
 
-// --- Random numbers: the same on every machine ---
+// --- Random numbers, the same on every machine ---
 
 static uint64_t random_state;
 
@@ -37,10 +37,10 @@ static double random_real(double low, double high) {
 typedef struct Leaf {
   CagRegion *region;
   CagVec3 corners[CORNERS]; // of a convex polygon, counter-clockwise
-  size_t n;                 // 0: no convex polygon
+  size_t n;                 // 0: not a convex polygon
 } Leaf;
 
-static CagRegion *take_loop(CagCurve *c) {
+static CagRegion *region_of_loop(CagCurve *c) {
   CagRegion *r;
   OK(cag_region_new(c, NULL, 0, &r, &err));
   cag_curve_release(c);
@@ -57,7 +57,7 @@ static Leaf convex_leaf(const CagVec3 *p, size_t n) {
   for (size_t i = 0; i < n; i++) leaf.corners[i] = p[turned ? n - 1 - i : i];
   CagCurve *c;
   OK(cag_curve_polyline(leaf.corners, n, true, 2, &c, &err));
-  leaf.region = take_loop(c);
+  leaf.region = region_of_loop(c);
   return leaf;
 }
 
@@ -89,7 +89,7 @@ static Leaf grid_rectangle(double turn) {
 
 static Leaf turned_rectangle(void) { return grid_rectangle(M_PI / 4); }
 
-// A disc, or the half of one with a diameter.
+// A disk, or half of one with a diameter.
 static Leaf disc(void) {
   const double radius = 1 + random_below(3);
   CagTransform frame = cag_translate(cag_vec3(random_below(5), random_below(4), 0));
@@ -98,7 +98,7 @@ static Leaf disc(void) {
   const double start = half ? random_below(8) * M_PI / 4 : 0;
   CagCurve *arc, *c;
   OK(cag_curve_arc(radius, radius, start, start + (half ? M_PI : 2 * M_PI), &frame, &arc, &err));
-  if (!half) return (Leaf){.region = take_loop(arc)};
+  if (!half) return (Leaf){.region = region_of_loop(arc)};
   CagVec3 p, q;
   OK(cag_curve_point(arc, arc->start, &p, &err));
   OK(cag_curve_point(arc, arc->end, &q, &err));
@@ -106,10 +106,10 @@ static Leaf disc(void) {
   OK(cag_curve_line(q, p, 2, &parts[1], &err));
   OK(cag_curve_join(parts, 2, &c, &err));
   for (int i = 0; i < 2; i++) cag_curve_release(parts[i]);
-  return (Leaf){.region = take_loop(c)};
+  return (Leaf){.region = region_of_loop(c)};
 }
 
-// Bezier curves of degree 1 to 3 around a center, with control points that go around it steadily.
+// Bezier curves of degree 1 to 3 whose control points run steadily around a center.
 static Leaf beziers(void) {
   enum { MOST = 5 };
   const int n = 3 + (int)random_below(MOST - 2);
@@ -134,7 +134,7 @@ static Leaf beziers(void) {
   }
   OK(cag_curve_join(parts, (size_t)n, &c, &err));
   for (int i = 0; i < n; i++) cag_curve_release(parts[i]);
-  return (Leaf){.region = take_loop(c)};
+  return (Leaf){.region = region_of_loop(c)};
 }
 
 static Leaf any_leaf(void) {
@@ -146,7 +146,7 @@ static Leaf any_leaf(void) {
 
 // --- Areas without set operations ---
 
-// What of the polygon lies to the left of the line from a to b.
+// Clips the polygon to the left of the line from a to b.
 static size_t clip(CagVec3 *p, size_t n, CagVec3 a, CagVec3 b) {
   CagVec3 out[CORNERS];
   size_t m = 0;
@@ -202,7 +202,7 @@ static double common_area(const Leaf *leaves, unsigned set) {
 
 typedef struct Node {
   CagRegion *region;
-  bool holds[1 << LEAVES]; // whether a point in exactly these leaves is in it
+  bool holds[1 << LEAVES]; // whether points in exactly these leaves are in it
 } Node;
 
 static bool combine_bits(CagRegionOp op, bool a, bool b) {
@@ -210,7 +210,7 @@ static bool combine_bits(CagRegionOp op, bool a, bool b) {
   return op == CAG_REGION_DIFFERENCE ? a && !b : a && b;
 }
 
-// The area by inclusion and exclusion, from the areas that the sets of leaves have in common.
+// The area by inclusion-exclusion, from the common areas of sets of leaves.
 static double expected_area(const Node *node, const double *common) {
   double sum = 0;
   for (unsigned set = 1; set < 1 << LEAVES; set++) {
@@ -224,7 +224,7 @@ static double expected_area(const Node *node, const double *common) {
   return sum;
 }
 
-// The region turned and turned back, which leaves it the same but for rounding.
+// Rotates the region and rotates it back, which changes it only by rounding.
 static CagRegion *jolted(const CagRegion *r) {
   if (random_below(4)) return cag_region_retain(r);
   const double angle = random_real(0, 2 * M_PI);
@@ -241,7 +241,7 @@ static CagRegion *jolted(const CagRegion *r) {
   return turned[1];
 }
 
-// False where an operation fails or an area differs; says which.
+// Returns false and prints a message if an operation fails or an area differs.
 static bool check_tree(Leaf (*make)(void), uint64_t seed) {
   random_state = seed * 0x9E3779B97F4A7C15u + 1;
   Leaf leaves[LEAVES];
@@ -263,7 +263,7 @@ static bool check_tree(Leaf (*make)(void), uint64_t seed) {
   int made = LEAVES;
   for (; good && made < LEAVES + OPERATIONS; made++) {
     Node *node = &nodes[made];
-    // Late nodes are chosen more often: trees grow deep.
+    // Recent nodes are chosen more often, so that trees become deep.
     const Node *a = &nodes[random_below(2) ? (unsigned)made - 1 : random_below((unsigned)made)],
                *b = &nodes[random_below((unsigned)made)];
     const CagRegionOp op = (CagRegionOp)random_below(3);

@@ -1,4 +1,5 @@
-// Other forms of surfaces keep their points; offsets, parts and joins against closed forms.
+// Other representations of surfaces have the same points; offsets, parts, and joins are compared
+// with closed forms.
 
 #include "geom/surface/reshape.h"
 #include "tests/geom/surface_support.h"
@@ -47,7 +48,7 @@ static void nets_change_and_points_stay(void **state) {
   cag_surface_nurbs_view(t, &v);
   assert_int_equal(v.degree_u, 4);
   assert_int_equal(v.degree_v, 4);
-  // Inner knots gain one each per raise: 6 + 1 + 2, and 4 + 2 (1 + 1).
+  // Each elevation increases the multiplicity of inner knots: 6 + 1 + 2, and 4 + 2 (1 + 1).
   assert_int_equal(v.nu, 9);
   assert_int_equal(v.nv, 8);
   assert_same(s, t, "elevated");
@@ -71,7 +72,7 @@ static void nets_change_and_points_stay(void **state) {
   cag_surface_release(s);
 }
 
-// A torus has no net of its own.
+// A torus does not have its own net.
 static void parts_of_other_kinds(void **state) {
   (void)state;
   CagSurface *torus = NULL, *part = NULL, *turned = NULL;
@@ -82,7 +83,7 @@ static void parts_of_other_kinds(void **state) {
   MUST(cag_surface_area(torus, &whole, &c, err));
   MUST(cag_surface_area(part, &area, &c, err));
   bool quarter = fabs(area / whole - 0.25) < 1e-8;
-  // About the tube's own circle a quarter has another share: (pi / 2 R + r) of 2 pi R.
+  // A quarter about the tube's own circle has another fraction: (pi / 2 R + r) of 2 pi R.
   bool tube = fabs(area / whole - (M_PI / 2 * 3 + 1) / (2 * M_PI * 3)) < 1e-8;
   assert_true(quarter || tube);
   assert_consistent(part);
@@ -106,7 +107,7 @@ static void joined_parts_are_the_whole(void **state) {
   MUST(cag_surface_join(a, b, 1e-9, &t, err));
   assert_same(s, t, "joined");
   cag_surface_release(t);
-  // Transposed and turned over, the edge is found all the same.
+  // If the surface is transposed and flipped, the edge is still found.
   cag_surface_release(a);
   MUST(cag_surface_transpose(b, &a, err));
   MUST(cag_surface_flip(a, &flipped, err));
@@ -145,7 +146,8 @@ static void offsets_and_plates(void **state) {
   MUST(cag_solid_mass(plate, &m, err));
   assert_near(m.volume, 2 * M_PI * M_PI * 3 * (2.25 - 1), 1e-7, "hollow torus");
   cag_solid_release(plate);
-  // Steiner: A d - H d^2 + K d^3 / 3; of a quarter cylinder of radius 2 outward pi / 4 (9 - 4) h.
+  // Steiner's formula, A d - H d^2 + K d^3 / 3. For a quarter cylinder of radius 2, outward: pi / 4
+  // (9 - 4) h.
   CagSurface *quarter = NULL, *exact = NULL;
   CagCurve *edge = NULL;
   MUST(cag_curve_line(cag_vec3(2, 0, 0), cag_vec3(2, 0, 5), 3, &edge, err));
@@ -167,7 +169,8 @@ static void offsets_and_plates(void **state) {
   cag_surface_release(s);
 }
 
-// Cylinder, cone and a ruled strip: first forms, and so lengths and areas, are kept.
+// Unrolling a cylinder, a cone, and a ruled strip preserves the first form, and therefore lengths
+// and areas.
 static void unrolling_keeps_lengths(void **state) {
   (void)state;
   CagCurve *c[3] = {NULL, NULL, NULL};
@@ -177,7 +180,7 @@ static void unrolling_keeps_lengths(void **state) {
   MUST(cag_surface_revolve(c[0], cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s[0], err));
   MUST(cag_curve_bezier(bezier, NULL, 4, 3, &c[1], err));
   MUST(cag_surface_extrude(c[1], cag_vec3(1, 0.5, 3), 0, 1, &s[1], err));
-  // A cone from a point off the curve's plane.
+  // A cone with its apex outside the curve's plane.
   CagTransform half;
   MUST(cag_scale(cag_vec3(0.25, 0.25, 0.25), cag_vec3(1, 1, 5), &half, err));
   MUST(cag_curve_transform(c[1], &half, &c[2], err));

@@ -1,4 +1,4 @@
-// Rings, for the tests of what meets trimmed surfaces.
+// Rings, for the tests of intersections with trimmed surfaces.
 
 #ifndef CAG_TESTS_GEOM_RING_SUPPORT_H
 #define CAG_TESTS_GEOM_RING_SUPPORT_H
@@ -15,7 +15,7 @@ static inline CagCurve *circle(double x, double y, double r) {
   return c;
 }
 
-// A disk with a hole, of the plane z = 0 or of a graph over it whose u and v are x and y.
+// A disk with a hole, in the plane z = 0 or in a graph whose u and v are x and y.
 static inline CagSurface *ring(const CagSurface *s, const double disk[3], const double hole[3]) {
   CagCurve *outer = circle(disk[0], disk[1], disk[2]), *inner = circle(hole[0], hole[1], hole[2]);
   CagRegion *region;
@@ -30,7 +30,7 @@ static inline CagSurface *ring(const CagSurface *s, const double disk[3], const 
   return out;
 }
 
-// How far a place is inside of the ring.
+// How far a point is inside the ring.
 static inline double inside_of(double x, double y, const double disk[3], const double hole[3]) {
   return fmin(disk[2] - hypot(x - disk[0], y - disk[1]), hypot(x - hole[0], y - hole[1]) - hole[2]);
 }

@@ -21,7 +21,7 @@ static CagRobotLink slide(double low, double high) {
   return l;
 }
 
-// A base that turns the first axis to the direction z.
+// A base that rotates the first axis to the direction z.
 static CagTransform base_along(CagVec3 z) {
   const CagVec3 other = fabs(z.x) < 0.7 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   const CagVec3 x = cag_unit(cag_cross(other, z)), y = cag_cross(z, x);
@@ -37,8 +37,8 @@ static CagTransform base_along(CagVec3 z) {
   return t;
 }
 
-// Along the first axis, whose cosine with a direction is c, at the height h over the shoulder the
-// region reaches to sqrt(r_max^2 + hole^2 - h^2) across.
+// The extent in a direction whose cosine with the first axis is c. At height h above the shoulder,
+// the region reaches a distance of sqrt(r_max^2 + hole^2 - h^2) from the axis.
 static double highest(const CagWorkspace *w, double c) {
   enum { HEIGHTS = 4000 };
   double most = 0;
@@ -61,7 +61,7 @@ static void check_extents(const CagRobotLink *links, CagVec3 axis, CagWorkspaceK
   assert_true(w.exact);
   NEAR(w.r_max, r_max, 1e-12);
   NEAR(w.hole, hole, 1e-12);
-  // The shoulder is on the first axis, as far from the base as the first link.
+  // The shoulder is on the first axis, at the length of the first link from the base.
   near_vec(
       w.center,
       cag_madd(cag_vec3(spec.base.m[0][3], spec.base.m[1][3], spec.base.m[2][3]), links[0].d, axis),
@@ -69,7 +69,7 @@ static void check_extents(const CagRobotLink *links, CagVec3 axis, CagWorkspaceK
   const CagVec3 half = cag_vec3(highest(&w, axis.x), highest(&w, axis.y), highest(&w, axis.z));
   near_vec(w.bounds.max, cag_add(w.center, half), 1e-6);
   near_vec(w.bounds.min, cag_sub(w.center, half), 1e-6);
-  // Nothing that is reached is outside.
+  // All reachable points are inside.
   for (int k = 0; k < 200; k++) {
     double q[3];
     CagTransform t;
@@ -87,7 +87,7 @@ static void shells_with_a_hole_have_tight_boxes(void **state) {
   (void)state;
   seed = 71;
   for (int round = 0; round < 120; round++) {
-    // Along an axis of the world, a little off it, or anywhere.
+    // Along an axis of the world, slightly off it, or in any direction.
     const int sign = round % 2 ? -1 : 1, k = round / 2 % 3;
     CagVec3 axis = cag_vec3(k == 0 ? sign : 0, k == 1 ? sign : 0, k == 2 ? sign : 0);
     if (round >= 30) {

@@ -1,5 +1,5 @@
-// Closed-form inverse kinematics: for arms of every structure that is known, each pose of random
-// joint values is given back by all solutions, and one of them is the joint values it came from.
+// Closed-form inverse kinematics. For arms of every known structure, all solutions of a pose of
+// random joint values lead back to the pose, and one of them consists of these values.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,7 @@ typedef struct Row {
 } Row;
 typedef struct Sample {
   const char *name;
-  size_t n, least, most; // solutions of a pose
+  size_t n, least, most; // number of solutions of a pose
   Row rows[6];
 } Sample;
 
@@ -240,15 +240,15 @@ static const Sample samples[] = {
 };
 #define SAMPLES (sizeof samples / sizeof *samples)
 
-// The frame of the joint i is turned about its axis, and lies elsewhere on it; back: undone.
+// Rotates the frame of joint i about its axis, and moves it along the axis; `back` undoes this.
 static CagTransform along_axis(size_t i, double unit, bool back) {
   const double sign = back ? -1 : 1;
   return cag_dh(sign * (0.7 + 1.3 * (double)i), sign * (double)(17 * i % 30 + 5) / unit, 0, 0);
 }
 
-// `fixed`: each row's crank as a fixed link of its own, between frames anywhere on the axes, and a
-// base and a tool.
-// `unit`: of length, in those of the table.
+// Makes the arm of a sample. If `fixed` is set, each row's crank is a separate fixed link between
+// frames anywhere on the axes, and there is a base and a tool. `unit` is the length unit relative
+// to that of the table.
 static CagRobot *make_in(const Sample *s, bool fixed, double unit) {
   CagRobotLink links[12];
   CagError err;
@@ -286,7 +286,7 @@ static CagRobot *make_in(const Sample *s, bool fixed, double unit) {
 static CagRobot *make(const Sample *s, bool fixed) { return make_in(s, fixed, 1); }
 
 static uint32_t seed = 7;
-static double random_share(void) {
+static double random_fraction(void) {
   seed = seed * 1664525 + 1013904223;
   return (double)(seed >> 8) / (1 << 24);
 }
@@ -303,8 +303,8 @@ static bool is_near(const CagRobot *r, const double *a, const double *b) {
 
 static int sign(double x) { return x < 0 ? -1 : 1; }
 
-// What the labels say of joint values, from the frames of an arm by rows: the side of the first
-// axis on which the point lies that the arm places, and the signs of the bends of elbow and wrist.
+// Checks the labels of joint values, using the frames of an arm given by rows: the side of the
+// first axis on which the positioned point is, and the signs of the elbow and wrist angles.
 static void check_labels(const Sample *s, const CagRobot *plain, const double *q,
                          const CagConfiguration *c) {
   CagTransform f[7];
@@ -318,7 +318,8 @@ static void check_labels(const Sample *s, const CagRobot *plain, const double *q
   const bool flat23 = fabs(sin(row[1].alpha * DEGREE)) < 1e-9,
              flat34 = fabs(sin(row[2].alpha * DEGREE)) < 1e-9;
   if (has.shoulder) {
-    // The wrist's center; with axes 2, 3 and 4 parallel where the last link begins, or the tool.
+    // The wrist's center; if the axes 2, 3, and 4 are parallel, the start of the last link, or the
+    // tool.
     const bool parallel = s->n > 3 && flat23 && flat34;
     const size_t at = s->n == 3 ? 3 : parallel ? 5 : 4;
     double side = plain->links[0].a;
@@ -331,7 +332,7 @@ static void check_labels(const Sample *s, const CagRobot *plain, const double *q
                  side = row[2].a * sin(theta) - row[3].d * sin(row[2].alpha * DEGREE) * cos(theta);
     assert_int_equal(c->elbow, fabs(row[3].d) > fabs(row[2].a) ? -sign(a * side) : sign(a * side));
   }
-  if (!has.shoulder && has.elbow) { // all axes parallel: the second that turns
+  if (!has.shoulder && has.elbow) { // all axes parallel: the second revolute joint
     size_t turning = 0, k = 0;
     for (;; k++)
       if (row[k].kind == R && turning++ == 1) break;
@@ -343,8 +344,9 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
   CagTransform target, pose;
   CagInverse all;
   bool found = false;
-  // Fewer than six joints do not reach every pose. Joint values that almost reach one count as
-  // solutions of it, too: beside those the target was made from, others may be off by this much.
+  // With fewer than six joints, not all poses are reachable. Joint values that almost reach a pose
+  // count as solutions, too. Solutions other than those that created the target may therefore
+  // deviate by this much.
   const double most = s->n < 6 ? 1e-6 : 1e-8;
   cag_robot_forward(r, q, &target);
   cag_robot_inverse(r, &target, NULL, &all);
@@ -369,7 +371,7 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
   }
   if (!found) fail_msg("%s: the joint values are not among the solutions", s->name);
   assert_int_equal(all.status, CAG_INVERSE_OK);
-  // Branches of +1 come first.
+  // The branches of +1 come first.
   for (size_t i = 1; i < all.count; i++) {
     const CagConfiguration *a = &all.solutions[i - 1].configuration,
                            *b = &all.solutions[i].configuration;
@@ -378,7 +380,7 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
   }
 }
 
-// Poses of random joint values, for the arm with its lengths in such units.
+// Tests poses of random joint values for the arm, with its lengths in the given unit.
 static void find_all_solutions(const Sample *s, double unit, int poses) {
   CagRobot *plain = make_in(s, false, unit), *built = make_in(s, true, unit);
   assert_true(cag_robot_has_inverse(plain));
@@ -386,8 +388,8 @@ static void find_all_solutions(const Sample *s, double unit, int poses) {
   for (int i = 0; i < poses; i++) {
     double q[6];
     for (size_t j = 0; j < s->n; j++)
-      q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
-                                  : (2 * random_share() - 1) * 3.1;
+      q[j] = s->rows[j].kind == P ? (50 + 400 * random_fraction()) / unit
+                                  : (2 * random_fraction() - 1) * 3.1;
     check_pose(s, plain, plain, q);
     check_pose(s, built, plain, q);
   }
@@ -399,7 +401,7 @@ static void all_solutions_are_found(void **state) {
   (void)state;
   for (size_t k = 0; k < SAMPLES; k++) {
     find_all_solutions(&samples[k], 1, 1000);
-    find_all_solutions(&samples[k], 1000, 200); // metres
+    find_all_solutions(&samples[k], 1000, 200); // meters
     find_all_solutions(&samples[k], 1e-3, 200); // micrometres
   }
 }
@@ -410,8 +412,8 @@ static CagInverseStatus status_of(const CagRobot *r, const CagTransform *t) {
   return all.status;
 }
 
-// Of planar chains of one or two turning joints, and of three turning joints, all ways to bring the
-// tool's origin to a point.
+// For planar chains of one or two revolute joints, and for three revolute joints, all ways to move
+// the tool's origin to a point.
 static void all_ways_to_a_point_are_found(void **state) {
   (void)state;
   static const struct {
@@ -434,7 +436,8 @@ static void all_ways_to_a_point_are_found(void **state) {
         CagTransform target, at;
         CagInverse all;
         for (size_t j = 0; j < s->n; j++)
-          q[j] = s->rows[j].kind == P ? 50 + 400 * random_share() : (2 * random_share() - 1) * 3.1;
+          q[j] = s->rows[j].kind == P ? 50 + 400 * random_fraction()
+                                      : (2 * random_fraction() - 1) * 3.1;
         cag_robot_forward(r, q, &target);
         const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
         cag_robot_inverse_point(r, p, NULL, &all);
@@ -459,7 +462,7 @@ static void all_ways_to_a_point_are_found(void **state) {
             assert_false(is_near(plain, all.solutions[j].q, all.solutions[i].q));
         }
         if (!found) fail_msg("%s: the joint values are not among the solutions", s->name);
-        // Twice the reach away from the base nothing is reached.
+        // At twice the reach from the base, nothing is reachable.
         const CagVec3 away = cag_madd(p, 3 * r->reach + 1000, cag_vec3(1, 0.1, 0));
         cag_robot_inverse_point(r, away, NULL, &all);
         if (s->rows[0].kind == R && s->rows[s->n - 1].kind == R) {
@@ -480,8 +483,8 @@ static const Sample *sample_of(const char *name) {
   return NULL;
 }
 
-// Poses in which joints turn against each other, as rows of degrees: the joints that are free stand
-// where they are wished to be, the others bring the pose about.
+// Poses in which joints compensate each other, as rows of degrees. The free joints have the
+// preferred values, and the others achieve the pose.
 static void free_joints_stand_where_they_are_wished(void **state) {
   (void)state;
   static const struct {
@@ -491,7 +494,7 @@ static void free_joints_stand_where_they_are_wished(void **state) {
   } poses[] = {
       {"puma", 8, {35, -60, 100, 25, 0, 110}},
       {"puma", 8, {35, -60, 100, 25, 180, 110}},
-      {"puma", 2, {35, -60, -90, 25, 30, 110}}, // folded: the wrist's center on axis 2
+      {"puma", 2, {35, -60, -90, 25, 30, 110}}, // folded: the wrist's center is on axis 2
       {"stanford", 8, {35, -60, 100, 25, 0, 110}},
       {"shoulder beside the axis", 8, {20, 30, 40, 50, 0, 60}},
       {"axes 2, 3, 4 parallel", 8, {20, 30, 40, 50, 0, 60}},
@@ -510,7 +513,7 @@ static void free_joints_stand_where_they_are_wished(void **state) {
         unsigned free = 0;
         for (size_t i = 0; i < s->n; i++)
           q[i] = s->rows[i].kind == P ? poses[k].q[i] : poses[k].q[i] * DEGREE;
-        for (size_t i = 0; i < s->n; i++) near[i] = q[i] + 0.2 * random_share();
+        for (size_t i = 0; i < s->n; i++) near[i] = q[i] + 0.2 * random_fraction();
         cag_robot_forward(r, q, &target);
         cag_robot_inverse(r, &target, near, &all);
         if (all.status != CAG_INVERSE_SINGULAR)
@@ -522,7 +525,7 @@ static void free_joints_stand_where_they_are_wished(void **state) {
           cag_robot_pose_distance(&pose, &target, &way, &rotation);
           if (way > 2e-6 * r->reach || rotation > 2e-6)
             fail_msg("%s: off by %g, %g", s->name, way, rotation);
-          // With parallel axes 2 to 4 the three together are free, and joint 4 shows it.
+          // With parallel axes 2 to 4, the three are free together, and joint 4 represents them.
           const bool parallel = !strncmp(s->name, "axes 2", 6);
           double apart = 0;
           for (size_t j = 0; j < s->n; j++)
@@ -535,7 +538,7 @@ static void free_joints_stand_where_they_are_wished(void **state) {
       }
 }
 
-// Two links of one length that are folded: the first turns as it is wished.
+// Two folded links of equal length: the first has the preferred angle.
 static void folded_links_turn_as_they_are_wished(void **state) {
   (void)state;
   for (int k = 0; k < 20; k++) {
@@ -547,9 +550,9 @@ static void folded_links_turn_as_they_are_wished(void **state) {
     double q[3] = {100, 100, 100}, near[3];
     CagTransform target, pose;
     CagInverse all;
-    q[first] = 2 * random_share() - 1;
+    q[first] = 2 * random_fraction() - 1;
     q[first + 1] = (180 + 40) * DEGREE;
-    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_share() - 1;
+    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
     cag_robot_inverse_point(r, p, near, &all);
@@ -562,7 +565,8 @@ static void folded_links_turn_as_they_are_wished(void **state) {
   }
 }
 
-// The tool of five joints above the first axis: the direction of the hand tells the first joint.
+// The tool of five joints is above the first axis, so the direction of the hand determines the
+// first joint.
 static void hands_over_the_first_axis_are_found(void **state) {
   (void)state;
   const Sample *s = sample_of("minimover");
@@ -571,7 +575,7 @@ static void hands_over_the_first_axis_are_found(void **state) {
     double q[6];
     CagTransform target;
     CagInverse all;
-    for (int i = 0; i < 5; i++) q[i] = 2 * random_share() - 1;
+    for (int i = 0; i < 5; i++) q[i] = 2 * random_fraction() - 1;
     q[2] = M_PI - 2 * q[1]; // 7 cos(q2) + 7 cos(q2 + q3) = 0
     cag_robot_forward(r, q, &target);
     cag_robot_inverse(r, &target, NULL, &all);
@@ -590,7 +594,7 @@ static void hands_over_the_first_axis_are_found(void **state) {
   }
 }
 
-// A place within reach and a turn that the arm does not have there, against a place out of reach.
+// A reachable point with an unreachable orientation, compared with an unreachable point.
 static void turns_and_places_are_told_apart(void **state) {
   (void)state;
   static const char *const names[] = {"slide first, two turns", "turn", "planar", "slide and turn",
@@ -601,10 +605,10 @@ static void turns_and_places_are_told_apart(void **state) {
     double q[6];
     CagTransform target;
     const CagTransform turned = cag_dh(0.4, 0, 0, 0), leaning = cag_dh(0, 0, 0, 0.4);
-    for (size_t i = 0; i < s->n; i++) q[i] = s->rows[i].kind == P ? 100 : 2 * random_share() - 1;
+    for (size_t i = 0; i < s->n; i++) q[i] = s->rows[i].kind == P ? 100 : 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const double beyond = 2 * r->reach;
-    // Leaning out of the plane, no arm of the plane has the pose.
+    // A planar arm cannot lean out of its plane.
     CagTransform other = cag_transform_multiply(&target, &leaning);
     assert_int_equal(status_of(r, &other), CAG_INVERSE_ORIENTATION);
     if (k % 5 != 2 && s->rows[s->n - 1].alpha == 0) {
@@ -618,13 +622,14 @@ static void turns_and_places_are_told_apart(void **state) {
   }
 }
 
-// A turn about an axis through the tool, before or behind a slide: the joint is free.
+// If the axis of a joint passes through the tool, before or after a prismatic joint, the joint is
+// free.
 static void turns_that_place_nothing_are_free(void **state) {
   (void)state;
   for (int k = 0; k < 40; k++) {
     Sample s = *sample_of(k % 2 ? "slide first, two turns" : "slide between two turns");
     const size_t first = k % 2, second = 2;
-    const bool at_point = k % 4 >= 2; // the point itself is asked for, and joint 3 does not move it
+    const bool at_point = k % 4 >= 2; // the target is a point that joint 3 does not move
     if (at_point) s.rows[2].a = 0;
     else if (k % 2) s.rows[1].a = 0;
     else s.rows[0].a = s.rows[1].a = 0;
@@ -632,8 +637,8 @@ static void turns_that_place_nothing_are_free(void **state) {
     double q[3], near[3];
     CagTransform target, pose;
     CagInverse all;
-    for (size_t i = 0; i < 3; i++) q[i] = s.rows[i].kind == P ? 100 : 2 * random_share() - 1;
-    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_share() - 1;
+    for (size_t i = 0; i < 3; i++) q[i] = s.rows[i].kind == P ? 100 : 2 * random_fraction() - 1;
+    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_fraction() - 1;
     cag_robot_forward(r, q, &target);
     const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
     if (at_point) cag_robot_inverse_point(r, p, near, &all);
@@ -652,8 +657,8 @@ static void turns_that_place_nothing_are_free(void **state) {
   }
 }
 
-// Arms that are stretched or folded have one branch where others have two, and are found although
-// rounding puts them out of reach.
+// Stretched or folded arms have one branch where others have two. They are found although rounding
+// makes the pose unreachable.
 static void stretched_and_folded_arms_are_found(void **state) {
   (void)state;
   static const struct {
@@ -680,12 +685,12 @@ static void stretched_and_folded_arms_are_found(void **state) {
       CagTransform target, at;
       CagInverse all;
       for (size_t j = 0; j < s->n; j++)
-        q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
-                                    : (2 * random_share() - 1) * 3.1;
+        q[j] = s->rows[j].kind == P ? (50 + 400 * random_fraction()) / unit
+                                    : (2 * random_fraction() - 1) * 3.1;
       q[arms[k % count].joint] = (arms[k % count].straight + (pose % 2 ? 180 : 0)) * DEGREE;
       cag_robot_forward(r, q, &target);
       cag_robot_inverse(r, &target, NULL, &all);
-      // Minimover and puma fold to nothing: see the free joints.
+      // Minimover and puma fold to a point; see the free joints.
       if (pose % 2 && (!strcmp(s->name, "minimover") || !strcmp(s->name, "puma"))) continue;
       if (pose % 2 && !strcmp(s->name, "rhino")) continue;
       for (size_t i = 0; i < all.count; i++) {
@@ -700,7 +705,7 @@ static void stretched_and_folded_arms_are_found(void **state) {
         best = fmin(best, apart);
       }
       if (!(best < 1e-3)) fail_msg("%s: the joint values are %g away", s->name, best);
-      // A thousandth beyond is out of reach.
+      // A thousandth farther is unreachable.
       if (s->n == 3 && !(pose % 2) && strcmp(s->name, "elbow") == 0) {
         for (int i = 0; i < 2; i++) target.m[i][3] *= 1.001;
         cag_robot_inverse(r, &target, NULL, &all);
@@ -732,14 +737,14 @@ static void what_is_not_reached_is_told(void **state) {
                inside = cag_translate(cag_vec3(20, 0, 500));
   assert_int_equal(status_of(puma, &far), CAG_INVERSE_UNREACHABLE);
   assert_int_equal(status_of(puma, &inside),
-                   CAG_INVERSE_UNREACHABLE);     // within the shoulder's cylinder
+                   CAG_INVERSE_UNREACHABLE);     // inside the shoulder's cylinder
   CagTransform tilted = cag_dh(0.3, 12, 6, 0.7); // five joints cannot lean sideways
   assert_int_equal(status_of(mini, &tilted), CAG_INVERSE_ORIENTATION);
   cag_robot_release(puma);
   cag_robot_release(mini);
 }
 
-// Joint 5 at zero: joints 4 and 6 turn about one axis, and joint 4 stays where it is.
+// If joint 5 is zero, joints 4 and 6 rotate about the same axis, and joint 4 keeps its value.
 static void singular_families_are_told(void **state) {
   (void)state;
   CagRobot *r = make(&samples[0], false);
@@ -777,18 +782,18 @@ static void other_chains_have_none(void **state) {
     size_t row;
     Row with;
   } changes[] = {
-      {"puma", 4, {R, 0, 5, 0, 90}},                 // axes 4 and 6 apart
+      {"puma", 4, {R, 0, 5, 0, 90}},                 // axes 4 and 6 do not meet
       {"puma", 4, {R, 0, 0, 5, 90}},                 //
       {"puma", 4, {R, 0, 0, 0, 0}},                  // axes 5 and 6 parallel
       {"puma", 4, {P, 0, 0, 0, 90}},                 // no wrist
-      {"puma", 1, {R, 0, 149.5, 0, 0}},              // axes 2 and 3 are one
+      {"puma", 1, {R, 0, 149.5, 0, 0}},              // axes 2 and 3 coincide
       {"puma", 0, {R, 0, 0, 10, 0}},                 // axes 1, 2, 3 parallel
-      {"puma", 0, {P, 0, 0, 0, -90}},                // a slide before
+      {"puma", 0, {P, 0, 0, 0, -90}},                // a prismatic joint before
       {"puma", 1, {P, 0, 149.5, 432, 0}},            //
-      {"puma", 3, {R, 0, 0, 0, -90}},                // joint 3 turns about the wrist's center
-      {"axes 1 and 2 parallel", 0, {R, 0, 9, 0, 0}}, // axes 1 and 2 are one
-      {"stanford", 0, {R, 0, 412, 5, -90}},          // a slide, and axes 1 and 2 apart
-      {"stanford", 0, {R, 0, 412, 0, 0}},            // or parallel
+      {"puma", 3, {R, 0, 0, 0, -90}},                // joint 3 rotates about the wrist's center
+      {"axes 1 and 2 parallel", 0, {R, 0, 9, 0, 0}}, // axes 1 and 2 coincide
+      {"stanford", 0, {R, 0, 412, 5, -90}},          // a prismatic joint, and skew axes 1 and 2
+      {"stanford", 0, {R, 0, 412, 0, 0}},            // or parallel ones
       {"axes 2, 3, 4 parallel", 0, {R, 0, 89, 0, 80}},
       {"axes 2, 3, 4 parallel", 0, {R, 0, 89, 0, 100}},
       {"axes 2, 3, 4 parallel", 3, {R, 0, 109, 0, 100}},
@@ -802,7 +807,7 @@ static void other_chains_have_none(void **state) {
       {"five axes, a pair at the end", 3, {R, 0, 0, 5, -90}},
       {"five axes, a pair at the end", 3, {R, 0, 0, 0, 0}},
       {"scara", 2, {R, 0, 50, 0, 40}},
-      {"scara", 3, {P, 0, 0, 0, 0}}, // two slides along one axis
+      {"scara", 3, {P, 0, 0, 0, 0}}, // two prismatic joints along one axis
       {"cylindrical", 0, {P, 0, 0, 0, 0}},
       {"spherical", 0, {R, 0, 0, 5, 0}},
   };
@@ -810,7 +815,7 @@ static void other_chains_have_none(void **state) {
     Sample s = *sample_of(changes[k].name);
     s.rows[changes[k].row] = changes[k].with;
     r = make(&s, false);
-    const bool has = !strcmp(s.name, "cylindrical"); // three slides, whatever their ways
+    const bool has = !strcmp(s.name, "cylindrical"); // three prismatic joints in any directions
     if (cag_robot_has_inverse(r) != has) fail_msg("%s, change %zu", s.name, k);
     assert_int_equal(status_of(r, &t) == CAG_INVERSE_NO_CLOSED_FORM, !has);
     const CagConfiguration none = cag_robot_branches(r);

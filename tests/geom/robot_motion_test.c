@@ -1,12 +1,12 @@
-// Numerical inverse kinematics, paths and workspaces: solutions by their poses, out of reach by
-// closed forms.
+// Numerical inverse kinematics, paths, and workspaces: solutions are checked by their poses, and
+// reach by closed forms.
 
 #include "geom/robot/numeric.h"
 #include "geom/robot/path.h"
 #include "geom/robot/workspace.h"
 #include "robot_support.h"
 
-// Rows of d, a, alpha and the limits to both sides.
+// Rows of d, a, alpha, and the symmetric limit.
 static CagRobot *chain(const double (*rows)[4], size_t n) {
   CagRobotLink links[20];
   for (size_t i = 0; i < n; i++) {
@@ -30,7 +30,7 @@ static double random_number(uint64_t *state) {
   return (double)(*state >> 11) / 9007199254740992.0;
 }
 
-static void random_place(const CagRobot *r, uint64_t *state, double *q) {
+static void random_joints(const CagRobot *r, uint64_t *state, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = l->low + random_number(state) * (l->high - l->low);
@@ -63,11 +63,11 @@ static void poses_of_chains_are_found_within_the_limits(void **state) {
       double q[20], found[20], again[20];
       CagTransform wanted;
       CagRobotSearch search = {0};
-      random_place(robots[k], &seed, q);
+      random_joints(robots[k], &seed, q);
       cag_robot_forward(robots[k], q, &wanted);
       assert_true(cag_robot_search(robots[k], &wanted, &search, found).solved);
       assert_reaches(robots[k], found, &wanted, 1e-9);
-      // The same every time.
+      // The result is reproducible.
       cag_robot_search(robots[k], &wanted, &search, again);
       assert_memory_equal(found, again, robots[k]->joint_count * sizeof *found);
     }
@@ -75,8 +75,8 @@ static void poses_of_chains_are_found_within_the_limits(void **state) {
   }
 }
 
-// The same arm of turning and sliding joints with its lengths in other units: multiples by powers
-// of two are exact, so the search takes the same steps to the same place.
+// The same arm of revolute and prismatic joints with its lengths in other units. Scaling by powers
+// of two is exact, so the search takes the same steps.
 static void the_unit_of_length_does_not_matter(void **state) {
   (void)state;
   static const double units[] = {1, 1024, 1.0 / 1024};
@@ -100,7 +100,7 @@ static void the_unit_of_length_does_not_matter(void **state) {
   for (int i = 0; i < 200; i++) {
     double places[7], q[3][7];
     CagRobotFound found[3];
-    random_place(robots[0], &seed, places);
+    random_joints(robots[0], &seed, places);
     for (int k = 0; k < 3; k++) {
       CagTransform wanted;
       const CagRobotSearch search = {0};
@@ -129,7 +129,7 @@ static void out_of_reach_the_nearest_point_is_found(void **state) {
     assert_false(found.solved);
     NEAR(found.position, cases[i][2], 1e-9);
   }
-  // From the shoulder at (0, 0, 0.34) the arm of seven joints reaches 0.926.
+  // From the shoulder at (0, 0, 0.34), the arm of seven joints reaches 0.926.
   CagTransform t = cag_translate(cag_vec3(2, 1, .34));
   NEAR(cag_robot_search(seven, &t, &search, q).position, sqrt(5) - .926, 1e-8);
   t = cag_translate(cag_vec3(0.2, 0.1, 0.5));
@@ -167,7 +167,7 @@ static void freedom_to_spare_goes_into_being_near(void **state) {
   cag_robot_release(r);
 }
 
-// Numbers that no robot has end in an answer, not in a loop.
+// Absurd numbers produce a result, not an endless loop.
 static void hostile_numbers_come_to_an_end(void **state) {
   (void)state;
   CagRobotLink link = cag_robot_link(CAG_JOINT_REVOLUTE);
@@ -226,9 +226,9 @@ static void lines_are_straight_and_name_where_they_end(void **state) {
   for (int k = 0; k < 21; k++) {
     CagTransform wanted = cag_translate(cag_vec3(300 - 10 * k, 100 + 10 * k, 0));
     assert_reaches(r, q[k], &wanted, 1e-9);
-    assert_true(q[k][1] > 0); // never the other elbow
+    assert_true(q[k][1] > 0); // the elbow never flips
   }
-  // The reach of 500 ends at x = sqrt(500^2 - 100^2) = 489.9, after step 9 of steps of 20 mm.
+  // The reach of 500 ends at x = sqrt(500^2 - 100^2) = 489.9, after step 9 of 20 mm each.
   assert_int_equal(cag_robot_line_path(r, &a, &far, 16, &always, &q[0][0], &err), CAG_E_DEGENERATE);
   assert_string_equal(cag_error_info(err.id)->reason, "path-leaves");
   assert_int_equal(err.index, 10);
@@ -301,7 +301,7 @@ static void classical_arms_have_their_volumes(void **state) {
   NEAR(w.volume, 4 * M_PI * 2 * 1, 1e-9);
   cag_robot_release(r);
 
-  // The elbow of 90 degrees at most: the ring begins at sqrt(5).
+  // The elbow bends at most 90 degrees, so the ring begins at sqrt(5).
   static const double limited[2][4] = {{0, 2, 0, 180}, {0, 1, 0, 90}};
   r = chain(limited, 2);
   cag_robot_workspace(r, &w);
@@ -332,7 +332,7 @@ static void the_puma_has_a_shell(void **state) {
 
 // --- Workspaces of random arms ---
 
-// Numbers from a range, by the random sequence.
+// Returns a random number from a range.
 static double between(uint64_t *state, double low, double high) {
   return low + random_number(state) * (high - low);
 }
@@ -340,9 +340,9 @@ static double between(uint64_t *state, double low, double high) {
 #define GRID 32
 #define PROBES (GRID + 1)
 
-// Steps the first n joints through all places of a grid over the limits, the ends among them; q
-// keeps the others. False: all were seen.
-static bool next_place(const CagRobot *r, size_t n, size_t *at, double *q) {
+// Steps the first n joints through a grid over the limits, including the ends; the others are not
+// changed. Returns false when all have been visited.
+static bool next_configuration(const CagRobot *r, size_t n, size_t *at, double *q) {
   size_t i = 0;
   while (i < n && ++at[i] == PROBES) at[i++] = 0;
   for (size_t k = 0; k < n; k++) {
@@ -352,25 +352,25 @@ static bool next_place(const CagRobot *r, size_t n, size_t *at, double *q) {
   return i < n;
 }
 
-// What r_min and r_max bound: see workspace.h.
+// The distance bounded by r_min and r_max: see workspace.h.
 static double distance_of(const CagRobot *r, const CagWorkspace *w, CagVec3 p) {
   CagVec3 way = cag_sub(p, w->center);
   const CagVec3 axis =
-      cag_vec3(r->base.m[0][2], r->base.m[1][2], r->base.m[2][2]); // the first joint's
+      cag_vec3(r->base.m[0][2], r->base.m[1][2], r->base.m[2][2]); // the axis of the first joint
   const bool flat = w->kind == CAG_WORKSPACE_CYLINDRICAL || w->kind == CAG_WORKSPACE_PLANAR ||
                     w->kind == CAG_WORKSPACE_SCARA;
   if (flat) way = cag_madd(way, -cag_dot(way, axis), axis);
   return sqrt(fmax(0, cag_dot(way, way) - w->hole * w->hole));
 }
 
-// The volume that the points of three joints sweep, with what they sweep twice: the integral of the
-// determinant of their velocities, by midpoints.
+// The volume swept by the points of three joints, counted with multiplicity: the integral of the
+// determinant of their velocities, by the midpoint rule.
 static double swept_volume(const CagRobot *r) {
   double sum = 0, cell = 1, q[CAG_ROBOT_JOINTS_MAX] = {0}, columns[CAG_ROBOT_JOINTS_MAX][6];
   for (size_t i = 0; i < 3; i++) cell *= (r->links[i].high - r->links[i].low) / GRID;
   for (size_t k = 0; k < (size_t)GRID * GRID * GRID; k++) {
     const size_t at[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
-    if (at[0] > 0) continue; // nothing depends on where the first joint stands
+    if (at[0] > 0) continue; // the first joint does not matter
     for (size_t i = 0; i < 3; i++)
       q[i] = r->links[i].low + ((double)at[i] + 0.5) / GRID * (r->links[i].high - r->links[i].low);
     cag_robot_jacobian(r, q, columns, NULL);
@@ -382,8 +382,8 @@ static double swept_volume(const CagRobot *r) {
   return sum * GRID * cell;
 }
 
-// All places of the first n joints keep to the bounds, and come to them: exactly where a limit
-// decides, else as near as the grid is fine.
+// Checks that the points for all values of the first n joints are within the bounds, and reach
+// them: exactly if a limit decides, and otherwise up to the spacing of the grid.
 static void check_workspace(const CagRobot *r, const CagWorkspace *w, size_t n, bool sharp) {
   double q[CAG_ROBOT_JOINTS_MAX], least = INFINITY, most = 0;
   size_t at[CAG_ROBOT_JOINTS_MAX] = {0};
@@ -391,7 +391,7 @@ static void check_workspace(const CagRobot *r, const CagWorkspace *w, size_t n, 
   cag_robot_home(r, q);
   for (bool more = true; more;) {
     CagTransform tool;
-    more = next_place(r, n, at, q);
+    more = next_configuration(r, n, at, q);
     cag_robot_forward(r, q, &tool);
     const CagVec3 p = cag_vec3(tool.m[0][3], tool.m[1][3], tool.m[2][3]);
     const double d = distance_of(r, w, p);
@@ -399,7 +399,7 @@ static void check_workspace(const CagRobot *r, const CagWorkspace *w, size_t n, 
     most = fmax(most, d);
     cag_bounds_add(&seen, p);
   }
-  // The square root of a small difference of squares.
+  // The error of the square root of a small difference of squares.
   const double rounding = 1e-7 * r->reach, near = 0.03 * r->reach;
   assert_true(least >= w->r_min - rounding);
   assert_true(most <= w->r_max + rounding);
@@ -417,7 +417,7 @@ static void check_workspace(const CagRobot *r, const CagWorkspace *w, size_t n, 
   near_vec(w->bounds.max, seen.max, near);
 }
 
-// A robot of the links that stands somewhere.
+// Makes a robot of the links, with a random base.
 static CagRobot *placed_robot(const CagRobotLink *links, size_t n, uint64_t *state) {
   double angles[3], way[3];
   for (int i = 0; i < 3; i++) angles[i] = between(state, -2, 2);
@@ -458,7 +458,8 @@ static void slides_reach_a_box(void **state) {
     NEAR(w.r_min, 0, 0);
     NEAR(w.volume, swept_volume(r), 1e-9);
     cag_robot_release(r);
-    // Slides that are not square to each other, and the like of other chains, are not this.
+    // Prismatic joints that are not perpendicular, and chains of a similar structure, are not of
+    // this kind.
     for (int i = 0; i < 2; i++) {
       CagRobotLink skew[3] = {links[0], links[1], links[2]};
       skew[i].alpha += 0.1;
@@ -488,7 +489,7 @@ static void a_turn_and_slides_reach_a_cylinder(void **state) {
     check_workspace(r, &w, 3, true);
     if (w.exact) NEAR(w.volume, swept_volume(r) * fmin(1, 360 / angle), 1e-3 * w.volume);
     cag_robot_release(r);
-    // A radial slide that misses the axis.
+    // A radial prismatic joint whose axis does not meet the first axis.
     CagRobotLink beside[] = {links[0], links[1], links[2]};
     beside[0].a = 0.4;
     beside[1].theta = 0;
@@ -514,8 +515,8 @@ static void turns_that_meet_and_a_slide_reach_a_ball(void **state) {
     CagWorkspace w;
     cag_robot_workspace(r, &w);
     assert_int_equal(w.kind, CAG_WORKSPACE_SPHERICAL);
-    // Where the slide does not pass a pole, each point is reached once: the poles are where joint 2
-    // stands at 90 degrees and at -90.
+    // If the prismatic joint does not pass a pole, each point is reached once. At the poles, joint
+    // 2 is at 90 or -90 degrees.
     const double to_pole =
         fmin(fabs(remainder(middle - 90, 360)), fabs(remainder(middle + 90, 360)));
     assert_int_equal(w.exact, low >= 0 && to_pole >= half);
@@ -592,13 +593,13 @@ static void an_elbow_reaches_a_shell(void **state) {
   }
 }
 
-// Planar arms of one to four turning joints, with a slide at any place among them.
+// Planar arms of one to four revolute joints, with a prismatic joint anywhere among them.
 static void parallel_turns_reach_a_ring(void **state) {
   (void)state;
   uint64_t seed = 8;
   for (int k = 0; k < 120; k++) {
     CagRobotLink links[5];
-    const size_t turning = 1 + (size_t)k % 4, slide_at = (size_t)k / 4 % 6; // 5: no slide
+    const size_t turning = 1 + (size_t)k % 4, slide_at = (size_t)k / 4 % 6; // 5: no prismatic joint
     const bool slides = slide_at <= turning, full = k / 24 % 2;
     double sum = 0, largest = 0, travel = 1;
     size_t n = 0;
@@ -630,8 +631,8 @@ static void parallel_turns_reach_a_ring(void **state) {
   }
 }
 
-// Two links of a plane whose elbow has limits: the ring is narrower. A slide between the two leaves
-// the formula of full turns.
+// Two planar links whose elbow has limits: the ring is narrower. With a prismatic joint between the
+// two, the formula for full rotations remains.
 static void the_elbow_of_a_plane_has_limits(void **state) {
   (void)state;
   uint64_t seed = 9;
@@ -658,7 +659,7 @@ static void the_elbow_of_a_plane_has_limits(void **state) {
   }
 }
 
-// Chains that are nearly one of the kinds, but not.
+// Chains that are almost of one of the kinds.
 static void other_arms_have_no_formula(void **state) {
   (void)state;
   uint64_t seed = 10;
@@ -666,16 +667,18 @@ static void other_arms_have_no_formula(void **state) {
   CagRobotLink arms[9][3];
   for (size_t i = 0; i < 9; i++)
     for (size_t k = 0; k < 3; k++) arms[i][k] = plain, arms[i][k].a = 1;
-  // The waist beside the shoulder; axes 1 and 2 not square; axes 2 and 3 not parallel; a screw.
+  // The waist is beside the shoulder; axes 1 and 2 are not perpendicular; axes 2 and 3 are not
+  // parallel; a screw joint.
   arms[0][0].alpha = 90 * DEGREE;
   arms[1][0].a = 0, arms[1][0].alpha = 80 * DEGREE;
   arms[2][0].a = 0, arms[2][0].alpha = 90 * DEGREE, arms[2][1].alpha = 0.1;
   arms[3][1].screw = 0.1;
   arms[4][0].screw = 0.1;
-  // A slide that is neither along nor square to the axis, two slides along it.
+  // A prismatic joint that is neither parallel nor perpendicular to the axis; two prismatic joints
+  // along it.
   arms[5][2] = slide(0, 1, 0, 0), arms[5][1].alpha = 45 * DEGREE;
   arms[6][1] = slide(0, 1, 0, 0), arms[6][2] = slide(0, 1, 0, 0);
-  // Slides alone; a slide at a slant behind two axes that meet.
+  // Prismatic joints alone; an oblique prismatic joint after two axes that meet.
   for (size_t k = 0; k < 3; k++) arms[7][k] = slide(0, 1, 0, 0);
   arms[8][0] = turn(-180, 180, 0, 90), arms[8][1] = turn(-20, 20, 0, 60);
   arms[8][2] = slide(1, 2, 0, 0);
@@ -689,9 +692,9 @@ static void other_arms_have_no_formula(void **state) {
   }
 }
 
-// Arms of every sequence of joints with axes that are parallel, square or neither: whatever kind
-// they are taken for, its bounds hold, and are met where they are exact. Some have a last joint
-// that turns about the tool.
+// Arms of every sequence of joints with axes that are parallel, perpendicular, or neither. Whatever
+// kind is detected, its bounds hold, and are reached if they are exact. Some arms have a last joint
+// that rotates about the tool.
 static void bounds_hold_for_every_arm(void **state) {
   (void)state;
   static const double twists[] = {0, 90, -90, 180, 40};
@@ -726,8 +729,8 @@ static void bounds_hold_for_every_arm(void **state) {
   assert_true(known > 40);
 }
 
-// A slide that begins at its center, whatever the rounding; links of one length fold to the center
-// exactly; an arm whose point lies on its axis.
+// A prismatic joint that begins at its center up to rounding; links of equal length that fold
+// exactly to the center; an arm whose point is on its axis.
 static void ends_of_ranges_are_exact(void **state) {
   (void)state;
   uint64_t seed = 13;
@@ -760,7 +763,7 @@ static void ends_of_ranges_are_exact(void **state) {
       NEAR(w.volume, i == 3 ? M_PI * arms[i].r_max * arms[i].r_max : arms[i].volume, 1e-10);
       cag_robot_release(r);
     }
-    // Axes that are one: a circle, however far its joints turn.
+    // Coinciding axes: a circle, for any limits.
     ring[0].a = 0;
     CagRobot *r = placed_robot(ring, 2, &seed);
     CagWorkspace w;
@@ -773,8 +776,8 @@ static void ends_of_ranges_are_exact(void **state) {
   }
 }
 
-// Joints that turn about the point do not belong to the arm; three behind it whose axes meet
-// elsewhere are a wrist.
+// Joints that rotate about the point do not belong to the arm. Three subsequent joints whose axes
+// meet elsewhere are a wrist.
 static void wrists_do_not_count(void **state) {
   (void)state;
   uint64_t seed = 11;
@@ -795,7 +798,7 @@ static void wrists_do_not_count(void **state) {
     NEAR(w.r_min, fabs(links[1].a - links[3].d), 1e-7);
     near_vec(w.center, cag_vec3(r->base.m[0][3], r->base.m[1][3], r->base.m[2][3]), 1e-12);
     cag_robot_release(r);
-    // A last axis that misses the others', a slide among the three: no wrist.
+    // If the last axis misses the other two, or one of the three is prismatic, there is no wrist.
     CagRobotLink other[6];
     memcpy(other, links, sizeof other);
     if (k % 4 == 0) other[4].a = 0.2;
@@ -809,7 +812,8 @@ static void wrists_do_not_count(void **state) {
   }
 }
 
-// The first samples are the corners of the limits, at most half of all, and the others fill them.
+// The first samples are the corners of the limits, at most half of all; the others fill the
+// interior.
 static void samples_begin_with_the_corners(void **state) {
   (void)state;
   const CagRobotLink links[] = {turn(-10, 50, 0, 90), turn(20, 70, 0, 0), slide(2, 5, 0, 0)};

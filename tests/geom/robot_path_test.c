@@ -1,5 +1,5 @@
-// Inverse solutions by choice and joint paths: against all solutions of the closed form, and places
-// where a path must end that are computed here.
+// Choice of inverse solutions, and joint paths: compared with all closed-form solutions, and with
+// the end of a path computed here.
 
 #include <stdio.h>
 
@@ -45,7 +45,7 @@ static CagRobot *arm_of(const Row *rows, size_t n) {
   return r;
 }
 
-static void random_place(const CagRobot *r, double *q) {
+static void random_joints(const CagRobot *r, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = uniform(l->low, l->high);
@@ -61,7 +61,8 @@ static double way_of(const CagRobot *r, const double *a, const double *b) {
   return sum;
 }
 
-// The least way from `near` to a solution of the branch, over all whole turns within the limits.
+// The shortest distance from `near` to a solution of the branch, over all full turns within the
+// limits.
 static double least_way(const CagRobot *r, const CagInverse *all, const CagRobotGoal *goal,
                         const double *near) {
   double least = INFINITY;
@@ -98,8 +99,8 @@ static void the_nearest_solution_of_a_branch_is_taken(void **state) {
     CagInverse all;
     CagRobotFound found;
     CagRobotGoal goal = {.near = trial % 5 ? near : NULL};
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_home(r, home);
     if (trial % 3 == 1) goal.shoulder = trial % 4 < 2 && has.shoulder ? 1 : 0;
     if (trial % 3 == 2) goal.wrist = trial % 4 < 2 ? 1 : -1;
@@ -142,8 +143,8 @@ static void points_are_reached_by_the_nearest_way(void **state) {
     CagInverse all;
     CagRobotFound found;
     const CagRobotGoal goal = {.near = near, .position_only = true};
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_forward(r, q, &t);
     const CagVec3 p = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
     cag_robot_inverse_point(r, p, near, &all);
@@ -178,7 +179,7 @@ static void branches_without_names_are_refused(void **state) {
   assert_non_null(strstr(err.message, "a point does not determine"));
   FAILS(cag_robot_solve(seven, &t, &goal, q, &found, &err), "no-closed-form");
   assert_non_null(strstr(err.message, "the arm has no closed form"));
-  // The nearest place to a point out of reach is told: 500 of the way of 600 are reached.
+  // For an unreachable point, the error states the closest one: 500 of the distance of 600.
   const CagTransform far = cag_translate(cag_vec3(0, -600, 0));
   goal = (CagRobotGoal){.position_only = true};
   FAILS(cag_robot_solve(two, &far, &goal, q, &found, &err), "unreachable");
@@ -189,7 +190,8 @@ static void branches_without_names_are_refused(void **state) {
   cag_robot_release(six);
 }
 
-// Steps lie evenly on the way, and the branch stays: its end is that of joint values nearby.
+// Steps are evenly spaced on the line, and the branch does not change: the last joint values are
+// close to the previous ones.
 static void lines_keep_the_branch(void **state) {
   (void)state;
   seed = 3;
@@ -231,7 +233,7 @@ static void lines_keep_the_branch(void **state) {
   cag_robot_release(arms[1]);
 }
 
-// However few steps are asked for, the joints follow the whole way: one step ends where fifty do.
+// The joints follow the whole line even with few steps: one step ends where fifty do.
 static void one_step_ends_where_many_do(void **state) {
   (void)state;
   static const Row slider[] = {{R, 0, 0, 0, -170, 170}, {P, 0, 0, -90, 0, 9000},
@@ -245,8 +247,8 @@ static void one_step_ends_where_many_do(void **state) {
     CagRobot *r = arms[trial % ARMS];
     double a[6], b[6], few[2][6], many[N][6];
     CagTransform from, to;
-    random_place(r, a);
-    random_place(r, b);
+    random_joints(r, a);
+    random_joints(r, b);
     const double part = uniform(0.2, 0.9);
     for (int i = 0; i < 6; i++) b[i] = a[i] + part * (b[i] - a[i]);
     cag_robot_forward(r, a, &from);
@@ -266,8 +268,7 @@ static void one_step_ends_where_many_do(void **state) {
   }
 }
 
-// Joint 5 of a wrist, where the tool is, turns through 0, where it is singular: at a step, or
-// between two.
+// Joint 5 of a wrist at the tool passes through 0, where it is singular, at a step or between two.
 static void singular_places_are_told_by_their_step(void **state) {
   (void)state;
   Row rows[6];
@@ -298,9 +299,9 @@ static void singular_places_are_told_by_their_step(void **state) {
     for (size_t k = 0; k < n; k++) {
       at[4] = -0.4 + 0.8 * (double)k / (double)(n - 1);
       for (int i = 0; i < 5; i++)
-        if (i != 3) NEAR(q[k][i], at[i], 1e-7); // joint 4 is free beside joint 6
+        if (i != 3) NEAR(q[k][i], at[i], 1e-7); // joint 4 is free together with joint 6
     }
-    // A way may end at a singular place.
+    // A path may end at a singular pose.
     at[4] = 0;
     cag_robot_forward(r, at, &pose[2]);
     at[4] = ends[0];
@@ -310,8 +311,8 @@ static void singular_places_are_told_by_their_step(void **state) {
   cag_robot_release(r);
 }
 
-// The number behind "(at " in the message.
-static double told_place(void) {
+// The number after "(at " in the message.
+static double reported_position(void) {
   const char *at = strstr(err.message, "(at ");
   assert_non_null(at);
   return atof(at + 4);
@@ -319,7 +320,7 @@ static double told_place(void) {
 
 static CagTransform at_point(double x, double y) { return cag_translate(cag_vec3(x, y, 0)); }
 
-// A path ends where its branch does, which is told to 1/4096 of a step.
+// A path ends where its branch ends, which is located within 1/4096 of a step.
 static void paths_end_where_their_branch_does(void **state) {
   (void)state;
   static const Row limited[] = {
@@ -329,7 +330,7 @@ static void paths_end_where_their_branch_does(void **state) {
   const CagTransform from = at_point(300, 100), to = at_point(300, -100), far = at_point(600, 100);
   double q[41][3];
   const CagRobotWay way = {.near = near};
-  // Joint 1 stands at the direction less the angle at the shoulder; -40 degrees is its limit.
+  // Joint 1 is the direction minus the angle at the shoulder, with its limit at -40 degrees.
   double high = 100, low = -100;
   for (int i = 0; i < 60; i++) {
     const double y = (high + low) / 2, d = hypot(300, y);
@@ -342,7 +343,7 @@ static void paths_end_where_their_branch_does(void **state) {
     assert_int_equal(cag_robot_line_path(r, &from, &to, n, &way, q[0], &err), CAG_E_DEGENERATE);
     assert_string_equal(cag_error_info(err.id)->reason, "path-jumps");
     assert_int_equal(err.index, (long)ceil(end));
-    assert_true(told_place() <= end && told_place() >= end - left);
+    assert_true(reported_position() <= end && reported_position() >= end - left);
     assert_non_null(strstr(err.message, "the limit of joint 1 is"));
     assert_non_null(strstr(err.message, "before step"));
     // The reach of 500 ends at x = sqrt(500^2 - 100^2).
@@ -350,7 +351,7 @@ static void paths_end_where_their_branch_does(void **state) {
     assert_int_equal(cag_robot_line_path(r, &from, &far, n, &way, q[0], &err), CAG_E_DEGENERATE);
     assert_string_equal(cag_error_info(err.id)->reason, "path-leaves");
     assert_int_equal(err.index, (long)ceil(leaves));
-    assert_true(told_place() <= leaves + 1e-3 && told_place() >= leaves - left);
+    assert_true(reported_position() <= leaves + 1e-3 && reported_position() >= leaves - left);
   }
   const CagTransform poses[] = {from, at_point(300, 50), to, far};
   FAILS_AT(cag_robot_follow(r, poses, 3, &way, q[0], &err), "path-jumps", 2);
@@ -364,13 +365,14 @@ static void paths_end_where_their_branch_does(void **state) {
     NEAR(p[0] + p[1] + p[2], 0, 1e-9);
     assert_true(k < 2 ? p[1] > 0 : p[1] < 0); // the other elbow
   }
-  // Nothing reaches the fourth: the hand is hypot(600, 100) - 500 away.
+  // The fourth is unreachable: it is hypot(600, 100) - 500 from the hand.
   FAILS_AT(cag_robot_follow(r, poses, 4, &jumping, q[0], &err), "path-leaves", 3);
   assert_non_null(strstr(err.message, "pose 3 is out of reach; the closest found is 108.276 mm"));
   cag_robot_release(r);
 }
 
-// A slide that would have to go beyond its end, where the arm could turn by half a turn instead.
+// A prismatic joint that would have to exceed its limit, although a half turn of the arm would also
+// work.
 static void slides_end_paths_as_well(void **state) {
   (void)state;
   static const Row polar[] = {{R, 0, 0, 90, -400, 400}, {P, 0, 0, 0, -800, 100}};
@@ -383,8 +385,8 @@ static void slides_end_paths_as_well(void **state) {
   cag_robot_forward(r, there, &to);
   const CagRobotWay way = {.near = near, .position_only = true};
   FAILS_AT(cag_robot_line_path(r, &from, &to, 9, &way, q[0], &err), "path-jumps", 3);
-  // From 50 to 210 in 8 steps of 20, of which two and a half are within the limit.
-  assert_true(told_place() <= 2.5 + 1e-6 && told_place() > 2.5 - 1.0 / 2048);
+  // From 50 to 210 in 8 steps of 20; two and a half steps are within the limit.
+  assert_true(reported_position() <= 2.5 + 1e-6 && reported_position() > 2.5 - 1.0 / 2048);
   assert_non_null(strstr(err.message, "the limit of joint 2 is"));
   const double inside[] = {90 * DEGREE, 94};
   cag_robot_forward(r, inside, &to);
@@ -396,7 +398,7 @@ static void slides_end_paths_as_well(void **state) {
   cag_robot_release(r);
 }
 
-// Asked n times whether to go on, the n-th answer is no.
+// Returns false at the n-th call, which stops the path.
 static bool goes_on(void *left) { return --*(int *)left > 0; }
 
 static void paths_are_stopped(void **state) {
@@ -411,7 +413,7 @@ static void paths_are_stopped(void **state) {
     int left = answers;
     const CagRobotWay way = {.near = a, .going = goes_on, .data = &left};
     const CagStatus line = cag_robot_line_path(r, &ends[0], &ends[1], 5, &way, q[0], &err);
-    assert_int_equal(line, answers <= 4 ? CAG_E_CALLBACK : CAG_OK); // asked before each step
+    assert_int_equal(line, answers <= 4 ? CAG_E_CALLBACK : CAG_OK); // called before each step
     assert_int_equal(left, answers <= 4 ? 0 : answers - 4);
     left = answers;
     const CagStatus poses = cag_robot_follow(r, ends, 2, &way, q[0], &err);

@@ -1,4 +1,5 @@
-// Robots of one plane, with a slide anywhere: the place decides what of a pose is out of reach.
+// Planar robots with a prismatic joint anywhere: the position determines the part of a pose that is
+// unreachable.
 
 #include "geom/robot/inverse.h"
 #include "tests/geom/random.h"
@@ -6,7 +7,7 @@
 
 enum { MOST = 3 };
 
-// Turns and slides in the order of the letters, with parallel axes of either sense.
+// Revolute and prismatic joints in the order of the letters, with parallel or antiparallel axes.
 static CagRobot *robot_of(const char *joints) {
   CagRobotLink links[MOST];
   const size_t n = strlen(joints);
@@ -36,7 +37,7 @@ static CagVec3 origin_of(const CagTransform *t) {
   return cag_vec3(t->m[0][3], t->m[1][3], t->m[2][3]);
 }
 
-// From the axis through o along z to p, square to it.
+// The vector to p, perpendicular to the axis through o along z.
 static CagVec3 away_from(CagVec3 o, CagVec3 z, CagVec3 p) {
   const CagVec3 way = cag_sub(p, o);
   return cag_madd(way, -cag_dot(way, z), z);
@@ -54,9 +55,9 @@ static CagInverseStatus status_at(const CagRobot *r, CagTransform pose, CagVec3 
   return all.status;
 }
 
-// Two turns reach places between the difference and the sum of the distances of axes and tool, each
-// in two ways; any other turn of the tool is out of reach there. Three turns reach what the first
-// two reach with the third axis.
+// Two revolute joints reach points whose distance is between the difference and the sum of the
+// lengths, in two ways each; any other orientation of the tool is unreachable there. With three
+// revolute joints, the third axis must be reachable by the first two.
 static void places_out_of_reach_are_told_from_turns(void **state) {
   (void)state;
   static const char *const kinds[] = {"RR", "PRR", "RPR", "RRP", "RRR"};
@@ -80,7 +81,7 @@ static void places_out_of_reach_are_told_from_turns(void **state) {
     const CagVec3 from = away_from(o[turns[0]], axis, target), along = cag_unit(from);
     const double now = cag_norm(from), least = fabs(first - second), most = first + second;
     assert_int_equal(status_at(r, pose, tool, 0), CAG_INVERSE_OK);
-    // The same tool turn, so that the third axis moves as the tool does.
+    // The same orientation, so that the third axis moves like the tool.
     const double wanted[3] = {most + uniform(0.01, 2), least - uniform(0.01, 1),
                               uniform(least + 0.01, most - 0.01)};
     for (int k = 0; k < 3; k++) {
@@ -95,8 +96,8 @@ static void places_out_of_reach_are_told_from_turns(void **state) {
   }
 }
 
-// Two links of one length reach places straight ahead of the first frame, beside it and behind it
-// like all others: by both bends of the elbow, if the tool may turn.
+// Two links of equal length reach points in front of, beside, and behind the first frame like all
+// others: with both bends of the elbow, if the tool may rotate.
 static void equal_links_reach_places_on_the_axes_of_the_frame(void **state) {
   (void)state;
   seed = 512;
@@ -143,7 +144,7 @@ static void equal_links_reach_places_on_the_axes_of_the_frame(void **state) {
       nearest = fmin(nearest, off);
     }
     NEAR(nearest, 0, 1e-8);
-    if (n == 2) { // the place alone, by both bends
+    if (n == 2) { // the position alone, with both bends
       cag_robot_inverse_point(r, origin_of(&pose), NULL, &all);
       assert_int_equal(all.status, CAG_INVERSE_OK);
       assert_int_equal(all.count, 2);

@@ -1,4 +1,5 @@
-// Random chains: products of links, ranks, limits, couplings and tables, against their definitions.
+// Random chains: products of links, ranks, limits, couplings, and tables, compared with their
+// definitions.
 
 #include "geom/robot/robot.h"
 
@@ -47,8 +48,8 @@ static CagRobot *random_chain(size_t n, CagRobotConvention convention, const int
   return r;
 }
 
-// The product of all rows, by the functions for single rows, against frames, axes, parts of the
-// chain, and the figure.
+// Multiplies all rows, using functions for single rows, and compares with frames, axes, parts of
+// the chain, and the drawing.
 static void chains_are_products_of_their_links(void **state) {
   (void)state;
   seed = 21;
@@ -73,7 +74,7 @@ static void chains_are_products_of_their_links(void **state) {
         const double value = q[joint], turned = l->kind == CAG_JOINT_REVOLUTE ? value : 0,
                      moved = l->kind == CAG_JOINT_REVOLUTE ? l->screw * value : value;
         a = (modified ? cag_mdh : cag_dh)(l->theta + turned, l->d + moved, l->a, l->alpha);
-        // A joint's axis is the z axis, of modified rows behind their twist.
+        // A joint's axis is the z axis; for modified rows, the one after their twist.
         const CagTransform twist = cag_dh(0, 0, l->a, l->alpha),
                            turn = cag_transform_multiply(&before, &twist),
                            *own = modified ? &turn : &before;
@@ -104,7 +105,7 @@ static void chains_are_products_of_their_links(void **state) {
         part = cag_transform_multiply(&at[j], &part);
         assert_pose(&part, (const double(*)[4])at[i].m, 1e-12);
       }
-    // The reach holds the tool from the first joint's axis point, wherever the joints stand.
+    // The tool is within reach of the first joint's axis point for all joint values.
     for (int place = 0; place < 20 && r->joint_count > 0; place++) {
       for (size_t i = 0; i < r->joint_count; i++) {
         const CagRobotLink *l = &r->links[r->joint_link[i]];
@@ -120,7 +121,7 @@ static void chains_are_products_of_their_links(void **state) {
   }
 }
 
-// Lengths that add up in one line are all of the reach.
+// Lengths in a straight line add up to the reach.
 static void the_reach_of_a_straight_chain_is_its_length(void **state) {
   (void)state;
   CagRobotLink links[4] = {cag_robot_link(CAG_JOINT_REVOLUTE), cag_robot_link(CAG_JOINT_FIXED),
@@ -146,7 +147,7 @@ static void the_reach_of_a_straight_chain_is_its_length(void **state) {
   cag_robot_release(r);
 }
 
-// The determinant of a matrix, by its permutations' products along the first row.
+// The determinant of a matrix, expanded along the first row.
 static double determinant(double (*m)[6], size_t n) {
   if (n == 1) return m[0][0];
   double sum = 0;
@@ -160,8 +161,9 @@ static double determinant(double (*m)[6], size_t n) {
   return sum;
 }
 
-// Singular values by their sums of powers: the squares add up to the square of all entries, their
-// squares to that of the products of columns, and their product is the root of a determinant.
+// Checks power sums of singular values: their squares add up to the sum of squares of all entries,
+// their fourth powers to that of the products of columns, and their product is the root of a
+// determinant.
 static void singular_values_have_their_sums(void **state) {
   (void)state;
   seed = 22;
@@ -175,7 +177,7 @@ static void singular_values_have_their_sums(void **state) {
     size_t count, rank;
     for (size_t i = 0; i < n; i++) q[i] = between(-3, 3);
     cag_robot_jacobian(r, q, columns, NULL);
-    // Manipulability: lengths as they are.
+    // For the manipulability, lengths are not scaled.
     for (size_t i = 0; i < (n < 6 ? n : 6); i++)
       for (size_t j = 0; j < (n < 6 ? n : 6); j++)
         for (size_t l = 0; l < (n < 6 ? 6 : n); l++)
@@ -202,7 +204,7 @@ static void singular_values_have_their_sums(void **state) {
     }
     NEAR(sum, squares, 1e-12 * squares);
     NEAR(sum4, fourths, 1e-12 * fourths);
-    double scaled = sqrt(fmax(gram, 0)); // three rows, or where fewer columns each row apart
+    double scaled = sqrt(fmax(gram, 0)); // three rows; with fewer columns, each row separately
     if (n >= 6) NEAR(product, scaled / pow(r->reach, 3), 1e-9);
     else {
       double small[6][6];
@@ -215,14 +217,14 @@ static void singular_values_have_their_sums(void **state) {
   }
 }
 
-// Joints whose axes are one or parallel: the rank is what their axes span.
+// Joints whose axes coincide or are parallel: the rank is the dimension that the axes span.
 static void ranks_are_those_of_the_axes(void **state) {
   (void)state;
   seed = 23;
   for (int k = 0; k < 60; k++) {
     Row rows[8];
     const size_t n = 2 + (size_t)k % 7;
-    const int kind = k % 3; // one axis; parallel axes; axes through one point
+    const int kind = k % 3; // coinciding axes; parallel axes; axes through one point
     for (size_t i = 0; i < n; i++) {
       rows[i] = (Row){kind == 2 ? 0 : between(-1, 1), kind == 1 ? between(0.5, 1) : 0,
                       kind == 2 ? between(30, 150) : 0};
@@ -256,7 +258,7 @@ static void values_are_brought_within_their_limits(void **state) {
                          .tool = cag_transform_identity()};
     OK(cag_robot_new(&spec, &r, &err));
     double q = between(-20, 20), near = between(-20, 20), value = q, by, limit, home;
-    // The nearest to the wish of all values whole turns away, by trial.
+    // The closest value to the preferred one among all full turns, by trial.
     double best = INFINITY;
     for (int turns = -12; turns <= 12; turns++) {
       const double x = q + turns * 2 * M_PI;
@@ -275,7 +277,7 @@ static void values_are_brought_within_their_limits(void **state) {
     NEAR(by, over, 1e-12);
     cag_robot_home(r, &home);
     NEAR(home, link.high, 0);
-    // Rounding past a limit is on it.
+    // A value past a limit by rounding is set to the limit.
     value = link.high + 1e-13;
     assert_int_equal(cag_robot_outside(r, &value, &by), 1);
     assert_true(cag_robot_into_limits(r, &value, &value));
@@ -297,7 +299,7 @@ static void random_couplings_are_undone(void **state) {
     CagRobotLink links[6];
     for (size_t i = 0; i < n; i++) links[i] = cag_robot_link(CAG_JOINT_REVOLUTE);
     for (size_t i = 0; i < n * n; i++) m[i] = between(0, 1) < 0.4 ? 0 : between(-2, 2);
-    // A permutation, so that pivots are needed, and the matrix is regular more often.
+    // A permutation, so that pivoting is needed and the matrix is more often regular.
     for (size_t i = 0; i < n; i++) m[i * n + (i + (size_t)k) % n] += 3;
     for (size_t i = 0; i < n; i++) offset[i] = between(-1, 1);
     for (size_t i = 0; i < n; i++) q[i] = between(-1, 1);
@@ -335,7 +337,7 @@ static void random_couplings_are_undone(void **state) {
   }
 }
 
-// --- What is refused ---
+// --- Rejected input ---
 
 static void transforms_that_are_no_motions_are_refused(void **state) {
   (void)state;
@@ -345,7 +347,7 @@ static void transforms_that_are_no_motions_are_refused(void **state) {
     OK(cag_robot_pose_check(&t, "T", &err));
     const int i = k % 4, j = k / 4 % 4;
     const double was = t.m[i][j];
-    // Rounding passes, more does not; places may be any, if they are finite.
+    // Deviations by rounding are accepted, larger ones are not. The position may be any finite one.
     if (i < 3 && j < 3) {
       t.m[i][j] = was + 1e-11;
       OK(cag_robot_pose_check(&t, "T", &err));
@@ -361,7 +363,7 @@ static void transforms_that_are_no_motions_are_refused(void **state) {
     t.m[i][j] = k % 2 ? NAN : INFINITY;
     FAILS(cag_robot_pose_check(&t, "T", &err), "not-rigid");
     t.m[i][j] = was;
-    for (int row = 0; row < 3; row++) t.m[row][k % 3] *= -1; // a mirror
+    for (int row = 0; row < 3; row++) t.m[row][k % 3] *= -1; // a reflection
     FAILS(cag_robot_pose_check(&t, "T", &err), "not-rigid");
   }
 }
@@ -377,7 +379,7 @@ static void bad_numbers_of_links_are_named(void **state) {
                        .tool = cag_transform_identity()};
   CagRobot *r = NULL;
   OK(cag_robot_new(&spec, &r, &err));
-  // Shared: the last release frees it.
+  // After retain, only the last release frees it.
   assert_ptr_equal(cag_robot_retain(r), r);
   cag_robot_release(r);
   assert_int_equal(r->joint_count, 2);
@@ -392,7 +394,7 @@ static void bad_numbers_of_links_are_named(void **state) {
       FAILS(cag_robot_link_check(l, &err), "link-number");
       *l = good;
     }
-    // The home may be at a limit, and the limits may be one.
+    // The home may be at a limit, and both limits may be equal.
     l->low = l->high = l->home = 0.5;
     OK(cag_robot_link_check(l, &err));
     l->home = 0.5 + 1e-9;
@@ -440,7 +442,7 @@ static void bad_numbers_of_links_are_named(void **state) {
 
 // --- Tables from axes ---
 
-// Frames and rows of random axes, some of them parallel, meeting or one.
+// Frames and rows of random axes, some of them parallel, intersecting, or coinciding.
 static void random_axes_get_frames(void **state) {
   (void)state;
   seed = 27;
@@ -462,7 +464,8 @@ static void random_axes_get_frames(void **state) {
       a->kind = turned > 1 ? CAG_JOINT_PRISMATIC : CAG_JOINT_REVOLUTE;
       a->direction = cag_scaled(cag_vec3(v[0], v[1], v[2]), 3);
       a->point = cag_scaled(cag_vec3(v[3], v[4], v[5]), unit);
-      // The first axis is the base's; others are parallel, against it, meet it or are one with it.
+      // The first axis is the base's. Others are parallel or antiparallel to it, intersect it, or
+      // coincide with it.
       if (i == 0 || how < 0.4) a->direction = cag_scaled(before.direction, i && v[0] < 0 ? -2 : 2);
       if (i == 0 || (how > 0.3 && how < 0.7))
         a->point = cag_madd(before.point, turned * unit, cag_unit(before.direction));
@@ -495,8 +498,9 @@ static void random_axes_get_frames(void **state) {
       for (int m = 0; m < 3; m++)
         for (int j = 0; j < 4; j++)
           NEAR(next.m[m][j], frames[i].m[m][j], j < 3 ? 1e-8 : 1e-6 * unit);
-      // Away from the axis before; of axes that meet along the product of their directions; of
-      // parallel ones towards the point of the next axis, or as before where the axes are one.
+      // The x axis points away from the previous axis. If the axes meet, it is along the product of
+      // their directions. If they are parallel, it points toward the point of the next axis, or is
+      // unchanged if the axes coincide.
       const CagVec3 product = cag_cross(last, z), way = cag_sub(a->point, from),
                     off = cag_madd(way, -cag_dot(way, last), last);
       const CagVec3 x_before =
@@ -504,10 +508,11 @@ static void random_axes_get_frames(void **state) {
       if (cag_norm(product) > 1e-6 && l->a < 1e-9 * unit) near_vec(x, cag_unit(product), 1e-6);
       if (cag_norm(product) < 1e-6 && cag_norm(off) > 1e-6 * unit) near_vec(x, cag_unit(off), 1e-6);
       if (cag_norm(product) < 1e-6 && cag_norm(off) < 1e-10 * unit) near_vec(x, x_before, 1e-7);
-      // Parallel axes: without rise, but the last frame at the height of its point.
+      // For parallel axes, the offset is 0, except that the last frame is at the height of its
+      // point.
       if (cag_norm(product) < 1e-9) NEAR(l->d, i == n ? cag_dot(way, last) : 0, 1e-6 * unit);
     }
-    // What cannot be.
+    // Invalid input.
     const size_t bad = (size_t)k / 6 % (n + 1);
     CagJointAxis *a = bad < n ? &axes[bad] : &end, good = *a;
     a->direction = k % 2 ? cag_vec3(0, 0, 0) : cag_vec3(INFINITY, 0, 0);

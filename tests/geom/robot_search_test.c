@@ -1,5 +1,5 @@
-// Numerical inverse kinematics against linear algebra of the test's own: steps of least length,
-// places of least error, free motion, and the sequence of starts.
+// Numerical inverse kinematics, compared with the test's own linear algebra: steps of minimal
+// length, positions of minimal error, null space motion, and the sequence of starts.
 
 #include "geom/robot/numeric.h"
 #include "random.h"
@@ -23,7 +23,8 @@ static CagTransform turned(CagVec3 axis, double angle) {
   return t;
 }
 
-// An arm of n joints, of which those in `slides` (bits) slide and those in `screws` do both.
+// An arm of n joints. The bits of `slides` select prismatic joints, and those of `screws` select
+// screw joints.
 static CagRobot *random_arm_with_screws(size_t n, unsigned slides, unsigned screws, double low,
                                         double high) {
   CagRobotLink links[JOINTS];
@@ -50,20 +51,20 @@ static CagRobot *random_arm(size_t n, unsigned slides, double low, double high) 
   return random_arm_with_screws(n, slides, 0, low, high);
 }
 
-static void random_place(const CagRobot *r, double *q) {
+static void random_joints(const CagRobot *r, double *q) {
   for (size_t i = 0; i < r->joint_count; i++) {
     const CagRobotLink *l = &r->links[r->joint_link[i]];
     q[i] = uniform(l->low, l->high);
   }
 }
 
-// A length that counts as one of the joint's value: a radian, or the reach.
+// The length that corresponds to one unit of the joint's value: for a radian, the reach.
 static double unit_of(const CagRobot *r, size_t joint) {
   return r->links[r->joint_link[joint]].kind == CAG_JOINT_REVOLUTE ? 1 : r->reach;
 }
 
-// Rows (velocities of the tool as parts of the reach) over joints in their units; without those
-// that are held. Made orthonormal by Gram and Schmidt, twice.
+// Rows (velocities of the tool relative to the reach) over the joints in their units, without the
+// fixed joints, orthonormalized twice by Gram-Schmidt.
 static void orthonormal_rows(const CagRobot *r, const double *q, const bool *held, size_t rows,
                              double out[6][JOINTS]) {
   double columns[JOINTS][6];
@@ -83,7 +84,7 @@ static void orthonormal_rows(const CagRobot *r, const double *q, const bool *hel
   }
 }
 
-// Takes the part of x within the rows away; the length of what is left.
+// Removes the component of x in the span of the rows, and returns the length of the rest.
 static double without_rows(double rows[6][JOINTS], size_t row_count, size_t n, double *x) {
   double length = 0;
   for (size_t k = 0; k < 2 * row_count; k++) {
@@ -102,7 +103,7 @@ static void free_motion_is_what_the_rows_leave(void **state) {
     const size_t n = 7 + (size_t)trial % 6;
     CagRobot *r = random_arm(n, trial % 3 ? 1u << trial % 7 : 0, -2, 2);
     double q[JOINTS], dq[JOINTS], x[JOINTS], out[JOINTS], rows[6][JOINTS];
-    random_place(r, q);
+    random_joints(r, q);
     for (size_t i = 0; i < n; i++) {
       dq[i] = uniform(-1, 1);
       x[i] = dq[i] / unit_of(r, i);
@@ -115,8 +116,8 @@ static void free_motion_is_what_the_rows_leave(void **state) {
   }
 }
 
-// From nearby, the way to a solution is the shortest up to its curvature, and Newton's: each step
-// squares the error. Joints at their limits that would leave them stay there.
+// From a nearby start, the motion to a solution is the shortest up to its curvature, and follows
+// Newton's method: each step squares the error. Joints at limits that would be exceeded stay there.
 static void near_solutions_are_found_by_the_shortest_way(void **state) {
   (void)state;
   seed = 2;
@@ -130,8 +131,8 @@ static void near_solutions_are_found_by_the_shortest_way(void **state) {
     bool held[JOINTS] = {0};
     size_t count, rank;
     CagTransform wanted;
-    random_place(r, q);
-    // In every other trial one joint stands at a limit.
+    random_joints(r, q);
+    // In every other trial, one joint is at a limit.
     const size_t limited = (size_t)uniform(0, (double)n);
     if (trial % 2) q[limited] = trial % 8 < 4 ? -limit : limit;
     for (size_t i = 0; i < n; i++) there[i] = q[i] + uniform(-small, small) * unit_of(r, i);
@@ -159,8 +160,8 @@ static void near_solutions_are_found_by_the_shortest_way(void **state) {
   assert_true(regular > 80 && at_limits > 30);
 }
 
-// Joints that turn may be whole turns away, and screws may not: each of their turns is a lead
-// further. The place from which the search starts may lie outside of the limits.
+// Revolute joints may be off by full turns, but screw joints may not, because each of their turns
+// advances by the lead. The start of the search may be outside of the limits.
 static void solutions_are_turned_as_near_as_limits_let(void **state) {
   (void)state;
   seed = 7;
@@ -171,7 +172,7 @@ static void solutions_are_turned_as_near_as_limits_let(void **state) {
     CagRobot *r = random_arm_with_screws(6, 0, screws, low, high);
     double there[6], near[6], found[6];
     CagTransform wanted;
-    random_place(r, there);
+    random_joints(r, there);
     for (int i = 0; i < 6; i++) near[i] = trial % 3 ? there[i] + uniform(-9, 9) : uniform(-40, 40);
     cag_robot_forward(r, there, &wanted);
     const CagRobotSearch search = {.near = near, .starts = 20};
@@ -198,7 +199,7 @@ static void solutions_are_turned_as_near_as_limits_let(void **state) {
   assert_true(solved > 100 && turns_left > 200);
 }
 
-// The squared error of a place, lengths as parts of the reach.
+// The squared error of a pose, with lengths relative to the reach.
 static double error_at(const CagRobot *r, const double *q, const CagTransform *wanted, bool point) {
   CagTransform t;
   double position, rotation;
@@ -208,7 +209,7 @@ static double error_at(const CagRobot *r, const double *q, const CagTransform *w
   return position * position + (point ? 0 : rotation * rotation);
 }
 
-// Out of reach, the error has no slope at the place that is found, except into limits.
+// If the target is unreachable, the gradient of the error at the result is 0, except toward limits.
 static void what_is_out_of_reach_is_come_near_to(void **state) {
   (void)state;
   seed = 3;
@@ -248,7 +249,7 @@ static void what_is_out_of_reach_is_come_near_to(void **state) {
   assert_true(at_limits > 20);
 }
 
-// A chain with freedom to spare stands where no free motion comes nearer to what is wished.
+// For a redundant chain, no null space motion brings the result closer to the preferred values.
 static void wishes_are_met_as_far_as_the_tool_lets(void **state) {
   (void)state;
   seed = 4;
@@ -258,7 +259,7 @@ static void wishes_are_met_as_far_as_the_tool_lets(void **state) {
     CagRobot *r = random_arm(n, trial % 3 == 1 ? 4 : 0, -2.5, 2.5);
     double q[JOINTS], near[JOINTS], found[JOINTS], wish[JOINTS], rows[6][JOINTS];
     CagTransform wanted, got;
-    random_place(r, q);
+    random_joints(r, q);
     for (size_t i = 0; i < n; i++) q[i] /= 2;
     cag_robot_forward(r, q, &wanted);
     for (size_t i = 0; i < n; i++) near[i] = q[i] + uniform(-0.3, 0.3);
@@ -281,7 +282,7 @@ static void wishes_are_met_as_far_as_the_tool_lets(void **state) {
   assert_true(inside > 30);
 }
 
-// The angle between poses is that of the turn, at all sizes, and a joint takes the short way there.
+// The angle between poses is that of the rotation, at all sizes, and a joint takes the short way.
 static void turns_have_their_angle_and_sense(void **state) {
   (void)state;
   seed = 5;
@@ -321,8 +322,8 @@ static void turns_have_their_angle_and_sense(void **state) {
   }
 }
 
-// Point k of the sequence is 1/2 + k (1/g, 1/g^2 ...) without its whole parts, where g is the root
-// of x^(n+1) = x + 1 (Roberts 2018); here the root is found by bisection.
+// Point k of the sequence is the fractional part of 1/2 + k (1/g, 1/g^2 ...), where g is the root
+// of x^(n+1) = x + 1 (Roberts 2018). The root is found by bisection here.
 static void starts_are_the_sequence_of_the_golden_ratio(void **state) {
   (void)state;
   seed = 6;
@@ -345,8 +346,8 @@ static void starts_are_the_sequence_of_the_golden_ratio(void **state) {
   }
 }
 
-// Further starts only bring solutions nearer to what is wished, and often do. Joints are turned by
-// whole turns towards it within their limits.
+// Additional starts only bring solutions closer to the preferred values, and often do. Joints are
+// moved toward them by full turns within their limits.
 static void alternatives_come_nearer(void **state) {
   (void)state;
   seed = 7;
@@ -357,8 +358,8 @@ static void alternatives_come_nearer(void **state) {
     double q[JOINTS], near[JOINTS], found[2][JOINTS], apart[2] = {0};
     CagTransform wanted;
     size_t steps[2];
-    random_place(r, q);
-    random_place(r, near);
+    random_joints(r, q);
+    random_joints(r, near);
     cag_robot_forward(r, q, &wanted);
     for (size_t k = 0; k < 2; k++) {
       const CagRobotSearch search = {.near = near, .alternatives = 20 * k};
@@ -369,7 +370,7 @@ static void alternatives_come_nearer(void **state) {
         const double x = found[k][i], d = x - near[i];
         assert_true(fabs(x) <= limit);
         apart[k] += d * d;
-        // No whole turn less would be within the limits.
+        // One full turn less would be outside the limits.
         for (int turn = -1; turn <= 1; turn += 2) {
           const double other = x + turn * 2 * M_PI;
           assert_true(fabs(other) > limit || fabs(other - near[i]) > fabs(d) - 1e-6);
@@ -377,7 +378,7 @@ static void alternatives_come_nearer(void **state) {
       }
     }
     assert_true(apart[1] <= apart[0] + 1e-9);
-    // Twenty attempts more, each of some 15 steps.
+    // Twenty more attempts, each of about 15 steps.
     assert_true(steps[1] > steps[0] + 40 && steps[1] < steps[0] + 700);
     nearer += apart[1] < apart[0] - 1e-3;
     cag_robot_release(r);

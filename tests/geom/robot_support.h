@@ -1,4 +1,4 @@
-// What the tests of robots share: chains without base and tool, and comparisons of poses.
+// Helpers for the tests of robots: chains without base and tool, and comparisons of poses.
 
 #ifndef CAG_TESTS_ROBOT_SUPPORT_H
 #define CAG_TESTS_ROBOT_SUPPORT_H

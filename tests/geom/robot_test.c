@@ -1,4 +1,4 @@
-// Chains: frames, Jacobians, limits, couplings and tables, against the textbook's numbers.
+// Chains: frames, Jacobians, limits, couplings, and tables, compared with the textbook's numbers.
 
 #include "geom/robot/robot.h"
 
@@ -86,7 +86,8 @@ static void subchains_match_the_textbook(void **state) {
   cag_robot_release(r);
 }
 
-// The same arm: modified rows, fixed links between, base and tool that are not the identity.
+// The same arm with modified rows, fixed links between, and a base and tool that are not the
+// identity.
 static void fixed_links_base_and_tool_are_part_of_the_chain(void **state) {
   (void)state;
   CagRobotLink links[4] = {cag_robot_link(CAG_JOINT_REVOLUTE), cag_robot_link(CAG_JOINT_FIXED),
@@ -155,7 +156,7 @@ static void jacobian_is_that_of_the_reference(void **state) {
   NEAR(fabs(det), 0.08571260052315208, 1e-14);
   OK(cag_robot_singular_values(r, q, values, &count, &rank, &err));
   assert_int_equal(rank, 6);
-  // The wrist stretched: S5 = 0.
+  // With the wrist stretched, S5 = 0.
   q[4] = 0;
   OK(cag_robot_singular_values(r, q, values, &count, &rank, &err));
   assert_int_equal(rank, 5);
@@ -163,7 +164,8 @@ static void jacobian_is_that_of_the_reference(void **state) {
   cag_robot_release(r);
 }
 
-// Columns against central differences of the pose, of a chain with a slide and a screw.
+// Compares columns with central differences of the pose, for a chain with a prismatic and a screw
+// joint.
 static void jacobian_is_the_derivative_of_the_pose(void **state) {
   (void)state;
   CagRobotLink links[4] = {cag_robot_link(CAG_JOINT_REVOLUTE), cag_robot_link(CAG_JOINT_PRISMATIC),

@@ -1,5 +1,5 @@
-// Seams of oblique patches against closed forms, and surfaces that are cut, changed, and joined
-// again.
+// Seams of oblique patches compared with closed forms, and surfaces that are split, changed, and
+// joined again.
 
 #include "tests/geom/random.h"
 #include "tests/geom/surface_support.h"
@@ -19,8 +19,9 @@ static double second_of(const Bowl *f, double x, double y, double z, double w) {
          f->k * (x - f->s * y) * (z - f->s * w);
 }
 
-// Over x = s y + t u + q v u, y = r v: its corners are at u = `from`..`to`, v = -1..1, and the
-// parameter lines are oblique. The control points of a quadratic form are its polar values.
+// The patch over x = s y + t u + q v u, y = r v, whose corners are at u = `from`..`to`, v = -1..1,
+// and whose parameter lines are oblique. The control points of a quadratic form are its polar
+// values.
 static CagSurface *patch_over(const Bowl *f, double from, double to, double r, double lean) {
   const double u[3][2] = {{from, from}, {from, to}, {to, to}},
                v[3][2] = {{-1, -1}, {-1, 1}, {1, 1}};
@@ -32,7 +33,7 @@ static CagSurface *patch_over(const Bowl *f, double from, double to, double r, d
       for (int k = 0; k < 2; k++) {
         y[k] = r * v[j][k] + lean * u[i][k];
         x[k] = u[i][k] + f->s * y[k];
-        // Both pairings of the two polar arguments, for bilinear terms.
+        // The sum over both pairings of the two polar arguments, for bilinear terms.
         w[k] = r * v[j][k] + lean * u[i][1 - k];
         z[k] = u[i][1 - k] + f->s * w[k];
       }
@@ -44,8 +45,8 @@ static CagSurface *patch_over(const Bowl *f, double from, double to, double r, d
   return s;
 }
 
-// The difference of the normal curvatures across the edge x = s y, at its point y: the patches have
-// one tangent plane there, so it is that of the second fundamental forms.
+// The difference of the normal curvatures across the edge x = s y at its point y. The patches have
+// a common tangent plane there, so it is the difference of the second fundamental forms.
 static double bend_at(const Bowl *f, double k, double y) {
   const double x = f->s * y;
   const double px = 2 * (f->a * x + f->b * y), py = 2 * (f->b * x + f->c * y);
@@ -67,12 +68,12 @@ static void seams_of_oblique_patches_have_their_curvature(void **state) {
     Bowl g = f;
     g.k = round % 4 ? uniform(-1, 1) : 0;
     const double r = uniform(0.5, 2), far = uniform(0.5, 2), wide = uniform(0.5, 2);
-    // Lines of constant v are the same on both sides of the edge, or break there.
+    // Lines of constant v are the same on both sides of the edge, or have a corner there.
     const double lean = uniform(-0.5, 0.5), other = round % 2 ? lean : uniform(-0.5, 0.5);
     CagSurface *a = patch_over(&f, -wide, 0, r, lean), *b = patch_over(&g, 0, far, r, other);
     CagSeam seam;
     double curvature = 0, first = 0;
-    // The seam is looked at in even steps, both ends included.
+    // The seam is sampled in even steps, including both ends.
     for (int i = 0; i <= 32; i++) {
       const double y = r * (2 * i / 32.0 - 1), x = f.s * y;
       const double px = 2 * (f.a * x + f.b * y), py = 2 * (f.b * x + f.c * y);
@@ -95,7 +96,7 @@ static void seams_of_oblique_patches_have_their_curvature(void **state) {
   }
 }
 
-// --- Joining what was cut ---
+// --- Joining split surfaces ---
 
 enum { NU = 6, NV = 5 };
 
@@ -116,7 +117,7 @@ static CagSurface *random_surface(bool rational) {
   return s;
 }
 
-// All weights times a factor: the same points.
+// Multiplies all weights by a factor, which does not change the points.
 static CagSurface *reweighted(const CagSurface *s, double factor) {
   CagSurfaceNurbsView v;
   CagSurface *out;
@@ -140,7 +141,7 @@ static CagSurface *replaced(CagSurface *s, CagSurface *by) {
   return by;
 }
 
-// Another form of the same points.
+// Another representation of the same points.
 static CagSurface *in_other_form(CagSurface *s, int how, bool rational) {
   CagSurface *t;
   if (how & 1) {
@@ -185,7 +186,7 @@ static void surfaces_in_two_parts_are_joined_in_any_form(void **state) {
     b = in_other_form(b, two, rational);
     MUST(cag_surface_join(a, b, 1e-9, &joined, err));
     assert_near(area_of(joined), area_of(s), 1e-7, "area");
-    // u runs over the first, then over the second.
+    // u covers the first surface, and then the second.
     for (int half = 0; half < 2; half++)
       for (int k = 0; k < 6; k++) {
         const double range = joined->u1 - joined->u0;

@@ -1,5 +1,5 @@
-// Runs of points as curves: lines and conics anywhere in space are recognized by points of them,
-// and nothing else is.
+// Runs of points converted to curves: lines and conics anywhere in space are recognized, and
+// nothing else is.
 
 #include "geom/curve/curve.h"
 #include "geom/meet/section.h"
@@ -10,7 +10,7 @@ enum { MOST = 40 };
 
 typedef enum Kind { LINE, ELLIPSE, PARABOLA, HYPERBOLA } Kind;
 
-// A curve in its own axes, from one parameter to another, and where these axes are.
+// A curve in its own axes, its parameter range, and the position of the axes.
 typedef struct Subject {
   Kind kind;
   double a, b, from, to, size;
@@ -26,16 +26,16 @@ static CagVec3 random_vector(double most) {
   return cag_vec3(x, y, uniform(-most, most));
 }
 
-static CagVec3 place(const Subject *s, double x, double y) {
+static CagVec3 subject_point(const Subject *s, double x, double y) {
   return cag_madd(cag_madd(s->origin, x, s->axis[0]), y, s->axis[1]);
 }
 
 static CagVec3 point(const Subject *s, double t) {
   switch (s->kind) {
-  case ELLIPSE: return place(s, s->a * cos(t), s->b * sin(t));
-  case PARABOLA: return place(s, s->a * t * t, 2 * s->a * t);
-  case HYPERBOLA: return place(s, s->a * cosh(t), s->b * sinh(t));
-  default: return place(s, s->a * t, s->b * t);
+  case ELLIPSE: return subject_point(s, s->a * cos(t), s->b * sin(t));
+  case PARABOLA: return subject_point(s, s->a * t * t, 2 * s->a * t);
+  case HYPERBOLA: return subject_point(s, s->a * cosh(t), s->b * sinh(t));
+  default: return subject_point(s, s->a * t, s->b * t);
   }
 }
 
@@ -92,10 +92,10 @@ static void set_trace(Subject *s, size_t points, size_t checks, bool closed) {
   s->trace = (CagTrace){points, checks, closed, s->points, s->tangents, s->checks};
 }
 
-// A quadric whose section with the curve's plane is the curve: by the equation in the own axes and
-// any terms with their z.
+// A quadric whose section with the curve's plane is the curve: the equation in its own axes, plus
+// any terms with z.
 static CagQuadric quadric_of(const Subject *s) {
-  // The own coordinates as forms of x, y, z, 1.
+  // The curve's own coordinates as linear forms of x, y, z, 1.
   double f[4][4] = {{0}}, m[4][4] = {{0}}, q[4][4] = {{0}};
   for (int i = 0; i < 3; i++) {
     f[i][0] = s->axis[i].x;
@@ -143,7 +143,7 @@ static bool is_conic(const CagCurve *c) {
   return false;
 }
 
-// It lies on the run's curve, between its ends, and is as long.
+// Checks that the curve is on the subject, ends at its ends, and has the same length.
 static void check_curve(const Subject *s, const CagCurve *c) {
   if (strcmp(c->kind->name, name_of(s))) fail_msg("%s, not %s", c->kind->name, name_of(s));
   const double low = fmin(s->from, s->to), high = fmax(s->from, s->to), near = 1e-8 * s->size;
@@ -184,7 +184,7 @@ static void conics_are_known_by_their_points(void **state) {
   for (int round = 0; round < 400; round++) {
     Subject s;
     set_curve(&s, (Kind)(round % 4));
-    // Seven points at least, of whichever sort.
+    // At least seven points, of either sort.
     const bool few = round % 3 == 0;
     const size_t points = (size_t)(few ? whole(3, 5) : whole(7, 12));
     set_trace(&s, points, (size_t)(few ? 7 - (int)points + whole(0, 3) : whole(0, 3)), false);
@@ -206,7 +206,7 @@ static void closed_runs_are_whole_ellipses(void **state) {
     Subject s;
     set_curve(&s, ELLIPSE);
     if (round % 4 == 0) s.b = s.a;
-    // Of few points the first is not counted twice.
+    // If there are few points, the first is not repeated at the end.
     const bool few = round % 3 == 0;
     const size_t points = (size_t)(few ? whole(4, 5) : whole(8, 20));
     set_trace(&s, points, (size_t)(few ? 8 - (int)points : whole(0, 3)), true);
@@ -218,8 +218,8 @@ static void closed_runs_are_whole_ellipses(void **state) {
   }
 }
 
-// Off by less than a part in 1e10 a point is one of the curve, off by more it is not; the curve
-// then passes the points as a cubic.
+// A deviation below 1e-10 leaves the point on the curve, and a larger one does not. In the latter
+// case, the result is a cubic through the points.
 static void one_point_beside_the_curve_tells(void **state) {
   (void)state;
   seed = 93;
@@ -234,10 +234,10 @@ static void one_point_beside_the_curve_tells(void **state) {
                          ? (double)i / (double)(s.trace.count - 1)
                          : ((double)(i - s.trace.count) + 0.6) / (double)s.trace.check_count;
     const CagVec3 along = cag_unit(derivative(&s, s.from + (s.to - s.from) * t));
-    // In the plane or across it; a line is told by its inner points.
+    // In the plane or perpendicular to it; inner points determine a line.
     const CagVec3 beside = round / 8 % 2 ? s.axis[2] : cag_cross(s.axis[2], along);
     if (s.kind == LINE && (i == 0 || i + 1 == s.trace.count)) continue;
-    // Of a given conic, and of a line through the ends, the distance itself tells.
+    // For a given conic, and for a line through the ends, only the distance counts.
     const bool given = s.kind != LINE && round / 16 % 2 == 0;
     const bool sharp = s.kind == LINE || (given && round / 8 % 2 == 0);
     const double off = known ? (sharp ? 9e-11 : 5e-12) : sharp ? 1.1e-10 : 5e-9;
@@ -255,7 +255,7 @@ static void one_point_beside_the_curve_tells(void **state) {
   }
 }
 
-// Six points have a conic through five of them, which proves nothing.
+// A conic through five of six points exists, which proves nothing.
 static void six_points_are_no_conic(void **state) {
   (void)state;
   seed = 94;
@@ -268,7 +268,7 @@ static void six_points_are_no_conic(void **state) {
     assert_false(is_conic(c));
     cag_curve_release(c);
     set_curve(&s, ELLIPSE);
-    set_trace(&s, points, 7 - points, true); // the last point is the first
+    set_trace(&s, points, 7 - points, true); // the last point equals the first
     c = curve_of(&s, NULL);
     assert_false(is_conic(c));
     cag_curve_release(c);

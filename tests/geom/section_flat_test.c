@@ -1,5 +1,5 @@
-// Sections of flat faces: of random polygons with holes, anywhere in space, against the crossings
-// of their edges in order.
+// Sections of planar faces: random polygons with holes, anywhere in space, compared with the sorted
+// intersections with their edges.
 
 #include "geom/curve/region.h"
 #include "geom/meet/section.h"
@@ -39,7 +39,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// Of a line, the places along it where it crosses the edges, in order.
+// Intersects a line with the edges, and sorts the parameters along it.
 static size_t crossings(const CagVec3 *corners, size_t loops, const CagTransform *frame,
                         const CagPlane *plane, CagVec3 along, double *out) {
   size_t n = 0;
@@ -63,8 +63,8 @@ static void pieces_lie_between_crossings_of_the_edges(void **state) {
   for (int round = 0; round < 300; round++) {
     CagVec3 corners[CROSSINGS];
     const size_t loops = (size_t)(1 + round % LOOPS);
-    // The size of the face, and that of its coordinates, on which rounding depends: faces of any
-    // size lie about (1, 2, 3).
+    // The size of the face, and that of its coordinates, which determine the rounding errors. Faces
+    // of any size are near (1, 2, 3).
     const double size = pow(10, uniform(-4, 4)), far = size + 4;
     CagTransform turn, grow, frame;
     set_star(corners, cag_vec3(0, 0, 0), 2.3, 4);
@@ -95,7 +95,7 @@ static void pieces_lie_between_crossings_of_the_edges(void **state) {
       for (int k = 0; k < 2; k++)
         NEAR(cag_dot(plane.normal, cag_sub(ends[k], plane.point)), 0, 1e-12 * far);
       const double a = cag_dot(along, ends[0]), b = cag_dot(along, ends[1]);
-      // It is one of the pieces, each of which is found once.
+      // Each piece is found exactly once.
       size_t k = 0;
       while (k < n && fabs(places[k] - fmin(a, b)) > 1e-11 * far) k += 2;
       assert_true(k < n);
@@ -117,7 +117,7 @@ static void set_box(CagVec3 *p, double x0, double x1, double y0, double y1) {
   p[3] = cag_vec3(x0, y1, 0);
 }
 
-// Planes along edges of holes, and along the outer ones: an edge belongs to the section.
+// Planes along edges of holes, and along outer edges: the edge belongs to the section.
 static void sections_along_edges_have_the_edges(void **state) {
   (void)state;
   seed = 42;

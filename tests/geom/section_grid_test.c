@@ -1,5 +1,5 @@
-// Zeros between two nodes of the grid on which curves are traced: to the last digits, and in far
-// fewer steps than halving takes.
+// Zeros between two nodes of the tracing grid: accurate to the last digits, and with far fewer
+// steps than bisection.
 
 #include "geom/meet/section_grid.h"
 #include "tests/geom/random.h"
@@ -11,7 +11,7 @@ static const double rounding = 1e-15; // of values
 
 static int values; // number of evaluations
 
-// `constant` is the zero. Rounding aside, the value is 0 nowhere else.
+// `constant` is the zero. The value is 0 nowhere else, up to rounding.
 static double function_at(const CagLevel *level, double x, double *slope) {
   const double r = level->constant, d = x - r;
   switch (level->which) {
@@ -53,7 +53,7 @@ static void crossings_are_zeros_found_in_few_steps(void **state) {
     const double zero = level.constant;
     CagTracer t = {.s = s, .level = &level, .err = &err};
     OK(cag_patch_open(s, &level, (double[2]){0, 0}, (double[2]){1, 1}, &t.patch, &err));
-    // Along u, and aslant.
+    // Along u, and obliquely.
     const double u[2] = {uniform(0.01, zero), uniform(zero, 1)};
     const double v[2] = {0.5, k % 3 ? 0.5 : uniform(0, 1)};
     double f[2], slope;

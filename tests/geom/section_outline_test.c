@@ -1,11 +1,11 @@
-// Plane sections of trimmed surfaces: lines and circles that outlines cut off.
+// Plane sections of trimmed surfaces: lines and circles trimmed by outlines.
 
 #include "tests/geom/polynomial_support.h"
 
 #include "geom/meet/section.h"
 #include "geom/surface/trimmed.h"
 
-// Within a ring about the middle, lines and circles are cut off at its outlines.
+// A ring around the center, whose outlines trim lines and circles.
 static CagSurface *ring_of(const Polynomial *p, double wide, double narrow) {
   const double per[2] = {1, 1}, radius[2] = {wide, narrow};
   const CagTransform stay = cag_transform_identity();
@@ -39,21 +39,22 @@ static void sections_end_on_outlines(void **state) {
     double length;
     int count, closed = 0;
     if (round % 3 < 2) {
-      // A line at some distance from the middle, with the polynomial 1 + x^2 + y^2 as a factor.
+      // A line at some distance from the center, multiplied by the polynomial 1 + x^2 + y^2.
       const double off = uniform(0, 1) * 1.1 * wide;
       if (fabs(off - wide) < 0.01 || fabs(off - narrow) < 0.01) continue;
       p = (Polynomial){{{-c * 0.5 - d * 0.5 - off, d}, {c}}};
       length = chord(wide, off) - chord(narrow, off);
       count = off > wide ? 0 : off > narrow ? 1 : 2;
     } else {
-      // A circle that is within the ring, or passes one of its outlines.
+      // A circle that is inside the ring, or crosses one of its outlines.
       const double off = uniform(0, 0.4), r = uniform(0.05, 0.4);
       const double most = off + r, least = fabs(off - r);
       if (fabs(most - wide) < 0.02 || fabs(least - wide) < 0.02 || fabs(most - narrow) < 0.02 ||
           fabs(least - narrow) < 0.02)
         continue;
       p = circle(0.5 + c * off, 0.5 + d * off, r);
-      // Half the angle, seen from the circle's center, of its part within a disk about the middle.
+      // Half the angle, about the circle's center, of its part inside a disk about the ring's
+      // center.
       double within[2];
       for (int k = 0; k < 2; k++) {
         const double disk = k ? narrow : wide;

@@ -1,5 +1,5 @@
-// Sections through graphs of quadratic polynomials beside their extremes and saddles: loops and
-// arcs that are much smaller than the surface, and branches that nearly meet.
+// Sections through graphs of quadratic polynomials near their extremes and saddles: loops and arcs
+// much smaller than the surface, and branches that nearly meet.
 
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
@@ -16,7 +16,7 @@ static double value_at(const Graph *g, double x, double y) {
   return g->c[0] + g->c[1] * x + g->c[2] * y + g->c[3] * x * x + g->c[4] * x * y + g->c[5] * y * y;
 }
 
-// From its center and second-order terms.
+// Defines the graph by its center and second-order terms.
 static void center_at(Graph *g, double x, double y, double xx, double xy, double yy, double least) {
   g->c[3] = xx;
   g->c[4] = xy;
@@ -56,8 +56,8 @@ static double inside_of(const Graph *g, double x, double y) {
   return fmin(fmin(x, g->w - x), fmin(y, g->h - y));
 }
 
-// Runs of an ellipse within the rectangle, and their length. Gives -1 where one is too short to be
-// certain.
+// Finds the arcs of an ellipse inside the rectangle, and their length. Returns -1 if one of them is
+// too short to decide.
 static int arcs_within(const Graph *g, CagVec3 center, CagVec3 a, CagVec3 b, double *length) {
   enum { STEPS = 4000 };
   int runs = 0, changes = 0, since = STEPS, first = -1;
@@ -108,7 +108,7 @@ static void small_loops_and_arcs_are_found(void **state) {
     Graph g = {.w = uniform(1, 3), .h = uniform(1, 3)};
     const double turn = uniform(0, M_PI), size = pow(10, uniform(round % 5 < 4 ? -2 : -3, -0.5)),
                  slim = uniform(0.3, 1), level = uniform(-1, 1), top = round % 2 ? 1 : -1;
-    // Within the rectangle, or beside one of its edges.
+    // Inside the rectangle, or beside one of its edges.
     const double off = uniform(-0.8, 0.8) * size;
     CagVec3 center = {uniform(0.1, 0.9) * g.w, 0, level};
     center.y = uniform(0.1, 0.9) * g.h;
@@ -119,7 +119,7 @@ static void small_loops_and_arcs_are_found(void **state) {
     case 3: center.y = g.h + off; break;
     default: break;
     }
-    // The half axes of the ellipse at the level: size, and size times slim.
+    // The semi-axes of the ellipse at the level are size and size times slim.
     const CagVec3 x = {cos(turn), sin(turn), 0}, y = {-sin(turn), cos(turn), 0};
     const double p = top, q = top / (slim * slim);
     center_at(&g, center.x, center.y, p * x.x * x.x + q * y.x * y.x,
@@ -152,7 +152,8 @@ static void small_loops_and_arcs_are_found(void **state) {
 
 // --- Saddles ---
 
-// Zeros along the outline of the rectangle; -1 where two are too near to each other.
+// Counts the zeros along the border of the rectangle. Returns -1 if two of them are too close to
+// each other.
 static int zeros_on_outline(const Graph *g, double z) {
   enum { STEPS = 8000 };
   int n = 0, since = STEPS;
@@ -173,7 +174,7 @@ static int zeros_on_outline(const Graph *g, double z) {
   return n;
 }
 
-// The plane passes above or below a saddle, by little: two branches, each on its side.
+// The plane is slightly above or below a saddle: two branches, one on each side.
 static void branches_beside_a_saddle_are_told_apart(void **state) {
   (void)state;
   seed = 62;
@@ -184,7 +185,7 @@ static void branches_beside_a_saddle_are_told_apart(void **state) {
     const double one = uniform(0, M_PI), two = one + uniform(0.6, M_PI - 0.6);
     const double px = cos(one), py = sin(one), qx = cos(two), qy = sin(two);
     const double level = uniform(-1, 1), off = pow(10, uniform(-5, -2)) * (round % 2 ? 1 : -1);
-    // The product of two linear functions, lifted.
+    // The product of two linear functions, raised.
     center_at(&g, x, y, px * qx, px * qy + py * qx, py * qy, level - off);
     const int ends = zeros_on_outline(&g, level);
     if (ends < 0) continue;

@@ -1,4 +1,5 @@
-// Plane sections in the core: meshes whose vertices lie in the plane, hostile ones, traced runs.
+// Plane sections in the core: meshes with vertices in the plane, defective meshes, and traced
+// curves.
 
 #include "geom/meet/curvature_line.h"
 #include "geom/meet/section.h"
@@ -42,7 +43,7 @@ static double total_length(const CagCurveList *list) {
 static void a_plane_through_vertices_and_edges_gives_one_closed_curve(void **state) {
   (void)state;
   CagMesh *m = octahedron();
-  // z = 0 holds four vertices and four edges; x = y two vertices.
+  // z = 0 contains four vertices and four edges, and x = y contains two vertices.
   const CagPlane planes[] = {plane_of(0, 0, 0, 0, 0, 1), plane_of(0, 0, 0, 0, 0, -1),
                              plane_of(0, 0, 0, 1, -1, 0)};
   const double lengths[] = {4 * sqrt(2), 4 * sqrt(2), 4 * sqrt(1.5)};
@@ -70,7 +71,7 @@ static void an_open_mesh_gives_open_curves_and_an_empty_one_none(void **state) {
   assert_int_equal(list.count, 1);
   assert_false(list.items[0]->closed);
   NEAR(total_length(&list), 2, 1e-15);
-  // The sheet within the plane.
+  // The sheet lies in the plane.
   plane = plane_of(0, 0, 0, 0, 0, 1);
   OK(cag_mesh_section(sheet, &plane, &list, &err));
   assert_int_equal(list.count, 1);
@@ -79,7 +80,7 @@ static void an_open_mesh_gives_open_curves_and_an_empty_one_none(void **state) {
   cag_mesh_release(empty);
 }
 
-// Of three triangles on one edge the first two are joined.
+// If three triangles have a common edge, the first two are connected.
 static void triangles_on_one_edge_are_joined_in_order(void **state) {
   (void)state;
   static const CagVec3 p[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0.5}, {0, 1, 0.5}, {-1, -1, 0.5}};
@@ -98,7 +99,7 @@ static void triangles_on_one_edge_are_joined_in_order(void **state) {
       assert_true(cag_curve_vertices(list.items[i], &points, &n, &closed) && !closed);
       if (n == 2) continue;
       assert_int_equal(n, 3);
-      // Two thirds of the way from the lowest vertex.
+      // At two thirds from the lowest vertex.
       for (int e = 0; e < 2; e++) {
         const CagVec3 q = cag_lerp(p[0], p[ends[k][e]], 2.0 / 3);
         NEAR(fmin(cag_norm(cag_sub(points[0], q)), cag_norm(cag_sub(points[2], q))), 0, 1e-15);
@@ -109,7 +110,7 @@ static void triangles_on_one_edge_are_joined_in_order(void **state) {
   }
 }
 
-// Three triangles on one edge, and two that run alike.
+// Three triangles on one edge, and two with the same direction.
 static void meshes_that_are_no_surfaces_do_no_harm(void **state) {
   (void)state;
   static const CagVec3 p[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0.5}, {0, 1, 0.5}, {-1, -1, 0.5}};
@@ -125,8 +126,8 @@ static void meshes_that_are_no_surfaces_do_no_harm(void **state) {
 
 static void solids_of_all_sizes_are_cut_alike(void **state) {
   (void)state;
-  // The plane through the middle of a cube along its space diagonal: a hexagon of side size /
-  // sqrt(2).
+  // The plane through the center of a cube perpendicular to its space diagonal: a hexagon of side
+  // size / sqrt(2).
   for (double size = 1e-6; size < 1e7; size *= 1e3) {
     CagSolid *box;
     OK(cag_solid_box(cag_vec3(size, size, size), false, &box, &err));
@@ -140,7 +141,7 @@ static void solids_of_all_sizes_are_cut_alike(void **state) {
   }
 }
 
-// Arc lengths of x^2 + y^2 = r^2 at the height of the plane, near the ball's top, too.
+// The arc lengths of x^2 + y^2 = r^2 at the height of the plane, including near the ball's top.
 static void balls_give_exact_circles_at_every_height(void **state) {
   (void)state;
   CagSolid *ball;
@@ -180,15 +181,15 @@ static void a_closed_mesh_laid_on_a_surface_stays_closed(void **state) {
   cag_surface_release(torus);
 }
 
-// Places and normals of a torus in closed form: the angle about the axis, and that about the tube.
+// Distance and normal of a torus in closed form.
 static CagVec3 off_torus(CagVec3 p, double major, CagVec3 *normal) {
   const CagVec3 ring = cag_scaled(cag_unit(cag_vec3(p.x, p.y, 0)), major);
   *normal = cag_unit(cag_sub(p, ring));
   return cag_sub(p, ring);
 }
 
-// A square over the torus as a sheet: on it with its normals, edges within the tolerance and short,
-// and as large as the torus is there.
+// A square above the torus, projected as a sheet. It is on the torus with its normals, its edges
+// satisfy the tolerance and are short, and its area is that of the torus there.
 static void sheets_on_a_torus_keep_the_tolerance(void **state) {
   (void)state;
   CagSurface *torus;
@@ -200,7 +201,7 @@ static void sheets_on_a_torus_keep_the_tolerance(void **state) {
     CagMesh *square, *image;
     OK(cag_mesh_from_faces(p, 4, corners, count, 1, &square, &err));
     OK(cag_mesh_onto_surface(square, torus, tolerance, height == 0, 1000000, &image, &err));
-    // Points laid on a surface have no parameters of their own, and those of sheets have normals.
+    // Projected points have no parameters, and those of sheets have normals.
     assert_null(image->uv);
     assert_null(image->weld);
     assert_true((image->normals != NULL) == (height == 0));
@@ -210,7 +211,8 @@ static void sheets_on_a_torus_keep_the_tolerance(void **state) {
     for (size_t v = 0; v < image->vertex_count; v++) {
       CagVec3 normal;
       const double off = cag_norm(off_torus(image->positions[v], 5, &normal)) - 2;
-      // The normal of the parameters, u about the axis or about the tube, is outward or inward.
+      // The normal of the parametrization, with u about the axis or about the tube, is outward or
+      // inward.
       if (v == 0) side = off < 0 ? -1 : 1;
       NEAR(off, height == 0 ? 0 : side * height, 1e-12);
       if (height == 0) NEAR(fabs(cag_dot(image->normals[v], normal)), 1, 1e-12);
@@ -224,10 +226,12 @@ static void sheets_on_a_torus_keep_the_tolerance(void **state) {
         CagVec3 normal;
         const double off = cag_norm(off_torus(cag_lerp(a, b, 0.5), 5, &normal)) - 2 - side * height;
         assert_true(fabs(off) <= most);
-        // 0.08 of both domains, 2 pi each, at most 7.5 and 2.5 from their axes.
+        // 0.08 of both domains, which are 2 pi, at distances of at most 7.5 and 2.5 from their
+        // axes.
         assert_true(cag_norm(cag_sub(a, b)) <= 0.08 * 2 * M_PI * 7.5);
       }
-    // Over 3 radians by u and 3.5 by v: r (R + r cos w) dw dt, w being one of them.
+    // Over 3 radians in u and 3.5 in v: the integral of r (R + r cos w) dw dt, where w is one of
+    // them.
     if (height == 0) {
       const double about_v = 3 * 2 * (5 * 3.5 + 2 * (sin(5.5) - sin(2)));
       const double about_u = 3.5 * 2 * (5 * 3 + 2 * (sin(4) - sin(1)));
@@ -261,8 +265,8 @@ static void principal_directions_are_square_and_of_unit_length(void **state) {
 
 // --- Random meshes ---
 
-// A grid of n by n squares over 0..n, each cut into two triangles, with heights. With `welded`
-// every triangle has corners of its own, joined by the table.
+// A grid of n by n squares over 0..n with heights, each divided into two triangles. If `welded` is
+// set, every triangle has its own vertices, connected by the weld table.
 static CagMesh *landscape(size_t n, const double *heights, bool welded) {
   const size_t count = 2 * n * n;
   CagMesh *m;
@@ -289,7 +293,8 @@ static CagMesh *landscape(size_t n, const double *heights, bool welded) {
   return m;
 }
 
-// The pieces of the plane in the triangles, found one by one: a vertex on it counts as above.
+// The pieces of the plane inside the triangles, computed separately. A vertex on the plane counts
+// as above.
 typedef struct Pieces {
   size_t n;
   CagVec3 end[512][2];
@@ -318,7 +323,7 @@ static void find_pieces(const CagMesh *m, const CagPlane *plane, Pieces *out) {
 
 static bool is_at(CagVec3 a, CagVec3 b) { return cag_norm(cag_sub(a, b)) < 1e-9; }
 
-// The pieces that end at p, those without length left out.
+// Finds the pieces that end at p, except those of length 0.
 static int pieces_at(const Pieces *s, CagVec3 p, CagVec3 out[2]) {
   int n = 0;
   for (size_t i = 0; i < s->n; i++)
@@ -328,8 +333,8 @@ static int pieces_at(const Pieces *s, CagVec3 p, CagVec3 out[2]) {
   return n;
 }
 
-// The corners of the curves are the ends of pieces at which these turn or end; all together are as
-// long as the pieces, and an end of an open curve is that of one piece.
+// Checks that the corners of the curves are ends of pieces where these turn or end, that the curves
+// together are as long as the pieces, and that an end of an open curve is the end of one piece.
 static void check_polylines(const CagMesh *m, const CagPlane *plane, int round) {
   static Pieces pieces;
   find_pieces(m, plane, &pieces);
@@ -340,7 +345,7 @@ static void check_polylines(const CagMesh *m, const CagPlane *plane, int round) 
       if (is_at(pieces.end[i][0], pieces.end[i][1])) continue;
       const int n = pieces_at(&pieces, pieces.end[i][e], ways);
       assert_true(n == 1 || n == 2);
-      // Each is met from every piece that ends in it.
+      // Each end is reached from every piece that ends there.
       if (n == 1) ends++;
       else corners += cag_norm(cag_add(ways[0], ways[1])) > 1e-9;
     }
@@ -375,7 +380,7 @@ static void sections_of_landscapes_are_the_pieces_in_their_triangles(void **stat
   for (int round = 0; round < 90; round++) {
     double heights[(MOST + 1) * (MOST + 1)];
     const size_t n = 1 + (size_t)round % MOST;
-    // Random ones; or steps of whole numbers, of which many are in the plane, and flat parts.
+    // Random heights; or steps of whole numbers, many of which are in the plane, and flat parts.
     for (size_t i = 0; i < (n + 1) * (n + 1); i++) {
       heights[i] = uniform(-2, 2);
       if (round % 3 == 1) heights[i] = floor(heights[i]) + 0.5;
@@ -389,7 +394,7 @@ static void sections_of_landscapes_are_the_pieces_in_their_triangles(void **stat
   }
 }
 
-// A cube whose faces are grids has the sections of the cube: their corners are on its edges.
+// A cube whose faces are grids has the sections of the cube, with corners only on its edges.
 static void sections_of_divided_cubes_have_no_points_on_flat_faces(void **state) {
   (void)state;
   seed = 82;
@@ -417,7 +422,7 @@ static void sections_of_divided_cubes_have_no_points_on_flat_faces(void **state)
       for (size_t w = 0; w < v && m->weld[v] == v; w++)
         if (is_at(m->positions[v], m->positions[w])) m->weld[v] = (uint32_t)w;
     }
-    // Through places of the grid, or anywhere.
+    // Through points of the grid, or anywhere.
     double n[3], p[3];
     for (int k = 0; k < 3; k++) {
       n[k] = uniform(-1, 1);
@@ -429,7 +434,7 @@ static void sections_of_divided_cubes_have_no_points_on_flat_faces(void **state)
     }
     if (n[0] == 0 && n[1] == 0 && n[2] == 0) n[2] = 1;
     const CagPlane plane = plane_of(p[0], p[1], p[2], n[0], n[1], n[2]);
-    // Where corners of the cube lie in the plane, what is above it has no unique edge.
+    // If corners of the cube are in the plane, the part above it does not have unique edges.
     bool generic = true;
     size_t corners = 0;
     for (int a = 0; a < 8; a++) {
@@ -470,7 +475,7 @@ static void sections_of_divided_cubes_have_no_points_on_flat_faces(void **state)
 
 // --- Duplicates ---
 
-// How many of two segments stay.
+// The number of two segments that are kept.
 static size_t kept(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d, double near) {
   const CagVec3 ends[2][2] = {{a, b}, {c, d}};
   CagCurveList list = {0};
@@ -493,7 +498,7 @@ static CagVec3 along(int axis, double x, double across) {
 static void curves_that_run_along_another_are_dropped(void **state) {
   (void)state;
   const double near = 0.01;
-  // Also where a distance of `near` is lost in rounding.
+  // Even if `near` is lost in rounding.
   for (int axis = 0; axis < 3; axis++)
     for (int far = -1; far <= 1; far++) {
       const double w = far * 1e15;

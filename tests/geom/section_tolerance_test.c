@@ -1,5 +1,5 @@
-// Sections and outlines of tori of all sizes: the curves keep the tolerance, and without
-// one they are those of a millionth of the size.
+// Sections and outlines of tori of all sizes: the curves satisfy the tolerance. The default
+// tolerance is a millionth of the size.
 
 #include "geom/meet/section.h"
 #include "geom/solid/solid.h"

@@ -1,5 +1,5 @@
-// Plane sections of graphs of polynomials whose zeros are known: small loops, tips that just pass
-// an edge, branches that cross, touch or almost meet.
+// Plane sections of graphs of polynomials with known zeros: small loops, tips that barely cross an
+// edge, and branches that cross, touch, or almost meet.
 
 #include "tests/geom/polynomial_support.h"
 
@@ -13,7 +13,7 @@ typedef struct Zeros {
   bool doubled; // zeros of the second order
 } Zeros;
 
-// Length of the line through (x, y) with this direction within the square.
+// The length inside the square of the line through (x, y) with this direction.
 static double clipped(double x, double y, double dx, double dy) {
   double lo = -INFINITY, hi = INFINITY;
   const double at[2] = {x, y}, way[2] = {dx, dy};
@@ -26,7 +26,7 @@ static double clipped(double x, double y, double dx, double dy) {
   return (hi - lo) * hypot(dx, dy);
 }
 
-// Both branches of (x - x0) (y - y0) = e within the square.
+// The length of both branches of (x - x0) (y - y0) = e inside the square.
 static double hyperbola_length(double x0, double y0, double e) {
   enum { STEPS = 4000 };
   double length = 0;
@@ -54,13 +54,13 @@ static Zeros some_zeros(int kind) {
   const Polynomial line = slanted(x, y, slope), second = slanted(x, y, other),
                    loop = circle(x, y, r), tiny = circle(x, y, small), a = line_x(x), b = line_y(y),
                    one = {{{1}}};
-  // A line through (x, y) is along (-slope, 1).
+  // A line through (x, y) has the direction (-slope, 1).
   const double line_length = clipped(x, y, -slope, 1);
   switch (kind) {
   case 0: return (Zeros){"line", line, 1, 0, line_length, false};
   case 1: return (Zeros){"small loop", tiny, 1, 1, 2 * M_PI * small, false};
   case 2: {
-    // The tip of a circle about a place beyond an edge, by so much.
+    // The tip of a circle whose center is beyond an edge extends this far into the square.
     const double tip = pow(10, uniform(-6, -2)), wide = uniform(0.05, 0.3), far = tip - wide;
     const int edge = (int)uniform(0, 4);
     const double cx = edge == 0 ? far : edge == 1 ? 1 - far : x;
@@ -70,7 +70,7 @@ static Zeros some_zeros(int kind) {
   case 3:
     return (Zeros){
         "two lines", product(&line, &second), 2, 0, line_length + clipped(x, y, -other, 1), false};
-  case 4: // through the circle's center, so that they cross twice
+  case 4: // through the circle's center, so they cross twice
     return (Zeros){
         "circle and line", product(&loop, &line), 2, 1, line_length + 2 * M_PI * r, false};
   case 5: return (Zeros){"double line", product(&line, &line), 1, 0, line_length, true};
@@ -80,7 +80,7 @@ static Zeros some_zeros(int kind) {
     const Polynomial saddle = product(&a, &b);
     return (Zeros){"hyperbola", sum(&saddle, &one, -e), 2, 0, hyperbola_length(x, y, e), false};
   }
-  case 11: // through nodes of the grid that is traced
+  case 11: // through nodes of the tracing grid
     return (Zeros){"middle line", line_x(0.25 * floor(uniform(1, 4))), 1, 0, 1, false};
   case 8: return (Zeros){"none", sum(&loop, &one, 0.2), 0, 0, 0, false};
   case 9: {
@@ -132,7 +132,7 @@ static void sections_are_the_zeros_of_polynomials(void **state) {
         CagVec3 q;
         OK(cag_curve_point(c, c->start + (c->end - c->start) * k / 24, &q, &err));
         q = cag_transform_point(&back, q);
-        // The polynomial changes by up to some times the distance.
+        // The polynomial changes by at most a few times the distance.
         if (!(fabs(q.z) < 1e-5) || !(fabs(value(&is.p, q.x, q.y)) < 2e-5))
           fail_msg("round %d, %s: [%g %g %g] is off by %g", round, is.name, q.x, q.y, q.z,
                    value(&is.p, q.x, q.y));

@@ -1,5 +1,5 @@
-// Distances of sets of many spheres, pipes and circles, which have closed forms: those of centers
-// and axes, less the radii.
+// Distances of sets of many spheres, pipes, and circles, which have closed forms: those of centers
+// and axes, minus the radii.
 
 #include "geom/distance/separation.h"
 #include "geom/surface/quadric.h"
@@ -11,7 +11,7 @@ enum { MOST = 12 };
 
 typedef enum Kind { BALL, PIPE, POINT, CHORD, KINDS } Kind;
 
-// All but the pipe and the chord, from a to b, are about a.
+// The pipe and the chord are from a to b; the others are about a.
 typedef struct Shape {
   Kind kind;
   CagVec3 a, b;
@@ -74,7 +74,7 @@ static void let_go(Set *set) {
   cag_parts_free(&set->parts);
 }
 
-// Of the point p from a shape, and the farthest point of the shape.
+// The distances of the point p from the closest and the farthest point of the shape.
 static void reach_from(CagVec3 p, const Shape *s, double *least, double *most) {
   const CagVec3 d = cag_sub(s->b, s->a), r = cag_sub(p, s->a);
   const double length = cag_norm(d), along = cag_dot(r, cag_unit(d));
@@ -120,13 +120,14 @@ static void sets_of_round_shapes_have_the_distances_of_their_centers_and_axes(vo
     for (int i = 0; i < m; i++) {
       const CagVec3 at = cag_add(way, random_point(2));
       const Kind kind = (Kind)(uniform(0, 1) < 0.6 ? BALL : (round + i) % KINDS);
-      // The ends of pipes are far away: beyond these their axes tell less than the distance.
+      // The ends of the pipes are far away, where their axes would no longer determine the
+      // distance.
       const CagVec3 axis = cag_unit(random_point(1));
       const CagVec3 along = cag_scaled(axis, kind == PIPE ? 9 : uniform(0.1, 2));
       add_shape(&b, kind, cag_sub(at, kind == PIPE ? along : cag_vec3(0, 0, 0)), cag_add(at, along),
                 uniform(0.1, 0.7));
     }
-    if (round % 3 == 0) { // around a ball, and perhaps others
+    if (round % 3 == 0) { // around a ball, and possibly others
       const CagVec3 at = a.shapes[0].a, pole = cag_add(at, random_point(1));
       add_shape(&b, BALL, at, pole, round % 2 ? uniform(0.8, 1) : uniform(8, 9));
     }

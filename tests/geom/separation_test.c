@@ -1,5 +1,5 @@
-// Distances of exact curves and surfaces, compared with closed forms and with a search on grids
-// that become finer and finer.
+// Distances of exact curves and surfaces, compared with closed forms and with a search on
+// increasingly fine grids.
 
 #include "geom/curve/function.h"
 #include "geom/distance/separation.h"
@@ -16,7 +16,7 @@ static CagVec3 random_direction(void) {
 
 // --- Sets of many parts ---
 
-// An arc of the angle 2 half about c whose middle is m.
+// An arc of the angle 2 half about c, with its midpoint m.
 static CagCurve *arc_about(CagVec3 c, CagVec3 m, double half) {
   const double radius = cag_norm(cag_sub(m, c));
   const CagVec3 x = cag_unit(cag_sub(m, c)), z = cag_unit(cag_cross(x, random_direction()));
@@ -33,8 +33,9 @@ static CagCurve *arc_about(CagVec3 c, CagVec3 m, double half) {
   return arc;
 }
 
-// Around the origin: the chord of an arc that bulges towards it is farther than dozens of points
-// and segments, but the arc is nearest. The parts beside it in its box have no sag, or another one.
+// Shapes around the origin. The chord of an arc that bulges toward it is farther away than dozens
+// of points and segments, but the arc is the closest. Other parts in the same box have no sag, or a
+// different one.
 static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
   (void)state;
   enum { MOST = 90 };
@@ -51,7 +52,7 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
       const CagVec3 way = random_direction();
       const double r = uniform(1, 1.02);
       if (i == at || i < arcs) {
-        // Center beyond the arc, which is nearest in its middle.
+        // The center is beyond the arc, whose midpoint is its closest point.
         const double near = i == at ? uniform(0.97, 1) : uniform(1.01, 1.1);
         const double radius = uniform(3, 10);
         CagCurve *arc =
@@ -71,7 +72,7 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
         if (r < least) nearest = cag_scaled(way, r);
         least = fmin(least, r);
       } else {
-        // The foot is in the middle of the segment.
+        // The foot is the midpoint of the segment.
         const CagVec3 along = cag_scaled(cag_unit(cag_cross(way, random_direction())), 0.2);
         const CagVec3 ends[2] = {cag_madd(cag_scaled(way, r), 1, along),
                                  cag_madd(cag_scaled(way, r), -0.7, along)};
@@ -99,13 +100,13 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
 typedef struct Shape {
   CagCurve *curve;
   CagSurface *surface;
-  CagVec3 point; // if there is neither
+  CagVec3 point; // if neither is set
   CagParts parts;
 } Shape;
 
 static int freedom_of(const Shape *s) { return s->surface ? 2 : s->curve ? 1 : 0; }
 
-static CagVec3 place_of(const Shape *s, const double *x) {
+static CagVec3 shape_point(const Shape *s, const double *x) {
   CagVec3 p = s->point;
   if (s->surface) OK(cag_surface_point(s->surface, x[0], x[1], &p, &err));
   else if (s->curve) OK(cag_curve_point(s->curve, x[0], &p, &err));
@@ -125,15 +126,16 @@ static Window domain_of(const Shape *s) {
   return (Window){{s->curve->start, 0}, {s->curve->end, 0}};
 }
 
-// Points on a grid over the window, and their parameters; of curves as many as of surfaces.
-static int places_in(const Shape *s, const Window *w, CagVec3 *p, double (*x)[2]) {
+// Computes points on a grid over the window, and their parameters. Curves have as many points as
+// surfaces.
+static int grid_points(const Shape *s, const Window *w, CagVec3 *p, double (*x)[2]) {
   int n = 0;
   const int rows = s->surface ? ROWS : s->curve ? MOST_PLACES : 2, columns = s->surface ? ROWS : 1;
   for (int i = 0; i < rows; i++)
     for (int k = 0; k < columns; k++, n++) {
       x[n][0] = w->low[0] + (w->high[0] - w->low[0]) * i / (rows - 1);
       x[n][1] = s->surface ? w->low[1] + (w->high[1] - w->low[1]) * k / (columns - 1) : 0;
-      p[n] = place_of(s, x[n]);
+      p[n] = shape_point(s, x[n]);
     }
   return n;
 }
@@ -149,14 +151,15 @@ static void narrow(Window *w, const double *x, const Shape *s) {
   }
 }
 
-// The distance by grids; each next one is around the nearest points of the one before.
+// The distance from grids, each of which surrounds the closest points of the previous one.
 static double distance_by_grids(const Shape *a, const Shape *b, int rounds) {
   static CagVec3 p[2][MOST_PLACES];
   static double x[2][MOST_PLACES][2];
   Window window[2] = {domain_of(a), domain_of(b)};
   double best = INFINITY;
   for (int round = 0; round < rounds; round++) {
-    const int n = places_in(a, &window[0], p[0], x[0]), m = places_in(b, &window[1], p[1], x[1]);
+    const int n = grid_points(a, &window[0], p[0], x[0]),
+              m = grid_points(b, &window[1], p[1], x[1]);
     int at[2] = {0, 0};
     double least = INFINITY;
     for (int i = 0; i < n; i++)
@@ -267,7 +270,7 @@ static CagStatus coil(void *context, double t, int order, CagVec3 *out, CagError
   return CAG_OK;
 }
 
-// A formula may be slow: Newton's method takes a few evaluations for a pair of parts.
+// Formulas may be slow: Newton's method needs few evaluations for a pair of parts.
 static void few_evaluations_find_the_distance(void **state) {
   (void)state;
   int most = 0, all = 0;

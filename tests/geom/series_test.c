@@ -1,4 +1,5 @@
-// Intervals, series of intervals, and Chebyshev series, against closed forms and random members.
+// Intervals, series of intervals, and Chebyshev series, compared with closed forms and random
+// members.
 
 #include "geom/basis/chebyshev.h"
 #include "geom/basis/interval.h"
@@ -15,7 +16,7 @@ static CagInterval random_interval(double width) {
 }
 
 static double member(CagInterval a) {
-  const double x = uniform(-0.2, 1.2); // ends as well
+  const double x = uniform(-0.2, 1.2); // the ends are included
   return x <= 0 ? a.lo : x >= 1 ? a.hi : a.lo + (a.hi - a.lo) * x;
 }
 
@@ -53,7 +54,7 @@ static void operations_hold_their_members_and_reach_both_ends(void **state) {
           r[k].high = fmax(r[k].high, value[k]);
         }
       }
-    for (int k = 0; k < 7; k++) { // squares and cosines turn between the samples
+    for (int k = 0; k < 7; k++) { // squares and cosines have extremes between the samples
       NEAR(r[k].range.lo, r[k].low, k == 4 || k == 5 ? 2e-3 : 1e-13);
       NEAR(r[k].range.hi, r[k].high, k == 4 || k == 5 ? 2e-3 : 1e-13);
     }
@@ -62,7 +63,7 @@ static void operations_hold_their_members_and_reach_both_ends(void **state) {
     NEAR(cag_interval3_size(v),
          sqrt(pow(cag_interval_size(a), 2) + pow(cag_interval_size(b), 2) + f * f), 1e-14);
   }
-  // Half turns and turns, and just not.
+  // At multiples of half turns, and slightly beside them.
   for (int k = -3; k <= 3; k++) {
     const double at = k * M_PI;
     const CagInterval over = cag_interval_cos((CagInterval){at - 0.1, at + 0.2}),
@@ -106,7 +107,7 @@ static void random_vectors(double width, CagInterval3 *a, Vector *of) {
   }
 }
 
-// The value at t of the series in the middle of narrow ranges.
+// The value at t of the series of the midpoints of narrow ranges.
 static CagVec3 middle_at(const CagInterval3 *a, double t) {
   CagVec3 sum = {0, 0, 0};
   for (int k = ORDER; k >= 0; k--)
@@ -122,7 +123,7 @@ static double middle_of(const CagInterval *a, double t) {
   return sum;
 }
 
-// Of ranges without width, at a small t: equal but for the powers that are left out.
+// For ranges of width 0 and a small t, the results are equal up to the omitted powers.
 static void series_of_numbers_are_those_of_the_functions(void **state) {
   (void)state;
   seed = 302;
@@ -176,7 +177,7 @@ static void holds_series(const CagInterval *a, const CagInterval *b) {
   }
 }
 
-// What a series of members gives is in what the series of ranges gives.
+// The result for a series of members is inside the result for the series of ranges.
 static void series_of_ranges_hold_those_of_their_members(void **state) {
   (void)state;
   seed = 303;
@@ -225,7 +226,7 @@ static void series_of_ranges_hold_those_of_their_members(void **state) {
     units++;
   }
   assert_true(quotients > 300 && units > 300);
-  // A vector that may be 0 has no direction.
+  // A vector that may be 0 does not have a direction.
   CagInterval3 v[1] = {{{-1, 1}, {-0.1, 0.2}, {0, 0.1}}}, out[1];
   assert_false(cag_intervals3_unit(v, 0, out));
   v[0].z.lo = 0.05;
@@ -261,7 +262,7 @@ static void smooth_functions_have_their_series_and_ranges(void **state) {
   int calls = 0;
   CagChebyshev *f, *again;
   OK(cag_chebyshev_fit(smooth, &calls, -1, 4, 3, 1e-13, "f", &f, &err));
-  assert_true(calls < 600); // 8 pieces or 16
+  assert_true(calls < 600); // 8 or 16 pieces
   again = cag_chebyshev_retain(f);
   cag_chebyshev_release(again);
   double joints[64];
@@ -297,7 +298,8 @@ static void smooth_functions_have_their_series_and_ranges(void **state) {
         for (int k = 0; k < 5; k++) {
           const double slack = 1e-13 * 60 * pow(100, k);
           assert_true(holds(r[5 * part + k], expected[part][k], slack));
-          // Not far wider than the values at the ends tell, times the bend of 16 terms.
+          // Not much wider than the difference of the values at the ends, plus the bend of 16
+          // terms.
           if (k < 2) assert_true(r[5 * part + k].hi - r[5 * part + k].lo <= slack + 400 * (b - a));
         }
     }
@@ -308,8 +310,9 @@ static void smooth_functions_have_their_series_and_ranges(void **state) {
 
 typedef struct Edge {
   double at;
-  int what; // 0: |t - at|, 1: a jump, 2: a pole, 3: fails, 4: a jump of the third derivative, 5: a
-            // kink of a wave
+  // 0: |t - at|; 1: a jump; 2: a pole; 3: a failure; 4: a jump of the third derivative; 5: a kink
+  // of a wave
+  int what;
   double bend;
 } Edge;
 
@@ -348,7 +351,7 @@ static void kinks_jumps_and_failures_are_told(void **state) {
       NEAR(out[1], t > x.at ? 2 : 0, 1e-7);
     }
     cag_chebyshev_release(f);
-    x.what = 4; // the first derivative goes on
+    x.what = 4; // the first derivative is continuous
     OK(cag_chebyshev_fit(edged, &x, 0, 2, 1, 1e-10, "f", &f, &err));
     assert_int_equal(cag_chebyshev_breaks(f, breaks, 8), 0);
     cag_chebyshev_release(f);
@@ -360,7 +363,7 @@ static void kinks_jumps_and_failures_are_told(void **state) {
     x.what = 3;
     FAILS(cag_chebyshev_fit(edged, &x, 0, 2, 1, 1e-12, "f", &f, &err), "function-failed");
   }
-  // A wave of slope 200 has kinks of more than 1e-5 of the slopes at both sides.
+  // A wave of slope 200 has kinks larger than 1e-5 of the slopes on both sides.
   for (int i = 0; i < 4; i++) {
     Edge wave = {(20 + i / 2) * M_PI / 200, 5, i % 2 ? 0.1 : 0.0005};
     CagChebyshev *f;
@@ -370,7 +373,7 @@ static void kinks_jumps_and_failures_are_told(void **state) {
     if (i % 2) NEAR(breaks[0], wave.at, 1e-6);
     cag_chebyshev_release(f);
   }
-  // A kink at a joint has limits of both sides.
+  // At a kink at a joint, both one-sided limits exist.
   Edge x = {.at = 1};
   CagChebyshev *f;
   double out[2];

@@ -1,4 +1,4 @@
-// Shells of several bodies beside each other and within each other: each other one is a cavity.
+// Shells of several bodies, next to each other and nested: every second one is a cavity.
 
 #include "geom/solid/solid.h"
 #include "geom/solid/tessellate.h"
@@ -7,7 +7,7 @@
 
 enum { FACES_MOST = 200 };
 
-// The faces so far, and what they enclose.
+// The faces so far, and the measures of the enclosed body.
 typedef struct Parts {
   CagSurface *face[FACES_MOST];
   size_t n;
@@ -18,7 +18,8 @@ typedef struct Parts {
 
 static int random_int(int below) { return (int)uniform(0, below); }
 
-// A body with its corners at a distance from its center, the ball that it holds, and its measures.
+// A body with corners at the same distance from its center, the radius of the ball that it
+// contains, and its measures.
 static CagSolid *random_body(double radius, double *within, double *volume, double *area) {
   CagSolid *s, *up;
   switch (random_int(3)) {
@@ -50,7 +51,7 @@ static CagSolid *random_body(double radius, double *within, double *volume, doub
   }
 }
 
-// Adds a body within a ball, and bodies within the body; `sense` is 1, or -1 for a cavity.
+// Adds a body inside a ball, and bodies inside the body. `sense` is 1, or -1 for a cavity.
 static void add_bodies(Parts *p, CagVec3 center, double radius, int sense, int depth) {
   double within, volume, area, angle[3];
   CagSolid *s = random_body(radius, &within, &volume, &area), *placed;

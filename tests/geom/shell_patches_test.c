@@ -1,6 +1,6 @@
-// Shells whose sides are cut into patches, each side in its own way: corners of patches end within
-// the edges of their neighbors. Volume, area and meshes are those of the whole body. Its corners
-// have three sides or more.
+// Shells whose sides are divided into patches, each side differently, so that corners of patches
+// are inside the edges of their neighbors. Volume, area, and meshes are those of the whole body.
+// Three or more sides meet at its corners.
 
 #include "geom/solid/solid.h"
 #include "geom/solid/tessellate.h"
@@ -19,13 +19,13 @@ typedef struct Side {
   CagVec3 origin, x, y;
 } Side;
 
-static CagVec3 place(const Side *s, double x, double y) {
+static CagVec3 side_point(const Side *s, double x, double y) {
   return cag_madd(cag_madd(s->origin, x, s->x), y, s->y);
 }
 
 static int random_int(int below) { return (int)uniform(0, below); }
 
-// Parameters in either order and sense: the shell turns its faces outward.
+// The order and direction of the parameters vary: the shell must orient its faces outward.
 static CagSurface *patch(const CagVec3 corner[4]) {
   static const int ORDERS[8][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {1, 0, 3, 2}, {2, 0, 3, 1},
                                    {2, 3, 0, 1}, {1, 3, 0, 2}, {3, 2, 1, 0}, {3, 1, 2, 0}};
@@ -35,7 +35,7 @@ static CagSurface *patch(const CagVec3 corner[4]) {
   return s;
 }
 
-// A piece of the plane with its corner, and x along a side of the parallelogram.
+// A planar region with the origin at a corner, and x along a side of the parallelogram.
 static CagSurface *region(const CagVec3 corner[4]) {
   const CagVec3 x = cag_sub(corner[2], corner[0]), y = cag_sub(corner[1], corner[0]);
   const CagVec3 along = cag_unit(x), up = cag_unit(cag_cross(x, y)), off = cag_cross(up, along);
@@ -60,7 +60,7 @@ static CagSurface *region(const CagVec3 corner[4]) {
   return s;
 }
 
-// Lines of a grid over 0 .. 1, at eighths.
+// Grid lines over 0 .. 1 at multiples of an eighth.
 static size_t random_lines(int most, double *out) {
   bool cut[8] = {false};
   size_t n = 0;
@@ -71,7 +71,7 @@ static size_t random_lines(int most, double *out) {
   return n;
 }
 
-// Cuts the side into the cells of a grid.
+// Divides the side into the cells of a grid.
 static void add_side(Faces *f, const Side *side, int most, bool planar) {
   double lines[2][9];
   const size_t n = random_lines(most, lines[0]), m = random_lines(most, lines[1]);
@@ -79,12 +79,12 @@ static void add_side(Faces *f, const Side *side, int most, bool planar) {
     for (size_t j = 0; j < m; j++) {
       CagVec3 corner[4];
       for (size_t k = 0; k < 4; k++)
-        corner[k] = place(side, lines[0][i + k / 2], lines[1][j + k % 2]);
+        corner[k] = side_point(side, lines[0][i + k / 2], lines[1][j + k % 2]);
       f->at[f->n++] = planar ? region(corner) : patch(corner);
     }
 }
 
-// unit: the order of its size; slack and tolerance are parts of that.
+// unit: the magnitude of its size; slack and tolerance are relative to it.
 static void check_solid(const CagSolid *s, double volume, double area, double unit, double slack,
                         double tolerance, long euler) {
   CagMassProperties mass;
@@ -134,9 +134,10 @@ static void boxes_of_patches_are_boxes(void **state) {
   }
 }
 
-// The sums of some vectors, each taken 0 to 1 times: a side for each two of them and either sense,
-// which begins at the sum of those that point out of it. The sides stand off a little. The image of
-// the body under a map that is not a similarity is closed, too.
+// The sums of some vectors with factors in 0..1. The body has two sides for each two of the
+// vectors, one for each direction. A side begins at the sum of the vectors that point out of it.
+// The sides do not meet exactly. The image of the body under a map that is not a similarity is
+// closed, too.
 static void sums_of_vectors_are_bodies(void **state) {
   (void)state;
   CagTransform stretch = cag_transform_identity();
@@ -220,13 +221,13 @@ static double area_of(const Outline *o) {
   double area = 0;
   for (int i = 0; i < o->n; i++) {
     const CagVec3 a = o->corner[i], b = o->corner[i + 1];
-    // Archimedes: two thirds of the triangle with the middle point.
+    // Archimedes: two thirds of the triangle with the middle control point.
     area += cross_of(a, b) / 2 + cross_of(cag_sub(o->middle[i], a), cag_sub(b, a)) / 3;
   }
   return fabs(area);
 }
 
-// Of what the loop sweeps along a vector.
+// The area that the loop sweeps along a vector.
 static double wall_of(const Outline *o, CagVec3 way) {
   enum { STEPS = 400 };
   double area = 0;
@@ -257,7 +258,7 @@ static CagCurve *loop_of(const Outline *o) {
   return c;
 }
 
-// The piece of an edge between two of its parameters; weights change its own parameters.
+// The piece of an edge between two of its parameters. Weights change its parametrization.
 static CagCurve *piece_of(const Outline *o, int i, double from, double to, CagVec3 shift,
                           double weight) {
   const double weights[3] = {1, weight, weight * weight};
@@ -273,7 +274,7 @@ static CagCurve *piece_of(const Outline *o, int i, double from, double to, CagVe
   return c;
 }
 
-// A wall is one flat face, or cut into ruled patches.
+// A wall is a planar face, or is divided into ruled patches.
 static void add_walls(Faces *f, const Outline *o, CagVec3 way, int most) {
   for (int i = 0; i < o->n; i++) {
     if (!o->bent[i] && random_int(2)) {
@@ -298,10 +299,10 @@ static void add_walls(Faces *f, const Outline *o, CagVec3 way, int most) {
   }
 }
 
-// Whether a point of the plane lies on an edge whose tangent there is square to the vector.
+// Whether a point of the plane is on an edge whose tangent there is perpendicular to the vector.
 static bool is_on_edge(const Outline *o, CagVec3 p, CagVec3 square) {
   for (int i = 0; i < o->n; i++) {
-    // Middle points stand over the middle of the chord.
+    // The middle control points are above the midpoint of the chord.
     const CagVec3 a = o->corner[i], b = o->corner[i + 1], chord = cag_sub(b, a);
     const double t = cag_dot(cag_sub(p, a), chord) / cag_dot(chord, chord);
     const CagVec3 x = cag_lerp(a, o->middle[i], t), y = cag_lerp(o->middle[i], b, t);
@@ -312,7 +313,7 @@ static bool is_on_edge(const Outline *o, CagVec3 p, CagVec3 square) {
   return false;
 }
 
-// Vertices have the normals of the walls where they stand.
+// Checks that vertices have the normals of the walls.
 static void check_normals(const CagSolid *s, const Outline *outer, const Outline *inner,
                           CagVec3 way) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
@@ -322,15 +323,15 @@ static void check_normals(const CagSolid *s, const Outline *outer, const Outline
   for (size_t i = 0; i < m->vertex_count; i++) {
     const CagVec3 p = m->positions[i], n = m->normals[i];
     const CagVec3 foot = cag_madd(p, -p.z / way.z, way);
-    if (fabs(n.z) > 1 - 1e-12) continue; // of an end
+    if (fabs(n.z) > 1 - 1e-12) continue; // on the base or top
     NEAR(cag_dot(n, way), 0, 1e-6);
     assert_true(is_on_edge(outer, foot, n) || is_on_edge(inner, foot, n));
   }
   cag_mesh_release(m);
 }
 
-// Prisms over regions of straight and bent edges, and some with a hole: their walls are flat faces
-// and ruled patches, their ends flat faces.
+// Prisms over regions of straight and curved edges, some with a hole. Their walls are planar faces
+// and ruled patches, and their ends are planar faces.
 static void prisms_of_flat_and_bent_walls_are_closed(void **state) {
   (void)state;
   seed = 93;

@@ -1,4 +1,5 @@
-// Meshes of half spaces and of the negative sides of quadrics, against integrals over the window.
+// Meshes of half spaces and of the negative sides of quadrics, compared with integrals over the
+// window.
 
 #include "box_integral.h"
 #include "geom/boolean/boolean.h"
@@ -7,11 +8,11 @@
 
 static const double PLANE[10] = {0, 0, 0, 0, 0, 0, 0, 0, 1, -0.3};
 
-// A mesh is tessellated to this distance from the form's surface.
+// The distance of a mesh from the form's surface.
 #define TOLERANCE 2e-3
 
-// Tests whether the mesh is closed and agrees with the form within the window: it has the same
-// volume and center there, and its corners are on the surface.
+// Checks that the mesh is closed and agrees with the form inside the window: it has the same volume
+// and center there, and its corners are on the surface.
 static void check_mesh(const CagQuadric *q, const CagBounds *window, const double *sum) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *m, *box, *common;
@@ -28,7 +29,8 @@ static void check_mesh(const CagQuadric *q, const CagBounds *window, const doubl
     cag_mesh_release(common);
     cag_mesh_release(box);
   }
-  // The surface within the window has about four times the area of its greatest section at most.
+  // The area of the surface inside the window is at most about four times that of its largest
+  // section.
   const double slack = 4 * TOLERANCE * diagonal * diagonal;
   assert_near(terms[0] / all, sum[0] / all, slack / all, "volume");
   for (int i = 1; i < 4; i++)
@@ -46,7 +48,7 @@ static void check_mesh(const CagQuadric *q, const CagBounds *window, const doubl
   cag_mesh_release(m);
 }
 
-// Checks both sides of the form. Together they fill the window.
+// Checks both sides of the form, which together fill the window.
 static void check_sides(const CagQuadric *q, const CagBounds *window) {
   const CagVec3 size = cag_sub(window->max, window->min);
   const CagVec3 middle = cag_lerp(window->min, window->max, 0.5);
@@ -76,8 +78,8 @@ static void sides_have_the_integrals_of_their_forms(void **state) {
   }
 }
 
-// Windows at some distance from the middle of the form, where a sheet, a nappe, a branch or all of
-// the surface may be out of reach.
+// Windows at some distance from the center of the form, which a sheet, a nappe, a branch, or the
+// entire surface does not reach.
 static void sides_far_from_the_center(void **state) {
   (void)state;
   static const double WAYS[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
@@ -95,7 +97,7 @@ static void sides_far_from_the_center(void **state) {
   }
 }
 
-// Sheets and branches whose tips lie in the window, which is small against their semi-axes.
+// Sheets and branches with tips in the window, which is small compared with their semi-axes.
 static void tips_of_large_forms_are_in_small_windows(void **state) {
   (void)state;
   const CagQuadric sheets = {{1, 1, -1, 0, 0, 0, 0, 0, 0, 1e4}};
@@ -108,7 +110,7 @@ static void tips_of_large_forms_are_in_small_windows(void **state) {
   }
 }
 
-// Closing faces are outside of the window, but not much farther than its diagonal.
+// Closing faces are outside the window, but not much farther away than its diagonal.
 static void planes_end_near_the_window(void **state) {
   (void)state;
   for (int i = 0; i < 40; i++) {
@@ -128,7 +130,7 @@ static void planes_end_near_the_window(void **state) {
     for (size_t k = 0; k < m->vertex_count; k++)
       assert_true(cag_norm(cag_sub(m->positions[k], middle)) < 2.5 * diagonal);
     if (fabs(above) < diagonal / 2) {
-      // Half of the corners lie in the plane.
+      // Half of the corners are in the plane.
       int on = 0;
       for (size_t k = 0; k < m->vertex_count; k++)
         on += fabs(cag_quadric_value(&q, m->positions[k])) < 1e-12 * length * 10;

@@ -1,4 +1,4 @@
-// Solids: closed forms for mass, outward normals, shared edges, and refusals.
+// Solids: closed forms for mass, outward normals, common edges, and rejected input.
 
 #include <stdio.h>
 
@@ -25,7 +25,8 @@ static CagRegion *new_disk(double radius, double x, double y) {
   return r;
 }
 
-// Volume by the divergence theorem over the faces: positive exactly when they face outward.
+// The volume by the divergence theorem over the faces, which is positive if they are oriented
+// outward.
 static double flux_volume(const CagSolid *s) {
   double terms[10] = {0};
   for (size_t i = 0; i < s->face_count; i++)
@@ -33,8 +34,8 @@ static double flux_volume(const CagSolid *s) {
   return terms[0];
 }
 
-// Every edge that a face has is listed with a partner, and the two run along the same points in the
-// senses told. With `whole`, sides correspond one to one.
+// Checks that every edge of a face has a partner, and that the two run along the same points in the
+// recorded directions. With `whole`, sides correspond one to one.
 static void assert_edges(const CagSolid *s, size_t expected) {
   assert_int_equal(s->edge_count, expected);
   for (size_t e = 0; e < s->edge_count; e++) {
@@ -70,7 +71,8 @@ static void assert_mass(const CagSolid *s, double volume, double area, CagVec3 c
   assert_point(m.volume_centroid, centroid, 1e-8, "centroid");
 }
 
-// The closed form agrees with the integrals over the faces, inertia and area centroid too.
+// The closed form agrees with the integrals over the faces, and so do the inertia and the centroid
+// of the area.
 static void assert_same_as_shell(const CagSolid *s) {
   CagSolid *shell;
   CagMassProperties a, b;
@@ -93,7 +95,7 @@ static void assert_text(const CagSolid *s, const char *text) {
   assert_string_equal(found, text);
 }
 
-// analysis.box-mass checks meshes; here I = m (b^2 + c^2) / 12.
+// analysis.box-mass checks meshes. Here, I = m (b^2 + c^2) / 12.
 static void a_box_has_six_faces_and_twelve_edges(void **state) {
   (void)state;
   CagSolid *s;
@@ -172,8 +174,8 @@ static void a_torus_has_its_closed_forms(void **state) {
   MUST_FAIL(cag_solid_torus(1, 2, &s, err), "self-intersection");
 }
 
-// Mirrors, shears and turns: the volume scales with the determinant, normals stay outward, edges
-// still meet.
+// Reflections, shears, and rotations: the volume is multiplied by the determinant, normals stay
+// outward, and edges still meet.
 static void transforms_keep_solids_outward(void **state) {
   (void)state;
   CagSolid *solids[3], *moved;
@@ -232,7 +234,7 @@ static void extrusions_have_the_metrics_of_the_reference(void **state) {
   assert_mass(s, 20.943951023931955, 33.8359883929281 + 12.566370614359172, cag_vec3(0, 0, 1.25));
   assert_edges(s, 1);
   cag_solid_release(s);
-  // A twist about the center changes no volume; taper by k does as stated.
+  // A twist about the center does not change the volume. Tapering by k does, as stated.
   MUST(cag_solid_extrude(holed, cag_vec3(1, 0, 6), 2, 1, &s, err));
   assert_near(flux_volume(s), 12 * 6, 1e-8, "twisted");
   assert_edges(s, 4);
@@ -258,7 +260,7 @@ static void rings_obey_pappus(void **state) {
   assert_edges(s, 0);
   assert_text(s, "revolution, 1 face");
   cag_solid_release(s);
-  // A part of the turn, with two caps, on either side of the axis and either sense of it.
+  // A partial revolution with two caps, on either side of the axis and in either direction.
   for (int k = 0; k < 4; k++) {
     double angle = 1.2;
     CagVec3 through = k & 1 ? cag_vec3(9, 0, 0) : ORIGIN;
@@ -290,7 +292,7 @@ static void a_polygon_about_the_x_axis(void **state) {
   cag_region_release(r);
 }
 
-// A right triangle with a leg on the axis: a cone. Its side on the axis sweeps nothing.
+// A right triangle with a leg on the axis: a cone. The leg sweeps no surface.
 static void regions_that_touch_the_axis_have_poles(void **state) {
   (void)state;
   const CagVec3 points[] = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
@@ -316,7 +318,7 @@ static void regions_that_touch_the_axis_have_poles(void **state) {
   cag_region_release(r);
 }
 
-// A half disk about its diameter: a sphere, in one piece though the loop starts anywhere.
+// A half disk about its diameter: a sphere, in one piece wherever the loop begins.
 static void a_half_disk_revolves_to_a_ball(void **state) {
   (void)state;
   CagTransform frame = cag_transform_identity();
@@ -352,7 +354,7 @@ static void tubes_have_caps_unless_closed(void **state) {
   assert_near(m.area, 2 * M_PI * r * length + 2 * M_PI * r * r, 1e-9, "area");
   assert_edges(s, 2);
   assert_text(s, "tube, radius 0.5");
-  // Mirrored and scaled alike in all directions it is a tube of another radius.
+  // Reflected and scaled uniformly, it is a tube with another radius.
   for (int axis = 0; axis < 3; axis++) {
     double k[3] = {3, 3, 3};
     char text[200];
@@ -384,7 +386,7 @@ static void tubes_have_caps_unless_closed(void **state) {
   cag_curve_release(circle);
 }
 
-// Six squares with random orientations: the shell turns them outward; five leave a hole.
+// Six squares with random orientations: the shell orients them outward. Five leave a hole.
 static void shells_are_checked_and_turned_outward(void **state) {
   (void)state;
   CagSolid *box, *s;
@@ -404,8 +406,8 @@ static void shells_are_checked_and_turned_outward(void **state) {
   cag_solid_release(box);
 }
 
-// Placements by whole numbers: sheared solids tell the rows of their map, turned ones their axis,
-// scaled ones their sizes; the form alone leaves all of it out.
+// Integer placements: the description of sheared solids has the rows of their map, that of rotated
+// ones their axis, and that of scaled ones their sizes. The short form omits all of this.
 static void placements_are_told_as_they_are(void **state) {
   (void)state;
   static const CagVec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -417,13 +419,13 @@ static void placements_are_told_as_they_are(void **state) {
     const char *centered = k % 2 ? ", centered" : "";
     if (x || y || z) snprintf(place, sizeof place, ", at [%d, %d, %d]", x, y, z);
     MUST(cag_solid_box(cag_vec3(2, 3, 4), k % 2, &s, err));
-    if (k % 4 == 0) { // columns that are not square to each other
+    if (k % 4 == 0) { // columns that are not perpendicular
       t.m[k / 4 % 3][(k / 4 + 1) % 3] = 1 + k / 4 % 2;
       snprintf(expected, sizeof expected,
                "box, 2 x 3 x 4%s, mapped by [[%g, %g, %g], [%g, %g, %g], [%g, %g, %g]]%s", centered,
                t.m[0][0], t.m[0][1], t.m[0][2], t.m[1][0], t.m[1][1], t.m[1][2], t.m[2][0],
                t.m[2][1], t.m[2][2], place);
-    } else if (k % 4 < 3) { // a turn about an axis
+    } else if (k % 4 < 3) { // a rotation about an axis
       const CagVec3 axis = axes[k % 3];
       const int degrees = 10 + 5 * (k % 13);
       MUST(cag_rotate(axis, degrees * M_PI / 180, cag_vec3(0, 0, 0), &t, err));
@@ -442,7 +444,7 @@ static void placements_are_told_as_they_are(void **state) {
     cag_solid_describe_form(moved, form, sizeof form);
     assert_int_equal(strncmp(form, expected, strlen(form)), 0);
     assert_true(!strstr(form, "turned") && !strstr(form, "mapped") && !strstr(form, ", at"));
-    // A short buffer holds the beginning.
+    // A short buffer receives the beginning.
     for (size_t size = 1; size < strlen(expected); size += 7) {
       memset(found, '#', sizeof found);
       cag_solid_describe(moved, found, size);

@@ -1,4 +1,4 @@
-// Errors as values, and the words and numbers of messages.
+// Errors as values, and the text and numbers of messages.
 
 #include "base/status.h"
 
@@ -29,7 +29,7 @@ static void an_error_may_lack_an_argument(void **state) {
   assert_string_equal(err.argument, "shape");
 }
 
-// Long texts are cut at the end of their fields.
+// Long texts are truncated at the end of their fields.
 static void long_texts_are_cut(void **state) {
   (void)state;
   char text[2000];
@@ -52,7 +52,8 @@ static void exhausted_memory_is_noted_once(void **state) {
   assert_false(cag_memory_was_out());
 }
 
-// Decimal fractions of 15 digits are shown as they were written. Neighbors of them need 16 or 17.
+// Decimal fractions of 15 digits are shown as they were written. Their neighboring doubles need 16
+// or 17.
 static void numbers_read_back_the_same(void **state) {
   (void)state;
   static const struct {

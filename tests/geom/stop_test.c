@@ -1,5 +1,5 @@
-// Work ends when the flag of its thread is set: with CAG_E_CALLBACK, "interrupted", and nothing
-// that is left behind.
+// Operations end when the flag of their thread is set, with CAG_E_CALLBACK and "interrupted", and
+// without leaks.
 
 #include "base/stop.h"
 

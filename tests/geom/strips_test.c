@@ -1,5 +1,5 @@
-// Strips of twisted faces: as many as closed forms tell, and the same whatever range the parameters
-// have, which of them runs along, and which way.
+// Strips of twisted faces: their number agrees with closed forms, and does not depend on the
+// domains, order, and directions of the parameters.
 
 #include <complex.h>
 
@@ -9,13 +9,13 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-// A wavy section that turns and climbs: radius R(x) = radius + wave cos(turns x + phase), angle
-// around + skew x + twist y, height lean x + climb y, for x and y in 0..1. They are affine in the
+// A wavy section that rotates and climbs: radius R(x) = radius + wave cos(turns x + phase), angle
+// around + skew x + twist y, height lean x + climb y, for x and y in 0..1, which are affine in the
 // parameters.
 typedef struct Twist {
   double radius, wave, waves, phase, skew, twist, lean, climb;
-  bool swap, back;         // x is the second parameter; y runs the other way
-  double from[2], size[2]; // of the parameters of x and y
+  bool swap, back;         // x is the second parameter; y is reversed
+  double from[2], size[2]; // domains of the parameters x and y
 } Twist;
 
 static CagStatus twist_eval(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
@@ -45,7 +45,7 @@ static CagStatus twist_eval(void *context, double u, double v, int n, CagVec3 *o
 
 static CagStatus twist_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(twist_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(twist_eval, context, u, vs, nv, n, out, e);
 }
 
 static CagSurface *twisted(Twist *t) {
@@ -61,7 +61,7 @@ typedef struct Planned {
   Tessellator t;
   Face face;
   bool strips;
-  double steps; // along all of the face
+  double steps; // along the entire face
 } Planned;
 
 static void plan(Planned *p, Twist *t, const CagTessellation *how) {
@@ -87,9 +87,9 @@ static CagTessellation limits(double tolerance, double angle, double max_edge) {
   return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL};
 }
 
-// --- Cylinders whose parameters run aslant ---
+// --- Cylinders with oblique parameter lines ---
 
-// The rulings are slants. Chords of n steps are off by r (1 - cos(turn / 2 n)).
+// The rulings are slanted. Chords of n steps deviate by r (1 - cos(turn / 2 n)).
 static void rulings_of_cylinders_are_slants(void **state) {
   (void)state;
   seed = 81;
@@ -101,7 +101,7 @@ static void rulings_of_cylinders_are_slants(void **state) {
     t.skew = uniform(0.2, 0.6) * t.twist * (k / 4 % 2 ? 1 : -1);
     t.lean = r * uniform(1, 3);
     t.climb = uniform(-1, 1) * (k % 3 == 0);
-    // With climb, x and z change along y, too, and rulings climb no longer.
+    // With climb, x and z change along y, too, and the rulings are horizontal.
     const double ruling = hypot(0, t.lean - t.climb * t.skew / t.twist);
     Planned p;
     CagTessellation how = limits(tolerance, 0, 0);
@@ -114,7 +114,7 @@ static void rulings_of_cylinders_are_slants(void **state) {
     const double use = r * (1 - cos(t.twist / 2 / p.steps)) / tolerance;
     if (!(use >= 0.72 && use <= 0.9)) fail_msg("%g of the tolerance", use);
     release(&p);
-    // A limit of the angle asks for more steps.
+    // A limit of the angle requires more steps.
     const double angle = t.twist / p.steps / uniform(1.5, 4);
     how = limits(tolerance, angle, 0);
     plan(&p, &t, &how);
@@ -122,7 +122,7 @@ static void rulings_of_cylinders_are_slants(void **state) {
     const double turned = t.twist / p.steps / angle;
     if (!(turned >= 0.85 && turned <= 1)) fail_msg("%g of the angle", turned);
     release(&p);
-    // Edges across are shorter than their limit if there are several strips.
+    // Edges across the strips are shorter than their limit if there are several strips.
     const double edge = ruling / uniform(1.5, 6);
     how = limits(tolerance, 0, edge);
     plan(&p, &t, &how);
@@ -131,7 +131,7 @@ static void rulings_of_cylinders_are_slants(void **state) {
       const double chord = hypot(t.twist * r, t.climb) / p.steps;
       const double most = ruling / p.t.leaf_count;
       assert_true(chord <= edge && most <= edge * (1 + 1e-6));
-      // Samples at fractions of 1/256 of the cell decide how wide strips are.
+      // Samples at multiples of 1/256 of the cell determine the width of strips.
       const double least = sqrt(fmax(0, edge * edge - chord * chord)) - chord;
       if (!((double)p.t.leaf_count <= ceil(ruling / (least - ruling / 128)) + 1))
         fail_msg("%zu strips of %g, edges of %g and %g", p.t.leaf_count, ruling, edge, chord);
@@ -141,8 +141,8 @@ static void rulings_of_cylinders_are_slants(void **state) {
   assert_true(edged > 20);
 }
 
-// --- The same face in other parameters ---
-// Whether strips are worth while may turn on rounding.
+// --- The same face with other parameters ---
+// Rounding may decide whether strips are worthwhile.
 
 static Twist random_twist(void) {
   Twist t = {.radius = uniform(2, 6), .size = {1, 1}};

@@ -1,5 +1,5 @@
-// What the tests of the geometry core share: calls that must succeed, calls that must fail with a
-// reason, and nearness.
+// Helpers for the tests of the geometry core: calls that must succeed, calls that must fail with a
+// reason, and comparisons with a tolerance.
 
 #ifndef CAG_TESTS_GEOM_SUPPORT_H
 #define CAG_TESTS_GEOM_SUPPORT_H
@@ -24,7 +24,7 @@ static CagError err;
     if ((call) != CAG_OK) fail_msg("%s: %s", #call, err.message);                                  \
   } while (0)
 // Assert that a call fails and names an element from `low` to `high`, the element `at`, or no
-// element.
+// element at all.
 #define FAILS_AMONG(call, why, low, high)                                                          \
   do {                                                                                             \
     assert_int_not_equal((call), CAG_OK);                                                          \

@@ -1,5 +1,5 @@
-// Surfaces of Bezier, B-spline and NURBS nets: worked examples of the reference, grids, and bad
-// data.
+// Surfaces of Bezier, B-spline, and NURBS nets: worked examples of the reference, grids, and
+// invalid data.
 
 #include "surface_support.h"
 
@@ -121,8 +121,8 @@ static void closed_surfaces_meet_themselves(void **state) {
   cag_surface_release(s);
 }
 
-// A grid of points and derivatives over `side` by 1 against single points. Rational ones divide in
-// another order.
+// Compares a grid of points and derivatives over `side` by 1 with single points. Rational surfaces
+// are evaluated in a different order.
 static void assert_grid(const CagSurface *s, double side, bool rational) {
   enum { NU = 37, NV = 131 };
   double us[NU], vs[NV];

@@ -1,5 +1,5 @@
-// Partial derivatives up to the highest order, of every kind of surface: they do not depend on the
-// order that is asked for, and each is the derivative of the one before.
+// Partial derivatives up to the highest order, of every kind of surface. They do not depend on the
+// requested order, and each is the derivative of the previous one.
 
 #include "surface_support.h"
 #include "tests/geom/random.h"
@@ -89,7 +89,7 @@ static CagSurface *made(int kind) {
   return s;
 }
 
-// Moved, with exchanged parameters, turned over, or a part.
+// Transformed, transposed, flipped, or a part.
 static CagSurface *derived(const CagSurface *s, int how) {
   CagSurface *out;
   CagTransform move;
@@ -111,7 +111,7 @@ static void eval(const CagSurface *s, double u, double v, int n, CagVec3 *out) {
   MUST(cag_surface_eval(s, u, v, n, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, err));
 }
 
-// The fourth-order central difference of a partial derivative along a direction.
+// The fourth-order central difference of a partial derivative in one direction.
 static CagVec3 difference(const CagSurface *s, double u, double v, int i, int j, int direction,
                           double h) {
   static const double WEIGHT[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};

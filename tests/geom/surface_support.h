@@ -1,4 +1,4 @@
-// What the tests of surfaces and solids share: comparisons, and checks that hold for every kind.
+// Helpers for the tests of surfaces and solids: comparisons, and checks for every kind.
 
 #ifndef CAG_TESTS_SURFACE_SUPPORT_H
 #define CAG_TESTS_SURFACE_SUPPORT_H
@@ -66,15 +66,15 @@ static inline void assert_partials(const CagSurface *s, double u, double v, cons
   assert_point(d[cag_partial(2, 0, 2)], e->dvv, 1e-9, "dvv");
 }
 
-// Places inside the domain, off symmetries.
+// Parameters inside the domain, away from symmetries.
 static inline double inside(double a, double b, int k) {
   static const double FRACTION[] = {0.137, 0.391, 0.583, 0.871};
   return a + FRACTION[k] * (b - a);
 }
 
-// All partials of order 1..3 are the derivatives of those an order lower (central differences,
-// whose error is h^2 of the third derivative more), the grid agrees with single points, and the
-// flip has the other normal.
+// Checks that all partial derivatives of order 1..3 are the derivatives of those of the previous
+// order (by central differences, whose error is h^2 times the third derivative of these), that the
+// grid agrees with single points, and that the flipped surface has the opposite normal.
 static inline void assert_consistent(const CagSurface *s) {
   enum { N = 3 };
   double hu = 1e-5 * (s->u1 - s->u0), hv = 1e-5 * (s->v1 - s->v0);
@@ -120,7 +120,8 @@ static inline void assert_consistent(const CagSurface *s) {
   cag_surface_release(flipped);
 }
 
-// Affine images evaluate to images of the points; a mirror and a shear among them.
+// Checks that the images of the surface under affine maps, including a reflection and a shear, have
+// the images of the points.
 static inline void assert_transforms(const CagSurface *s) {
   CagTransform maps[3];
   CagError e;
@@ -139,7 +140,8 @@ static inline void assert_transforms(const CagSurface *s) {
   }
 }
 
-// Bounds hold all points and are reached by them: no more than the spacing of a grid allows.
+// Checks that the bounds contain all points, and that points reach them up to the spacing of a
+// grid.
 static inline void assert_bounds(const CagSurface *s, CagVec3 min, CagVec3 max) {
   CagBounds box;
   MUST(cag_surface_bounds(s, &box, err));

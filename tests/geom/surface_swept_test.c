@@ -1,4 +1,4 @@
-// Surfaces made from curves: revolved, ruled, extruded and translational ones, and tubes.
+// Surfaces made from curves: revolved, ruled, extruded, and translational surfaces, and tubes.
 
 #include "surface_support.h"
 
@@ -24,8 +24,8 @@ static CagCurve *new_arc(double a, double b, double from, double to, CagVec3 x, 
   return c;
 }
 
-// Every point of the exact form lies on the surface of revolution: same radius and height as the
-// profile at its u.
+// Checks that every point of the exact form is on the surface of revolution: it has the radius and
+// height of the profile at its u.
 static void assert_exact_revolution(const CagSurface *s) {
   CagSurface *exact;
   MUST(cag_surface_to_nurbs(s, &exact, err));
@@ -123,7 +123,7 @@ static void a_rational_profile_has_the_net_of_the_reference(void **state) {
   MUST(cag_curve_nurbs(points, weights, 4, 2, knots, 3, &c, err));
   MUST(cag_surface_revolve(c, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s, err));
   MUST(cag_surface_to_nurbs(s, &exact, err));
-  // There u runs around; here v does.
+  // In the reference, u runs around the axis; here, v does.
   assert_point(surface_at(exact, 0.8, 1.3),
                cag_vec3(-1.0870246390978302, 2.2106083085251864, 1.3658536585365855), 1e-12,
                "point");
@@ -252,7 +252,7 @@ static void extrusions_twist_and_scale(void **state) {
     assert_transforms(all[k]);
   }
   MUST(cag_surface_to_nurbs(tapered, &exact, err));
-  // On the exact form the section's ellipse, scaled by 1 - 3/4 v and moved by v along.
+  // On the exact form: the ellipse of the section, scaled by 1 - 3/4 v and moved along by v.
   for (int i = 0; i <= 12; i++)
     for (int j = 0; j <= 4; j++) {
       double v = j / 4.0, k = 1 - 0.75 * v;
@@ -335,12 +335,12 @@ static void a_tube_keeps_its_radius_square_to_the_path(void **state) {
       CagVec3 spoke = cag_sub(d[0], c[0]);
       assert_near(cag_norm(spoke), r, 1e-12, "radius");
       assert_near(cag_dot(spoke, c[1]) / cag_norm(c[1]), 0, 1e-12, "square to the tangent");
-      // Rotation minimizing: spokes move along the tangent only, so S_v is parallel to it.
+      // Rotation minimizing: the spokes move only along the tangent, so S_v is parallel to it.
       CagVec3 along = cag_cross(d[cag_partial(2, 0, 1)], cag_unit(c[1]));
       assert_near(cag_norm(along) / cag_norm(c[1]), 0, 1e-10, "no turn about the tangent");
     }
   }
-  // Frame turns against Frenet's by minus torsion times length (reference 06a, 6.3).
+  // The frame rotates relative to Frenet's by minus torsion times length (reference 06a, 6.3).
   double b = pitch / (2 * M_PI), torsion = b / (radius * radius + b * b);
   double length = hypot(radius, b) * 2 * M_PI * turns;
   double angle[2];
@@ -352,7 +352,7 @@ static void a_tube_keeps_its_radius_square_to_the_path(void **state) {
     angle[k] = atan2(cag_dot(spoke, f.binormal), cag_dot(spoke, f.normal));
   }
   assert_near(remainder(angle[1] - angle[0] + torsion * length, 2 * M_PI), 0, 1e-9, "turn");
-  // Pappus: the tube of a curve of constant curvature has the area of the straight one.
+  // Pappus: the tube of a curve of constant curvature has the area of a straight one.
   assert_area(s, 2 * M_PI * r * length);
   cag_surface_release(s);
   MUST_FAIL(cag_surface_tube(helix, 0, &s, err), "size-not-positive");
@@ -372,7 +372,7 @@ static void a_tube_along_a_circle_is_a_torus(void **state) {
   cag_curve_release(c);
 }
 
-// A closed path that is not plane brings the frame home turned; the seam must meet all the same.
+// On a closed path that is not planar, the frame returns rotated, but the seam must still meet.
 static void closed_tubes_give_back_the_closing_twist(void **state) {
   (void)state;
   CagVec3 points[7];
@@ -412,7 +412,7 @@ static void tubes_are_mitered_at_corners(void **state) {
       assert_point(a, b, 1e-13, "both sides of the corner");
     }
   assert_area(s, 2 * M_PI * 24);
-  // A point half way along the first piece is at distance 1 from its axis.
+  // A point halfway along the first piece is at distance 1 from its axis.
   CagVec3 p = surface_at(s, 1, breaks[0] / 2);
   assert_near(hypot(p.y, p.z), 1, 1e-13, "cylinder");
   assert_consistent(s);

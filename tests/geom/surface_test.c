@@ -1,4 +1,4 @@
-// What holds for every kind of surface: isocurves, bounds, integrals, breaks, grids and maps.
+// Properties of every kind of surface: isocurves, bounds, integrals, breaks, grids, and maps.
 
 #include "geom/surface/loft.h"
 #include "geom/surface/patches.h"
@@ -70,7 +70,7 @@ static void isocurves_run_on_the_surface(void **state) {
   cag_surface_release(s);
 }
 
-// A paraboloid-like cap whose height has an inner maximum that no grid point hits.
+// A cap like a paraboloid, whose height has an inner maximum that no grid point hits.
 static void bounds_are_tight_between_samples(void **state) {
   (void)state;
   const CagVec3 net[] = {{0, 0, 0}, {0, 1, 0}, {0, 2, 0}, {1, 0, 0}, {1, 1, 5},
@@ -93,8 +93,8 @@ static void bounds_are_tight_between_samples(void **state) {
   cag_surface_release(s);
 }
 
-// The parabola [0, 0], [1, 1], [2, 0] with the middle weight w turned about the x axis, its length
-// extruded and its area as a prism, against mpmath with 40 digits.
+// The parabola [0, 0], [1, 1], [2, 0] with the middle weight w: revolved about the x axis,
+// extruded, and as the base of a prism. The expected values are from mpmath with 40 digits.
 static void integrals_of_uneven_surfaces_are_right(void **state) {
   (void)state;
   static const struct {
@@ -154,7 +154,8 @@ static void assert_cuts(const CagSurface *s, int direction, const double *wanted
   free(cuts);
 }
 
-// The surface, its transpose, flip, image, offset and part have the breaks of the curves.
+// Checks that the surface, its transpose, flip, image, offset, and part have the breaks of the
+// curves.
 static void assert_breaks(CagSurface *s, const double *u, size_t nu, const double *v, size_t nv,
                           const char *what) {
   CagSurface *t;
@@ -180,7 +181,7 @@ static void assert_breaks(CagSurface *s, const double *u, size_t nu, const doubl
   assert_cuts(t, 0, u, nu, what);
   assert_cuts(t, 1, v, nv, what);
   cag_surface_release(t);
-  // From the middle of the first stretch by u to that of the last.
+  // From the middle of the first interval of u to that of the last.
   part[n++] = (u[0] + u[1]) / 2;
   for (size_t i = 1; i + 1 < nu; i++) part[n++] = u[i];
   const double end = (u[nu - 2] + 2 * u[nu - 1]) / 3;
@@ -214,15 +215,15 @@ static void breaks_are_those_of_the_curves(void **state) {
   assert_breaks(s, whole, 2, both, 5, "ruled");
   MUST(cag_surface_translational(a, c, &s, err));
   assert_breaks(s, thirds, 4, halves, 3, "translational");
-  // Along v = 0 and v = 1 polylines, between them lines.
+  // Polylines along v = 0 and v = 1, with lines between them.
   MUST(cag_curve_line(p[0], q[0], 3, &d, err));
   MUST(cag_curve_line(p[3], q[2], 3, &e, err));
   MUST(cag_surface_coons(d, e, a, b, &s, err));
   assert_breaks(s, both, 5, whole, 2, "Coons");
   cag_curve_release(d);
   cag_curve_release(e);
-  // Lofts through curves without an exact form: means of three successive parameters are the knots,
-  // and a curve of two pieces breaks in the middle.
+  // Lofts through curves without an exact form: averages of three successive parameters are the
+  // knots, and a curve of two pieces has a break in the middle.
   CagCurve *coil[7];
   for (int i = 0; i < 7; i++) {
     CagTransform up = cag_translate(cag_vec3(0.3 * i, 0, 4.0 * i));
@@ -244,9 +245,9 @@ static void breaks_are_those_of_the_curves(void **state) {
   cag_curve_release(c);
 }
 
-// --- The largest degree, and maps that are not affine ---
+// --- The maximum degree, and projective maps ---
 
-// z = (x^2 + y^2)^16 on the unit square has degree 32; elevated to 63, the control values of x^k
+// z = (x^2 + y^2)^16 on the unit square has degree 32. Elevated to 63, the control values of x^k
 // are binomial(i, k) / binomial(63, k).
 static void grids_of_the_largest_degree_are_their_points(void **state) {
   (void)state;

@@ -67,7 +67,7 @@ static void a_helicoid_of_example_4(void **state) {
 }
 
 // sweep.box-claim, sweep.cylinder-claim, sweep.cone-claim, sweep.section-with-hole; V = A L (1 + k
-// + k^2) / 3 whatever the twist.
+// + k^2) / 3 for any twist.
 static void straight_sweeps_have_the_volumes_of_the_reference(void **state) {
   (void)state;
   CagCurve *path = line(cag_vec3(1, 2, 3), cag_vec3(1, 2 + 3, 3 + 4)); // length 5
@@ -129,7 +129,7 @@ static void straight_sweeps_have_the_volumes_of_the_reference(void **state) {
   cag_curve_release(path);
 }
 
-// Pappus: a section whose centroid stays on the path and square to it sweeps area times length.
+// Pappus: a section perpendicular to the path with its centroid on it sweeps area times length.
 static void sweeps_obey_pappus(void **state) {
   (void)state;
   CagCurve *paths[2] = {circle(5), NULL};
@@ -138,7 +138,7 @@ static void sweeps_obey_pappus(void **state) {
   static const CagOrient ORIENT[] = {CAG_ORIENT_RMF, CAG_ORIENT_FRENET, CAG_ORIENT_UP};
   for (int p = 0; p < 2; p++)
     for (int o = 0; o < 3; o++) {
-      // A closed path wants the section home.
+      // On a closed path, the section must return to its start.
       double twist = p == 0 ? 2 * M_PI : 1.5, length;
       CagMotion *m = along(paths[p], ORIENT[o], twist, 1);
       CagSolid *s = NULL;
@@ -160,7 +160,7 @@ static void sweeps_obey_pappus(void **state) {
   cag_curve_release(paths[1]);
 }
 
-// Around a circle, turned with it: exactly a revolution.
+// Around a circle, rotating with it: exactly a surface of revolution.
 static void round_paths_have_exact_forms(void **state) {
   (void)state;
   CagCurve *path = circle(5), *section = circle(1);
@@ -169,7 +169,7 @@ static void round_paths_have_exact_forms(void **state) {
   MUST(cag_surface_sweep(section, m, &s, err));
   MUST(cag_surface_to_nurbs(s, &exact, err));
   assert_area(exact, 4 * M_PI * M_PI * 5);
-  // Points of the exact form lie on the torus.
+  // Points of the exact form are on the torus.
   for (int i = 0; i < 4; i++) {
     CagVec3 p =
         surface_at(exact, inside(exact->u0, exact->u1, i), inside(exact->v0, exact->v1, 3 - i));
@@ -196,7 +196,7 @@ static CagStatus jump(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// Integral of pi (1 + cos(t) / 2)^2 over a turn: pi (2 pi + pi / 4).
+// The integral of pi (1 + cos(t) / 2)^2 over a turn: pi (2 pi + pi / 4).
 static void radii_may_be_functions(void **state) {
   (void)state;
   CagCurve *path = line(cag_vec3(0, 0, 0), cag_vec3(0, 0, 2 * M_PI)), *unit = NULL;
@@ -268,7 +268,7 @@ static CagStatus screw(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
-// A screw motion keeps volume: area times rise.
+// A screw motion preserves volume: area times rise.
 static void transforms_sweep_too(void **state) {
   (void)state;
   CagChebyshev *rows = NULL;
@@ -287,7 +287,8 @@ static void transforms_sweep_too(void **state) {
   cag_region_release(r);
 }
 
-// Circles whose radii and heights are cubic in i: the loft of degree 3 is that body of revolution.
+// Circles whose radii and heights are cubic in i: the loft of degree 3 is the surface of
+// revolution.
 static void lofts_reproduce_cubics(void **state) {
   (void)state;
   CagCurve *sections[5];
@@ -321,11 +322,12 @@ static void lofts_reproduce_cubics(void **state) {
   for (int i = 0; i < 5; i++) cag_curve_release(sections[i]);
 }
 
-// At the ends of a natural spline, and at an inflection, the curvature is 0 but for rounding: there
-// Frenet's frame is the limit from its side.
+// At the ends of a natural spline, and at an inflection, the curvature is 0 up to rounding. The
+// Frenet frame there is the one-sided limit.
 static void frenet_has_limits_where_the_curvature_vanishes(void **state) {
   (void)state;
-  // The second differences at both ends are 0; the middle of the other bends the other way.
+  // The second differences at both ends are 0. The middle of the other spline bends in the opposite
+  // direction.
   const CagVec3 ends[] = {{1.1, 0.7, 0}, {2.3, 1.4, 0.9}, {3.5, 2.1, 1.8},
                           {5, 1, 3},     {6, 0, 1.2},     {7, -1, -0.6}};
   const CagVec3 turning[] = {{-3, 0.1, 0}, {-1, 2.3, 0}, {1, -2.3, 0}, {3, -0.1, 0}};

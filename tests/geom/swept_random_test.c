@@ -1,4 +1,4 @@
-// Solids swept from random regions, against integrals over the region and the way.
+// Solids swept from random regions, compared with integrals over the region and the path.
 
 #include "geom/solid/solid.h"
 #include "geom/solid/tessellate.h"
@@ -15,7 +15,7 @@ typedef struct Loop {
 static const double NODES[3] = {0.11270166537925831, 0.5, 0.88729833462074169};
 static const double WEIGHTS[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-// A loop about the center whose corners stand off by `least` to `most`.
+// A loop around the center, whose corners are at distances from `least` to `most`.
 static Loop random_loop(CagVec3 center, double least, double most) {
   Loop l = {.n = 5 + (size_t)uniform(0, 4)};
   for (size_t i = 0; i < l.n; i++) {
@@ -26,7 +26,7 @@ static Loop random_loop(CagVec3 center, double least, double most) {
   return l;
 }
 
-// Corners in either sense, from any of them on.
+// The corners in either direction, from any start.
 static CagCurve *curve_of(const Loop *l) {
   CagVec3 p[MOST];
   CagCurve *c;
@@ -47,8 +47,8 @@ static CagRegion *region_of(const Loop *outer, const Loop *hole) {
   return r;
 }
 
-// How a region moves: the map at a part of the way, and the volume by the area of a small part of
-// the region.
+// How a region moves: the map at a fraction of the path, and the volume swept by a small part of
+// the region, divided by its area.
 typedef struct Way {
   CagTransform plane;
   CagVec3 axis, through, shift;
@@ -56,7 +56,7 @@ typedef struct Way {
   bool turns;
 } Way;
 
-static CagVec3 place(const Way *w, CagVec3 p, double t) {
+static CagVec3 moved_point(const Way *w, CagVec3 p, double t) {
   if (w->turns) {
     CagTransform turn;
     OK(cag_rotate(w->axis, w->from + t * w->angle, w->through, &turn, &err));
@@ -81,7 +81,7 @@ typedef struct Sums {
   CagVec3 first;
 } Sums;
 
-// Adds what a triangle of the plane sweeps.
+// Adds the volume swept by a triangle of the plane.
 static void add_triangle(Sums *s, const Way *w, const CagVec3 corner[3], double sign) {
   const CagVec3 x = cag_sub(corner[1], corner[0]), y = cag_sub(corner[2], corner[0]);
   const double twice = sign * (x.x * y.y - x.y * y.x);
@@ -90,7 +90,7 @@ static void add_triangle(Sums *s, const Way *w, const CagVec3 corner[3], double 
     const CagVec3 p = cag_madd(cag_madd(corner[0], a, x), b, y);
     for (int k = 0; k < 3 * STEPS; k++) {
       const double t = (k / 3 + NODES[k % 3]) / STEPS;
-      const CagVec3 at = place(w, p, t);
+      const CagVec3 at = moved_point(w, p, t);
       const double part = WEIGHTS[i / 3] * WEIGHTS[i % 3] * (1 - a) * twice * WEIGHTS[k % 3] /
                           STEPS * density(w, p, t);
       const double c[3] = {at.x, at.y, at.z};
@@ -130,7 +130,7 @@ static void check(const CagSolid *s, const Sums *sums, double slack) {
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       NEAR(m.inertia[i][k], (i == k ? trace : 0) - second[i][k], 10 * slack);
-  // The mesh is closed and faces outward.
+  // The mesh is closed and oriented outward.
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *mesh;
   double terms[10] = {0};
@@ -165,7 +165,7 @@ static void extrusions_have_the_moments_of_their_sections(void **state) {
   }
 }
 
-// From coordinates by the distance from the axis and along it to those of the plane.
+// Converts the coordinates (distance from the axis, distance along it) to those of the plane.
 static void put_beside(Loop *l, CagVec3 along, CagVec3 off, CagVec3 origin) {
   for (size_t i = 0; i < l->n; i++)
     l->p[i] = cag_madd(cag_madd(origin, l->p[i].x, off), l->p[i].y, along);
@@ -180,8 +180,8 @@ static double length_times_distance(const Loop *l) {
   return sum;
 }
 
-// About any axis in the plane of the region, on either side of it; some regions lie along it with
-// one side or with two.
+// Revolutions about any axis in the plane of the region, on either side of it. Some regions have
+// one side or two on the axis.
 static void revolutions_have_the_moments_of_their_regions(void **state) {
   (void)state;
   static const Loop one = {{{0, -1, 0}, {1.2, -0.7, 0}, {1.4, 0.9, 0}, {0.6, 0.8, 0}, {0, 1.3, 0}},
@@ -239,7 +239,7 @@ static void revolutions_have_the_moments_of_their_regions(void **state) {
   }
 }
 
-// A region may reach over the axis by what is rounding, and by no more.
+// A region may extend beyond the axis by rounding, but not more.
 static void regions_beyond_the_axis_are_refused(void **state) {
   (void)state;
   for (int side = -1; side <= 1; side += 2)

@@ -1,11 +1,11 @@
-// Lines that touch plane curves, beside the crossings of the curves' duals: a line is the angle of
-// its direction, from 0 to pi, and its distance from the origin.
+// Tangent lines of plane curves, compared with the crossings of the curves' duals. A line is
+// represented by the angle of its direction, from 0 to pi, and its distance from the origin.
 
 #include "conic_support.h"
 #include "geom/curve/circles.h"
 #include "geom/curve/function.h"
 
-static CagVec3 random_place(double size) {
+static CagVec3 random_location(double size) {
   CagVec3 p = {0, 0, 0};
   p.x = uniform(-size, size);
   p.y = uniform(-size, size);
@@ -14,7 +14,7 @@ static CagVec3 random_place(double size) {
 
 static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
-// Coordinates are sums of three waves over a stretch of t, or a closed curve of whole turns.
+// Sums of three waves as coordinates, over an interval of t or, as a closed curve, over full turns.
 typedef struct Wave {
   double rate[2][3], height[2][3], shift[2][3], slope[2];
 } Wave;
@@ -60,7 +60,7 @@ static CagCurve *random_spline(void) {
   double w[N], knots[N + 4] = {-2, -2, -2, -2, 0, 0, 0, 3, 3, 3, 3};
   CagCurve *c;
   for (int i = 0; i < N; i++) {
-    p[i] = random_place(3);
+    p[i] = random_location(3);
     w[i] = uniform(0.5, 2);
   }
   knots[4] = uniform(-1.8, -0.5);
@@ -74,7 +74,7 @@ static CagCurve *random_plane_curve(int kind) {
   const CagTransform f = plane_frame(uniform(-2, 2), uniform(-2, 2), uniform(-3, 3));
   CagVec3 p[5];
   CagCurve *c;
-  for (int i = 0; i < 5; i++) p[i] = random_place(3);
+  for (int i = 0; i < 5; i++) p[i] = random_location(3);
   switch (kind) {
   case 0: OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err)); return c;
   case 1: OK(cag_curve_bezier(p, NULL, 5, 2, &c, &err)); return c;
@@ -89,7 +89,7 @@ enum { STEPS = 3000, BUCKETS = 100 };
 
 typedef struct Dual {
   double angle[STEPS + 1], height[STEPS + 1]; // angle without jumps
-  int first[BUCKETS], next[STEPS];            // segments by the angle where they start
+  int first[BUCKETS], next[STEPS];            // segments sorted by their start angles
   double widest;
 } Dual;
 
@@ -120,7 +120,8 @@ static void make_dual(const CagCurve *c, Dual *out) {
   }
 }
 
-// Whether two segments of duals cross. Doubtful when that is at an end or they are nearly parallel.
+// Whether two segments of duals cross. Sets *doubtful if they cross near an end or are nearly
+// parallel.
 static bool cross(const Dual *a, int i, const Dual *b, int j, bool *doubtful) {
   const double da = a->angle[i + 1] - a->angle[i], db = b->angle[j + 1] - b->angle[j];
   const double turns = rint((b->angle[j] - a->angle[i]) / M_PI);
@@ -151,7 +152,7 @@ static size_t count_common(const Dual *a, const Dual *b, bool *doubtful) {
   return count;
 }
 
-// The curve's points and tangents are those of the lines, which are sorted.
+// Checks that the curve's points and tangents are those of the lines, which are sorted.
 static void check_lines(CagCurve *const c[2], const CagTangentLine *lines, size_t n) {
   for (size_t k = 0; k < n; k++) {
     CagVec3 one, two;
@@ -180,7 +181,7 @@ static void random_curves_have_their_common_tangents(void **state) {
       c[k] = random_plane_curve((k ? round / 6 : round) % 6);
       make_dual(c[k], &dual[k]);
     }
-    // A curve that all but stops has a dual that is not seen well.
+    // If a curve almost stops, its dual is not sampled finely enough.
     bool doubtful = fmax(dual[0].widest, dual[1].widest) > 0.2;
     const size_t expected = count_common(&dual[0], &dual[1], &doubtful);
     OK(cag_tangents_of_two(c[0], c[1], &lines, &n, &err));
@@ -197,8 +198,8 @@ static void random_curves_have_their_common_tangents(void **state) {
   assert_true(clear >= 50 && seen > 200);
 }
 
-// The tangents of [t, t^2] from [(u + v) / 2, u v] touch at u and v, whether these are ends of the
-// curve, samples of it or neither.
+// The tangents of [t, t^2] from [(u + v) / 2, u v] touch at u and v, whether or not these are ends
+// of the curve or sample parameters.
 static void tangents_of_a_parabola_touch_at_the_roots(void **state) {
   (void)state;
   const CagVec3 p[3] = {{-1, 1, 0}, {0, -1, 0}, {1, 1, 0}};
@@ -226,17 +227,17 @@ static void tangents_of_a_parabola_touch_at_the_roots(void **state) {
   cag_curve_release(c[1]);
 }
 
-// The tangents of two curves joined at a corner are those of both, also where a tangent of the
-// corner goes through the point.
+// The tangents of two curves joined at a corner are those of both, even if a tangent at the corner
+// passes through the point.
 static void tangents_of_joined_curves_are_those_of_each(void **state) {
   (void)state;
   seed = 64;
   for (int i = 0; i < 200; i++) {
-    CagVec3 net[7], p = random_place(5);
+    CagVec3 net[7], p = random_location(5);
     CagCurve *c[3];
     CagTangentLine *lines[3];
     size_t n[3];
-    for (int k = 0; k < 7; k++) net[k] = random_place(3);
+    for (int k = 0; k < 7; k++) net[k] = random_location(3);
     if (i % 4 == 1) p = cag_lerp(net[2], net[3], uniform(1.2, 3));
     if (i % 4 == 2) p = cag_lerp(net[4], net[3], uniform(1.2, 3));
     OK(cag_curve_bezier(net, NULL, 4, 2, &c[0], &err));
@@ -259,13 +260,13 @@ static void tangents_of_joined_curves_are_those_of_each(void **state) {
   }
 }
 
-// No line touches a straight one but in a point of its own.
+// A line has a tangent through a point only if the point is on it.
 static void lines_have_no_tangents_from_their_extensions(void **state) {
   (void)state;
   seed = 65;
   for (int i = 0; i < 300; i++) {
     const double size = pow(10, uniform(-6, 6)), s = uniform(-2, 3);
-    const CagVec3 a = random_place(size), b = random_place(size), p = cag_lerp(a, b, s);
+    const CagVec3 a = random_location(size), b = random_location(size), p = cag_lerp(a, b, s);
     CagCurve *c;
     CagTangentLine *lines;
     size_t n;
@@ -275,21 +276,21 @@ static void lines_have_no_tangents_from_their_extensions(void **state) {
     for (size_t k = 0; k < n; k++) {
       near_vec(lines[k].p, p, 1e-12 * size);
       NEAR(fabs(cross2(cag_unit(cag_sub(lines[k].q, lines[k].p)), cag_unit(cag_sub(b, a)))), 0,
-           1e-9 + 1e-12 / size); // q is 1 from p
+           1e-9 + 1e-12 / size); // q is at distance 1 from p
     }
     free(lines);
     cag_curve_release(c);
   }
 }
 
-// Circles of any size and place: 4 tangents apart, 3 touching, 2 crossing, 1 touching from within,
-// none within.
+// Circles of any size and location: 4 common tangents if they are disjoint, 3 if they touch, 2 if
+// they cross, 1 if they touch from inside, and none if one is inside the other.
 static void circles_touch_at_any_size(void **state) {
   (void)state;
   seed = 66;
   for (int i = 0; i < 300; i++) {
     const double size = pow(10, i % 3 * 6 - 6.0);
-    const CagVec3 a = random_place(100 * size), e = cag_unit(random_place(1));
+    const CagVec3 a = random_location(100 * size), e = cag_unit(random_location(1));
     const double r = size * uniform(0.5, 2), s = size * uniform(0.5, 2), much = 1e-6 * size;
     const double apart[5] = {fabs(r - s) - much, fabs(r - s), uniform(fabs(r - s) + much, r + s),
                              r + s, r + s + much};
@@ -304,7 +305,7 @@ static void circles_touch_at_any_size(void **state) {
       OK(cag_curve_arc(s, s, -1, 2 * M_PI - 1, &g, &c[1], &err));
       OK(cag_tangents_of_two(c[0], c[1], &lines, &n, &err));
       assert_int_equal(n, k);
-      size_t single = 0; // in the point where the circles touch
+      size_t single = 0; // tangents at the common point of touching circles
       for (size_t j = 0; j < n; j++) {
         const CagVec3 d = cag_sub(lines[j].q, lines[j].p), u = cag_unit(d);
         assert_true(cag_norm(d) > 1e-7 * size);
@@ -314,7 +315,7 @@ static void circles_touch_at_any_size(void **state) {
         NEAR(fabs(cross2(cag_sub(b, lines[j].p), u)), s, 1e-9 * size);
         single += fabs(cag_norm(cag_sub(lines[j].q, b)) - s) > 1e-9 * size;
       }
-      assert_int_equal(single, size > 1 ? 0 : k % 2); // q is 1 from p
+      assert_int_equal(single, size > 1 ? 0 : k % 2); // q is at distance 1 from p
       free(lines);
       cag_curve_release(c[0]);
       cag_curve_release(c[1]);

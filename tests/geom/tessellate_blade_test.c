@@ -1,6 +1,7 @@
-// Triangles of twisted blades lie along the surface: the normals at their corners, by which they
-// are shaded, are not far from their own. At a sharp leading edge steps across are short and those
-// along it are long, and a triangle that is high by the one and bulges by the other stands on edge.
+// Triangles of twisted blades are nearly tangent to the surface: the normals at their corners,
+// which determine the shading, are close to their own. At a sharp leading edge, steps across are
+// short and steps along are long. A triangle that is as high as the former and bulges like the
+// latter would be almost perpendicular to the surface.
 
 #include "geom/solid/solid.h"
 #include "geom/solid/tessellate.h"
@@ -9,7 +10,7 @@
 
 static uint64_t chance_state = 1;
 
-// Park and Miller: the same blades everywhere.
+// Park and Miller's generator, for the same blades on every machine.
 static double between(double a, double b) {
   chance_state = chance_state * 48271 % 2147483647;
   return a + (b - a) * (double)chance_state / 2147483647;
@@ -17,7 +18,7 @@ static double between(double a, double b) {
 
 enum { SECTIONS = 5 };
 
-// A section of chord 10, turned, scaled and lifted.
+// A section of chord 10, rotated, scaled, and raised.
 static CagCurve *section(const double profile[6][2], double angle, double scale, double z) {
   CagVec3 p[6];
   for (int k = 0; k < 6; k++) {
@@ -49,7 +50,7 @@ static double angle_between(CagVec3 a, CagVec3 b) {
   return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
 }
 
-// Largest angle between the normal of a triangle and that of one of its corners, radians.
+// The largest angle between the normal of a triangle and that of one of its corners, in radians.
 static double largest_lean(const CagMesh *m) {
   double largest = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -61,7 +62,8 @@ static double largest_lean(const CagMesh *m) {
   return largest;
 }
 
-// The normal turns by at most 15 degrees along an edge: a triangle's own is among them.
+// The normal rotates by at most 15 degrees along an edge. The limit is the same for the triangle's
+// own normal.
 static const double most = 15 * M_PI / 180;
 
 static void triangles_of_blades_lie_along_the_surface(void **state) {
@@ -104,7 +106,7 @@ static void triangles_of_twisted_extrusions_lie_along_the_surface(void **state) 
   }
 }
 
-// A profile crosses the axis: the surface is a single point there, and its normal is reversed.
+// The profile crosses the axis: the surface is a single point there, and its normal is reversed.
 static void triangles_of_revolutions_across_the_axis_lie_along_the_surface(void **state) {
   (void)state;
   enum { SHAPES = 16 };

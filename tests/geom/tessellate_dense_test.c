@@ -1,6 +1,6 @@
-// The guarantee of tessellation, by dense sampling: for surfaces that are hard in one way or
-// another no point of many is farther from the mesh than the tolerance, vertices lie on the surface
-// with its normals and their parameters, and the mesh is whole.
+// Tessellation guarantees, by dense sampling of difficult surfaces: all points are within the
+// tolerance of the mesh, vertices are on the surface with its normals and parameters, and the mesh
+// is complete.
 
 #include "geom/surface/function.h"
 #include "geom/surface/patches.h"
@@ -22,7 +22,7 @@ static double smallest_angle(const CagMesh *m) {
   return least;
 }
 
-// Tolerances; angles are looked at for the typical one.
+// The typical tolerance, for which angles are checked.
 #define TYPICAL 1e-2
 static const double tolerances[] = {1, TYPICAL, 1e-3, 1e-4};
 
@@ -30,9 +30,9 @@ typedef struct Subject {
   const char *name;
   CagSurface *(*make)(void);
   long euler;              // of the mesh
-  bool smooth;             // it has a normal everywhere, which does not jump
+  bool smooth;             // it has a continuous normal everywhere
   double finest, coarsest; // tolerances
-  double angle_least;      // degrees: of triangles, at the typical tolerance
+  double angle_least;      // degrees; smallest angle of triangles at the typical tolerance
 } Subject;
 
 // --- Subjects: nets ---
@@ -165,7 +165,7 @@ static CagSurface *tight_tube(void) {
   return s;
 }
 
-// The tube is wider than its path is round: it passes through itself.
+// The tube's radius exceeds the radius of curvature of its path, so it intersects itself.
 static CagSurface *fat_tube(void) {
   CagCurve *path;
   CagSurface *s;
@@ -246,11 +246,11 @@ static CagSurface *saddle(void) {
   return quadric(CAG_SHAPE_HYPERBOLIC_PARABOLOID, 3, 2, 1, -2, 2, -2, 2);
 }
 
-// --- Subjects: formulas ---
+// --- Subjects: functions ---
 
 typedef void Formula(double u, double v, CagVec3 *p);
 
-// Partials by differences of a step that loses half of the digits at most.
+// Partial derivatives by differences, with a step that loses at most half of the digits.
 static CagStatus formula_eval(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
   const double h = 1e-6;
   Formula *f = *(Formula **)context;
@@ -281,19 +281,19 @@ static CagStatus formula_eval(void *context, double u, double v, int n, CagVec3 
 
 static CagStatus formula_row(void *context, double u, const double *vs, size_t nv, int n,
                              CagVec3 *out, CagError *e) {
-  return row_by_places(formula_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(formula_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *formula(Formula **f, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  CagSurfaceFunction function = {formula_eval, formula_row, keep, f};
+  CagSurfaceFunction function = {formula_eval, formula_row, release_nothing, f};
   OK(cag_surface_function(&function, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }
 
-// Eight waves with their crests where equal steps look.
+// Eight waves whose crests are at the points of equal steps.
 static void crests(double u, double v, CagVec3 *p) {
   *p = cag_vec3(10 * u, 10 * v, cos(16 * M_PI * u) * cos(8 * M_PI * v));
 }
@@ -379,7 +379,7 @@ static CagSurface *scaled(CagSurface *s, double by, double away) {
 
 static CagSurface *far_away(void) { return scaled(periodic(), 1, 1e5); }
 
-enum { ANY = 99 }; // Euler characteristic: not looked at
+enum { ANY = 99 }; // Euler characteristic: not checked
 
 static const Subject subjects[] = {
     {"ridge", ridge, 1, true, 1e-4, 1, 0},
@@ -434,7 +434,7 @@ static void check_vertices(const Subject *x, const CagSurface *s, const CagMesh 
     NEAR(cag_norm(m->normals[v]), 1, 1e-12);
     OK(cag_surface_point(s, u, w, &p, &err));
     near_vec(p, m->positions[v], 1e-13 * size);
-    // Poles of revolutions have a normal for each side, which is a limit.
+    // At poles of surfaces of revolution, each side has a limit normal.
     if (x->smooth && cag_surface_normal(s, u, w, &n, &err) == CAG_OK)
       near_vec(n, m->normals[v], 1e-12);
   }
@@ -498,7 +498,7 @@ static void angles_and_edges_are_kept(void **state) {
       {"offset", offset_patch, 0, true, 0, 0, 0},
   };
   const double angles[] = {4, 8, 15, 25}, longest[] = {0, 0.7};
-  const double free = 0.2; // of the tolerance
+  const double free = 0.2; // fraction of the tolerance
   for (size_t k = 0; k < sizeof smooth / sizeof *smooth; k++) {
     CagSurface *s = smooth[k].make();
     for (int i = 0; i < 8; i++) {
@@ -516,7 +516,7 @@ static void angles_and_edges_are_kept(void **state) {
   }
 }
 
-// Moved copies have their quadrilaterals cut alike, though their positions are rounded otherwise.
+// In translated copies, cells are divided in the same way, although the rounding differs.
 static void moved_copies_have_the_same_triangles(void **state) {
   (void)state;
   CagSurface *(*const makers[])(void) = {periodic, ball, waist, tight_tube, saddle};
@@ -536,7 +536,7 @@ static void moved_copies_have_the_same_triangles(void **state) {
   }
 }
 
-// A hundred turns take about a hundred times the triangles of one.
+// A hundred turns need about a hundred times the triangles of one.
 static void many_turns_take_no_more_than_they_need(void **state) {
   (void)state;
   size_t counts[2];
@@ -561,8 +561,8 @@ static void many_turns_take_no_more_than_they_need(void **state) {
   assert_true(counts[1] < 100 * counts[0]);
 }
 
-// A gentle wave with a thin feature at a place of chance: 3 high, e times lower at a distance of
-// `width` along u and v (0: not along that direction).
+// A gentle wave with a thin feature at a random location: height 3, which decreases by a factor e
+// at a distance of `width` along u and v (0: constant in that direction).
 static struct { double u, v, width_u, width_v; } feature;
 
 static void thin_feature(double u, double v, CagVec3 *p) {

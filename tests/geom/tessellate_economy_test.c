@@ -1,5 +1,5 @@
-// How many triangles tessellation takes: compared with the fewest that closed forms allow, and
-// alike however the parameters of a surface run.
+// The number of triangles: compared with the minimum from closed forms, and independent of the
+// parametrization of a surface.
 
 #include "geom/tessellate/tessellate.h"
 #include "tests/geom/net_support.h"
@@ -25,9 +25,10 @@ static Net parabolic(double width, double height, double a, double b, double c) 
   return net;
 }
 
-// Triangles on lines of slopes u, v over a parabolic surface are off by a quadratic form of their
-// edges over 8. Right triangles with the legs h, k along x and y need a h^2 + b k^2 <= 8 tolerance
-// if a and b have one sign, and at least max(|a| h^2, |b| k^2) <= 8 tolerance otherwise.
+// The deviation of triangles on lines of slopes u, v over a parabolic surface is a quadratic form
+// of their edges divided by 8. Right triangles with the legs h, k along x and y need a h^2 + b k^2
+// <= 8 tolerance if a and b have the same sign, and at least max(|a| h^2, |b| k^2) <= 8 tolerance
+// otherwise.
 static void parabolic_surfaces_take_little_more_than_the_fewest(void **state) {
   (void)state;
   double sum[2] = {0, 0};
@@ -66,9 +67,9 @@ static Net random_net(int k) {
   return net;
 }
 
-// The same net of points with its rows and columns exchanged, or run through from the other end.
-// Without curvature that matters, what edges may be as long as decides: exactly alike. Bounds of
-// all triangles are what they were when each tolerance was kept with few to spare.
+// The same net with its rows and columns exchanged or reversed. Without significant curvature, only
+// the maximum edge length matters, so the counts are exactly equal. The upper bounds are slightly
+// above the counts needed for each tolerance.
 static void triangles_do_not_depend_on_how_parameters_run(void **state) {
   (void)state;
   enum { NETS = 18, TURNS = 8 };
@@ -95,7 +96,7 @@ static void triangles_do_not_depend_on_how_parameters_run(void **state) {
   for (int i = 0; i < 3; i++) assert_true(sum[i] <= together[i]);
 }
 
-// A cap whose rows come together in a pole, at either end of either parameter.
+// A cap whose rows meet at a pole, at either end of either parameter.
 static void poles_are_alike_at_all_ends(void **state) {
   (void)state;
   enum { NETS = 30, TURNS = 8 };
@@ -123,7 +124,8 @@ static void poles_are_alike_at_all_ends(void **state) {
   }
 }
 
-// The normals of a cone turn as much at its tip as anywhere: its triangles all reach the tip.
+// The normals of a cone rotate by the same angle at its tip as elsewhere, so all its triangles
+// reach the tip.
 static void cones_have_one_row_of_triangles(void **state) {
   (void)state;
   seed = 35;
@@ -140,13 +142,13 @@ static void cones_have_one_row_of_triangles(void **state) {
     how.tolerance = exp(uniform(-6, -4));
     how.angle = 0.05;
     CagSurface *s = surface_of(&net, k % 8);
-    // From the first side of the net to the last one tangents turn by twice the angle.
+    // From the first side of the net to the last, tangents rotate by twice the angle.
     assert_true(triangles_of(s, &how) <= 1.15 * 2 * wide / how.angle + 2);
     cag_surface_release(s);
   }
 }
 
-// A limit of as many triangles as there are is kept, one less is not.
+// A limit equal to the number of triangles is accepted, and one less is not.
 static void limits_of_triangles_are_exact(void **state) {
   (void)state;
   seed = 33;

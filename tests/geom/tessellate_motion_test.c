@@ -1,6 +1,6 @@
-// A shape's mesh is a matter of the shape, not of where it stands: under rigid motions, up to ten
-// thousand times its size away, the triangles are as many. Edges that are one point, lines that
-// are doubled and cusps are where rounding could speak, since what vanishes there vanishes no more.
+// The mesh of a shape does not depend on its location: after rigid motions up to ten thousand times
+// its size away, the number of triangles is the same. Degenerate edges, double lines, and cusps are
+// sensitive, because rounding makes quantities that vanish there nonzero.
 
 #include "geom/surface/patches.h"
 #include "geom/surface/quadric.h"
@@ -9,13 +9,13 @@
 
 static uint64_t chance_state = 1;
 
-// Park and Miller: the same motions everywhere.
+// Park and Miller's generator, for the same motions on every machine.
 static double between(double a, double b) {
   chance_state = chance_state * 48271 % 2147483647;
   return a + (b - a) * (double)chance_state / 2147483647;
 }
 
-// Turned anyhow (by a quaternion), moved by up to `away` along each axis.
+// A random rotation (by a quaternion), and a translation of up to `away` along each axis.
 static CagTransform motion(double away) {
   double q[4], length = 0;
   for (int k = 0; k < 4; k++) {
@@ -165,7 +165,8 @@ static double size_of(const CagSurface *s) {
 
 static void motions_keep_the_number_of_triangles(void **state) {
   (void)state;
-  const double shares[] = {1e-2, 1e-3, 1e-4}, distances[] = {0, 1, 100, 1e4}; // of the size
+  const double shares[] = {1e-2, 1e-3, 1e-4},
+               distances[] = {0, 1, 100, 1e4}; // relative to the size
   const double few = 0.03;
   enum { MOTIONS = 4 };
   chance_state = 4;
@@ -193,8 +194,8 @@ static void motions_keep_the_number_of_triangles(void **state) {
   }
 }
 
-// Where the triangles are the same, their normals turn along, also at poles and cusps. The tip of a
-// cone takes its normals 1e-5 of the domain beside it.
+// If the triangles are the same, their normals rotate along, also at poles and cusps. The normals
+// at the tip of a cone are evaluated at a distance of 1e-5 of the domain.
 static void motions_turn_the_normals(void **state) {
   (void)state;
   chance_state = 8;

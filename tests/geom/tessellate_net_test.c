@@ -1,5 +1,5 @@
-// Meshes of random nets with creases, seams and pieces of any width: triangles tile the parameters,
-// vertices are points of the surface with the normals of their side, and all limits are kept.
+// Meshes of random nets with creases, seams, and pieces of any width: triangles tile the parameter
+// domain, vertices are points of the surface with one-sided normals, and all limits are satisfied.
 
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
@@ -15,7 +15,7 @@ typedef struct Shape {
   bool closed[2];
 } Shape;
 
-// Knots over 0..3 with one or two inside; of two that are one a crease.
+// Knots over 0..3 with one or two inner ones. Two equal ones are a crease.
 static size_t random_knots(int degree, double *knots) {
   const double at = uniform(0.3, 1.4);
   const double next = uniform(1.6, 2.7);
@@ -56,8 +56,8 @@ static Shape random_shape(int k) {
   return shape;
 }
 
-// The sum of the areas in parameters is that of the domain, and none is negative: no part is
-// covered twice or left out.
+// Checks that no triangle has a negative area in the parameter domain, and that the areas add up to
+// that of the domain: no part is covered twice or missing.
 static void check_tiling(const CagMesh *m, const CagSurface *s) {
   double area = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -81,10 +81,10 @@ static void check_topology(const CagMesh *m, const Shape *shape) {
   assert_true(c.closed == (shape->closed[0] && shape->closed[1]));
 }
 
-// Every vertex is a point of the surface, and has the normal that the surface has a little inside
-// of each of its triangles.
+// Checks that every vertex is a point of the surface, and has the normal that the surface has
+// slightly inside each of its triangles.
 static void check_vertices(const CagMesh *m, const CagSurface *s) {
-  const double beside = 1e-6; // of the way to the middle of the triangle
+  const double beside = 1e-6; // fraction of the distance to the center of the triangle
   bool *used = calloc(m->vertex_count + 1, sizeof *used);
   assert_non_null(used);
   for (size_t t = 0; t < m->triangle_count; t++)
@@ -106,7 +106,7 @@ static void check_vertices(const CagMesh *m, const CagSurface *s) {
   for (size_t v = 0; v < m->vertex_count; v++) {
     assert_true(used[v]);
     near_vec(m->positions[v], m->positions[m->weld[v]], 0);
-    // No other vertex is the same.
+    // All vertices differ.
     for (size_t w = 0; w < v; w++)
       assert_false(m->uv[2 * w] == m->uv[2 * v] && m->uv[2 * w + 1] == m->uv[2 * v + 1] &&
                    cag_norm(cag_sub(m->normals[w], m->normals[v])) < 1e-9);
@@ -145,7 +145,7 @@ static void check_limits(const CagMesh *m, const CagSurface *s, const CagTessell
   }
 }
 
-// Gives the number of triangles.
+// Returns the number of triangles.
 static double check_mesh(const Shape *shape, const CagTessellation *how) {
   CagMesh *m;
   OK(cag_surface_tessellate(shape->s, how, &m, &err));
@@ -172,7 +172,7 @@ static void meshes_of_random_nets_are_sound(void **state) {
   }
 }
 
-// A section that is turned while it moves along z, closed or not, in either order of parameters.
+// A section that rotates while it moves along z, closed or not, in either order of the parameters.
 static Shape twisted_shape(int k) {
   Shape shape = {.closed = {k % 2, false}};
   CagVec3 p[9];
@@ -196,8 +196,8 @@ static Shape twisted_shape(int k) {
   return shape;
 }
 
-// Most of them take strips of long triangles: then they need far less than grids do. The bound is
-// what was needed.
+// Most of them need strips of long triangles, which are far fewer than those of grids. The bound is
+// the number that was needed.
 static void meshes_of_twisted_sections_are_sound(void **state) {
   (void)state;
   double sum = 0;

@@ -1,7 +1,7 @@
-// What meshes of solids promise, against closed forms: set operations, caps with holes, copies,
-// tight bends, any unit. Each mesh is closed with its outside outside, its points lie on the right
-// surfaces within the tolerance and the surfaces' points on it, and its volume and area come to the
-// exact ones as the tolerance falls.
+// Guarantees of meshes of solids, compared with closed forms: set operations, caps with holes,
+// copies, tight bends, and any unit. Each mesh is closed and oriented outward, its points are on
+// the correct surfaces within the tolerance and vice versa, and its volume and area converge to the
+// exact ones as the tolerance decreases.
 
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
@@ -12,7 +12,7 @@
 
 static uint64_t chance_state = 1;
 
-// Park and Miller: the same points everywhere.
+// Park and Miller's generator, for the same points on every machine.
 static double chance(void) {
   chance_state = chance_state * 48271 % 2147483647;
   return (double)chance_state / 2147483647;
@@ -25,7 +25,7 @@ static CagVec3 direction(void) {
   return cag_vec3(r * cos(a), r * sin(a), z);
 }
 
-// --- Makers ---
+// --- Constructors ---
 
 static CagSolid *ball(double radius) {
   CagSolid *s;
@@ -39,7 +39,7 @@ static CagSolid *box(double x, double y, double z) {
   return s;
 }
 
-// Takes the solid over.
+// Takes ownership of the solid.
 static CagSolid *mapped(CagSolid *s, const CagTransform *t) {
   CagSolid *out;
   OK(cag_solid_transform(s, t, &out, &err));
@@ -58,13 +58,13 @@ static CagSolid *rod(double radius, double half, int k) {
   CagTransform t = cag_transform_identity();
   OK(cag_solid_cylinder(2 * half, radius, radius, &s, &err));
   s = moved(s, 0, 0, -half);
-  // The axes go round: z to x, z to y.
+  // A cyclic permutation of the axes: z to x, or z to y.
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) t.m[i][j] = (j + k + 1) % 3 == i;
   return k == 2 ? s : mapped(s, &t);
 }
 
-// Takes the operands over.
+// Takes ownership of the operands.
 static CagSolid *combined(CagSetOperation op, size_t n, CagSolid **operands) {
   CagSolid *out;
   OK(cag_solid_combine(op, operands, n, NULL, &out, &err));
@@ -125,7 +125,7 @@ typedef struct Operation {
   size_t shells;
 } Operation;
 
-// Heights of the ring: 16; of the caps that two balls of radius 5 lose at a distance of 6: 2.
+// Heights: 16 for the ring, and 2 for the caps cut from two balls of radius 5 at distance 6.
 static const Operation operations[] = {
     {"napkin ring", napkin_ring, to_ring, M_PI * 4096 / 6, M_PI *(2 * 10 + 2 * 6) * 16, 1, 1},
     {"two cylinders", two_rods, to_two_rods, 16.0 / 3 * 125, 16 * 25, 0, 1},
@@ -193,11 +193,12 @@ static void points_of_operations_lie_on_their_operands(void **state) {
   }
 }
 
-// A ray from the middle of the solid leaves it where the mesh is: no part of the boundary is
-// missing. (The ring and the shell have no middle of their own; the ray from the origin crosses
-// all.)
+// A ray from the center of the solid leaves it through the mesh: no part of the boundary is
+// missing. (The ring and the shell do not contain their centers; the ray from the origin crosses
+// all of their surfaces.)
 static double crossing_volume(const CagMesh *m, CagVec3 way) {
-  double sum = 0; // of signed cubes of distances: the volume over the solid angle, by rays
+  double sum =
+      0; // of signed cubes of distances: the volume as an integral over the solid angle, by rays
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     CagVec3 a = m->positions[k[0]], b = m->positions[k[1]], c = m->positions[k[2]];
@@ -205,13 +206,13 @@ static double crossing_volume(const CagMesh *m, CagVec3 way) {
            z = cag_dot(cag_cross(a, b), way), whole = x + y + z;
     if (!(x * y > 0 && y * z > 0)) continue;
     double distance = cag_dot(cag_cross(a, b), c) / whole;
-    if (distance < 0) continue; // on the other side
+    if (distance < 0) continue; // on the opposite side
     sum += (whole > 0 ? 1 : -1) * distance * distance * distance;
   }
   return sum;
 }
 
-// Along any ray from the origin the steps of these solids are known.
+// The known radii of the crossings along a ray from the origin.
 static double ring_steps(CagVec3 w) {
   double flat = hypot(w.x, w.y);
   return flat <= 0.6 ? 0 : 1000 - pow(6 / flat, 3);
@@ -224,7 +225,7 @@ static double rods_steps(CagVec3 w, int n) {
 
 static void rays_through_operations_cross_the_exact_surfaces(void **state) {
   (void)state;
-  const double tolerance = 0.02, steepest = 8; // a ray meets a surface at no flatter slope
+  const double tolerance = 0.02, steepest = 8; // a ray meets a surface at this slope at least
   chance_state = 9;
   CagMesh *m[4];
   for (int k = 0; k < 4; k++) {
@@ -238,7 +239,7 @@ static void rays_through_operations_cross_the_exact_surfaces(void **state) {
                              crossing_volume(m[2], w), crossing_volume(m[3], w)};
     const double exact[4] = {ring_steps(w), rods_steps(w, 2), rods_steps(w, 3), 1000 - 729};
     for (int i = 0; i < 4; i++) {
-      // Near the ring's rim rays graze; near a pole of the rods they are long.
+      // Near the ring's rim, rays graze it; near a pole of the rods, they are long.
       if (i == 0 && fabs(hypot(w.x, w.y) - 0.6) < 0.05) continue;
       double slack = steepest * tolerance * 3 * 100 * 2;
       if (!(fabs(found[i] - exact[i]) <= slack))
@@ -249,8 +250,9 @@ static void rays_through_operations_cross_the_exact_surfaces(void **state) {
   for (int k = 0; k < 4; k++) cag_mesh_release(m[k]);
 }
 
-// Chords are off by the square of their length, and so are volume and area: a tolerance 16 times
-// finer leaves about a sixteenth. Edges where surfaces meet cost a little.
+// The deviation of chords, and therefore that of volume and area, is quadratic in their length. A
+// tolerance that is 16 times finer leaves about a sixteenth, plus a little for edges between
+// surfaces.
 static void volumes_and_areas_converge(void **state) {
   (void)state;
   for (size_t k = 0; k < OPERATIONS; k++) {
@@ -286,7 +288,7 @@ static CagCurve *ellipse(double x, double y, double a, double b) {
   return c;
 }
 
-// An ellipse with two holes, one of them an ellipse. Area: 40 - 1 - 1.5 times pi.
+// An ellipse with two holes, one of which is an ellipse. The area is (40 - 1 - 1.5) pi.
 static CagRegion *holed(void) {
   CagCurve *loops[3] = {ellipse(0, 0, 8, 5), ellipse(3, 0, 1, 1), ellipse(-3, 1, 1.5, 1)};
   CagRegion *r;
@@ -296,7 +298,7 @@ static CagRegion *holed(void) {
 }
 static const double holed_area = M_PI * (40 - 1 - 1.5);
 
-// Area of the mesh's triangles in the plane z = height.
+// The area of the triangles in the plane z = height.
 static double area_at(const CagMesh *m, double height) {
   double area = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -311,7 +313,7 @@ static double area_at(const CagMesh *m, double height) {
 static void caps_with_holes_have_their_area(void **state) {
   (void)state;
   const double twists[] = {0, M_PI / 3, 4 * M_PI}, scales[] = {1, 0.4, 1.7};
-  const double height = 12, perimeter = 60; // no longer than that
+  const double height = 12, perimeter = 60; // an upper bound
   CagRegion *r = holed();
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -330,7 +332,7 @@ static void caps_with_holes_have_their_area(void **state) {
   cag_region_release(r);
 }
 
-// --- Copies, units, uneven scales ---
+// --- Copies, units, nonuniform scales ---
 
 static CagSolid *subject(int k) {
   CagSolid *s;
@@ -381,7 +383,7 @@ static void mirrored_and_stretched_copies_are_closed(void **state) {
       if (!b.closed || !b.oriented || b.genus != a.genus || b.shells != a.shells)
         fail_msg("subject %d stretched by %g %g %g: genus %ld and %ld, %zu open edges", k,
                  stretch[i][0], stretch[i][1], stretch[i][2], a.genus, b.genus, b.boundary_edges);
-      // Both are off the exact volume by what the tolerance allows.
+      // Both deviate from the exact volume as much as the tolerance allows.
       double allowed = size_of(copy) * 2e-3 * cag_mesh_area(n) +
                        factor * cag_mesh_area(m) * 2e-3 * cag_norm(cag_mesh_bounds(m).max) * 4;
       NEAR(volume_of(n), factor * volume_of(m), allowed);
@@ -439,14 +441,14 @@ static void what_is_smaller_than_the_tolerance_is_closed(void **state) {
 
 // --- Tubes ---
 
-// Pappus: as long as the tube is thinner than its path is round, its volume is that of the straight
-// one.
+// Pappus: if the radius of the tube is less than the radius of curvature, its volume is that of a
+// straight one.
 static void tubes_with_tight_bends_keep_their_volume(void **state) {
   (void)state;
   const double pitch = 3, turns = 4, path = 2;
   const double length = turns * hypot(2 * M_PI * path, pitch);
   const double bend = path + pitch * pitch / (4 * M_PI * M_PI * path); // radius of curvature
-  // Turns are 3 apart: so radii are less than half of that.
+  // Turns are 3 apart, so radii must be less than half of that.
   const double radii[] = {0.1, 0.7, 1.4};
   CagCurve *c;
   OK(cag_curve_helix(path, pitch, turns, 0, &c, &err));
@@ -466,12 +468,12 @@ static void tubes_with_tight_bends_keep_their_volume(void **state) {
   cag_curve_release(c);
 }
 
-// --- Clips, lofts, tubes, uneven scales: points on the surfaces ---
+// --- Clipped solids, lofts, tubes, nonuniform scales: points on the surfaces ---
 
 static const double helix_radius = 2, helix_pitch = 3, helix_turns = 4;
 
 static double to_helix_tube(CagVec3 p) {
-  // The nearest point of the helix has about the angle of p, on the turn of its height.
+  // The closest point of the helix has about the angle of p, on the turn of its height.
   double end = helix_turns * 2 * M_PI, rise = helix_pitch / (2 * M_PI), best = INFINITY;
   double near = atan2(p.y, p.x);
   for (int turn = -1; turn <= helix_turns + 1; turn++) {
@@ -489,7 +491,7 @@ static double to_helix_tube(CagVec3 p) {
       }
   }
   double off = fabs(best - 0.7);
-  // The caps, square to both ends.
+  // The caps, perpendicular to both ends.
   double slope = hypot(helix_radius, rise);
   CagVec3 first = {0, helix_radius / slope, rise / slope};
   off = fmin(off, fabs(cag_dot(cag_sub(p, cag_vec3(helix_radius, 0, 0)), first)));
@@ -498,7 +500,7 @@ static double to_helix_tube(CagVec3 p) {
 static double to_clipped_torus(CagVec3 p) {
   return fmin(fabs(p.x), fabs(hypot(hypot(p.x, p.y) - 5, p.z) - 2));
 }
-// To first order, which is enough near to it.
+// To first order, which suffices near it.
 static double to_ellipsoid(CagVec3 p) {
   CagVec3 g = {p.x / 64, p.y, p.z / 9};
   return fabs(cag_dot(p, g) - 1) / (2 * cag_norm(g));
@@ -530,7 +532,7 @@ static CagSolid *ellipsoid(void) {
   t.m[2][2] = 3;
   return mapped(ball(1), &t);
 }
-// A cone from three circles; the middle one is no degree of freedom of it.
+// A cone from three circles, the middle one of which is redundant.
 static CagSolid *frustum(void) {
   CagCurve *circles[3];
   CagSurface *side;
@@ -561,7 +563,7 @@ static void points_of_other_solids_lie_on_their_surfaces(void **state) {
                 {"ellipsoid", ellipsoid, to_ellipsoid, 0},
                 {"loft", frustum, to_frustum, 0}};
   const double tolerances[] = {0.1, 0.02};
-  const double first_order = 1.1; // what the distance to the ellipsoid leaves out
+  const double first_order = 1.1; // allowance for the first-order approximation
   chance_state = 17;
   for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
     CagSolid *s = others[k].make();
@@ -582,8 +584,8 @@ static void points_of_other_solids_lie_on_their_surfaces(void **state) {
 
 // --- Seams ---
 
-// Vertices of one point have the same position, bit by bit, and each vertex at one end of a closed
-// direction has one at the other end.
+// Coincident vertices have bit for bit the same position, and each vertex at one end of a closed
+// direction has a counterpart at the other end.
 static void seams_agree_to_the_bit(void **state) {
   (void)state;
   for (int k = 0; k < SUBJECTS; k++) {
@@ -624,9 +626,9 @@ static void seams_agree_to_the_bit(void **state) {
   }
 }
 
-// --- Shells whose faces have parameters of their own ---
+// --- Shells whose faces are parametrized independently ---
 
-// A unit cube bent by a map of second degree, so that faces and edges are curved.
+// A unit cube deformed by a quadratic map, so that faces and edges are curved.
 typedef struct Bend {
   double mixed[3], squared[3];
 } Bend;
@@ -637,8 +639,8 @@ static CagVec3 bent(const Bend *b, CagVec3 p) {
                   p.z + b->mixed[2] * p.x * p.y + b->squared[2] * p.x * p.x);
 }
 
-// The determinant of the map's derivative; the two points a direction of Gauss integrate it
-// exactly.
+// The integral of the map's Jacobian determinant, for which two Gauss points in each direction are
+// exact.
 static double bent_volume(const Bend *b) {
   const double at[2] = {0.5 - sqrt(3) / 6, 0.5 + sqrt(3) / 6};
   double sum = 0;
@@ -652,8 +654,8 @@ static double bent_volume(const Bend *b) {
   return sum;
 }
 
-// How far the point's place in the cube is from the cube's surface. The map is near the identity,
-// so that its inverse is found by repeated correction.
+// The distance of the point's preimage in the cube from the cube's surface. The map is close to the
+// identity, so fixed-point iteration inverts it.
 static double off_bent_cube(const Bend *b, CagVec3 p) {
   CagVec3 at = p;
   for (int k = 0; k < 200; k++) at = cag_add(at, cag_sub(p, bent(b, at)));
@@ -661,8 +663,8 @@ static double off_bent_cube(const Bend *b, CagVec3 p) {
   return fabs(fmax(x, fmax(y, z)) - 0.5);
 }
 
-// Face k as a patch of degree 2 both ways: its directions in any order and sense, over any domain.
-// Weights in a geometric series change the parameters alone, and not affinely.
+// Face k as a patch of degree 2 in both directions, in any order and direction, over any domain.
+// Weights in a geometric series change only the parametrization, and not affinely.
 static CagSurface *bent_face(const Bend *b, int k, bool rational) {
   const double at[3] = {0, 0.5, 1};
   const bool swapped = chance() < 0.5, turned[2] = {chance() < 0.5, chance() < 0.5};
@@ -679,7 +681,7 @@ static CagSurface *bent_face(const Bend *b, int k, bool rational) {
       on[i][j] = bent(b, cag_vec3(p[0], p[1], p[2]));
       weights[3 * i + j] = pow(ratio[0], i) * pow(ratio[1], j);
     }
-  // A parabola through a, m and c at 0, 1/2 and 1 has the middle control point 2 m - (a + c) / 2.
+  // A parabola through a, m, and c at 0, 1/2, and 1 has the middle control point 2 m - (a + c) / 2.
   for (int i = 0; i < 3; i++)
     on[i][1] = cag_sub(cag_scaled(on[i][1], 2), cag_lerp(on[i][0], on[i][2], 0.5));
   for (int j = 0; j < 3; j++)

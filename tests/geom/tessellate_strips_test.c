@@ -43,7 +43,7 @@ static CagCurve *spiral(double from, double to, double r_from, double r_to) {
 
 enum { PARTS = 4 };
 
-// A section around the axis: crest, flank, root, flank. `ends`: where they end, as fractions of a
+// A section around the axis: crest, flank, root, flank. `ends` are their ends as fractions of a
 // turn.
 static CagCurve *thread_section(const double ends[PARTS], double outer, double inner) {
   const double radii[PARTS + 1] = {outer, outer, inner, inner, outer};
@@ -91,7 +91,7 @@ static CagSolid *m10(void) {
   return twisted(thread_section(metric, outer, inner_radius()), pitch * TURNS, TURNS, 1);
 }
 
-// The area of the section, by the integral of r^2 / 2, times the height.
+// The area of the section, the integral of r^2 / 2, times the height.
 static double m10_volume(void) {
   const double r = inner_radius();
   const double area = M_PI * (2 * outer * outer + 4 * r * r) / 16 +
@@ -110,7 +110,7 @@ static CagMesh *mesh_of(const CagSolid *s, double tolerance) {
 // The area of a polygon with n sides is less than that of its circle by the fraction (2 pi / n)^2 /
 // 6. With 30 quadrilaterals per turn, each of the four strips of the thread misses less than 0.77
 // %. Each quadrilateral has two triangles, and there are 27 turns. The limit is 1.5 times this
-// count, because of the ends, the flanks, and tolerance that is not used up.
+// count, because of the ends, the flanks, and the tolerance that is not fully used.
 static void a_thread_takes_few_triangles_for_its_volume(void **state) {
   (void)state;
   const double n = 30, most_missed = 0.0077;
@@ -131,7 +131,7 @@ static void a_thread_takes_few_triangles_for_its_volume(void **state) {
   cag_solid_release(s);
 }
 
-// The limit comes from the sagitta of a chord at the distance r from the axis, r (1 - cos(pi / n)).
+// The limit is from the sagitta of a chord at distance r from the axis, r (1 - cos(pi / n)).
 static void coarser_tolerances_take_fewer_triangles(void **state) {
   (void)state;
   CagSolid *s = m10();

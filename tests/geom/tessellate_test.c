@@ -1,8 +1,8 @@
-// Tessellation: every mesh keeps its tolerance, closes, and wastes no triangles.
+// Tessellation: every mesh satisfies its tolerance, is closed, and does not have excess triangles.
 //
-// Distances from the surface to the mesh are measured on 100 x 100 points of each smooth cell, to
-// the nearest triangle of all (found through a grid of cubes), for surfaces of known shape and for
-// those that are hard: poles, cusps, extreme weights, many turns without a break.
+// Distances from the surface to the mesh are measured at 100 x 100 points of each smooth cell, to
+// the closest of all triangles (found through a grid of cubes). The surfaces have known shapes or
+// are difficult: poles, cusps, extreme weights, and many turns without a break.
 
 #include "geom/mesh/distance.h"
 #include "geom/solid/tessellate.h"
@@ -123,8 +123,8 @@ static double largest_distance(const CagSurface *s, const Cubes *c) {
   return largest;
 }
 
-// What holds for every mesh: welded vertices have the same position to the bit, normals are unit
-// vectors, no triangle is shrunk.
+// Checks that welded vertices have exactly the same position, normals are unit vectors, and
+// triangles are not degenerate.
 static void check_mesh(const CagMesh *m) {
   for (size_t v = 0; v < m->vertex_count; v++) {
     assert_true(m->weld[v] <= v);
@@ -144,8 +144,8 @@ static CagTessellation to_tolerance(double tolerance) {
   return how;
 }
 
-// The mesh of the surface, checked; the caller releases it. The distance found lies under the
-// tolerance, and over `least_use` of it.
+// Returns the checked mesh of the surface, which the caller releases. The measured distance must be
+// below the tolerance, and above `least_use` of it.
 static CagMesh *mesh_of(const CagSurface *s, double tolerance, double least_use) {
   CagTessellation how = to_tolerance(tolerance);
   CagMesh *m;
@@ -166,7 +166,7 @@ static bool is_closed(const CagMesh *m) {
   return cag_mesh_is_watertight(m, edge);
 }
 
-// --- Surfaces by formula ---
+// --- Surfaces by functions ---
 
 typedef struct Formula {
   CagSurface base;
@@ -192,7 +192,7 @@ static Formula formula(void (*at)(double, double, CagVec3 *, CagVec3 *, CagVec3 
                    at};
 }
 
-// A tube of radius 1 about a helix of radius 10, rise 3 a turn.
+// A tube of radius 1 around a helix of radius 10, with a rise of 3 per turn.
 static void helix_tube(double u, double v, CagVec3 *p, CagVec3 *du, CagVec3 *dv) {
   const double rise = 3 / (2 * M_PI), length = sqrt(100 + rise * rise);
   CagVec3 n = {-cos(v), -sin(v), 0}, dn = {sin(v), -cos(v), 0};
@@ -204,7 +204,7 @@ static void helix_tube(double u, double v, CagVec3 *p, CagVec3 *du, CagVec3 *dv)
   *dv = cag_madd(cag_madd(cag_scaled(tangent, length), cos(u), dn), sin(u), db);
 }
 
-// A bump a 30th of the square wide.
+// A bump whose width is 1/30 of the square.
 static void bump(double u, double v, CagVec3 *p, CagVec3 *du, CagVec3 *dv) {
   double x = u - 0.37, y = v - 0.61, g = exp(-400 * (x * x + y * y));
   *p = cag_vec3(10 * u, 10 * v, 2 * g);
@@ -249,7 +249,7 @@ static void a_cylinder_has_one_row(void **state) {
   Formula f = formula(cylinder, 0, 2 * M_PI, 0, 20);
   f.base.closed_u = true;
   CagMesh *m = mesh_of(&f.base, 0.01, 0.7);
-  // n chords of a circle are off by r (1 - cos(pi / n)): 50 are the fewest.
+  // n chords of a circle deviate by r (1 - cos(pi / n)), so at least 50 are needed.
   assert_true(m->triangle_count >= 2 * 50 && m->triangle_count <= 2 * 56);
   assert_int_equal(cag_mesh_euler_characteristic(m), 0);
   cag_mesh_release(m);
@@ -265,15 +265,15 @@ static void a_cone_comes_to_one_point_with_a_normal_for_each_side(void **state) 
     for (int j = 0; j < 3; j++) {
       uint32_t k = m->triangles[3 * t + j];
       if (m->positions[k].z != 0) continue;
-      // At the tip too the normal is square to the middle of its triangle: (2, 1)/sqrt 5 in the
-      // plane through the axis.
+      // At the tip, too, the normal is perpendicular to the middle of its triangle: (2, 1)/sqrt 5
+      // in the plane through the axis.
       NEAR(m->normals[k].z * m->normals[k].z, 0.2, 1e-4);
     }
   cag_mesh_release(m);
 }
 
-// A spindle: an arc of radius 5 about [-3, 0] in the half plane through the axis, turned. One
-// parameter is the arc's angle times `stretch`, from tip to tip, the other one the turn.
+// A spindle: an arc of radius 5 about [-3, 0] in the half plane through the axis, revolved. One
+// parameter is the arc's angle times `stretch`, from tip to tip, and the other is the rotation.
 static double stretch;
 static bool turn_first;
 
@@ -285,7 +285,7 @@ static void spindle(double u, double v, CagVec3 *p, CagVec3 *du, CagVec3 *dv) {
   *(turn_first ? du : dv) = cag_vec3(-r * sin(t), r * cos(t), 0);
 }
 
-// The normal at a tip is square to the arc, towards the middle of the triangle that has it.
+// The normal at a tip is perpendicular to the arc, toward the middle of the triangle that uses it.
 static void tips_of_curved_sides_have_the_normals_of_their_triangles(void **state) {
   (void)state;
   static const double stretches[] = {1e-3, 1, 500};
@@ -308,7 +308,7 @@ static void tips_of_curved_sides_have_the_normals_of_their_triangles(void **stat
         const CagVec3 at = m->positions[c[j]], n = m->normals[c[j]];
         if (fabs(fabs(at.z) - 4) > 1e-9) continue;
         const CagVec3 way = cag_add(m->positions[c[(j + 1) % 3]], m->positions[c[(j + 2) % 3]]);
-        const double out = turn_first ? -1 : 1; // the sense of the partials
+        const double out = turn_first ? -1 : 1; // the orientation of the partial derivatives
         near_vec(cag_vec3(at.x, at.y, 0), cag_vec3(0, 0, 0), 1e-9);
         const CagVec3 want = {0.6 * way.x / hypot(way.x, way.y), 0.6 * way.y / hypot(way.x, way.y),
                               at.z > 0 ? 0.8 : -0.8};
@@ -332,7 +332,8 @@ static void a_torus_closes_and_keeps_its_tolerance(void **state) {
     assert_int_equal(cag_mesh_euler_characteristic(m), 0);
     double terms[10];
     cag_mesh_volume_terms(m, terms);
-    // 2 pi^2 R r^2; the error goes with the tolerance, and so with the square of the step.
+    // 2 pi^2 R r^2; the error is proportional to the tolerance, and therefore to the square of the
+    // step.
     double missing = 2 * M_PI * M_PI * 10 * 9 - terms[0];
     assert_true(missing > 0 && missing < tolerance * 4 * M_PI * M_PI * 30);
     if (tolerance < 5e-3) NEAR(last / missing, 10, 1.5);
@@ -344,7 +345,7 @@ static void a_torus_closes_and_keeps_its_tolerance(void **state) {
 
 static void turns_without_breaks_are_seen(void **state) {
   (void)state;
-  // 8 and 16 turns: samples at equal steps fall on the same place of each turn.
+  // 8 and 16 turns: samples at equal steps are at the same position in each turn.
   for (int turns = 8; turns <= 16; turns += 8) {
     Formula f = formula(helix_tube, 0, 2 * M_PI, 0, 2 * M_PI * turns);
     f.base.closed_u = true;
@@ -359,8 +360,8 @@ static void triangles_go_where_the_curvature_is(void **state) {
   Formula f = formula(bump, 0, 1, 0, 1);
   CagMesh *m = mesh_of(&f.base, 1e-3, 0.4);
   assert_int_equal(cag_mesh_euler_characteristic(m), 1);
-  // A uniform grid for the top of the bump, where z'' = 1600/100, would take over 8000 a square of
-  // the bump's own width.
+  // A uniform grid for the top of the bump, where z'' = 1600/100, would need over 8000 triangles in
+  // a square of the bump's width.
   assert_true(m->triangle_count < 25000);
   cag_mesh_release(m);
   f = formula(waves, -3, 3, -3, 3);
@@ -384,7 +385,7 @@ static void extreme_weights_keep_the_tolerance(void **state) {
   weights[6] = 100;
   weights[9] = 0.01;
   CagSurface *s = patch(z, weights);
-  cag_mesh_release(mesh_of(s, 1e-2, 0.3)); // the angle rules in parts
+  cag_mesh_release(mesh_of(s, 1e-2, 0.3)); // the angle decides in parts
   cag_mesh_release(mesh_of(s, 1e-3, 0.5));
   cag_surface_release(s);
 }
@@ -404,13 +405,13 @@ static void a_patch_with_an_edge_of_one_point_is_a_disc(void **state) {
   cag_surface_release(s);
 }
 
-// A net of heights that look like chance.
+// A net of pseudorandom heights.
 static CagSurface *rough_net(size_t n, double height) {
   CagVec3 *net = malloc(n * n * sizeof *net);
   double *knots = malloc((n + 4) * sizeof *knots);
   uint32_t x = 1;
   for (size_t k = 0; k < n * n; k++) {
-    x = x * 1664525u + 1013904223u; // Numerical Recipes
+    x = x * 1664525u + 1013904223u; // the generator of Numerical Recipes
     net[k] = cag_vec3((double)(k / n), (double)(k % n), height * (x >> 8) / (1 << 24));
   }
   for (size_t k = 0; k < n + 4; k++) knots[k] = fmin(fmax((double)k - 3, 0), (double)n - 3);
@@ -425,7 +426,7 @@ static void neighbors_of_unlike_curvature_share_their_edges(void **state) {
   (void)state;
   CagSurface *s = rough_net(7, 3);
   CagMesh *m = mesh_of(s, 2e-3, 0.7), *again;
-  assert_int_equal(cag_mesh_euler_characteristic(m), 1); // no crack, no T
+  assert_int_equal(cag_mesh_euler_characteristic(m), 1); // without cracks or T-junctions
   CagTessellation how = to_tolerance(2e-3);
   OK(cag_surface_tessellate(s, &how, &again, &err));
   assert_int_equal(again->triangle_count, m->triangle_count);
@@ -484,8 +485,8 @@ static CagRegion *plate_with_holes(double x) {
   return r;
 }
 
-// Checks the solid's mesh and releases the solid. volume: by a closed form; the mesh's is off by at
-// most the tolerance times its area (and by no more than double that, for its own area).
+// Checks the solid's mesh and releases the solid. `volume` is from a closed form. The mesh's may
+// differ by at most the tolerance times its area (and by at most twice that, for its own area).
 static void check_solid(CagSolid *s, double tolerance, long euler, double volume) {
   CagTessellation how = to_tolerance(tolerance);
   CagMesh *m;
@@ -537,7 +538,7 @@ static void extrusions_are_watertight(void **state) {
   check_solid(s, 0.02, -2, 5 * area);
   OK(cag_solid_extrude(r, cag_vec3(1, 2, -5), 0, 1, &s, &err));
   check_solid(s, 0.02, -2, 5 * area);
-  // The section's sides shrink to 0.7: its area goes with their square.
+  // The sides of the section shrink to 0.7, so its area shrinks to the square of that.
   OK(cag_solid_extrude(r, cag_vec3(0, 0, 5), 2, 0.7, &s, &err));
   check_solid(s, 0.02, -2, 5 * area * (1 + 0.7 + 0.49) / 3);
   cag_region_release(r);
@@ -556,14 +557,14 @@ static void revolutions_are_watertight(void **state) {
   const CagVec3 z = {0, 0, 1}, origin = {0, 0, 0};
   CagSolid *s;
   CagRegion *r = plate_with_holes(8);
-  // Pappus: area times the way of its centroid, hole by hole.
+  // Pappus: area times the distance traveled by the centroid, for each loop.
   double way = M_PI * (25 * 8 - 1 * 10 - 1.5 * 6);
   OK(cag_solid_revolve(r, z, origin, 0, 2 * M_PI, &s, &err));
   check_solid(s, 0.02, 0, 2 * M_PI * way);
   OK(cag_solid_revolve(r, z, origin, 0.5, 3, &s, &err));
   check_solid(s, 0.02, -2, 2.5 * way);
   cag_region_release(r);
-  // A profile with a side on the axis: a cone of radius 4 and height 3 upon a cylinder of height 2.
+  // A profile with a side on the axis: a cone of radius 4 and height 3 on a cylinder of height 2.
   const CagVec3 profile[] = {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 5, 0}};
   double volume = M_PI * 16 * (2 + 1);
   CagCurve *outline;
@@ -583,19 +584,19 @@ static void tubes_are_watertight(void **state) {
   CagCurve *path;
   OK(cag_curve_helix(10, 4, 3, 0, &path, &err));
   OK(cag_solid_tube(path, 1, &s, &err));
-  // Pappus again: the section is square to the path and its center on it.
+  // Pappus again: the section is perpendicular to the path, with its center on it.
   check_solid(s, 0.02, 2, M_PI * 3 * sqrt(400 * M_PI * M_PI + 16));
   cag_curve_release(path);
   const CagVec3 corners[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {10, 10, 10}};
   OK(cag_curve_polyline(corners, 4, false, 3, &path, &err));
   OK(cag_solid_tube(path, 1, &s, &err));
-  check_solid(s, 0.02, 2, M_PI * 30); // mitered corners keep the length of the axis
+  check_solid(s, 0.02, 2, M_PI * 30); // mitered corners preserve the length of the axis
   cag_curve_release(path);
 }
 
 static void a_shell_of_patches_in_any_sense_is_watertight(void **state) {
   (void)state;
-  // The faces of a cube with a saddle for its top, each run differently.
+  // The faces of a cube with a saddle as its top, each parametrized differently.
   CagVec3 c[8];
   for (int k = 0; k < 8; k++) c[k] = cag_vec3(4 * (k & 1), 4 * (k >> 1 & 1), 4 * (k >> 2 & 1));
   c[4].z = c[7].z = 6;
@@ -611,8 +612,7 @@ static void a_shell_of_patches_in_any_sense_is_watertight(void **state) {
   for (int k = 0; k < 6; k++) cag_surface_release(faces[k]);
 }
 
-// All control points are one, which rounding scatters: neither the size nor the normals mean
-// anything.
+// All control points coincide up to rounding: neither the size nor the normals are meaningful.
 static void a_surface_that_is_a_point_is_no_work(void **state) {
   (void)state;
   CagVec3 net[16];
@@ -627,7 +627,7 @@ static void a_surface_that_is_a_point_is_no_work(void **state) {
   cag_surface_release(s);
 }
 
-// Each side of a crease keeps its own normals, wherever the corners of the leaves fall along it.
+// Each side of a crease has its own normals, wherever the corners of the leaves are along it.
 static void creases_are_sharp_at_every_tolerance(void **state) {
   (void)state;
   const CagVec3 profile[] = {{0, 0, 2}, {20, 0, 0}, {30, 0, 25}, {28, 0, 25}, {15, 0, 5}};

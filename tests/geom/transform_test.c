@@ -1,4 +1,4 @@
-// Transforms against their definitions and the reference's examples.
+// Transforms compared with their definitions and the reference's examples.
 
 #include "geom/linalg/transform.h"
 #include "random.h"
@@ -19,7 +19,7 @@ static void near_transform(const CagTransform *a, const CagTransform *b, double 
 
 static void special_angles_are_exact(void **state) {
   (void)state;
-  static const double exact[12] = {0, 0.5, 0, 1, 0, 0.5, 0, -0.5, 0, -1, 0, -0.5}; // 0: not asked
+  static const double exact[12] = {0, 0.5, 0, 1, 0, 0.5, 0, -0.5, 0, -1, 0, -0.5}; // 0: not checked
   for (int k = -48; k <= 48; k++) {
     double degrees = 30.0 * k, s, c, s2, c2;
     cag_sincos(degrees * (M_PI / 180), &s, &c);
@@ -38,7 +38,7 @@ static void special_angles_are_exact(void **state) {
   assert_true(s == c && s == sqrt(0.5));
   cag_sincos(1, &s, &c);
   assert_true(s == sin(1) && c == cos(1));
-  cag_sincos(1e-9, &s, &c); // a small angle is no multiple
+  cag_sincos(1e-9, &s, &c); // a small angle is not a multiple
   assert_true(s == 1e-9);
 }
 
@@ -78,7 +78,7 @@ static void inverses_undo(void **state) {
   OK(cag_transform_inverse(&a, &b, &err));
   product = cag_transform_multiply(&a, &b);
   near_transform(&product, &one, 1e-12);
-  // Very small and very large scales are no singularity.
+  // Very small and very large scales are not singular.
   CagTransform s;
   OK(cag_scale(cag_vec3(1e-9, 1e9, 1), origin, &s, &err));
   OK(cag_transform_inverse(&s, &b, &err));
@@ -99,7 +99,8 @@ static void determinants_and_mirrors(void **state) {
   NEAR(cag_transform_determinant(&r), -1, 1e-15);
   assert_true(cag_transform_mirrors(&r) && !cag_transform_mirrors(&s));
   near_vec(cag_transform_point(&r, cag_vec3(3, 3, 1)), cag_vec3(-2, -2, 1), 1e-14);
-  // Reference 02-04, 2.16: mirror in the line y = (x + 4) / 2 of the points (2, 4), (4, 6), (2, 6).
+  // Reference 02-04, 2.16: reflection in the line y = (x + 4) / 2 of the points (2, 4), (4, 6), (2,
+  // 6).
   OK(cag_reflect_line(cag_vec3(0, 2, 0), cag_vec3(2, 3, 0), &r, &err));
   near_vec(cag_transform_point(&r, cag_vec3(2, 4, 0)), cag_vec3(2.8, 2.4, 0), 1e-14);
   assert_true(r.planar);
@@ -109,8 +110,8 @@ static void determinants_and_mirrors(void **state) {
   assert_true(cag_transform_is_similarity(&s, &scale) && scale == 2);
 }
 
-// Images of a point under parallel projection along (1, 1, 1) and central from (0, 0, 4) onto z =
-// 0.
+// Images of a point on the plane z = 0 under a parallel projection along (1, 1, 1), and a central
+// one from (0, 0, 4).
 static void projections_land_in_the_plane(void **state) {
   (void)state;
   CagPlane ground;
@@ -189,7 +190,7 @@ static void euler_angles_come_back_from_all_orders(void **state) {
     NEAR(abc[0], a, 1e-14);
     NEAR(abc[1], b, 1e-14);
     NEAR(abc[2], c, 1e-14);
-    for (int k = 0; k < 2; k++) { // both locks
+    for (int k = 0; k < 2; k++) { // both gimbal locks
       double lock = i < 6 ? (k ? M_PI / 2 : -M_PI / 2) : k ? M_PI : 0;
       OK(cag_euler(a, lock, c, orders[i], &t, &err));
       OK(cag_euler_of(&t, orders[i], abc, &singular, &err));
@@ -255,7 +256,7 @@ static void mixing_goes_the_short_way(void **state) {
   FAILS(cag_transform_mix(&a, &s, 0.5, &m, &err), "not-rigid");
 }
 
-// Denavit-Hartenberg as the product of its four steps.
+// Denavit-Hartenberg transforms are products of four steps.
 static void dh_is_the_product_of_its_steps(void **state) {
   (void)state;
   double theta = 0.4, d = 3, a = 2, alpha = -1.2;
@@ -276,26 +277,26 @@ static void dh_is_the_product_of_its_steps(void **state) {
 static void point_pairs_give_their_transform(void **state) {
   (void)state;
   CagTransform t;
-  // Vector t2.solve-affine (transposed: columns here).
+  // Golden vector t2.solve-affine (transposed: these are columns).
   const CagVec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   const CagVec3 q[3] = {{1, 2, 0}, {3, 3, 0}, {0, 4, 0}};
   OK(cag_transform_from(p, q, 3, true, &t, &err));
   const double affine[4][4] = {{2, -1, 0, 1}, {1, 2, 0, 2}, {0, 0, 1, 0}, {0, 0, 0, 1}};
   near_matrix(&t, affine, 1e-15);
-  // Two pairs: turn, scale and move.
+  // Two pairs: rotation, scale, and translation.
   const CagVec3 two[2] = {{1, 1, 0}, {1, 3, 0}};
   OK(cag_transform_from(p, two, 2, true, &t, &err));
   near_vec(cag_transform_point(&t, cag_vec3(0, 1, 0)), cag_vec3(-1, 1, 0), 1e-15);
-  // Four pairs of the plane: a square seen in perspective.
+  // Four pairs in the plane: a square in perspective.
   const CagVec3 seen[4] = {{0, 0, 0}, {4, 0, 0}, {1, 2, 0}, {3, 2, 0}};
   OK(cag_transform_from(p, seen, 4, true, &t, &err));
   for (int i = 0; i < 4; i++) near_vec(cag_transform_point(&t, p[i]), seen[i], 1e-14);
   near_vec(cag_transform_point(&t, cag_vec3(0.5, 0.5, 0)), cag_vec3(2, 4.0 / 3, 0), 1e-14);
-  // Four pairs that are an affine image give an affine transform.
+  // If four pairs are an affine image, the transform is affine.
   const CagVec3 moved[4] = {{1, 1, 0}, {3, 1, 0}, {1, 4, 0}, {3, 4, 0}};
   OK(cag_transform_from(p, moved, 4, true, &t, &err));
   assert_true(cag_transform_is_affine(&t));
-  // Space.
+  // In space.
   const CagVec3 s[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const CagVec3 u[4] = {{1, 1, 1}, {1, 2, 1}, {1, 1, 3}, {0, 1, 1}};
   OK(cag_transform_from(s, u, 4, false, &t, &err));
@@ -318,7 +319,7 @@ static void transforms_are_classified(void **state) {
   CagTransformClass c = classify(&t);
   assert_string_equal(c.name, "rigid");
   assert_string_equal(c.fixed, "all");
-  // A turn about a line far from the origin.
+  // A rotation about a line far from the origin.
   OK(cag_rotate(cag_vec3(0, 3, 0), 1e-3, cag_vec3(1e4, 7, 5), &t, &err));
   c = classify(&t);
   assert_string_equal(c.name, "rigid");
@@ -326,7 +327,7 @@ static void transforms_are_classified(void **state) {
   near_vec(c.fixed_point, cag_vec3(1e4, 0, 5), 1e-6);
   NEAR(fabs(c.fixed_direction.y), 1, 1e-9);
   NEAR(c.angle, 1e-3, 1e-13);
-  // A screw has no fixed point.
+  // A screw motion has no fixed point.
   u = cag_translate(cag_vec3(0, 1, 0));
   t = cag_transform_multiply(&u, &t);
   assert_string_equal(classify(&t).fixed, "none");
@@ -352,7 +353,7 @@ static void transforms_are_classified(void **state) {
   assert_string_equal(c.name, "projective");
   assert_string_equal(c.fixed, "plane");
   near_vec(c.fixed_point, cag_vec3(0, 0, 1), 1e-9);
-  // In the plane a turn fixes one point.
+  // In the plane, a rotation has one fixed point.
   OK(cag_rotate(axis_z, -0.4, cag_vec3(3, 4, 0), &t, &err));
   t.planar = true;
   c = classify(&t);
@@ -378,7 +379,7 @@ static CagTransform random_matrix(bool affine) {
   return t;
 }
 
-// By all permutations.
+// The determinant by all permutations.
 static double brute_determinant(const double m[4][4]) {
   double sum = 0;
   for (int code = 0; code < 256; code++) {
@@ -430,14 +431,14 @@ static void matrices_follow_their_definitions(void **state) {
     OK(cag_transform_inverse(&a, &inverse, &err));
     const CagTransform one = cag_transform_multiply(&a, &inverse), none = cag_transform_identity();
     near_transform(&one, &none, 1e-10);
-    // Derivatives of a curve are carried there and back.
+    // Derivatives of a curve are mapped there and back.
     CagVec3 d[7], there[7];
     for (int k = 0; k < 7; k++) there[k] = d[k] = random_vec(1);
     if (fabs(point[3]) < 0.5) continue;
     there[0] = d[0] = p;
     assert_true(cag_transform_derivatives(&a, 6, there));
     near_vec(there[0], where, 1e-12 * (1 + cag_norm(where)));
-    // w q = numerator: its derivative is w' q + w q'.
+    // w q = numerator, whose derivative is w' q + w q'.
     const CagVec3 v = {a.m[0][0] * d[1].x + a.m[0][1] * d[1].y + a.m[0][2] * d[1].z,
                        a.m[1][0] * d[1].x + a.m[1][1] * d[1].y + a.m[1][2] * d[1].z,
                        a.m[2][0] * d[1].x + a.m[2][1] * d[1].y + a.m[2][2] * d[1].z};
@@ -455,7 +456,7 @@ static void singular_matrices_have_no_inverse(void **state) {
   for (int i = 0; i < 100; i++) {
     CagTransform t = random_matrix(i % 2), out;
     const int rows = i % 2 ? 3 : 4;
-    // One row is twice another: exact in the arithmetic of either way.
+    // One row is twice another, which is exact in both computations.
     const int a = i % rows, b = (a + 1 + i / 4 % (rows - 1)) % rows;
     for (int k = 0; k < 4; k++) t.m[a][k] = 2 * t.m[b][k];
     FAILS(cag_transform_inverse(&t, &out, &err), "singular-transform");
@@ -500,7 +501,7 @@ static void similarities_are_told_to_rounding(void **state) {
     t.m[3][3] = 0;
     assert_false(cag_transform_is_affine(&t));
   }
-  // Each pair of columns at right angles, and each of the length of the first.
+  // Each pair of columns is perpendicular, and all have the length of the first.
   for (int k = 0; k < 3; k++) {
     CagTransform t = cag_transform_identity();
     t.m[k][k] = 1 + 1e-9;
@@ -533,12 +534,12 @@ static void random_motions_have_their_fixed_set(void **state) {
     t = turn;
     const int kind = i / 3 % 6;
     const CagTransform shift = cag_translate(along);
-    if (kind == 1) t = cag_transform_multiply(&shift, &turn); // a screw
+    if (kind == 1) t = cag_transform_multiply(&shift, &turn); // a screw motion
     if (kind == 2) t = mirror;
-    if (kind == 3) t = cag_transform_multiply(&mirror, &turn); // fixes the center only
+    if (kind == 3) t = cag_transform_multiply(&mirror, &turn); // only the center is fixed
     if (kind == 4) t = cag_transform_multiply(&scale, &turn);
     if (kind == 5) t = cag_transform_multiply(&scale, &mirror);
-    // A common factor changes nothing.
+    // A common factor does not matter.
     const double common = i % 2 ? uniform(0.1, 10) : 1;
     for (int r = 0; r < 4; r++)
       for (int k = 0; k < 4; k++) t.m[r][k] *= common;
@@ -554,7 +555,7 @@ static void random_motions_have_their_fixed_set(void **state) {
       near_vec(c.axis, axis, 1e-11);
       NEAR(c.angle, angle, 1e-11);
     }
-    // The point of the fixed set nearest to the origin.
+    // The point of the fixed set closest to the origin.
     const double height = cag_dot(about, axis);
     if (kind == 0) near_vec(c.fixed_point, cag_madd(about, -height, axis), 1e-8 * unit);
     if (kind == 2) near_vec(c.fixed_point, cag_scaled(axis, height), 1e-8 * unit);
@@ -580,7 +581,7 @@ static void random_maps_of_the_plane_have_their_fixed_set(void **state) {
     if (kind == 2) t = cag_translate(about);
     if (kind == 3) t = cag_transform_multiply(&scale, &t);
     if (kind == 4) { OK(cag_scale(cag_vec3(factor, 0.5, 1), about, &t, &err)); }
-    if (kind == 5) { // a homology: the points of a line, and one more
+    if (kind == 5) { // a homology: it fixes the points of a line, and one more
       t = cag_transform_identity();
       t.m[3][0] = 0.02;
       t.m[3][1] = -0.03;
@@ -626,7 +627,7 @@ static void random_maps_of_the_plane_have_their_fixed_set(void **state) {
   }
 }
 
-// Deviations of 1e-10 are rounding, of 1e-8 are not.
+// Deviations of 1e-10 are rounding, and deviations of 1e-8 are not.
 static void classes_have_a_tolerance(void **state) {
   (void)state;
   for (int i = 0; i < 3; i++)
@@ -644,12 +645,12 @@ static void classes_have_a_tolerance(void **state) {
     }
 }
 
-// A random affine or projective map is found again from its points.
+// A random affine or projective map is recovered from its points.
 static void random_point_pairs_give_their_transform(void **state) {
   (void)state;
   seed = 23;
   for (int i = 0; i < 200; i++) {
-    const int kind = i % 4; // similarity, affine, projective, affine of space
+    const int kind = i % 4; // similarity, affine, projective, affine in space
     const size_t n = kind == 0 ? 2 : kind == 1 ? 3 : 4;
     CagTransform t = cag_transform_identity(), found;
     const int rows = kind == 3 ? 3 : 2;
@@ -693,8 +694,8 @@ static void random_point_pairs_give_their_transform(void **state) {
   }
 }
 
-// Four points of the plane of which the map sends the origin to infinity, and an affine map that
-// rounding makes affine exactly.
+// Four points of the plane whose map sends the origin to infinity, and an affine map that is affine
+// only up to rounding.
 static void quadrilaterals_have_their_map(void **state) {
   (void)state;
   seed = 24;
@@ -721,7 +722,7 @@ static void quadrilaterals_have_their_map(void **state) {
     }
     assert_true(cag_transform_is_affine(&found) == !(i % 2));
     for (int k = 0; k < 4; k++) assert_true(found.m[2][k] == (k == 2) && found.m[k][2] == (k == 2));
-    // Three of them on one line, within 1e-13 of their distance: in either place.
+    // Three of them are collinear within 1e-13 of their distance, in the source or the image.
     const int skip = i % 4, a = (skip + 1) % 4, b = (skip + 2) % 4, c = (skip + 3) % 4;
     const CagVec3 save = p[a], save_q = q[a];
     p[a] = cag_lerp(p[b], p[c], 0.25);
@@ -745,7 +746,7 @@ static void quadrilaterals_have_their_map(void **state) {
   OK(cag_transform_from(near, images, 4, true, &found, &err));
   NEAR(found.m[3][3], 0, 1e-12);
   near_vec(cag_transform_point(&found, cag_vec3(3, 2, 0)), cag_vec3(1.8, 0.4, 0), 1e-12);
-  // A height of 1e-13 counts as rounding, a height of 1e-10 does not, in the plane and in space.
+  // A height of 1e-13 counts as rounding, but 1e-10 does not, both in the plane and in space.
   for (int dimension = 2; dimension <= 3; dimension++)
     for (int high = 0; high < 2; high++) {
       const double height = high ? 1e-10 : 1e-13;

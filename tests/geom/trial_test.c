@@ -1,5 +1,4 @@
-// Grids that are tried out on a surface: what is measured of them is compared with what their
-// definitions give on every quadrilateral.
+// Trial grids on a surface: their measured values are compared with the definitions on every cell.
 
 #include "geom/tessellate/trial.h"
 
@@ -11,7 +10,7 @@
 
 enum { NET = 4 };
 
-// A bumpy patch about as large as 10 x 6. pole: the side of it that is one point, or none.
+// A bumpy patch of about 10 x 6. `pole` is the side that is a single point, if any.
 static CagSurface *patch(double bumps, int pole) {
   CagVec3 p[NET * NET];
   CagSurface *s;
@@ -28,7 +27,7 @@ static CagSurface *patch(double bumps, int pole) {
   return s;
 }
 
-// A trial of n quadrilaterals on a part of a patch: every other one is sheared.
+// A trial of n cells on a part of a patch; every other one is sheared.
 static TessTrial trial_on(const CagSurface *s, double nu, double nv, int k) {
   TessTrial t = {.surface = s, .n = {nu, nv}, .along = k / 2 % 2};
   for (int d = 0; d < 2; d++) {
@@ -40,7 +39,7 @@ static TessTrial trial_on(const CagSurface *s, double nu, double nv, int k) {
   return t;
 }
 
-// Parameters at x quadrilaterals along u and y along v.
+// The parameters after x cells along u and y along v.
 static void parameters(const TessTrial *t, double x, double y, double at[2]) {
   const double share[2] = {x / t->n[0], y / t->n[1]};
   for (int d = 0; d < 2; d++) at[d] = t->from[d] * (1 - share[d]) + t->to[d] * share[d];
@@ -57,8 +56,8 @@ static CagVec3 point(const TessTrial *t, double x, double y) {
 
 // --- Distances ---
 
-// Corners in the order a, b, c, d around the quadrilateral at (i, k); true: the shorter diagonal
-// goes from a to c.
+// Computes the corners a, b, c, d around the cell at (i, k). Returns true if the shorter diagonal
+// is that from a to c.
 static bool corners(const TessTrial *t, int i, int k, CagVec3 c[4]) {
   c[0] = point(t, i, k);
   c[1] = point(t, i + 1, k);
@@ -67,13 +66,13 @@ static bool corners(const TessTrial *t, int i, int k, CagVec3 c[4]) {
   return cag_norm(cag_sub(c[2], c[0])) <= cag_norm(cag_sub(c[3], c[1]));
 }
 
-// To the two triangles of a quadrilateral, cut at one diagonal.
+// The distance to the two triangles of a cell divided by one diagonal.
 static double to_triangles(CagVec3 p, const CagVec3 c[4], bool cut_ac) {
   return fmin(cag_distance_to_triangle(p, c[0], c[1], c[cut_ac ? 2 : 3]),
               cag_distance_to_triangle(p, c[cut_ac ? 0 : 1], c[2], c[3]));
 }
 
-// The middle and the centers of both halves of the parameters.
+// The largest distance at the center and at the centers of the two halves, in the parameters.
 static double inner_distance(const TessTrial *t, int i, int k, const CagVec3 c[4], bool cut_ac) {
   const double third = 1.0 / 3, x = cut_ac ? 2 * third : third;
   return fmax(to_triangles(point(t, i + 0.5, k + 0.5), c, cut_ac),
@@ -81,8 +80,8 @@ static double inner_distance(const TessTrial *t, int i, int k, const CagVec3 c[4
                    to_triangles(point(t, i + 1 - x, k + 2 * third), c, cut_ac)));
 }
 
-// To the half plane beyond whose edge a b a neighbor goes on that is turned by some angle: of
-// what is beyond only the sine of it counts.
+// The distance to the half plane beyond the edge a b, where a neighbor continues at some angle.
+// Only the sine of this angle counts beyond the edge.
 static double edge_distance(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
   const double area = cag_norm(cag_cross(cag_sub(b, a), cag_sub(c, a)));
   if (area < 1e-9) return cag_distance_to_triangle(p, a, b, c);
@@ -115,7 +114,7 @@ static double grid_distance(const TessTrial *t, const double sine[2]) {
   return d;
 }
 
-// So few that all are tried: 8 x 8, or as many in fewer rows.
+// So few cells that all are tested: 8 x 8, or as many in fewer rows.
 static void distances_of_small_grids_are_those_of_all_quadrilaterals(void **state) {
   (void)state;
   static const int count[][2] = {{1, 1},  {2, 3}, {8, 8},  {1, 64},
@@ -162,7 +161,7 @@ static double middle_distance(const TessTrial *t) {
   return d;
 }
 
-// Where there are at most 12 along both directions the first look was enough.
+// With at most 12 cells in both directions, the first pass is sufficient.
 static void distances_of_middles_are_those_of_all_quadrilaterals(void **state) {
   (void)state;
   static const int count[][2] = {{13, 1}, {16, 16}, {1, 256}, {51, 5}, {12, 12}, {2, 13}, {12, 1}};
@@ -177,8 +176,8 @@ static void distances_of_middles_are_those_of_all_quadrilaterals(void **state) {
   }
 }
 
-// Of large grids only some are tried, spread evenly from first to last: on a smooth surface they
-// come close to the worst one, and reach it where that is at a corner.
+// In large grids, only some cells are tested, distributed evenly from first to last. On a smooth
+// surface, they come close to the worst one, and include it if it is at a corner.
 static void distances_of_large_grids_are_nearly_those_of_all(void **state) {
   (void)state;
   static const int count[][2] = {{9, 12}, {20, 30}, {70, 2}, {3, 40}};
@@ -211,8 +210,8 @@ static CagVec3 normal(const TessTrial *t, double x, double y) {
   return n;
 }
 
-// What an edge from (i, k) to (j, l) has more than it may. The normal turns more than a radian
-// only at once.
+// How much an edge from (i, k) to (j, l) exceeds its limits. The normal rotates by more than a
+// radian only abruptly.
 static double excess(const TessTrial *t, const Limits *most, const int from[2], const int to[2]) {
   const double length = cag_norm(cag_sub(point(t, to[0], to[1]), point(t, from[0], from[1])));
   const CagVec3 a = normal(t, from[0], from[1]), b = normal(t, to[0], to[1]);
@@ -240,7 +239,7 @@ static TessExcess grid_excess(const TessTrial *t, const Limits *most) {
   return out;
 }
 
-// The corners of the grid are measured slightly inside of it.
+// Corners of the grid are evaluated slightly inside it.
 static void excess_of_small_grids_is_that_of_all_edges(void **state) {
   (void)state;
   static const int count[][2] = {{1, 1}, {3, 2}, {24, 2}, {1, 24}, {9, 7}, {5, 12}};
@@ -278,7 +277,7 @@ static void excess_of_large_grids_is_nearly_that_of_all(void **state) {
   }
 }
 
-// On either side of a crease at u = 1 only the normals of that side count.
+// On either side of a crease at u = 1, only the normals of that side count.
 static void creases_between_leaves_do_not_turn_edges(void **state) {
   (void)state;
   static const double knots_u[] = {0, 0, 1, 2, 2}, knots_v[] = {0, 0, 1, 1};
@@ -296,11 +295,11 @@ static void creases_between_leaves_do_not_turn_edges(void **state) {
 
 // --- Scattered points ---
 
-// A surface z = f(u, v) over a plane in which the lines of equal u and v may be bent and aslant.
+// A surface z = f(u, v) over a plane in which the parameter lines may be curved and oblique.
 typedef struct Sheet {
   double aslant, bent;    // x = u + aslant v
   double bend[2];         // z = (bend . (u, v))^2 / 2
-  double lo[2], hi[2], z; // a box that stands out
+  double lo[2], hi[2], z; // a raised box
 } Sheet;
 
 static CagVec3 sheet_at(const Sheet *s, double u, double v) {
@@ -322,14 +321,14 @@ static CagStatus sheet_eval(void *context, double u, double v, int n, CagVec3 *o
 
 static CagStatus sheet_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(sheet_eval, context, u, vs, nv, n, out, e);
+  return row_by_points(sheet_eval, context, u, vs, nv, n, out, e);
 }
 
-static void keep(void *context) { (void)context; }
+static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *surface_of(Sheet *sheet, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  const CagSurfaceFunction f = {sheet_eval, sheet_row, keep, sheet};
+  const CagSurfaceFunction f = {sheet_eval, sheet_row, release_nothing, sheet};
   OK(cag_surface_function(&f, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }
@@ -340,7 +339,7 @@ static bool is_missed(const TessTrial *t, double tolerance) {
   return missed;
 }
 
-// A box of this size around a place.
+// Places a box of this size around a point.
 static void put_box(Sheet *sheet, double u, double v, double wide, double high) {
   const double at[2] = {u, v}, size[2] = {wide, high};
   for (int d = 0; d < 2; d++) {
@@ -349,10 +348,11 @@ static void put_box(Sheet *sheet, double u, double v, double wide, double high) 
   }
 }
 
-// Of 128 rows of 32 points two lie in a square of a 51st, and they are apart by the golden section.
-// Bands along u need the largest distance of all points in v, golden^9 / 32, in leaves of any
-// width; bands along v are met by a row. Where something was missed before, there are four times as
-// many rows, apart by a quarter of the golden section: six of them lie in a square of an 85th.
+// Of 128 rows of 32 points, two are in a square of 1/51 of the side, separated by the golden
+// section. Bands along u require the largest distance of all points in v, golden^9 / 32, in leaves
+// of any width. Bands along v are hit by a row. After an earlier miss, there are four times as many
+// rows, separated by a quarter of the golden section: six of them are in a square of 1/85 of the
+// side.
 static void what_is_wide_enough_is_met(void **state) {
   (void)state;
   Sheet sheet = {.z = 0.5};
@@ -374,7 +374,7 @@ static void what_is_wide_enough_is_met(void **state) {
   cag_surface_release(s);
 }
 
-// Leaves look at their own part only, whether they are sheared or not.
+// Leaves examine only their own part, whether or not they are sheared.
 static void boxes_beside_a_leaf_are_not_met(void **state) {
   (void)state;
   Sheet sheet = {.z = 0.5};
@@ -400,7 +400,7 @@ static void boxes_beside_a_leaf_are_not_met(void **state) {
   cag_surface_release(s);
 }
 
-// Leaves with more quadrilaterals than points are not looked at.
+// Leaves with more cells than points are not examined.
 static void fine_leaves_are_not_looked_at(void **state) {
   (void)state;
   Sheet sheet = {.z = 100};
@@ -425,7 +425,7 @@ static void fine_leaves_are_not_looked_at(void **state) {
   cag_surface_release(s);
 }
 
-// In a flat grid whose lines are bent, points lie over quadrilaterals beside their own.
+// In a planar grid with curved lines, points are above cells next to their own.
 static void points_lie_over_neighbors_as_well(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -437,8 +437,8 @@ static void points_lie_over_neighbors_as_well(void **state) {
   }
 }
 
-// Over cells of the size h of a surface with z'' = q along a chord, it is off by q h^2 / 8. Where
-// it is straight along the shorter diagonals, or along the slants of sheared cells, that is all.
+// Over cells of size h, a surface with z'' = q along a chord deviates by q h^2 / 8. If it is
+// straight along the shorter diagonals, or along the slants of sheared cells, that is the total.
 static void what_is_off_by_more_than_the_tolerance_is_missed(void **state) {
   (void)state;
   for (int k = 0; k < 8; k++) {

@@ -1,4 +1,5 @@
-// Triangular nets: the reference's vectors, and that raising and splitting keep the surface.
+// Triangular nets: golden vectors of the reference; elevation and subdivision do not change the
+// surface.
 
 #include "geom/surface/triangle.h"
 #include "tests/geom/support.h"
@@ -35,7 +36,7 @@ static void a_raised_net_is_that_of_the_reference(void **state) {
   near_vec(out[9], cag_vec3(0, 0, 0), 0);
 }
 
-// The point at W of a part is the whole's at the coordinates that W mixes from the part's corners.
+// The point at W of a part is the point of the whole at the combination of the part's corners by W.
 static void parts_lie_on_the_whole(void **state) {
   (void)state;
   const double cut[3] = {0.5, 0.2, 0.3}, w[3] = {0.3, 0.6, 0.1};

@@ -4,7 +4,7 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-// Area of the triangles; all must turn left, and name every point.
+// The area of the triangles, which must all be counter-clockwise and use every point.
 static double triangulated_area(const double *xy, const size_t *counts, size_t loops,
                                 size_t expected) {
   uint32_t *t;
@@ -61,7 +61,8 @@ static void holes_are_left_out_whatever_their_sense(void **state) {
         xy[2 * at] = 3 + 4 * h + cos(angle);
         xy[2 * at + 1] = 5 + sin(angle);
       }
-    // Area of a regular n-gon of radius 1: n/2 sin(2 pi/n). Triangles: points + 2 holes - 2.
+    // A regular n-gon of radius 1 has the area n/2 sin(2 pi/n). The number of triangles is points +
+    // 2 holes - 2.
     double holes = 25 * sin(2 * M_PI / 50) + 30 * sin(2 * M_PI / 60);
     NEAR(triangulated_area(xy, counts, 3, 100 + 50 + 60 + 4 - 2), 100 - holes, 1e-11);
   }
@@ -81,7 +82,7 @@ static void a_polygon_of_many_points_takes_no_more_than_a_moment(void **state) {
     xy[2 * n + turned] = TEETH, xy[2 * n + !turned] = 0, n++;
     xy[2 * n + turned] = 0, xy[2 * n + !turned] = 0, n++;
     double area = triangulated_area(xy, &n, 1, n - 2);
-    // Shoelace, in the points' order.
+    // The shoelace formula, in the order of the points.
     double twice = 0;
     for (size_t k = 0; k < n; k++) {
       const double *p = xy + 2 * k, *q = xy + 2 * ((k + 1) % n);
@@ -94,7 +95,7 @@ static void a_polygon_of_many_points_takes_no_more_than_a_moment(void **state) {
 
 static void triangles_of_a_convex_polygon_are_delaunay(void **state) {
   (void)state;
-  // Of the two diagonals of this kite the short one leaves no corner within a circumcircle.
+  // Of the two diagonals of this kite, only the short one has empty circumcircles.
   const double kite[] = {0, 0, 5, -1, 10, 0, 5, 1};
   size_t n = 4, triangles;
   uint32_t *t;
@@ -111,7 +112,7 @@ static int64_t turn_of(const int a[2], const int b[2], const int c[2]) {
   return (int64_t)(b[0] - a[0]) * (c[1] - a[1]) - (int64_t)(b[1] - a[1]) * (c[0] - a[0]);
 }
 
-static int by_place(const void *a, const void *b) {
+static int compare_points(const void *a, const void *b) {
   const int *p = a, *q = b;
   return p[0] != q[0] ? p[0] - q[0] : p[1] - q[1];
 }
@@ -132,7 +133,7 @@ static size_t convex_hull(int (*p)[2], size_t n, int (*hull)[2]) {
   return k;
 }
 
-// Whether d lies within the circle through a, b, c, in whole numbers.
+// Whether d is inside the circle through a, b, c, in integer arithmetic.
 static bool is_within_circle(const int a[2], const int b[2], const int c[2], const int d[2]) {
   const int *corners[3] = {a, b, c};
   int64_t x[3], y[3], square[3];
@@ -152,10 +153,10 @@ static void no_corner_lies_within_the_circle_of_a_triangle(void **state) {
   seed = 71;
   for (int round = 0; round < 400; round++) {
     int p[POINTS][2], hull[2 * POINTS][2];
-    const int size = round % 2 ? 60 : 6; // small ones have many corners on one circle
+    const int size = round % 2 ? 60 : 6; // small ones have many cocircular corners
     for (int i = 0; i < POINTS; i++)
       for (int k = 0; k < 2; k++) p[i][k] = (int)floor(uniform(-size, size));
-    qsort(p, POINTS, sizeof *p, by_place);
+    qsort(p, POINTS, sizeof *p, compare_points);
     size_t n = convex_hull(p, POINTS, hull), triangles;
     double xy[2 * POINTS * 2];
     for (size_t i = 0; i < 2 * n; i++) xy[i] = hull[i / 2][i % 2];

@@ -1,5 +1,5 @@
-// Trimmed pieces that go all around: turned, moved and of any size, their meshes close at seams and
-// poles.
+// Trimmed pieces that extend all around: rotated, translated, and of any size, their meshes close
+// at seams and poles.
 
 #include "tests/geom/random_point.h"
 #include "tests/geom/trimmed_support.h"
@@ -10,7 +10,8 @@
 #include "geom/tessellate/orient.h"
 #include "geom/tessellate/tessellate.h"
 
-// Of a quadric, or of a line from (foot, 0, 0) to (1, 0, 1) that turns about the z axis.
+// A piece of a quadric, or of the surface of revolution of a line from (foot, 0, 0) to (1, 0, 1)
+// about the z axis.
 typedef struct Piece {
   bool turns;
   CagQuadricShape shape;
@@ -52,7 +53,7 @@ static CagSurface *surface_of(const Piece *p, const CagTransform *frame) {
   return s;
 }
 
-// All of the piece, as a surface that a rectangle trims.
+// The whole piece, as a surface trimmed by a rectangle.
 static CagSurface *trimmed_piece(const Piece *p, const CagTransform *frame) {
   CagSurface *all = surface_of(p, frame), *s = NULL;
   const CagVec3 corners[4] = {
@@ -83,7 +84,7 @@ static void check_weld(const CagMesh *m, double size) {
                            m->weld[m->triangles[3 * t + (k + 1) % 3]]);
 }
 
-// Vertices are where their parameters say, with the surface's normals, except at poles.
+// Checks that vertices are at their parameters, with the surface's normals, except at poles.
 static void check_vertices(const CagMesh *m, const CagSurface *s, double size, bool pole) {
   size_t without = 0;
   for (size_t v = 0; v < m->vertex_count; v++) {
@@ -97,7 +98,7 @@ static void check_vertices(const CagMesh *m, const CagSurface *s, double size, b
     else without++;
   }
   assert_true(pole || without == 0);
-  // Those of triangles are near to them. (At a pole one may lie along a meridian.)
+  // The normals of triangles are close to these. (At a pole, a triangle may lie along a meridian.)
   for (size_t t = 0; !pole && t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     const CagVec3 a = m->positions[k[0]];

@@ -1,4 +1,4 @@
-// Trimmed graphs of random polynomials: integrals, bounds and other forms.
+// Trimmed graphs of random polynomials: integrals, bounds, and other representations.
 
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
@@ -6,7 +6,7 @@
 #include "tests/geom/trimmed_support.h"
 
 typedef struct Disks {
-  double at[3][3]; // the outer one first, the holes within it
+  double at[3][3]; // the outer one first, then the holes
   int n;
 } Disks;
 
@@ -22,7 +22,7 @@ static Polynomial random_polynomial(double size) {
   return f;
 }
 
-// How far a place is inside.
+// How far a point is inside.
 static double inside_by(const Disks *d, double x, double y) {
   double in = d->at[0][2] - hypot(x - d->at[0][0], y - d->at[0][1]);
   for (int i = 1; i < d->n; i++)
@@ -34,7 +34,7 @@ static CagSurface *graph_within(const Polynomial *f, const Disks *d, const CagTr
                                 bool knots) {
   const double per[2] = {1, 1};
   CagSurface *s = graph(f, per, move), *more, *out;
-  // Knots that change nothing, where integrals are cut.
+  // Redundant knots, at which integrals are split.
   for (int k = 0; knots && k < 4; k++) {
     MUST(cag_surface_insert_knot(s, k % 2, 0.37 + 0.1 * k, 4, &more, err));
     cag_surface_release(s);
@@ -54,11 +54,11 @@ static CagTransform random_move(void) {
   return cag_transform_multiply(&turn, &move);
 }
 
-// Area, moments, and the fluxes whose sums are volumes.
+// Area, moments, and the fluxes that add up to volumes.
 enum { SUMS = 14 };
-static void add_place(const Polynomial *f, const CagTransform *move, double x, double y, double w,
-                      double sum[SUMS]) {
-  const double h = 1e-3; // exact for these degrees, by the fourth order
+static void add_sample(const Polynomial *f, const CagTransform *move, double x, double y, double w,
+                       double sum[SUMS]) {
+  const double h = 1e-3; // fourth-order differences, which are exact for these degrees
   const double fx = (8 * (value(f, x + h, y) - value(f, x - h, y)) -
                      (value(f, x + 2 * h, y) - value(f, x - 2 * h, y))) /
                     (12 * h),
@@ -78,7 +78,8 @@ static void add_place(const Polynomial *f, const CagTransform *move, double x, d
   }
 }
 
-// By polar coordinates about each disk's center: the trapezoidal rule around, Simpson's outward.
+// In polar coordinates about each disk's center: the trapezoidal rule for the angle, Simpson's rule
+// for the radius.
 static void sum_over(const Polynomial *f, const CagTransform *move, const Disks *d,
                      double sum[SUMS]) {
   enum { AROUND = 48, OUTWARD = 80 };
@@ -90,8 +91,8 @@ static void sum_over(const Polynomial *f, const CagTransform *move, const Disks 
       const double w = simpson * d->at[disk][2] / OUTWARD * r * 2 * M_PI / AROUND;
       for (int j = 0; j < AROUND; j++) {
         const double a = 2 * M_PI * j / AROUND;
-        add_place(f, move, d->at[disk][0] + r * cos(a), d->at[disk][1] + r * sin(a), disk ? -w : w,
-                  sum);
+        add_sample(f, move, d->at[disk][0] + r * cos(a), d->at[disk][1] + r * sin(a), disk ? -w : w,
+                   sum);
       }
     }
 }
@@ -114,7 +115,7 @@ static void integrals_are_those_over_the_disks(void **state) {
     assert_near(centroid.x, expected[11] / expected[10], 1e-7, "centroid");
     assert_near(centroid.y, expected[12] / expected[10], 1e-7, "centroid");
     assert_near(centroid.z, expected[13] / expected[10], 1e-7, "centroid");
-    // They add up, and turn their sign with the surface.
+    // They add up, and change sign with the surface's orientation.
     CagSurface *flipped, *exchanged;
     MUST(cag_surface_flip(s, &flipped, err));
     MUST(cag_surface_volume_terms(flipped, terms, err));
@@ -128,7 +129,7 @@ static void integrals_are_those_over_the_disks(void **state) {
   }
 }
 
-// The highest place by a walk from the highest sample; how far inside that is.
+// Searches locally from the highest sample; *inside is the distance from the boundary.
 static double highest(const Polynomial *f, const CagTransform *move, const Disks *d, CagVec3 way,
                       double *inside) {
   enum { N = 60 };
@@ -164,7 +165,7 @@ static void bounds_are_reached_within_the_disks(void **state) {
   int tops = 0;
   for (int round = 0; round < 12; round++) {
     const Disks d = random_disks();
-    // A hill or a hollow over some place, steep enough for a summit.
+    // A hill or hollow steep enough to have an extremum.
     Polynomial f = random_polynomial(0.1);
     const Polynomial hill = circle(uniform(0.3, 0.7), uniform(0.3, 0.7), 0);
     f = sum(&f, &hill, round % 2 ? 3 : -3);
@@ -194,7 +195,7 @@ static void outlines_stay_in_the_domain(void **state) {
   CagSurface *all = graph(&f, per, &stay), *s;
   static const struct {
     double at[3];
-    const char *says; // NULL: it serves
+    const char *says; // NULL: valid
   } CASES[] = {
       {{0.5, 0.5, 0.5}, NULL},
       {{0.5, 0.5, 0.5 + 1e-10}, NULL},
@@ -229,7 +230,7 @@ static void outlines_stay_in_the_domain(void **state) {
   cag_surface_release(all);
 }
 
-// Other forms have the same points, at places that are moved as the parameters are.
+// Other representations have the same points, at correspondingly changed parameters.
 static void other_forms_have_the_same_points(void **state) {
   (void)state;
   seed = 97;

@@ -1,11 +1,11 @@
-// Regions to trim surfaces with.
+// Regions for trimming surfaces.
 
 #ifndef CAG_TESTS_TRIMMED_SUPPORT_H
 #define CAG_TESTS_TRIMMED_SUPPORT_H
 
 #include "tests/geom/surface_support.h"
 
-// The first circle (x, y, radius) is the outline, the others are holes.
+// The first circle (x, y, radius) is the outline, and the others are holes.
 static inline CagRegion *disks(const double (*circles)[3], size_t n) {
   CagCurve *loops[4] = {0};
   CagRegion *r = NULL;

@@ -1,4 +1,5 @@
-// Trimmed surfaces: measures against closed forms, and meshes against dense samples of the surface.
+// Trimmed surfaces: measures compared with closed forms, and meshes with dense samples of the
+// surface.
 
 #include "geom/mesh/distance.h"
 #include "geom/surface/quadric.h"
@@ -30,8 +31,8 @@ static double from_mesh(const CagMesh *m, CagVec3 p) {
   return least;
 }
 
-// Samples within the region, some of them right beside the outlines, are as near to the mesh as the
-// tolerance says.
+// Checks that samples of the region, some of them right beside the outlines, are within the
+// tolerance of the mesh.
 static void check_mesh(const CagSurface *s, double tolerance, const char *name) {
   const int N = 41;
   const CagSurface *inner;
@@ -63,8 +64,8 @@ static void check_mesh(const CagSurface *s, double tolerance, const char *name) 
     }
   if (!(worst <= tolerance))
     fail_msg("%s: %g from the mesh, the tolerance is %g", name, worst, tolerance);
-  // Every vertex lies on the surface at its parameters, no triangle is turned over, none is open
-  // but along the outlines.
+  // Every vertex is on the surface at its parameters, triangles are not reversed, and open edges
+  // are on the outlines.
   for (size_t k = 0; k < m->vertex_count; k++) {
     CagVec3 p;
     MUST(cag_surface_point(inner, m->uv[2 * k], m->uv[2 * k + 1], &p, err));
@@ -92,7 +93,7 @@ static void meshes_keep_the_tolerance(void **state) {
   cag_surface_release(s);
   cag_region_release(r);
   cag_surface_release(all);
-  // A small part of a strongly curved surface, all of it beside its outline.
+  // A small part of a strongly curved surface, all of which is near its outline.
   MUST(cag_surface_torus(3, 1, &all, err));
   r = disks((const double[][3]){{1.5, 2, 1.2}}, 1);
   MUST(cag_surface_trimmed(all, r, &s, err));
@@ -118,11 +119,11 @@ static void areas_are_exact(void **state) {
   MUST(cag_surface_area(s, &area, &centroid, err));
   assert_near(area, 2 * M_PI * (5 * sqrt(5) - 1) / 3, 1e-10, "saddle");
   assert_point(centroid, cag_vec3(0, 0, 0), 1e-10, "centroid");
-  // z = x y on the circle reaches 2 sin 90.
+  // z = x y on the circle reaches 2 at 45 degrees.
   CagBounds box;
   MUST(cag_surface_bounds(s, &box, err));
   assert_point(box.max, cag_vec3(2, 2, 2), 1e-9, "bounds");
-  // The flux of z through it, of both signs alike.
+  // Its flux of z has equal parts of both signs.
   double terms[10] = {0};
   MUST(cag_surface_volume_terms(s, terms, err));
   assert_near(terms[0], 0, 1e-9, "flux");
@@ -134,7 +135,7 @@ static void areas_are_exact(void **state) {
   cag_surface_release(saddle);
 }
 
-// --- Outlines of straight sides ---
+// --- Outlines with straight sides ---
 
 static CagRegion *polygons(const CagVec3 *const *corners, const size_t *counts, size_t n) {
   CagCurve *loops[4] = {0};
@@ -164,8 +165,8 @@ static double edge_length(const CagMesh *m, size_t t, int k) {
   return cag_norm(cag_sub(m->positions[c[(k + 1) % 3]], m->positions[c[k]]));
 }
 
-// A star with two holes: n corners and h holes take n + 2 h - 2 triangles; with a limit of edges,
-// each side of the outline is cut into equal parts, as few as keep it.
+// A star with two holes: n corners and h holes need n + 2 h - 2 triangles. With a limit of edges,
+// each side of the outline is divided into the fewest equal parts that satisfy it.
 static void flat_polygons_are_cut_into_few_triangles(void **state) {
   (void)state;
   uint64_t random = 5;
@@ -204,7 +205,7 @@ static void flat_polygons_are_cut_into_few_triangles(void **state) {
     area = cag_mesh_area(m);
     assert_near(area, expected * sqrt(14), 1e-9, "area");
     cag_mesh_release(m);
-    // In parts.
+    // With subdivided edges.
     how.max_edge = 1.3;
     MUST(cag_surface_tessellate(s, &how, &m, err));
     size_t parts = 0, open = 0;
@@ -220,7 +221,7 @@ static void flat_polygons_are_cut_into_few_triangles(void **state) {
       for (int k = 0; k < 3; k++) assert_true(edge_length(m, t, k) <= 1.3 * (1 + 1e-12));
     for (size_t v = 0; v < m->vertex_count; v++)
       assert_point(m->normals[v], cag_scaled(cag_vec3(-2, 3, 1), 1 / sqrt(14)), 1e-12, "normal");
-    // Slender ones, as the sides along the parameters lean to each other, but no more than that.
+    // They are slender because the sides along the parameters are oblique, but not more.
     assert_true((double)m->triangle_count < 20 * cag_mesh_area(m) / (1.3 * 1.3));
     cag_mesh_release(m);
     cag_surface_release(s);
@@ -271,7 +272,7 @@ static void angles_and_limits_are_kept(void **state) {
   cag_surface_release(all);
 }
 
-// A cap around the pole of a sphere, from seam to seam: the seam and the pole close.
+// A cap around the pole of a sphere, from seam to seam: the mesh closes at both.
 static void seams_and_poles_close(void **state) {
   (void)state;
   for (int turned = 0; turned < 2; turned++) {
@@ -318,7 +319,7 @@ static void seams_and_poles_close(void **state) {
   }
 }
 
-// The sides of a rectangle on the saddle z = x y are straight, but the normals turn along them.
+// The sides of a rectangle on the saddle z = x y are straight, but the normals rotate along them.
 static void normals_turn_by_the_angle_along_straight_outlines(void **state) {
   (void)state;
   const double knots[4] = {-3, -3, 3, 3};

@@ -1,5 +1,5 @@
 // Values at the vertices of meshes: curvatures and slopes of a graph in closed form, on both sides
-// of a jump; spans of values, and mirrored directions, by their definitions.
+// of a jump. Ranges of values, and reflected directions, compared with their definitions.
 
 #include "geom/meet/value_map.h"
 
@@ -28,10 +28,10 @@ static CagStatus hills(void *context, double x, double y, int n, CagVec3 *out, C
 }
 static CagStatus hills_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  return row_by_places(hills, context, u, vs, nv, n, out, e);
+  return row_by_points(hills, context, u, vs, nv, n, out, e);
 }
 
-// By Monge's formulas, of the normal up.
+// Monge's formulas, with the normal upward.
 static double value_of_hills(CagSurfaceValue kind, double x, double y) {
   CagVec3 d[9];
   hills(NULL, x, y, 2, d, NULL);
@@ -59,7 +59,7 @@ static void values_of_a_graph_have_closed_forms(void **state) {
   OK(cag_surface_flip(s, &flipped, &err));
   for (int side = 0; side < 2; side++)
     for (CagSurfaceValue kind = CAG_VALUE_GAUSSIAN; kind <= CAG_VALUE_SLOPE; kind++) {
-      // The other normal changes the sign, and which principal curvature is the larger.
+      // The opposite normal changes the sign, and exchanges the principal curvatures.
       const bool turned = side == 1 && kind != CAG_VALUE_GAUSSIAN && kind != CAG_VALUE_SLOPE;
       const CagSurfaceValue of = !turned                           ? kind
                                  : kind == CAG_VALUE_PRINCIPAL_MAX ? CAG_VALUE_PRINCIPAL_MIN
@@ -71,13 +71,13 @@ static void values_of_a_graph_have_closed_forms(void **state) {
       double low = INFINITY, high = -INFINITY;
       for (size_t v = 0; v < m->vertex_count; v++) {
         const double expected = value_of_hills(of, m->positions[v].x, m->positions[v].y);
-        // Principal curvatures near an umbilic are a square root of rounding.
+        // Near an umbilic, the error of principal curvatures is the square root of rounding.
         NEAR(m->uv[2 * v], turned ? -expected : expected, 1e-7);
         NEAR(m->uv[2 * v + 1], 0, 0);
         low = fmin(low, m->uv[2 * v]);
         high = fmax(high, m->uv[2 * v]);
       }
-      // Of 98 % of the triangles the values differ by little, and edges are short.
+      // Over 98 % of the triangles, the values differ only slightly, and edges are short.
       size_t wide = 0;
       for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t *k = m->triangles + 3 * t;
@@ -89,7 +89,7 @@ static void values_of_a_graph_have_closed_forms(void **state) {
       }
       assert_true((double)wide <= 0.02 * (double)m->triangle_count);
       cag_mesh_release(m);
-      // A limit of triangles is kept where the mesh would be made finer.
+      // A limit of triangles is respected when the mesh is refined.
       how.max_triangles = 40000;
       OK(cag_surface_value_mesh(s, kind, &how, &m, &err));
       assert_true(m->triangle_count <= how.max_triangles);
@@ -99,7 +99,7 @@ static void values_of_a_graph_have_closed_forms(void **state) {
   cag_surface_release(s);
 }
 
-// Of the triangles, those over which the values differ by more than a twentieth of their span.
+// The fraction of triangles over which the values differ by more than a twentieth of the range.
 static double coarse_part(CagMesh *m, CagSurfaceValue kind) {
   size_t coarse = 0;
   double from, to;
@@ -118,15 +118,15 @@ static double coarse_part(CagMesh *m, CagSurfaceValue kind) {
   return (double)coarse / (double)m->triangle_count;
 }
 
-// Edges of a fiftieth of the size, or half, or a quarter, until few triangles are coarse, or too
-// many would be needed.
+// Edges of a fiftieth of the size, or half or a quarter of that, until few triangles are coarse or
+// too many would be needed.
 static void meshes_are_made_finer_as_needed(void **state) {
   (void)state;
   const CagSurfaceFunction f = {hills, hills_row, NULL, NULL};
   static const size_t LIMITS[] = {1000000, 34000, 60000, 100000};
   int of[3] = {0, 0, 0};
   for (int round = 0; round < 12; round++) {
-    // Larger hills, and then ripples that do not bend the surface much, at last on a ribbon.
+    // Larger hills, and then ripples that hardly bend the surface, finally on a ribbon.
     const double wide = round < 8 ? 0.5 + 6 * (round / 4) : 0.5;
     often = round < 8 ? 1 : 10 * pow(3, round - 8);
     height = round < 8 ? 1 : 0.01 / often;
@@ -174,7 +174,7 @@ static void meshes_are_made_finer_as_needed(void **state) {
   slant = 0.2;
 }
 
-// z = 0 for x < 1 and a (x - 1)^2 beyond: its curvature jumps from 0 to 2 a. The blossoms at the
+// z = 0 for x < 1 and a (x - 1)^2 otherwise: its curvature jumps from 0 to 2 a. The blossoms at the
 // pairs of knots 00, 01, 12, 22 are the control points.
 static void both_sides_of_a_jump_have_their_values(void **state) {
   (void)state;
@@ -222,7 +222,7 @@ static void both_sides_of_a_jump_have_their_values(void **state) {
         twice++;
       }
     }
-    // Every vertex on the break, from one end of the edge to the other, stands there twice.
+    // Every vertex on the break, from one end of the edge to the other, occurs twice.
     size_t on_break = 0;
     for (size_t v = 0; v < m->vertex_count; v++) on_break += fabs(m->positions[v].x - 1) < 1e-12;
     assert_int_equal(on_break, 2 * twice);
@@ -232,11 +232,11 @@ static void both_sides_of_a_jump_have_their_values(void **state) {
   }
 }
 
-// --- Spans ---
+// --- Ranges ---
 
 enum { MESHES = 3, MOST_TRIANGLES = 40 };
 
-// Triangles apart from each other, with a value each, and of area `weight` / 2.
+// Separate triangles, each with a value and an area of `weight` / 2.
 static CagMesh *mesh_of(const double *values, const double *weights, size_t n) {
   CagMesh *m;
   OK(cag_mesh_new(3 * n, n, false, true, false, &m, &err));
@@ -249,7 +249,7 @@ static CagMesh *mesh_of(const double *values, const double *weights, size_t n) {
   return m;
 }
 
-// The span by its definition, with a sum over all samples for each.
+// The range by its definition, with a sum over all samples for each.
 static void span_by_sums(const double *x, const double *w, size_t n, double *from, double *to) {
   double total = 0, least = INFINITY, most = -INFINITY, low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < n; i++) {
@@ -279,11 +279,11 @@ static void spans_leave_rare_extremes_out(void **state) {
     size_t n = 0;
     const double unit = round % 3 ? 1 : 0.001;
     for (int k = 0; k < MESHES; k++) {
-      // Of 50 equal triangles one has just 2 % of the area.
+      // Each of 50 equal triangles has exactly 2 % of the area.
       const size_t first = n, some = (size_t)uniform(k ? 0 : 5, MOST_TRIANGLES);
       const size_t count = round % 4 > 0 ? some : k < 2 ? 20 : 10;
       for (size_t i = 0; i < count; i++, n++) {
-        // Small triangles may have values far away.
+        // Small triangles may have outliers.
         const bool small = uniform(0, 1) < 0.15;
         w[n] = round % 4 == 0 ? 1 : small ? uniform(0.001, 0.2) : uniform(1, 2);
         const double off = small ? uniform(-4, 4) : 0;
@@ -310,7 +310,7 @@ static void spans_leave_rare_extremes_out(void **state) {
 
 static void single_values_get_a_span_around_them(void **state) {
   (void)state;
-  // Two values, what counts as rounding, and the span.
+  // Two values, the rounding tolerance, and the range.
   static const double OF[][5] = {
       {0, 0, 0, -1, 1},  {4, 4, 0, 2, 6},         {-4, -4, 0, -6, -2},
       {4, 4, 5, -1, 1},  {4, 4.000001, 0, 2, 6},  {4, 4.00001, 0, 4, 4.00001},
@@ -348,7 +348,7 @@ static void mirrored_directions_have_their_component(void **state) {
   for (int twice = 0; twice < 2; twice++) {
     OK(cag_mesh_reflect(m, eye, across, &err));
     for (size_t i = 0; i < 50; i++) {
-      // Turned by half a turn about the normal.
+      // A half turn about the normal.
       CagTransform turn;
       OK(cag_rotate(m->normals[i], M_PI, cag_vec3(0, 0, 0), &turn, &err));
       NEAR(m->uv[2 * i], cag_dot(cag_transform_vector(&turn, eye), across), 1e-14);

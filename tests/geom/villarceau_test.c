@@ -1,5 +1,5 @@
-// Planes that touch a torus twice: the circles of Villarceau, whole and in parts, against samples
-// of the circles; and planes and surfaces that are almost so.
+// Planes that touch a torus twice: the Villarceau circles, whole and in parts, compared with
+// samples of the circles. Also planes and surfaces that are almost of this kind.
 
 #include "surface_support.h"
 #include "tests/geom/random.h"
@@ -14,7 +14,7 @@ typedef struct Torus {
   double major, minor;
   CagTransform map; // from the torus about Z
   CagPlane plane;   // after the map
-  CagVec3 x, y;     // of the plane, before the map; x is horizontal
+  CagVec3 x, y;     // axes of the plane before the map; x is horizontal
 } Torus;
 
 static CagVec3 direction(void) {
@@ -22,7 +22,7 @@ static CagVec3 direction(void) {
   return cag_unit(cag_vec3(x, y, uniform(-1, 1)));
 }
 
-// The plane through the center whose normal has this slope against the axis, mapped.
+// The plane through the center whose normal has this slope relative to the axis, mapped.
 static CagPlane slanted(const Torus *t, double slope, double turn, double off, double *size) {
   // Planes are mapped by their points.
   const double rise = sqrt(1 - slope * slope);
@@ -62,7 +62,7 @@ static CagVec3 on_circle(const Torus *t, int which, double angle) {
   return cag_madd(cag_madd(center, t->major * cos(angle), t->x), t->major * sin(angle), t->y);
 }
 
-// How far a point of the plane is from the nearer of the circles.
+// The distance of a point of the plane from the closer of the circles.
 static double off_circles(const Torus *t, CagVec3 p) {
   double off = INFINITY;
   CagTransform back;
@@ -149,12 +149,12 @@ static void whole_tori_have_two_circles_in_every_form(void **state) {
 static double turned(double angle) { return angle - 2 * M_PI * floor(angle / (2 * M_PI)); }
 
 typedef struct Part {
-  double range[4]; // of the azimuth and of the angle about the tube
-  bool disk;       // or a disk of these angles: its center and radius
+  double range[4]; // of the azimuth and the angle about the tube
+  bool disk;       // instead, a disk of these angles: its center and radius
   double center[2], radius;
 } Part;
 
-// How far a place is inside of the part, in angles.
+// How far a point is inside the part, in angles.
 static double inside_by(const Part *p, double azimuth, double tube) {
   if (p->disk) return p->radius - hypot(azimuth - p->center[0], tube - p->center[1]);
   return fmin(fmin(azimuth - p->range[0], p->range[1] - azimuth),
@@ -196,8 +196,8 @@ static CagSurface *part_of(const Torus *t, const Part *p, int form) {
   return out;
 }
 
-// Runs of samples on the part, their length, and the least that the circles are beside its edges
-// where they do not cross them clearly.
+// Finds the arcs of samples on the part and their length. Clears *clear if the circles come too
+// close to its edges without crossing them clearly.
 static int find_runs(const Torus *t, const Part *part, double *length, bool *clear) {
   enum { SAMPLES = 2000 };
   int runs = 0;
@@ -264,7 +264,7 @@ static void parts_have_the_arcs_that_lie_on_them(void **state) {
         MUST(cag_curve_point(c, c->start + (c->end - c->start) * k / 20, &p, err));
         assert_near(off_circles(&t, p), 0, 1e-11, "circle");
         const double in = inside_part(&t, &part, cag_transform_point(&back, p));
-        // A closed arc may start at the seam of the torus, inside the part.
+        // A closed arc may begin at the seam of the torus, inside the part.
         if ((k == 0 || k == 20) && !c->closed) assert_near(in, 0, 1e-8, "end");
         else assert_true(in > -1e-8 || (in < -6 && part.range[1] - part.range[0] > 6));
       }
@@ -277,7 +277,7 @@ static void parts_have_the_arcs_that_lie_on_them(void **state) {
   assert_true(told > 10 && arcs > 12);
 }
 
-// --- Almost ---
+// --- Nearly tangent planes ---
 
 static bool is_villarceau(const CagSurface *s, const CagPlane *plane, double size) {
   CagCurveList list = {0};
@@ -314,7 +314,7 @@ static void planes_that_are_almost_so_are_traced(void **state) {
 static Torus torus_through(const CagVec3 p[3], double minor) {
   const CagVec3 a = cag_sub(p[1], p[0]), b = cag_sub(p[2], p[0]), x = cag_unit(a),
                 z = cag_unit(cag_cross(a, b)), y = cag_cross(z, x);
-  // (u, v): |a| = 2 u, and b's foot.
+  // In (u, v): |a| = 2 u, and the projection of b.
   const double u = cag_norm(a) / 2, bx = cag_dot(b, x), by = cag_dot(b, y);
   const double v = (bx * bx + by * by - 2 * u * bx) / (2 * by);
   const CagVec3 o = cag_madd(cag_madd(p[0], u, x), v, y);
@@ -326,7 +326,7 @@ static Torus torus_through(const CagVec3 p[3], double minor) {
 }
 
 // Tubes along other paths or of varying radius, and other kinds of surfaces, are not tori, even if
-// some of their circles lie on one.
+// some of their circles are on one.
 static void surfaces_other_than_tori_are_traced(void **state) {
   (void)state;
   static const double places[3] = {0.11, 0.43, 0.83};
@@ -357,7 +357,7 @@ static void surfaces_other_than_tori_are_traced(void **state) {
     cag_surface_release(s);
     cag_curve_release(path);
   }
-  // Spindle and horn tori are not touched twice.
+  // No plane touches a spindle or horn torus twice.
   for (int k = 0; k < 2; k++) {
     CagSurface *s;
     MUST(cag_surface_torus(2, 2 + 0.5 * k, &s, err));

@@ -60,12 +60,12 @@ static const Sample samples[] = {
 // --- The calls of an example ---
 
 typedef struct Argument {
-  size_t from, to; // of the value, in the script
+  size_t from, to; // of the value in the script
   size_t parameter;
 } Argument;
 
 typedef struct Call {
-  size_t from, open, close; // of the name and the parentheses
+  size_t from, open, close; // of the name and the parentheses in the script
   Argument arguments[ARGUMENTS];
   size_t count;
 } Call;
@@ -81,7 +81,7 @@ static size_t behind_quoted(const char *s, size_t at) {
   return s[at] ? at + 1 : at;
 }
 
-// The next comma or closing bracket that belongs to the bracket containing `at`.
+// Returns the next comma or closing bracket at the nesting level of `at`.
 static size_t item_end(const char *s, size_t at) {
   for (int depth = 0; s[at];) {
     size_t behind = behind_quoted(s, at);
@@ -134,8 +134,8 @@ static bool read_call(const char *text, size_t open, const CagSignature *s, Call
   return false;
 }
 
-// The next call of the function from `at` on that is not in a pipe. In a pipe, the first argument
-// is elsewhere.
+// Finds the next call of the function from `at` on that is not in a pipe, where the first argument
+// precedes the call.
 static bool find_call(const char *text, size_t at, const CagSignature *s, Call *out) {
   const size_t n = strlen(s->name);
   while (text[at]) {
@@ -174,7 +174,7 @@ static size_t line_at(const char *text, size_t at) {
   return line;
 }
 
-// Tests for the word nan that is not part of a longer word.
+// Whether the text contains the word nan, not as part of a longer word.
 static bool undefined(const char *text) {
   for (const char *s = strstr(text, "nan"); s; s = strstr(s + 1, "nan"))
     if ((s == text || !isalpha((unsigned char)s[-1])) && !isalpha((unsigned char)s[3])) return true;
@@ -232,7 +232,7 @@ static void run_with(Run *r, const CagSignature *s, const char *text, const Call
   free(output);
 }
 
-// Tests whether all rows of the name reject the type for this parameter.
+// Whether all rows of the name reject the type for this parameter.
 static bool rules_out(size_t index, const CagBuiltin *row, const CagSignature *s, size_t parameter,
                       size_t positional, CagType type) {
   if (parameter >= s->count || type == CAG_NONE) return false;
@@ -246,7 +246,7 @@ static bool rules_out(size_t index, const CagBuiltin *row, const CagSignature *s
   return !(cag_types_taken(row, s, parameter) & (CagTypes)1 << type);
 }
 
-static bool gives(const Call *call, size_t parameter) {
+static bool has_argument(const Call *call, size_t parameter) {
   for (size_t i = 0; i < call->count; i++)
     if (call->arguments[i].parameter == parameter) return true;
   return false;
@@ -263,7 +263,7 @@ static void vary(Run *r, size_t index, const CagBuiltin *row, const CagSignature
                rules_out(index, row, s, a->parameter, call->count, samples[k].type));
     }
     for (size_t p = 1; p < s->count; p++) {
-      if (gives(call, p) || s->positional_only[p] || call->count == 0) continue;
+      if (has_argument(call, p) || s->positional_only[p] || call->count == 0) continue;
       snprintf(before, sizeof before, ", %s: ", s->parameters[p]);
       run_with(r, s, text, call, call->close, call->close, before, samples[k].text,
                rules_out(index, row, s, p, call->count, samples[k].type));
@@ -292,7 +292,7 @@ static void arguments_of_another_type_are_errors_at_the_call(void **state) {
 
 // --- Differentiated calls ---
 
-// Values that depend on the parameter t_ of a formula. The first ones are tried with each of the
+// Values that depend on the parameter t_ of a formula. The first ones are combined with each of the
 // others as the next argument.
 static const char *const JETS[] = {"t_",
                                    "[t_, 1]",
@@ -306,7 +306,7 @@ static const char *const OTHERS[] = {"-1", "t_", "[1, t_]", "[1, 2, 3]", "\"word
 #define WITH_OTHERS 3
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
-// The call with some arguments replaced, in a formula whose tangent is asked for.
+// Puts the call, with some arguments replaced, in a formula whose tangent is computed.
 static void differentiate(Run *r, const CagSignature *s, const char *text, const Call *call,
                           const char *const *values) {
   char formula[LONGEST];

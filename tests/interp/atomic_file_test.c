@@ -1,4 +1,4 @@
-// Output files: whole or not at all, in every way that writing can end.
+// Output files are complete or do not exist, however writing ends.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -100,7 +100,8 @@ static void an_abort_leaves_the_old_file(void **state) {
 
 static void much_data_passes_in_order(void **state) {
   (void)state;
-  // 40 MB through every way in, larger and smaller than the buffer; the byte at i is i mod 251.
+  // 40 MB through every writing function, in blocks smaller and larger than the buffer. The byte at
+  // i is i mod 251.
   enum { BLOCK = 3000017, BLOCKS = 12 };
   unsigned char *block = malloc(BLOCK);
   CagAtomicFile *f = open_file("big");
@@ -136,8 +137,8 @@ static void long_formatted_text_is_whole(void **state) {
   memset(filler, 'x', (1 << 20) - 10);
   filler[(1 << 20) - 10] = '\0';
   cag_atomic_file_text(f, filler);
-  cag_atomic_file_printf(f, "%s", "0123456789abcdef"); // does not fit the rest of the buffer
-  cag_atomic_file_printf(f, "%s%s", filler, filler);   // fits no buffer
+  cag_atomic_file_printf(f, "%s", "0123456789abcdef"); // does not fit in the rest of the buffer
+  cag_atomic_file_printf(f, "%s%s", filler, filler);   // does not fit in any buffer
   assert_int_equal(cag_atomic_file_size(f), 3 * ((1 << 20) - 10) + 16);
   assert_true(cag_atomic_file_commit(f, NULL));
   struct stat st;
@@ -229,7 +230,7 @@ static void a_device_is_written_not_replaced(void **state) {
   assert_true(S_ISCHR(st.st_mode));
 }
 
-static int fifo; // the reading end of the one below
+static int fifo; // the reading end
 static size_t fifo_bytes, ticks;
 
 static void drain_fifo(void) {
@@ -239,7 +240,7 @@ static void drain_fifo(void) {
       if (bytes[i] != (char)((fifo_bytes + (size_t)i) % 251)) _exit(1);
 }
 
-// At every second signal a write that waits is only interrupted.
+// Every second signal only interrupts a waiting write.
 static void on_tick(int number) {
   (void)number;
   const int saved = errno;
@@ -247,7 +248,7 @@ static void on_tick(int number) {
   errno = saved;
 }
 
-// A write to a FIFO waits for its reader, and signals interrupt it.
+// A write to a FIFO waits for its reader, and is interrupted by signals.
 static void signals_lose_nothing_that_is_written(void **state) {
   (void)state;
   enum { SIZE = 500000 };
@@ -303,8 +304,8 @@ static void a_full_disk_is_an_error(void **state) {
 static void a_file_that_cannot_grow_leaves_the_old_one(void **state) {
   (void)state;
   put_file("a", "old");
-  // The system's limit for file sizes stands in for a full disk: write gives EFBIG after a short
-  // write.
+  // The system's limit for file sizes simulates a full disk: after a short write, write fails with
+  // EFBIG.
   struct rlimit before, small;
   getrlimit(RLIMIT_FSIZE, &before);
   small = before;
@@ -336,7 +337,7 @@ static void a_signal_leaves_no_temporary(void **state) {
     signal(SIGTERM, on_signal);
     CagAtomicFile *f = cag_atomic_file_open("a", NULL), *g = cag_atomic_file_open("b", NULL);
     if (!f || !g) _exit(1);
-    if (chdir("/")) _exit(1); // the registry does not depend on the working folder
+    if (chdir("/")) _exit(1); // the registry does not depend on the working directory
     raise(SIGTERM);
     _exit(2);
   }
@@ -400,7 +401,7 @@ static void memory_takes_the_same_writes(void **state) {
   (void)state;
   CagAtomicFile *f = cag_atomic_file_open_memory(NULL);
   for (int i = 0; i < 1000000; i++)
-    cag_atomic_file_printf(f, "%06d\n", i); // seven times the buffer
+    cag_atomic_file_printf(f, "%06d\n", i); // seven times the size of the buffer
   assert_int_equal(cag_atomic_file_size(f), 7000000);
   char *bytes;
   size_t size;
@@ -462,7 +463,7 @@ static void work_that_is_to_end_writes_nothing(void **state) {
   cag_atomic_file_text(f, "later");
   stop = 1;
   cag_atomic_file_flush(f);
-  cag_atomic_file_expect(f, 1 << 30); // no room is taken any more
+  cag_atomic_file_expect(f, 1 << 30); // space is not reserved any more
   const bool written = cag_atomic_file_commit(f, &err);
   cag_stop_lend(NULL);
   assert_false(written);

@@ -1,4 +1,5 @@
-// A face whose formula fails anywhere in an export is an error that names the shape, and no file.
+// If the function of a face fails during an export, the error names the shape, and no file is
+// written.
 
 #include "tests/interp/scene_fixture.h"
 
@@ -6,7 +7,7 @@
 #include "interp/formats/brep.h"
 
 typedef struct Failing {
-  size_t calls, fails_at; // gives no number at the call of this number
+  size_t calls, fails_at; // the number of the call at which it returns NaN
 } Failing;
 
 // A wave over the unit square: (u, v, v sin u).

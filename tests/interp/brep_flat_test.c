@@ -1,5 +1,5 @@
-// Which bilinear patches are written as flat faces: those whose corners make a convex quadrangle of
-// a plane, or a triangle, whatever their size and place.
+// The bilinear patches that are written as planar faces: those whose corners form a planar convex
+// quadrangle or a triangle, of any size and location.
 
 #include "interp/formats/brep.h"
 #include "tests/geom/random_point.h"
@@ -13,13 +13,13 @@ static double turn(Corner a, Corner b, Corner c) {
   return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
 }
 
-// The diagonals of a convex quadrangle cross within both.
+// Whether the diagonals of a quadrangle cross inside both, which makes it convex.
 static bool diagonals_cross(const Corner *c) {
   return turn(c[0], c[2], c[1]) * turn(c[0], c[2], c[3]) < 0 &&
          turn(c[1], c[3], c[0]) * turn(c[1], c[3], c[2]) < 0;
 }
 
-// Too near a degenerate shape for a comparison by signs.
+// Too close to a degenerate shape for a comparison of signs.
 static bool is_doubtful(const Corner *c) {
   for (int i = 0; i < 4; i++)
     if (fabs(turn(c[i], c[(i + 1) % 4], c[(i + 2) % 4])) < 1e-3) return true;
@@ -34,8 +34,8 @@ static CagVec3 column(const CagTransform *t, int k) {
   return cag_vec3(t->m[0][k], t->m[1][k], t->m[2][k]);
 }
 
-// The origin is the first corner. The corners run counter-clockwise about the normal. The x axis
-// lies along the longest edge; of equally long edges, along the first.
+// The origin is the first corner, and the corners run counter-clockwise about the normal. The x
+// axis is along the longest edge, or the first one if several are equally long.
 static void check_plane(const CagTransform *plane, const CagVec3 *p, CagVec3 normal, double size) {
   CagVec3 longest = {0, 0, 0};
   for (int i = 0; i < 3; i++)
@@ -51,7 +51,7 @@ static void check_plane(const CagTransform *plane, const CagVec3 *p, CagVec3 nor
   assert_true(cag_norm(cag_sub(column(plane, 2), normal)) < 1e-10);
 }
 
-// Whether the patch of corners, in turn, is a flat face.
+// Whether the patch of the corners, in order, is a planar face.
 static bool is_flat(const CagVec3 *p, CagTransform *plane) {
   Fixture f;
   fixture_begin(&f);
@@ -100,7 +100,7 @@ static void flat_faces_are_convex(void **state) {
     count[convex]++;
     const double sign = turn(c[0], c[1], c[2]) > 0 ? 1 : -1;
     if (convex) check_plane(&plane, p, cag_scaled(column(&t, 2), sign), size);
-    // Each corner decides whether they lie in a plane: to 1e-12 of the size.
+    // Each corner matters for planarity, up to 1e-12 of the size.
     for (int k = 0; convex && k < 4; k++)
       for (int high = 0; high < 2; high++) {
         CagVec3 q[4] = {p[0], p[1], p[2], p[3]};
@@ -111,7 +111,7 @@ static void flat_faces_are_convex(void **state) {
   assert_true(count[0] > 100 && count[1] > 50);
 }
 
-// Two corners in one point, or one on the line through its neighbors, leave a triangle.
+// If two corners coincide, or one is on the line through its neighbors, the face is a triangle.
 static void triangles_are_flat_faces(void **state) {
   (void)state;
   seed = 5;
@@ -134,7 +134,7 @@ static void triangles_are_flat_faces(void **state) {
   }
 }
 
-// How flat a patch must be follows from the longer one of its diagonals.
+// The tolerance for planarity is relative to the longer diagonal.
 static void kites_are_as_flat_as_they_are_long(void **state) {
   (void)state;
   for (int i = 0; i < 4; i++) {
@@ -164,8 +164,8 @@ static void squares_lie_along_their_first_edges(void **state) {
 static void patches_without_area_are_no_flat_faces(void **state) {
   (void)state;
   static const CagVec3 cases[][4] = {
-      {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {2, 0, 0}},         // on a line
-      {{0, 0, 0}, {1, 2, 0}, {0, 0, 0}, {1, 2, 0}},         // folded, to and fro
+      {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {2, 0, 0}},         // collinear
+      {{0, 0, 0}, {1, 2, 0}, {0, 0, 0}, {1, 2, 0}},         // folded onto itself
       {{0, 0, 0}, {1, 0, 0}, {1, 1e-13, 0}, {0, 1e-13, 0}}, // narrower than rounding
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -1,5 +1,5 @@
-// Bodies of random quadrics within boxes as exact boundaries: their faces share all edges, and the
-// edges lie on the quadric and on the sides of the box.
+// Bodies of random quadrics in boxes as exact boundaries: all edges are shared by faces, and are on
+// the quadric and the sides of the box.
 
 #include "tests/geom/quadric_support.h"
 #include "tests/interp/scene_fixture.h"
@@ -9,10 +9,10 @@
 #include "interp/formats/brep.h"
 
 #define ROUNDS 3
-// Edges are exact arcs; the form and the box are known to rounding.
+// Edges are exact arcs; the form and the box are known up to rounding.
 #define EXACT 1e-12
 
-// How far p is from the quadric, to first order.
+// The distance of p from the quadric, to first order.
 static double off_quadric(const CagQuadric *q, CagVec3 p) {
   const double *c = q->c;
   const CagVec3 slope = cag_vec3(2 * c[0] * p.x + c[3] * p.y + c[5] * p.z + c[6],
@@ -29,7 +29,7 @@ static double off_sides(const CagBounds *b, CagVec3 p) {
   return fmin(x, fmin(y, z));
 }
 
-// Each edge is used once each way. The edges that one face uses twice are seams.
+// Checks that each edge is used once in each direction. Edges that one face uses twice are seams.
 static void check_edges(const CagBrep *b, const CagQuadric *q, const CagBounds *box, double size,
                         int *arcs) {
   int *forward = calloc(b->edge_count, sizeof *forward);

@@ -1,10 +1,10 @@
-// Regions as flat faces: their loops have the areas and senses of the outlines, and each face's
-// surface is a rectangle about its own.
+// Regions as planar faces: their loops have the areas and orientations of the outlines, and the
+// surface of each face is a rectangle around its outline.
 
 #include "interp/formats/brep.h"
 #include "scene_checks.h"
 
-// A point seen in the axes of a face.
+// Converts a point to the axes of a face.
 static CagVec3 in_plane(const CagBrepFace *f, CagVec3 p) {
   double x[3] = {0};
   for (int j = 0; j < 3; j++)
@@ -14,7 +14,7 @@ static CagVec3 in_plane(const CagBrepFace *f, CagVec3 p) {
   return cag_vec3(x[0], x[1], x[2]);
 }
 
-// The signed area of a loop, positive about the normal, by chords; adds its points to the box.
+// The signed area of a loop from chords, positive about the normal. Adds its points to the box.
 static double area_of(const CagBrep *b, const CagBrepFace *f, const CagBrepLoop *l,
                       CagBounds *box) {
   enum { CHORDS = 400 };
@@ -54,7 +54,7 @@ static void regions_are_faces_with_their_loops(void **state) {
       {"rectangle(30, 20) - translate(disk(3), [-8, 0, 0]) - translate(rectangle(4, 2), [8, 0, 0])",
        1,
        {{600, hole + 8, 3}}},
-      // An island in a hole, and a part beside with a hole of its own.
+      // An island in a hole, and a separate part with a hole.
       {"rectangle(30, 20) - disk(8) | disk(3) | (translate(rectangle(10, 70), [90, 0, 0]) - "
        "translate(disk(3), [90, 30, 0]))",
        3,
@@ -90,7 +90,7 @@ static void regions_are_faces_with_their_loops(void **state) {
         if (face->count > 1)
           assert_true(holes.min.x > box.min.x && holes.max.x < box.max.x &&
                       holes.min.y > box.min.y && holes.max.y < box.max.y);
-        // The surface goes beyond the outline by a thousandth of its longer side, and its
+        // The surface extends beyond the outline by a thousandth of its longer side, and its
         // parameters are lengths.
         const CagSurface *r = face->surface;
         const double u[2] = {r->u0, r->u1}, v[2] = {r->v0, r->v1};

@@ -1,6 +1,6 @@
-// Scenes as exact boundaries: edges and vertices are shared, seams and poles are told, and the
-// files of them are well formed. That other programs measure them as they are is
-// tests/cli/cases_brep.sh.
+// Scenes as exact boundaries: edges and vertices are shared, seams and poles are marked, and the
+// files are well formed. tests/cli/cases_brep.sh checks that other programs measure the same
+// values.
 
 #include "tests/interp/scene_fixture.h"
 
@@ -35,7 +35,7 @@ static CagSurface *sphere_surface(double radius) {
   return s;
 }
 
-// Every edge of a closed body is used once each way.
+// Checks that every edge of a closed body is used once in each direction.
 static void check_closed(const CagBrep *b) {
   int *forward = calloc(b->edge_count, sizeof *forward),
       *back = calloc(b->edge_count, sizeof *back);
@@ -49,7 +49,7 @@ static void check_closed(const CagBrep *b) {
   free(back);
 }
 
-// A loop goes on where it was: each use ends in the vertex in which the next begins.
+// Checks that loops are connected: each use ends at the vertex at which the next begins.
 static void check_loops(const CagBrep *b) {
   for (size_t l = 0; l < b->loop_count; l++)
     for (size_t i = 0; i < b->loops[l].count; i++) {
@@ -103,15 +103,15 @@ static void poles_are_vertices_without_an_edge(void **state) {
   assert_int_equal(b.vertex_count, 2);
   assert_int_equal(b.edge_count, 1);
   assert_int_equal(b.use_count, 2);
-  assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID); // closed, so it bounds one
+  assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID); // closed, so it bounds a solid
   assert_true(b.shells[0].closed);
   check_loops(&b);
   cag_brep_free(&b);
   fixture_end(&f);
 }
 
-// The profile climbs the outside, which makes the normals of its revolution point inward, or comes
-// down. The volume is that of a cone: pi r^2 h / 3.
+// The profile ascends on the outside, which makes the normals of its surface of revolution point
+// inward, or descends. The volume is that of a cone: pi r^2 h / 3.
 static void a_closed_surface_is_a_solid_with_its_normals_outward(void **state) {
   (void)state;
   for (int down = 0; down < 2; down++) {
@@ -143,8 +143,8 @@ static CagSurface *patch(CagVec3 p00, CagVec3 p01, CagVec3 p10, CagVec3 p11) {
   return s;
 }
 
-// A box whose front is of many strips, each of which ends on the long edges of the top and the
-// bottom. Strips have 3 edges each and one more; the other sides 8.
+// A box whose front consists of many strips, each of which ends on the long edges of the top and
+// the bottom. A strip has 3 edges, plus one for the last; the other sides have 8.
 static void long_edges_meet_as_many_short_ones_as_there_are(void **state) {
   (void)state;
   enum { STRIPS = 150 };
@@ -172,7 +172,7 @@ static void long_edges_meet_as_many_short_ones_as_there_are(void **state) {
   fixture_end(&f);
 }
 
-// A sphere with a wall: its outer face and, turned inwards, its inner one.
+// A sphere with a wall: its outer face, and its inner face oriented inward.
 static void a_sphere_in_a_sphere_is_a_hollow(void **state) {
   (void)state;
   Fixture f;
@@ -209,7 +209,7 @@ static void creases_part_faces_and_smooth_knots_do_not(void **state) {
   CagBrep b = boundary_of(&f);
   assert_int_equal(b.shapes[0].count, 1);
   assert_int_equal(b.shells[b.shapes[0].first].count, 3); // three segments
-  assert_int_equal(b.shells[b.shapes[1].first].count, 1); // a circle's knots are smooth
+  assert_int_equal(b.shells[b.shapes[1].first].count, 1); // the knots of a circle are smooth
   check_loops(&b);
   cag_brep_free(&b);
   cag_curve_release(line);
@@ -233,7 +233,7 @@ static void what_is_not_exact_needs_a_tolerance(void **state) {
   item->tolerance = 0.01;
   b = boundary_of(&f);
   assert_true(b.shapes[0].approximate);
-  // Within the tolerance, at places that are no knots.
+  // Within the tolerance, between the knots.
   for (int i = 1; i < 97; i++) {
     CagVec3 p, q;
     double t, off;
@@ -290,7 +290,7 @@ static void names_of_any_kind_are_written_safely(void **state) {
   fixture_end(&f);
 }
 
-// Every line has 80 columns, and the last one tells how many there are of each section.
+// Every line has 80 columns, and the last one states the number of lines in each section.
 static void an_iges_file_counts_its_lines(void **state) {
   (void)state;
   Fixture f;

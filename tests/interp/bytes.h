@@ -1,4 +1,4 @@
-// Numbers in the bytes of binary files.
+// Reads numbers from the bytes of binary files.
 
 #ifndef CAG_TESTS_INTERP_BYTES_H
 #define CAG_TESTS_INTERP_BYTES_H

@@ -1,7 +1,7 @@
-// Where minimize, find_root and integrate evaluate their function, against the published
-// algorithms, which are written down here again: Brent's localmin and zeroin (Algorithms for
-// Minimization without Derivatives, 1973, chapters 4 and 5), and QUADPACK's qag with a search for
-// hidden steps.
+// The parameters at which minimize, find_root, and integrate evaluate their function, compared with
+// the published algorithms, which are implemented again here: Brent's localmin and zeroin
+// (Algorithms for Minimization without Derivatives, 1973, chapters 4 and 5), and QUADPACK's qag
+// with a search for hidden steps.
 
 #include <float.h>
 #include <math.h>
@@ -19,7 +19,8 @@
 
 #define POINTS_MOST 100000
 
-// The places at which a script asked its function, which it passes through `trace`, and its output.
+// The parameters at which a script evaluated its function (it passes them through `trace`), and its
+// output.
 typedef struct Trace {
   double x[POINTS_MOST];
   size_t count;
@@ -52,7 +53,7 @@ static void run(const char *script, Trace *out) {
   free(messages);
 }
 
-// A function in C and in the language.
+// The same function in C and in the language.
 typedef struct Function {
   double (*f)(double);
   const char *text;
@@ -101,8 +102,8 @@ static double ask(Asked *asked, const Function *f, double sign, double x) {
   return sign * f->f(x);
 }
 
-// localmin, with the tolerance 1.5e-8 |x| + t, where t is 1e-14 of the range that is left, and of 1
-// at least. The book starts from the golden section; here x is given with its value.
+// localmin, with the tolerance 1.5e-8 |x| + t, where t is 1e-14 of the remaining range, or of 1 if
+// that is larger. The book starts with a golden section step; here, x is given with its value.
 static double localmin(Asked *asked, const Function *f, double sign, double a, double b, double x,
                        double fx, double *value) {
   const double c = (3 - sqrt(5)) / 2;
@@ -148,7 +149,8 @@ static double localmin(Asked *asked, const Function *f, double sign, double a, d
   return x;
 }
 
-// 129 samples, then localmin about each of the four lowest valleys, each between its neighbors.
+// Takes 129 samples, and then applies localmin to each of the four lowest valleys, between the
+// neighboring samples.
 static double least_of_all(Asked *asked, const Function *f, double sign) {
   double y[129], best = f->start, least;
   bool used[129] = {false};
@@ -299,13 +301,13 @@ static void find_root_asks_where_brent_does(void **state) {
 
 // --- Integrals ---
 
-// Integrals with closed forms, not symmetric, so that no two pieces have the same error. For
-// polynomials to the degree 13 both rules are exact, so that two pieces suffice.
+// Integrals with closed forms, which are not symmetric, so that the errors of any two pieces
+// differ. Both rules are exact for polynomials up to degree 13, so that two pieces suffice.
 typedef struct Integral {
   double (*f)(double);
   const char *text;
   double start, end, value;
-  bool exact; // in both rules
+  bool exact; // with both rules
 } Integral;
 
 static double one(double x) { return 1 + 0 * x; }
@@ -351,8 +353,8 @@ static const Integral integrals[] = {
     {runge, "1 / (1 + 25 * x * x) - x", -1, 2, -0.9310943117502498, false},
 };
 
-// The rule with 7 and 15 points (QUADPACK's qk15), from the middle outward. The weight of the rule
-// with 7 points is 0 at the points between.
+// The rule with 7 and 15 points (QUADPACK's qk15), from the center outward. At the points between,
+// the weight of the rule with 7 points is 0.
 static const double nodes[8][3] = {
     {0, 0.2094821410847278, 0.4179591836734694},
     {0.2077849550078985, 0.20443294007529889, 0},
@@ -395,13 +397,13 @@ static Part part(Asked *asked, const Integral *g, double from, double to) {
     gauss += half * n[2] * y;
   }
   p.error = fabs(p.value - gauss);
-  // QUADPACK: size * min(1, (200 error / size)^1.5); here never more than the difference.
+  // QUADPACK: size * min(1, (200 error / size)^1.5); here, never more than the difference.
   double estimate = p.size * pow(200 * p.error / p.size, 1.5);
   if (p.size > 0 && 200 * p.error < p.size && estimate < p.error) p.error = estimate;
   return p;
 }
 
-// The polynomial through the points of a part (Neville's algorithm), at x of -1 .. 1.
+// Evaluates the polynomial through the points of a part at x in -1 .. 1 (Neville's algorithm).
 static double extrapolated(const Part *p, double x) {
   double y[15], t[15];
   for (int i = 0; i < 15; i++) {
@@ -414,9 +416,9 @@ static double extrapolated(const Part *p, double x) {
   return y[0];
 }
 
-// Beyond QUADPACK: steps between an end of a part and the nearest point. Looks 2^-36 of the width
-// beside the end. Returns whether the part becomes doubtful.
-static bool look_beside(Asked *asked, const Integral *g, Part *p, int end, double wanted) {
+// An extension of QUADPACK, for steps between an end of a part and the nearest point: compares the
+// function at 2^-36 of the width from the end. Returns whether the part becomes doubtful.
+static bool check_beside(Asked *asked, const Integral *g, Part *p, int end, double wanted) {
   const double width = p->to - p->from, by = ldexp(width, -36);
   const double t = end < 0 ? p->from + by : p->to - by;
   if (t == p->from || t == p->to) return false;
@@ -428,11 +430,11 @@ static bool look_beside(Asked *asked, const Integral *g, Part *p, int end, doubl
   return true;
 }
 
-// QUADPACK's qag: the part with the largest error is halved, until the errors together are below
-// 1e-11 of the result or 100 units of rounding of the sum of sizes. Parts with an error below 50
-// units of rounding stay. Where both halves have suddenly no error, the place between them is
-// doubtful, and so are ends of the range and its middle if `look_beside` says so. Eighths are cut
-// off there, with an error that is at least in proportion to their width.
+// QUADPACK's qag: the part with the largest error is halved until the sum of the errors is below
+// 1e-11 of the result, or below 100 rounding units of the sum of sizes. Parts with an error below
+// 50 rounding units are not divided. If both halves suddenly have no error, their common end is
+// doubtful; so are the ends and the middle of the range if `check_beside` says so. There, eighths
+// are cut off, with an error at least proportional to their width.
 static double qag(Asked *asked, const Integral *g) {
   static Part parts[5000];
   size_t n = 2;
@@ -463,7 +465,7 @@ static double qag(Asked *asked, const Integral *g) {
           const double place = end < 0 ? parts[i].from : parts[i].to;
           if ((place == a || place == b || place == center) && !parts[i].doubted &&
               parts[i].to - parts[i].from > narrowest)
-            found |= look_beside(asked, g, &parts[i], end, wanted);
+            found |= check_beside(asked, g, &parts[i], end, wanted);
         }
       if (!found) return value;
       continue;

@@ -1,4 +1,4 @@
-// The checker: what it finds, and that it finds nothing in scripts that are right.
+// The checker: the errors that it finds, and that correct scripts have none.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 #include "cag.h"
 
-// The codes of what is said of a script, each with its line: "E0301:2 E0900:1".
+// The codes of the diagnostics of a script with their lines, such as "E0301:2 E0900:1".
 static const char *found(const char *script) {
   static char text[1024];
   CagSessionOptions options;
@@ -81,7 +81,7 @@ static void defaults_of_params_are_in_their_range_or_list(void **state) {
   assert_string_equal(found("param h = 2.5 in [1, 2, 3]\nprint h"), "E0250:1");
   assert_string_equal(found("param h = \"c\" in [\"a\", \"b\"]\nprint h"), "E0250:1");
   assert_string_equal(found("param h = \"b\" in [\"a\", \"b\"]\nprint h"), "");
-  // What is computed is not judged without a run.
+  // Computed values are not checked without a run.
   assert_string_equal(found("param x = 2 * 5 in [10, 20]\nprint x"), "");
   assert_string_equal(found("param x = 2 * 5 in [30, 20]\nprint x"), "");
   assert_string_equal(found("param h = 2 in [1, 2, 3]\nprint h"), "");
@@ -117,8 +117,8 @@ static void types_that_cannot_be_are_found(void **state) {
 static void each_function_says_what_it_takes(void **state) {
   (void)state;
   static const struct {
-    const char *function, *good, *wrong; // arguments
-    int count;                           // of the parameters that take them
+    const char *function, *good, *wrong; // values of the parameter
+    int count;                           // number of parameters that accept them
   } rows[] = {
       {"sqrt", "2", "true", 1},         {"cbrt", "2", "\"a\"", 1},
       {"exp", "2", "[1]", 1},           {"ln", "2", "1..2", 1},
@@ -175,7 +175,7 @@ static void circles_of_definitions_are_found(void **state) {
   assert_string_equal(found("a = a + 1\nprint a"), "E0311:1");
   assert_string_equal(found("f(x) = a + x\na = 2 |> f\nprint a"), "E0311:1");
   assert_string_equal(found("a = [b]\nb = { x: c }\nc = { y = a; y }\nprint c"), "E0311:3");
-  // What need not be evaluated closes no circle.
+  // Expressions that need not be evaluated do not make a circular definition.
   assert_string_equal(found("a = if time > 0 then b else 1\nb = a\nprint b"), "");
   assert_string_equal(found("f(n) = if n == 0 then 1 else n * f(n - 1)\nprint f(3)"), "");
   assert_string_equal(found("f(n) = g(n)\ng(n) = f(n)\nprint f(3)"), "");
@@ -183,8 +183,7 @@ static void circles_of_definitions_are_found(void **state) {
   assert_string_equal(found("a = [for i in 1..0: a]\nprint a"), "");
 }
 
-// Places of an expression that are evaluated whatever its values are close a circle; others need
-// not.
+// Operands that are always evaluated make a circular definition, and others do not.
 static void circles_are_found_in_every_part_of_expressions(void **state) {
   (void)state;
   static const char *const always[] = {"a",
@@ -339,7 +338,7 @@ static void scripts_cut_off_anywhere_are_checked(void **state) {
 
 static void what_may_be_right_is_left_alone(void **state) {
   (void)state;
-  assert_string_equal(found("f(x) = sin(x) + x\nprint f(1)"), ""); // x could be anything
+  assert_string_equal(found("f(x) = sin(x) + x\nprint f(1)"), ""); // the type of x is unknown
   assert_string_equal(found("x = if time > 0 then 1 else 1deg\nprint sin(x)"), "");
   assert_string_equal(found("print attempt(() => sin(30), e => e.code)"), "");
   assert_string_equal(found("even(n) = if n == 0 then true else odd(n - 1)\n"
@@ -370,8 +369,8 @@ static void a_long_chain_of_definitions_is_no_trouble(void **state) {
   free(script);
 }
 
-// The types of all names in a block are known, however many there are. Here _l0, _l3 ... are
-// numbers, _l1 and so on angles, _l2 and so on texts; one of them is added to a text.
+// The types of all names in a block are known, no matter how many there are. Here, _l0, _l3, ...
+// are numbers, _l1, ... are angles, and _l2, ... are texts. One of them is added to a text.
 static void types_of_many_local_names_are_known(void **state) {
   (void)state;
   enum { NAMES = 1000 };
@@ -395,7 +394,7 @@ static void types_of_many_local_names_are_known(void **state) {
   free(script);
 }
 
-// Whatever the table of built-ins says as an example is right.
+// The examples in the table of built-ins are correct.
 static void examples_are_found_right(void **state) {
   (void)state;
   const char *signature, *summary, *example, *family;
@@ -416,16 +415,16 @@ static void a_check_has_all_of_the_time(void **state) {
   cag_session_options_init(&options);
   options.max_time = 60;
   CagSession *s = cag_session_new(&options);
-  for (int i = 0; i < 10; i++) // the watch may be late
+  for (int i = 0; i < 10; i++) // the file watch may be late
     assert_int_equal(cag_session_check_file(s, "stdlib/robots.cag"), CAG_STATUS_OK);
   cag_session_free(s);
 }
 
-// What is said of a script, the first thing only, with the span between « and » in the script.
+// The first diagnostic of a script; its span is between « and » in the script.
 static void messages_mark_what_is_wrong(void **state) {
   (void)state;
   static const struct {
-    const char *script, *code, *message, *help; // help: NULL if there is none
+    const char *script, *code, *message, *help; // help may be NULL
   } rows[] = {
       {"print sqrt(1, «2»)", "E0302", "sqrt takes 1 argument, found 2", NULL},
       {"print «sqrt()»", "E0302", "sqrt needs an argument for `x`", NULL},
@@ -547,14 +546,14 @@ static void messages_mark_what_is_wrong(void **state) {
 
 static void definitions_are_reached_through_others(void **state) {
   (void)state;
-  // Chains in both orders, and a circle of functions that nothing else uses.
+  // Chains in both orders, and a circle of functions that are not used elsewhere.
   assert_string_equal(found("a = 1\nb = a\nc = b\nprint c"), "");
   assert_string_equal(found("c = b\nb = a\na = 1\nprint c"), "");
   assert_string_equal(found("f(n) = g(n)\ng(n) = f(n)\nprint 1"), "E0900:1 E0900:2");
   assert_string_equal(found("param h = 1\nprint 1"), "E0900:1");
   assert_string_equal(found("a = 1\n_b = a\nc = _b\n"), "");
   char script[20000] = "print a0", one[64];
-  for (int i = 0; i < 300; i++) { // more uses than any first capacity, of one definition
+  for (int i = 0; i < 300; i++) { // more uses of one definition than the initial capacity
     snprintf(one, sizeof one, " + a%d", i);
     strcat(script, one);
   }

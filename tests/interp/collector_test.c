@@ -1,4 +1,4 @@
-// The collector: what it keeps, frees, and charges.
+// The garbage collector: the objects that it keeps and frees, and the memory that it charges.
 
 #include "tests/interp/vm_support.h"
 
@@ -10,7 +10,7 @@ static CagValue string_value(CagVm *vm, size_t length) {
   return v;
 }
 
-// The number of live objects after a collection that finds `v` rooted, or nothing.
+// The number of live objects after a collection with `v`, or nothing, as the root.
 static size_t live(CagVm *vm, const CagValue *v) {
   if (v) cag_root_push(vm, *v);
   cag_collect(vm);
@@ -18,8 +18,8 @@ static size_t live(CagVm *vm, const CagValue *v) {
   return vm->heap.objects;
 }
 
-// Cells of small objects come from pages, and larger objects and buffers have blocks of their own:
-// all are charged.
+// Cells of small objects are allocated from pages. Larger objects and buffers have separate blocks.
+// All of them are charged.
 static void what_objects_hold_is_charged(void **state) {
   CagVm *vm = *state;
   const size_t nothing = live(vm, NULL);
@@ -29,11 +29,11 @@ static void what_objects_hold_is_charged(void **state) {
     const CagValue values[] = {string_value(vm, n), cag_list_numbers(vm, n, &numbers),
                                cag_list_vectors(vm, n, 3, &numbers),
                                cag_list_vectors(vm, n, 17, &numbers)};
-    // Blocks of more than a cell are charged with their size, in steps of the system's allocator.
+    // Blocks larger than a cell are charged at their size, in the allocator's steps.
     if (n > CAG_SMALL_MAX) {
       const size_t least = n + 8 * n + 24 * n + 16 * n;
       assert_in_range(vm->account.used - before, least, least + 4 * 4096 + 8 * 65536);
-      // The next object adds the last buffer to the debt.
+      // The next object adds the previous buffer to the debt.
       assert_in_range(vm->heap.debt - debt, least - 16 * n, least + 4 * 4096 + 8 * 65536);
     }
     assert_int_equal(vm->heap.objects, nothing + 4);
@@ -47,7 +47,7 @@ static void what_objects_hold_is_charged(void **state) {
   }
 }
 
-// Cells that are free are used again, and go back to the system where memory is short.
+// Free cells are reused, and returned to the system if memory is short.
 static void empty_pages_go_back_where_memory_is_short(void **state) {
   (void)state;
   for (int is_short = 0; is_short < 2; is_short++) {
@@ -69,7 +69,8 @@ static void empty_pages_go_back_where_memory_is_short(void **state) {
   }
 }
 
-// Random graphs of lists, records and texts: what a root reaches stays as it was, all else goes.
+// Random graphs of lists, records, and texts: objects reachable from a root are not changed, and
+// all others are freed.
 static void what_is_reached_stays_as_it_is(void **state) {
   CagVm *vm = *state;
   static const char *const fields[] = {"alpha", "beta"};
@@ -101,7 +102,7 @@ static void what_is_reached_stays_as_it_is(void **state) {
     }
     for (int pass = 0; pass < 3; pass++) {
       cag_collect(vm);
-      for (int i = 0; i < 3000; i++) string_value(vm, chance(200)); // overwrites what was freed
+      for (int i = 0; i < 3000; i++) string_value(vm, chance(200)); // overwrites freed memory
     }
     for (size_t k = 0; k < 8; k++) {
       CagString s = {.most = 400};
@@ -116,7 +117,7 @@ static void what_is_reached_stays_as_it_is(void **state) {
   }
 }
 
-// A part of a list keeps the whole alive, a builder what was added to it.
+// A slice of a list keeps the whole list alive, and a builder keeps its elements alive.
 static void parts_and_builders_keep_what_they_need(void **state) {
   CagVm *vm = *state;
   const size_t nothing = live(vm, NULL);
@@ -126,10 +127,10 @@ static void parts_and_builders_keep_what_they_need(void **state) {
   const CagValue part = cag_list_slice(vm, whole, 100, 1000);
   const CagValue inner = cag_list_slice(vm, part, 10, 500);
   assert_ptr_equal(CAG_AS_LIST(inner)->owner, CAG_AS_LIST(whole));
-  // The list and the view of it.
+  // The list and its view.
   assert_int_equal(live(vm, &inner) - nothing, 2);
   for (int i = 0; i < 500; i++) assert_true(CAG_AS_LIST(inner)->as.numbers[i] == 110 + i);
-  // Parts of at most 256 bytes are copies: the whole goes.
+  // Slices of up to 256 bytes are copies, so the whole list is freed.
   const CagValue copy = cag_list_slice(vm, whole, 7, 32), view = cag_list_slice(vm, whole, 7, 33);
   assert_null(CAG_AS_LIST(copy)->owner);
   assert_non_null(CAG_AS_LIST(view)->owner);
@@ -147,7 +148,8 @@ static void parts_and_builders_keep_what_they_need(void **state) {
   assert_int_equal(live(vm, NULL), nothing);
 }
 
-// Geometry that calls the script holds values that no root reaches: what is older stays.
+// Geometry that calls the script holds values that no root reaches. Objects older than the call
+// must survive.
 static void what_is_older_than_a_call_stays(void **state) {
   CagVm *vm = *state;
   const size_t nothing = live(vm, NULL);
@@ -169,8 +171,8 @@ static void what_is_older_than_a_call_stays(void **state) {
   assert_int_equal(live(vm, NULL), nothing);
 }
 
-// The next collection is due after as much allocation as the last one had to mark, but not more
-// than half the room. Numbers need no marking.
+// The next collection is due after as much allocation as the last one had to mark, but at most half
+// of the remaining memory. Numbers do not need marking.
 static void collections_are_due_by_what_is_live(void **state) {
   (void)state;
   static const size_t mebibyte = (size_t)1 << 20;
@@ -179,7 +181,7 @@ static void collections_are_due_by_what_is_live(void **state) {
   for (size_t live_mebibytes = 1; live_mebibytes < 95; live_mebibytes += 8) {
     const size_t bytes = live_mebibytes * mebibyte;
     for (int values = 0; values < 2; values++) {
-      // A list of vectors of no numbers is one of values.
+      // A list of empty vectors is a list of values.
       const CagValue list = values ? cag_list_vectors(vm, bytes / sizeof(CagValue), 0, &numbers)
                                    : cag_list_numbers(vm, bytes / 8, &numbers);
       live(vm, &list);

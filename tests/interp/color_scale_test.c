@@ -28,7 +28,8 @@ static void is_srgb(CagColor c, double r, double g, double b, const char *what) 
   is_near(cag_linear_to_srgb(c.b) * 255, b, 1e-3, what);
 }
 
-// Viridis at tenths, as published with matplotlib; the middle of two of them is the mean in sRGB.
+// Viridis at multiples of a tenth, as published with matplotlib. Between two of them, the color is
+// the mean in sRGB.
 static void scales_have_their_published_colors(void **state) {
   (void)state;
   static const int viridis[11][3] = {{68, 1, 84},    {72, 36, 117},  {65, 68, 135},  {53, 95, 141},
@@ -53,7 +54,7 @@ static void scales_have_their_published_colors(void **state) {
   is_srgb(cag_color_scale_at(&diverging, 1), 180, 4, 38, "warm");
 }
 
-// Stripes change sharply, beginning with a light one; stops are the colors at their places.
+// Stripes change abruptly, beginning with a light one. Stops are the colors at their positions.
 static void stops_are_the_colors_of_the_scale(void **state) {
   (void)state;
   static const CagColorScaleKind kinds[] = {CAG_SCALE_SEQUENCE, CAG_SCALE_DIVERGING,

@@ -1,4 +1,4 @@
-// The figures of comparing pictures, on pictures small enough to compute them by hand.
+// The measures of image comparison, for pictures small enough to compute them by hand.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,7 +47,7 @@ static void figures_are_those_of_hand_calculation(void **state) {
   CagCompareReport r;
   assert_true(cag_compare_images(&a, "a", &b, "b", 0.25, &r, NULL));
   const CagCompareChannel *z = &r.channels[0];
-  // Squares: 0, 1/16, 1/4, 0; mean 5/64. Peak 1, so PSNR = -10 log10(5/64).
+  // Squares: 0, 1/16, 1/4, 0; mean 5/64. The peak is 1, so PSNR = -10 log10(5/64).
   assert_true(fabs(z->rmse - sqrt(5.0 / 64)) < 1e-15);
   assert_true(fabs(z->psnr - 10 * log10(64.0 / 5)) < 1e-12);
   assert_true(z->largest == 0.5 && z->largest_x == 0 && z->largest_y == 1 && z->peak == 1);
@@ -59,10 +59,11 @@ static void figures_are_those_of_hand_calculation(void **state) {
 
 static const char *const FOUR[] = {"R", "G", "B", "Z"};
 static const char *const MIXED[] = {"Z", "B", "R", "G"};
-static const size_t AT[] = {2, 3, 1, 0}; // of the channels of the first in the second
+static const size_t AT[] = {2, 3, 1,
+                            0}; // the index in the second picture of each channel of the first
 
-// Random pictures whose channels stand in another order, against the definitions. Some rows are
-// equal, some samples are not finite.
+// Random pictures with channels in different orders, compared with the definitions. Some rows are
+// equal, and some samples are not finite.
 static void figures_are_those_of_their_definitions(void **state) {
   (void)state;
   enum { W = 37, H = 23, N = W * H };
@@ -160,7 +161,7 @@ static void color_differences_are_symmetric_and_continuous(void **state) {
     if (i % 3 == 0) y[1] = fabs(y[1]), z[1] = y[1], z[2] = -y[2];
     const double e = cag_compare_delta_e(x, y);
     assert_true(fabs(e - cag_compare_delta_e(y, x)) < 1e-9 && e > 0);
-    // The formula jumps only where hues are opposite.
+    // The formula has jumps only for opposite hues.
     const double turn =
         fabs(remainder(atan2(x[2], x[1]) - atan2(y[2], y[1]), 2 * 3.14159265358979));
     if (i % 3 == 0 && turn < 3) assert_true(fabs(e - cag_compare_delta_e(x, z)) < 1e-6);
@@ -245,7 +246,7 @@ static void pictures_of_other_shape_are_refused(void **state) {
   cag_image_free(&c);
 }
 
-// Rows of the table of test data in Sharma, Wu, Dalal 2005.
+// Rows of the test data in Sharma, Wu, Dalal 2005.
 static void ciede2000_is_that_of_the_published_data(void **state) {
   (void)state;
   static const struct {

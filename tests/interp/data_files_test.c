@@ -1,5 +1,5 @@
-// Files of data that read_csv, read_json and read_text read: bytes, and what a script makes of
-// them, or the place of what is wrong.
+// Data files read by read_csv, read_json, and read_text: their bytes, and the resulting values or
+// the location of an error.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,8 +35,8 @@ static bool prints(const char *text, const char *expected) {
   return good;
 }
 
-// What the script prints of the expression, in which the file of these bytes is F; where it fails,
-// the message from the place on.
+// Whether the script prints the expected text for the expression, in which F is a file with these
+// bytes. If the call fails, the message, beginning with the location, is compared.
 static bool reads_bytes(const char *bytes, size_t n, const char *expression, const char *expected) {
   FILE *f = fopen("F", "wb");
   assert_non_null(f);
@@ -70,11 +70,11 @@ static void values_of_json(void **state) {
   READS("\"\\b\\f\\n\\r\\t\"", "read_json(F) == \"\\u{8}\\u{c}\\n\\u{d}\\t\"", "true");
   READS("\"\\u0041\\u00e9\\u20AC\\uFFFF\\ud7ff\\ue000\"",
         "read_json(F) == \"A\\u{e9}\\u{20ac}\\u{ffff}\\u{d7ff}\\u{e000}\"", "true");
-  // Both ends of what pairs can hold.
+  // The smallest and largest surrogate pairs.
   READS("\"\\ud800\\udc00\\uDBFF\\uDFFF\\ud83d\\uDE00\"",
         "read_json(F) == \"\\u{10000}\\u{10ffff}\\u{1f600}\"", "true");
   READS("\" \x7f\"", "read_json(F) == \" \\u{7f}\"", "true");
-  // Of equal names the last value holds, at the place of the first.
+  // If a name is repeated, the last value counts, at the position of the first.
   READS("{\"b\":1,\"a\":2,\"c\":3,\"a\":4,\"b\":5,\"b\":6}", "read_json(F)", "{b: 6, a: 4, c: 3}");
   READS("{\"k\":1,\"j\":2,\"i\":3,\"h\":4,\"g\":5,\"f\":6,\"e\":7,\"d\":8,\"c\":9,\"b\":10}",
         "read_json(F)", "{k: 1, j: 2, i: 3, h: 4, g: 5, f: 6, e: 7, d: 8, c: 9, b: 10}");
@@ -128,7 +128,7 @@ static void places_of_errors_in_json(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// Brackets nest at most 1000 deep.
+// Brackets can be nested at most 1000 deep.
 static void nesting_of_json(void **state) {
   (void)state;
   enum { DEPTH = 1000 };
@@ -154,7 +154,7 @@ static void rows_of_csv(void **state) {
   READS("\xEF\xBB\xBF"
         "a,b\n1,2",
         "read_csv(F)", "[{a: 1, b: 2}]");
-  // One number makes the first row one of data; without a number it is a header, alone as well.
+  // A number in the first row makes it data. Otherwise, it is a header, even if it is the only row.
   READS("a,b,1\nc,d,e", "read_csv(F)", "[[\"a\", \"b\", 1], [\"c\", \"d\", \"e\"]]");
   READS("a,b\n", "read_csv(F)", "[]");
   READS("a,b\n", "read_csv(F, header: false)", "[[\"a\", \"b\"]]");
@@ -171,7 +171,7 @@ static void rows_of_csv(void **state) {
   READS("1;2\n3;4", "read_csv(F, separator: \";\")", "[[1, 2], [3, 4]]");
   READS("1\t2,5\n", "read_csv(F, separator: \"\\t\")", "[[1, \"2,5\"]]");
   READS("a;b\n\"1\";\"2;\"", "read_csv(F, \";\")", "[{a: 1, b: \"2;\"}]");
-  // More cells than are reserved at first.
+  // More cells than the initial capacity.
   READS("0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,"
         "33\n",
         "read_csv(F)[0] == [0..33]", "false");
@@ -232,7 +232,7 @@ static void json_both_ways(void **state) {
       "json expects numbers, angles, texts, bools, none, lists, records, or transforms, found a function");
   bad += !prints("print attempt(() => json({a: [1, -inf]}), e => e.message)",
                  "json expects finite numbers, because JSON has no infinity");
-  // Values nest at most 1000 deep, as brackets do: n + 1 lists, the innermost n deep.
+  // Values can be nested at most 1000 deep, like brackets: n + 1 lists, the innermost n deep.
   bad += !prints(
       "deep(n) = reduce(1..n, [], (a, i) => [a])\n"
       "print [for n in [100, 1000, 1001]: attempt(() => len(json(deep(n))), e => \"too deep\")]",
@@ -242,7 +242,7 @@ static void json_both_ways(void **state) {
 
 // --- Meshes of URDF files ---
 
-// A tetrahedron of this edge along the axes, as an OBJ file.
+// A tetrahedron with edges of this length along the axes, as an OBJ file.
 static void write_corner(const char *path, int edge) {
   FILE *f = fopen(path, "w");
   assert_non_null(f);
@@ -267,8 +267,8 @@ static bool reads_mesh(const char *name, const char *expected) {
                 expected);
 }
 
-// A name in a package is looked for in four places, in this order; a plain one in one. Lengths are
-// meters.
+// A file in a package is searched for in four locations, in this order, and a plain one in one
+// location. Lengths are meters.
 static void meshes_of_urdf_files(void **state) {
   (void)state;
   static const char *const folders[] = {"w", "w/x", "w/m", "w/x/m", "w/x/p", "w/x/p/m", "p", "p/m"};
@@ -308,7 +308,7 @@ static void meshes_of_urdf_files(void **state) {
   bad += !reads_mesh("m/t.ply", missing);
   bad += !reads_mesh("m/t.gltf", missing);
   bad += !reads_mesh("m/t.Glb", missing);
-  // glTF says its own unit, and has the y axis upward; the mesh is one triangle of a meter.
+  // The unit of glTF is fixed, and its y axis is upward. The mesh is one triangle of a meter.
   FILE *f = fopen("w/x/m/t.gltf", "w");
   assert_non_null(f);
   fputs(

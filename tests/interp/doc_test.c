@@ -1,4 +1,4 @@
-// Documentation is complete: walked through by all rows of the built-ins and all public definitions
+// The documentation is complete: checked for all rows of the built-ins and all public definitions
 // of the library.
 
 #include <setjmp.h>
@@ -95,7 +95,7 @@ static bool is_module(const char *word) {
   return cag_doc_library(word, &text, &length) != NULL;
 }
 
-// Rows of the table that tell of parameters which no function has any more.
+// Every row of the parameter table is used by a function.
 static void no_row_of_parameters_is_left_over(void **state) {
   (void)state;
   static const CagDocParameter rows[] = {
@@ -205,8 +205,8 @@ static void every_word_of_the_language_is_told(void **state) {
   cag_session_free(s);
 }
 
-// The first line is the built-in's own; an empty line comes before each further signature, and two
-// in a row nowhere.
+// The first line belongs to the built-in. Further signatures are preceded by an empty line, and
+// there are never two empty lines in a row.
 static void rows_of_a_built_in_are_set_apart(void **state) {
   (void)state;
   CagSession *s = open_session();
@@ -245,7 +245,7 @@ static void topics_refer_to_what_is_told(void **state) {
   cag_session_free(s);
 }
 
-static void tell_failure(void *context, const CagTestFailure *f) {
+static void report_failure(void *context, const CagTestFailure *f) {
   (void)context;
   print_error("%s: %s; expected %s, got %s\n", f->test, f->message, f->expected ? f->expected : "",
               f->got ? f->got : "");
@@ -257,7 +257,7 @@ static void examples_of_words_run(void **state) {
   CagTestCounts counts = {0};
   const char *word, *example;
   cag_test_options_init(&options);
-  options.failure = tell_failure;
+  options.failure = report_failure;
   for (size_t i = 0; cag_doc_word_row(i, &word, NULL, &example); i++) {
     assert_true(strstr(example, "print ") || strstr(example, "show ") ||
                 strstr(example, "assert "));
@@ -315,7 +315,8 @@ static void definitions_are_told_with_their_parameters_and_lines(void **state) {
        "<>\nfunction f(a, width = 2, w = 3) (a=: number: how many) (width=2: number, mm:  wide as "
        "it "
        "is said) (w=3: x) {Makes.\nThe end.} 1 7\n"},
-      // An item twice, one of no parameter, one without words: these stay in the text.
+      // An item is repeated, one does not name a parameter, and one has no text: these stay in the
+      // text.
       {"/// - `a`: first\n/// - `a`: second\n/// - `b`: third\n/// - `a`\n/// - a: fourth\nf(a) = "
        "a\n",
        "<>\nfunction f(a) (a=: first) {- `a`: second\n- `b`: third\n- `a`\n- a: fourth} 2 3 4 5\n"},
@@ -427,7 +428,7 @@ static void summaries_have_a_first_sentence_and_reasons(void **state) {
   assert_int_equal(cag_doc_default("\"left\""), 6);
 }
 
-// What an example begins with, so that it sees the names of its script.
+// The prefix of an example that makes the names of its script available.
 static void examples_import_what_they_name(void **state) {
   (void)state;
   static const struct {

@@ -1,7 +1,7 @@
-// Every kind of error is explained, is provoked by its example, and has a script that provokes it.
+// Every kind of error has an explanation, an example that causes it, and a script that causes it.
 //
-// The scripts stand in tests/language/errors/CODE.cag and are run by `cag test`; here is looked
-// that none is missing. The program runs in the root of the repository.
+// The scripts are tests/language/errors/CODE.cag, and `cag test` runs them. This test checks that
+// all of them exist. It runs in the root of the repository.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,23 +15,23 @@
 
 #include "cag.h"
 
-// A limit that keeps the examples of limits short.
+// A limit that makes the examples of limits fast.
 #define EXAMPLE_MEMORY ((size_t)64 << 20)
 #define EXAMPLE_SECONDS 20
 
-// Limits that the script of a test sets with `// run:`; an example of their own would take long.
+// Limits that the test script sets with `// run:`, because an example without options would be
+// slow.
 static const char *const by_options[] = {"E0603", "E0604"};
 
-// Kinds without an example are those that no script can provoke: outputs, renderers and pictures
-// are the command line's business, an interruption comes from outside, a defect should not be.
+// A kind without an example cannot be caused by a script: outputs, renderers, and pictures belong
+// to the command line, an interrupt comes from outside, and internal errors should not occur.
 static bool has_script(const char *code, const char *example) {
   for (size_t i = 0; i < sizeof by_options / sizeof *by_options; i++)
     if (strcmp(by_options[i], code) == 0) return true;
   return example != NULL;
 }
 
-// Examples that need more than one text: a file that imports itself, a -D, a file
-// beside it.
+// Examples that need more than one text: a file that imports itself, a -D, or another file.
 static const char *const beyond_text[] = {"E0241", "E0247", "E0248", "E0249", "E0730", "E0731",
                                           "E0732", "E0733", "E0734", "E0735", "E0736", "E0843",
                                           "E0844", "E0845", "E0846", "E0847"};
@@ -53,7 +53,8 @@ static bool is_provoked(const char *code, const char *example) {
   assert_non_null(s);
   int status = cag_session_run_text(s, code, example, strlen(example));
   CagShownCounts counts;
-  if (status == CAG_STATUS_OK) cag_session_scene(s, &counts); // what a shown value is made of
+  if (status == CAG_STATUS_OK)
+    cag_session_scene(s, &counts); // reports why a shown value cannot be built
   bool found = cag_session_error_count(s) > 0;
   for (size_t i = 0; i < cag_session_error_count(s); i++) {
     CagErrorView e;
@@ -86,7 +87,8 @@ static void every_kind_is_explained(void **state) {
     FILE *out = open_memstream(&text, &size);
     if (!cag_explain(code, out)) fail_msg("%s has no explanation", code);
     fclose(out);
-    // Code, reason and title stand in the first line, below it a sentence at least.
+    // The first line has the code, the reason, and the title, and is followed by at least one
+    // sentence.
     size_t head = strcspn(text, "\n");
     if (!strstr(text, code) || !strstr(text, reason) || !strstr(text, title) || size < head + 20)
       fail_msg("%s is not explained: %s", code, text);

@@ -1,4 +1,4 @@
-// The examples of the built-ins' table do what they say.
+// The examples in the table of built-ins have the stated results.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 
 #include "interp/session/expect.h"
 
-static void tell(void *context, const CagTestFailure *f) {
+static void report_failure(void *context, const CagTestFailure *f) {
   (void)context;
   print_error("%s: %s\n", f->test, f->message);
   if (f->expected) print_error("  expected: %s\n", f->expected);
@@ -37,7 +37,7 @@ static void every_example_runs_as_it_says(void **state) {
   const char *signature, *example;
   size_t examples = 0;
   cag_test_options_init(&options);
-  options.failure = tell;
+  options.failure = report_failure;
   for (size_t i = 0; cag_builtin_row(i, &signature, NULL, &example, NULL); i++) {
     if (!example) continue;
     examples++;
@@ -49,7 +49,7 @@ static void every_example_runs_as_it_says(void **state) {
   assert_true(counts.passed >= examples);
 }
 
-// An example that shows no result says nothing.
+// An example without a result is useless.
 static void every_example_prints_or_shows_or_fails(void **state) {
   (void)state;
   const char *signature, *example;

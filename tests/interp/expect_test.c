@@ -1,4 +1,4 @@
-// Scripts as tests: which runs a script has, and what their failures say, with their lines.
+// Scripts as tests: the runs of a script, and the messages and lines of failures.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,8 @@ static void note(const char *format, ...) {
   va_end(args);
 }
 
-// "3: the output is different [1|2]": the line, the message, what was expected and what came.
+// Writes "3: the output is different [1|2]": the line, the message, the expected and the actual
+// text.
 static void write_failure(void *context, const CagTestFailure *f) {
   (void)context;
   note("%zu: %s", f->line, f->message);
@@ -58,7 +59,7 @@ typedef struct Row {
 static size_t differs(const char *script, const char *expected, CagTestCounts counts) {
   size_t bad = strcmp(log_text, expected) != 0;
   if (bad) print_error("%s\n  gives:\n%s  and not:\n%s", script, log_text, expected);
-  // The counts are those of the lines.
+  // The counts match the lines.
   size_t passed = 0, failed = 0;
   for (const char *at = log_text; (at = strstr(at, " passed\n")); at++) passed++;
   for (const char *at = log_text; (at = strstr(at, " failed\n")); at++) failed++;
@@ -85,7 +86,7 @@ static void printed_lines_are_compared_in_order(void **state) {
   (void)state;
   static const Row rows[] = {
       {"", "t passed\n"},
-      {"print 1", "t passed\n"}, // a script that expects no line may print
+      {"print 1", "t passed\n"}, // a script that does not expect any line may print
       {"print 1 // expect: 1", "t passed\n"},
       {"print 1 //expect:1", "t passed\n"},
       {"print 1 // \t expect: \t 1 \t ", "t passed\n"},
@@ -122,7 +123,7 @@ static void errors_are_expected_on_their_lines(void **state) {
        "1: unexpected error: E0201 +\n1: the expected error E020 did not occur\nt failed\n"},
       {"print y\nprint 1 // expect error: E0201",
        "1: unexpected error: E0201 +\n2: the expected error E0201 did not occur\nt failed\n"},
-      // Of the plain run, a comment alone on its line names the line as well.
+      // In the plain run, a comment that is alone on its line refers to this line, too.
       {"print y\n// expect error: E0201",
        "1: unexpected error: E0201 +\n2: the expected error E0201 did not occur\nt failed\n"},
       {"print 1 // expect error: E0201", "1: the expected error E0201 did not occur\nt failed\n"},
@@ -131,7 +132,7 @@ static void errors_are_expected_on_their_lines(void **state) {
       {"print y + z // expect error: E0201", "1: unexpected error: E0201 +\nt failed\n"},
       {"print y // expect error: E0201, E0201",
        "1: the expected error E0201 did not occur\nt failed\n"},
-      // What was printed before the error is compared too.
+      // Lines printed before the error are also compared.
       {"print 1 // expect: 2\nprint [][0] // expect error: E0305",
        "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\nprint [1][1] // expect error: E0305", "t passed\n"},
@@ -154,17 +155,17 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
       {"param a = \"x\"\nprint a\n// run: -D a='p \"q\" r'\n// expect: p \"q\" r",
        "t -D a='p \"q\" r' passed\n"},
       {"param a = \"x\"\nprint a\n// run: -D a=k=v\n// expect: k=v", "t -D a=k=v passed\n"},
-      // More is printed than expected: told at the last expectation of the run.
+      // Additional output is reported at the last expectation of the run.
       {H "print h\n// run: -D h=2\n// expect: 2",
        "5: there is more output than expected [|2]\nt -D h=2 failed\n"},
-      // Behind `run:` errors are matched by their code where they stand alone on their line.
+      // After `run:`, an error is matched by its code if the comment is alone on its line.
       {"param h = 1\nprint [5][h]\n// run: -D h=0\n// expect: 5\n// run: -D h=1\n"
        "// expect error: E0305",
        "t -D h=0 passed\nt -D h=1 passed\n"},
       {"param h = 1\nprint [5][h]\n// run: -D h=1\nx = 1 // expect error: E0305",
        "2: unexpected error: E0305 +\n4: the expected error E0305 did not occur\nt -D h=1 failed\n"},
       {H "// run: -D g=2\n// expect error: E0247", "t -D g=2 passed\n"},
-      // Options that there are not.
+      // Unknown options.
       {H "\n// run: -q\n// expect: 1",
        "4: `-q` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt -q failed\n"},
       {H "// run: -D h\n",
@@ -197,7 +198,7 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
   CHECK(rows, &options);
 }
 
-// Words of the tests within texts and block comments mean nothing.
+// Test comments in texts and block comments are ignored.
 static void only_line_comments_expect_something(void **state) {
   (void)state;
   static const Row rows[] = {
@@ -222,7 +223,7 @@ static void only_line_comments_expect_something(void **state) {
       {"t = \"\\{\" // expect: 2", "1: the output ends before this line [2|]\nt failed\n"},
       {"a = 6 / 2 // expect: 2", "1: the output ends before this line [2|]\nt failed\n"},
       {"a = 2 * 3 /// expect: 2", "t passed\n"},
-      // A text or comment without end expects the error of that on its line.
+      // An unterminated text or comment can expect its own error on its line.
       {"t = \"abc // expect error: E0104", "t passed\n"},
       {"t = \"{`a} // expect error: E0105", "t passed\n"},
       {"x = 1\nt = `abc // expect error: E0105\n// expect: 1",
@@ -263,7 +264,7 @@ static void runs_are_chosen_by_their_names(void **state) {
   CagTestOptions options = test_options();
   options.filter = "h=3";
   CHECK(rows, &options);
-  // Definitions for all runs, which those of a run replace.
+  // Definitions for all runs, which the definitions of a run override.
   static const Row defined[] = {
       {H "// expect: 9\n// run: -D h=2\n// expect: 2", "t passed\nt -D h=2 passed\n"}};
   const char *names[] = {"h"}, *values[] = {"9"};
@@ -272,7 +273,7 @@ static void runs_are_chosen_by_their_names(void **state) {
   options.define_values = values;
   options.define_count = 1;
   CHECK(defined, &options);
-  // A limit of the options holds in every run.
+  // A limit from the options applies to every run.
   static const Row limited[] = {{"f(n) = if n == 0 then 0 else 1 + f(n - 1)\nprint f(50)\n",
                                  "1: unexpected error: E0601 +\nt failed\n"}};
   options = test_options();
@@ -280,7 +281,7 @@ static void runs_are_chosen_by_their_names(void **state) {
   CHECK(limited, &options);
 }
 
-// Examples in the documentation of definitions run by themselves, with their names imported.
+// Examples in the documentation of definitions run as separate scripts, with their names imported.
 static void examples_of_documentation_are_tests(void **state) {
   (void)state;
   static const Row rows[] = {
@@ -291,10 +292,10 @@ static void examples_of_documentation_are_tests(void **state) {
       {"/// Adds.\n///\n///     print add(1, 2)  // expect: 3\n///\n/// And:\n///\n"
        "///     print add(2, 2)\n///     print add(2, q)\nadd(a, b) = a + b\n",
        "t.cag passed\nt.cag: example of add passed\n8: unexpected error: E0201 +\nt.cag: example 2 of add failed\n"},
-      // An example in the first line has the import on its own line.
+      // For an example on the first line, the import is on the same line.
       {"///     print two + q  // expect error: E0201\ntwo = 2\n",
        "t.cag passed\nt.cag: example of two passed\n"},
-      // A script that cannot be read has no examples.
+      // A script with a syntax error has no examples.
       {"///     print two\ntwo = $  // expect error: E0102\n", "t.cag passed\n"},
       {"/// No example.\n///   print 1 + q\ntwo = 2\n", "t.cag passed\n"},
   };
@@ -322,7 +323,7 @@ static void examples_of_documentation_are_tests(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// A script longer than any first buffer, with an error in its last line.
+// A script longer than the initial buffer, with an error in its last line.
 static void long_scripts_are_read_whole(void **state) {
   (void)state;
   char path[] = "/tmp/cag-expect-XXXXXX";
@@ -335,7 +336,7 @@ static void long_scripts_are_read_whole(void **state) {
   CagTestCounts counts = {0};
   log_text[0] = 0;
   assert_int_equal(cag_test_file(path, &options, &counts), CAG_STATUS_OK);
-  // Names are looked up first: nothing is printed.
+  // Names are resolved first, so nothing is printed.
   assert_non_null(strstr(log_text, "1: the output ends before this line [0|]\n"));
   f = fopen(path, "w");
   for (int i = 0; i < 2000; i++) fprintf(f, "print %d // expect: %d\n", i, i);

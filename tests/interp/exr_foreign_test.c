@@ -1,6 +1,6 @@
-// EXR files of other programs, written byte by byte after "OpenEXR File Layout": number formats,
-// windows, attributes, parts, and headers that are refused. Then files of all sizes by a pipe, and
-// reading and writing when the EXR library has no memory.
+// EXR files of other programs, written byte by byte according to "OpenEXR File Layout": number
+// formats, windows, attributes, parts, and invalid headers. Also pipes, files of all sizes, and
+// failing allocations in the EXR library.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,9 +19,9 @@
 
 #include "interp/render/exr.h"
 
-// --- Files by hand ---
+// --- Files written by hand ---
 
-// Appends to a file in memory, little-endian as EXR is.
+// A file in memory to which numbers are appended, in little-endian order as in EXR.
 typedef struct {
   unsigned char bytes[8192];
   size_t size;
@@ -43,7 +43,7 @@ static void put_head(Bytes *b, const char *name, const char *type, size_t size) 
   put_u32(b, (uint32_t)size);
 }
 
-enum { UINT, HALF, FLOAT }; // kinds of numbers, as EXR counts them
+enum { UINT, HALF, FLOAT }; // number formats, as numbered in EXR
 enum { NONE = 0, RLE = 1, ZIP = 3, PIZ = 4, PXR24 = 5, B44 = 6, B44A = 7, NOT_SAID = 99 };
 #define TILED 0x200u
 #define DEEP 0x800u
@@ -54,14 +54,14 @@ typedef struct {
   uint32_t type, x_sampling, y_sampling;
 } Channel;
 
-// The header of a part. The windows are least x and y, largest x and y.
+// The header of a part. The windows are minimum x and y, and maximum x and y.
 typedef struct {
-  const char *part, *type; // NULL: not said
+  const char *part, *type; // NULL: omitted
   Channel channels[4];
   size_t count;
   unsigned char compression;
   int32_t data[4], display[4];
-  uint32_t tile; // its side; 0: rows
+  uint32_t tile; // the side of a tile; 0: scan lines
   void (*attributes)(Bytes *b);
 } Header;
 
@@ -120,7 +120,7 @@ static void put_begin(Bytes *b, uint32_t flags) {
   put_u32(b, 2 | flags);
 }
 
-// One row of halves, uncompressed, at the line y.
+// One row of uncompressed half floats at the line y.
 static void put_row(Bytes *b, int32_t y, const uint16_t *halves, uint32_t count) {
   put_u64(b, b->size + 8);
   put(b, &y, 4);
@@ -167,11 +167,11 @@ static void halves_have_the_values_of_ieee_754(void **state) {
   cag_image_free(&image);
 }
 
-// Five samples 1 2 3 4 5 in the data window, in a display window of 4 columns and 2 rows.
+// The five samples 1 2 3 4 5 in the data window, with a display window of 4 columns and 2 rows.
 static void the_display_window_cuts_the_data(void **state) {
   (void)state;
   static const struct {
-    int32_t x, y; // where the data begin
+    int32_t x, y; // the start of the data
     float expected[8];
   } ROWS[] = {
       {0, 0, {1, 2, 3, 4, 0, 0, 0, 0}},
@@ -211,9 +211,9 @@ static void put_attributes(Bytes *b) {
   put_head(b, "owner", "string", 5);
   put(b, "Grace", 5);
   put_head(b, "nothing", "string", 0);
-  put_head(b, "crop", "box2i", 16); // of a type that is passed over
+  put_head(b, "crop", "box2i", 16); // of an ignored type
   for (int i = 0; i < 4; i++) put_u32(b, 7);
-  // Matrices of row vectors: the shift stands in the last row.
+  // Matrices for row vectors: the translation is in the last row.
   put_head(b, "near", "m44f", 64);
   for (int i = 0; i < 16; i++) put_f32(b, i % 5 == 0 ? 1 : i == 12 ? 5 : 0);
   put_head(b, "far", "m44d", 128);
@@ -241,7 +241,7 @@ static void facts_of_the_header_are_read(void **state) {
   cag_image_free(&image);
 }
 
-// Channels of the second part are called "part.channel", unless they are called so themselves.
+// Channels of the second part are named "part.channel", unless that is already their name.
 static void parts_give_their_names_to_channels(void **state) {
   (void)state;
   static const struct {
@@ -384,7 +384,7 @@ static void headers_that_cannot_be_are_refused(void **state) {
   }
 }
 
-// The bytes of a chunk are as many as its pixels need, or fewer where they are compressed.
+// A chunk must have as many bytes as its pixels need, or fewer if it is compressed.
 static void chunks_of_a_wrong_size_are_refused(void **state) {
   (void)state;
   static const struct {
@@ -420,11 +420,11 @@ static void a_tiled_file_is_not_whole_as_rows(void **state) {
   put_row(&b, 0, (const uint16_t[]){0x3c00}, 1);
   assert_false(cag_exr_is_whole(b.bytes, b.size));
   assert_false(cag_exr_is_whole("no picture", 10));
-  memcpy(b.bytes + 8, "\xff\xff\xff\xff", 4); // a name that is none
+  memcpy(b.bytes + 8, "\xff\xff\xff\xff", 4); // an invalid name
   assert_false(cag_exr_is_whole(b.bytes, b.size));
 }
 
-// --- Names of facts ---
+// --- Names of metadata ---
 
 static void names_of_facts_have_1_to_255_bytes(void **state) {
   (void)state;
@@ -445,7 +445,7 @@ static void names_of_facts_have_1_to_255_bytes(void **state) {
   }
 }
 
-// --- Pipes, and files too large ---
+// --- Pipes, and files that are too large ---
 
 static CagImage noise(size_t side) {
   CagImage image;
@@ -504,7 +504,7 @@ static void what_cannot_be_read_is_named(void **state) {
   close(saved);
   assert_false(good);
   assert_non_null(strstr(err.message, "'standard input': Bad file descriptor"));
-  // A file with a hole of 9 GiB, and one that is memory of the process.
+  // A sparse file of 9 GiB, and one that is memory of the process.
   if (truncate(path, (off_t)9 << 30) == 0) {
     assert_false(cag_exr_read(path, &image, NULL, &err));
     assert_non_null(strstr(err.message, "too large"));
@@ -514,13 +514,14 @@ static void what_cannot_be_read_is_named(void **state) {
   assert_non_null(strstr(err.message, "/proc/self/mem"));
 }
 
-// --- No memory in the library ---
+// --- Failing allocations in the library ---
 
-static size_t allocations, failing; // failing: number of the one that fails, from 1; 0: none
+static size_t allocations,
+    failing; // failing: the number of the allocation that fails, from 1; 0: none
 
 static void *allocate(size_t n) { return ++allocations == failing ? NULL : malloc(n); }
 
-// Each allocation of the library fails once: a picture is as it should be, or there is an error.
+// Each allocation of the library fails once: the picture must be correct, or there is an error.
 static void without_memory_there_is_an_error(void **state) {
   (void)state;
   CagImage image = noise(20), again;

@@ -1,5 +1,5 @@
-// Words and forms of other languages: each row of lang/foreign.def is suggested where it should be,
-// and the form that it suggests runs.
+// Words and forms of other languages: each row of lang/foreign.def is suggested in its place, and
+// the suggested form runs.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 
 #include "cag.h"
 
-// The least number of names that are known.
+// The minimum number of names.
 #define NAMES_LEAST 100
 
 typedef enum Kind { NAME, MEMBER, ARGUMENT, CALL, SYNTAX } Kind;
@@ -46,7 +46,7 @@ static CagSession *quiet_session(FILE **out) {
   return s;
 }
 
-// Whether an error of the example has a help that holds the form.
+// Whether an error of the example has a help that contains the form.
 static bool is_suggested(const Row *row, bool check) {
   FILE *out;
   CagSession *s = quiet_session(&out);
@@ -94,7 +94,7 @@ static void every_form_is_suggested_by_the_checker(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// Forms that read files find them beside.
+// Forms that read files need these files.
 static void every_form_runs(void **state) {
   (void)state;
   size_t bad = 0;

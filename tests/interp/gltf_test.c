@@ -1,5 +1,5 @@
-// glTF documents and their meshes: chunks, JSON, buffers, and accessors of every type against a
-// reader of the test's own; and what is wrong with documents.
+// glTF documents and their meshes: chunks, JSON, buffers, and accessors of every type, compared
+// with the test's own reader; and errors in documents.
 
 #include <math.h>
 #include <setjmp.h>
@@ -55,7 +55,7 @@ typedef struct Document {
 
 static CagStatus open_bytes(Document *d, const char *bytes, size_t n) {
   d->file.name = "a.gltf";
-  // A copy of exactly its length, so that a look beyond its end is seen.
+  // A copy of the exact length, so that out-of-bounds reads are detected.
   d->file.bytes = memcpy(malloc(n + 1), bytes, n);
   ((char *)d->file.bytes)[n] = 0;
   d->file.size = n;
@@ -90,7 +90,7 @@ static size_t size_of(Component c) {
   return c == BYTE || c == UBYTE ? 1 : c == SHORT || c == USHORT ? 2 : 4;
 }
 
-// A number of the file, and its value by the rules of glTF 2.0, 3.6.2.2.
+// Writes a number to the file, and returns its value by the rules of glTF 2.0, 3.6.2.2.
 static double put_number(unsigned char *at, Component c, bool normalized) {
   const uint32_t bits = random_below(4) == 0 ? 0x80808080u : random_below(1u << 31) * 2 + 1;
   const float f = ((float)random_below(2001) - 1000) / 64;
@@ -121,7 +121,7 @@ static double put_number(unsigned char *at, Component c, bool normalized) {
   }
 }
 
-// One view of elements at an offset with a stride, one of sparse indices and one of sparse values.
+// A view of elements with an offset and a stride, one of sparse indices, and one of sparse values.
 static void accessors_are_read_as_they_are_written(void **state) {
   (void)state;
   static const char *const types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -153,7 +153,8 @@ static void accessors_are_read_as_they_are_written(void **state) {
         sparse_values[i][k] =
             put_number(bytes + sat + ((size_t)width * i + (size_t)k) * size_of(c), c, normalized);
     }
-    // First as it is, then each view a byte too short, then an element too many; then an index.
+    // First unchanged, then each view one byte too short, then one element too many, and then an
+    // invalid index.
     for (int wrong = 0; wrong < 6; wrong++) {
       if ((wrong == 1 || wrong == 4) && zeros) continue;
       if ((wrong == 2 || wrong == 3 || wrong == 5) && sparse_count == 0) continue;
@@ -219,7 +220,7 @@ static void indices_have_all_their_bytes(void **state) {
   assert_int_equal(cag_gltf_index(bytes, UINT, 1), 0xf0debc9a);
 }
 
-// A document of one accessor with one thing wrong.
+// A document with one accessor that has one error.
 static void accessors_are_checked(void **state) {
   (void)state;
 #define BUFFER                                                                                     \
@@ -398,7 +399,7 @@ static void buffers_lie_beside(void **state) {
     add(&t, ASSET "\"buffers\":[{\"byteLength\":7,\"uri\":\"%s\"}]}", cases[i].uri);
     assert_int_equal(open_bytes(&d, t.at, t.n), CAG_OK);
     assert_string_equal(opened, cases[i].path);
-    assert_int_equal(d.g.buffers[0].size, 7); // as said
+    assert_int_equal(d.g.buffers[0].size, 7); // as stated
     close_document(&d);
   }
 #define BUFFERS(text) ASSET "\"buffers\":[" text "]}"
@@ -442,13 +443,13 @@ static void json_that_ends_early_is_told(void **state) {
   Document d = {0};
   assert_int_equal(open_bytes(&d, whole, strlen(whole)), CAG_OK);
   assert_int_equal(d.g.nodes.count, 2);
-  // What was taken: 96 bytes for each of 1 value, 7 brackets and 4 commas that stand outside of
-  // texts, the text, and arrays with one element more than they have: nodes 3.
+  // The charged memory: 96 bytes for each of 1 value, 7 brackets, and 4 commas outside of texts;
+  // the text; and arrays with one element more than needed: 3 for nodes.
   assert_int_equal(d.draft.taken, 96 * (1 + 7 + 4) + strlen(whole) + 3 * sizeof(void *));
   close_document(&d);
   for (size_t n = 1; n < strlen(whole); n++)
     refused(whole, n, "mesh-file-truncated", "it is incomplete");
-  // Broken, and not by its end: brackets in texts do not count.
+  // Invalid, but not truncated: brackets in texts do not count.
   static const struct {
     const char *json, *place;
   } broken[] = {{"{\"a\":\"[[\",,}", "line 1"},
@@ -457,7 +458,7 @@ static void json_that_ends_early_is_told(void **state) {
                 {"{\"{\\\"{\"\n:}", "line 2"}};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
     refused(broken[i].json, strlen(broken[i].json), "mesh-file-syntax", broken[i].place);
-  // The memory is counted before it is taken.
+  // Memory is counted before it is allocated.
   const size_t needed = 96 * (1 + 7 + 4) + strlen(whole) + 3 * sizeof(void *);
   for (size_t less = 0; less < 2; less++) {
     Document bounded = {.file.max_memory = needed - less};
@@ -488,10 +489,10 @@ static void chunks_are_found(void **state) {
     if (kind == 1) add_chunk(&t, "BIN\0", "abc", 3);
     if (kind == 2) add_chunk(&t, "ODD ", "xyzw", 4);
     add_chunk(&t, "JSON", json, strlen(json));
-    if (kind == 3) add_chunk(&t, "JSON", other, strlen(other)); // the first counts
+    if (kind == 3) add_chunk(&t, "JSON", other, strlen(other)); // the first one counts
     if (kind != 1) add_chunk(&t, "BIN\0", "abcd", 4);
     add_chunk(&t, "BIN\0", "efg", 3);
-    add(&t, "1234567"); // no chunk any more
+    add(&t, "1234567"); // not a chunk
     set_size(&t, t.n - (size_t)kind);
     assert_int_equal(open_bytes(&d, t.at, t.n), CAG_OK);
     assert_int_equal(d.g.buffers[0].size, 3);
@@ -513,7 +514,7 @@ static void chunks_are_found(void **state) {
   add_u32(&t, 5);
   add(&t, "ODD four");
   refused(t.at, t.n, "mesh-file-truncated", "a chunk has 5 bytes, but only 4 are left");
-  // The second buffer has no chunk.
+  // The second buffer does not have a chunk.
   static const char two[] = ASSET "\"buffers\":[{\"byteLength\":1},{\"byteLength\":1}]}";
   t = glb_of(2, 0);
   add_chunk(&t, "JSON", two, strlen(two));
@@ -530,7 +531,7 @@ static void add_float(Text *t, double x) {
   add_u32(t, bits);
 }
 
-// An accessor of all that follows in the data up to now, with a view of its own.
+// Adds an accessor of the data from `from` to `to`, with a view of its own.
 static void add_accessor(Text *views, Text *accessors, size_t from, size_t to, int component,
                          const char *type, size_t count) {
   add(views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", views->n ? "," : "", from,
@@ -546,7 +547,7 @@ typedef struct Corner {
   double uv[2];
 } Corner;
 
-// Primitives of all modes in several meshes: the triangles are those of glTF 2.0, 3.7.2.1.
+// Primitives of all modes in several meshes. The triangles are those of glTF 2.0, 3.7.2.1.
 static void primitives_are_read_in_their_modes(void **state) {
   (void)state;
   seed = 3;
@@ -594,7 +595,7 @@ static void primitives_are_read_in_their_modes(void **state) {
         while (data.n % 4) data.at[data.n++] = 0;
       }
       add(&meshes, "}]}");
-      // Sequences of three, a strip whose odd triangles are turned, a fan.
+      // Triples, a strip whose odd triangles are reversed, and a fan.
       size_t triangles = 0;
       if (mode == 4) triangles = corners / 3;
       else if (mode > 4 && corners > 2) triangles = corners - 2;
@@ -603,7 +604,7 @@ static void primitives_are_read_in_their_modes(void **state) {
         const size_t strip[3] = {t, t + 1 + t % 2, t + 2 - t % 2}, fan[3] = {0, t + 1, t + 2},
                      list[3] = {3 * t, 3 * t + 1, 3 * t + 2};
         const size_t *at = mode == 4 ? list : mode == 5 ? strip : fan;
-        // Those that have a point twice are left out; all are at places of their own.
+        // Triangles with a repeated point are omitted; all points have different positions.
         const size_t a = k[at[0]], b = k[at[1]], c = k[at[2]];
         if (a == b || b == c || c == a) continue;
         for (int j = 0; j < 3; j++) expected[corner_count++] = v[k[at[j]]];
@@ -632,7 +633,7 @@ static void primitives_are_read_in_their_modes(void **state) {
     // Meshes are read from the last to the first.
     for (size_t t = 0; t < m->triangle_count; t++) {
       bool found = false;
-      for (size_t e = 0; e < corner_count && !found; e++) { // from any of its corners
+      for (size_t e = 0; e < corner_count && !found; e++) { // starting at any of its corners
         found = true;
         for (size_t j = 0; j < 3; j++) {
           const uint32_t at = m->triangles[3 * t + j];
@@ -647,7 +648,7 @@ static void primitives_are_read_in_their_modes(void **state) {
   }
 }
 
-// A triangle: 36 bytes of positions, and three indices.
+// A triangle: 36 bytes of positions and three indices.
 static const char triangle[] =
     "\"buffers\":[{\"byteLength\":39,\"uri\":\"data:;base64,"
     "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIC/AAEC\"}],"
@@ -753,7 +754,7 @@ static void scenes_and_primitives_are_checked(void **state) {
   }
 }
 
-// More nodes below one another, and beside one another, than the walk has room for at first.
+// More nested nodes, and more siblings, than the initial capacity of the traversal.
 static void many_nodes_are_walked(void **state) {
   (void)state;
   for (int deep = 0; deep < 2; deep++) {

@@ -1,8 +1,8 @@
-// Any work ends soon after its limit of time, or after an interrupt, in a program that has no other
-// way to end it. Each script of heavy.def would run for many seconds.
+// All operations end soon after the time limit, or after an interrupt, in a program without another
+// way to end them. Each script of heavy.def would run for many seconds.
 //
-// The work itself is measured elsewhere: a loaded machine or a sanitizer must not fail this test.
-// What fails it is work that does not ask whether it must end.
+// The time is not measured precisely, because a loaded machine or a sanitizer must not fail this
+// test. It fails for operations that do not check whether they must end.
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -22,8 +22,7 @@
 #include "base/clock.h"
 #include "cag.h"
 
-// Seconds that work has before it must end, that it may go on for, and after which waiting for it
-// has no point.
+// Seconds until an operation must end, until it must have ended, and after which the test gives up.
 #define LIMIT 0.15
 #define LATE 3.0
 #define HOPELESS 60
@@ -45,7 +44,7 @@ static const char prelude[] =
 
 typedef struct Heavy {
   const char *script;
-  const char *output; // NULL: the script itself is heavy, else what it shows when exported so
+  const char *output; // the format of the slow export; NULL: the script itself is slow
 } Heavy;
 
 #define HEAVY(script, output) {script, output},
@@ -99,7 +98,7 @@ static Run begin(const char *what, double limit) {
   return r;
 }
 
-// Tells what is wrong with the end of the work, if anything.
+// Counts and reports errors of the way in which the operation ended.
 static size_t end(Run *r, int status, int wanted) {
   const double late = cag_clock_seconds() - r->begun - LIMIT;
   alarm(0);
@@ -136,7 +135,7 @@ static void a_limit_or_an_interrupt_ends_any_script(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// Nothing of a file is left.
+// No part of a file remains.
 static void an_interrupt_ends_any_export(void **state) {
   (void)state;
   size_t bad = 0;
@@ -146,7 +145,7 @@ static void an_interrupt_ends_any_export(void **state) {
     snprintf(path, sizeof path, "%s/%s", folder, scripts[i].output);
     pthread_t thread;
     Run r = begin(scripts[i].script, 0);
-    alarm(0); // what is to be exported may take its time
+    alarm(0); // making the shapes may take any time
     const int shown = run_script(r.session, scripts[i].script);
     if (shown != CAG_STATUS_OK) {
       r.begun = cag_clock_seconds();
@@ -174,7 +173,7 @@ typedef struct Text {
   size_t length;
 } Text;
 
-// `n` times the form, of which each %d is the number.
+// Repeats the form `n` times; each %d is replaced by the number.
 static Text repeated(const char *before, const char *form, const char *behind, int n) {
   Text t;
   FILE *f = open_memstream(&t.bytes, &t.length);

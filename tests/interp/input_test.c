@@ -1,5 +1,5 @@
-// The interactive session by the C interface: what inputs define, what the session tells about
-// names, and what it writes as a script.
+// Interactive sessions through the C interface: definitions by inputs, information about names, and
+// writing the session as a script.
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 
 #include "session_support.h"
 
-// The answers of one call, each followed by a space.
+// The values returned by one call, each followed by a space.
 typedef struct Heard {
   char text[8000];
 } Heard;
@@ -29,7 +29,7 @@ static void hear_value(void *context, const char *text, const char *type) {
   hear(context, type);
 }
 
-// Enters each line of the text by itself, and gives the values.
+// Enters each line of the text separately, and returns the values.
 static Heard enter(CagSession *s, const char *text) {
   Heard h = {""};
   while (*text) {
@@ -43,7 +43,7 @@ static Heard enter(CagSession *s, const char *text) {
   return h;
 }
 
-static void gives(CagSession *s, const char *text, const char *expected) {
+static void expect_values(CagSession *s, const char *text, const char *expected) {
   const Heard h = enter(s, text);
   assert_string_equal(h.text, expected);
 }
@@ -58,7 +58,7 @@ static void members_are(CagSession *s, const char *path, const char *expected) {
   assert_string_equal(members(s, path).text, expected);
 }
 
-// What is written to a stream.
+// Text written to a stream.
 typedef struct Page {
   FILE *out;
   char *text;
@@ -84,15 +84,15 @@ static void page_has(Page *p, const char *expected) {
 static void a_name_may_be_defined_again(void **state) {
   (void)state;
   CagSession *s = new_session();
-  gives(s, "a = 1\nb = a + 1\nf(x) = x * a\nb\nf(3)", "2 number 3 number ");
-  gives(s, "a = 5\nb\nf(3)\na", "6 number 15 number 5 number ");
-  // An imported name takes the place of a definition, and the other way round. The module keeps
-  // its own definition.
-  gives(s, "import std.robots: categories\nlen(categories) > 3", "true bool ");
-  gives(s, "categories = 2\ncategories", "2 number ");
-  gives(s, "import std.robots\nlen(robots.categories) > 3", "true bool ");
-  gives(s, "import std.robots: categories\nlen(categories) > 3", "true bool ");
-  gives(s, "import std.robots as a\nlen(a.categories) > 3\na = 7\na", "true bool 7 number ");
+  expect_values(s, "a = 1\nb = a + 1\nf(x) = x * a\nb\nf(3)", "2 number 3 number ");
+  expect_values(s, "a = 5\nb\nf(3)\na", "6 number 15 number 5 number ");
+  // An imported name replaces a definition, and vice versa. The module keeps its own definition.
+  expect_values(s, "import std.robots: categories\nlen(categories) > 3", "true bool ");
+  expect_values(s, "categories = 2\ncategories", "2 number ");
+  expect_values(s, "import std.robots\nlen(robots.categories) > 3", "true bool ");
+  expect_values(s, "import std.robots: categories\nlen(categories) > 3", "true bool ");
+  expect_values(s, "import std.robots as a\nlen(a.categories) > 3\na = 7\na",
+                "true bool 7 number ");
   cag_session_free(s);
 }
 
@@ -101,10 +101,10 @@ static void params_have_the_values_given_from_outside(void **state) {
   CagSession *s = new_session();
   cag_session_define(s, "width", "40");
   cag_session_set_frame(s, 3, 5);
-  gives(s, "param width = 10 in 5..50\nwidth\ntime", "40 number 0.75 number ");
-  gives(s, "param depth = 10\ndepth", "10 number ");
+  expect_values(s, "param width = 10 in 5..50\nwidth\ntime", "40 number 0.75 number ");
+  expect_values(s, "param depth = 10\ndepth", "10 number ");
   cag_session_clear_defines(s);
-  gives(s, "param width = 10 in 5..50\nwidth", "10 number ");
+  expect_values(s, "param width = 10 in 5..50\nwidth", "10 number ");
   cag_session_define(s, "width", "400");
   const char *text = "param width = 10 in 5..50";
   assert_int_equal(cag_session_input(s, text, strlen(text), NULL, NULL), CAG_STATUS_SCRIPT);
@@ -121,7 +121,7 @@ static void members_of_all_kinds_of_values(void **state) {
   members_are(s, "r", "at range list ");
   members_are(s, "r.at", "x y ");
   members_are(s, "r.range", "start end step ");
-  gives(s, "[r.range.start, r.range.end, r.range.step]", "[0, 3, 1] list ");
+  expect_values(s, "[r.range.start, r.range.end, r.range.step]", "[0, 3, 1] list ");
   members_are(s, "r.list", "");
   members_are(s, "r.none", "");
   members_are(s, "none", "");
@@ -129,7 +129,7 @@ static void members_of_all_kinds_of_values(void **state) {
   members_are(s, "bad", "");
   assert_int_equal(cag_session_error_count(s), 0);
   assert_non_null(strstr(members(s, "robots").text, "puma560 "));
-  // Each member that the session names can be asked for.
+  // Each member that the session lists can be evaluated.
   static const char *const values[] = {"box(1)",
                                        "translate([1, 2, 3])",
                                        "plane(origin, Z)",
@@ -265,7 +265,7 @@ static void a_session_without_inputs_has_no_names(void **state) {
     assert_false(cag_session_write_doc(s, "width", p->out));
     cag_session_write_script(s, p->out);
     page_has(p, "");
-    gives(s, "1 + 1", "2 number ");
+    expect_values(s, "1 + 1", "2 number ");
     cag_session_free(s);
   }
 }

@@ -1,5 +1,5 @@
-// An interrupt ends whatever runs: values that share their parts take endlessly long to be walked,
-// any code that walks them.
+// An interrupt ends any operation. Values with common parts take practically forever to traverse,
+// so they test all code that traverses values.
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -14,11 +14,11 @@
 
 #include "cag.h"
 
-// Seconds of processor time that may pass behind an interrupt.
+// The processor time, in seconds, that may pass after an interrupt.
 #define SECONDS_MOST 0.1
 
-// Lists, shapes and records of 2^60 parts, groups of 2^40, each of which holds the one before
-// twice.
+// Lists, shapes, and records of 2^60 parts, and groups of 2^40, each of which contains the previous
+// one twice.
 static const char shared[] = "f(n, t) = if n == 0 then t else f(n - 1, [t, t])\n"
                              "g(n, t) = if n == 0 then t else g(n - 1, { x: t, y: t })\n"
                              "h(n, t) = if n == 0 then t else h(n - 1, group(t, t))\n"
@@ -57,7 +57,7 @@ static const char *const endless[] = {
 };
 #define COUNT (sizeof endless / sizeof *endless)
 
-// Messages show the beginning of a value, so that they need no interrupt.
+// Messages show only the beginning of a value, so they do not need an interrupt.
 static const char *const wrong[] = {"print sin(a)",   "print box(a)", "print a.x",
                                     "print a(1)",     "print [a][a]", "print polygon(a)",
                                     "print sphere(r)"};
@@ -127,7 +127,7 @@ static void count_value(void *context, const char *text, const char *type) {
   ++*(int *)context;
 }
 
-// What was printed of a value before the interrupt is millions of characters that nobody asked for.
+// The printed text of a value before the interrupt has millions of characters, and is not returned.
 static void an_interrupted_value_is_not_given(void **state) {
   (void)state;
   FILE *out;
@@ -149,7 +149,7 @@ static void an_interrupted_value_is_not_given(void **state) {
   fclose(out);
 }
 
-// A session goes on after an interrupt, with the right values.
+// A session continues after an interrupt, with correct values.
 static void a_session_goes_on_after_an_interrupt(void **state) {
   (void)state;
   FILE *out;

@@ -26,7 +26,7 @@ static int by_position(const void *a, const void *b) {
 
 typedef struct Edge {
   uint32_t low, high;
-  int up; // 1: from low to high, else -1
+  int up; // 1: from low to high; -1 otherwise
 } Edge;
 
 static int by_ends(const void *a, const void *b) {
@@ -35,7 +35,7 @@ static int by_ends(const void *a, const void *b) {
   return e->high < f->high ? -1 : e->high > f->high;
 }
 
-// Each edge between points has two triangles, which run through it in opposite directions.
+// Whether each edge has two triangles, which traverse it in opposite directions.
 static bool is_closed(const CagMesh *m) {
   const size_t n = 3 * m->triangle_count;
   uint32_t *order = malloc(m->vertex_count * sizeof *order);
@@ -62,8 +62,8 @@ static bool is_closed(const CagMesh *m) {
   return good;
 }
 
-// A closed mesh whose triangles look to the same side as the normals of their corners, and all of
-// whose vertices are used. No vertex is farther from the curve than `most`.
+// Checks that the mesh is closed, that its triangles have the orientation of the normals at their
+// corners, that all vertices are used, and that no vertex is farther from the curve than `most`.
 static void check_tube(const CagCurve *c, const CagMesh *m, double most) {
   assert_true(is_closed(m));
   bool *used = calloc(m->vertex_count, sizeof *used);
@@ -97,7 +97,7 @@ static void check_tube(const CagCurve *c, const CagMesh *m, double most) {
   free(used);
 }
 
-#define SECTION (6 * sin(M_PI / 6)) // of a dodecagon about a circle of radius 1
+#define SECTION (6 * sin(M_PI / 6)) // of a dodecagon in a circle of radius 1
 
 static void tubes_follow_curves_in_space(void **state) {
   (void)state;
@@ -108,7 +108,7 @@ static void tubes_follow_curves_in_space(void **state) {
     const double radius = 0.4;
     CagVec3 p[8];
     const double knots[] = {-3, -2, -1, 0, 1, 2, 3, 4, 5, 6, 7, 8};
-    for (int i = 0; i < 8; i++) { // about a circle, up and down
+    for (int i = 0; i < 8; i++) { // around a circle, up and down
       p[i].x = 20 * cos(2 * M_PI * i / 5);
       p[i].y = 20 * sin(2 * M_PI * i / 5);
       p[i].z = i % 5 == 1 ? 12 : i % 5 == 3 ? -9 : 2;
@@ -131,8 +131,8 @@ static void tubes_follow_curves_in_space(void **state) {
   }
 }
 
-// Rings of a closed tube turn against each other by the same small angle, the last one against the
-// first as well.
+// The rings of a closed tube rotate relative to each other by the same small angle, including the
+// last relative to the first.
 static void closed_tubes_turn_evenly(void **state) {
   (void)state;
   CagVec3 p[10];
@@ -153,7 +153,8 @@ static void closed_tubes_turn_evenly(void **state) {
   double least = INFINITY, most = -INFINITY;
   for (size_t i = 0; i < rings; i++) {
     const CagVec3 *a = m->normals + 12 * i, *b = m->normals + 12 * ((i + 1) % rings);
-    // The mean of the turns of all twelve, seen along the ring's axis, is free of the bend.
+    // The mean rotation of all twelve vertices, seen along the ring's axis, does not depend on the
+    // bend.
     double sum = 0;
     for (int k = 0; k < 12; k++) {
       const CagVec3 along = cag_unit(cag_cross(a[k], a[(k + 3) % 12]));
@@ -169,8 +170,8 @@ static void closed_tubes_turn_evenly(void **state) {
   cag_curve_release(c);
 }
 
-// Dashes along a line whose points are anywhere: all vertices lie in dashes, and both ends of each
-// dash have a cap.
+// Dashes along a line with arbitrary points: all vertices are in dashes, and both ends of each dash
+// have a cap.
 static void dashes_are_where_they_belong(void **state) {
   (void)state;
   seed = 33;
@@ -211,10 +212,10 @@ static double turn_at(CagVec3 a, CagVec3 b, CagVec3 c) {
   return atan2(cag_norm(cag_cross(t, u)), cag_dot(t, u));
 }
 
-// What a corner adds to two tubes of radius 1 that end at it. A wedge in steps of at most 30
-// degrees fills the outer side: each step adds sin(step) / 2 times the integral of the squared
-// width of half a section. The bisecting plane cuts both tubes on the inner side: each loses the
-// first moment of that half times the tangent of half the turn.
+// The volume that a corner adds to two tubes of radius 1 that end at it. A wedge in steps of at
+// most 30 degrees fills the outer side: each step adds sin(step) / 2 times the integral of the
+// squared width of half a section. The bisecting plane cuts both tubes on the inner side: each
+// loses the first moment of that half times the tangent of half the turning angle.
 static double corner_volume(double turn) {
   double moment = 0, squares = 0;
   const double steps = ceil(turn * 6 / M_PI - 1e-9);
@@ -227,9 +228,9 @@ static double corner_volume(double turn) {
   return steps * sin(turn / steps) / 2 * squares - 2 * moment * tan(turn / 2);
 }
 
-// Polylines with corners of 30 to 160 degrees, open and closed. In a plane the sides of tubes do
-// not turn; in space they turn by half the angle of a side at most, which changes their volume
-// little.
+// Polylines with corners of 30 to 160 degrees, open and closed. In a plane, the sides of tubes do
+// not rotate. In space, they rotate by at most half the angle of a side, which hardly changes their
+// volume.
 static void corners_of_any_angle_are_closed(void **state) {
   (void)state;
   seed = 34;
@@ -269,8 +270,8 @@ static void corners_of_any_angle_are_closed(void **state) {
   assert_true(tried[0] > 10 && tried[1] > 10);
 }
 
-// A closed square of 4 times 10 with dashes of 3: thirteen fit, so twelve steps are dashes and gaps
-// in turn, each with caps where the steps meet.
+// A closed square of 4 times 10 with dashes of 3: thirteen fit, so twelve steps are alternately
+// dashes and gaps. Each dash has caps where it meets a gap.
 static void dashes_of_a_square_go_around(void **state) {
   (void)state;
   const CagVec3 p[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
@@ -282,7 +283,7 @@ static void dashes_of_a_square_go_around(void **state) {
   for (uint32_t v = 0; v < m->vertex_count; v++) {
     int uses = 0;
     for (size_t k = 0; k < 3 * m->triangle_count; k++) uses += m->triangles[k] == v;
-    if (uses != 12) continue; // the middle of a cap
+    if (uses != 12) continue; // the center of a cap
     const CagVec3 q = m->positions[v];
     const double at = fabs(q.y) < 1e-9        ? q.x
                       : fabs(q.x - 10) < 1e-9 ? 10 + q.y
@@ -297,14 +298,16 @@ static void dashes_of_a_square_go_around(void **state) {
   cag_curve_release(c);
 }
 
-// Tubes of all counts of points: a ring of 12 for each, and caps of 13 vertices at open ends.
+// Tubes with any number of points: a ring of 12 for each point, and caps of 13 vertices at open
+// ends.
 static void tubes_of_every_count_have_their_rings(void **state) {
   (void)state;
   enum { MOST = 180 };
   for (size_t n = 2; n <= MOST; n++) {
     CagVec3 p[MOST];
     CagCurve *c;
-    for (int closed = n > 14; closed >= 0; closed--) { // a polygon of 15 turns by 24 degrees
+    for (int closed = n > 14; closed >= 0;
+         closed--) { // a polygon of 15 corners turns by 24 degrees
       const double part = 2 * M_PI / (double)(closed ? n : MOST);
       for (size_t i = 0; i < n; i++)
         p[i] = cag_vec3(90 * cos(part * (double)i), 90 * sin(part * (double)i), 0);
@@ -312,7 +315,7 @@ static void tubes_of_every_count_have_their_rings(void **state) {
       CagMesh *m = tube_of(c, 0.5, 0);
       assert_int_equal(m->vertex_count, closed ? 12 * n : 12 * n + 26);
       assert_int_equal(m->triangle_count, closed ? 24 * n : 24 * n);
-      // The section is a polygon of 12 corners, and the path that of the centers.
+      // The section is a polygon of 12 corners, and the path is that of its centers.
       const double section = 3 * 0.5 * 0.5, length = 2 * 90 * sin(part / 2) * (double)(n - !closed);
       is_near(volume_of(m), section * length, 0.03 * section * length, "volume");
       cag_mesh_release(m);
@@ -323,7 +326,8 @@ static void tubes_of_every_count_have_their_rings(void **state) {
       p[i] = cag_vec3(9 * (double)(i / 2), 9 * (double)((i + 1) / 2 % 2), 0);
     OK(cag_curve_polyline(p, n, false, 3, &c, &err));
     CagMesh *m = tube_of(c, 0.5, 0);
-    // Two rings, two rows of five inside of the wedge; at its ends two triangles a step, else four.
+    // Two rings, and two rows of five inside the wedge. A step has two triangles at the ends of the
+    // wedge, and four elsewhere.
     const size_t corners = n - 2;
     assert_int_equal(m->vertex_count, 50 + corners * (24 + 10));
     assert_int_equal(m->triangle_count, 24 * (n - 1) + 24 + corners * 3 * 10);
@@ -332,7 +336,7 @@ static void tubes_of_every_count_have_their_rings(void **state) {
   }
 }
 
-// From an end to the only corner the rings do not turn: their sides go along the tube.
+// From an end to the only corner, the rings do not rotate: the sides are parallel to the tube.
 static void tubes_with_one_corner_do_not_twist(void **state) {
   (void)state;
   seed = 21;
@@ -370,7 +374,7 @@ static void tubes_with_one_corner_do_not_twist(void **state) {
   }
 }
 
-// A limit of exactly the triangles of a tube is enough, and one less is not.
+// A limit equal to the number of triangles is accepted, and one less is not.
 static void the_limit_of_triangles_is_exact(void **state) {
   (void)state;
   static const CagVec3 line[] = {{0, 0, 0}, {5, 0, 0}},
@@ -400,7 +404,8 @@ static void the_limit_of_triangles_is_exact(void **state) {
   }
 }
 
-// Closed surfaces and meshes become meshes with their triangles outward, open ones as they are.
+// Closed surfaces and meshes are converted to meshes that are oriented outward; open ones keep
+// their orientation.
 static void surfaces_become_meshes(void **state) {
   (void)state;
   CagSession *session = shown("s = sphere_surface(2)\n"
@@ -426,7 +431,7 @@ static void surfaces_become_meshes(void **state) {
   cag_session_free(session);
 }
 
-// Lines that say no width are a part of the diagonal of the scene.
+// The default width of lines is a fraction of the diagonal of the scene.
 static void lines_have_a_width_by_the_scene(void **state) {
   (void)state;
   CagScene s = {.bounds = {{0, 0, 0}, {30, 40, 0}}};
@@ -443,8 +448,8 @@ static void lines_have_a_width_by_the_scene(void **state) {
 
 // --- Parts of meshes ---
 
-// Each triangle is in the part of its label's material, with what its corners have; vertices of
-// one point stay so.
+// Each triangle is in the part of its label's material, with all data of its corners. Welded
+// vertices remain welded.
 static void parts_of_a_mesh_have_its_triangles(void **state) {
   (void)state;
   seed = 35;
@@ -484,7 +489,7 @@ static void parts_of_a_mesh_have_its_triangles(void **state) {
         for (size_t j = 0; j < 3; j++) {
           const uint32_t a = m->triangles[3 * t + j], b = part->triangles[3 * n + j];
           assert_true(b < part->vertex_count);
-          assert_true(from[b] == UINT32_MAX || from[b] == a); // a vertex stays one vertex
+          assert_true(from[b] == UINT32_MAX || from[b] == a); // a vertex remains one vertex
           from[b] = a;
           is_point(part->positions[b], m->positions[a], "position");
           if (normals) is_point(part->normals[b], m->normals[a], "normal");

@@ -1,5 +1,5 @@
-// Jets in one and two variables against closed forms, and formulas that geometry calls when the
-// script has ended.
+// Jets in one and two variables compared with closed forms, and functions that geometry calls after
+// the script has ended.
 
 #include <math.h>
 #include <setjmp.h>
@@ -32,12 +32,12 @@ static CagSeries variable(int variables, int order, int which, double x) {
 
 static double factorial(int n) { return n < 2 ? 1 : n * factorial(n - 1); }
 
-// i-th partial by x and j-th by y.
+// The partial derivative of order i by x and j by y.
 static double partial(const CagSeries *s, int i, int j) {
   return s->c[cag_jet_offset(2, i + j) + (size_t)j] * factorial(i) * factorial(j);
 }
 
-// exp(2 x) sin(3 y) has the partials 2^i 3^j exp(2 x) sin(3 y + j pi / 2).
+// exp(2 x) sin(3 y) has the partial derivatives 2^i 3^j exp(2 x) sin(3 y + j pi / 2).
 static void partials_of_a_product_of_two_variables(void **state) {
   (void)state;
   const double x0 = 0.3, y0 = -0.7;
@@ -54,7 +54,8 @@ static void partials_of_a_product_of_two_variables(void **state) {
     }
 }
 
-// 1 / (x + y)^2 has the partials (-1)^n (n + 1)! (x + y)^-(n + 2), n = i + j; three ways.
+// 1 / (x + y)^2 has the partial derivatives (-1)^n (n + 1)! (x + y)^-(n + 2), n = i + j. It is
+// computed in three ways.
 static void quotients_and_powers_agree(void **state) {
   (void)state;
   CagSeries x = variable(2, 6, 0, 0.4), y = variable(2, 6, 1, 0.9), sum, one, q[3];
@@ -74,7 +75,7 @@ static void quotients_and_powers_agree(void **state) {
     }
 }
 
-// Whole powers exist at 0, others only up to their order.
+// Integer powers are differentiable at 0, and others only up to their order.
 static void powers_at_zero(void **state) {
   (void)state;
   CagSeries x = variable(1, 4, 0, 0), out;
@@ -84,7 +85,7 @@ static void powers_at_zero(void **state) {
   assert_true(cag_series_power(&x, 4.5, &out) && cag_series_is_constant(&out));
   assert_false(cag_series_power(&x, 3.5, &out));
   assert_false(cag_series_power(&x, -1, &out));
-  x = variable(1, 16, 0, -2); // a negative base with a whole exponent
+  x = variable(1, 16, 0, -2); // a negative base with an integer exponent
   assert_true(cag_series_power(&x, 5, &out));
   NEAR(out.c[0], -32, 0);
   NEAR(out.c[1], 80, 0);
@@ -99,7 +100,7 @@ static void composition_is_the_chain_rule(void **state) {
   cag_series_multiply(&s, &s, &x);
   cag_series_multiply(&s, &t, &y);
   const double x0 = 2.25, y0 = 3;
-  double d[25] = {0}; // partials of x^2 y at (x0, y0)
+  double d[25] = {0}; // partial derivatives of x^2 y at (x0, y0)
   d[cag_partial(4, 0, 0)] = x0 * x0 * y0;
   d[cag_partial(4, 1, 0)] = 2 * x0 * y0;
   d[cag_partial(4, 2, 0)] = 2 * y0;
@@ -166,7 +167,7 @@ static void an_export_that_meets_an_error_leaves_no_file(void **state) {
     assert_int_equal(cag_session_error_count(s), 1);
     cag_session_error(s, 0, &error);
     assert_string_equal(error.reason, scripts[i].reason);
-    assert_true(error.line > 0); // a place within the function
+    assert_true(error.line > 0); // a location in the function
     cag_session_free(s);
   }
 }

@@ -1,4 +1,4 @@
-// JSON: the file parses, and its numbers are those of the scene.
+// JSON: the file can be parsed, and its numbers are those of the scene.
 
 #include "tests/interp/scene_fixture.h"
 
@@ -137,7 +137,7 @@ static void materials_lights_cameras_and_odd_names_are_there(void **state) {
   assert_string_equal(text(cJSON_GetArrayItem(member(tree, "lights"), 0), "kind"), "sun");
   const cJSON *camera = cJSON_GetArrayItem(member(tree, "cameras"), 0);
   assert_true(number(camera, "fov") == 0.4);
-  // Looking along +Y: the frame's third column.
+  // The view along +Y is the third column of the frame.
   assert_true(fabs(element(cJSON_GetArrayItem(member(camera, "frame"), 1), 2) - 1) < 1e-15);
   assert_true(cJSON_IsNull(member(tree, "background")));
   cJSON_Delete(tree);
@@ -160,8 +160,8 @@ static cJSON *tree_of(const char *script) {
   return tree;
 }
 
-// Tests whether a value has everything that is expected: the members of objects, all elements of
-// lists, and numbers within rounding.
+// Whether a value contains everything expected: the members of objects, all elements of lists, and
+// numbers up to rounding.
 static bool has(const cJSON *found, const cJSON *expected) {
   if (!found) return false;
   if (cJSON_IsObject(expected)) {
@@ -183,8 +183,8 @@ static bool has(const cJSON *found, const cJSON *expected) {
 
 #define UNMOVED "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 
-// The form that the header describes, for each kind of curve, surface, solid, light, and setting.
-// The values are those of the script.
+// The form described by the header, for each kind of curve, surface, solid, light, and setting. The
+// values are those of the script.
 static void every_member_has_the_value_of_the_script(void **state) {
   (void)state;
   static const struct {
@@ -275,7 +275,7 @@ static void every_member_has_the_value_of_the_script(void **state) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char script[1000], expected[2000];
-    // No light and no ground but those of the case.
+    // The only light and ground are those of the case.
     const bool lit = strstr(cases[i].show, "sun") || strstr(cases[i].show, "sky");
     snprintf(script, sizeof script, "show %s%s", cases[i].show, lit ? "" : ", sun(-Z)");
     snprintf(expected, sizeof expected, "%s", cases[i].expected);
@@ -291,8 +291,8 @@ static void every_member_has_the_value_of_the_script(void **state) {
   }
 }
 
-// A curve without an exact form has samples: points of it, as near as a thousandth of its size, or
-// the scene's tolerance. y = x^4 / 4 has y'' = 3 x^2, so a chord of length h is h^2 y'' / 8 off.
+// A curve without an exact form is sampled within a thousandth of its size, or within the scene's
+// tolerance. y = x^4 / 4 has y'' = 3 x^2, so a chord of length h deviates by h^2 y'' / 8.
 static void other_curves_are_sampled(void **state) {
   (void)state;
   static const double tolerances[] = {0, 1e-5};
@@ -330,7 +330,7 @@ static void other_curves_are_sampled(void **state) {
   }
 }
 
-// Closed surfaces and meshes have their normals outward, whatever the script says.
+// Closed surfaces and meshes have outward normals, regardless of their orientation in the script.
 static void closed_shapes_are_written_outward(void **state) {
   (void)state;
   static const char *const scripts[] = {

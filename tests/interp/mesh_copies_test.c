@@ -1,9 +1,9 @@
-// Which parts of a file are copies of one another.
+// Detection of parts that are copies of each other.
 
 #include "mesh_write_support.h"
 
-// A mesh that differs from a moved one in one thing that can be seen is no copy of it, and one that
-// differs by rounding, or in the diagonal of a quad, is.
+// A mesh that visibly differs from a moved one is not a copy of it. A mesh that differs by
+// rounding, or in the diagonal of a quad, is.
 static void copies_differ_in_nothing_that_is_seen(void **state) {
   (void)state;
   seed = 7;
@@ -99,7 +99,7 @@ static void copies_differ_in_nothing_that_is_seen(void **state) {
       for (int i = 0; i < 4 && changes[k].copy; i++)
         for (int j = 0; j < 4; j++) {
           const double off = fabs(copies[1].place.m[i][j] - t->m[i][j]);
-          // A copy that is only carried has exactly no turn.
+          // A copy that is only translated has exactly no rotation.
           if (off > (j == 3 ? 1e-6 : moved < 2 ? 0 : 1e-9))
             fail_msg("%s: [%d][%d]", changes[k].what, i, j);
         }
@@ -109,7 +109,7 @@ static void copies_differ_in_nothing_that_is_seen(void **state) {
     }
 }
 
-// Many parts of few shapes: each is a copy of the first of its shape.
+// Many parts of few shapes: each is a copy of the first part of its shape.
 static void each_part_is_a_copy_of_the_first_of_its_shape(void **state) {
   (void)state;
   enum { N = 60, SHAPES = 7 };
@@ -120,7 +120,7 @@ static void each_part_is_a_copy_of_the_first_of_its_shape(void **state) {
   CagMaterial materials[2] = {{.name = names[0]}, {.name = names[1]}};
   size_t first[SHAPES][2], shape[N];
   for (size_t k = 0; k < SHAPES; k++) {
-    shapes[k] = random_mesh(20, 10, 7, false); // all of the same counts
+    shapes[k] = random_mesh(20, 10, 7, false); // all with the same counts
     first[k][0] = first[k][1] = SIZE_MAX;
   }
   for (size_t i = 0; i < N; i++) {

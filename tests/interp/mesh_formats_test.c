@@ -1,4 +1,4 @@
-// Mesh files: what is in them, byte by byte where the format says so.
+// The contents of mesh files, byte by byte where the format prescribes it.
 
 #include <math.h>
 #include <setjmp.h>
@@ -23,8 +23,8 @@
 
 static CagError err;
 
-// A tetrahedron with corners in the origin and at 2, 3, 4 on the axes, whose vertex 4 is vertex 0
-// again with another normal, and a triangle that single precision shrinks.
+// A tetrahedron with corners at the origin and at 2, 3, 4 on the axes. Vertex 4 is vertex 0 with
+// another normal. One triangle degenerates in single precision.
 static CagMesh *tetrahedron(void) {
   static const CagVec3 corner[6] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0},
                                     {0, 0, 4}, {0, 0, 0}, {2, 1e-60, 0}};
@@ -54,7 +54,7 @@ static CagMaterial red(void) {
 
 typedef enum Format { OBJ, MTL, STL, PLY, GLB, GLTF, THREEMF } Format;
 
-// The bytes of the file, zero-ended, from malloc.
+// The bytes of the file, terminated by NUL, allocated by malloc.
 static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *size) {
   char path[] = "/tmp/cag_mesh_formats_XXXXXX";
   int fd = mkstemp(path);
@@ -98,7 +98,7 @@ static void numbers_read_back_as_the_same_float(void **state) {
   }
   uint32_t x = 7;
   for (int k = 0; k < 200000; k++) {
-    x = x * 1664525u + 1013904223u; // Numerical Recipes
+    x = x * 1664525u + 1013904223u; // the generator of Numerical Recipes
     double value = ldexp((double)x - 2147483648.0, (int)(x >> 27) - 40);
     char buffer[32];
     *cag_mesh_write_number(buffer, (float)value) = '\0';
@@ -134,7 +134,7 @@ static void obj_shares_points_and_keeps_normals_apart(void **state) {
   assert_non_null(strstr(b, "usemtl red_paint\n"));
   assert_non_null(strstr(b, "f 1/1/1 3/3/3 2/2/2\n"));
   assert_non_null(strstr(b, "f 1/5/5 4/4/4 3/3/3\n")); // vertex 4 is point 0 with its own normal
-  assert_non_null(strstr(b, "f 6/7/7 8/9/9 7/8/8\n")); // the second part counts on
+  assert_non_null(strstr(b, "f 6/7/7 8/9/9 7/8/8\n")); // the second part continues the numbering
   free(b);
   b = written(MTL, parts, 2, &size);
   assert_non_null(strstr(b, "newmtl red_paint\nKd 1 0 0\n"));
@@ -156,8 +156,9 @@ static void ply_has_a_vertex_for_each_normal_of_a_point(void **state) {
   assert_non_null(strstr(b, "element face 4\n"));
   const char *data = strstr(b, "end_header\n") + strlen("end_header\n");
   assert_int_equal(size, (size_t)(data - b) + 6 * 35 + 4 * 13);
-  assert_true(float_at(data + 20) == -1);          // vertex 0 looks down
-  assert_true(float_at(data + 4 * 35 + 12) == -1); // vertex 4, at the same point, to the left
+  assert_true(float_at(data + 20) == -1); // the normal of vertex 0 is downward
+  assert_true(float_at(data + 4 * 35 + 12) ==
+              -1); // that of vertex 4, at the same point, is to the left
   assert_int_equal((unsigned char)data[32], 255);
   assert_int_equal((unsigned char)data[33], 0);
   const char *faces = data + 6 * 35;
@@ -165,7 +166,7 @@ static void ply_has_a_vertex_for_each_normal_of_a_point(void **state) {
   assert_int_equal(word_at(faces + 1), 0);
   assert_int_equal(word_at(faces + 2 * 13 + 1), 4);
   free(b);
-  // With the same normal, they are one vertex.
+  // With the same normal, they become one vertex.
   m->normals[4] = m->normals[0];
   b = written(PLY, &part, 1, &size);
   data = strstr(b, "end_header\n") + strlen("end_header\n");
@@ -245,7 +246,7 @@ static void glb_describes_its_data(void **state) {
       "KHR_materials_transmission");
   cJSON_Delete(json);
   free(b);
-  b = written(GLB, parts, 0, &size); // an empty scene is a file too
+  b = written(GLB, parts, 0, &size); // an empty scene is a valid file
   assert_int_equal(word_at(b + 8), size);
   free(b);
   cag_mesh_release(m);
@@ -263,8 +264,8 @@ static void gltf_may_hold_its_data(void **state) {
       cJSON_GetObjectItem(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "buffers"), 0), "uri"));
   const char head[] = "data:application/octet-stream;base64,";
   assert_memory_equal(uri, head, strlen(head));
-  // 6 * 32 + 4 * 12 bytes in groups of 3 as 4 characters; the first vertex is three zeros, the
-  // second begins with 2.0, 00 00 00 40.
+  // 6 * 32 + 4 * 12 bytes, in groups of 3 as 4 characters. The first vertex is three zeros, and the
+  // second begins with 2.0: 00 00 00 40.
   assert_int_equal(strlen(uri) - strlen(head), 240 / 3 * 4);
   assert_memory_equal(uri + strlen(head), "AAAAAAAAAAAAAAAAAAAAQA", 20);
   cJSON_Delete(json);
@@ -272,7 +273,8 @@ static void gltf_may_hold_its_data(void **state) {
   cag_mesh_release(m);
 }
 
-// The bytes of a member of an archive whose local header begins at b; *next: behind it.
+// Returns the bytes of an archive member whose local header begins at b. *next is the end of the
+// member.
 static char *unpacked(const char *b, const char **next) {
   assert_memory_equal(b, "PK\3\4", 4);
   uint32_t crc = word_at(b + 14), packed = word_at(b + 18), size = word_at(b + 22);
@@ -304,7 +306,7 @@ static void threemf_has_objects_materials_and_copies(void **state) {
   free(unpacked(at, &at));
   char *xml = unpacked(at, &at);
   assert_memory_equal(at, "PK\1\2", 4);
-  // The triangle that single precision shrinks is one too many for a closed body. A quarter of the
+  // The triangle that degenerates in single precision would leave the body open. A quarter of the
   // light passes.
   assert_non_null(strstr(xml, "<base name=\"red paint\" displaycolor=\"#FF0000BF\"/>"));
   assert_non_null(strstr(xml,
@@ -372,7 +374,7 @@ static void what_single_precision_cannot_hold_is_an_error(void **state) {
   cag_mesh_release(m);
 }
 
-// As the C library prints them.
+// In the format of the C library.
 static void indices_are_decimal_whatever_their_length(void **state) {
   (void)state;
   uint64_t n = 1;

@@ -1,5 +1,4 @@
-// Mesh files of every format: limits, what was written is read, and files that were changed by
-// chance.
+// Mesh files of every format: limits, round trips, and random changes.
 
 #include "tests/interp/mesh_read_support.h"
 
@@ -21,7 +20,7 @@ static void limits_hold_before_memory_is_taken(void **state) {
   f.interrupt = &stop;
   assert_int_equal(cag_mesh_read(&f, &m, &err), CAG_E_CALLBACK);
   free(b.at);
-  // A billion points of which the file says nothing: zeros without bytes.
+  // A billion points without data in the file, which are zeros.
   const char *json =
       ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 3000000, \"type\": \"VEC3\"}], "
             "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}]}";
@@ -77,14 +76,14 @@ static void what_was_written_is_read(void **state) {
   cag_mesh_release(m);
 }
 
-// --- Files changed by chance ---
+// --- Random changes ---
 
 static uint32_t next_random(uint32_t *x) {
   *x = *x * 1664525u + 1013904223u; // Numerical Recipes
   return *x >> 8;
 }
 
-// Some bytes changed, a piece cut out, doubled or put elsewhere, numbers made large.
+// Changes some bytes; removes, duplicates, or moves a piece; enlarges numbers.
 static Bytes mutated(Bytes b, uint32_t *seed) {
   static const char *const pieces[] = {"-1",  "4294967295", "1e999",        "\xff\xff\xff\xff",
                                        "\n",  "{",          "999999999999", "\0\0\0\0",

@@ -1,4 +1,4 @@
-// Meshes read from glTF: nodes, accessors and buffers, and what is wrong with files.
+// Meshes read from glTF: nodes, accessors, and buffers, and errors in files.
 
 #include "tests/interp/mesh_read_support.h"
 
@@ -19,7 +19,8 @@ static void glb_is_turned_and_scaled(void **state) {
 static void nodes_move_scale_and_mirror(void **state) {
   (void)state;
   Bytes data = gltf_data();
-  // Twice: moved by 10 along its z after doubling; mirrored by a matrix, moved by 1 along y.
+  // Used twice: doubled and then moved by 10 along its z; reflected by a matrix and moved by 1
+  // along y.
   CagMesh *m =
       read_glb(ASSET BUFFER VIEWS POSITIONS INDICES MESH
                ", \"scene\": 1, \"scenes\": [{}, {\"nodes\": [2]}], \"nodes\": ["
@@ -40,7 +41,7 @@ static void nodes_move_scale_and_mirror(void **state) {
   free(data.at);
 }
 
-// v turned by a quaternion of any length: t = 2 q x v, v + w t + q x t.
+// Rotates v by a quaternion of any length: t = 2 q x v, v + w t + q x t.
 static CagVec3 turned(const double q[4], CagVec3 v) {
   const double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   const CagVec3 u = cag_vec3(q[0] / n, q[1] / n, q[2] / n);
@@ -48,8 +49,8 @@ static CagVec3 turned(const double q[4], CagVec3 v) {
   return cag_add(cag_madd(v, q[3] / n, t), cag_cross(u, t));
 }
 
-// A node in a node, each scaled, turned, and moved by any numbers. Meters with Y up become
-// millimeters with Z up.
+// Nested nodes with random scales, rotations, and translations. Meters with Y up become millimeters
+// with Z up.
 static void nodes_stand_where_their_numbers_say(void **state) {
   (void)state;
   Bytes data = gltf_data();
@@ -60,7 +61,7 @@ static void nodes_stand_where_their_numbers_say(void **state) {
       x = x * 6364136223846793005u + 1442695040888963407u;
       n[i] = (double)(x >> 11) / 4503599627370496.0 - 1;
     }
-    if (round % 4 == 1) n[7] = -n[7] - 2; // a mirror
+    if (round % 4 == 1) n[7] = -n[7] - 2; // a reflection
     char json[2000];
     snprintf(json, sizeof json,
              ASSET BUFFER VIEWS POSITIONS INDICES MESH
@@ -74,7 +75,7 @@ static void nodes_stand_where_their_numbers_say(void **state) {
     CagMesh *m = read_glb(json, data);
     assert_int_equal(m->triangle_count, 4);
     for (int k = 0; k < 4; k++) {
-      // Corners are told in thousandths, with Y up, in single precision.
+      // Corners are given in meters, with Y up, in single precision.
       const float given[3] = {corners[k][0] / 1000, corners[k][2] / 1000, -corners[k][1] / 1000};
       CagVec3 p = cag_vec3(given[0], given[1], given[2]);
       for (int i = 0; i < 2; i++) {
@@ -93,13 +94,13 @@ static void nodes_stand_where_their_numbers_say(void **state) {
   free(data.at);
 }
 
-// Normals stay perpendicular to what they were perpendicular to, whatever the scale, and look to
-// the same side of their triangles, also in a mirror.
+// Normals stay perpendicular to the same plane for any scale, and on the same side of their
+// triangles, even under a reflection.
 static void normals_go_with_their_nodes(void **state) {
   (void)state;
   uint64_t x = 7;
   Bytes data = gltf_data();
-  for (int t = 0; t < 4; t++) { // behind the 60 bytes: a normal for each corner
+  for (int t = 0; t < 4; t++) { // after the 60 bytes: a normal for each corner
     const float n[3] = {(float)(0.3 * t - 0.5), (float)(0.7 - 0.2 * t), 0.4f};
     for (int k = 0; k < 3; k++) add_float(&data, n[k]);
   }
@@ -131,7 +132,7 @@ static void normals_go_with_their_nodes(void **state) {
       for (int j = 0; j < 3; j++) {
         const unsigned c = faces[t][mirror ? (j == 0 ? 0 : 3 - j) : j];
         const float g[3] = {(float)(0.3 * c - 0.5), (float)(0.7 - 0.2 * c), 0.4f};
-        // The inverse of the scale, then the turn, then Z up.
+        // The inverse of the scale, the rotation, and then Z up.
         CagVec3 v = turned(n, cag_vec3(g[0] / n[4], g[1] / n[5], g[2] / n[6]));
         v = cag_unit(cag_vec3(v.x, -v.z, v.y));
         const CagVec3 found = m->normals[m->triangles[3 * t + (size_t)j]];
@@ -144,8 +145,7 @@ static void normals_go_with_their_nodes(void **state) {
   free(data.at);
 }
 
-// Normals of a PLY need three numbers and parameters two.
-// Extensions that change nothing about triangles may be required, others not.
+// Required extensions that do not affect triangles are accepted, and others are not.
 static void required_extensions_are_known(void **state) {
   (void)state;
   static const struct {
@@ -176,7 +176,8 @@ static void required_extensions_are_known(void **state) {
 
 static void sparse_accessors_strips_and_fans_are_read(void **state) {
   (void)state;
-  // Four corners of a square that are zeros, three of them replaced, in 16-bit and 8-bit numbers.
+  // Four corners of a square that are zeros, three of which are replaced, with 16-bit and 8-bit
+  // indices.
   Bytes data = bytes_of("", 0);
   const unsigned short index[3] = {1, 2, 3};
   const signed char value[9] = {127, 0, 0, 0, 0, -127, 127, 0, -127};
@@ -196,7 +197,7 @@ static void sparse_accessors_strips_and_fans_are_read(void **state) {
              "%d}]}]}",
              mode);
     CagMesh *m = read_glb(json, data);
-    // A square of 1 m: as a strip whole; the fan goes over the corner in its middle and back.
+    // A square of 1 m: the strip covers it; the fan runs over the corner in its middle and back.
     assert_int_equal(m->triangle_count, 2);
     assert_true(fabs(cag_mesh_area(m) - 1e6) < 1e-6);
     for (size_t t = 0; t < 2; t++) {
@@ -222,7 +223,7 @@ static CagStatus open_buffer(void *context, const char *path, char **bytes, size
 
 static void buffers_may_be_text_or_beside(void **state) {
   (void)state;
-  // 0 0 0, 1 0 0, 0 0 -1 as floats in base64, by coreutils.
+  // 0 0 0, 1 0 0, 0 0 -1 as floats in base64, encoded by coreutils.
   CagMesh *m = read_text(
       "a.gltf", ASSET
       "\"buffers\": [{\"byteLength\": 36, \"uri\": "

@@ -1,4 +1,4 @@
-// Mesh files in memory, each format written by hand here.
+// Mesh files in memory, in each format, written by hand.
 
 #ifndef CAG_TESTS_INTERP_MESH_READ_SUPPORT_H
 #define CAG_TESTS_INTERP_MESH_READ_SUPPORT_H
@@ -90,8 +90,8 @@ static inline void assert_text_fails(const char *name, const char *text, const c
   free(b.at);
 }
 
-// The corner of a cube: the tetrahedron of the origin and 2, 3, 4 on the axes has the volume
-// 2 * 3 * 4 / 6 = 4, and 4 points, 6 edges, 4 faces.
+// The corner of a cube: the tetrahedron of the origin and 2, 3, 4 on the axes has the volume 2 * 3
+// * 4 / 6 = 4, and 4 points, 6 edges, and 4 faces.
 static const float corners[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}};
 static const unsigned faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
 
@@ -128,7 +128,7 @@ static inline Bytes binary_stl(const char *header, uint32_t said) {
 
 static inline void put_number(Bytes *b, bool big, const void *x, size_t n) {
   const unsigned char *c = x;
-  for (size_t k = 0; k < n; k++) add(b, c + (big ? n - 1 - k : k), 1); // of a little-endian machine
+  for (size_t k = 0; k < n; k++) add(b, c + (big ? n - 1 - k : k), 1); // on a little-endian machine
 }
 
 static inline Bytes binary_ply(bool big) {
@@ -158,7 +158,7 @@ static inline Bytes binary_ply(bool big) {
 
 // --- glTF ---
 
-// Positions of the tetrahedron in glTF's axes and meters: x, z, -y of ours, by 1000.
+// The positions of the tetrahedron in glTF's axes and meters: our x, z, -y, divided by 1000.
 static inline void add_positions(Bytes *b) {
   for (int v = 0; v < 4; v++) {
     add_float(b, corners[v][0] / 1000);

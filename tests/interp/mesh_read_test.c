@@ -1,4 +1,4 @@
-// Meshes read from STL, OBJ and PLY: files written by hand here, and what is wrong with files.
+// Meshes read from STL, OBJ, and PLY: files written by hand, and errors in files.
 
 #include "tests/interp/mesh_read_support.h"
 
@@ -11,7 +11,7 @@ static void binary_stl_is_welded(void **state) {
   assert_int_equal(m->vertex_count, 4);
   assert_null(m->weld);
   assert_tetrahedron(m);
-  assert_tetrahedron(read_bytes("part.unknown", b)); // its length tells
+  assert_tetrahedron(read_bytes("part.unknown", b)); // its length identifies the format
   free(b.at);
 }
 
@@ -67,8 +67,8 @@ static void what_is_wrong_with_an_stl_is_told(void **state) {
 
 static void obj_has_polygons_and_numbers_from_the_end(void **state) {
   (void)state;
-  // A cube of side 2: quads, one concave octagon would not add anything; negative numbers, groups,
-  // a line that goes on, vertices with colors.
+  // A cube of side 2 from quads, with negative indices, groups, a continued line, and vertices with
+  // colors.
   CagMesh *m = read_text("cube.obj", "# a cube\nmtllib none.mtl\no cube\n"
                                      "v 0 0 0\nv 2 0 0 0.5 0.5 0.5\nv 2 2 0\nv 0 2 0\n"
                                      "v 0 0 2\r\nv 2 0 2\r\nv 2 2 2\r\nv 0 2 2\r\n"
@@ -84,7 +84,8 @@ static void obj_has_polygons_and_numbers_from_the_end(void **state) {
   cag_mesh_release(m);
 }
 
-// 3000 corners that jump about a circle: a fan, at once, and not what takes a triangulation hours.
+// 3000 corners that jump around a circle become a fan immediately, because a triangulation would
+// take hours.
 static void tangled_polygons_are_taken_as_fans(void **state) {
   (void)state;
   enum { CORNERS = 3000, JUMP = 1111 };
@@ -104,7 +105,7 @@ static void tangled_polygons_are_taken_as_fans(void **state) {
   CagMesh *m = read_bytes("a.obj", b);
   assert_int_equal(m->triangle_count, CORNERS - 2);
   cag_mesh_release(m);
-  // One without crossings has the area of the regular polygon.
+  // Without crossings, the polygon has the area of the regular one.
   m = read_bytes("a.obj", ring);
   assert_int_equal(m->triangle_count, CORNERS - 2);
   assert_true(fabs(cag_mesh_area(m) - CORNERS / 2.0 * sin(step)) < 1e-6);
@@ -126,7 +127,7 @@ static void obj_keeps_normals_and_parameters(void **state) {
   assert_int_equal(m->weld[4], 4);
   assert_int_equal(m->weld[5], 2);
   cag_mesh_release(m);
-  // Where a face says no normal, it is that of the face.
+  // If a face has no normal, it is computed from the face.
   m = read_text("a.obj",
                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1 3 4\n");
   assert_true(m->normals[3].x == 1 && m->normals[4].x == 1);
@@ -146,8 +147,8 @@ static void what_is_wrong_with_an_obj_is_told(void **state) {
   assert_text_fails("a.obj", "v 0 0 0\nv 0 0 0\nv 2 0 0\nf 1 2 3\n", "mesh-file-empty", "area");
 }
 
-// A large grid of quads with its vertices in any order, once as one mesh and once with each corner
-// told again for each face: the same points.
+// A large grid of quads with its vertices in any order, once as one mesh, and once with each corner
+// repeated for each face: the points are the same.
 static void many_corners_are_numbered_once(void **state) {
   (void)state;
   enum { N = 60 };
@@ -215,7 +216,7 @@ static void binary_ply_of_either_end_is_read(void **state) {
     assert_true(m->normals[2].z == 1);
     assert_true(m->uv[0] == 0.5 && m->uv[7] == 3);
     assert_tetrahedron(m);
-    for (size_t n = b.n - 1; n > 200; n -= 7) { // cut anywhere
+    for (size_t n = b.n - 1; n > 200; n -= 7) { // truncated anywhere
       Bytes cut = bytes_of(b.at, n);
       CagMeshFile f = file_of("a.ply", cut);
       CagMesh *none = NULL;
@@ -267,7 +268,7 @@ static void what_is_wrong_with_a_ply_is_told(void **state) {
                     "line 3");
 }
 
-// Fractions as counts would make no sense, and most types have two names.
+// Counts that are fractions would be meaningless. Most types have two names.
 static void counts_of_lists_in_a_ply_are_whole(void **state) {
   (void)state;
   static const char *const whole[] = {"char",   "int8",   "uchar", "uint8", "short", "int16",
@@ -291,6 +292,7 @@ static void counts_of_lists_in_a_ply_are_whole(void **state) {
   }
 }
 
+// Normals of a PLY need three numbers, and parameters need two.
 static void a_ply_may_lack_a_part_of_its_normals(void **state) {
   (void)state;
   static const struct {
@@ -317,15 +319,15 @@ static void a_ply_may_lack_a_part_of_its_normals(void **state) {
   }
 }
 
-// A normal of no length is replaced with that of the triangles around, weighted by their areas.
-// Where these cancel out, or their points are on one line, any normal is as good.
+// A normal of length 0 is replaced by that of the surrounding triangles, weighted by area. If these
+// cancel out, or their points are collinear, any normal is valid.
 static void normals_of_no_length_are_those_of_the_triangles(void **state) {
   (void)state;
   static const char head[] = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n"
                              "property float y\nproperty float z\nproperty float nx\n"
                              "property float ny\nproperty float nz\nelement face 2\n"
                              "property list uchar int vertex_indices\nend_header\n";
-  // Triangles of areas 4 and 6 / 2, in the planes z = 0 and y = 0, share an edge.
+  // Triangles of areas 4 and 6 / 2, in the planes z = 0 and y = 0, with a common edge.
   char text[600];
   snprintf(text, sizeof text, "%s%s", head,
            "0 0 0 0 0 0\n2 0 0 0 0 0\n0 4 0 0 0 0\n0 0 3 0 0 0\n9 9 9 3 0 4\n"

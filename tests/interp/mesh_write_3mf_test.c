@@ -1,8 +1,9 @@
-// Written 3MF files against the meshes, materials and scales they were made of.
+// Written 3MF files, compared with the meshes, materials, and scales of the scene.
 
 #include "mesh_write_support.h"
 
-// The third member of the archive, unpacked; the directory must tell the same of each.
+// The third member of the archive, unpacked. The directory must have the same data about each
+// member.
 static char *model_of(const char *b, size_t size) {
   char *out = NULL;
   const char *at = b, *end = b + size - 22;
@@ -50,7 +51,7 @@ static void threemf_has_every_corner(void **state) {
     size_t size, built = 0;
     char *b = bytes_of(s.parts, s.count, cag_export_3mf, &size), *xml = model_of(b, size);
     const char *at = xml;
-    // Materials in the order in which parts have them.
+    // Materials in the order of the parts that use them.
     const CagMaterial *const materials[] = {&s.materials[0], &s.materials[1], &s.materials[3],
                                             &s.materials[2]};
     for (int k = 0; k < 4; k++) {
@@ -134,7 +135,7 @@ static void threemf_has_every_corner(void **state) {
       if (!m->scale.kind) continue;
       snprintf(head, sizeof head, "<m:colorgroup id=\"%zu\">", s.count + 2 + i);
       p = strstr(xml, head);
-      assert_true(p && p < object); // a group stands before what refers to it
+      assert_true(p && p < object); // a group precedes the objects that refer to it
       for (int k = 0; k < 256; k++) {
         const CagColor c = cag_color_scale_at(
             &m->scale, m->scale.from + (m->scale.to - m->scale.from) * (k + 0.5) / 256);

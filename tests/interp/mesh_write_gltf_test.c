@@ -1,4 +1,4 @@
-// Written glTF files against the meshes, materials and scales they were made of.
+// Written glTF files, compared with the meshes, materials, and scales of the scene.
 
 #include "mesh_write_support.h"
 
@@ -18,7 +18,8 @@ static double element(const cJSON *o, const char *list, int i) {
   return cJSON_GetNumberValue(item(o, list, (size_t)i));
 }
 
-// The data of an accessor; SIZE_MAX for `kind` if there is none. Its view must be inside the data.
+// Returns the data of an accessor; `kind` is SIZE_MAX if there is none. Its view must be inside the
+// data.
 static const char *accessor(const cJSON *root, const char *bytes, const cJSON *of, const char *key,
                             size_t width, size_t *count) {
   const cJSON *a = item(root, "accessors", (size_t)number_of(of, key));
@@ -30,7 +31,7 @@ static const char *accessor(const cJSON *root, const char *bytes, const cJSON *o
   return bytes + (size_t)number_of(view, "byteOffset");
 }
 
-static CagTransform place_of(const cJSON *node) {
+static CagTransform node_transform(const cJSON *node) {
   CagTransform t = cag_transform_identity();
   if (cJSON_HasObjectItem(node, "rotation")) {
     const double x = element(node, "rotation", 0), y = element(node, "rotation", 1);
@@ -100,7 +101,7 @@ static void check_gltf(const Scene *s, const cJSON *root, const char *bytes, siz
     assert_int_equal((int)element(top, "children", node - 1), node);
     assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(found, "name")),
                         s->parts[i].name ? s->parts[i].name : "part");
-    const CagTransform place = place_of(found);
+    const CagTransform place = node_transform(found);
     const cJSON *primitive =
         item(item(root, "meshes", (size_t)number_of(found, "mesh")), "primitives", 0);
     const cJSON *attributes = cJSON_GetObjectItem(primitive, "attributes");
@@ -167,7 +168,7 @@ static void check_gltf(const Scene *s, const cJSON *root, const char *bytes, siz
       assert_string_equal(cJSON_GetStringValue(cJSON_GetArrayItem(extensions, k++)),
                           extension_names[e]);
   assert_int_equal(cJSON_GetArraySize(extensions), k);
-  // Views follow each other without a gap.
+  // Views are contiguous.
   const cJSON *view;
   size_t end = 0;
   cJSON_ArrayForEach(view, cJSON_GetObjectItem(root, "bufferViews")) {
@@ -200,13 +201,13 @@ static void gltf_has_every_corner(void **state) {
     const char *bytes = b + 28 + length;
     assert_int_equal(size, 28 + length + binary);
     check_gltf(&s, root, bytes, binary);
-    // Part 0, part 1 moved, and part 2 again share data; parts 0 and 2 differ in material.
+    // Part 0, part 1 (moved), and part 2 use the same data; parts 0 and 2 have different materials.
     assert_int_equal((int)number_of(item(root, "nodes", 1), "mesh"),
                      (int)number_of(item(root, "nodes", 2), "mesh"));
     const cJSON *first = item(item(root, "meshes", 0), "primitives", 0);
     assert_int_equal((int)number_of(first, "indices"),
                      (int)number_of(item(item(root, "meshes", 1), "primitives", 0), "indices"));
-    // The same data beside a file, and inside it.
+    // The same data in a separate file and inside the file.
     stem = "a b";
     size_t text_size;
     char *text = bytes_of(s.parts, s.count, export_gltf, &text_size);
@@ -248,7 +249,7 @@ static void gltf_has_every_corner(void **state) {
   }
 }
 
-// A scene without triangles has no data, and no name for it.
+// A scene without triangles has no data, and does not name a data file.
 static void an_empty_gltf_has_no_data(void **state) {
   (void)state;
   size_t size;
@@ -263,7 +264,7 @@ static void an_empty_gltf_has_no_data(void **state) {
   free(text);
 }
 
-// Normals without a length become Z, and those of another length have length 1.
+// Normals of length 0 become Z, and those of other lengths are normalized.
 static void gltf_normals_have_length_1(void **state) {
   (void)state;
   CagMesh *m;

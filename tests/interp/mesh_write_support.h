@@ -1,4 +1,4 @@
-// Random scenes of meshes, and the bytes that are written of them.
+// Random scenes of meshes, and the files written from them.
 
 #ifndef CAG_TESTS_INTERP_MESH_WRITE_SUPPORT_H
 #define CAG_TESTS_INTERP_MESH_WRITE_SUPPORT_H
@@ -31,9 +31,9 @@ static inline CagVec3 random_unit(void) {
   return cag_unit(v);
 }
 
-// Whole numbers, which single precision holds. Some vertices are an earlier one again, some of
-// these with the same normal, and some triangles have corners that single precision does not tell
-// apart.
+// Integer coordinates, which are exact in single precision. Some vertices repeat an earlier one,
+// some of these with the same normal. Some triangles have corners that single precision cannot
+// distinguish.
 static inline CagMesh *random_mesh(size_t vertices, size_t triangles, int features,
                                    bool shrinking) {
   CagMesh *m;
@@ -71,14 +71,15 @@ static inline CagMesh *random_mesh(size_t vertices, size_t triangles, int featur
   return m;
 }
 
-static inline bool same_place(const CagMesh *m, uint32_t a, uint32_t b) {
+static inline bool same_position(const CagMesh *m, uint32_t a, uint32_t b) {
   const CagVec3 p = m->positions[a], q = m->positions[b];
   return (float)p.x == (float)q.x && (float)p.y == (float)q.y && (float)p.z == (float)q.z;
 }
 
 static inline bool shrinks(const CagMesh *m, size_t t) {
   const uint32_t *k = m->triangles + 3 * t;
-  return same_place(m, k[0], k[1]) || same_place(m, k[1], k[2]) || same_place(m, k[2], k[0]);
+  return same_position(m, k[0], k[1]) || same_position(m, k[1], k[2]) ||
+         same_position(m, k[2], k[0]);
 }
 
 typedef struct Scene {
@@ -89,8 +90,8 @@ typedef struct Scene {
   size_t count;
 } Scene;
 
-// Parts with all combinations of what a mesh may have. Part 1 is part 0 moved, part 2 is part 0
-// again with another material, and part 8 has nothing that single precision leaves.
+// Parts with all combinations of optional data. Part 1 is part 0 moved, part 2 is part 0 with
+// another material, and part 8 is empty in single precision.
 static inline void random_scene(Scene *s, int round) {
   static char *const names[] = {"red paint", "glass", "red paint", ""};
   *s = (Scene){.count = PARTS};
@@ -118,7 +119,7 @@ static inline void random_scene(Scene *s, int round) {
       move = cag_transform_multiply(&move, &turn);
       OK(cag_mesh_transform(s->meshes[0], &move, &s->meshes[1], &err));
     } else if (i == 2) s->meshes[2] = cag_mesh_retain(s->meshes[0]);
-    else if (i == 6 && round == 2) // values by colors, in more than one batch
+    else if (i == 6 && round == 2) // values as colors, in more than one batch
       s->meshes[i] = random_mesh(4500, 4500, 2, false);
     else s->meshes[i] = random_mesh(n, triangles, features, i % 2 == 0);
     CagMesh *m = s->meshes[i];
@@ -160,7 +161,7 @@ static inline CagStatus export_gltf(const CagMeshPart *parts, size_t n, CagAtomi
   return cag_export_gltf(parts, n, stem, file, &data, err);
 }
 
-// With a zero behind it.
+// Terminated by NUL.
 static inline char *bytes_of(const CagMeshPart *parts, size_t n, Export *export, size_t *size) {
   CagError io;
   char *bytes, *text;

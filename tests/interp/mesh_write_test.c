@@ -1,4 +1,4 @@
-// Written STL, OBJ and PLY files, and meshes read back, against the meshes they were made of.
+// Written STL, OBJ, and PLY files, and meshes read back, compared with the original meshes.
 
 #include "mesh_write_support.h"
 
@@ -10,7 +10,7 @@ static void stl_has_every_triangle(void **state) {
   for (int round = 0; round < 9; round++) {
     Scene s;
     random_scene(&s, round);
-    if (round == 4) // without any that shrinks
+    if (round == 4) // without degenerate triangles
       s.count = 0;
     for (size_t i = 0; round == 4 && i < PARTS; i++)
       if (i % 2) s.parts[s.count++] = s.parts[i];
@@ -40,8 +40,8 @@ static void stl_has_every_triangle(void **state) {
   }
 }
 
-// Triangles whose squares leave single precision have unit normals as well, and only those without
-// an area have zeros. Each stands among ordinary ones.
+// Triangles whose squares overflow or underflow in single precision have unit normals, too; only
+// those without area have zeros. Each is between ordinary ones.
 static void stl_normals_have_length_1_at_any_size(void **state) {
   (void)state;
   static const double scales[] = {1e-30, 1e-12, 1e-9, 1e-6, 1e-3, 1, 1e3, 1e6, 1e8, 1e12, 1e30};
@@ -57,7 +57,7 @@ static void stl_normals_have_length_1_at_any_size(void **state) {
         m->positions[3 * k + j] = cag_vec3(c[axis], c[(axis + 1) % 3], c[(axis + 2) % 3]);
       }
     }
-    for (int j = 0; j < 3; j++) m->positions[3 * N + j] = cag_vec3(j, j, j); // on one line
+    for (int j = 0; j < 3; j++) m->positions[3 * N + j] = cag_vec3(j, j, j); // collinear
     for (uint32_t k = 0; k < 3 * N + 3; k++) m->triangles[k] = k;
     const CagMeshPart part = {"t", m, NULL};
     size_t size;
@@ -82,7 +82,7 @@ static void word_of(const char *name, char out[64]) {
     if (*c <= ' ') *c = '_';
 }
 
-// Reads "a/b/c", "a//c", "a/b" or "a"; what is missing is 0.
+// Reads "a/b/c", "a//c", "a/b" or "a"; missing numbers are 0.
 static const char *read_corner(const char *at, long out[3]) {
   char *end;
   out[1] = out[2] = 0;
@@ -177,7 +177,7 @@ static double srgb(double linear) {
   return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
 }
 
-// A metal has no diffuse color. Light that meets a dielectric square is reflected by Fresnel's
+// A metal has no diffuse color. At normal incidence, a dielectric reflects according to Fresnel's
 // formula. Phong's exponent is 2 / roughness^4 - 2, at most 1000.
 static void mtl_has_every_material_once(void **state) {
   (void)state;
@@ -222,8 +222,8 @@ static void mtl_has_every_material_once(void **state) {
 
 // --- PLY ---
 
-// The number, within its part, of the vertex in the file that stands for vertex v: one for each
-// normal of a point, in the order in which they come. *first: the vertex itself.
+// The number within its part of the vertex in the file that represents vertex v: one for each
+// normal of a point, in order of occurrence. *first is the vertex itself.
 static size_t number_in_ply(const CagMesh *m, size_t *kept, size_t n, size_t v) {
   for (size_t k = 0; k < n; k++) {
     const size_t u = kept[k];
@@ -344,13 +344,13 @@ static void what_was_written_is_read(void **state) {
           for (size_t j = 0; j < 3; j++) {
             const double off =
                 corner_off(m, m->triangles[3 * t + j], found, found->triangles[3 * n + j]);
-            // PLY has one place in the parameters for each normal of a point.
+            // PLY has only one parameter pair for each normal of a point.
             if (off > 2e-6 && !(k == 2 && m->weld))
               fail_msg("%s: a corner is %g off", formats[k].name, off);
           }
           n++;
         }
-        if (k == 0) // OBJ keeps triangles that single precision shrinks
+        if (k == 0) // OBJ keeps triangles that degenerate in single precision
           n = found->triangle_count;
         assert_int_equal(found->triangle_count, n);
         cag_mesh_release(found);

@@ -1,4 +1,4 @@
-// What the messages of frequent mistakes say: each names what was found, and what to write.
+// The messages for common mistakes: each names what was found and how to fix it.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +11,7 @@
 
 #include "cag.h"
 
-// The first error of a script that is run.
+// The first error of a script run.
 static CagErrorView first_error(CagSession **session, const char *script) {
   CagSessionOptions options;
   cag_session_options_init(&options);
@@ -40,7 +40,7 @@ static void a_line_that_begins_with_minus_is_explained(void **state) {
   expect("a = box(3)\n  - translate(box(1), [1, 1, 1])\nshow a", "E0150", "alone", help);
   expect("a = box(3)\n- box(1) - box(2)\nshow a", "E0150", "alone", help);
   expect("a = {\n  b = box(3)\n  b\n  - box(1)\n}\nshow a", "E0150", "not the last", help);
-  // The fix that the message names.
+  // The fix in the message.
   CagSession *s;
   const CagErrorView e = first_error(&s, "a = box(3) -\n  translate(box(1), [1, 1, 1])\nshow a\nb");
   assert_int_equal(e.line, 4);
@@ -59,7 +59,7 @@ static void braces_in_texts_are_explained(void **state) {
   expect("y = 1\nx = \"{y:.2f}\"", "E0167", "without a format", "text(y, digits: 2)");
 }
 
-// Functions that the checker does not know before the run.
+// Functions that the checker cannot know before the run.
 static void missing_arguments_are_named(void **state) {
   (void)state;
   expect("f(a, b, c = 3) = a + b + c\nprint [f][0](b: 2)", "E0302", "f needs an argument for `a`",
@@ -104,7 +104,7 @@ static void hidden_built_ins_are_mentioned(void **state) {
   expect("len = 4\nprint map([[1]], len)", "E0301", "expects a function", "`len` is defined here");
 }
 
-// A quarter of a circle of radius 1 is pi/2 long.
+// A quarter of a circle of radius 1 has length pi/2.
 static void lengths_beyond_a_curve_name_its_length(void **state) {
   (void)state;
   expect("print parameter_at_length(arc(1, 90deg..180deg), -1)", "E0310", "outside 0..1.5707963267",
@@ -118,7 +118,7 @@ static void a_circle_names_its_definitions(void **state) {
   expect("a = b\nb = a\nprint a", "E0311", "the value of `a` depends on itself: a -> b -> a", NULL);
   expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "depends on itself: b -> c -> a -> b",
          NULL);
-  // The message ends there.
+  // That is the end of the message.
   CagSession *s;
   const CagErrorView e = first_error(&s, "a = b\nb = a\nprint a");
   static const char end[] = "a -> b -> a";
@@ -126,7 +126,7 @@ static void a_circle_names_its_definitions(void **state) {
   cag_session_free(s);
 }
 
-// The carets stand below the argument that is wrong, not below the whole call.
+// The carets are below the wrong argument, not below the entire call.
 static void carets_stand_below_the_argument(void **state) {
   (void)state;
   CagSession *s;
@@ -141,11 +141,11 @@ static void carets_stand_below_the_argument(void **state) {
   cag_session_free(s);
 }
 
-// Messages of operators and other constructs for values of a wrong type.
+// Messages of operators and other constructs for values of the wrong type.
 static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
   (void)state;
   static const struct {
-    const char *script, *message, *help; // help is NULL if there is none
+    const char *script, *message, *help; // help may be NULL
   } rows[] = {
       {"print [1] + 30deg", " to the list [1] and the angle 30deg",
        "to add an element, write [...list, x]"},
@@ -260,8 +260,8 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// What the diagnostics of a failing script say, as text.
-static void all_said(const char *script, char *said, size_t size) {
+// The diagnostics of a failing script as text.
+static void all_diagnostics(const char *script, char *said, size_t size) {
   CagSession *s;
   first_error(&s, script);
   FILE *f = fmemopen(said, size, "w");
@@ -277,8 +277,8 @@ static size_t count_of(const char *text, const char *part) {
   return n;
 }
 
-// Of a long chain of calls the innermost six and the outermost four are told, and how many stand
-// between them.
+// For a long chain of calls, the innermost six and the outermost four are listed, and the number of
+// the others.
 static void chains_of_calls_are_told(void **state) {
   (void)state;
   for (size_t n = 0; n < 40; n++) {
@@ -286,8 +286,8 @@ static void chains_of_calls_are_told(void **state) {
     snprintf(script, sizeof script,
              "f(n) =\n  if n == 0 then 1 / n\n  else 1 + f(n - 1)\nprint f(%zu)", n);
     char said[8192];
-    all_said(script, said, sizeof said);
-    // Each but the call in `print` is one of f by f.
+    all_diagnostics(script, said, sizeof said);
+    // All except the call in `print` are calls of f by f.
     size_t skipped = 0;
     const char *omitted = strstr(said, "= ... ");
     if (omitted) assert_int_equal(sscanf(omitted, "= ... %zu more calls ...", &skipped), 1);
@@ -295,7 +295,7 @@ static void chains_of_calls_are_told(void **state) {
     assert_int_equal(count_of(said, "= called from test:4:7\n"), 1);
     assert_int_equal(inner + 1 + skipped, n + 1);
     assert_int_equal(skipped, n + 1 > 10 ? n + 1 - 10 : 0);
-    // Where they are left out: behind six of them.
+    // The gap is after six calls.
     if (omitted) {
       said[omitted - said] = 0;
       assert_int_equal(count_of(said, "= called from"), 6);
@@ -303,7 +303,7 @@ static void chains_of_calls_are_told(void **state) {
   }
 }
 
-// Calls in tail position leave no frame; the last sixteen are remembered.
+// Tail calls have no frame; the last sixteen are remembered.
 static void calls_in_tail_position_are_told(void **state) {
   (void)state;
   for (size_t n = 0; n < 40; n++) {
@@ -311,7 +311,7 @@ static void calls_in_tail_position_are_told(void **state) {
     snprintf(script, sizeof script,
              "f(n) =\n  if n == 0 then 1 / n\n  else f(n - 1)\nx = f(%zu) + 1\nprint x", n);
     char said[8192];
-    all_said(script, said, sizeof said);
+    all_diagnostics(script, said, sizeof said);
     size_t skipped = 0;
     const char *omitted = strstr(said, "= ... ");
     if (omitted)

@@ -83,7 +83,7 @@ typedef struct Answer {
   char type[32], text[256];
 } Answer;
 
-static void take(void *context, const char *text, const char *type) {
+static void store_answer(void *context, const char *text, const char *type) {
   Answer *a = context;
   snprintf(a->text, sizeof a->text, "%s", text);
   snprintf(a->type, sizeof a->type, "%s", type);
@@ -100,7 +100,7 @@ static bool names_type(CagTypes types, const char *name) {
   return false;
 }
 
-// Tests for the word nan that is not part of a longer word.
+// Whether the text contains the word nan, not as part of a longer word.
 static bool undefined(const char *text) {
   for (const char *s = strstr(text, "nan"); s; s = strstr(s + 1, "nan"))
     if ((s == text || !isalpha((unsigned char)s[-1])) && !isalpha((unsigned char)s[3])) return true;
@@ -115,11 +115,11 @@ static CagSession *quiet_session(void) {
   return cag_session_new(&options);
 }
 
-// Evaluates an expression. Returns a description of what is wrong with the outcome, or NULL.
+// Evaluates an expression. Returns a description of the error in the outcome, or NULL.
 static const char *evaluate(CagSession *s, const char *text, int *status, Answer *out) {
   CagErrorView e;
   *out = (Answer){"", ""};
-  *status = cag_session_input(s, text, strlen(text), take, out);
+  *status = cag_session_input(s, text, strlen(text), store_answer, out);
   if (*status == CAG_STATUS_OK) return undefined(out->text) ? "an undefined number" : NULL;
   if (cag_session_error_count(s) == 0) return "the script fails without an error";
   cag_session_error(s, 0, &e);
@@ -155,7 +155,7 @@ static void operators_join_the_types_that_the_checker_says(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// Constructs that take one value: values of all types but these are errors.
+// Constructs with one operand: values of all types except these are errors.
 static void other_forms_take_the_types_that_they_say(void **state) {
   (void)state;
   static const CagTypes numbers = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE);
@@ -214,7 +214,7 @@ static bool number_of(CagSession *s, const char *text, double *out) {
   return true;
 }
 
-// Formulas of t near PLACE, where none of them has a corner or a pole.
+// Functions of t near PLACE, where all of them are smooth.
 #define PLACE 0.4
 static const char *const formulas[] = {
     "t + 3",

@@ -1,6 +1,6 @@
-// PNG pictures: exposure, roll-off, the sRGB transfer, transparency, and files that are no PNG.
+// PNG pictures: exposure, roll-off, the sRGB transfer, transparency, and invalid files.
 //
-// Expected values come from the formula of IEC 61966-2-1 worked out by hand.
+// Expected values are computed by hand from the formula of IEC 61966-2-1.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,7 +31,7 @@ static int remove_file(void **state) {
   return unlink(path);
 }
 
-// A picture of one row, R = G = B = the values.
+// A picture of one row with R = G = B.
 static CagImage gray_row(const float *values, size_t n) {
   CagImage image;
   assert_true(cag_image_create(&image, n, 1, 3, NULL));
@@ -42,7 +42,7 @@ static CagImage gray_row(const float *values, size_t n) {
   return image;
 }
 
-// The bytes of the file as libpng's simple interface gives them, 8 bits RGBA; free them.
+// The file as decoded by libpng's simple interface to 8 bits RGBA; to be freed.
 static unsigned char *stored(size_t *width) {
   png_image png = {.version = PNG_IMAGE_VERSION};
   assert_true(png_image_begin_read_from_file(&png, path));
@@ -91,7 +91,7 @@ static void the_roll_off_is_smooth(void **state) {
   (void)state;
   const double h = 1e-6, s = CAG_PNG_SHOULDER;
   assert_true(cag_png_shoulder(s) == s);
-  // The slope is 1 on both sides, to the curvature 1 / 0.2 times h.
+  // The slope is 1 on both sides, up to the curvature 1 / 0.2 times h.
   assert_true(fabs((cag_png_shoulder(s + h) - s) / h - 1) < 10 * h);
   assert_true(cag_png_shoulder(INFINITY) == 1);
 }
@@ -118,7 +118,7 @@ static void sixteen_bits_come_back_as_light(void **state) {
   assert_true(cag_png_write(path, &image, &options, NULL, 0, NULL));
   assert_true(cag_png_read(path, &again, NULL));
   assert_int_equal(again.channel_count, 3);
-  // Half a step of 1/65535, times the decoder's slope, which is below 2.3.
+  // Half a step of 1/65535 times the decoder's slope, which is below 2.3.
   for (size_t i = 0; i < 256; i++)
     assert_true(fabsf(again.data[i] - light[i]) < 1.2f * 2.3f / 65535);
   cag_image_free(&image);
@@ -142,7 +142,7 @@ static void alpha_is_kept_and_colors_are_unmultiplied(void **state) {
   free(pixels);
   assert_true(cag_png_read(path, &again, NULL));
   assert_int_equal(again.channel_count, 4);
-  // A step of 1/255 in the coverage and half of one in the color.
+  // One step of 1/255 in the coverage, and half a step in the color.
   assert_true(fabsf(again.data[0] - 0.25f) < 0.005f);
   cag_image_free(&image);
   cag_image_free(&again);
@@ -188,7 +188,7 @@ static void bad_requests_and_files_are_errors(void **state) {
   cag_image_free(&image);
 }
 
-// Keywords that PNG does not allow are only warned of by the library.
+// The library only warns of keywords that PNG does not allow.
 static void texts_with_odd_keywords_do_no_harm(void **state) {
   (void)state;
   const float light[1] = {1};
@@ -224,7 +224,7 @@ static void put_chunk(FILE *f, const char *type, const void *data, size_t n) {
   for (int k = 24; k >= 0; k -= 8) fputc((int)(numbers[1] >> k & 255), f);
 }
 
-// Heads of files: a picture of too many pixels is refused before memory is taken for it.
+// File headers: a picture with too many pixels is rejected before memory is allocated.
 static void a_png_too_large_is_refused(void **state) {
   (void)state;
   static const struct {
@@ -257,7 +257,7 @@ static void a_png_too_large_is_refused(void **state) {
   }
 }
 
-// A disk that is full is met while rows are written, when there are more than the buffer holds.
+// A full disk is detected while rows are written, if they exceed the buffer.
 static void a_full_disk_is_told_under_way(void **state) {
   (void)state;
   enum { SIDE = 900 };

@@ -1,5 +1,5 @@
-// The objects of POV-Ray that shapes become, by the text of the scene: what the numbers must be
-// follows from the shape and from the manual of POV-Ray 3.7.
+// The POV-Ray objects for shapes, in the text of the scene. The expected numbers follow from the
+// shape and from the manual of POV-Ray 3.7.
 
 #include <ctype.h>
 
@@ -8,7 +8,7 @@
 #include "scene_fixture.h"
 #include "session_support.h"
 
-// The scene's text without comments, each run of white space one space.
+// The text of the scene without comments, with each run of white space as one space.
 static char *source_of(const char *script, CagPovOptions options) {
   CagSession *s = new_session();
   CagShownCounts counts;
@@ -40,7 +40,7 @@ static bool begins_number(const char *c) {
   return isdigit((unsigned char)*c) || (*c == '-' && isdigit((unsigned char)c[1]));
 }
 
-// Tests whether a text begins with another one, in which numbers may differ by rounding.
+// Whether a text begins with another one; numbers may differ by rounding.
 static bool begins_with(const char *text, const char *expected) {
   while (*expected) {
     if (begins_number(expected) && begins_number(text)) {
@@ -65,7 +65,7 @@ static const char *shown_part(const char *text) {
   return at ? at : text;
 }
 
-// `thing` is shown with a sun and a camera.
+// Shows `thing` with a sun and a camera.
 static void becomes(const char *thing, const char *expected) {
   char script[1000];
   snprintf(script, sizeof script,
@@ -130,13 +130,13 @@ static void surfaces_are_native_objects(void **state) {
        "quadric { <0.25, 0.5, 0.75>, <0.125, 0.1875, 0.0625>, <0, 0, 0>, -1 } object"},
       {"translate(ellipsoid(1, 1, 2), [3, 0, 0])",
        "quadric { <1, 1, 0.25>, <0, 0, 0>, <-6, 0, 0>, 8 } object"},
-      // Faces that cut nothing stand off by 1e-4 of the diagonal, sqrt(4^2 + 8^2 + 5^2).
+      // Faces that do not cut are at a distance of 1e-4 of the diagonal, sqrt(4^2 + 8^2 + 5^2).
       {"elliptic_cylinder(2, 4, within: -1..4)",
        "clipped_by { box { <-2.0010246951, -4.0010246951, -1>, <2.0010246951, 4.0010246951, 4> } "
        "}"},
       {"elliptic_cylinder(2, 4, within: -1..4)",
        "quadric { <0.25, 0.0625, 0>, <0, 0, 0>, <0, 0, 0>, -1 clipped_by { box {"},
-      // Quadratic and linear pieces are raised by the thirds of their legs.
+      // Quadratic and linear pieces are elevated, which divides their legs in thirds.
       {"revolve(bezier([[3, 0], [6, 3], [3, 9]]))",
        "lathe { bezier_spline 4, <3, 0>, <5, 2>, <5, 5>, <3, 9> sturm " ALONG_Z " }"},
       {"revolve(bezier([[3, 0], [6, 3], [5, 4], [3, 9]]))",
@@ -149,7 +149,7 @@ static void surfaces_are_native_objects(void **state) {
        "union { cone { <0, 0, 0>, 3, <0, 2, 0>, 5 open } cone { <0, 2, 0>, 5, <0, 6, 0>, 0 open "
        "} " ALONG_Z " }"},
       {"revolve(polyline([[1, 4], [3, 4]]))", "union { disc { <0, 4, 0>, y, 3, 1 } " ALONG_Z " }"},
-      // About X through z = -2: radii are heights above the axis.
+      // About X through z = -2, radii are heights above the axis.
       {"revolve(line([3, 0, 0], [4, 0, 5]), axis: X, through: [0, 0, -2])",
        "union { cone { <0, 3, 0>, 2, <0, 4, 0>, 7 open } matrix <0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, "
        "-2> }"},
@@ -195,7 +195,7 @@ static void curves_are_native_objects(void **state) {
        "<5, 5, 5>, line_radius } }"},
       {"line_style(polyline([[0, 0, 0], [5, 0, 0], [5, 5, 5]], closed: true), 0.5)",
        "cylinder { <5, 5, 5>, <0, 0, 0>, line_radius }"},
-      // Dashes and gaps of 2 along 10, and around a corner.
+      // Dashes and gaps of length 2 along 10, and around a corner.
       {"line_style(line([0, 0, 0], [10, 0, 0]), 0.5, dash: 2)",
        "union { cylinder { <0, 0, 0>, <2, 0, 0>, line_radius } cylinder { <4, 0, 0>, <6, 0, 0>, "
        "line_radius } "
@@ -209,8 +209,8 @@ static void curves_are_native_objects(void **state) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) becomes(cases[i][0], cases[i][1]);
 }
 
-// The corners of a straight extrusion: the matrix takes (x, 0, y) and (x, 1, y) of each point of
-// the prism to the ends.
+// The corners of a straight extrusion: the matrix maps (x, 0, y) and (x, 1, y) of each point of the
+// prism to the ends.
 static void prisms_have_their_corners(void **state) {
   (void)state;
   static const struct {
@@ -234,7 +234,7 @@ static void prisms_have_their_corners(void **state) {
     if (!at) fail_msg("%s", shown_part(text));
     at += strlen("prism { linear_sweep linear_spline 0, 1, ");
     const int n = (int)strtol(at, &at, 10);
-    assert_int_equal(n, cases[i].count + 1); // the first point again
+    assert_int_equal(n, cases[i].count + 1); // the first point is repeated
     double p[8][2], m[4][3];
     for (int k = 0; k < n; k++)
       for (int j = 0; j < 2; j++) p[k][j] = strtod(at += strcspn(at, "-0123456789"), &at);
@@ -279,7 +279,7 @@ static int read_rows(const char *text, const char *name, double out[][3]) {
   return n;
 }
 
-// A mesh far from the origin has its numbers about its own middle, and a translation.
+// The numbers of a mesh far from the origin are relative to its center, and there is a translation.
 static void meshes_have_their_corners(void **state) {
   (void)state;
   static double vertices[5000][3], normals[5000][3], faces[9000][3];
@@ -306,8 +306,8 @@ static void meshes_have_their_corners(void **state) {
       assert_int_equal((int)faces[k][j], order[k][j]);
     }
   free(text);
-  // Of a ball, all points lie on it, and normals are radii, but for those near the outline, which
-  // are turned a little.
+  // All points of a ball are on it, and normals are radii, except for those near the outline, which
+  // are slightly rotated.
   text = source_of("show named(tessellate(sphere(5)), \"thing\"), sun(-Z), camera([0, -60, 9])",
                    CAG_POV_OPTIONS_DEFAULT);
   const int n = read_rows(text, "vertex_vectors", vertices);
@@ -337,7 +337,7 @@ static void meshes_have_their_corners(void **state) {
   free(text);
 }
 
-// Bodies refract, sheets of the same material do not.
+// Solids refract, but open surfaces of the same material do not.
 static void materials_are_those_of_bodies_or_sheets(void **state) {
   (void)state;
   static const char *const things[] = {"m(box(20))", "m(rectangle(10, 20))",
@@ -382,8 +382,8 @@ static void quality_is_that_of_the_options(void **state) {
   }
 }
 
-// Indirect light is computed for final pictures, and for normal ones that have no other light than
-// the sky. The ambient part of materials stands in for it elsewhere.
+// Indirect light is computed for final pictures, and for normal ones with the sky as the only
+// light. In other pictures, the ambient part of materials replaces it.
 static void indirect_light_depends_on_quality_and_lights(void **state) {
   (void)state;
   static const struct {
@@ -407,9 +407,9 @@ static void indirect_light_depends_on_quality_and_lights(void **state) {
     }
 }
 
-// A light of strength 2 is twice as bright; a spot's falloff is half of its cone, the square of an
-// area light has its size and lies across its direction. A camera of 40 degrees at 16:9 has the
-// direction 16/9 / 2 / tan(20 degrees).
+// A light of strength 2 is twice as bright. A spot's falloff is half of its cone. The square of an
+// area light has its size and is perpendicular to its direction. A camera of 40 degrees at 16:9 has
+// the direction 16/9 / 2 / tan(20 degrees).
 static void lights_and_cameras_have_their_numbers(void **state) {
   (void)state;
   char *text =

@@ -1,5 +1,5 @@
-// POV-Ray source: the renderer takes it, what has a native object gets it, and pictures of it are
-// those that cameras, lights and meshes say they should be.
+// POV-Ray source: the renderer accepts it, shapes with native objects use them, and pictures agree
+// with cameras, lights, and meshes.
 
 #include "tests/interp/scene_fixture.h"
 
@@ -29,7 +29,7 @@ static char *export_text(const Fixture *f, bool meshes_only) {
 
 static bool have_povray(void) { return system("povray --version >/dev/null 2>&1") == 0; }
 
-// Runs the renderer without any configuration of the user; shows its words when it fails.
+// Runs the renderer without the user's configuration. Prints its messages if it fails.
 static void run_povray(const char *pov, const char *picture, int width, int height) {
   char command[512];
   snprintf(command, sizeof command,
@@ -243,7 +243,7 @@ static void every_kind_parses_and_native_objects_are_used(void **state) {
 
 // --- Dashes ---
 
-// How far along the corners a point of them lies.
+// The position of a point along the polyline.
 static double run_of(const CagVec3 *corners, size_t n, CagVec3 p) {
   double run = 0;
   for (size_t i = 0; i + 1 < n; i++) {
@@ -283,7 +283,7 @@ static void check_dashes(const CagVec3 *corners, size_t n, double dash) {
   fixture_end(&f);
 }
 
-// Also around corners.
+// Including around corners.
 static void every_other_dash_is_drawn(void **state) {
   (void)state;
   const CagVec3 corners[] = {{0, 0, 0}, {2.5, 0, 0}, {2.5, 4, 0}, {2.5, 4, 1.3}, {-3, 4, 1.3}};
@@ -292,7 +292,7 @@ static void every_other_dash_is_drawn(void **state) {
     for (size_t n = 2; n <= 5; n++) check_dashes(corners, n, dashes[i]);
 }
 
-// Root of the mean squared difference of all colors.
+// The root mean square difference of all colors.
 static double difference(const CagImage *a, const CagImage *b) {
   double sum = 0;
   size_t n = a->width * a->height;
@@ -304,7 +304,7 @@ static double difference(const CagImage *a, const CagImage *b) {
   return sqrt(sum / (3.0 * (double)n));
 }
 
-// Share of pixels that show something.
+// The fraction of pixels that show something.
 static double coverage(const CagImage *a) {
   size_t n = a->width * a->height, lit = 0;
   const float *p = plane_of(a, 1);
@@ -312,9 +312,9 @@ static double coverage(const CagImage *a) {
   return (double)lit / (double)n;
 }
 
-// A mesh within 0.02 mm of a shape whose pixel is 1.3 mm wide differs from it by shading only:
-// normals are the surface's own, interpolated. 0.015 allows for the silhouettes of a 15 degree
-// mesh.
+// A mesh within 0.02 mm of a shape whose pixels are 1.3 mm wide differs from it only in shading:
+// normals are the surface's own, interpolated. 0.015 allows for the silhouettes of a mesh with 15
+// degree steps.
 static void check_native_against_mesh(Fixture *f) {
   CagImage native, mesh;
   f->scene.tolerance = 0.02;
@@ -358,7 +358,7 @@ static void native_objects_look_like_their_meshes(void **state) {
   }
 }
 
-// Where the camera's frame says that a point appears, in pixels from the upper left.
+// Projects a point by the camera's frame to pixels from the upper left.
 static void project(const CagCamera *c, CagVec3 p, double *x, double *y) {
   CagTransform frame = cag_camera_frame(c), inverse;
   OK(cag_transform_inverse(&frame, &inverse, &err));
@@ -373,7 +373,7 @@ static void center_of_light(const CagImage *image, int channel, double *x, doubl
   double sum = 0;
   *x = *y = 0;
   for (size_t i = 0; i < image->width * image->height; i++) {
-    double v = p[i] > 0.02F ? 1 : 0; // the disc, whatever its shading
+    double v = p[i] > 0.02F ? 1 : 0; // the disk, regardless of its shading
     sum += v;
     *x += v * ((double)(i % image->width) + 0.5);
     *y += v * ((double)(i / image->width) + 0.5);
@@ -383,9 +383,9 @@ static void center_of_light(const CagImage *image, int channel, double *x, doubl
   *y /= sum;
 }
 
-// A red ball to the right (+X) and a green one above (+Z) of a camera that looks along +Y: the
-// picture is not mirrored, and each is where the frame of the camera puts it.
-static void check_places(bool orthographic) {
+// A red ball to the right (+X) and a green one above (+Z) of the center of a camera that looks
+// along +Y. The picture is not reflected, and both are at the projected positions.
+static void check_positions(bool orthographic) {
   static const CagVec3 red = {40, 0, -6}, green = {-22, 30, 28};
   Fixture f;
   CagImage image;
@@ -410,7 +410,8 @@ static void check_places(bool orthographic) {
   fixture_end(&f);
 }
 
-// The renderer's tolerances are absolute; a scene a thousand times smaller gives the same picture.
+// The renderer's tolerances are absolute, but a scene scaled down to a thousandth must look the
+// same.
 static void tiny_scenes_look_like_large_ones(void **state) {
   (void)state;
   if (!have_povray()) skip();
@@ -439,8 +440,8 @@ static void tiny_scenes_look_like_large_ones(void **state) {
 static void pictures_are_not_mirrored_and_match_the_camera(void **state) {
   (void)state;
   if (!have_povray()) skip();
-  check_places(false);
-  check_places(true);
+  check_positions(false);
+  check_positions(true);
 }
 
 static void a_white_face_square_to_a_sun_of_strength_1_is_white(void **state) {
@@ -453,7 +454,7 @@ static void a_white_face_square_to_a_sun_of_strength_1_is_white(void **state) {
   render(&f, false, &image);
   const float *p = plane_of(&image, 1);
   double middle = p[image.height / 2 * image.width + image.width / 2];
-  // 1, and the broad highlight of a chalk of index 1.2: at most 1.5 F (n + 2) / 8 with F = 0.0083.
+  // 1, plus the broad highlight of a chalk of index 1.2: at most 1.5 F (n + 2) / 8 with F = 0.0083.
   assert_true(middle >= 1 && middle < 1.02);
   cag_image_free(&image);
   fixture_end(&f);

@@ -1,5 +1,4 @@
-// The names of files in POV-Ray's scenes: which are let through, and the line of those that are
-// not.
+// File names in POV-Ray scenes: which ones are allowed, and the line of those that are not.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +20,7 @@ static unsigned random_below(unsigned n) {
   return (unsigned)(seed >> 33) % n;
 }
 
-// A scene of exactly its length, so that a look beyond its end is seen.
+// A scene of its exact length, so that out-of-bounds reads are detected.
 static bool passes(const char *scene) {
   const size_t n = strlen(scene);
   char *copy = malloc(n ? n : 1);
@@ -42,7 +41,7 @@ static void refused(const char *scene, const char *part) {
   if (!strstr(err.message, part)) fail_msg("%s: %s", scene, err.message);
 }
 
-// The rule, part by part.
+// The rule, component by component.
 static bool is_inside(const char *name) {
   if (!*name || *name == '/' || *name == '~' || strchr(name, '\\')) return false;
   for (const char *at = name;;) {
@@ -73,7 +72,7 @@ static void names_stay_in_the_folder(void **state) {
   assert_true(inside > 800 && outside > 800);
 }
 
-// Long names are cut in messages after 120 bytes.
+// Messages truncate names to 120 bytes.
 static void long_names_are_cut(void **state) {
   (void)state;
   for (size_t n = 119; n < 123; n++) {
@@ -107,7 +106,7 @@ static void words_before_names_are_known(void **state) {
     refused(SCENE("%s x", k), "computes");
     refused(SCENE("%s concat(\"a\", \"b\")", k), "computes");
     let_through(SCENE("%s internal 1", k));
-    let_through(SCENE("%s { \"/b\" }", k)); // names nothing: POV-Ray refuses it
+    let_through(SCENE("%s { \"/b\" }", k)); // not a file name: POV-Ray rejects it
     let_through(SCENE("%s", k));
     let_through(SCENE("%s_ \"/b\"", k));
     let_through(SCENE("x%s \"/b\"", k));
@@ -180,13 +179,13 @@ static void ends_of_scenes_are_seen(void **state) {
   refused("/***/png \"/a\"", "outside");
   let_through("/*/png \"/a\"");
   refused("1/png \"/a\"", "outside");
-  refused("\"\\\"\"png \"/a\"", "outside"); // a quote within a text
+  refused("\"\\\"\"png \"/a\"", "outside"); // a quote in a text
   let_through("\"\\\\\" png \"a\"");
   refused("\"\\\\\"png \"/a\"", "outside");
   let_through("\"\\\"png \"a\" /");
 }
 
-// Comments of both kinds, texts, and blanks in any order; the line is that of the name.
+// Comments of both kinds, texts, and blanks in any order. The line is that of the name.
 static void lines_are_counted(void **state) {
   (void)state;
   static const char *const pieces[] = {"\n",

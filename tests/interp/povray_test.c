@@ -1,7 +1,7 @@
-// Rendering with POV-Ray: a picture with known pixels, and every way in which a run can go wrong.
+// Rendering with POV-Ray: a picture with known pixels, and all failures of a run.
 //
-// Tests that need POV-Ray itself are skipped where it is not installed; the others put a small
-// shell script in its place.
+// Tests that need POV-Ray itself are skipped if it is not installed. The others replace it by a
+// small shell script.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,7 +26,7 @@
 static char folder[64], real_path[4096];
 static bool installed;
 
-// TMPDIR is a folder of our own, so that what a run leaves can be seen.
+// TMPDIR is a private folder, so that remaining files are detected.
 static int prepare(void **state) {
   (void)state;
   strcpy(folder, "/tmp/cag-test-XXXXXX");
@@ -39,7 +39,7 @@ static int prepare(void **state) {
 
 static int finish(void **state) {
   (void)state;
-  return rmdir(folder); // fails when a run left something
+  return rmdir(folder); // fails if a run left files
 }
 
 static size_t count_entries(void) {
@@ -59,12 +59,12 @@ static CagPovrayJob job_for(const char *scene) {
   "#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n"                                         \
   "camera { orthographic location <0,0,-5> right x*4/3 up y look_at 0 }\n"
 
-// An emitting square of (3, 0.1, 0.5) in front of (0.25, 0.5, 2): no light is computed, so the
-// pixels are these numbers.
+// An emitting square of (3, 0.1, 0.5) in front of (0.25, 0.5, 2). Light is not computed, so these
+// are the values of the pixels.
 static const char SQUARE[] = HEAD "background { rgb <0.25,0.5,2> }\n"
                                   "box { <-0.2,-0.2,0>,<0.2,0.2,1> pigment { rgb <3,0.1,0.5> }\n"
                                   "  finish { ambient 0 diffuse 0 emission 1 } }\n";
-// Parses for ever.
+// Parsing never ends.
 static const char ENDLESS[] = HEAD "#declare I = 0;\n#while (1) #declare I = I + 1; #end\n";
 
 typedef struct {
@@ -107,7 +107,7 @@ static void the_picture_is_linear_light(void **state) {
     for (int k = 0; k < 3; k++) {
       size_t c;
       assert_true(cag_image_find(&image, NAMES[k], &c));
-      // Half has 11 bits of precision.
+      // Half floats have 11 bits of precision.
       assert_true(fabsf(cag_image_plane(&image, c)[0] - BACK[k]) <= BACK[k] / 2048);
       assert_true(fabsf(cag_image_plane(&image, c)[24 * 64 + 32] - FRONT[k]) <= FRONT[k] / 2048);
     }
@@ -120,7 +120,7 @@ static void the_picture_is_linear_light(void **state) {
 static void alpha_is_written_when_asked_for(void **state) {
   (void)state;
   if (!installed) skip();
-  // POV-Ray 3.7 takes a background of `rgb` for opaque; `transmit 1` makes it a hole.
+  // POV-Ray 3.7 treats a background of `rgb` as opaque; with `transmit 1`, it is transparent.
   CagPovrayJob job = job_for(HEAD "background { rgbt <0,0,0,1> }\n"
                                   "sphere { 0, 0.2 pigment { rgb 1 } finish { emission 1 } }\n");
   job.alpha = true;
@@ -295,7 +295,7 @@ static void names_in_the_folder_and_other_texts_are_let_through(void **state) {
   }
 }
 
-// Puts a shell script in the place of POV-Ray: bin/povray in our folder.
+// A shell script that replaces POV-Ray: bin/povray in the private folder.
 static char fake_bin[80], fake_program[96];
 
 static void begin_fake(const char *script) {
@@ -313,7 +313,7 @@ static void end_fake(void) {
   rmdir(fake_bin);
 }
 
-// Puts it there while `job` runs, expects the job to fail, and gives the error.
+// Replaces POV-Ray by the script, runs `job`, which must fail, and returns the error.
 static CagError run_fake(const char *script, CagPovrayJob job) {
   char list[4300];
   const size_t files_before = count_entries();
@@ -378,7 +378,7 @@ static void a_povray_without_picture_is_told(void **state) {
   }
 }
 
-// The line of the scene that an error names, where it is of the scene and has it.
+// The line of the scene that an error refers to is shown, if it exists.
 static void the_line_of_an_error_is_shown(void **state) {
   (void)state;
   static const struct {
@@ -404,7 +404,7 @@ static void the_line_of_an_error_is_shown(void **state) {
   assert_int_equal(strspn(strrchr(err.message, '\n') + 1, "x"), 120); // of a long line
 }
 
-// The arguments of a job, as POV-Ray gets them.
+// The arguments that POV-Ray receives for a job.
 static void a_job_becomes_arguments(void **state) {
   (void)state;
   static const struct {
@@ -438,7 +438,7 @@ static void a_povray_that_is_no_program_is_told(void **state) {
 
 static void a_stubborn_group_is_killed_whole(void **state) {
   (void)state;
-  // Ignores every polite signal, closes its output, and has a child.
+  // Ignores all signals that can be ignored, closes its output, and has a child process.
   CagPovrayJob job = job_for(SQUARE);
   job.time_limit = 0.4;
   const double begun = seconds();
@@ -480,7 +480,7 @@ static void the_process_is_kept_in_its_folder(void **state) {
       "echo x >inside && echo works; exit 1",
       outside);
   CagPovrayJob job = job_for(SQUARE);
-  // Where the kernel has no Landlock the file is written, and there is nothing to test.
+  // If the kernel has no Landlock, the file is written, and there is nothing to test.
   CagError err = run_fake(script, job);
   assert_non_null(strstr(err.message, "works"));
   if (access(outside, F_OK) == 0) {
@@ -520,7 +520,7 @@ static void only_ordinary_files_stand_beside_the_scene(void **state) {
   fclose(f);
   const struct {
     CagPovrayFile file;
-    const char *says; // NULL: it is taken
+    const char *says; // NULL: accepted
   } ROWS[] = {
       {{"", source}, "cannot be the name"},
       {{".hidden", source}, "cannot be the name"},
@@ -547,7 +547,7 @@ static void only_ordinary_files_stand_beside_the_scene(void **state) {
 
 static void povray_is_found_on_any_path(void **state) {
   (void)state;
-  // bin/povray says its version; a folder of that name is passed over.
+  // bin/povray prints its version; a folder of that name is skipped.
   char other[80], other_program[96], real[4096], paths[4300];
   snprintf(other, sizeof other, "%s/other", folder);
   snprintf(other_program, sizeof other_program, "%s/povray", other);
@@ -629,10 +629,10 @@ static void a_temporary_folder_that_cannot_be_is_told(void **state) {
   begin_fake("echo POV-Ray 9.9.9; exit 1");
   memset(long_name + 1, 'n', 4500);
   const struct {
-    const char *folder, *says; // says: NULL where it is not needed
+    const char *folder, *says; // says: NULL if the folder is not needed
   } ROWS[] = {{"/nowhere/at/all", "No such file"},
               {long_name, "File name too long"},
-              {"relative", NULL}, // then it is /tmp
+              {"relative", NULL}, // /tmp is used instead
               {"", NULL}};
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(SQUARE);

@@ -1,5 +1,5 @@
-// Parts of rendering by themselves: what POV-Ray says, sizes and channels of pictures, and messages
-// that are cut.
+// Parts of rendering in isolation: output of POV-Ray, sizes and channels of pictures, and truncated
+// messages.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 #include "interp/render/image.h"
 #include "interp/render/povray_log.h"
 
-// --- What POV-Ray says ---
+// --- Output of POV-Ray ---
 
 typedef struct Seen {
   char text[256]; // "parsing 0, rendering 50"
@@ -48,7 +48,7 @@ static void progress_is_read_from_what_povray_says(void **state) {
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     Seen seen = {""};
     CagPovrayLog log = {.progress = note, .progress_user = &seen}, silent = {0};
-    // In pieces of any size.
+    // In chunks of any size.
     const size_t n = strlen(ROWS[i].said), first = n / 3;
     cag_povray_log_feed(&log, ROWS[i].said, first);
     cag_povray_log_feed(&log, ROWS[i].said + first, n - first);
@@ -58,7 +58,7 @@ static void progress_is_read_from_what_povray_says(void **state) {
   }
 }
 
-// What is shown when POV-Ray fails are its last words, without its progress.
+// If POV-Ray fails, the last lines of its output are shown, without the progress.
 static void progress_is_not_kept_as_last_words(void **state) {
   (void)state;
   static const char *const LINES[] = {"Parsing 11K tokens\r", "Rendered 1 of 4 pixels (25%)\r",
@@ -133,7 +133,7 @@ static void long_lines_and_many_lines_are_cut(void **state) {
   for (int i = 0; i < 1000; i++) cag_povray_log_feed(&log, "x\0y", 3); // without zero bytes
   cag_povray_log_feed(&log, "\n", 1);
   cag_povray_log_last(&log, last, sizeof last);
-  assert_int_equal(strlen(last), 101); // of a message, 100 bytes
+  assert_int_equal(strlen(last), 101); // 100 bytes of a message
   assert_int_equal(strspn(last + 1, "xy"), 100);
   for (char c = 'a'; c <= 'g'; c++) cag_povray_log_feed(&log, (char[]){c, '\n'}, 2);
   cag_povray_log_last(&log, last, sizeof last);
@@ -193,12 +193,12 @@ static void colors_are_r_g_b_or_y_or_a_single_channel(void **state) {
 
 // --- Messages ---
 
-// The number of bytes of the UTF-8 character that the lead byte begins.
+// The number of bytes of the UTF-8 character with this lead byte.
 static size_t character_bytes(unsigned char lead) {
   return lead < 0x80 ? 1 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
 }
 
-// A message is cut between characters, and loses no more than the one that does not fit.
+// A message is truncated between characters, and loses only the characters that do not fit.
 static void messages_are_cut_between_characters(void **state) {
   (void)state;
   static const char *const CHARACTERS[] = {"x", "é", "€", "😀"};

@@ -1,5 +1,5 @@
-// Scenes built from scripts: the names of what is shown, materials, cameras, lights, and what is
-// added where the script shows none.
+// Scenes built from scripts: names of shown shapes, materials, cameras, lights, and what is added
+// if the script does not show any.
 
 #include "interp/session/session.h"
 #include "scene_fixture.h"
@@ -36,8 +36,8 @@ static void is_point(CagVec3 p, double x, double y, double z) {
   "b = box(1)\nc = cylinder(2, 1)\nbs = [b, b]\npair = group(b, c)\nr = {lid: b}\n"                \
   "make(k) = box(k)\nsame(g) = g\nf = sphere_surface(3)\n"
 
-// A shape without a name of its own is named after the definition that it comes from, and after
-// its kind if there is none. A name that is taken gets a number.
+// A shape without a name of its own is named after the definition that it comes from, or after its
+// kind if there is none. If the name is in use, a number is appended.
 static void shapes_are_named_after_their_definitions(void **state) {
   (void)state;
   static const struct {
@@ -108,8 +108,8 @@ static void shapes_are_named_after_their_definitions(void **state) {
 
 // --- Materials ---
 
-// Shapes share a material if every property is the same. Each of these differs from the first in
-// one property, and the last is the first again.
+// Shapes share a material if all properties are equal. Each of these differs from the first in one
+// property, and the last one equals the first.
 static void equal_materials_are_one(void **state) {
   (void)state;
   CagSession *s =
@@ -136,8 +136,8 @@ static void equal_materials_are_one(void **state) {
   cag_session_free(s);
 }
 
-// A face has the material of the operand that it comes from. A material said about the whole holds
-// only where an operand has none.
+// A face has the material of the operand that it comes from. A material of the whole applies only
+// to operands without one.
 static void operands_keep_their_materials(void **state) {
   (void)state;
   CagSession *s = shown("a = color(box(4), [1, 0, 0])\nb = color(sphere(2), [0, 0, 1])\n"
@@ -165,7 +165,7 @@ static int compare_names(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// Names that the script gives are kept, also where they look like numbered ones.
+// Names given by the script are kept, even if they look like numbered ones.
 static void many_items_have_unique_names(void **state) {
   (void)state;
   CagSession *s = shown("point = circle(1)\n"
@@ -179,7 +179,7 @@ static void many_items_have_unique_names(void **state) {
   assert_string_equal(items[0].name, "point.7");
   assert_string_equal(items[1].name, "point");
   assert_string_equal(items[6].name, "point.6");
-  assert_string_equal(items[7].name, "point.8"); // the seventh is taken
+  assert_string_equal(items[7].name, "point.8"); // the name with 7 is in use
   assert_string_equal(items[100000].name, "point.100001");
   assert_string_equal(items[101000].name, "c999");
   assert_string_equal(items[102000].name, "c999.2");
@@ -192,7 +192,7 @@ static void many_items_have_unique_names(void **state) {
   cag_session_free(s);
 }
 
-// Materials that look the same are one, unless they have names of their own.
+// Equal materials are one, unless they have different names.
 static void many_materials_are_each_kept_once(void **state) {
   (void)state;
   CagSession *s = shown("c = circle(1)\n"
@@ -201,7 +201,7 @@ static void many_materials_are_each_kept_once(void **state) {
                         "show material(c, {roughness: 0.25}), material(c, {ior: 3}), c");
   const CagScene *scene = &s->scene;
   const CagItem *items = scene->items;
-  // Of the first list, the one with the usual roughness is ink. That of the last row is new.
+  // In the first list, the one with the default roughness is ink. The one in the last row is new.
   const size_t expected = 2 + 9999 + 10000 + 1;
   assert_true(scene->material_count >= expected && scene->material_count <= expected + 1); // floor
   for (size_t i = 0; i < 10000; i++) {
@@ -219,7 +219,7 @@ static void many_materials_are_each_kept_once(void **state) {
   cag_session_free(s);
 }
 
-// Labels of operands are numbers of the whole run; an item keeps only its own.
+// Labels of operands are numbers of the whole run. An item has only its own.
 static void items_keep_the_labels_of_their_own_operands(void **state) {
   (void)state;
   CagSession *s = shown("show [for i in 0..<30: color(box(2), [i/30, 0, 0]) -\n"
@@ -267,7 +267,7 @@ static void cameras_have_an_up_that_is_perpendicular_to_the_view(void **state) {
   }
 }
 
-// An orthographic camera without a width shows what a perspective one sees at the target.
+// An orthographic camera without a width shows what a perspective one shows at the target.
 static void an_orthographic_camera_has_the_width_of_its_angle(void **state) {
   (void)state;
   CagSession *s = shown("show box(1), camera([0, -10, 0], kind: \"orthographic\", fov: 90deg),\n"
@@ -313,7 +313,7 @@ static void lights_shine_where_the_script_says(void **state) {
   cag_session_free(s);
 }
 
-// The last sky, ground and background of a script hold.
+// The last sky, ground, and background of a script count.
 static void settings_of_a_scene(void **state) {
   (void)state;
   CagSession *s = shown("floor = ground(z: -2, size: 30)\n"
@@ -339,8 +339,8 @@ static size_t ground_count(const CagScene *s) {
   return n;
 }
 
-// The studio's floor stands in for a ground that is missing. A camera below would see nothing but
-// the floor, and a background has no horizon that a floor could meet.
+// The studio's floor replaces a missing ground. A camera below would see only the floor, and a
+// background has no horizon for a floor.
 static void the_studio_has_a_floor_if_it_is_seen_from_above(void **state) {
   (void)state;
   static const struct {
@@ -373,8 +373,8 @@ static void the_studio_has_a_floor_if_it_is_seen_from_above(void **state) {
   }
 }
 
-// The lights stand to the camera's left, right and back. A mirrored camera sees the mirror image,
-// so its lights are mirrored too.
+// The lights are to the left, to the right, and in the back, seen from the camera. A reflected
+// camera shows the mirror image, so its lights are reflected, too.
 static void studio_lights_stand_about_the_camera(void **state) {
   (void)state;
   CagSession *plain = shown("show box(2, centered: true), camera([0, -30, 10])");
@@ -388,7 +388,7 @@ static void studio_lights_stand_about_the_camera(void **state) {
   assert_true(plain->scene.lights[0].position.x < -1 && plain->scene.lights[0].position.y < -1);
   cag_session_free(plain);
   cag_session_free(mirror);
-  // If the camera's right is along Z, the camera counts as standing at -Y.
+  // If the camera's right is along Z, the camera is treated as being at -Y.
   CagSession *turned = shown("show box(2, centered: true), camera([0, -30, 0], up: X)");
   assert_true(turned->scene.lights[0].position.y < -1 && turned->scene.lights[2].position.y > 1);
   for (size_t i = 0; i < turned->scene.light_count; i++) {
@@ -400,7 +400,7 @@ static void studio_lights_stand_about_the_camera(void **state) {
 
 // --- Standard views ---
 
-// The extents of what is shown below, along the picture's right and down.
+// The extents of the shapes shown below, along the picture's right and down.
 #define WIDE 24.0 // x, -12..12
 #define DEEP 10.0 // y, -5..5
 #define TALL 16.0 // z, -8..8
@@ -431,13 +431,13 @@ static void standard_views_frame_all_kinds_of_items(void **state) {
       fail_msg("%s is %g wide, and %g is needed", c->name, c->width, needed);
     is_point(cag_unit(cag_sub(c->target, c->eye)), cases[i].view.x, cases[i].view.y,
              cases[i].view.z);
-    // The floor would hide everything from below.
+    // From below, the floor would hide everything.
     assert_int_equal(ground_count(&s->scene), i == 0 ? 1 : 0);
   }
   cag_session_free(s);
 }
 
-// A ground of the script stays, also from below.
+// A ground of the script is kept, even for a view from below.
 static void a_view_from_below_keeps_the_grounds_of_the_script(void **state) {
   (void)state;
   static const char *const scripts[] = {"show box(1), ground(-1)", "show ground(-1), box(1)",
@@ -470,7 +470,7 @@ static void a_scene_beyond_the_range_of_numbers_is_refused(void **state) {
   }
 }
 
-// Each value of a list is looked at.
+// All values of a list are checked.
 static void values_that_cannot_be_shown_are_refused(void **state) {
   (void)state;
   static const char *const scripts[] = {"show 5", "show [box(1), 5]", "show [[5], box(1)]",

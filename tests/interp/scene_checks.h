@@ -1,4 +1,4 @@
-// What the tests of scenes share: the scene of a script, nearness, and random vectors.
+// Helpers for the tests of scenes: the scene of a script, comparisons, and random vectors.
 
 #ifndef CAG_TESTS_INTERP_SCENE_CHECKS_H
 #define CAG_TESTS_INTERP_SCENE_CHECKS_H

@@ -1,4 +1,4 @@
-// Scenes built by hand, for the tests of exporters; and files to write them to.
+// Scenes built by hand for the tests of exporters, and temporary files.
 
 #ifndef CAG_TESTS_SCENE_FIXTURE_H
 #define CAG_TESTS_SCENE_FIXTURE_H
@@ -44,7 +44,8 @@ static inline CagMaterial plain_material(char *name, double r, double g, double 
                        .texture_scale = 10};
 }
 
-// Camera at -Y looking along +Y, one sun along the view, a black sky: nothing else shines.
+// A camera at -Y that looks along +Y, one sun along the view, and a black sky; there is no other
+// light.
 static inline void fixture_begin(Fixture *f) {
   memset(f, 0, sizeof *f);
   f->materials[0] = plain_material("white", 1, 1, 1);
@@ -76,7 +77,7 @@ static inline CagItem *fixture_item(Fixture *f, CagItemKind kind, char *name) {
   return item;
 }
 
-// Each takes over the reference.
+// Each takes ownership of the shape.
 static inline CagItem *fixture_solid(Fixture *f, char *name, CagSolid *s) {
   CagItem *item = fixture_item(f, CAG_ITEM_SOLID, name);
   item->as.solid = s;
@@ -112,7 +113,7 @@ static inline void fixture_end(Fixture *f) {
   }
 }
 
-// The file's bytes with a zero behind them; to be freed.
+// The contents of a file, terminated by NUL; to be freed.
 static inline char *read_whole(const char *path) {
   FILE *in = fopen(path, "rb");
   assert_non_null(in);
@@ -126,7 +127,8 @@ static inline char *read_whole(const char *path) {
   return text;
 }
 
-// A new folder for one test program's files, removed by fixture_folder_remove.
+// Creates a folder for the files of one test program. scene_fixture's fixture_folder_remove removes
+// it.
 static inline void fixture_folder(char path[64]) {
   strcpy(path, "/tmp/cag-test-XXXXXX");
   assert_non_null(mkdtemp(path));

@@ -1,11 +1,11 @@
-// What a scene is seen with: cameras that frame all items, lenses, and the studio.
+// Viewing of scenes: cameras that frame all items, lenses, and the studio.
 
 #include "interp/scene/scene.h"
 #include "scene_checks.h"
 
 // --- Framing ---
 
-// A camera's own directions, by its definition.
+// The axes of a camera, by its definition.
 typedef struct View {
   CagVec3 right, down, ahead;
 } View;
@@ -18,7 +18,7 @@ static View view_of(const CagCamera *c) {
   return v;
 }
 
-// How far points reach beyond the lines x = k z and x = -k z of the picture: negative inside.
+// How far points are beyond the lines x = k z and x = -k z of the picture's edges: negative inside.
 typedef struct Limits {
   double high, low;
 } Limits;
@@ -26,13 +26,13 @@ typedef struct Limits {
 static void reach(Limits *l, const CagCamera *c, CagVec3 axis, double k, CagVec3 p, double radius) {
   const CagVec3 d = cag_sub(p, c->eye);
   const double x = cag_dot(d, axis), z = cag_dot(d, cag_unit(cag_sub(c->target, c->eye)));
-  const double around = radius * sqrt(1 + k * k); // a ball touches the line
+  const double around = radius * sqrt(1 + k * k); // the line is tangent to the ball
   l->high = fmax(l->high, x - k * z + around);
   l->low = fmin(l->low, x + k * z - around);
 }
 
-// Boxes, balls and lines anywhere, seen in any direction: the picture is centered, 9% of half its
-// size stay free, and no nearer camera would do.
+// Boxes, balls, and lines at any location, seen from any direction: the picture is centered, with a
+// margin of 9% of half its size, and a closer camera would not show everything.
 static void everything_just_fits(void **state) {
   (void)state;
   seed = 21;
@@ -113,7 +113,7 @@ static void everything_just_fits(void **state) {
   }
 }
 
-// A single point is seen from twice the radius that a scene without a size has.
+// A single point is seen from twice the default radius of scenes without a size.
 static void a_point_is_seen_from_some_distance(void **state) {
   (void)state;
   Fixture f;
@@ -144,7 +144,8 @@ static void an_empty_scene_has_room_about_the_origin(void **state) {
   assert_true(cag_scene_radius(&none) == 1);
 }
 
-// The views by name, in order; a camera of each looks from its side with its own up.
+// The views in order of their names: the camera of each looks from its side, with its own up
+// direction.
 static void standard_views_have_their_directions(void **state) {
   (void)state;
   static const struct {
@@ -179,8 +180,8 @@ static void standard_views_have_their_directions(void **state) {
 
 // --- The studio ---
 
-// Where a light stands to the camera's right, up, and back to the camera, in radii.
-static CagVec3 place_of(const CagScene *s, size_t i) {
+// The position of a light along the camera's right, up, and backward directions, in radii.
+static CagVec3 light_position(const CagScene *s, size_t i) {
   const CagVec3 center = cag_lerp(s->bounds.min, s->bounds.max, 0.5);
   const double radius = cag_norm(cag_sub(s->bounds.max, s->bounds.min)) / 2;
   const CagVec3 d = cag_scaled(cag_sub(s->lights[i].position, center), 1 / radius);
@@ -188,8 +189,8 @@ static CagVec3 place_of(const CagScene *s, size_t i) {
   return cag_vec3(cag_dot(d, right), d.z, cag_dot(d, back));
 }
 
-// A warm key light from the camera's upper left, a dim cool fill from its right, and a rim light
-// from behind. They shine at the center and turn and grow with the scene and its camera.
+// A warm key light from the camera's upper left, a dim cool fill light from its right, and a rim
+// light from behind. They shine at the center, and rotate and scale with the scene and its camera.
 static void studio_lights_go_with_the_camera_and_the_scene(void **state) {
   (void)state;
   static const char *const scripts[] = {
@@ -207,7 +208,7 @@ static void studio_lights_go_with_the_camera_and_the_scene(void **state) {
       const CagVec3 center = cag_lerp(s->bounds.min, s->bounds.max, 0.5);
       assert_int_equal(l->kind, CAG_LIGHT_AREA);
       is_point(l->direction, cag_unit(cag_sub(center, l->position)), "direction");
-      const CagVec3 p = place_of(s, i);
+      const CagVec3 p = light_position(s, i);
       if (k == 0) first[i] = p;
       is_point(p, first[i], "place");
       assert_true(cag_norm(p) > 2 && l->size > radius && l->size < 4 * radius);
@@ -223,8 +224,8 @@ static void studio_lights_go_with_the_camera_and_the_scene(void **state) {
   }
 }
 
-// The floor is as far below as half a thousandth of the radius, at most 1.5 thousandths of a
-// millimeter, and at least 2e-5 of the radius. It is matte, and its tone that of the horizon.
+// The floor is half a thousandth of the radius below the scene, but at most 1.5 thousandths of a
+// millimeter, and at least 2e-5 of the radius. It is matte, and has the color of the horizon.
 static void the_floor_lies_close_below(void **state) {
   (void)state;
   static const double sides[] = {0.1, 2, 20, 50, 1000};
@@ -268,7 +269,7 @@ static void flat_scenes_lie_on_paper(void **state) {
   session = shown("show rectangle(3, 2), background([0.25, 0.5, 1])");
   assert_true(session->scene.background.r == 0.25);
   cag_session_free(session);
-  // A thousandth of its width is not flat.
+  // A thickness of a thousandth of the width is not flat.
   session = shown("show box([1, 1, 0.001])");
   assert_false(session->scene.cameras[0].orthographic);
   is_point(cag_unit(cag_sub(session->scene.cameras[0].eye, session->scene.cameras[0].target)),
@@ -276,7 +277,7 @@ static void flat_scenes_lie_on_paper(void **state) {
   cag_session_free(session);
 }
 
-// Empty shapes are taken out of the items, whatever stands before and behind them.
+// Empty shapes are removed from the items, wherever they are in the list.
 static void empty_shapes_are_set_aside(void **state) {
   (void)state;
   CagSession *session =
@@ -290,17 +291,17 @@ static void empty_shapes_are_set_aside(void **state) {
   is_point(s->bounds.min, cag_vec3(-3, -3, -3), "least");
   is_point(s->bounds.max, cag_vec3(3, 3, 3), "most");
   cag_session_free(session);
-  // Robots are shown at home.
+  // Robots are shown in their home position.
   session = shown("show robot([revolute(a: 300), revolute(a: 100)]), sun(-Z)");
   assert_true(session->scene.item_count > 0);
   is_near(session->scene.bounds.max.x, 400, 40, "the end of the arm");
   cag_session_free(session);
-  // Nor is a region without a width in x empty.
+  // A region without extent in x is not empty.
   session = shown("show rotate(rectangle(2, 3), Y, 90deg), translate(box(1), [4, 0, 0])");
   is_point(session->scene.bounds.min, cag_vec3(0, -1.5, -1), "least");
   is_point(session->scene.bounds.max, cag_vec3(5, 1.5, 1), "most");
   cag_session_free(session);
-  // A line that has no width in x is not empty.
+  // A line without extent in x is not empty.
   session = shown("show box(1), line([5, 0, 0], [5, 7, 8])");
   is_point(session->scene.bounds.max, cag_vec3(5, 7, 8), "most");
   cag_session_free(session);
@@ -314,7 +315,7 @@ static void lenses_have_an_aperture(void **state) {
   assert_false(cag_camera_has_lens(&(CagCamera){.aperture = 1, .orthographic = true}));
 }
 
-// Lines that say no width are a part of the diagonal of the scene.
+// The default width of lines is a fraction of the diagonal of the scene.
 
 int main(void) {
   const struct CMUnitTest tests[] = {

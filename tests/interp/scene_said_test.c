@@ -1,16 +1,16 @@
-// What is said of shapes and of the groups around them, by random scripts and a model of the rules:
-// what is said nearer to the shape holds; a color alone leaves the other properties to what is said
-// further out, and a material without a color takes the color that is.
+// Attributes of shapes and of the groups around them, in random scripts, compared with a model of
+// the rules: the innermost attribute wins. A color alone leaves the other properties to enclosing
+// groups, and a material without a color gets the color of an enclosing group.
 
 #include "interp/session/session.h"
 #include "scene_fixture.h"
 #include "session_support.h"
 #include "tests/geom/random.h"
 
-// What holds of one shape, or was said of one group. -1: nothing.
+// The attributes of one shape or group. -1: not set.
 typedef struct Said {
   bool material;
-  double color, roughness, metallic; // the color's red part
+  double color, roughness, metallic; // the red component of the color
   double tolerance, radius, dash;
   bool style, hidden;
   char name[8];
@@ -44,8 +44,8 @@ static void combine(Said *inner, const Said *outer) {
 
 static int below(int n) { return (int)uniform(0, n); }
 
-// Says something more of the shape or group: appends it to the script.
-static void say(char *script, Said *holds) {
+// Sets another attribute of the shape or group, by appending to the script.
+static void set_attribute(char *script, Said *holds) {
   Said more = nothing;
   char text[120];
   const int kind = below(12);
@@ -114,7 +114,7 @@ static void what_is_said_nearer_holds(void **state) {
       Said group = nothing;
       const int sayings = below(4);
       if (level > 0) strcat(script, " |> group()");
-      for (int k = 0; k < sayings; k++) say(script, level == 0 ? &holds : &group);
+      for (int k = 0; k < sayings; k++) set_attribute(script, level == 0 ? &holds : &group);
       if (level > 0) combine(&holds, &group);
     }
     strcat(script, "]: g]");

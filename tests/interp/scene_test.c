@@ -3,7 +3,7 @@
 #include "interp/scene/scene.h"
 #include "scene_fixture.h"
 
-// A tube has twelve sides. This is the area of its section divided by r^2.
+// A tube has twelve sides. SECTION is the area of its section divided by r^2.
 #define SECTION (6 * sin(M_PI / 6))
 
 static CagCurve *polyline(const CagVec3 *p, size_t n, bool closed) {
@@ -12,7 +12,7 @@ static CagCurve *polyline(const CagVec3 *p, size_t n, bool closed) {
   return c;
 }
 
-// The mesh of an item with one curve. NULL with the reason if making it fails.
+// Returns the mesh of an item with one curve, or NULL with the reason.
 static CagMesh *tube_of(CagCurve *c, double radius, double dash, size_t most, CagError *err) {
   Fixture f;
   CagMesh *m = NULL;
@@ -43,8 +43,8 @@ static void a_line_is_a_prism_along_it(void **state) {
   is_volume(polyline(p, 2, false), 2, 0, 50 * 4 * SECTION, 1e-9);
 }
 
-// A length of 90 with dashes of 10 has nine steps, and five of them are drawn. A length of 95 has
-// the same, each slightly longer. If three steps do not fit, the whole line is drawn.
+// A length of 90 with dashes of 10 has nine steps, of which five are drawn. A length of 95 has the
+// same number of steps, each slightly longer. If three steps do not fit, the whole line is drawn.
 static void dashes_fill_a_line_from_end_to_end(void **state) {
   (void)state;
   const CagVec3 even[] = {{0, 0, 0}, {20, 0, 0}, {90, 0, 0}}, odd[] = {{0, 0, 0}, {95, 0, 0}};
@@ -53,8 +53,8 @@ static void dashes_fill_a_line_from_end_to_end(void **state) {
   is_volume(polyline(odd, 2, false), 1, 40, 95 * SECTION, 1e-9);
 }
 
-// A circle is sampled as chords. The length of its tube is that of the chords, except at the turns
-// between them, where sections are not perpendicular to the chord.
+// A circle is approximated by chords. The length of its tube is that of the chords, except at the
+// corners between them, where sections are not perpendicular to the chord.
 static void dashes_of_a_closed_curve_are_as_many_as_gaps(void **state) {
   (void)state;
   CagCurve *c;
@@ -76,10 +76,10 @@ static double ball_volume(void) {
   return v;
 }
 
-// What a corner of 90 degrees adds to two tubes of radius 1 that end at it. A wedge in three steps
-// of 30 degrees fills the outer side: each step adds sin(30 degrees) / 2 times the integral of the
-// squared width of half a section. The bisecting plane cuts both tubes on the inner side: each
-// loses the first moment of that half times tan(45 degrees).
+// The volume that a corner of 90 degrees adds to two tubes of radius 1 that end at it. A wedge in
+// three steps of 30 degrees fills the outer side: each step adds sin(30 degrees) / 2 times the
+// integral of the squared width of half a section. The bisecting plane cuts both tubes on the inner
+// side: each loses the first moment of that half times tan(45 degrees).
 static double corner_volume(void) {
   double moment = 0, squares = 0;
   for (int k = -3; k < 3; k++) {
@@ -100,7 +100,7 @@ static void corners_are_filled_by_wedges(void **state) {
   is_volume(polyline(open, 3, false), 1, 0, 200 * SECTION + corner, 1e-6);
 }
 
-// The tubes end 0.03 and 0.05 of the radius before the center of the ball.
+// The tubes end at distances of 0.03 and 0.05 of the radius before the center of the ball.
 static void a_path_that_turns_back_has_a_ball(void **state) {
   (void)state;
   const CagVec3 p[] = {{0, 0, 0}, {100, 0, 0}, {50, 0, 0}};
@@ -148,7 +148,7 @@ static CagMesh *two_triangles(bool labels) {
   return m;
 }
 
-// A mesh whose coordinates have overflowed cannot be written.
+// A mesh with infinite coordinates cannot be written.
 static void meshes_without_finite_corners_are_refused(void **state) {
   (void)state;
   for (int axis = 0; axis < 4; axis++) {

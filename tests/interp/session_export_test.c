@@ -1,4 +1,4 @@
-// Files that exports write beside one another, what they name, and what is told.
+// Files that exports write next to each other, their names, and messages.
 
 #include <dirent.h>
 #include <math.h>
@@ -29,7 +29,7 @@ static char *text_of(const char *name) {
 
 static bool is_there(const char *name) { return access(path_of(name), F_OK) == 0; }
 
-// How many files of a folder end so.
+// Counts the files in a folder with an extension.
 static int count_files(const char *in, const char *ending) {
   DIR *d = opendir(path_of(in));
   int n = 0;
@@ -83,16 +83,16 @@ static void materials_lie_beside(void **state) {
     exported("show color(box(1), \"red\")", cases[i].path, cases[i].format);
     assert_non_null(strstr(text_of(cases[i].path), cases[i].line));
     assert_non_null(strstr(text_of(cases[i].beside), "newmtl"));
-    // The whole path as well, which has a folder.
+    // Also with a full path, which has a folder.
     exported("show color(box(1), \"red\")", path_of(cases[i].path), cases[i].format);
     assert_non_null(strstr(text_of(cases[i].path), cases[i].line));
   }
 }
 
-// The data of a .gltf file has a name of its content; the former one goes when another comes.
+// The data file of a .gltf file is named by its content. When it changes, the old file is removed.
 static void data_of_gltf_is_renewed(void **state) {
   (void)state;
-  // The first is small, and the other's JSON is longer than what is read of its end.
+  // The first is small. The JSON of the other is longer than the part that is read from its end.
   static const char *const scenes[] = {"show box(1)", "show [for i in 0..<60: box(i + 1)]",
                                        "show box(2)", "show box(2)"};
   static const char *const paths[] = {"g.gltf", "sub/g.gltf"};
@@ -119,7 +119,7 @@ static void data_of_gltf_is_renewed(void **state) {
   }
 }
 
-// Data of files that are not ours stays, whatever their JSON names.
+// Data files of other programs are kept, regardless of the contents of their JSON.
 static void data_of_others_stays(void **state) {
   (void)state;
   static const char *const names[] = {"foreign.bin", "h-0123456789abcdeg.bin",
@@ -136,7 +136,7 @@ static void data_of_others_stays(void **state) {
     exported("show box(1)", "other/h.gltf", NULL);
     assert_true(is_there(path));
   }
-  // One that is: its stem is that of the file.
+  // A data file of this program: its stem is that of the file.
   FILE *f = fopen("other/h.gltf", "w");
   fprintf(f, "{\"buffers\":[{\"byteLength\":0,\"uri\":\"h-0123456789abcdef.bin\"}]}");
   fclose(f);
@@ -153,29 +153,29 @@ static void links_of_urdf_have_meshes_beside(void **state) {
   assert_int_equal(count_files("r_meshes", ".stl") + count_files("r_meshes", ".obj"), 1);
   assert_non_null(strstr(text_of("r.urdf"), "\"r_meshes/"));
   exported(text, "robots/r.urdf", NULL);
-  exported(text, "robots/r.urdf", NULL); // the folder may be there
+  exported(text, "robots/r.urdf", NULL); // the folder may exist
   assert_int_equal(count_files("robots/r_meshes", ".stl") + count_files("robots/r_meshes", ".obj"),
                    1);
   assert_non_null(strstr(text_of("robots/r.urdf"), "\"r_meshes/"));
   assert_null(strstr(text_of("robots/r.urdf"), "robots/"));
-  // A robot without shapes gets no folder of meshes.
+  // A robot without shapes does not have a folder of meshes.
   exported("show robot([revolute(a: 300)])", "bare.urdf", NULL);
   assert_false(is_there("bare_meshes"));
-  // A file in the folder's place.
+  // A file with the name of the folder.
   fclose(fopen("s_meshes", "w"));
   assert_int_equal(export_as(session_options(), text, "s.urdf", NULL), CAG_STATUS_FILE);
   assert_false(is_there("s.urdf"));
   assert_int_equal(export_as(session_options(), text, "-", "urdf"), CAG_STATUS_USAGE);
 }
 
-// How often a text occurs.
+// Counts the occurrences of a text.
 static int times(const char *text, const char *part) {
   int n = 0;
   for (const char *at = text; (at = strstr(at, part)); at++) n++;
   return n;
 }
 
-// Names of links and materials have letters, digits, - . and _ alone, and each is of one thing.
+// Names of links and materials contain only letters, digits, - . and _, and are unique.
 static void names_of_urdf_are_plain_and_different(void **state) {
   (void)state;
   static const struct {
@@ -203,12 +203,13 @@ static void names_of_urdf_are_plain_and_different(void **state) {
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     snprintf(part, sizeof part, "<link name=\"%s\">", names[i].written);
     if (times(urdf, part) != 1) fail_msg("%s: %d times", part, times(urdf, part));
-    // Files whose names differ in the size of letters alone might be the same.
+    // File names that differ only in case might be the same file.
     snprintf(part, sizeof part, "filename=\"names_meshes/%s%s.stl\"", names[i].written,
              i == 9 ? "_2" : "");
     if (times(urdf, part) != 2) fail_msg("%s: %d times", part, times(urdf, part));
   }
-  // More materials than there is room for at first: of one name and other colors, and the same.
+  // More materials than the initial capacity: with the same name and different colors, and equal
+  // ones.
   snprintf(
       script, sizeof script,
       "m(n, c) = material(cone(9, 3), {name: n, color: c})\n"
@@ -268,7 +269,7 @@ static void approximations_are_told(void **state) {
   assert_null(strstr(told, "plain"));
 }
 
-// A limit of exactly the triangles of all parts is enough, and one less is not.
+// A limit equal to the number of triangles of all parts is accepted, and one less is not.
 static void triangles_of_all_parts_count(void **state) {
   (void)state;
   static const char text[] = "t(z) = mesh([[0, 0, z], [1, 0, z], [0, 1, z]], [[0, 1, 2]])\n"
@@ -281,7 +282,7 @@ static void triangles_of_all_parts_count(void **state) {
   }
 }
 
-// However many parts are open, the error that follows is told.
+// However many parts are open, a subsequent error is still reported.
 static void warnings_leave_room_for_an_error(void **state) {
   (void)state;
   enum { PARTS = 300 };
@@ -307,7 +308,7 @@ static void warnings_leave_room_for_an_error(void **state) {
   }
 }
 
-// Lines are for pictures, unless nothing else is shown; grounds always.
+// Lines are exported only to pictures, unless nothing else is shown. Grounds are always exported.
 static void lines_alone_are_tubes(void **state) {
   (void)state;
   static const struct {

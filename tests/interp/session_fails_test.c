@@ -1,4 +1,4 @@
-// The status and the reason of what a session refuses: pictures, formats, cameras, and limits.
+// The status and reason of rejected requests: pictures, formats, cameras, and limits.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -66,7 +66,8 @@ static void options_that_a_picture_cannot_have(void **state) {
   }
 }
 
-// Regions that touch the edges of the picture are let through: what fails is the missing renderer.
+// Regions that touch the edges of the picture are valid; the failure is due to the missing
+// renderer.
 static void regions_up_to_the_edges_are_good(void **state) {
   (void)state;
   static const CagRenderRegion regions[] = {
@@ -91,7 +92,7 @@ static void regions_up_to_the_edges_are_good(void **state) {
   free(path);
 }
 
-// An unknown camera: the message suggests the nearest name, or lists the cameras.
+// For an unknown camera, the message suggests the closest name, or lists the cameras.
 static void cameras_are_suggested(void **state) {
   (void)state;
   for (int n = 1; n < 150; n = 2 * n + 5) {
@@ -107,7 +108,7 @@ static void cameras_are_suggested(void **state) {
         {"zzzzzz",
          "the scene has `place0`; top, bottom, front, back, left, right, and iso always work"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-      // Of more cameras than are compared the standard views are not looked at.
+      // If there are too many cameras to compare, the standard views are not considered.
       if (n > 57 && (i == 1 || i == 2)) continue;
       CagSession *s = run(NULL, text, CAG_STATUS_OK);
       CagRenderOptions o;

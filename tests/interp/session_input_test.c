@@ -1,4 +1,4 @@
-// Inputs of an interactive session: names that are defined again, their texts, documents, members.
+// Inputs of an interactive session: redefined names, their source, documentation, and members.
 
 #include <stdlib.h>
 
@@ -20,7 +20,7 @@ static void input(CagSession *s, const char *text) {
   }
 }
 
-// Each name is the one before and 1 more; those that follow a name that is defined again follow it.
+// Each name is the previous one plus 1. Names that depend on a redefined name are updated.
 static void many_names_follow_one_another(void **state) {
   (void)state;
   enum { N = 150 };
@@ -112,7 +112,7 @@ static void documents_of_names(void **state) {
 
 static char given[400];
 
-static void give_name(void *context, const char *name) {
+static void append_name(void *context, const char *name) {
   (void)context;
   strcat(given, name);
   strcat(given, " ");
@@ -127,7 +127,7 @@ static void members_are_those_of_the_value(void **state) {
   input(s, "p = {width: 3, depth: {a: 1, b: 2}}; r = 0..3; import std.materials as mat");
   for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
     given[0] = 0;
-    cag_session_members(s, members[i][0], give_name, NULL);
+    cag_session_members(s, members[i][0], append_name, NULL);
     if (strcmp(given, members[i][1]) != 0) fail_msg("%s: %s", members[i][0], given);
     assert_int_equal(cag_session_error_count(s), 0);
   }
@@ -166,7 +166,7 @@ static void what_is_hidden_is_shown_no_more(void **state) {
   cag_session_free(s);
 }
 
-// Shows are evaluated again with the definitions that hold now.
+// Shows are evaluated again with the current definitions.
 static void shows_follow_names_that_are_defined_again(void **state) {
   (void)state;
   CagSession *s = new_session();
@@ -176,7 +176,7 @@ static void shows_follow_names_that_are_defined_again(void **state) {
   assert_int_equal(s->vm->shown_count, 1);
   input(s, "n = -3");
   assert_int_equal(cag_session_build_scene(s), CAG_STATUS_SCRIPT);
-  assert_int_equal(s->diagnostics.count, 1); // the box alone, not that nothing is shown
+  assert_int_equal(s->diagnostics.count, 1); // only the box, not the missing scene
   assert_non_null(strstr(s->diagnostics.items[0].message, "box"));
   input(s, "n = 4");
   assert_int_equal(cag_session_build_scene(s), CAG_STATUS_OK);

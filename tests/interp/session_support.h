@@ -1,4 +1,4 @@
-// Sessions for tests of the C interface: what they print goes to standard error.
+// Sessions for tests of the C interface; their output goes to standard error.
 
 #ifndef CAG_TESTS_SESSION_SUPPORT_H
 #define CAG_TESTS_SESSION_SUPPORT_H

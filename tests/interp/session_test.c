@@ -1,5 +1,5 @@
-// The C interface against calls that make no sense: reentry from callbacks, and elements that do
-// not exist; and what they tell of built-ins.
+// The C interface with invalid calls: reentrant calls from callbacks, and elements that do not
+// exist. Also the documentation of built-ins.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,7 +31,7 @@ static void no_name(void *context, const char *name) {
   r->names++;
 }
 
-// Every call that needs the machine, made from within another one.
+// Calls everything that needs the machine, from within another call.
 static void call_everything(Reentry *r) {
   CagSession *s = r->session;
   CagShownCounts counts = {9, 9, 9};
@@ -89,7 +89,7 @@ static void a_value_callback_that_calls_the_session_is_refused(void **state) {
   assert_int_equal(r.refused, r.calls);
   assert_int_equal(r.names, 0);
   assert_int_equal(cag_session_error_count(r.session), 0);
-  // What was defined stays, and the session goes on.
+  // Previous definitions are kept, and the session can be used.
   assert_string_equal(cag_session_name(r.session, 0, NULL, NULL), "a");
   assert_null(cag_session_name(r.session, 1, NULL, NULL));
   assert_int_equal(cag_session_scene(r.session, &after), CAG_STATUS_OK);
@@ -189,7 +189,7 @@ static void tables_out_of_range_are_null(void **state) {
 
 // --- The documentation of built-ins ---
 
-// The words of a text without its layout.
+// Appends the words of a text without its layout.
 static void add_words(char *to, size_t size, const char *text) {
   for (size_t n; *(text += strspn(text, " \n")); text += n) {
     n = strcspn(text, " \n");
@@ -200,7 +200,7 @@ static void add_words(char *to, size_t size, const char *text) {
   }
 }
 
-// What is told of a built-in are the words of its rows, in lines that fit on a screen.
+// The documentation of a built-in has the words of its rows, in lines that fit on a screen.
 static void built_ins_are_told_by_their_rows(void **state) {
   (void)state;
   enum { SIZE = 20000 };
@@ -216,7 +216,7 @@ static void built_ins_are_told_by_their_rows(void **state) {
       if (strncmp(line, "  ", 2) == 0 && line[2] != ' ') assert_true(strcspn(line, "\n") <= 90);
     expected[0] = found[0] = 0;
     add_words(found, SIZE, text);
-    // An empty line comes between two rows, and none before the first.
+    // There is an empty line between two rows, and none before the first.
     assert_int_equal(strncmp(text, *name, strlen(*name)), 0);
     size_t rows = 1;
     for (const char *gap = text; (gap = strstr(gap, "\n\n")); gap += 2) rows += gap[2] != ' ';
@@ -226,7 +226,7 @@ static void built_ins_are_told_by_their_rows(void **state) {
       if (strncmp(signature, *name, n) != 0 || (signature[n] != '(' && signature[n])) continue;
       rows--;
       add_words(expected, SIZE, summary ? summary : "");
-      // Each summary and example stands in the text.
+      // The text contains each summary and example.
       if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
       expected[0] = 0;
       add_words(expected, SIZE, example ? example : "");
@@ -280,7 +280,7 @@ static void each_kind_of_error_has_its_status(void **state) {
     CagSession *s = cag_session_new(&options);
     const int status = run_text(s, rows[i].text);
     const CagErrorView e = first_error(s);
-    // Each has a place in the script, limits too.
+    // Each has a location in the script, even limits.
     if (status != rows[i].status || strcmp(e.reason, rows[i].reason) != 0 || e.line == 0) {
       print_error("%s: %d %s in line %zu\n", rows[i].text, status, e.reason, e.line);
       bad++;
@@ -294,7 +294,7 @@ static void each_kind_of_error_has_its_status(void **state) {
   assert_int_equal(cag_session_export(s, "/tmp/no/such/folder/a.stl", NULL), CAG_STATUS_FILE);
   assert_int_equal(cag_session_export(s, "/tmp/a.none", NULL), CAG_STATUS_USAGE);
   assert_int_equal(cag_session_export(s, "/dev/null", "none"), CAG_STATUS_USAGE);
-  // An interrupt that is there already ends any work.
+  // An interrupt that is already set ends any operation.
   const volatile int interrupt = 1;
   options = session_options();
   options.interrupt = &interrupt;
@@ -318,8 +318,8 @@ static void errors_tell_where_they_begin_and_end(void **state) {
   cag_session_free(s);
 }
 
-// The asserts of all modules that a script imports hold, also of those that they import, and
-// wherever the import stands. The last line of one of four modules is false at a time.
+// The asserts of all imported modules are checked, including indirectly imported ones, wherever the
+// import is. The last line of one of four modules is false at a time.
 static void asserts_of_imported_modules_are_checked(void **state) {
   (void)state;
   static const struct {
@@ -416,7 +416,7 @@ static void frames_tell_the_time(void **state) {
   cag_session_free(s);
 }
 
-// What is said of a field or member that there is not.
+// Messages for fields or members that do not exist.
 static void fields_that_are_not_there_are_answered_with_those_that_are(void **state) {
   (void)state;
   static const struct {
@@ -463,11 +463,11 @@ static void fields_that_are_not_there_are_answered_with_those_that_are(void **st
   assert_int_equal(bad, 0);
 }
 
-// Params set to what they cannot be: the message, and what is suggested.
+// Invalid values of params: the message and the suggestion.
 static void definitions_that_do_not_fit_are_refused(void **state) {
   (void)state;
   static const struct {
-    const char *script, *name, *value, *code, *message, *help; // code NULL: taken
+    const char *script, *name, *value, *code, *message, *help; // code NULL: accepted
   } rows[] = {
       {"param width = 1\nparam height = 2\nx = 3", "widht", "1", "E0247",
        "test has no param `widht`", "did you mean `width`?"},
@@ -578,7 +578,7 @@ static void what_is_shown_is_named_and_counted(void **state) {
     assert_memory_equal(at, begins[i], strlen(begins[i]));
     at += strlen(begins[i]);
   }
-  assert_memory_equal(at, "ball: the list ", 15); // by what leads its expression
+  assert_memory_equal(at, "ball: the list ", 15); // named after the first name in its expression
   size_t count = 0;
   for (const char *c = lines; *c; c++) count += *c == '\n';
   assert_int_equal(count, 7);
@@ -618,7 +618,7 @@ static void scenes_without_shapes_are_errors(void **state) {
   }
 }
 
-// Warnings leave room for an error behind them.
+// Warnings leave space for a subsequent error.
 static void empty_shapes_are_warned_of(void **state) {
   (void)state;
   CagSession *s = new_session();
@@ -640,7 +640,7 @@ static void empty_shapes_are_warned_of(void **state) {
     snprintf(expected, sizeof expected, "e%zu: the shape is empty, so it adds nothing to the scene",
              i);
     assert_string_equal(e.message, expected);
-    assert_int_equal(e.line, 2 + 2 * i); // where it is made
+    assert_int_equal(e.line, 2 + 2 * i); // the location of the constructor
   }
   cag_session_free(s);
 }
@@ -660,7 +660,7 @@ static void an_endless_shape_is_shown_where_it_is_made(void **state) {
   cag_session_free(s);
 }
 
-// Each flat loft is warned of, wherever it stands among what is shown.
+// There is a warning for each flat loft, wherever it is among the shown shapes.
 static void flat_lofts_are_warned_of(void **state) {
   (void)state;
   CagSession *s = new_session();
@@ -681,7 +681,7 @@ static void flat_lofts_are_warned_of(void **state) {
   cag_session_free(s);
 }
 
-// Files for printing warn of parts that enclose nothing, with the edges that are open.
+// Files for printing have warnings about open parts, with their open edges.
 static void exports_warn_of_open_parts(void **state) {
   (void)state;
   static const struct {
@@ -727,7 +727,7 @@ static void exports_warn_of_open_parts(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// A second interactive input may define names again, whose users follow.
+// A second interactive input may redefine names, and names that depend on them are updated.
 static void scenes_of_inputs_follow_their_names(void **state) {
   (void)state;
   CagSession *s = new_session();
@@ -744,7 +744,7 @@ static void scenes_of_inputs_follow_their_names(void **state) {
     assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
     assert_int_equal(counts.items, 2); // and the floor
   }
-  // What depends on a name that fails fails, and works again.
+  // A name that depends on a failing one fails, and works again after the fix.
   assert_int_equal(input(s, "r = -1", NULL, NULL), CAG_STATUS_OK);
   assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_SCRIPT);
   assert_int_equal(input(s, "r = 3", NULL, NULL), CAG_STATUS_OK);
@@ -752,8 +752,8 @@ static void scenes_of_inputs_follow_their_names(void **state) {
   cag_session_free(s);
 }
 
-// The run's own warnings stay, and those of building its scene; the errors of a call that used the
-// scene are replaced by those of the next.
+// Warnings of the run and of building its scene are kept. Errors of a call that used the scene are
+// replaced by those of the next call.
 static void diagnostics_are_those_of_the_run_and_of_the_last_call(void **state) {
   (void)state;
   CagSession *s = new_session();

@@ -1,4 +1,4 @@
-// Signatures of built-ins: what they say of parameters, and the fields of their structures.
+// Signatures of built-ins: the parsed parameters, and the fields of the argument structures.
 
 #include <setjmp.h>
 #include <stdarg.h>

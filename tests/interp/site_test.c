@@ -1,5 +1,5 @@
-// The parts that the site of all documentation is made of: scripts and Markdown as HTML, the run of
-// examples and their pictures, the names of scripts' pages, and the width of text on a terminal.
+// Parts of the documentation site: scripts and Markdown as HTML, the run of examples and their
+// pictures, names of pages, and the width of text in a terminal.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,7 @@ static void put_file(const char *path, const char *text) {
   fclose(f);
 }
 
-// --- A site of a few examples ---
+// --- A site with a few examples ---
 
 typedef struct Site {
   CagSiteOptions options;
@@ -166,7 +166,7 @@ static void markdown_leads_to_pages_of_the_site(void **state) {
        "<p><a href=\"../cookbook/index.html#gear\">a</a></p>\n"},
       {"language", "[a](https://b.org/c.md)", "<p><a href=\"https://b.org/c.md\">a</a></p>\n"},
       {"language", "[a](#b)", "<p><a href=\"#b\">a</a></p>\n"},
-      // Without a page of its own, what a link refers to stays as words.
+      // A link without a target page becomes plain text.
       {"language", "[a `b` c](../LICENSE)", "<p>a <code>b</code> c</p>\n"},
       {"language", "[a](notes.md)", "<p>a</p>\n"},
       {"language", "[a](cookbook/README)", "<p>a</p>\n"},
@@ -219,7 +219,7 @@ static void headings_of_the_guide_are_found_by_the_search(void **state) {
 
 // --- Examples ---
 
-// Shows an example, runs it, and shows it again. The HTML is malloc'd.
+// Shows an example, runs it, and shows it again. Returns the HTML, to be freed.
 static char *shown_example(Site *t, const CagSiteSpot *at, const char *text) {
   char *html = NULL;
   size_t n;
@@ -240,7 +240,7 @@ static char *shown_example(Site *t, const CagSiteSpot *at, const char *text) {
 static void examples_are_shown_with_what_they_print(void **state) {
   (void)state;
   static const struct {
-    const char *text, *code, *output; // output: NULL for none
+    const char *text, *code, *output; // output may be NULL
   } ROWS[] = {
       {"print 1 + 1  // expect: 2\n\n", "print 1 + 1", "2\n"},
       {"// expect: 3\nprint 3\n", "print 3", "3\n"},
@@ -253,7 +253,7 @@ static void examples_are_shown_with_what_they_print(void **state) {
     t.options.no_pictures = true;
     char *html = shown_example(&t, &(CagSiteSpot){.about = "test"}, ROWS[i].text), code[256];
     size_t n = 0;
-    // The code without its marks.
+    // The code without markup.
     for (const char *at = strstr(html, "<code>") + 6; strncmp(at, "</code>", 7) != 0; at++) {
       if (*at == '<') at = strchr(at, '>');
       else code[n++] = *at;
@@ -307,7 +307,7 @@ static void an_example_is_run_once_in_each_folder(void **state) {
   begin_site(&t);
   static const struct {
     const char *folder, *text;
-    size_t count; // kept after it
+    size_t count; // number of examples after it
   } ROWS[] = {{NULL, "a = 1", 1}, {NULL, "a = 1", 1}, {NULL, "a = 2", 2},  {"a", "a = 1", 3},
               {"b", "a = 1", 4},  {"a", "a = 1", 4},  {NULL, "a = 10", 5}, {NULL, "a = 2", 5}};
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
@@ -324,7 +324,7 @@ static void an_example_is_run_once_in_each_folder(void **state) {
 static void a_picture_shows_what_the_example_is_about(void **state) {
   (void)state;
   static const struct {
-    const char *function, *text, *ending; // ending: NULL for no picture
+    const char *function, *text, *ending; // ending: NULL if there is no picture
   } ROWS[] = {
       {NULL, "show circle(5)", "svg"},
       {NULL, "show circle(5), translate(circle(5), [0, 0, 1])", "png"},
@@ -337,7 +337,7 @@ static void a_picture_shows_what_the_example_is_about(void **state) {
       {"circle", "x = length(circle(5))", "svg"},
       {"length", "x = length(circle(5))", NULL},
       {"circle", "my_circle(r) = r\nx = my_circle(5)", NULL},
-      {"circle", "x = circle\ny = circle(", NULL}, // an error
+      {"circle", "x = circle\ny = circle(", NULL}, // a syntax error
       {"divide", "x = len([for c in divide(circle(5), 3): c])", NULL},
       {"circle", "f(circle) = circle\nx = 3", NULL},
       {NULL, "r = robot([revolute(a: 100, shape: box([100, 10, 10]))])", "png"},
@@ -347,7 +347,7 @@ static void a_picture_shows_what_the_example_is_about(void **state) {
   assert_int_equal(mkdir("pictures", 0777), 0);
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     const bool rendered = ROWS[i].ending && strcmp(ROWS[i].ending, "png") == 0;
-    // At the second time the picture is there already.
+    // The second time, the picture exists already.
     for (int time = 0; time < 2; time++) {
       Site t;
       begin_site(&t);
@@ -377,7 +377,7 @@ static void an_example_without_place_for_its_picture_has_none(void **state) {
   Site t;
   begin_site(&t);
   free(shown_example(&t, &(CagSiteSpot){.about = "test"}, "show circle(5)"));
-  assert_null(t.site.examples[0].picture); // there is no folder `pictures`
+  assert_null(t.site.examples[0].picture); // the folder `pictures` does not exist
   assert_null(t.site.examples[0].failure);
   end_site(&t);
 }
@@ -387,7 +387,7 @@ static void an_example_without_place_for_its_picture_has_none(void **state) {
 static void an_example_imports_what_it_names_of_its_script(void **state) {
   (void)state;
   static const struct {
-    const char *purpose, *file, *example, *import; // import: NULL for none
+    const char *purpose, *file, *example, *import; // import may be NULL
   } ROWS[] = {
       {"", "parts.cag", "print plate(3)", "import \"parts.cag\": plate"},
       {"", "parts.cag", "print plate(hole)", "import \"parts.cag\": plate, hole"},
@@ -447,7 +447,7 @@ static void the_search_finds_every_error(void **state) {
 static void scripts_get_pages_of_different_names(void **state) {
   (void)state;
   static const struct {
-    const char *path, *name, *page; // name: NULL for a script that was there before
+    const char *path, *name, *page; // name: NULL for a script listed before
   } ROWS[] = {
       {"in/parts/a.cag", "parts/a.cag", "parts.a"},
       {"in/parts/a b.cag", "parts/a b.cag", "parts.a_b"},
@@ -535,7 +535,7 @@ static void stop_now(void *context, const char *message) {
   stop = 1;
 }
 
-// An interrupt comes at the begin, or when the program says that there is no POV-Ray.
+// An interrupt at the start, or when the program reports that POV-Ray is missing.
 static void an_interrupt_leaves_folders_but_no_pages(void **state) {
   (void)state;
   char *path = strdup(getenv("PATH"));
@@ -563,7 +563,7 @@ static void text_fits_the_terminal(void **state) {
   (void)state;
   static const struct {
     unsigned short columns;
-    size_t longest; // that a line of prose may have
+    size_t longest; // limit for a line of prose
   } ROWS[] = {{20, 40}, {60, 60}, {200, 92}, {0, 92}};
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     int master, slave;
@@ -582,7 +582,7 @@ static void text_fits_the_terminal(void **state) {
     size_t longest = 0;
     for (char *line = strtok(shown, "\r\n"); line; line = strtok(NULL, "\r\n"))
       if (strlen(line) > longest) longest = strlen(line);
-    // Words of three letters leave at most three columns free.
+    // With words of three letters, at most three columns stay free.
     assert_in_range(longest, ROWS[i].longest - 3, ROWS[i].longest);
     close(master);
   }
@@ -611,7 +611,7 @@ static void a_styled_page_is_the_plain_one_with_bold_heads(void **state) {
     }
     assert_null(strchr(text[0], '\033'));
     assert_non_null(strstr(text[1], "\033[1m"));
-    // Without the codes both are the same.
+    // Without escape codes, both are the same.
     char *to = text[1];
     for (const char *at = text[1]; *at;) {
       const size_t code = strncmp(at, "\033[1m", 4) == 0 || strncmp(at, "\033[0m", 4) == 0 ? 4 : 0;

@@ -1,16 +1,16 @@
-// Labels of SVG pictures: where marks and texts stand, how they are turned, and the area they take.
+// Labels of SVG pictures: positions of marks and texts, rotation, and extents.
 
 #include "tests/interp/scene_fixture.h"
 
 #include "interp/formats/svg_label.h"
 
-// Fractions of the height of a text: the radius of a mark, the space between a text and the point
-// or the mark, the height of capitals, and the width of a letter.
+// Fractions of the height of a text: the radius of a mark, the distance between a text and the
+// point or mark, the height of capitals, and the width of a letter.
 #define MARK 0.24
 #define SPACE 0.36
 #define CAPITALS 0.72
 #define LETTER 0.56
-// The lowest part of a text, a lowered index, below the line of writing.
+// The depth of a text with a subscript below the baseline.
 #define DROP 0.22
 
 static char *label_text(const CagLabel *l, CagVec3 at, CagVec3 along, double unit, CagBounds *box,
@@ -40,17 +40,17 @@ static void is_near(double x, double expected, double within, const char *what) 
   if (!(fabs(x - expected) <= within)) fail_msg("%s: %.12g, not %.12g", what, x, expected);
 }
 
-// The area that a label takes: its point, its mark, and a rectangle about its text.
+// The area of a label: its point, its mark, and a rectangle around its text.
 typedef struct Area {
   CagBounds box;
 } Area;
 
-static void take(Area *a, double x, double y) { cag_bounds_add(&a->box, cag_vec3(x, y, 0)); }
+static void extend_area(Area *a, double x, double y) { cag_bounds_add(&a->box, cag_vec3(x, y, 0)); }
 
-// Each place of a text, with and without a mark, along many directions and of many sizes. The text
-// stands beside its point: the nearest edge of the letters is the space (and the mark's radius)
-// away, 0.7 of that at a corner, and letters are centered beside a point. Where a text would stand
-// on its head it is turned around.
+// Each alignment of a text, with and without a mark, along many directions and in many sizes. The
+// text is next to its point: the closest edge of the letters is at the distance (plus the radius of
+// the mark), or 0.7 of that at a corner, and letters next to a point are centered. Upside-down text
+// is reversed.
 static void texts_stand_beside_their_points(void **state) {
   (void)state;
   static const int steps[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1}, {0, 0},
@@ -78,7 +78,7 @@ static void texts_stand_beside_their_points(void **state) {
         assert_true(finite);
         const int sx = steps[place][0], sy = steps[place][1];
         assert_contains(strstr(text, "text-anchor="), anchors[sx + 1]);
-        // The direction of writing, to the right or straight up.
+        // The direction of writing: to the right or upward.
         double c = turn < 0 ? 1 : cos(angle), s = turn < 0 ? 0 : sin(angle);
         if (c < -1e-9 || (fabs(c) < 1e-9 && s < 0)) c = -c, s = -s;
         const double space = (SPACE + (mark ? MARK : 0)) * size * (sx && sy ? 0.7 : 1);
@@ -100,17 +100,17 @@ static void texts_stand_beside_their_points(void **state) {
           is_near(cy, -y, within, "center");
         }
         Area area = {CAG_BOUNDS_EMPTY};
-        take(&area, at.x, at.y);
+        extend_area(&area, at.x, at.y);
         const double wide = 4 * LETTER * size, left = sx > 0 ? 0 : sx < 0 ? -wide : -wide / 2;
         for (int k = 0; k < 4; k++) {
           const double along_text = left + (k & 1 ? wide : 0),
                        over = k & 2 ? CAPITALS * size : -DROP * size;
-          take(&area, x + along_text * c - over * s, y + along_text * s + over * c);
+          extend_area(&area, x + along_text * c - over * s, y + along_text * s + over * c);
         }
         if (mark) {
-          const double r = (MARK + 0.1) * size; // half of the line about it lies outside
-          take(&area, at.x - r, at.y - r);
-          take(&area, at.x + r, at.y + r);
+          const double r = (MARK + 0.1) * size; // half of its stroke is outside
+          extend_area(&area, at.x - r, at.y - r);
+          extend_area(&area, at.x + r, at.y + r);
         }
         is_near(box.min.x, area.box.min.x, 1e-9 * size, "left");
         is_near(box.max.x, area.box.max.x, 1e-9 * size, "right");
@@ -122,7 +122,7 @@ static void texts_stand_beside_their_points(void **state) {
   }
 }
 
-// A label without a size has 0.024 of the picture's diagonal.
+// The default size of a label is 0.024 of the picture's diagonal.
 static void a_label_has_a_size_by_the_picture(void **state) {
   (void)state;
   const CagLabel l = {.text = "A", .mark = CAG_LABEL_DOT};
@@ -145,8 +145,8 @@ static void marks_have_their_shapes(void **state) {
     CagBounds box = CAG_BOUNDS_EMPTY;
     bool finite;
     char *text = label_text(&l, at, along, 1, &box, &finite);
-    // The tip is at the point. The back is 0.9 of the size behind it, 0.55 wide, and its notch is a
-    // quarter of the length deep.
+    // The tip is at the point. The back is 0.9 of the size behind it and 0.55 wide, and its notch
+    // is a quarter of the length deep.
     double p[4][2];
     const char *d = strstr(text, "d=\"");
     assert_int_equal(sscanf(d, "d=\"M %lf %lf L %lf %lf L %lf %lf L %lf %lf Z\"/>", &p[0][0],
@@ -178,8 +178,8 @@ static void marks_have_their_shapes(void **state) {
   }
 }
 
-// An arrow that is seen from its end has no head, but the text beside it keeps its space. The text
-// of an arrow is never turned.
+// An arrow seen along its direction has no head, but its text keeps the distance. The text of an
+// arrow is never rotated.
 static void an_arrow_seen_from_its_end_has_no_head(void **state) {
   (void)state;
   const CagLabel l = {.text = "v", .mark = CAG_LABEL_ARROW, .size = 10};
@@ -196,8 +196,8 @@ static void an_arrow_seen_from_its_end_has_no_head(void **state) {
   free(text);
 }
 
-// The runs of a text that is a name: one letter and an index after `_`. The index and a text after
-// it are lowered and raised again.
+// The runs of a text that is a name: one letter and an index after `_`. The index is lowered, and
+// text after it is raised again.
 static void names_have_lowered_indices(void **state) {
   (void)state;
   static const struct {
@@ -243,7 +243,7 @@ static void names_have_lowered_indices(void **state) {
   }
 }
 
-// Numbers are rounded to a thousandth of the power of ten in the size, and no zero is negative.
+// Numbers are rounded to a thousandth of the size's power of ten, and zero is never negative.
 static void numbers_have_the_digits_that_the_size_asks_for(void **state) {
   (void)state;
   const CagVec3 at = {1234.56789012345, 0.0000001, 0};

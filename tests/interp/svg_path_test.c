@@ -1,5 +1,5 @@
-// Paths of SVG pictures against the curves themselves: for random curves and cameras, each path is
-// read as a program that draws SVG reads it, and compared with the curve as the camera sees it.
+// Paths of SVG pictures compared with the curves: for random curves and cameras, each path is
+// interpreted according to SVG and compared with the projected curve.
 
 #include "tests/geom/random.h"
 #include "tests/interp/scene_fixture.h"
@@ -53,7 +53,7 @@ static const char *read_numbers(const char *at, double *out, int n) {
   return at;
 }
 
-// Reads the path whose title is `name`.
+// Reads the path with the title `name`.
 static size_t read_path(const char *text, const char *name) {
   char title[100];
   snprintf(title, sizeof title, "<title>%s</title>", name);
@@ -81,7 +81,7 @@ static size_t read_path(const char *text, const char *name) {
   return n;
 }
 
-// A point of an elliptic arc, by the implementation notes of SVG 1.1 (F.6.5), y down on the way.
+// A point of an elliptic arc, by the implementation notes of SVG 1.1 (F.6.5), with y downward.
 static CagVec3 arc_at(const Segment *s, double t) {
   const double rx = s->v[0], ry = s->v[1], phi = s->v[2] * M_PI / 180, c = cos(phi), k = sin(phi);
   const bool large = s->v[3] != 0, sweep = s->v[4] != 0;
@@ -121,8 +121,8 @@ static void is_near(CagVec3 p, CagVec3 q, double within, const char *what) {
     fail_msg("%s: [%.12g, %.12g], not [%.12g, %.12g]", what, p.x, p.y, q.x, q.y);
 }
 
-// The box of the picture is that of what is drawn, and its border 5% of the diagonal and half of
-// the widest line. `over`: by how much the box may be too small.
+// Checks that the picture contains the box of what is drawn, with a border of 5% of the diagonal
+// and half of the widest line. The box may be too small by `over`.
 static void is_framed(const char *text, CagBounds box, double line, double over) {
   double x, y, w, h, wide, tall;
   const char *at = strstr(text, "width=\"");
@@ -150,8 +150,8 @@ static CagVec3 random_point(double size, double z) {
   return cag_vec3(x, uniform(-size, size), z);
 }
 
-// Polynomials of degree up to 3 in a plane z = constant are one exact command: a parameter of the
-// command is that of the curve. The picture ends where the curve does.
+// Polynomials of degree up to 3 in a plane z = constant are one exact command, with the same
+// parametrization. The picture ends where the curve does.
 static void polynomials_are_exact(void **state) {
   (void)state;
   seed = 11;
@@ -161,7 +161,7 @@ static void polynomials_are_exact(void **state) {
     const double z = round % 2 ? size : 0;
     CagVec3 p[4];
     for (size_t i = 0; i <= degree; i++) p[i] = random_point(size, z);
-    if (degree == 3 && round % 4 == 2) { // a straight line that is evenly run, and its like
+    if (degree == 3 && round % 4 == 2) { // a straight line with constant speed
       p[1] = cag_lerp(p[0], p[3], 1.0 / 3);
       p[2] = cag_lerp(p[0], p[3], round % 8 == 2 ? 2.0 / 3 : 1.0 / 2);
     }
@@ -187,9 +187,9 @@ static void polynomials_are_exact(void **state) {
   }
 }
 
-// Arcs of ellipses, also moved, turned, mirrored and sheared, are elliptic arcs of at most a half
-// turn. The middle of a command is that of its part of the curve, because affine maps keep
-// differences of the eccentric angle.
+// Arcs of ellipses, even if translated, rotated, reflected, or sheared, become elliptic arcs of at
+// most a half turn. The midpoint of a command is that of its part of the curve, because affine maps
+// preserve differences of the eccentric angle.
 static void arcs_are_exact(void **state) {
   (void)state;
   seed = 12;
@@ -227,7 +227,7 @@ static void arcs_are_exact(void **state) {
             placed->start + (placed->end - placed->start) * ((double)i + k / 4.0) / (double)n;
         CagVec3 q = curve_at(placed, t);
         q.z = 0;
-        // The centers of half turns have the square root of rounding.
+        // The center of a half turn is accurate only to the square root of rounding.
         is_near(segment_at(&segments[i], k / 4.0), q, 3e-3, "arc");
       }
     }
@@ -242,7 +242,7 @@ static void arcs_are_exact(void **state) {
   }
 }
 
-// A line that has no width in x is a picture too, and one without a radius has the width of all.
+// A line without extent in x is drawn, too, and one without a radius has the default width.
 static void an_upright_line_is_drawn(void **state) {
   (void)state;
   Fixture f;
@@ -259,7 +259,7 @@ static void an_upright_line_is_drawn(void **state) {
   fixture_end(&f);
 }
 
-// A label without a size has 0.024 of the diagonal of what is drawn, 3 by 4.
+// The default size of a label is 0.024 of the diagonal of what is drawn, 3 by 4.
 static void labels_have_a_size_by_what_is_drawn(void **state) {
   (void)state;
   Fixture f;
@@ -276,9 +276,9 @@ static void labels_have_a_size_by_what_is_drawn(void **state) {
   fixture_end(&f);
 }
 
-// --- What a camera sees ---
+// --- Projection by cameras ---
 
-// The picture of a point by the definition of a camera; y up. False: behind the camera.
+// Projects a point by the definition of a camera, with y up. Returns false behind the camera.
 static bool seen(const CagCamera *c, CagVec3 p, CagVec3 *out) {
   const CagVec3 view = cag_unit(cag_sub(c->target, c->eye)),
                 right = cag_unit(cag_cross(view, c->up));
@@ -296,7 +296,7 @@ static double distance_to_line(CagVec3 p, CagVec3 a, CagVec3 b) {
   return cag_norm(cag_sub(p, cag_lerp(a, b, fmin(fmax(t, 0), 1))));
 }
 
-// The distance of a point to a polyline.
+// The distance of a point from a polyline.
 static double distance_to(CagVec3 p, const CagVec3 *q, size_t n) {
   double least = INFINITY;
   for (size_t i = 0; i + 1 < n; i++) least = fmin(least, distance_to_line(p, q[i], q[i + 1]));
@@ -331,8 +331,8 @@ static CagCurve *random_curve(int kind) {
   return placed;
 }
 
-// The points of all paths lie on the curve as the camera sees it, and the curve on the paths,
-// within the 20,000th of the size that is promised.
+// The points of all paths are on the projected curve, and vice versa, within the guaranteed
+// 20,000th of the size.
 static void cameras_see_curves_as_they_are(void **state) {
   (void)state;
   enum { N = 3000 };
@@ -360,7 +360,7 @@ static void cameras_see_curves_as_they_are(void **state) {
       cag_bounds_add(&box, exact[i]);
       if (i > 0) longest = fmax(longest, cag_norm(cag_sub(exact[i], exact[i - 1])));
     }
-    // The points in the order of the path, the same number for each command.
+    // The points in the order of the path, with the same number for each command.
     size_t m = 0;
     const size_t steps = N / n;
     assert_true(steps > 10);
@@ -373,7 +373,7 @@ static void cameras_see_curves_as_they_are(void **state) {
     for (size_t i = 0; i < m; i++)
       if (distance_to(drawn[i], exact, N + 1) > within + chord)
         fail_msg("round %d: drawn %g off the curve", round, distance_to(drawn[i], exact, N + 1));
-    // Ends and breaks are there.
+    // The path includes ends and breaks.
     is_near(segments[0].from, exact[0], 1e-7 * size, "start");
     is_near(segments[n - 1].to, exact[N], 1e-7 * size, "end");
     for (int i = 0; i <= N; i += 60) {
@@ -391,8 +391,8 @@ static void cameras_see_curves_as_they_are(void **state) {
   }
 }
 
-// The point and the direction of a label are those of the picture of a short line. A label behind
-// the camera is left out.
+// The position and direction of a label are those of a projected short line. A label behind the
+// camera is omitted.
 static void cameras_see_labels_as_they_are(void **state) {
   (void)state;
   seed = 29;
@@ -427,7 +427,7 @@ static void cameras_see_labels_as_they_are(void **state) {
     assert_true(seen(&f.camera, at, &tip));
     assert_true(seen(&f.camera, cag_madd(at, 1e-6, along), &next));
     is_near(cag_vec3(p[0][0], -p[0][1], 0), tip, 0.0072, "tip");
-    // The notch of the arrow lies 6.75 behind the tip.
+    // The notch of the arrow is 6.75 behind the tip.
     const CagVec3 notch = cag_madd(tip, -6.75, cag_unit(cag_sub(next, tip)));
     is_near(cag_vec3(p[2][0], -p[2][1], 0), notch, 0.0072, "notch");
     free(text);
@@ -435,8 +435,8 @@ static void cameras_see_labels_as_they_are(void **state) {
   }
 }
 
-// A line that runs past the camera ends where depths are a thousandth of the target's distance, or
-// within the last bisection behind that. All of it that lies behind is left out.
+// A line that passes the camera ends at a depth of a thousandth of the target's distance, or within
+// the last bisection step behind that. The part behind the camera is omitted.
 static void what_is_behind_the_camera_is_left_out(void **state) {
   (void)state;
   for (int back = 0; back < 2; back++) {
@@ -444,7 +444,7 @@ static void what_is_behind_the_camera_is_left_out(void **state) {
     Fixture f;
     CagCurve *c;
     OK(cag_curve_line(back ? behind : front, back ? front : behind, 3, &c, &err));
-    fixture_begin(&f); // at y = -300, looking along +Y at the origin
+    fixture_begin(&f); // at y = -300, looking along +Y toward the origin
     fixture_curve(&f, "c", c);
     char *text = export_text(&f);
     const size_t n = read_path(text, "c");
@@ -457,7 +457,7 @@ static void what_is_behind_the_camera_is_left_out(void **state) {
       assert_true(segments[i].starts == (i == 0));
       for (int k = 0; k <= 4; k++) {
         const CagVec3 p = segment_at(&segments[i], k / 4.0);
-        const double z = 5 + (400 - 3000 / p.x) / 120; // of the point of the line
+        const double z = 5 + (400 - 3000 / p.x) / 120; // of the point on the line
         assert_true(p.x >= 7.5 - 1e-3 && fabs(p.y - p.x / 10 * z) < 0.02);
       }
     }
@@ -466,8 +466,8 @@ static void what_is_behind_the_camera_is_left_out(void **state) {
   }
 }
 
-// A curve both of whose ends are behind the camera, and whose middle is not, from the depth of a
-// thousandth of the target's distance: y = -299.7 at the roots of 1620 t^2 - 1600 t + 300.3.
+// A curve whose ends are behind the camera, but whose middle is not. It is visible from a depth of
+// a thousandth of the target's distance: y = -299.7 at the roots of 1620 t^2 - 1600 t + 300.3.
 static void a_part_that_comes_into_view_is_drawn(void **state) {
   (void)state;
   const CagVec3 p[] = {{-10, -600, 0}, {0, 200, 10}, {10, -620, 20}};

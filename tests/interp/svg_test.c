@@ -1,4 +1,4 @@
-// SVG: the file is XML, exact curves become exact paths, and everything else stays near them.
+// SVG: the file is XML, exact curves become exact paths, and all others are approximated.
 
 #include "tests/interp/scene_fixture.h"
 
@@ -49,8 +49,9 @@ static void a_cubic_bezier_is_one_path_command(void **state) {
   fixture_end(&f);
 }
 
-// A uniform quadratic B-spline of the points P0..P3 with open knots 0 0 0 1 2 2 2 splits into two
-// parabolas that meet in (P1 + P2) / 2, each raised to a cubic by the thirds of its legs.
+// A uniform quadratic B-spline of the points P0..P3 with open knots 0 0 0 1 2 2 2 is split into two
+// parabolas that meet at (P1 + P2) / 2. Each is elevated to a cubic, which divides its legs in
+// thirds.
 static void a_bspline_is_split_into_its_exact_pieces(void **state) {
   (void)state;
   const CagVec3 p[] = {{0, 0, 0}, {6, 12, 0}, {18, 12, 0}, {24, 0, 0}};
@@ -72,7 +73,7 @@ static void a_circle_is_two_exact_arcs(void **state) {
   fixture_begin(&f);
   fixture_curve(&f, "hoop", circle(10, cag_vec3(5, 7, 0)));
   char *text = export_text(&f);
-  // Counter-clockwise with y up is the negative sense with y down: sweep flag 0.
+  // Counter-clockwise with y up is the negative direction with y down: sweep flag 0.
   assert_contains(text, "d=\"M 15 -7 A 10 10 0 0 0 -5 -7 A 10 10 0 0 0 15 -7 Z\"");
   free(text);
   fixture_end(&f);
@@ -115,8 +116,8 @@ static void lines_have_their_width_dash_and_color(void **state) {
   fixture_end(&f);
 }
 
-// The helix [20 cos t, 20 sin t, 8 t / 2 pi] seen along +Y by an orthographic camera is
-// x = 20 cos t, y = 8 t / 2 pi: every end of a path command lies on that curve.
+// The helix [20 cos t, 20 sin t, 8 t / 2 pi] seen along +Y by an orthographic camera is x = 20 cos
+// t, y = 8 t / 2 pi. All ends of path commands are on this curve.
 static void a_space_curve_is_drawn_as_the_camera_sees_it(void **state) {
   (void)state;
   Fixture f;
@@ -158,9 +159,9 @@ static void perspective_keeps_lengths_at_the_target(void **state) {
   fixture_end(&f);
 }
 
-// The cubic 0, 10, -10, 0 in y over 0..3 in x turns at t = 1/2 -+ sqrt(3)/6, where |y| is
-// 10 sqrt(3)/6: the picture ends there, and not at the control points. Its border is 5% of the
-// diagonal and half of the stroke, 0.3% of it.
+// The cubic with y values 0, 10, -10, 0 over x in 0..3 turns at t = 1/2 -+ sqrt(3)/6, where |y| is
+// 10 sqrt(3)/6. The picture ends there, not at the control points. Its border is 5% of the diagonal
+// and half of the stroke, which is 0.3% of it.
 static void the_picture_ends_where_the_curve_does(void **state) {
   (void)state;
   Fixture f;
@@ -207,13 +208,13 @@ static void labels_stand_beside_their_marks(void **state) {
   f.scene.label_count = 3;
   char *text = export_text(&f);
   assert_contains(text, "<circle cx=\"10\" cy=\"-20\" r=\"0.96\"");
-  // A name is set in italics, its index lowered and small.
+  // A name is in italics, with a small subscript as its index.
   assert_contains(text, "font-style=\"italic\" text-anchor=\"start\"");
   assert_contains(text, "<tspan>P</tspan><tspan dy=\"0.88\" font-size=\"2.8\">0</tspan>");
-  // Words stay upright; along +Y they run upwards.
+  // Words are upright; along +Y, they run upward.
   assert_contains(text, "rotate(-90 ");
   assert_contains(text, "<tspan>a &lt; b</tspan>");
-  // The head of an arrow along +X ends in its place.
+  // The tip of an arrow along +X is at its position.
   assert_contains(text, "d=\"M 30 0 L 21 ");
   free(text);
   fixture_end(&f);

@@ -1,5 +1,5 @@
-// Numbers of mesh files against those of the C library, and polygons that cross themselves against
-// a comparison of all pairs of edges.
+// Numbers in mesh files compared with those of the C library, and self-intersecting polygons
+// compared with a test of all pairs of edges.
 
 #include <math.h>
 #include <setjmp.h>
@@ -23,7 +23,7 @@ static char *put_digits(char *at, size_t n) {
   return at;
 }
 
-// A decimal number of any length and size, in all the ways to write one.
+// A decimal number of any length and size, in all notations.
 static void random_number(char *at) {
   static const char *const signs[] = {"", "-", "+"};
   at = stpcpy(at, signs[below(3)]);
@@ -60,7 +60,8 @@ static void numbers_are_those_of_the_library(void **state) {
   }
 }
 
-// Whole numbers and powers of ten that are doubles: up to 2^53 and 10^22, and just beyond.
+// Integers and powers of ten that are exact doubles, up to 2^53 and 10^22, and slightly larger
+// ones.
 static void numbers_are_rounded_once(void **state) {
   (void)state;
   static const char *const texts[] = {"9007199254740991",
@@ -179,7 +180,7 @@ static double turn_of(const CagVec3 *p, const CagVec3 *q, const CagVec3 *r, int 
 
 static int sign(double x) { return (x > 0) - (x < 0); }
 
-// Compares each edge with each other: crossings within both, and touches beside neighbors.
+// Compares all pairs of edges: crossings inside both, and touches except between neighbors.
 static bool crosses(const CagVec3 *p, size_t n, int x, int y, size_t *touches) {
   *touches = 0;
   for (size_t i = 0; i < n; i++)
@@ -193,7 +194,7 @@ static bool crosses(const CagVec3 *p, size_t n, int x, int y, size_t *touches) {
   return false;
 }
 
-// Stars of 129 to 220 corners with whole coordinates, in each of the three planes, as they are, and
+// Stars of 129 to 220 corners with integer coordinates, in each of the three planes, unchanged and
 // with one corner moved.
 static void polygons_that_cross_themselves_are_found(void **state) {
   (void)state;
@@ -227,8 +228,8 @@ static void polygons_that_cross_themselves_are_found(void **state) {
   assert_true(crossed > 50 && crossed < 250);
 }
 
-// A polygon that runs to and fro along one line touches itself everywhere and is refused; a few
-// bridges along the same line are not.
+// A polygon that runs back and forth along one line touches itself everywhere and is rejected, but
+// a few bridges along the same line are accepted.
 static void polygons_may_touch_themselves_a_little(void **state) {
   (void)state;
   enum { N = 160 };
@@ -240,7 +241,7 @@ static void polygons_may_touch_themselves_a_little(void **state) {
   }
   p[N - 1] = cag_vec3(5, 5, 0);
   assert_int_equal(cag_tangle_of(p, corners, N), CAG_TANGLE_CROSSED);
-  // A circle whose last corners run to the middle and back along the same line.
+  // A circle whose last corners run to the center and back along the same line.
   for (size_t i = 0; i < N; i++) {
     const double a = 2 * M_PI * (double)i / (N - 4);
     p[i] = cag_vec3(1000 * cos(a), 1000 * sin(a), 0);
@@ -250,7 +251,7 @@ static void polygons_may_touch_themselves_a_little(void **state) {
   p[N - 2] = cag_vec3(450, 50, 0);
   p[N - 1] = cag_vec3(500, 0, 0);
   assert_int_equal(cag_tangle_of(p, corners, N), CAG_TANGLE_NONE);
-  // Few corners are never looked at.
+  // Polygons with few corners are not checked.
   for (size_t i = 0; i < 128; i++) p[i] = cag_vec3(i % 2 ? 10 : 0, 0, 0);
   assert_int_equal(cag_tangle_of(p, corners, 128), CAG_TANGLE_NONE);
 }

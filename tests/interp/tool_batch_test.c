@@ -1,5 +1,5 @@
-// The rows of a batch: the tasks that they are cut into, what is wrong with them, and on what the
-// keys of tasks depend.
+// The rows of a batch: their tasks, errors in rows, and the inputs that the keys of tasks depend
+// on.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -71,7 +71,8 @@ static void close_batch(CagBatch *b) {
   cag_jobs_free(&b->jobs);
 }
 
-// Tasks as "row:frame output", with /tile or +joined tiles, and problems as "! row code message".
+// Writes tasks as "row:frame output", with /tile or +joined tiles, and problems as "! row code
+// message".
 static void describe(const CagBatch *b, char *out, size_t size) {
   size_t n = 0;
   out[0] = 0;
@@ -114,7 +115,7 @@ static void rows_become_tasks(void **state) {
       {"a.cag,f%d.png,0..1\na.cag,g%d.png,1..1", "0:0 f0.png\n0:1 f1.png\n1:1 g1.png\n"},
       {"a.cag,f.png,7..7", "0:7 f.png\n"},
       {"a.cag,50%%.png,7..7", "0:7 50%.png\n"},
-      // A picture alone is named as it is written.
+      // A single picture has its name unchanged.
       {"a.cag,50%%.png", "0:0 50%%.png\n"},
       {"a.cag,50%.stl", "0:0 50%.stl\n"},
       {"a.cag,t.png,,64x64,2x1", "0:0/0\n0:0/1\n0:0+2 t.png\n"},
@@ -176,12 +177,12 @@ static void rows_become_tasks(void **state) {
       // Tiles.
       {"a.cag,t.png,,,2x2",
        "! 1 E0912 a picture in tiles needs its size (fill in size, such as 7680x4320)\n"},
-      // Outputs that meet.
+      // Outputs with the same name.
       {"a.cag,x.stl\na.cag,./x.stl",
        "! 2 E0914 the output 'DIR/x.stl' is also the output of row 1 (give each row its own output)\n"},
       {"a.cag,f1.png\na.cag,f%d.png,0..2",
        "! 2 E0914 the output 'DIR/f1.png' is also the output of row 1 (give each row its own output)\n"},
-      // Two films that meet are told once.
+      // Two films with common frames are reported once.
       {"a.cag,f%d.png,0..2\na.cag,f%d.png,1..3",
        "! 2 E0914 the output 'DIR/f1.png' is also the output of row 1 (give each row its own output)\n"},
       {"a.cag,jobs.report.csv.stl\na.cag,parts/../x.stl\na.cag,x.stl",
@@ -198,7 +199,7 @@ static void rows_become_tasks(void **state) {
     if (tasks > 50) b.task_count = 0;
     describe(&b, told, sizeof told);
     b.task_count = tasks;
-    // Tasks of sound rows stand beside problems.
+    // Tasks of valid rows are listed in addition to problems.
     const char *got = b.jobs.problem_count ? strchr(told, '!') : told;
     if (strcmp(got, cases[i].told) != 0) {
       print_error("%s\n  gives %s  not %s", cases[i].rows, got, cases[i].told);
@@ -209,7 +210,7 @@ static void rows_become_tasks(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// The film and the tiles of the command line.
+// The film and tiles options of the command line.
 static void rows_fit_the_command_line(void **state) {
   (void)state;
   static const struct {
@@ -245,7 +246,7 @@ static void rows_fit_the_command_line(void **state) {
   }
 }
 
-// A row must not name a file that the batch itself writes, whatever form the path has.
+// A row must not name a file that the batch itself writes, in any form of the path.
 static void outputs_are_no_files_of_the_batch(void **state) {
   (void)state;
   static const char *const others[] = {"parts/../x.stl", "./x.stl", "x.stl"};
@@ -294,7 +295,7 @@ static Keys keys_of(CagTool *t, const char *text) {
     assert_int_equal(strspn(key, "0123456789abcdef"), 32);
     strcpy(k.keys[k.count], key);
     if (b.tasks[k.count].tile < 0) continue;
-    char name[100]; // a tile's place is beside the journal, under its key
+    char name[100]; // a tile is stored next to the journal, under its key
     snprintf(name, sizeof name, "jobs.csv.tiles/%s.exr", key);
     assert_string_equal(b.tasks[k.count].output, name);
   }
@@ -320,7 +321,7 @@ static void expect_change(const char *file, const char *text, const char *restor
   if (!same_keys(&before, &again)) fail_msg("%s restored", file);
 }
 
-// A key changes with the script and every file that it names, and with nothing else.
+// A key changes with the script and with every file that it names, and with nothing else.
 static void keys_depend_on_files_that_scripts_name(void **state) {
   (void)state;
   expect_change("data.txt", "1 2 4", "1 2 3", true);
@@ -330,14 +331,14 @@ static void keys_depend_on_files_that_scripts_name(void **state) {
   expect_change("unused.txt", "5", "4", false);
   expect_change("a.cag", "show box(1)", "param h = 1\nshow sphere(h)\n", false);
   expect_change("parts/gear.cag", "import wheel\nteeth = 13\n", "import wheel\nteeth = 12\n", true);
-  // What an imported module imports itself is seen from there.
+  // Imports of an imported module are relative to that module.
   expect_change("parts/wheel.cag", "radius = 5\n", "radius = 3\n", true);
   expect_change("lib/wheel.cag", "radius = 5\n", "radius = 4\n", false);
   static const char b[] = "import parts.gear\nprint read_text(\"data.txt\"), \"none.txt\"\n";
   expect_change("b.cag", "import parts.gear", b, true);
 }
 
-// Scripts that import each other, and names as long as they may be.
+// Scripts that import each other, and names of maximum length.
 static void keys_of_circles_and_long_names(void **state) {
   (void)state;
   static const char rows[] = "script,output\nb.cag,b.stl\n";
@@ -360,7 +361,7 @@ static void keys_of_circles_and_long_names(void **state) {
     write_file(name, "x = 2\n");
     const Keys after = keys_of(&t, rows);
     assert_false(same_keys(&before, &after));
-    // The same in quotes.
+    // The same with quotes.
     snprintf(script, sizeof script, "read_text(\"%s\")\n", name);
     write_file("b.cag", script);
     const Keys quoted = keys_of(&t, rows);
@@ -398,7 +399,7 @@ static void keys_depend_on_the_row_and_the_options(void **state) {
     for (size_t k = 0; k < i; k++)
       if (same_keys(&keys[i], &keys[k])) fail_msg("%s and %s", rows[k], rows[i]);
   }
-  // Options that change results, and others.
+  // Options that affect results, and others.
   CagToolDefine defines[] = {{"h", "2"}, {"k", "1"}};
   CagTool tools[] = {{.defines = defines, .define_count = 1},
                      {.defines = defines, .define_count = 2}};
@@ -408,9 +409,9 @@ static void keys_depend_on_the_row_and_the_options(void **state) {
   const Keys film = keys_of(&loop, rows[5]), silent = keys_of(&quiet, rows[0]);
   assert_false(same_keys(&one, &keys[0]) || same_keys(&two, &keys[0]) || same_keys(&one, &two));
   assert_false(same_keys(&rough, &keys[0]) || same_keys(&film, &keys[5]));
-  assert_true(same_keys(&looped, &keys[0])); // a picture alone has no loop
+  assert_true(same_keys(&looped, &keys[0])); // a single picture has no loop
   assert_true(same_keys(&silent, &keys[0]));
-  // A folder of modules counts by what is found in it.
+  // For a folder of modules, its files count.
   const char *const folders[] = {"lib"};
   CagTool with_lib = {.session = {.module_path = folders, .module_path_count = 1}};
   write_file("b.cag", "import wheel\n");
@@ -419,7 +420,7 @@ static void keys_depend_on_the_row_and_the_options(void **state) {
   const Keys after = keys_of(&with_lib, rows[7]), still = keys_of(&t, rows[7]);
   assert_false(same_keys(&before, &after));
   assert_true(same_keys(&without, &still));
-  // Files that values of params name.
+  // Files named by values of params.
   static const char named[] = "script,output,data\na.cag,a.stl,data.txt\n";
   static const char quoted[] = "script,output,data\na.cag,a.stl,\"\"\"data.txt\"\"\"\n";
   const Keys n = keys_of(&t, named), q = keys_of(&t, quoted);
@@ -428,8 +429,8 @@ static void keys_depend_on_the_row_and_the_options(void **state) {
   assert_false(same_keys(&n, &n2) || same_keys(&q, &q2) || same_keys(&n, &q));
 }
 
-// The tasks of one row have keys of their own; frames keep theirs when the film is cut shorter at
-// its beginning, but not at its end, which the script can read.
+// The tasks of one row have separate keys. The frames of a film keep their keys if its beginning is
+// cut off, but not if its end is, which the script can read.
 static void each_task_has_its_own_key(void **state) {
   (void)state;
   CagTool t = {0};
@@ -442,7 +443,7 @@ static void each_task_has_its_own_key(void **state) {
   const Keys shorter = keys_of(&t, HEAD "a.cag,f%d.png,0..2\n");
   for (size_t i = 0; i < 2; i++) assert_string_equal(whole.keys[2 + i], later.keys[i]);
   for (size_t i = 0; i < 3; i++) assert_string_not_equal(whole.keys[i], shorter.keys[i]);
-  // A row's key is the same whatever rows stand beside it.
+  // The key of a row does not depend on the other rows.
   const Keys rows = keys_of(&t, HEAD "b.cag,b.stl\na.cag,a.stl\nb.cag,c.stl\na.cag,d.stl\n");
   static const char *const alone[] = {HEAD "b.cag,b.stl\n", HEAD "a.cag,a.stl\n",
                                       HEAD "b.cag,c.stl\n", HEAD "a.cag,d.stl\n"};
@@ -473,7 +474,7 @@ static void frames_have_their_numbers_in_the_name(void **state) {
     assert_int_equal(cag_frames_places(rows[i].pattern), rows[i].places);
     assert_true(cag_frames_name(rows[i].pattern, 7, name, sizeof name));
     assert_string_equal(name, rows[i].name);
-    // A buffer that the name and its end just fit into, and one that is too small.
+    // A buffer of exactly the required size, and one that is too small.
     const size_t n = strlen(rows[i].name);
     assert_true(cag_frames_name(rows[i].pattern, 7, name, n + 1));
     assert_string_equal(name, rows[i].name);

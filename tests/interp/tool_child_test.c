@@ -1,4 +1,4 @@
-// Processes of a batch: what becomes of them, as a status and a line for the report.
+// Processes of a batch: their result, as a status and a line for the report.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +20,7 @@ static void wait_for(CagChild *c) {
   while (!cag_child_look(c)) poll(NULL, 0, 5);
 }
 
-// Runs a command of the shell as a task; gives the status, and the message in `out`.
+// Runs a shell command as a task. Returns the status, and the message in `out`.
 static int run(const char *command, double limit, CagChildStop stop, char *out, size_t size) {
   char *words[] = {"sh", "-c", (char *)(size_t)command, NULL}, *message = NULL;
   CagChild c;
@@ -52,7 +52,7 @@ static void test_ends(void **state) {
       {"exit 0", 0, ""},
       {"echo told >&2; exit 0", 0, ""},
       {"exit 7", 7, "failed with exit status 7"},
-      // what it writes to standard output is not kept
+      // standard output is discarded
       {"echo out; exit 3", 3, "failed with exit status 3"},
       {"echo first >&2; echo last >&2; echo >&2; exit 3", 3, "last"},
       {"printf 'a\\rb' >&2; exit 3", 3, "a b"},
@@ -68,7 +68,7 @@ static void test_ends(void **state) {
       {"kill -KILL $$", 1, "killed by signal 9 (Killed); the system may have run out of memory"},
       {"kill -SEGV $$", 1, "ended by signal 11 (Segmentation fault)"},
       {"sleep 30 & exit 3", 3, "failed with exit status 3"},
-      // a flood: its end is kept
+      // of a long output, the end is kept
       {"head -c 500000 /dev/zero | tr '\\0' x >&2; echo >&2; echo last >&2; exit 3", 3, "last"},
   };
   char message[1024];
@@ -88,14 +88,14 @@ static void test_limits(void **state) {
   assert_string_equal(message, "exceeded the time limit of 0.2 s");
   assert_int_equal(run("sleep 30", 0, CAG_CHILD_STOP_MEMORY, message, sizeof message), 5);
   assert_string_equal(message, "exceeded the memory limit of 64 MB");
-  // One that does not listen is killed.
+  // A process that ignores signals is killed.
   assert_int_equal(
       run("trap '' TERM; while :; do sleep 1; done", 0.2, CAG_CHILD_RUNS, message, sizeof message),
       5);
 }
 
 static int seven(void *context) {
-  *(int *)context = 1; // of the copy
+  *(int *)context = 1; // only in the copy of the child
   return 7;
 }
 
@@ -138,7 +138,7 @@ static void test_run(void **state) {
   cag_child_free(&c);
 }
 
-// Without memory nothing starts, or some of what it said is lost.
+// If memory runs out, the process is not started, or some of its output is lost.
 static void test_failing_memory(void **state) {
   (void)state;
   char *words[] = {"sh", "-c", "echo '" ERROR "}' >&2; exit 3", NULL};

@@ -1,5 +1,5 @@
-// The command line: which values each option takes, where options and operands may stand, and what
-// is said of those that are wrong.
+// The command line: the values of each option, the order of options and operands, and messages for
+// invalid ones.
 
 #include <math.h>
 #include <setjmp.h>
@@ -24,8 +24,8 @@ static char *words[WORDS_MOST + 1];
 static int operands;
 static char said[1024];
 
-// Reads a command line, whose words are separated by single spaces. What it writes to standard
-// error is kept in `said`.
+// Parses a command line, whose words are separated by single spaces. Standard error is captured in
+// `said`.
 static bool read_line(CagTool *t, const char *line) {
   static char copy[512];
   int count = 0;
@@ -54,7 +54,7 @@ static bool read_line(CagTool *t, const char *line) {
 
 // --- Values ---
 
-// What an option made of a value, as text.
+// The parsed value of an option as text.
 static void show(const CagTool *t, const char *option, char *out, size_t size) {
   const CagSessionOptions *s = &t->session;
 #define IS(name) (strcmp(option, name) == 0)
@@ -88,7 +88,7 @@ static void show(const CagTool *t, const char *option, char *out, size_t size) {
 static void each_option_takes_its_values(void **state) {
   (void)state;
   static const struct {
-    const char *command, *option, *value, *result; // NULL: refused
+    const char *command, *option, *value, *result; // result NULL: rejected
   } rows[] = {
       {"render", "--size", "1280x720", "1280 720"},
       {"render", "--size", "1x1", "1 1"},
@@ -227,7 +227,7 @@ static void each_option_takes_its_values(void **state) {
       assert_int_equal(*said != 0, !ok);
       cag_tool_release(&t);
     }
-    // The same by name, as the columns of a batch give it: the reason is kept.
+    // The same by name, as for the columns of a batch: the reason is stored.
     CagTool t = {0};
     CagToolRefusal why;
     const bool taken = cag_tool_try(&t, rows[i].option + 2, rows[i].value, &why);
@@ -242,7 +242,7 @@ static void each_option_takes_its_values(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// --- Where words stand ---
+// --- Order of words ---
 
 static void expect_line(const char *line, const char *command, const char *operand_words) {
   CagTool t;
@@ -315,7 +315,7 @@ static void options_stand_anywhere(void **state) {
   assert_true(t.fresh && !t.update);
   assert_string_equal(t.queue, "slurm");
   cag_tool_release(&t);
-  // Help and version need no operands, nor a command.
+  // Help and version need neither operands nor a command.
   assert_true(read_line(&t, "cag run --help"));
   assert_true(t.wants_help && !t.wants_version);
   assert_string_equal(t.command->name, "run");

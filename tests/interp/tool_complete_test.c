@@ -1,5 +1,5 @@
-// What Tab proposes in the REPL: for lines typed up to the cursor, with and without lines before,
-// and with failing allocations.
+// Tab completion in the REPL: for lines up to the cursor, with and without preceding lines, and
+// with failing allocations.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -91,7 +91,7 @@ static int end(void **state) {
 
 // --- Lines ---
 
-// A line up to the cursor, behind lines that it goes on; and what is proposed, with `|` between.
+// A line up to the cursor, the lines that it continues, and the proposals, separated by `|`.
 typedef struct Line {
   const char *before, *text, *proposed;
 } Line;
@@ -109,7 +109,7 @@ static const Line LINES[] = {
     {NULL, "0..sphere_s", "sphere_surface"},
     {NULL, "(sphere_s", "sphere_surface"},
     {NULL, "[sphere_s", "sphere_surface"},
-    // deeper than is looked into
+    // deeper than the parser goes
     {NULL, "((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((sphere_s",
      "sphere_surface"},
     // named arguments
@@ -169,7 +169,7 @@ static const Line LINES[] = {
     {NULL, ":zzz sphere_s", "sphere_surface"},
     // imports
     {NULL, "import gri", "gripper"},
-    {NULL, "import g", "gripper"}, // g.t is no script
+    {NULL, "import g", "gripper"}, // g.t is not a script
     {NULL, "import li", "li."},
     {NULL, "import li.", "li.jaws"},
     {NULL, "import she", "shelf|shell"},
@@ -214,7 +214,7 @@ static void test_lines(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-// A proposal stands for the last bytes of the line.
+// A proposal replaces the last bytes of the line.
 static void test_replaced_part(void **state) {
   (void)state;
   for (size_t i = 0; i < LINE_COUNT; i++) {
@@ -227,13 +227,13 @@ static void test_replaced_part(void **state) {
   }
 }
 
-// A name without its colon is proposed where the argument is not.
+// Compares proposals. A name may lack its colon, because the argument could not be found.
 static bool is_same(const char *a, const char *b) {
   const size_t n = strcspn(b, ":");
   return strcspn(a, ":") == n && memcmp(a, b, n) == 0;
 }
 
-// Without memory some proposals are missing, and none is another.
+// If memory runs out, some proposals are missing, but none is wrong.
 static void test_failing_memory(void **state) {
   (void)state;
   for (size_t i = 0; i < LINE_COUNT; i++) {

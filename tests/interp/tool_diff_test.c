@@ -1,5 +1,5 @@
-// Differences of texts: of random texts, each is applied to the first text, which must give the
-// second, and has as few lines as the longest common subsequence allows.
+// Differences of random texts: each is applied to the first text, which must result in the second,
+// and has the minimum number of lines according to the longest common subsequence.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,7 +61,7 @@ static void take_source(Patch *p, const char *line, size_t n) {
   p->line++;
 }
 
-// A line of a hunk, whose newline is no part of it when a remark follows.
+// Copies a line of a hunk. If a remark follows, its newline does not belong to it.
 static void apply_line(Patch *p, size_t *from, size_t *to) {
   static const char REMARK[] = "\\ No newline at end of file\n";
   const char sign = *p->at, *line = p->at + 1;
@@ -88,7 +88,7 @@ static void apply_hunk(Patch *p) {
   p->at = memchr(p->at, '\n', (size_t)(p->end - p->at));
   p->at++;
   const size_t begin = from_count ? from_line - 1 : from_line;
-  while (p->line < begin) { // lines between the hunks stay
+  while (p->line < begin) { // lines between the hunks do not change
     const size_t n = line_length(p->source, p->source_end);
     add(p->out, p->source, n);
     take_source(p, p->source, n);
@@ -103,7 +103,7 @@ static void apply_hunk(Patch *p) {
   assert_int_equal(to, to_count);
 }
 
-// Gives how many lines were taken away or added.
+// Returns the number of removed and added lines.
 static size_t apply(const Text *a, const Text *diff, Text *out) {
   static const char HEAD[] = "--- a.cag\n+++ a.cag\n";
   out->length = 0;
@@ -120,7 +120,7 @@ static size_t apply(const Text *a, const Text *diff, Text *out) {
 
 // --- Random texts ---
 
-// Lines of one letter: few kinds, so that many are equal.
+// Lines of one letter, of few kinds, so that many are equal.
 static void random_text(Text *t, size_t lines, int kinds) {
   t->length = 0;
   for (size_t i = 0; i < lines; i++) {
@@ -129,7 +129,7 @@ static void random_text(Text *t, size_t lines, int kinds) {
   }
 }
 
-// As the text, with some lines changed, added or left out.
+// A copy of the text with some lines changed, added, or removed.
 static void random_change(const Text *t, double share, Text *out) {
   out->length = 0;
   for (const char *at = t->bytes, *end = at + t->length; at < end;) {
@@ -150,7 +150,7 @@ static size_t split(const Text *t, const char **lines, size_t *lengths) {
   return count;
 }
 
-// The fewest lines that must go or come, from the longest common subsequence.
+// The minimum number of removed and added lines, from the longest common subsequence.
 static size_t fewest_edits(const Text *a, const Text *b) {
   enum { MOST = 64 };
   const char *a_lines[MOST], *b_lines[MOST];
@@ -188,7 +188,7 @@ static void test_random(void **state) {
   }
 }
 
-// Texts that differ in too many lines are replaced as a whole.
+// If texts differ in too many lines, the diff replaces everything.
 static void test_many_lines(void **state) {
   (void)state;
   a.length = b.length = 0;
@@ -202,7 +202,7 @@ static void test_many_lines(void **state) {
   assert_memory_equal(back.bytes, b.bytes, b.length);
 }
 
-// Without memory there is a whole difference, perhaps with more lines, or none.
+// If memory runs out, the difference is complete, possibly with more lines, or missing.
 static void test_failing_memory(void **state) {
   (void)state;
   seed = 11;

@@ -1,5 +1,4 @@
-// Files of jobs: what rows and problems their texts give, and that no failing allocation and no
-// torn text does harm.
+// Job files: their rows and problems. Failing allocations and truncated texts are handled.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +12,7 @@
 
 volatile int cag_tool_interrupt;
 
-// The rows as `line: column=value ...`, and the problems as `! row code message`, each on a line.
+// Writes rows as `line: column=value ...`, and problems as `! row code message`, one per line.
 static void describe(const CagJobs *jobs, char *out, size_t size) {
   size_t n = 0;
   *out = '\0';
@@ -54,9 +53,9 @@ static const File FILES[] = {
     CSV(MARK "script;output;r\r\n a.cag ;a.stl; 1,5 \r\n", "2: script=a.cag output=a.stl r=1,5\n"),
     CSV("script\toutput\tr\na.cag\ta.stl\t\n", "2: script=a.cag output=a.stl\n"),
     CSV("script\toutput\tr\na.cag\t \"a.stl\"\t2\n", "2: script=a.cag output=a.stl r=2\n"),
-    // params stand in the order of their names
+    // params are sorted by name
     CSV("output,z,script,b\na.stl,1,a.cag,2\n", "2: script=a.cag output=a.stl b=2 z=1\n"),
-    // empty lines, and lines of empty fields, are passed over
+    // empty lines, and lines of empty fields, are skipped
     CSV("\n ,,\nscript,output\n\n , \na.cag,a.stl\n", "6: script=a.cag output=a.stl\n"),
     // quotes
     CSV("script,output,t\na.cag,\"a b.stl\",\"say \"\"no\"\"\"\n",
@@ -120,7 +119,7 @@ static void test_files(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-// Rows, fields and problems beyond what is allocated at first.
+// More rows, fields, and problems than the initial capacities.
 static void test_many(void **state) {
   (void)state;
   enum { ROWS = 100, COLUMNS = 50 };
@@ -150,7 +149,8 @@ static void test_many(void **state) {
   free(text);
 }
 
-// A text that ends anywhere is read, without a look behind its end (the copy fits exactly).
+// A text that is truncated anywhere is read without accesses beyond its end (the copy has the exact
+// size).
 static void test_torn(void **state) {
   (void)state;
   for (size_t i = 0; i < FILE_COUNT; i++)
@@ -165,7 +165,7 @@ static void test_torn(void **state) {
     }
 }
 
-// Without memory it says so, or reads all that it would.
+// If memory runs out, this is reported, or everything is read.
 static void test_failing_memory(void **state) {
   (void)state;
   for (size_t i = 0; i < FILE_COUNT; i++) {

@@ -1,5 +1,5 @@
-// Journals and plans of batches: what is written comes back, torn and foreign files are told, and
-// failing allocations do no harm.
+// Journals and plans of batches: written data are read back, truncated and foreign files are
+// detected, and failing allocations are handled.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,7 +49,7 @@ static void write_text(const char *path, const char *text) {
 #define LONG_KEY KEY "0"
 #define DONE(key, rest) "{\"what\":\"done\",\"key\":\"" key "\"" rest "}\n"
 
-// The entry of a key in a journal of this text.
+// The entry of a key in a journal with this text.
 static void test_lines(void **state) {
   (void)state;
   static const struct {
@@ -65,10 +65,10 @@ static void test_lines(void **state) {
       {DONE("a", ",\"seconds\":\"x\",\"memory\":\"x\",\"attempts\":null"), "a", 0, 0, 0},
       {DONE("a", ",\"memory\":-3"), "a", 0, 0, 0},
       {DONE(KEY, ",\"seconds\":4"), KEY, 4, 0, 0},
-      // the newest counts
+      // the last one counts
       {DONE("a", ",\"seconds\":1") DONE("b", ",\"seconds\":2") DONE("a", ",\"seconds\":3"), "a", 3,
        0, 0},
-      // a torn line, and lines that are none of ours among them, are passed over
+      // a truncated line, and foreign lines, are skipped
       {DONE("a", ",\"seconds\":1") "{\"what\":\"done\",\"key\":\"a\",\"sec", "a", 1, 0, 0},
       {DONE("a", ",\"seconds\":1") "{\"what\":\"done\",\"ke\n" DONE("b", ",\"seconds\":2"), "b", 2,
        0, 0},
@@ -95,7 +95,8 @@ static void test_lines(void **state) {
   }
 }
 
-// Entries in any number and order, compared with a plain list; half of them in a second session.
+// Entries in any number and order, compared with a simple list; half of them are added in a second
+// session.
 static void test_round_trip(void **state) {
   (void)state;
   enum { KEYS = 200, ENTRIES = 500 };
@@ -126,7 +127,7 @@ static void test_round_trip(void **state) {
     assert_true(newest[k] < 0 ? !e : e && e->seconds == newest[k]);
   }
   cag_journal_close(&j);
-  assert_true(cag_journal_open(&j, "journal", true, &err)); // a fresh one forgets
+  assert_true(cag_journal_open(&j, "journal", true, &err)); // a fresh journal is empty
   assert_int_equal(j.count, 0);
   cag_journal_close(&j);
   assert_true(cag_journal_open(&j, "journal", false, &err));
@@ -182,7 +183,7 @@ static void test_refused(void **state) {
   assert_true(cag_journal_open(&j, "journal", false, &err));
   assert_false(cag_journal_open(&other, "journal", false, &err));
   assert_non_null(strstr(err.message, "another batch of this table is running"));
-  // What cannot be written is told, with the reason.
+  // Write errors are reported with their reason.
   close(j.fd);
   assert_int_equal(open("/dev/full", O_WRONLY), j.fd);
   assert_false(cag_journal_add(&j, &(CagJournalEntry){.key = "a"}, &err));
@@ -201,7 +202,7 @@ static void test_journal_without_memory(void **state) {
     failing = at;
     const bool ok = cag_journal_open(&j, "journal", false, &err);
     failing = 0;
-    assert_true(ok == (at == 4)); // three allocations: the text, the entries, their order
+    assert_true(ok == (at == 4)); // three allocations: the text, the entries, and their order
     assert_true(ok || cag_exit_status(&err));
     cag_journal_close(&j);
   }

@@ -1,5 +1,5 @@
-// How many processes of a batch run at once, by files like those of /proc. What their fields mean
-// is told in proc(5).
+// The number of concurrent processes of a batch, from files like those of /proc. proc(5) describes
+// their fields.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -54,14 +54,14 @@ static CagLoad load_of(size_t workers) {
   return l;
 }
 
-// The limit at a look at the machine so many seconds after the one before.
+// The limit when the load is measured this many seconds after the previous time.
 static size_t limit_after(CagLoad *l, double seconds, size_t running, size_t waiting) {
   l->looked -= seconds;
   l->seen -= seconds;
   return cag_load_limit(l, running, waiting);
 }
 
-// --- Shares of time ---
+// --- Fractions of time ---
 
 typedef struct Share {
   int niceness;
@@ -71,7 +71,7 @@ typedef struct Share {
 
 #define START "cpu 1000 2000 3000 4000 5000 6000 7000 8000 0 0\ncpu0 1 2 3 4\n"
 
-// Below 95 % of their time the processors count as idle.
+// Below 95 % utilization, the processors count as idle.
 static const Share SHARES[] = {
     {0, START, "cpu 1100 2000 3000 4000 5000 6000 7000 8000 0 0\n", false},
     {0, START, "cpu 1096 2000 3000 4004 5000 6000 7000 8000 0 0\n", false},
@@ -80,7 +80,7 @@ static const Share SHARES[] = {
     {0, START, "cpu 1096 2000 3000 4000 5004 6000 7000 8000 0 0\n", false},
     {0, START, "cpu 1094 2000 3000 4000 5006 6000 7000 8000 0 0\n", true},
     {0, START, "cpu 1094 2000 3000 4003 5003 6000 7000 8000 0 0\n", true},
-    // the system, interrupts, and other guests of the machine are not
+    // time of the system, interrupts, and other guests of the machine is busy
     {0, START, "cpu 1000 2000 3096 4004 5000 6000 7000 8000 0 0\n", false},
     {0, START, "cpu 1000 2000 3000 4004 5000 6096 7000 8000 0 0\n", false},
     {0, START, "cpu 1000 2000 3000 4004 5000 6000 7096 8000 0 0\n", false},
@@ -90,10 +90,10 @@ static const Share SHARES[] = {
     {0, "cpu 10 20 30 40\n", "cpu 106 20 30 44\n", false},
     {0, "cpu 10 20 30\n", "cpu 10 20 30\n", false},
     {0, "cpu 10 20 30\n", "cpu 10 20 40\n", false},
-    // nothing that could be read, and no time that has passed
+    // unreadable data, and no elapsed time
     {0, START, "intr 1100 2000 3000 4900 5000 6000 7000 8000 0 0\n", false},
     {0, START, START, false},
-    // what gives way to us counts as idle, what does not is busy
+    // processes with lower priority count as idle, and those with higher priority as busy
     {0, START, "cpu 1050 2050 3000 4000 5000 6000 7000 8000 0 0\n", true},
     {1, START, "cpu 1050 2050 3000 4000 5000 6000 7000 8000 0 0\n", false},
     {1, START, "cpu 1044 2050 3000 4006 5000 6000 7000 8000 0 0\n", true},
@@ -103,7 +103,7 @@ static void shares_of_time_tell_an_idle_processor(void **state) {
   (void)state;
   write_file("meminfo", PLENTY);
   write_file("loadavg", MANY_RUNNABLE);
-  setpriority(PRIO_PROCESS, 0, 0); // refused to other users where we run at a lower priority
+  setpriority(PRIO_PROCESS, 0, 0); // other users may not be allowed to do this at a lower priority
   for (size_t i = 0; i < sizeof SHARES / sizeof *SHARES; i++) {
     const Share *row = &SHARES[i];
     if (row->niceness) setpriority(PRIO_PROCESS, 0, row->niceness);
@@ -117,7 +117,8 @@ static void shares_of_time_tell_an_idle_processor(void **state) {
   }
 }
 
-// Shares taken over less than 0.15 s say nothing: the kernel counts in ticks of 0.01 s.
+// Fractions measured over less than 0.15 s are ignored, because the kernel counts in ticks of 0.01
+// s.
 static void shares_need_a_while(void **state) {
   (void)state;
   write_file("meminfo", PLENTY);
@@ -129,7 +130,7 @@ static void shares_need_a_while(void **state) {
   assert_true(limit_after(&l, 0.1, processors(), 1000) > processors());
 }
 
-// --- Threads that compute ---
+// --- Running threads ---
 
 typedef struct Runnable {
   const char *text;
@@ -138,7 +139,7 @@ typedef struct Runnable {
 
 static void few_runnable_threads_leave_a_processor_idle(void **state) {
   (void)state;
-  // The thread that looks is one of them.
+  // The measuring thread is one of them.
   static const Runnable rows[] = {
       {"0.1 0.2 0.3 0/90 7\n", true},
       {"0.1 0.2 0.3 1/90 7\n", true},
@@ -171,18 +172,18 @@ static void the_limit_grows_while_a_processor_is_idle_and_sinks_while_none_is(vo
   write_file("loadavg", NONE_RUNNABLE);
   CagLoad l = load_of(2), large = load_of(16);
   assert_int_equal(limit_after(&l, 0, 0, 1000), 2);
-  assert_int_equal(limit_after(&l, 0.01, 2, 1000), 3);       // by one at least
+  assert_int_equal(limit_after(&l, 0.01, 2, 1000), 3);       // by at least one
   assert_int_equal(limit_after(&large, 0.01, 16, 1000), 18); // by an eighth
-  // What was allowed and not used says nothing.
+  // The limit does not rise if it was not reached.
   assert_int_equal(limit_after(&l, 0.01, 2, 1000), 3);
-  // Six for each until one has ended, then 32.
+  // At most six per processor until one has ended, and then 32.
   assert_int_equal(limit_after(&l, 0.01, 11, 1000), 12);
   assert_int_equal(limit_after(&l, 0.01, 12, 1000), 12);
   cag_load_ended(&l, 1000);
   assert_int_equal(limit_after(&l, 0.01, 12, 1000), 13);
   assert_int_equal(limit_after(&l, 0.01, 63, 1000), 64);
   assert_int_equal(limit_after(&l, 0.01, 64, 1000), 64);
-  // By one in two seconds, never below one for each processor.
+  // By one in two seconds, but never below one per processor.
   write_file("loadavg", MANY_RUNNABLE);
   assert_int_equal(limit_after(&l, 1.9, 64, 1000), 63);
   assert_int_equal(limit_after(&l, 2.2, 64, 1000), 61);
@@ -191,7 +192,7 @@ static void the_limit_grows_while_a_processor_is_idle_and_sinks_while_none_is(vo
   assert_int_equal(cag_load_limit(&l, 4, 1000), 5);
 }
 
-// Where processes sleep, all that wait are begun at once when so many may run.
+// If processes sleep, all waiting ones are started at once, up to the limit.
 static void the_last_of_a_batch_of_sleepers_begin_at_once(void **state) {
   (void)state;
   write_file("meminfo", PLENTY);
@@ -199,7 +200,7 @@ static void the_last_of_a_batch_of_sleepers_begin_at_once(void **state) {
   write_file("loadavg", MANY_RUNNABLE);
   CagLoad l = load_of(4);
   cag_load_refused(&l, 8);
-  assert_int_equal(cag_load_limit(&l, 6, 8), 8); // none has ended
+  assert_int_equal(cag_load_limit(&l, 6, 8), 8); // none of them has ended
   cag_load_ended(&l, 1000);
   assert_int_equal(cag_load_limit(&l, 6, 9), 8);
   assert_int_equal(cag_load_limit(&l, 6, 8), 14);
@@ -214,14 +215,14 @@ static void further_processes_need_free_memory(void **state) {
   (void)state;
   static const struct {
     const char *meminfo;
-    size_t largest, running, limit; // of 8 that may run
+    size_t largest, running, limit; // 8 are allowed
   } rows[] = {
       {"MemTotal: 1000000 kB\nMemAvailable: 260000 kB\n", 1024, 5, 8},
       {"MemTotal: 1000000 kB\nMemAvailable: 240000 kB\n", 1024, 5, 5},
-      {"MemTotal: 1000000 kB\nMemAvailable: 240000 kB\n", 1024, 3, 4}, // one for each processor
+      {"MemTotal: 1000000 kB\nMemAvailable: 240000 kB\n", 1024, 3, 4}, // one per processor
       {"MemTotal: 1000000 kB\n", 1024, 5, 5},
       {"", 1024, 5, 5},
-      // six may have three quarters of it, 122880 kB each
+      // six may use three quarters of it, 122880 kB each
       {"MemTotal: 1000000 kB\nMemAvailable: 900000 kB\n", (size_t)124000 << 10, 5, 8},
       {"MemTotal: 1000000 kB\nMemAvailable: 900000 kB\n", (size_t)126000 << 10, 5, 5},
       {"MemTotal: 1000000 kB\nMemAvailable: 900000 kB\n", (size_t)126000 << 10, 4, 8},
@@ -252,7 +253,7 @@ static void write_process(const char *number, const char *name, int parent, int 
 static void memory_is_that_of_a_process_and_its_children(void **state) {
   (void)state;
   write_process("7", "cag", 1, 100);
-  write_process("8", "a ) name (", 7, 20); // names may hold anything
+  write_process("8", "a ) name (", 7, 20); // names may contain any characters
   write_process("9", "grandchild", 8, 3);
   write_process("10", "other", 1, 5000);
   write_process("self", "no number", 7, 60000);

@@ -1,5 +1,5 @@
-// Tiles of pictures, and names of frames: how texts are read, that tiles cover a picture once, and
-// which tiles are no part of it.
+// Tiles of pictures, and names of frames: parsing, exact coverage of the picture, and invalid
+// tiles.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -38,7 +38,7 @@ static void test_texts(void **state) {
   (void)state;
   static const struct {
     const char *text;
-    int columns, lines; // 0: refused
+    int columns, lines; // 0: rejected
   } rows[] = {
       {"4x3", 4, 3},  {"1x1", 1, 1},   {"64x64", 64, 64}, {"007x2", 7, 2},
       {"65x1", 0, 0}, {"1x65", 0, 0},  {"0x1", 0, 0},     {"1x0", 0, 0},
@@ -54,7 +54,7 @@ static void test_texts(void **state) {
   }
 }
 
-// Each pixel lies in one tile, and inner edges lie at multiples of the renderer's blocks.
+// Each pixel is in exactly one tile, and inner edges are at multiples of the renderer's blocks.
 static void test_cover(void **state) {
   (void)state;
   seed = 5;
@@ -78,7 +78,8 @@ static void test_cover(void **state) {
   }
 }
 
-// A tile whose pixels are their places in the whole picture, times a factor for each channel.
+// Writes a tile whose pixels are their positions in the whole picture, multiplied by a factor for
+// each channel.
 static void write_tile(const char *path, CagRenderRegion r, const char *const *channels,
                        size_t count) {
   CagImage image;

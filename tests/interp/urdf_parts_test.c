@@ -1,5 +1,5 @@
-// Parts of URDF: each value that a description has comes out of its reader, chains are found in
-// trees, and masses follow the laws of mechanics.
+// Parts of URDF: the reader returns all values of a description, chains are found in trees, and
+// masses obey the laws of mechanics.
 
 #include "geom/solid/tessellate.h"
 #include "interp/formats/urdf.h"
@@ -74,7 +74,7 @@ static void every_value_is_read(void **state) {
   const CagUrdfBody *b = t.nodes[0].visuals;
   assert_int_equal(b->kind, CAG_URDF_BODY_BOX);
   for (int i = 0; i < 3; i++) is_near(b->size[i], 100 * (i + 1), 1e-9, "side");
-  is_color(b, 0.5, 0.02, 1, 0.25); // of the named material, brought into the range
+  is_color(b, 0.5, 0.02, 1, 0.25); // of the named material, clamped to the range
   // Roll about x, then pitch about y, then yaw about z.
   const double r = 0.4, p = 0.5, y = -0.6;
   const double m[3][4] = {{cos(y) * cos(p), cos(y) * sin(p) * sin(r) - sin(y) * cos(r),
@@ -92,7 +92,7 @@ static void every_value_is_read(void **state) {
   assert_int_equal(b->kind, CAG_URDF_BODY_MESH);
   assert_string_equal(b->file, "m.stl");
   assert_true(b->scale[0] == 1 && b->scale[1] == 2 && b->scale[2] == -3);
-  is_color(b, 0, 1, 0, 1); // of a material that stands behind
+  is_color(b, 0, 1, 0, 1); // of a material that is defined later
   b = b->next;
   assert_string_equal(b->file, "n.stl");
   assert_string_equal(b->material, "unknown");
@@ -104,7 +104,7 @@ static void every_value_is_read(void **state) {
   is_near(b->size[0], 50, 1e-9, "radius");
   is_near(b->size[1], 700, 1e-9, "length");
   assert_null(b->next);
-  is_color(t.nodes[1].visuals, 1, 0, 0, 1); // a material told in a body is known from then on
+  is_color(t.nodes[1].visuals, 1, 0, 0, 1); // a material defined in a body can be used afterwards
   static const size_t above[] = {CAG_URDF_NONE, 0, 1, 2, 3, 4};
   for (size_t i = 0; i < 6; i++) assert_true(t.nodes[i].above == above[i]);
   const CagUrdfEdge *e = t.edges;
@@ -179,7 +179,7 @@ static void sizes_must_be_greater_than_zero(void **state) {
   }
 }
 
-// The chains of a tree by the names of base and tip.
+// The chains of a tree, by the names of base and tip.
 static void chains_lead_from_base_to_tip(void **state) {
   (void)state;
   static const struct {
@@ -227,7 +227,7 @@ static void chains_lead_from_base_to_tip(void **state) {
   cag_urdf_tree_free(&t);
 }
 
-// Two roots, a ring, and a ring behind a root.
+// Two roots, a cycle, and a cycle below a root.
 static void trees_without_one_root_are_refused(void **state) {
   (void)state;
 #define JOINT(name, a, b)                                                                          \
@@ -257,7 +257,7 @@ static void trees_without_one_root_are_refused(void **state) {
 
 // --- Masses ---
 
-static CagTransform random_place(double size) {
+static CagTransform random_transform(double size) {
   CagTransform t, move;
   CagVec3 axis, at;
   axis.x = uniform(-1, 1);
@@ -282,14 +282,14 @@ static void is_mass(const CagUrdfMass *a, const CagUrdfMass *b, double part, con
     for (int j = 0; j < 3; j++) is_near(a->inertia[i][j], b->inertia[i][j], part * most, what);
 }
 
-// A box and a cylinder as plain bodies, as solids, as meshes, and as closed surfaces with any
-// normals: the same mass, center, and inertia, wherever they are. The solids are measured by
-// another part of the program.
+// A box and a cylinder as primitive bodies, as solids, as meshes, and as closed surfaces of any
+// orientation have the same mass, center, and inertia, at any location. Another part of the program
+// measures the solids.
 static void bodies_weigh_the_same_in_every_form(void **state) {
   (void)state;
   seed = 51;
   for (int round = 0; round < 20; round++) {
-    const CagTransform place = random_place(round % 2 ? 100 : 30000);
+    const CagTransform place = random_transform(round % 2 ? 100 : 30000);
     const double a = uniform(10, 200), b = uniform(10, 200), c = uniform(10, 200), density = 2700;
     CagUrdfShape shape = {.kind = CAG_URDF_BOX, .place = place, .size = {a, b, c}};
     CagSolid *box, *moved;
@@ -350,8 +350,8 @@ static void bodies_weigh_the_same_in_every_form(void **state) {
   }
 }
 
-// Inertia about the origin is what adds up, for any bodies joined in any order (Steiner): of a body
-// it is that about its center, and m (|c|^2 E - c c^T).
+// For bodies joined in any order, the inertia about the origin is additive (Steiner). For one body,
+// it is that about its center, plus m (|c|^2 E - c c^T).
 static void joined_bodies_add_up_about_the_origin(void **state) {
   (void)state;
   seed = 52;
@@ -360,7 +360,7 @@ static void joined_bodies_add_up_about_the_origin(void **state) {
     double mass = 0, first[3] = {0}, about[3][3] = {{0}};
     for (int i = 0; i < 2 + round % 5; i++) {
       CagUrdfShape s = {.kind = i % 2 ? CAG_URDF_BOX : CAG_URDF_CYLINDER,
-                        .place = random_place(300)};
+                        .place = random_transform(300)};
       s.size[0] = uniform(10, 100);
       s.size[1] = uniform(10, 100);
       s.size[2] = uniform(10, 100);

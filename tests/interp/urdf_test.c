@@ -1,6 +1,6 @@
-// URDF: files written by robots of scripts, read by a small reader of this test's own, lead where
-// fk leads; files written by this test, with axes in any direction, lead fk where they lead; and
-// what is no robot is refused.
+// URDF: files written by robots of scripts agree with fk, according to a small reader in this test.
+// Files written by this test, with axes in any direction, agree with fk, too. Files that do not
+// describe a robot are rejected.
 
 #include <math.h>
 #include <setjmp.h>
@@ -17,12 +17,12 @@
 #include "cag.h"
 #include "interp/formats/urdf_read.h"
 
-// Meters.
+// In meters.
 #define SAME 1e-9
 
 static char folder[] = "/tmp/cag-urdf-test-XXXXXX";
 
-// --- Numbers by chance, the same each time ---
+// --- Reproducible random numbers ---
 
 static uint64_t state_of_chance;
 
@@ -57,8 +57,8 @@ static char *read_whole(const char *name) {
   return text;
 }
 
-// Runs a script in the folder; exports what it shows to `urdf` (NULL: nothing). Gives what it
-// printed, to be freed.
+// Runs a script in the folder, and exports its shown shapes to `urdf`, unless it is NULL. Returns
+// the output, to be freed.
 static char *run(const char *text, const char *urdf) {
   char path[200], *printed = NULL;
   size_t size;
@@ -77,7 +77,7 @@ static char *run(const char *text, const char *urdf) {
 }
 
 // The next n numbers of a printed text.
-static const char *take_numbers(const char *text, double *x, int n) {
+static const char *read_numbers(const char *text, double *x, int n) {
   for (int i = 0; i < n; i++) {
     text += strcspn(text, "-0123456789");
     char *end;
@@ -88,7 +88,7 @@ static const char *take_numbers(const char *text, double *x, int n) {
   return text;
 }
 
-// --- A reader of URDF of our own: rotations by Rodrigues' formula, joints found by their links ---
+// --- An independent URDF reader: rotations by Rodrigues' formula, joints found by their links ---
 
 typedef struct Frame {
   double r[3][3], p[3];
@@ -117,7 +117,7 @@ static Frame turned(const double axis[3], double angle) {
   return f;
 }
 
-// The value of an attribute within [text, end); false: none.
+// Finds the value of an attribute in [text, end). Returns false if there is none.
 static bool attribute(const char *text, const char *end, const char *element, const char *name,
                       char *out) {
   char opening[64], key[64];
@@ -154,12 +154,12 @@ static void read_joint(const char *text, const char *end, Joint *j) {
   assert_true(attribute(text, end, "joint", "type", j->type));
   assert_true(attribute(text, end, "parent", "link", j->parent));
   assert_true(attribute(text, end, "child", "link", j->child));
-  if (attribute(text, end, "origin", "rpy", value)) take_numbers(value, rpy, 3);
+  if (attribute(text, end, "origin", "rpy", value)) read_numbers(value, rpy, 3);
   Frame rx = turned(x, rpy[0]), ry = turned(y, rpy[1]), rz = turned(z, rpy[2]);
   Frame yx = product(&ry, &rx);
   j->origin = product(&rz, &yx);
-  if (attribute(text, end, "origin", "xyz", value)) take_numbers(value, j->origin.p, 3);
-  if (attribute(text, end, "axis", "xyz", value)) take_numbers(value, j->axis, 3);
+  if (attribute(text, end, "origin", "xyz", value)) read_numbers(value, j->origin.p, 3);
+  if (attribute(text, end, "axis", "xyz", value)) read_numbers(value, j->axis, 3);
   if (attribute(text, end, "limit", "lower", value)) j->low = strtod(value, NULL);
   if (attribute(text, end, "limit", "upper", value)) j->high = strtod(value, NULL);
   if (attribute(text, end, "limit", "effort", value)) j->effort = strtod(value, NULL);
@@ -180,7 +180,7 @@ static void read_robot(const char *text, Robot *r) {
 
 static bool moves(const Joint *j) { return strcmp(j->type, "fixed") != 0; }
 
-// The joints that have a value of their own, in the order from the root to the tip.
+// The joints that have independent values, in order from the root to the tip.
 static size_t chain_of(const Robot *r, const Joint **out) {
   size_t n = 0;
   const char *at = NULL;
@@ -233,7 +233,8 @@ static Frame forward(const Joint *const *chain, size_t n, const double *q) {
 
 enum { POSES = 12 };
 
-// Joint values within the limits: `script` as a list of the language, q in radians and meters.
+// Random joint values within the limits: `script` is a list of the language, and q is in radians
+// and meters.
 static void draw_joints(const Joint *const *chain, size_t n, double q[64], char *script) {
   size_t k = 0;
   strcpy(script, "[");
@@ -250,7 +251,7 @@ static void draw_joints(const Joint *const *chain, size_t n, double q[64], char 
   strcat(script, "]");
 }
 
-// `definitions` define r; the file's joints lead where fk(r) leads.
+// `definitions` define r. Checks that the file's joints agree with fk(r).
 static void check_same(const char *definitions, const char *urdf) {
   char *file = read_whole(urdf), *script = calloc(1, 1 << 16), list[2048];
   double q[POSES][64];
@@ -268,7 +269,7 @@ static void check_same(const char *definitions, const char *urdf) {
   const char *at = printed;
   for (int i = 0; i < POSES; i++) {
     double m[16];
-    at = take_numbers(at, m, 16);
+    at = read_numbers(at, m, 16);
     Frame f = forward(chain, n, q[i]);
     for (int row = 0; row < 3; row++) {
       for (int column = 0; column < 3; column++)
@@ -287,7 +288,7 @@ static const char *const robots[] = {
     "-225deg..45deg), "
     "revolute(a: -20.3, alpha: 90deg), revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), "
     "revolute(d: 56.5)])\n",
-    // Modified rows, a base, a tool, fixed links, joints that do not stand at 0 at home.
+    // Modified rows, a base, a tool, fixed links, and joints whose home is not 0.
     "r = robot([revolute(d: 333), revolute(alpha: -90deg, limits: 10deg..80deg, home: 35deg), "
     "fixed_link(translate([1, 2, 3]) * rotate([1, 1, 0], 40deg)), revolute(alpha: 70deg, a: 82.5, "
     "d: 316), "
@@ -295,7 +296,7 @@ static const char *const robots[] = {
     "offset: 7, theta: 15deg, limits: 20..180, home: 100)], convention: \"mdh\", base: "
     "translate([100, 200, 300]) * "
     "rotate(X, 77deg), tool: rotate([1, 2, 3], 50deg) * translate([0, 0, 88]))\n",
-    // A screw, and turns that leave the pitch at a quarter turn.
+    // A screw joint, and rotations for which the pitch stays at a quarter turn.
     "r = robot([prismatic(limits: 0..300), fixed_link(rotate(Y, 90deg)), revolute(lead: 20, a: "
     "50), fixed_link(rotate(Y, -90deg) * rotate(X, "
     "13deg)), revolute(limits: -720deg..720deg, d: 5), fixed_link(rotate(Y, 90deg - 1e-9deg))])\n",
@@ -323,7 +324,7 @@ static void what_was_written_is_read_back(void **state) {
     snprintf(script, sizeof script, "%sshow r\n", robots[i]);
     free(run(script, "arm.urdf"));
     check_same("r = read_urdf(\"arm.urdf\")\n", "arm.urdf");
-    // Limits are the same to rounding.
+    // Limits agree up to rounding.
     snprintf(
         script, sizeof script,
         "%ss = read_urdf(\"arm.urdf\")\nprint [for i in 0..<r.joints: "
@@ -335,7 +336,7 @@ static void what_was_written_is_read_back(void **state) {
   }
 }
 
-// Origins and axes anywhere, all kinds of joints.
+// Arbitrary origins and axes, and all kinds of joints.
 static void write_any_robot(char *text, int joints) {
   static const char *const kinds[] = {"revolute", "continuous", "prismatic", "fixed"};
   static const double round_axes[][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 2}, {0, 0, 0}};
@@ -371,8 +372,8 @@ static void axes_in_any_direction_are_read(void **state) {
   free(text);
 }
 
-// Axes that are almost parallel to the one before, by angles from 1e-13 on, and through it or not:
-// some as rows, and those that rows would place far away as fixed transforms.
+// Axes that are almost parallel to the previous one, at angles from 1e-13, intersecting it or not.
+// Some become rows. Those whose rows would be far away become fixed transforms.
 static void axes_that_are_almost_parallel_are_read(void **state) {
   (void)state;
   char *text = calloc(1, 1 << 16);
@@ -404,8 +405,7 @@ static void axes_that_are_almost_parallel_are_read(void **state) {
   free(text);
 }
 
-// A chain of Denavit and Hartenberg's rows is read as rows again, with at most one transform behind
-// them.
+// A chain of Denavit-Hartenberg rows is read as rows again, followed by at most one transform.
 static void rows_are_read_as_rows(void **state) {
   (void)state;
   for (int i = 0; i < 40; i++) {
@@ -440,13 +440,13 @@ static double number_after(const char *text, const char *mark) {
   const char *at = strstr(text, mark);
   if (!at) fail_msg("no %s", mark);
   double x;
-  take_numbers(at + strlen(mark), &x, 1);
+  read_numbers(at + strlen(mark), &x, 1);
   return x;
 }
 
 static void masses_are_those_of_the_shapes(void **state) {
   (void)state;
-  // A steel box of 0.2 x 0.1 x 0.05 m whose center lies 0.1 m before the frame.
+  // A steel box of 0.2 x 0.1 x 0.05 m, whose center is 0.1 m in front of the frame.
   free(run("box_of = translate(box([200, 100, 50]), [-200, -50, -25])\n"
            "show robot([revolute(a: 300, alpha: 90deg, shape: material(box_of, {color: \"grey\", "
            "density: "
@@ -455,16 +455,16 @@ static void masses_are_those_of_the_shapes(void **state) {
   char *text = read_whole("box.urdf");
   const double m = 7850 * 0.2 * 0.1 * 0.05;
   assert_true(fabs(number_after(text, "<mass value=\"") - m) < 1e-12 * m);
-  // About x, then y (the frame's z), then z, seen from the joint, which is turned by 90 degrees.
+  // About x, then y (the frame's z), then z, relative to the joint, which is rotated by 90 degrees.
   assert_true(fabs(number_after(text, "ixx=\"") - m * (0.1 * 0.1 + 0.05 * 0.05) / 12) < 1e-12);
   assert_true(fabs(number_after(text, "iyy=\"") - m * (0.2 * 0.2 + 0.1 * 0.1) / 12) < 1e-12);
   assert_true(fabs(number_after(text, "izz=\"") - m * (0.2 * 0.2 + 0.05 * 0.05) / 12) < 1e-12);
   const char *inertial = strstr(text, "<inertial>");
   double center[3];
-  take_numbers(strstr(inertial, "xyz=\"") + 5, center, 3);
+  read_numbers(strstr(inertial, "xyz=\"") + 5, center, 3);
   assert_true(fabs(center[0] - 0.2) < 1e-12 && fabs(center[1]) < 1e-12 && fabs(center[2]) < 1e-12);
   free(text);
-  // Two cylinders of water end to end are one.
+  // Two cylinders of water end to end are equivalent to one.
   free(run("show robot([revolute(shape: [cylinder(100, 30), translate(cylinder(100, 30), [0, 0, "
            "100])])])\n",
            "rod.urdf"));
@@ -476,7 +476,7 @@ static void masses_are_those_of_the_shapes(void **state) {
   free(text);
 }
 
-// The sums of the volumes of the cylinders and boxes that a link collides with, in cubic metres.
+// The total volume of the collision cylinders and boxes of a link, in cubic meters.
 static double volume_of_plain(const char *link, const char *end, int *count) {
   double sum = 0;
   *count = 0;
@@ -486,7 +486,7 @@ static double volume_of_plain(const char *link, const char *end, int *count) {
     double side[3];
     ++*count;
     if (attribute(at, close, "box", "size", size)) {
-      take_numbers(size, side, 3);
+      read_numbers(size, side, 3);
       sum += side[0] * side[1] * side[2];
     } else {
       assert_true(attribute(at, close, "cylinder", "radius", radius));
@@ -497,7 +497,7 @@ static double volume_of_plain(const char *link, const char *end, int *count) {
   return sum;
 }
 
-// Plain bodies are of water, and a rod goes from joint to joint.
+// The default bodies have the density of water, and a rod extends from joint to joint.
 static void plain_bodies_weigh_what_their_sizes_say(void **state) {
   (void)state;
   free(run("show robot([revolute(a: 300), prismatic(limits: 0..100), revolute(a: 100)])\n",
@@ -520,7 +520,7 @@ static void plain_bodies_weigh_what_their_sizes_say(void **state) {
   free(text);
 }
 
-// A tube without lids, a sheet, a flat mesh, and a curve close no volume.
+// A tube without lids, a sheet, a flat mesh, and a curve do not enclose a volume.
 static void open_shapes_have_no_mass(void **state) {
   (void)state;
   static const char *const open[] = {"extrude(circle(30), 100, caps: false)",
@@ -534,7 +534,7 @@ static void open_shapes_have_no_mass(void **state) {
     char *text = read_whole("open.urdf");
     assert_null(strstr(text, "<mass"));
     free(text);
-    // Beside a body it adds nothing, wherever it lies.
+    // Next to a body, it adds nothing, at any location.
     snprintf(script, sizeof script,
              "show robot([revolute(a: 100, shape: [cylinder(100, 30), translate(%s, [500, 0, "
              "0])])])\n",
@@ -559,11 +559,11 @@ static void rates_and_efforts_are_in_meters(void **state) {
   assert_true(fabs(j[0].velocity - 0.4) < 1e-15 && j[0].effort == 70);
   assert_true(fabs(j[1].low + M_PI / 2) < 1e-15 && fabs(j[1].high - M_PI / 4) < 1e-15);
   assert_true(fabs(j[1].velocity - M_PI / 2) < 1e-15 && j[1].effort == 12);
-  assert_true(j[2].velocity > 0 && j[2].effort > 0); // said, since the format wants them
+  assert_true(j[2].velocity > 0 && j[2].effort > 0); // present because the format requires them
   free(text);
 }
 
-// --- What is no robot ---
+// --- Invalid files ---
 
 static const char *reason_of(const char *text, size_t size) {
   static CagError err;
@@ -666,11 +666,11 @@ static void files_changed_by_chance_crash_nothing(void **state) {
     memcpy(changed, text, n + 1);
     for (int k = (int)chance(1, 5); k > 0; k--)
       changed[(size_t)chance(0, (double)n)] = letters[(size_t)chance(0, sizeof letters - 1)];
-    if (i % 7 == 0) n = (size_t)chance(0, (double)n); // cut off
+    if (i % 7 == 0) n = (size_t)chance(0, (double)n); // truncated
     changed[n] = 0;
     good += !strcmp(reason_of(changed, n), "ok");
   }
-  assert_true(good > 0); // changes of digits
+  assert_true(good > 0); // only digits changed
   free(text);
   free(changed);
 }

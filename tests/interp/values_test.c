@@ -1,11 +1,11 @@
-// Values inside the machine: lists in their representations, texts, ranges, records, and numbers as
-// text; against models in plain C.
+// Values inside the machine (representations of lists, texts, ranges, records, and numbers as text)
+// compared with models in plain C.
 
 #include "tests/interp/vm_support.h"
 
 // ---- lists ----
 
-// What a random element can be.
+// The kinds of random elements.
 enum { NUMBERS, ANGLES, VECTORS, TEXTS, KINDS };
 
 static CagValue random_element(CagVm *vm, uint32_t kind, size_t dim) {
@@ -17,7 +17,7 @@ static CagValue random_element(CagVm *vm, uint32_t kind, size_t dim) {
   }
 }
 
-// The representation that value.h promises: numbers, vectors of one length from 2 to 16, or values.
+// The representation stated in value.h: numbers, vectors of one length from 2 to 16, or values.
 static uint32_t promised_dim(const CagValue *values, size_t n) {
   if (n == 0) return 0;
   size_t numbers = 0, length = 0, vectors = 0;
@@ -56,18 +56,18 @@ static void lists_keep_their_elements_in_the_promised_form(void **state) {
     expect_list(vm, made, values, n);
     expect_list(vm, grown, values, n);
     assert_true(cag_equal(vm, made, grown));
-    // Lists of more than 4 KiB have memory of their own.
+    // Lists of more than 4 KiB have separate memory.
     const size_t bytes = n * (CAG_AS_LIST(made)->dim ? 8 * CAG_AS_LIST(made)->dim : 16);
     assert_int_equal(CAG_AS_LIST(made)->allocated, bytes > 4096);
     assert_int_equal(CAG_AS_LIST(grown)->allocated, bytes > 4096);
-    // Parts, and parts of parts.
+    // Slices, and slices of slices.
     const size_t from = chance((uint32_t)n + 1), count = chance((uint32_t)(n - from) + 1);
     const CagValue part = cag_list_slice(vm, made, from, count);
     expect_list(vm, part, values + from, count);
     const size_t inner = chance((uint32_t)count + 1);
     expect_list(vm, cag_list_slice(vm, part, inner, count - inner), values + from + inner,
                 count - inner);
-    // Another element, or one more, makes another list.
+    // A different or additional element makes another list.
     if (n == 0) continue;
     const size_t changed = chance((uint32_t)n);
     const CagValue old = values[changed];
@@ -173,7 +173,7 @@ static void single_indices_count_from_both_ends(void **state) {
     if (good) assert_string_equal(CAG_AS_TEXT(got)->bytes, letters[k]);
     forget_error(vm);
   }
-  // An endless range has every element from its start on.
+  // An infinite range has all elements from its start on.
   const CagValue endless = cag_range_new(vm, 5, HUGE_VAL, 0.5, false, false, true);
   CagValue got;
   for (int k = 0; k < 9; k++) {
@@ -196,7 +196,7 @@ static double model(CagBinaryOp op, double a, double b) {
   }
 }
 
-// a - b floor(a / b) has the sign of b; exact for small whole numbers.
+// a - b floor(a / b) has the sign of b, and is exact for small integers.
 static void remainders_have_the_sign_of_the_divisor(void **state) {
   CagVm *vm = *state;
   for (int a = -20; a <= 20; a++)
@@ -269,8 +269,8 @@ static void lists_are_computed_element_by_element(void **state) {
   }
 }
 
-// An infinite operand that was written gives an infinite result; a finite sum that is too large,
-// a division by 0 and an undefined result are errors.
+// An infinite operand may have an infinite result. A finite sum that is too large, a division by 0,
+// and an undefined result are errors.
 static void infinite_results_need_infinite_operands(void **state) {
   CagVm *vm = *state;
   static const double samples[] = {0, 1, -2, DBL_MAX, HUGE_VAL, -HUGE_VAL};
@@ -289,7 +289,7 @@ static void infinite_results_need_infinite_operands(void **state) {
                                              : isnan(expected)             ? "is undefined"
                                                                            : "is too large"));
     forget_error(vm);
-    // The same in a packed list, behind an element that is finite.
+    // The same in a packed list, after a finite element.
     const CagValue list = cag_vector(vm, (double[]){1, a}, 2);
     const bool scaled = op >= CAG_OP_MULTIPLY;
     const CagValue other = scaled ? y : cag_vector(vm, (double[]){1, b}, 2);
@@ -361,7 +361,7 @@ static void lists_hold_their_elements_and_no_others(void **state) {
 
 // ---- ranges ----
 
-// Steps of hundredths: the k-th element is the decimal number, the last one the end itself.
+// Steps of hundredths: the k-th element is the decimal number, and the last one is the end itself.
 static void ranges_count_decimal_steps(void **state) {
   CagVm *vm = *state;
   for (int round = 0; round < 3000; round++) {
@@ -383,12 +383,12 @@ static void ranges_count_decimal_steps(void **state) {
       assert_true(fabs(x - (start + (double)k * step) / 100) <= 1e-14);
     }
     if (rest == 0 && many > 0) assert_true(cag_range_element(&r, (size_t)many, count) == r.end);
-    // The other way there is nothing.
+    // In the opposite direction, it is empty.
     const CagRange back = {.start = r.start, .end = r.start - r.step, .step = r.step, .open = open};
     assert_true(cag_range_count(vm, &back, &count));
     assert_int_equal(count, 0);
   }
-  // A range whose elements are too many for a list, or endless.
+  // A range with too many elements for a list, or an infinite one.
   size_t count;
   const CagRange large = {.start = 0, .end = 1e15, .step = 1}, larger = {.end = 2e15, .step = 1};
   assert_true(cag_range_count(vm, &large, &count));
@@ -417,7 +417,7 @@ static void ranges_become_lists_of_their_elements(void **state) {
 
 // ---- numbers as text ----
 
-// The digits of a number without its point, leading zeros and exponent.
+// Counts the digits of a number without its point, leading zeros, and exponent.
 static size_t significant(const char *text) {
   size_t n = 0, zeros = 0;
   for (; *text && *text != 'e'; text++) {
@@ -428,7 +428,7 @@ static size_t significant(const char *text) {
   return n - zeros;
 }
 
-// A printed number reads back as itself, with as few digits as can be.
+// A printed number reads back as itself, with as few digits as possible.
 static void numbers_are_printed_shortest(void **state) {
   (void)state;
   for (int round = 0; round < 20000; round++) {
@@ -448,14 +448,14 @@ static void numbers_are_printed_shortest(void **state) {
     const double size = fabs(x);
     const bool exponent = strchr(s.bytes, 'e') != NULL;
     assert_int_equal(exponent, size != 0 && (size < 1e-5 || size >= 1e17));
-    // Whole numbers below 2^53 have all their digits, of others there is no shorter form.
+    // Integers below 2^53 have all their digits; other numbers have no shorter form.
     const size_t n = significant(s.bytes);
     char shorter[40];
     if (n > 1) {
       snprintf(shorter, sizeof shorter, "%.*e", (int)n - 2, x);
       assert_true(strtod(shorter, NULL) != x);
     }
-    // No needless zeros: neither before the point nor at the end of a fraction.
+    // There are no redundant zeros, either before the point or at the end of a fraction.
     const char *text = s.bytes + (*s.bytes == '-'), *point = strchr(text, '.');
     if (text[0] == '0') assert_true(text[1] == '.' || text[1] == 0);
     const size_t last = exponent ? (size_t)(strchr(s.bytes, 'e') - s.bytes) : s.length;
@@ -506,7 +506,7 @@ static const char *described(CagVm *vm, CagValue v) {
   return text;
 }
 
-// Values are named with what they hold if that is at most 40 characters long.
+// Messages include the contents of values of up to 40 characters.
 static void messages_name_short_values(void **state) {
   CagVm *vm = *state;
   char text[64], expected[128];
@@ -552,7 +552,7 @@ static void records_find_their_fields(void **state) {
     const CagValue r = cag_record_new(vm, pointers, values, n);
     const CagRecord *record = CAG_AS_RECORD(r);
     assert_int_equal(record->layout->count, n);
-    // Lookup by a table begins at 9 fields.
+    // From 9 fields on, lookup uses a hash table.
     assert_int_equal(record->layout->index != NULL, n > 8);
     for (size_t i = 0; i < 1700; i++) {
       char name[8];
@@ -569,7 +569,7 @@ static void records_find_their_fields(void **state) {
       assert_true(cag_contains(vm, text, r, &in));
       assert_int_equal(in, has);
     }
-    // Equality does not depend on the order of the fields, but on each of them.
+    // Equality does not depend on the order of the fields, but on all of them.
     assert_true(cag_equal(vm, r, cag_record_new(vm, turned_names, turned, n)));
     if (n == 0) continue;
     turned[n / 2] = cag_number(-1);

@@ -1,4 +1,5 @@
-// How diagnostics look: text, color, JSON, long and wide lines, notes; and the nearest name.
+// Rendering of diagnostics: text, color, JSON, long and wide lines, and notes. Also the search for
+// the nearest name.
 
 #include "support.h"
 
@@ -27,7 +28,7 @@ static void expect_rendered(const char *text, uint32_t start, uint32_t end, cons
   free(out);
 }
 
-// The example of the language's section 6.
+// The example in section 6 of the language's description.
 static void the_example_of_the_language_is_met_exactly(void **state) {
   (void)state;
   const char *head = "\n\n\n\n\n\n\n\n\n\n\n";
@@ -67,7 +68,7 @@ static void tabs_and_wide_characters_keep_the_carets_in_place(void **state) {
   expect_rendered("\xe6\xbc\xa2\xe5\xad\x97 = y", 9, 10, NULL,
                   "error: it \"is\"\twrong\n --> spring.cag:1:6\n  |\n"
                   "1 | \xe6\xbc\xa2\xe5\xad\x97 = y\n  |        ^\n");
-  // e and a combining accent: one column
+  // e and a combining accent take one column
   expect_rendered(
       "e\xcc\x81 = y", 6, 7, NULL,
       "error: it \"is\"\twrong\n --> spring.cag:1:6\n  |\n1 | e\xcc\x81 = y\n  |     ^\n");
@@ -136,7 +137,7 @@ static void colour_marks_the_same_text(void **state) {
   (void)state;
   char *out = rendered("x = y", 4, 5, "mend", CAG_DIAGNOSTIC_COLOR), *to = out;
   assert_non_null(strstr(out, "\033[1;31merror\033[0m"));
-  for (const char *from = out; *from;) { // without its escapes it is the plain form
+  for (const char *from = out; *from;) { // without escape sequences, it is the plain form
     if (*from == '\033') from = strchr(from, 'm') + 1;
     else *to++ = *from++;
   }
@@ -195,7 +196,7 @@ static void the_list_keeps_twenty_and_counts_the_rest(void **state) {
 static void the_nearest_name_is_within_a_third(void **state) {
   (void)state;
   const char *const names[] = {"height", "width", "material", "sin", "is_watertight"};
-  assert_string_equal(cag_nearest_name("hieght", names, 5), "height"); // two letters changed places
+  assert_string_equal(cag_nearest_name("hieght", names, 5), "height"); // two letters are exchanged
   assert_string_equal(cag_nearest_name("Width", names, 5), "width");
   assert_string_equal(cag_nearest_name("metarials", names, 5), "material");
   assert_string_equal(cag_nearest_name("sn", names, 5), "sin");

@@ -1,5 +1,5 @@
-// The one layout: what it looks like, and that it never changes a tree, loses a comment, or differs
-// the second time; over all scripts of the tree, as they are and with their spaces thrown about.
+// The formatter: its layout, and that it never changes a tree, loses a comment, or changes its own
+// output. Tested with all scripts of the source tree, as they are and with random spaces.
 
 #include <ftw.h>
 
@@ -7,7 +7,7 @@
 #include "lang/lexer.h"
 #include "support.h"
 
-// The layout of a text, or NULL where it has errors.
+// Returns the formatted text, or NULL if it has errors.
 static char *laid_out(const char *text, size_t length, char **tree, size_t *comments) {
   Parsed p = parse_bytes(text, length, CAG_PARSE_FILE);
   size_t n;
@@ -75,8 +75,8 @@ static void labels_of_params_are_set_one_below_the_other(void **state) {
                 "param a = 1 \"one\"  // why\nb = 2\nparam b = 2  \"two\"\nc = 3\n");
 }
 
-// A text of several lines stays behind the bracket as the last argument, and breaks the others. As
-// a label it is set below no other, and no other below it.
+// A multi-line text as the last argument stays after the bracket and breaks the others. As a label,
+// it is neither aligned with others nor are others with it.
 static void texts_of_several_lines_stay_as_they_are(void **state) {
   (void)state;
   expect_layout("u = f(3,`one\ntwo`)", "u = f(3, `one\ntwo`)\n");
@@ -89,7 +89,7 @@ static void texts_of_several_lines_stay_as_they_are(void **state) {
 
 static void comments_keep_their_places(void **state) {
   (void)state;
-  // Before the fields of a record, also before one that is spread.
+  // Before the fields of a record, including a spread one.
   expect_layout("r = {a: 1,\n // b\n\n b: 2,\n // c\n\n ...c,\n // d\n ...d}",
                 "r = {\n  a: 1,\n  // b\n\n  b: 2,\n  // c\n\n  ...c,\n  // d\n  ...d\n}\n");
   expect_layout("r = {/* a */ ...a, ... /* b */ b}", "r = { /* a */ ...a, ... /* b */ b }\n");
@@ -136,15 +136,15 @@ static void rows_of_numbers_stand_one_below_the_other(void **state) {
                 "  [[ 0, 0,  8], [ 0, 18.5, 24], [ 0, 36, -4], [ 0, 54, 12]],\n"
                 "  [[18, 0, 26], [18,   18, 48], [18, 36, 30], [18, 54, 24]]\n"
                 "]\n");
-  // What fits on a line is no table.
+  // Rows that fit on one line are not a table.
   expect_layout("m = [[1,20],[300,4]]", "m = [[1, 20], [300, 4]]\n");
-  // Comments and blank lines may stand between the rows.
+  // Comments and blank lines are allowed between the rows.
   expect_layout("m = [ // all\n[1000000000,2,3,4,5,6,7,8],\n\n[1,2,3,4,5,6,7,8], // two\n"
                 "/* three */ [1,2,3,4,5,6,7,8]]",
                 "m = [  // all\n  [1000000000, 2, 3, 4, 5, 6, 7, 8],\n\n"
                 "  [         1, 2, 3, 4, 5, 6, 7, 8],  // two\n"
                 "  /* three */ [         1, 2, 3, 4, 5, 6, 7, 8]\n]\n");
-  // Rows that are not alike are set as they are.
+  // Rows of different lengths are not aligned.
   expect_layout("m = [[1000000000000, 2000000000000], [1, 2000000000000, 3], [100000000000000, x], "
                 "[1000000, 20000000, 3]]",
                 "m = [\n  [1000000000000, 2000000000000],\n  [1, 2000000000000, 3],\n"
@@ -158,11 +158,11 @@ static void records_of_data_are_filled(void **state) {
       "turned: 0deg..90deg, end: true }",
       "r = {\n  name: \"a long name of a thing\", size: [10, 20, 30], at: f(1, -2), look: "
       "m.red,\n  turned: 0deg..90deg, end: true\n}\n");
-  // A field that has to be broken stands apart.
+  // A field that must be broken is separate.
   expect_layout("r = { a: 1, b: 2, xs: [" LONG ", " LONG ", 1], c: 3, d: 4 }",
                 "r = {\n  a: 1, b: 2,\n  xs: [\n    " LONG ",\n    " LONG ",\n    1\n  ],\n"
                 "  c: 3, d: 4\n}\n");
-  // Where something is computed, each field has its line.
+  // If a field is computed, each field has its own line.
   expect_layout("r = { first: 1, second: 2, third: 2 * " LONG ", fourth: 4, fifth: 5, sixth: 6 }",
                 "r = {\n  first: 1,\n  second: 2,\n  third: 2*" LONG
                 ",\n  fourth: 4,\n  fifth: 5,\n  sixth: 6\n}\n");
@@ -175,10 +175,10 @@ static void stages_stand_behind_a_closing_bracket(void **state) {
   expect_layout("a = group([" LONG ", " LONG "]) |> f(1) |> g(" LONG ", x) |> g(" LONG ")",
                 "a = group([\n  " LONG ",\n  " LONG "\n])\n  |> f(1)\n  |> g(" LONG
                 ", x)\n  |> g(" LONG ")\n");
-  // A single stage that has to be broken begins behind its head.
+  // A single stage that must be broken begins after its head.
   expect_layout("a = b |> f(" LONG ", " LONG ", 1, 2)",
                 "a = b |> f(\n  " LONG ",\n  " LONG ",\n  1,\n  2\n)\n");
-  // Comments stand right above their stage, though blank lines between them stay.
+  // Comments are directly above their stage, and blank lines between them are kept.
   expect_layout("a = b\n// one\n\n|> f\n// two\n\n// three\n\n|> g",
                 "a = b\n  // one\n  |> f\n  // two\n\n  // three\n  |> g\n");
 }
@@ -202,7 +202,7 @@ static void short_parameters_are_filled(void **state) {
 
 // ---- limits ----
 
-// The text with each @ replaced by a name of k letters.
+// Replaces each @ in the text by a name of k letters.
 static char *with_name(const char *text, size_t k) {
   char *out;
   size_t size;
@@ -226,8 +226,8 @@ static size_t longest_line(const char *text) {
   return most;
 }
 
-// A statement is set on one line exactly as long as that has at most 100 columns, whatever it
-// consists of, and else as shown.
+// Any statement is on one line if and only if that has at most 100 columns. Otherwise, it is broken
+// as shown.
 static void a_line_has_at_most_a_hundred_columns(void **state) {
   (void)state;
   static const struct {
@@ -290,7 +290,7 @@ static void a_line_has_at_most_a_hundred_columns(void **state) {
 
 #define LONGER LONG "_and_a_tail"
 
-// Of two layouts the first is chosen exactly where it has at most 100 columns.
+// Of two layouts, the first is used if and only if it has at most 100 columns.
 static void a_last_list_opens_where_its_bracket_fits(void **state) {
   (void)state;
   static const struct {
@@ -335,7 +335,7 @@ static uint32_t chance(uint32_t n) {
   return (seed >> 8) % n;
 }
 
-// Adds `word` to a line of `indent` columns, or to the next line where it would have more than 100.
+// Appends `word` to a line of `indent` columns, or to the next line if it would exceed 100 columns.
 static void fill(char *out, size_t *column, size_t indent, const char *word, bool last) {
   const size_t n = strlen(word) + !last;
   if (*column + 1 + n > 100) {
@@ -347,7 +347,7 @@ static void fill(char *out, size_t *column, size_t indent, const char *word, boo
   }
 }
 
-// Lists of small elements, imports and what is shown are filled: as many to a line as fit.
+// Lists of small elements, imports, and shown expressions are filled: as many to a line as fit.
 static void short_words_fill_their_lines(void **state) {
   (void)state;
   seed = 3;
@@ -389,7 +389,7 @@ static void short_words_fill_their_lines(void **state) {
   }
 }
 
-// The columns of a table are as wide as their widest words, which end one below the other.
+// The columns of a table are as wide as their widest elements, and right-aligned.
 static void tables_have_right_aligned_columns(void **state) {
   (void)state;
   seed = 4;
@@ -424,7 +424,7 @@ static void tables_have_right_aligned_columns(void **state) {
     strcat(expected, "]\n");
     char *out = laid_out(text, strlen(text), NULL, NULL);
     assert_non_null(out);
-    // Tables whose rows all fit, and which do not fit on one line themselves.
+    // Only tables whose rows all fit, and which do not fit on one line themselves.
     if (longest_line(expected) <= 100 && strchr(out, '\n') + 1 != out + strlen(out))
       assert_string_equal(out, expected);
     else assert_true(width > 90 || strlen(out) <= 101);
@@ -432,8 +432,8 @@ static void tables_have_right_aligned_columns(void **state) {
   }
 }
 
-// Comments at the ends of neighboring lines begin two columns behind the longest of their lines,
-// unless that has more than 72; a blank line, or one without a comment, ends the neighborhood.
+// Comments at the ends of adjacent lines begin two columns after the longest of the lines, unless
+// that has more than 72 columns. A blank line, or a line without a comment, ends the group.
 static void comments_of_neighboring_lines_are_aligned(void **state) {
   (void)state;
   seed = 5;
@@ -514,8 +514,8 @@ static void check_properties(const char *path, const char *text, size_t length) 
   free(again);
 }
 
-// The text with other spaces between its tokens, comments strewn in, and newlines where they do
-// not count.
+// The text with different spaces between its tokens, additional comments, and newlines where they
+// are allowed.
 static char *thrown_about(const char *text, size_t length, size_t *size) {
   CagSource *source = cag_source_new("", text, length);
   CagArena arena = {0};

@@ -1,4 +1,4 @@
-// Words: numbers and units, names, texts, comments.
+// Tokens: numbers and units, names, texts, and comments.
 
 #include <math.h>
 
@@ -15,8 +15,8 @@ static void numbers_have_digits_on_both_sides_of_the_point(void **state) {
   value_is("0..5", "(.. 0 5)");
   value_is("0.5..1.5", "(.. 0.5 1.5)");
   value_is("0..<5", "(..< 0 5)");
-  expect_mend("x = .5\n", "E0111", "0.5");
-  expect_mend("x = 5.\n", "E0111", "5.0");
+  expect_help("x = .5\n", "E0111", "0.5");
+  expect_help("x = 5.\n", "E0111", "5.0");
 }
 
 static double value_of(const char *number, CagExprKind kind) {
@@ -31,7 +31,7 @@ static double value_of(const char *number, CagExprKind kind) {
   return v;
 }
 
-// Compared with what the C compiler makes of the same decimal number.
+// Compared with the C compiler's value of the same decimal number.
 static void numbers_are_rounded_correctly(void **state) {
   (void)state;
   static const struct {
@@ -67,12 +67,12 @@ static void units_scale_before_rounding(void **state) {
 
 static void an_unknown_unit_gets_the_nearest(void **state) {
   (void)state;
-  expect_mend("x = 45degrees", "E0109", "45deg");
-  expect_mend("x = 3inch", "E0109", "3in");
-  expect_mend("x = 3parsec", "E0109", "3 * parsec");
-  expect_mend("x = 45°", "E0109", "45deg");
-  expect_mend("x = 1_000_", "E0112", "1_000");
-  expect_mend("x = 1e999", "E0110", "inf");
+  expect_help("x = 45degrees", "E0109", "45deg");
+  expect_help("x = 3inch", "E0109", "3in");
+  expect_help("x = 3parsec", "E0109", "3 * parsec");
+  expect_help("x = 45°", "E0109", "45deg");
+  expect_help("x = 1_000_", "E0112", "1_000");
+  expect_help("x = 1e999", "E0110", "inf");
 }
 
 static void names_are_compared_after_nfc(void **state) {
@@ -95,8 +95,8 @@ static void texts_know_their_escapes(void **state) {
   assert_memory_equal(e->as.text.bytes, wanted, strlen(wanted));
   release(&p);
   value_is("`C:\\data {x}\nnext`", "\"C:\\\\data {x}\\nnext\"");
-  expect_mend("x = \"\\x41\"", "E0106", "\\u{41}");
-  expect_mend("x = \"\\u{d800}\"", "E0107", "hexadecimal");
+  expect_help("x = \"\\x41\"", "E0106", "\\u{41}");
+  expect_help("x = \"\\u{d800}\"", "E0107", "hexadecimal");
 }
 
 static void texts_hold_expressions_to_any_depth(void **state) {
@@ -152,7 +152,7 @@ static void a_byte_order_mark_and_other_spaces_are_blanks(void **state) {
   expect_tree("\xef\xbb\xbfx = 1\r\ny\xc2\xa0= 2\r\n", "(= x 1)\n(= y 2)");
 }
 
-// ---- random words ----
+// ---- random tokens ----
 
 static uint32_t seed;
 static uint32_t chance(uint32_t n) {
@@ -163,7 +163,7 @@ static uint32_t chance(uint32_t n) {
 typedef struct Word {
   const char *text;
   CagTokenKind kind;
-  const char *holds; // of a text or a name: its bytes
+  const char *holds; // contents of a text or a name
   double number;
 } Word;
 
@@ -253,7 +253,7 @@ static const Word words[] = {
     SIGN("true", TRUE),
 };
 
-// What may stand between two words; lines: how many of them end there, comments: how many it has.
+// Separators between two tokens: the number of lines that end there, and the number of comments.
 static const struct {
   const char *text;
   bool line;
@@ -283,7 +283,7 @@ static void words_are_told_apart(void **state) {
     bool lines[40];
     for (size_t i = 0; i < count; i++) {
       lines[i] = false;
-      // One gap at least; a first line break is one as well.
+      // At least one separator; a line break comes first.
       for (uint32_t n = 1 + chance(3); n > 0; n--) {
         const uint32_t g = chance(sizeof gaps / sizeof *gaps);
         strcat(text, gaps[g].text);
@@ -341,7 +341,7 @@ static void words_are_told_apart(void **state) {
   }
 }
 
-// Decimal numbers of any length, with underscores, against the C library.
+// Decimal numbers of any length, with underscores, compared with the C library.
 static void random_numbers_are_rounded_correctly(void **state) {
   (void)state;
   seed = 12;
@@ -364,7 +364,7 @@ static void random_numbers_are_rounded_correctly(void **state) {
     }
     const double expected = strtod(plain, NULL);
     if (!(value_of(spaced, CAG_EXPR_NUMBER) == expected)) fail_msg("%s", spaced);
-    // A metric unit moves the point.
+    // A metric unit moves the decimal point.
     char scaled[260], shifted[260];
     static const struct {
       const char *name;
@@ -380,7 +380,7 @@ static void random_numbers_are_rounded_correctly(void **state) {
   }
 }
 
-// Whole numbers around 2^53 and 2^59, and powers of ten around the largest exact one.
+// Integers around 2^53 and 2^59, and powers of ten around the largest exact one.
 static void numbers_at_the_limits_of_exact_arithmetic(void **state) {
   (void)state;
   static const uint64_t around[] = {(uint64_t)1 << 53, (uint64_t)1 << 59, 999999999999999999u,
@@ -395,10 +395,10 @@ static void numbers_at_the_limits_of_exact_arithmetic(void **state) {
         snprintf(text, sizeof text, "%de%d", d + 20, e);
         assert_true(value_of(text, CAG_EXPR_NUMBER) == strtod(text, NULL));
       }
-  // Zeros beyond the digits that fit, whole and as a fraction.
+  // Zeros after the digits that fit, in integers and fractions.
   value_is("12345678901234567890000", "1.2345678901234568e+22");
   value_is("1.00000000000000000000000000", "1");
-  expect_mend("x = 1e308_0", "E0112", "");
+  expect_help("x = 1e308_0", "E0112", "");
 }
 
 static void long_texts_are_read_whole(void **state) {
@@ -415,7 +415,7 @@ static void long_texts_are_read_whole(void **state) {
   assert_int_equal(e->as.text.length, 900);
   assert_memory_equal(e->as.text.bytes, expected, 900);
   release(&p);
-  // Texts within texts, deeper than any first capacity.
+  // Nested texts, deeper than the initial capacity.
   char deep[300] = "", wanted[600] = "";
   for (int i = 0; i < 40; i++) strcat(deep, "\"{"), strcat(wanted, "(text \"\" ");
   strcat(deep, "1");
@@ -424,9 +424,9 @@ static void long_texts_are_read_whole(void **state) {
   value_is(deep, wanted);
 }
 
-// ---- errors of single words ----
+// ---- errors of single tokens ----
 
-// Code, the marked span and the help of the only error. The marks are « and ».
+// The code, the marked span, and the help of the only error. The marks are « and ».
 static void words_that_are_wrong_are_marked(void **state) {
   (void)state;
   static const struct {

@@ -115,16 +115,16 @@ static void newlines_do_not_count_inside_brackets(void **state) {
   // the innermost bracket decides
   value_is("f({\n a = 1\n -a\n})", "(call f (block (= a 1) (neg a)))");
   value_is("{\n a = (1\n - 2)\n a\n}", "(block (= a (group (- 1 2))) a)");
-  // but a call's and an index's bracket stand on the line of what they follow
+  // but the bracket of a call or an index must be on the same line
   expect_errors("x = [max\n(1)]\n", "E0126 2:1");
   expect_errors("x = [max\n[1]]\n", "E0126 2:1");
 }
 
 static void what_does_not_chain_shows_its_mend(void **state) {
   (void)state;
-  expect_mend("x = 1 < 2 < 3", "E0133", "1 < 2 and 2 < 3");
-  expect_mend("x = 0..2..10", "E0134", "0..10 by 2");
-  expect_mend("x = 10 by 2", "E0135", "0..10 by 2");
+  expect_help("x = 1 < 2 < 3", "E0133", "1 < 2 and 2 < 3");
+  expect_help("x = 0..2..10", "E0134", "0..10 by 2");
+  expect_help("x = 10 by 2", "E0135", "0..10 by 2");
 }
 
 static void the_repl_asks_for_more_when_something_is_open(void **state) {
@@ -150,7 +150,7 @@ static void the_repl_tells_calls_from_definitions(void **state) {
   release(&p);
 }
 
-// Writes a statement as cag_ast_dump writes those of a module.
+// Writes one statement like cag_ast_dump does for a module.
 static void dump_one(void *context, const CagModuleAst *m, const CagStatement *s) {
   CagStatement *alone[] = {(CagStatement *)(uintptr_t)s};
   CagModuleAst module = {.source = m->source, .statements = alone, .count = s != NULL};
@@ -159,7 +159,7 @@ static void dump_one(void *context, const CagModuleAst *m, const CagStatement *s
 
 static void statements_are_handed_over_one_by_one(void **state) {
   (void)state;
-  // Names come again, and texts are read ahead of the statement that they belong to.
+  // Names are repeated, and texts are read before the statement that they belong to.
   const char *text = "import \"a/b.cag\"\nx = 1\nshow x\nshow \"t\"; print \"u {x}\", x\n"
                      "f(x, y = 2) = { z = x\n z }\nimport std.m as n: x2\nprint (x) => x";
   Parsed p = parse_text(text);
@@ -170,12 +170,12 @@ static void statements_are_handed_over_one_by_one(void **state) {
   CagDiagnostics errors = {0};
   assert_true(cag_parse_each(p.source, dump_one, f, &errors));
   fclose(f);
-  dumped[strlen(dumped) - 1] = 0; // its last line end, which tree_of leaves out
+  dumped[strlen(dumped) - 1] = 0; // the last line end, which tree_of omits
   assert_string_equal(dumped, tree_of(&p));
   free(dumped);
   release(&p);
 
-  // Behind an error, none is handed over.
+  // No statement is delivered after an error.
   p = parse_text("a = 1\nb = \nc = 3");
   f = open_memstream(&dumped, &length);
   assert_false(cag_parse_each(p.source, dump_one, f, &errors));

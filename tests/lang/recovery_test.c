@@ -1,4 +1,4 @@
-// Errors of the syntax: going on after one, open brackets, habits of other languages, limits.
+// Syntax errors: recovery, open brackets, syntax of other languages, and limits.
 
 #include "support.h"
 
@@ -38,49 +38,50 @@ static void twenty_errors_are_kept(void **state) {
 
 static void habits_of_other_languages_get_their_mend(void **state) {
   (void)state;
-  expect_mend("x = !true", "E0154", "not");
-  expect_mend("x = true && false", "E0155", "and");
-  expect_mend("x = true || false", "E0155", "or");
-  expect_mend("x = true ? 1 : 2", "E0156", "if true then 1 else 2");
-  expect_mend("x = 'text'", "E0108", "\"text\"");
-  expect_mend("print(1, 2)", "E0157", "print 1, 2");
-  expect_mend("a = 1\nprint(a, 2)", "E0157", "print a, 2");
-  expect_mend("x = 1\nx += 1", "E0151", "x2 = x + ...");
-  expect_mend("max(1, 2)", "E0150", "print max(1, 2)");
-  expect_mend("x == 3", "E0150", "to define x, write =");
-  expect_mend("x = if 1 = 2 then 3 else 4", "E0153", "==");
-  expect_mend("let x = 1", "E0152", "let");
-  expect_mend("def f(x) = x", "E0152", "def");
-  expect_mend("var x = 1", "E0152", "var");
-  expect_mend("function f(x) = x", "E0152", "function");
-  expect_mend("x = 2 ** 3", "E0158", "^");
-  expect_mend("x = if true then 1 elif false then 2 else 3", "E0159", "else if");
-  expect_mend("f(x) = {\n return x\n}", "E0160", "block");
-  expect_mend("x = 1 # one", "E0115", "//");
-  expect_mend("x = True", "E0201", "true");
-  expect_mend("x = null", "E0201", "none");
-  expect_mend("for i in 0..3: print i", "E0161", "show [for i in 0..3: ");
-  expect_mend("while x < 3", "E0161", "reduce");
-  expect_mend("x = 1 if true else 2", "E0162", "if c then 1 else b");
-  expect_mend("x = [1 for i in 0..3]", "E0163", "[for x in xs: 1]");
-  expect_mend("x = 3 not in [1]", "E0164", "not (3 in xs)");
-  expect_mend("x = max(a = 1)", "E0165", "a: value");
-  expect_mend("x = 1 === 1", "E0166", "==");
-  expect_mend("x = 1 <> 1", "E0166", "!=");
-  expect_mend("f = x -> x", "E0166", "=>");
-  expect_mend("x := 3", "E0166", "=");
-  expect_mend("y = 1\nx = \"{y:.2f}\"", "E0167", "text(y, digits: 2)");
-  expect_mend("x = (1, 2)", "E0140", "[1, 2]");
-  expect_mend("x = {1, 2}", "E0140", "[ ]");
-  expect_mend("x = [1, 2][1..]", "E0142", "1..-1");
-  expect_mend("x = 1 + if true then 1 else 2", "E0136", "(if true then 1 else 2)");
-  expect_mend("x = 1 |> y => y", "E0136", "(y => y)");
-  expect_mend("x = 3 × 4", "E0102", "*");
-  expect_mend("f(x: number) = x", "E0126", "no types");
-  expect_mend("x = max(...[1])", "E0143", "each argument");
+  expect_help("x = !true", "E0154", "not");
+  expect_help("x = true && false", "E0155", "and");
+  expect_help("x = true || false", "E0155", "or");
+  expect_help("x = true ? 1 : 2", "E0156", "if true then 1 else 2");
+  expect_help("x = 'text'", "E0108", "\"text\"");
+  expect_help("print(1, 2)", "E0157", "print 1, 2");
+  expect_help("a = 1\nprint(a, 2)", "E0157", "print a, 2");
+  expect_help("x = 1\nx += 1", "E0151", "x2 = x + ...");
+  expect_help("max(1, 2)", "E0150", "print max(1, 2)");
+  expect_help("x == 3", "E0150", "to define x, write =");
+  expect_help("x = if 1 = 2 then 3 else 4", "E0153", "==");
+  expect_help("let x = 1", "E0152", "let");
+  expect_help("def f(x) = x", "E0152", "def");
+  expect_help("var x = 1", "E0152", "var");
+  expect_help("function f(x) = x", "E0152", "function");
+  expect_help("x = 2 ** 3", "E0158", "^");
+  expect_help("x = if true then 1 elif false then 2 else 3", "E0159", "else if");
+  expect_help("f(x) = {\n return x\n}", "E0160", "block");
+  expect_help("x = 1 # one", "E0115", "//");
+  expect_help("x = True", "E0201", "true");
+  expect_help("x = null", "E0201", "none");
+  expect_help("for i in 0..3: print i", "E0161", "show [for i in 0..3: ");
+  expect_help("while x < 3", "E0161", "reduce");
+  expect_help("x = 1 if true else 2", "E0162", "if c then 1 else b");
+  expect_help("x = [1 for i in 0..3]", "E0163", "[for x in xs: 1]");
+  expect_help("x = 3 not in [1]", "E0164", "not (3 in xs)");
+  expect_help("x = max(a = 1)", "E0165", "a: value");
+  expect_help("x = 1 === 1", "E0166", "==");
+  expect_help("x = 1 <> 1", "E0166", "!=");
+  expect_help("f = x -> x", "E0166", "=>");
+  expect_help("x := 3", "E0166", "=");
+  expect_help("y = 1\nx = \"{y:.2f}\"", "E0167", "text(y, digits: 2)");
+  expect_help("x = (1, 2)", "E0140", "[1, 2]");
+  expect_help("x = {1, 2}", "E0140", "[ ]");
+  expect_help("x = [1, 2][1..]", "E0142", "1..-1");
+  expect_help("x = 1 + if true then 1 else 2", "E0136", "(if true then 1 else 2)");
+  expect_help("x = 1 |> y => y", "E0136", "(y => y)");
+  expect_help("x = 3 × 4", "E0102", "*");
+  expect_help("f(x: number) = x", "E0126", "no types");
+  expect_help("x = max(...[1])", "E0143", "each argument");
 }
 
-// Mended habits let the parser go on: one error each, and nothing that follows from it.
+// After syntax of another language, the parser continues: there is one error each, and no
+// subsequent errors.
 static void a_mended_habit_leaves_no_further_error(void **state) {
   (void)state;
   expect_errors("x = !true && false\nlet y = 2 ** 3 # c\nprint('a', y)\n",
@@ -151,7 +152,7 @@ static void a_long_line_is_no_burden(void **state) {
   free(text);
 }
 
-// A small generator of our own, so that every run has the same texts.
+// A small generator, so that every run has the same texts.
 static uint32_t next_random(uint32_t *seed) {
   *seed ^= *seed << 13;
   *seed ^= *seed >> 17;
@@ -159,8 +160,8 @@ static uint32_t next_random(uint32_t *seed) {
   return *seed;
 }
 
-// A text ends with its line, and what is open in it; a bracket before it does not. `1 2` is an
-// error in each of them.
+// A text, with everything open in it, ends at the end of its line, but a bracket before it does
+// not. `1 2` is an error in each of them.
 static void a_text_that_is_open_is_no_open_bracket(void **state) {
   (void)state;
   uint32_t seed = 88172645u;
@@ -216,8 +217,8 @@ static void damaged_texts_neither_crash_nor_hang(void **state) {
   }
 }
 
-// The first error of a text: its code, the span between « and », and what its message and its help
-// hold. "" stands for no help.
+// The first error of a text: its code, the span between « and », and the contents of its message
+// and its help. "" means that there is no help.
 static void syntax_errors_mark_what_is_wrong(void **state) {
   (void)state;
   static const struct {

@@ -1,13 +1,13 @@
-// Names: scopes, what may hide what, params, imports, and the places that the errors show.
+// Name resolution: scopes, shadowing, params, imports, and the locations of errors.
 
 #include "support.h"
 
 static void unknown_names_are_all_found_with_the_nearest(void **state) {
   (void)state;
   expect_errors("height = 1\nprint hieght\nf(x) = xs + y1\n", "E0201 2:7, E0201 3:8, E0201 3:13");
-  expect_mend("height = 1\nprint hieght", "E0201", "height");
-  expect_mend("print revolv(1)", "E0201", "revolve");
-  expect_mend("print Sin", "E0201", "sin");
+  expect_help("height = 1\nprint hieght", "E0201", "height");
+  expect_help("print revolv(1)", "E0201", "revolve");
+  expect_help("print Sin", "E0201", "sin");
 }
 
 static void tops_see_each_other_in_any_order(void **state) {
@@ -41,7 +41,7 @@ static void an_inner_name_may_hide_a_top_or_a_builtin_only(void **state) {
   expect_errors("a = [for x in 0..3, x in 0..3: x]", "E0203 1:21");
   expect_errors("a = [for x in 0..3: (x => x)]", "E0203 1:22");
   expect_errors("a = {\n b = 1\n c = b => b\n c(b)\n}", "E0203 3:6");
-  // beside each other, not around each other
+  // side by side, not nested
   expect_errors("a = [for x in 0..3: x] + [for x in 0..3: x]\nf = (x => x)\ng = (x => x)", "");
 }
 
@@ -66,7 +66,7 @@ static void params_know_builtin_names_only(void **state) {
   expect_errors("b = 1\nparam a = b\n", "E0208 2:11");
   expect_errors("param b = 1\nparam a = 1 in 0..b\n", "E0208 2:19");
   expect_errors("param a = max(1, sum([for i in 0..3: i]))\n", "");
-  // What they bind themselves: names of a block, parameters, and names of a comprehension.
+  // Local bindings: names of a block, parameters, and names of a comprehension.
   expect_errors("param a = { b = 1; b + 1 }\n", "");
   expect_errors("param a = (x => x + 1)(2)\n", "");
   expect_errors("param a = ((x, y = x) => y)(2)\n", "");
@@ -92,8 +92,8 @@ static void nothing_is_given_twice(void **state) {
 static void imported_names_are_checked(void **state) {
   (void)state;
   expect_errors("import m: glazed, puma560\nimport n as k\nx = [glazed, puma560, k.glazed]", "");
-  expect_mend("import m: glaced", "E0245", "glazed");
-  expect_mend("import m\nx = m.glaced", "E0245", "glazed");
+  expect_help("import m: glaced", "E0245", "glazed");
+  expect_help("import m\nx = m.glaced", "E0245", "glazed");
   expect_errors("import m: _a\nimport n\nx = n._b", "E0246 1:11, E0246 3:7");
   expect_errors("import m: glazed\nx = m.glazed", "E0201 2:5");
   expect_errors("import m\nf(m) = m.anything\n", ""); // the parameter hides the module
@@ -143,8 +143,8 @@ static void earlier_inputs_of_the_repl_come_before_builtins(void **state) {
   release(&p);
 }
 
-// Every row of syntax and names that a text alone can provoke has an example that provokes it, and
-// nothing else.
+// Every syntax or name error that a text alone can cause has an example that causes only this
+// error.
 static void each_example_of_the_table_provokes_its_error(void **state) {
   (void)state;
   for (size_t i = 0; i < CAG_ERR_COUNT; i++) {

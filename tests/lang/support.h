@@ -1,5 +1,5 @@
-// What the tests of the front end share: parse a text, and compare its tree, its errors or its
-// messages as text.
+// Helpers for the tests of the front end: parse a text, and compare its tree, errors, or messages
+// as text.
 
 #ifndef CAG_TESTS_LANG_SUPPORT_H
 #define CAG_TESTS_LANG_SUPPORT_H
@@ -50,7 +50,7 @@ typedef struct Parsed {
   CagSource *source;
   CagModuleAst *module;
   CagDiagnostics errors;
-  char *text; // what the last of the functions below gave
+  char *text; // result of the last of the functions below
 } Parsed;
 
 static inline Parsed parse_bytes(const char *text, size_t length, CagParseMode mode) {
@@ -91,7 +91,7 @@ static inline const char *tree_of(Parsed *p) {
   return p->text;
 }
 
-// "E0123 1:5, E0120 2:1": code and place of each error.
+// The code and location of each error: "E0123 1:5, E0120 2:1".
 static inline const char *errors_of(Parsed *p) {
   free(p->text);
   size_t size;
@@ -126,8 +126,8 @@ static inline void expect_errors(const char *text, const char *errors) {
   release(&p);
 }
 
-// The first error has this code, and its help contains these words.
-static inline void expect_mend(const char *text, const char *code, const char *help) {
+// Checks that the first error has this code, and its help contains these words.
+static inline void expect_help(const char *text, const char *code, const char *help) {
   Parsed p = resolve_text(text);
   assert_true(p.errors.count >= 1);
   assert_string_equal(cag_error_info(p.errors.items[0].id)->code, code);

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Tests of the REPL: through a pipe, and through a real terminal (tmux). The last line is `N passed, N failed, N
-# skipped`: what needs a tool that is missing is skipped.
+# Tests of the REPL: through a pipe, and through a real terminal (tmux). The last line is `N passed, N failed, N skipped`. Tests that need a
+# missing tool are skipped.
 #
 #   BUILD=build sh tests/repl/run.sh
 
@@ -18,7 +18,7 @@ trap 'exit 130' INT TERM
 cd "$work" || exit 1
 export XDG_STATE_HOME="$work/state"
 
-# result NAME: counts the status of the command before.
+# result NAME: counts a test by the status of the previous command.
 result() {
   if [ "$2" = 0 ]; then
     passed=$((passed + 1))
@@ -29,7 +29,7 @@ result() {
   fi
 }
 
-# skip REASON NAME ...: counts tests that cannot be made here.
+# skip REASON NAME ...: counts tests that cannot run here.
 skip() {
   reason=$1
   shift
@@ -39,7 +39,7 @@ skip() {
   done
 }
 
-# skip_part REASON WORDS: the same of all tests in the part of this file between the lines `# WORDS` and `# End: WORDS`.
+# skip_part REASON WORDS: does the same for all tests between the lines `# WORDS` and `# End: WORDS` of this file.
 skip_part() {
   sed -n "/^# $2\$/,/^# End: $2\$/s/^ *\(shows\|completes\|result\) '\([^']*\)'.*/\2/p" "$script" >"$work/part"
   while IFS= read -r line; do skip "$1" "$line"; done <"$work/part"
@@ -47,7 +47,7 @@ skip_part() {
 
 # --- Through a pipe ---
 
-# prints NAME EXPECTED INPUT: what INPUT makes the REPL write to standard output.
+# prints NAME EXPECTED INPUT: checks what INPUT makes the REPL write to standard output.
 prints() {
   got=$(printf '%s\n' "$3" | "$cag" repl 2>"$work/errors")
   [ "$got" = "$2" ]
@@ -56,7 +56,7 @@ got:      $got
 errors:   $(cat "$work/errors")"
 }
 
-# complains NAME STATUS WORDS INPUT: what it writes to standard error, and its exit status.
+# complains NAME STATUS WORDS INPUT: checks what it writes to standard error, and its exit status.
 complains() {
   printf '%s\n' "$4" | "$cag" repl >/dev/null 2>"$work/errors"
   status=$?
@@ -353,7 +353,7 @@ screen() { tmux -L "$session" capture-pane -p -t repl 2>/dev/null; }
 
 keys() { tmux -L "$session" send-keys -t repl "$@"; }
 
-# wait_for WORDS: waits until the last line of the screen that is not blank is WORDS.
+# wait_for WORDS: waits until the last nonblank line of the screen is WORDS.
 wait_for() {
   tries=0
   while [ $tries -lt 100 ] && [ "$(screen | sed 's/ *$//' | grep . | tail -n 1)" != "$1" ]; do
@@ -377,7 +377,7 @@ shows() {
 $(screen)"
 }
 
-# completes NAME TEXT LINE: what Tab makes of a text that is typed, which is dropped then.
+# completes NAME TEXT LINE: checks the result of Tab after a typed text, which is then discarded.
 completes() {
   wait_for 'cag>'
   keys -l "$2"
@@ -543,7 +543,7 @@ else
   keys -l 'len("0123456789012345678901234567890123456789"'
   sleep 0.2
   tmux -L "$session" resize-window -t repl -x 30 -y 30
-  sleep 0.5 # tmux tells of a size that has stood for a quarter of a second
+  sleep 0.5 # tmux reports a size after it has been stable for a quarter of a second
   tmux -L "$session" resize-window -t repl -x 60 -y 30
   sleep 0.5
   keys ')' Enter
@@ -551,7 +551,7 @@ else
   shows 'and is read as it was typed' '40 : number'
   keys C-l ':help degree' Enter
   wait_for 'cag>'
-  # A word of a longer line would stand at the left edge.
+  # A word of a longer line would be at the left edge.
   told=$(screen | sed -n '/->/,/Example/p')
   [ "$(printf '%s\n' "$told" | grep -c '^  ')" -ge 4 ] && ! printf '%s\n' "$told" | grep -v -e '->' -e '^ ' | grep -q .
   result 'documentation is wrapped in a narrow window' $? "$(screen)"
@@ -569,7 +569,7 @@ else
 fi
 # End: In a shell of a narrow window: stopping, going on, other sizes, many lines at once
 
-# The state's folder cannot be made below a file.
+# The state folder cannot be created below a file.
 : >"$work/file"
 XDG_STATE_HOME=$work/file/state
 unwritable='a history that cannot be written harms nothing'
@@ -590,7 +590,7 @@ fi
 if ! command -v tmux >/dev/null; then
   skip_part 'tmux is missing' 'Other environments: colors, other letters, a window of 40 columns, a history that has grown, and no place for one'
 else
-  # begins ENVIRONMENT ...: cag in a window of 40 columns, in this environment.
+  # begins ENVIRONMENT ...: starts cag in a window of 40 columns, in this environment.
   begins() {
     sleep 0.2
     tmux -u -L "$session" -f /dev/null new-session -d -s repl -x 40 -y 60 env "$@" TERM=screen "$cag" $options
@@ -606,7 +606,7 @@ else
   options=-q
   home=$work/home
   mkdir -p "$home/.local/state/cag"
-  # 4,100 lines, of which two are equal, and one is empty.
+  # 4,100 lines, of which two are equal and one is empty.
   {
     seq 1 4097
     printf '4097\n\n4098'

@@ -1,4 +1,4 @@
-"""widths.py CAG: compares the lists of :help and :doc on terminals of several widths with the same words wrapped by Python."""
+"""widths.py CAG: compares the lists of :help and :doc in terminals of several widths with the same text wrapped by Python."""
 import fcntl
 import os
 import pty
@@ -49,7 +49,7 @@ def entries(lines, is_first):
 
 commands = entries(shown(":help", 200), lambda line: line[0] == ":" or line.startswith("Anything"))
 families = entries(shown(":doc", 200), lambda line: line[0] != " ")
-# Headings are not broken: `~` is a space within them.
+# Headings are not broken: `~` stands for a space in them.
 families = ["~".join(text[:text.rindex(":")].split(" ")) + text[text.rindex(":"):] for text in families]
 wrong = len(commands) < 10 or len(families) < 10
 for columns in (0, 1, 5, 20, 30, 40, NARROW - 1, NARROW, NARROW + 1, 60, 70, 80, WIDEST - 1, WIDEST, WIDEST + 1, 300):

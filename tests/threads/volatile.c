@@ -1,6 +1,7 @@
-// What GCC's thread sanitizer calls at each access of a volatile object, if it is to tell them from other accesses (`make test-threads`).
-// They are left out: the only volatile objects that threads share are the flags that ask work to end. Such a flag is an int, which every
-// machine reads and writes as a whole, is set once, and says nothing of other memory. A signal handler may set it as well.
+// The functions that GCC's thread sanitizer calls for each access to a volatile object, if it distinguishes these from other accesses
+// (`make test-threads`). They do nothing: the only volatile objects shared by threads are the flags that request an operation to end. Such
+// a flag is an int, which every machine reads and writes atomically. It is set once, and does not refer to other memory. A signal handler
+// may set it as well.
 
 #define ACCESS(size)                                                                               \
   void __tsan_volatile_read##size(void *);                                                         \

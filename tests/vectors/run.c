@@ -1,17 +1,17 @@
-// Golden vectors through the language: each vector's `given` goes to the function that kinds.cag
-// has for its kind, and what comes back is compared with its `expect`.
+// Runs golden vectors in the language: passes each vector's `given` to the function of its kind in
+// kinds.cag, and compares the result with its `expect`.
 //
 //     run KINDS_FOLDER FILE.json ...
 //
 // A file is a record with a list `vectors`, or that list itself. A vector is a record with `id`,
-// `kind`, `given`, `expect` and `tolerance`. One session serves a file: the script reads the file
-// itself, and writes each result as a line of JSON, which is compared here. A vector passes when
-// every field of `expect` is there and alike: numbers within the tolerance (relative above 1),
-// lists and records element by element, null only null. Further fields are not looked at. Where
-// `expect` has `error` (or the status "error"), the script has to stop with an error that is no
-// limit; with `reason`, the error's short name has to be it. Parameters `t` that stand only in
-// `expect`, beside the `points` they belong to, and `test_points` are given too. Rules for single
-// fields stand in the table below.
+// `kind`, `given`, `expect`, and `tolerance`. There is one session for a file. The script reads the
+// file itself, and writes each result as a line of JSON, which is compared here. A vector passes if
+// the result has every field of `expect` and these agree: numbers within the tolerance (relative
+// above 1), lists and records element by element, null only with null. Additional fields are
+// ignored. If `expect` has `error` (or the status "error"), the script must stop with an error that
+// is not a limit; with `reason`, the error's short name must be equal. Parameters `t` that are only
+// in `expect`, next to their `points`, and `test_points` are passed as well. The table below has
+// rules for single fields.
 
 #include <fnmatch.h>
 #include <libgen.h>
@@ -25,23 +25,23 @@
 
 #include "cag.h"
 
-// Where a vector says nothing.
+// The default tolerance.
 #define USUAL_TOLERANCE 1e-9
-// Seconds that one vector may take.
+// The maximum number of seconds for one vector.
 #define LONGEST 120
 
 typedef enum Rule {
   PLAIN,
-  UP_TO_FACTOR,  // a list of numbers, or each list of numbers in a list: times any non-zero number
+  UP_TO_FACTOR,  // a list of numbers, or each list of numbers in a list, up to a nonzero factor
   ANY_ORDER,     // the elements of a list in any order
   FACTOR_ORDER,  // both of these
-  SOME_OF,       // a list whose elements are among those found, in any order
-  MODULO_TURN,   // degrees, whole turns do not count
-  ANY_ORDER_TURN // a list in any order of degrees, or of lists and records of them
+  SOME_OF,       // a list whose elements are among the found ones, in any order
+  MODULO_TURN,   // degrees modulo full turns
+  ANY_ORDER_TURN // a list in any order of degrees, or of lists and records of degrees
 } Rule;
 
-// Fields that are not compared plainly, by the sections of the references on vector kinds. Kinds
-// and fields are patterns. The first row that fits holds.
+// Fields with special rules, by the sections of the references on vector kinds. Kinds and fields
+// are patterns, and the first matching row applies.
 static const struct {
   const char *kind, *field;
   Rule rule;
@@ -68,7 +68,7 @@ static const struct {
 typedef struct Check {
   double tolerance;
   char path[256];
-  char problem[512]; // of the first difference
+  char problem[512]; // describes the first difference
 } Check;
 
 static Rule rule_of(const char *kind, const char *field) {
@@ -87,7 +87,7 @@ static bool differ(Check *c, const char *format, ...) {
   return false;
 }
 
-// Short JSON text of an item; to be freed.
+// Formats an item as short JSON text; to be freed.
 static char *shown(const cJSON *item) {
   enum { MOST = 100 };
   char *text = cJSON_PrintUnformatted(item);
@@ -110,7 +110,7 @@ static bool near(const Check *c, double expected, double found) {
 
 static bool compare(Check *c, const cJSON *expect, const cJSON *found, bool turn);
 
-// `path` grows by the name or index, and shrinks again.
+// Appends the name or index to `path` during the comparison.
 static bool compare_at(Check *c, const char *name, int index, const cJSON *expect,
                        const cJSON *found, bool turn) {
   size_t n = strlen(c->path);
@@ -159,8 +159,8 @@ static bool compare(Check *c, const cJSON *expect, const cJSON *found, bool turn
   return good || differ_items(c, expect, found);
 }
 
-// Lists of numbers that are the same but for a factor: each is brought to the largest element of
-// what is expected, made 1.
+// Compares lists of numbers that are equal up to a factor: divides each by its element at the
+// position of the largest expected one.
 static bool compare_factor(Check *c, const cJSON *expect, const cJSON *found) {
   if (!cJSON_IsArray(expect) || !cJSON_IsArray(found) ||
       cJSON_GetArraySize(expect) != cJSON_GetArraySize(found))
@@ -189,7 +189,7 @@ static bool compare_element(Check *c, Rule rule, const cJSON *expect, const cJSO
   return compare(c, expect, found, rule == ANY_ORDER_TURN);
 }
 
-// Each expected element takes the first of the found ones that is like it and not taken.
+// Assigns to each expected element the first equal found element that is not yet assigned.
 static bool compare_order(Check *c, Rule rule, const cJSON *expect, const cJSON *found) {
   if (!cJSON_IsArray(expect) || !cJSON_IsArray(found)) return differ_items(c, expect, found);
   int n = cJSON_GetArraySize(found);
@@ -231,12 +231,11 @@ static bool compare_vector(Check *c, const char *kind, const cJSON *expect, cons
 typedef struct File {
   CagSession *session;
   FILE *out;
-  char *bytes; // what was printed
+  char *bytes; // output
   size_t size;
 } File;
 
-// Runs a text and gives what it printed (to be freed), NULL where it failed: `problem` then says
-// why.
+// Runs a text and returns its output (to be freed), or NULL with the reason in `problem`.
 static char *ask(File *f, const char *text, char *problem, size_t size) {
   fflush(f->out);
   size_t before = f->size;
@@ -258,7 +257,8 @@ static bool wants_error(const cJSON *expect) {
          (cJSON_IsString(status) && strcmp(status->valuestring, "error") == 0);
 }
 
-// The script stopped: good where an error was wanted, and of that reason where one is named.
+// The script stopped, which is correct if an error is expected, and has the expected reason if
+// there is one.
 static bool check_stop(Check *c, const cJSON *expect, const cJSON *stopped) {
   const cJSON *reason = cJSON_GetObjectItemCaseSensitive(stopped, "reason");
   const char *message = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(stopped, "message"));
@@ -327,7 +327,7 @@ static bool start(File *f, const char *kinds_folder, const char *path, const cha
   snprintf(problem, size, "no session");
   if (!f->session) return false;
   char *text;
-  cJSON *name = cJSON_CreateString(path); // the path as text of the script
+  cJSON *name = cJSON_CreateString(path); // the path as a text of the language
   char *quoted = name ? cJSON_PrintUnformatted(name) : NULL;
   int n = asprintf(&text,
                    "import kinds\nfile = read_json(%s)\n"

@@ -1,4 +1,4 @@
-# What bash proposes for the last of the words, a line each:  bash ask.bash COMPLETION cag render ''
+# Prints bash's proposals for the last word, one per line:  bash ask.bash COMPLETION cag render ''
 . "$1"
 shift
 COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()

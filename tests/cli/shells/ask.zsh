@@ -1,5 +1,5 @@
-# What zsh proposes at the end of a line, a line each:  zsh -f ask.zsh FOLDER 'cag render '    FOLDER has _cag.
-# The proposals are caught on their way into a real line editor, on a terminal of zsh's own.
+# Prints zsh's proposals at the end of a line, one per line:  zsh -f ask.zsh FOLDER 'cag render '    FOLDER has _cag.
+# The proposals are intercepted on their way to a real line editor, in a pseudo terminal of zsh.
 zmodload zsh/zpty
 folder=$1 line=$2
 zpty editor zsh -f -i
