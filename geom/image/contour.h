@@ -10,7 +10,7 @@
 // the contour of a hole clockwise.
 typedef struct CagContour {
   bool hole;
-  size_t x, y;   // the pixel at which it starts, y down
+  size_t x, y;    // the pixel at which it starts, y down
   uint32_t label; // of the region
   // Freeman's code: 0 is a step in direction +x, and each further number turns by 45 degrees
   // counter-clockwise, with y up. A single pixel has no steps.

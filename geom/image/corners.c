@@ -12,6 +12,8 @@
 #define AVERAGED 1.5
 // Corners are greater than all pixels within this distance.
 #define APART 2
+// A corner is located by the edges within this distance.
+#define NEARBY 4
 // Strengths below this fraction of the largest eigenvalue are rounding.
 #define NO_CORNER 1e-9
 
@@ -56,23 +58,43 @@ static bool is_peak(const CagRaster *r, size_t x, size_t y) {
   return true;
 }
 
-// The offset of the vertex of the parabola through three values at -1, 0, and 1.
-static double vertex_offset(double a, double b, double c) {
-  const double bend = a - 2 * b + c;
-  return bend < 0 ? (a - c) / (2 * bend) : 0;
+// The point with the least sum of squared distances from the tangents of the edges around pixel
+// [x, y], weighted with the square of the gradient (Foerstner and Guelch 1987). Relative to the
+// center of the pixel, y up.
+static bool edges_meet(const CagRaster *gx, const CagRaster *gy, size_t x, size_t y, double *dx,
+                       double *dy) {
+  double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
+  for (size_t v = y > NEARBY ? y - NEARBY : 0; v <= y + NEARBY && v < gx->height; v++)
+    for (size_t u = x > NEARBY ? x - NEARBY : 0; u <= x + NEARBY && u < gx->width; u++) {
+      const double px = (double)u - (double)x, py = (double)y - (double)v;
+      const double a = *cag_raster_at(gx, 0, u, v), b = *cag_raster_at(gy, 0, u, v);
+      if (isnan(a) || isnan(b)) continue;
+      const double w = exp(-(px * px + py * py) / (2 * AVERAGED * AVERAGED));
+      xx += w * a * a;
+      xy += w * a * b;
+      yy += w * b * b;
+      bx += w * a * (a * px + b * py);
+      by += w * b * (a * px + b * py);
+    }
+  const double determinant = xx * yy - xy * xy;
+  *dx = (yy * bx - xy * by) / determinant;
+  *dy = (xx * by - xy * bx) / determinant;
+  return hypot(*dx, *dy) <= NEARBY;
 }
 
-static CagImageCorner corner_at(const CagRaster *r, size_t x, size_t y) {
-  const double *here = cag_raster_at(r, 0, x, y);
-  double dx = 0, dy = 0;
-  if (x > 0 && x + 1 < r->width) dx = vertex_offset(here[-1], here[0], here[1]);
-  if (y > 0 && y + 1 < r->height)
-    dy = vertex_offset(here[-(ptrdiff_t)r->width], here[0], here[r->width]);
-  if (isnan(dx)) dx = 0; // next to pixels without a value
-  if (isnan(dy)) dy = 0;
+// Where a corner is searched.
+typedef struct Corners {
+  const CagRaster *gx, *gy, *strength;
+  CagImageCorner *items;
+  size_t count, capacity;
+} Corners;
+
+static CagImageCorner corner_at(const Corners *c, size_t x, size_t y) {
+  double dx, dy;
+  if (!edges_meet(c->gx, c->gy, x, y, &dx, &dy)) dx = dy = 0;
   return (CagImageCorner){
-      .at = cag_vec3((double)x + 0.5 + dx, (double)(r->height - y) - 0.5 - dy, 0),
-      .strength = *here};
+      .at = cag_vec3((double)x + 0.5 + dx, (double)(c->gx->height - y) - 0.5 + dy, 0),
+      .strength = *cag_raster_at(c->strength, 0, x, y)};
 }
 
 // Strongest first, then in raster order.
@@ -83,14 +105,13 @@ static int by_strength(const void *a, const void *b) {
   return p->at.x < q->at.x ? -1 : p->at.x > q->at.x;
 }
 
-static CagStatus collect_peaks(const CagRaster *r, double least, CagImageCorner **corners,
-                               size_t *count, CagError *err) {
-  size_t capacity = 0;
+static CagStatus collect_peaks(Corners *c, double least, CagError *err) {
+  const CagRaster *r = c->strength;
   for (size_t y = 0; y < r->height; y++) {
     for (size_t x = 0; x < r->width; x++) {
       if (!(*cag_raster_at(r, 0, x, y) > least) || !is_peak(r, x, y)) continue;
-      if (!CAG_RESERVE(*corners, capacity, *count + 1)) return cag_fail_memory(err);
-      (*corners)[(*count)++] = corner_at(r, x, y);
+      if (!CAG_RESERVE(c->items, c->capacity, c->count + 1)) return cag_fail_memory(err);
+      c->items[c->count++] = corner_at(c, x, y);
     }
     if (cag_stopped()) return cag_stop_fail(err);
   }
@@ -100,23 +121,23 @@ static CagStatus collect_peaks(const CagRaster *r, double least, CagImageCorner 
 CagStatus cag_image_corners(const CagRaster *r, size_t n, CagImageCorner **out, size_t *count,
                             CagError *err) {
   CagRaster *gx = NULL, *gy = NULL, *m[3] = {NULL, NULL, NULL};
-  CagImageCorner *corners = NULL;
-  size_t found = 0;
+  Corners c = {0};
   CagStatus status = cag_edges_gradient(r, &gx, &gy, err);
   if (!status) status = averaged_products(gx, gy, m, err);
-  cag_raster_release(gx);
-  cag_raster_release(gy);
   if (!status) {
     const double largest = smaller_eigenvalues(m);
-    status = collect_peaks(m[0], NO_CORNER * largest, &corners, &found, err);
+    c = (Corners){.gx = gx, .gy = gy, .strength = m[0]};
+    status = collect_peaks(&c, NO_CORNER * largest, err);
   }
+  cag_raster_release(gx);
+  cag_raster_release(gy);
   for (int k = 0; k < 3; k++) cag_raster_release(m[k]);
   if (status) {
-    cag_free(corners);
+    cag_free(c.items);
     return status;
   }
-  if (found > 0) qsort(corners, found, sizeof *corners, by_strength);
-  *out = corners;
-  *count = found < n ? found : n;
+  if (c.count > 0) qsort(c.items, c.count, sizeof *c.items, by_strength);
+  *out = c.items;
+  *count = c.count < n ? c.count : n;
   return CAG_OK;
 }

@@ -46,8 +46,8 @@ CagStatus cag_edges_roberts(const CagRaster *r, CagRaster **magnitude, CagRaster
   return CAG_OK;
 }
 
-static void sobel_x_row(const void *context, const double *const *rows, size_t width,
-                        bool has_none, double *out) {
+static void sobel_x_row(const void *context, const double *const *rows, size_t width, bool has_none,
+                        double *out) {
   (void)context;
   (void)has_none;
   for (size_t x = 0; x < width; x++)
@@ -56,8 +56,8 @@ static void sobel_x_row(const void *context, const double *const *rows, size_t w
              SOBEL_SCALE;
 }
 
-static void sobel_y_row(const void *context, const double *const *rows, size_t width,
-                        bool has_none, double *out) {
+static void sobel_y_row(const void *context, const double *const *rows, size_t width, bool has_none,
+                        double *out) {
   (void)context;
   (void)has_none;
   for (size_t x = 0; x < width; x++)
@@ -71,7 +71,8 @@ CagStatus cag_edges_gradient(const CagRaster *r, CagRaster **gx, CagRaster **gy,
   CagStatus status = pair_of_images(r->width, r->height, &a, &b, err);
   if (status) return status;
   status = cag_window_rows(r, 0, 1, 1, CAG_BORDER_REPLICATE, sobel_x_row, NULL, a, err);
-  if (!status) status = cag_window_rows(r, 0, 1, 1, CAG_BORDER_REPLICATE, sobel_y_row, NULL, b, err);
+  if (!status)
+    status = cag_window_rows(r, 0, 1, 1, CAG_BORDER_REPLICATE, sobel_y_row, NULL, b, err);
   if (status) {
     cag_raster_release(a);
     cag_raster_release(b);
@@ -177,8 +178,7 @@ static CagStatus find_edges(Canny *c, double low, double high, CagError *err) {
 }
 
 static CagStatus canny_magnitude(Canny *c, CagError *err) {
-  CagStatus status =
-      cag_raster_new(c->blurred->width, c->blurred->height, 1, &c->magnitude, err);
+  CagStatus status = cag_raster_new(c->blurred->width, c->blurred->height, 1, &c->magnitude, err);
   const size_t n = c->blurred->width * c->blurred->height;
   for (size_t i = 0; !status && i < n; i++) {
     const double m = SOBEL_SCALE * hypot(c->gx->data[i], c->gy->data[i]);

@@ -23,8 +23,8 @@ typedef struct Point {
 typedef struct Hough {
   Point *points;
   size_t count, capacity;
-  size_t bins;     // for distances from -bins / 2 to bins / 2
-  uint32_t *votes; // ANGLES x bins
+  size_t bins;                         // for distances from -bins / 2 to bins / 2
+  uint32_t *votes;                     // ANGLES x bins
   double cosine[ANGLES], sine[ANGLES]; // of the normals
 } Hough;
 

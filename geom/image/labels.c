@@ -70,8 +70,8 @@ static void join_rows(const CagLabels *l, uint32_t *parent) {
   size_t above = 0;
   for (size_t i = 0; i < l->run_count; i++) {
     const CagRun run = l->runs[i];
-    while (above < i && (l->runs[above].y + 1 < run.y ||
-                         (l->runs[above].y + 1 == run.y && l->runs[above].end + reach <= run.start)))
+    while (above < i && (l->runs[above].y + 1 < run.y || (l->runs[above].y + 1 == run.y &&
+                                                          l->runs[above].end + reach <= run.start)))
       above++;
     for (size_t k = above; k < i; k++) {
       const CagRun upper = l->runs[k];

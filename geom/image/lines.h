@@ -27,7 +27,7 @@ typedef struct CagImageCorner {
 
 // Finds up to n corners of channel 0: local maxima of the smaller eigenvalue of the matrix of
 // products of the gradient, averaged with a Gaussian (Shi and Tomasi 1994), strongest first. They
-// are at least 3 pixels apart. *out is malloc'd.
+// are at least 3 pixels apart, and located where the edges around them meet. *out is malloc'd.
 CagStatus cag_image_corners(const CagRaster *r, size_t n, CagImageCorner **out, size_t *count,
                             CagError *err);
 

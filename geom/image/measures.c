@@ -27,7 +27,7 @@ typedef struct Figure {
   const CagRun *runs;
   size_t count;
   size_t left, right, top, bottom;
-  double *columns;  // sums over the columns of the box
+  double *columns;   // sums over the columns of the box
   double (*rows)[3]; // for each row of the box, the sums of w, w x, and w x^2, where x is relative
                      // to the middle of the box
 } Figure;
@@ -129,8 +129,8 @@ void cag_measures_derive(CagMeasures *m, const double third[4]) {
   m->theta = theta * DEGREES;
   if (m->theta <= -90) m->theta += 180;
   const double c = cos(theta), s = sin(theta);
-  const double along = c * c * c * third[0] + 3 * c * c * s * third[1] +
-                       3 * c * s * s * third[2] + s * s * s * third[3];
+  const double along = c * c * c * third[0] + 3 * c * c * s * third[1] + 3 * c * s * s * third[2] +
+                       s * s * s * third[3];
   m->has_direction = fabs(along) > NO_DIRECTION * m->greatest * sqrt(m->greatest);
   if (!m->has_direction) return;
   m->direction = along > 0 ? m->theta : m->theta > 0 ? m->theta - 180 : m->theta + 180;
@@ -148,7 +148,7 @@ typedef struct Boundary {
   CagMass mass;
   double cx, cy; // the centroid, y down
   size_t sides;
-  double least, most; // squared or not: distances from the centroid
+  double least, most;          // squared or not: distances from the centroid
   long corners, edges, pixels; // of the union of the closed pixels, or of the graph of neighbors
   bool touches;
 } Boundary;

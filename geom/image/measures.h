@@ -15,22 +15,22 @@ typedef enum CagMass { CAG_MASS_AREA, CAG_MASS_POINT } CagMass;
 
 // Angles are in degrees.
 typedef struct CagMeasures {
-  double area;       // the sum of the gray values
-  double center[2];  // each of the lines x = center[0] and y = center[1] halves the area
+  double area;      // the sum of the gray values
+  double center[2]; // each of the lines x = center[0] and y = center[1] halves the area
   double centroid[2];
-  double xx, yy, xy; // divided by the area
+  double xx, yy, xy;      // divided by the area
   double least, greatest; // mean squared distances from the axes
   bool has_theta;
-  double theta; // the slope of the axis of least moment, in (-90, 90]; undefined if all axes
-                // have the same moment
+  double theta;     // the slope of the axis of least moment, in (-90, 90]; undefined if all axes
+                    // have the same moment
   double roundness; // (xx + yy) / area; 1 / (2 pi) for a disk, more for all other shapes
   bool has_thinness;
   double thinness; // (greatest - least) / (xx + yy): 0 for a disk or square, 1 for a line
   bool has_direction;
-  double direction; // theta or its opposite: the one toward which the figure is longer, by the
-                    // third moment along the axis; undefined if that is 0
-  double perimeter; // exact for what is made of pixels: sides between figure and background
-  bool of_pixels;   // whether chain_length and touches_border are set
+  double direction;    // theta or its opposite: the one toward which the figure is longer, by the
+                       // third moment along the axis; undefined if that is 0
+  double perimeter;    // exact for what is made of pixels: sides between figure and background
+  bool of_pixels;      // whether chain_length and touches_border are set
   double chain_length; // of the outer contours through the centers of the pixels
   double r_min, r_max; // distances of the boundary from the centroid; with CAG_MASS_POINT, those of
                        // the centers of the pixels at the boundary

@@ -95,7 +95,8 @@ static CagStatus sum_rows(const CagMassOf *of, const Center *c, const Orders *o,
     const double up = (double)(r->height - y) - 0.5 - c->y;
     weights_of_row(r, y, w);
     for (int i = 0; i < o->count; i++)
-      out[i] += dot(w, powers + (size_t)i * r->width, r->width) * pixel_power(up, o->b[i], of->mass);
+      out[i] +=
+          dot(w, powers + (size_t)i * r->width, r->width) * pixel_power(up, o->b[i], of->mass);
     if (cag_stopped()) return cag_stop_fail(err);
   }
   return CAG_OK;
@@ -178,7 +179,7 @@ CagStatus cag_moment(const CagMassOf *of, int m, int n, double *out, CagError *e
 // (x^2 + y^2)^((n-m)/2) (x + i y)^m.
 static void polar_polynomial(int m, int n, double *re, double *im) {
   for (int a = 0; a <= n; a++) re[a] = im[a] = 0;
-  re[0] = 1; // of degree 0
+  re[0] = 1;                   // of degree 0
   for (int k = 1; k <= m; k++) // times x + i y
     for (int a = k; a >= 0; a--) {
       const double x_re = a > 0 ? re[a - 1] : 0, x_im = a > 0 ? im[a - 1] : 0;

@@ -16,8 +16,8 @@
 #define STRIP 16
 
 typedef struct Lines {
-  size_t length, reach; // size = 2 reach + 1
-  size_t width;         // number of lines that are handled together, interleaved
+  size_t length, reach;       // size = 2 reach + 1
+  size_t width;               // number of lines that are handled together, interleaved
   double *forward, *backward; // (length + 2 reach) x width
 } Lines;
 
@@ -98,8 +98,7 @@ static CagStatus extremes(const CagRaster *r, size_t size, double sign, CagRaste
   CagRaster *made;
   CagStatus status = cag_raster_like(r, &made, err);
   if (status) return status;
-  for (size_t i = 0; i < n; i++)
-    made->data[i] = isnan(r->data[i]) ? -INFINITY : sign * r->data[i];
+  for (size_t i = 0; i < n; i++) made->data[i] = isnan(r->data[i]) ? -INFINITY : sign * r->data[i];
   for (size_t c = 0; !status && c < r->channel_count; c++) {
     double *plane = cag_raster_plane(made, c);
     status = dilate_rows(plane, r->width, r->height, size / 2, err);
@@ -159,8 +158,8 @@ static void row_distances(Envelope *e, double *row, long width) {
   for (long i = 0; i < width; i++) e->g[i] = (long)row[i];
   for (long u = 0; u < width; u++) {
     if (e->g[u] >= e->none) continue;
-    while (top >= 0 && parabola_at(e, e->start[top], e->apex[top]) >
-                           parabola_at(e, e->start[top], u))
+    while (top >= 0 &&
+           parabola_at(e, e->start[top], e->apex[top]) > parabola_at(e, e->start[top], u))
       top--;
     if (top < 0) {
       e->apex[top = 0] = u;

@@ -86,15 +86,15 @@ static CagStatus region_median(const CagRegion *r, int axis, const CagBounds *bo
   const double high = axis == 0 ? box->max.x : box->max.y;
   double from = low, to = high;
   CagStatus status = level_of_area(r, axis, low, high, area * (0.5 - HALVED), area, &from, err);
-  if (!status)
-    status = level_of_area(r, axis, low, high, area * (0.5 + HALVED), area, &to, err);
+  if (!status) status = level_of_area(r, axis, low, high, area * (0.5 + HALVED), area, &to, err);
   *out = from + (to - from) / 2;
   return status;
 }
 
 // --- Radii ---
 
-static CagStatus distance_at(const CagCurve *c, double t, CagVec3 from, double *out, CagError *err) {
+static CagStatus distance_at(const CagCurve *c, double t, CagVec3 from, double *out,
+                             CagError *err) {
   CagVec3 p;
   CagStatus status = cag_curve_point(c, t, &p, err);
   if (!status) *out = hypot(p.x - from.x, p.y - from.y);
@@ -198,8 +198,7 @@ CagStatus cag_measure_region(const CagRegion *r, CagMeasures *out, CagError *err
   CagBounds box = {0};
   double third[4];
   if (cag_region_is_empty(r)) return fail_empty(err);
-  CagStatus status =
-      cag_region_second_moments(r, &m.area, &center, &m.xx, &m.xy, &m.yy, err);
+  CagStatus status = cag_region_second_moments(r, &m.area, &center, &m.xx, &m.xy, &m.yy, err);
   if (status) return status;
   if (!(m.area > 0)) return fail_empty(err);
   m.centroid[0] = center.x;

@@ -185,6 +185,11 @@ static void add_products(const Correlation *c, double t, const double *v) {
   }
 }
 
+// One root is more accurate than two, if the product has a normal double.
+static double root_of_product(double a, double b) {
+  return isnormal(a * b) ? sqrt(a * b) : sqrt(a) * sqrt(b);
+}
+
 static CagStatus correlation_row(const Correlation *c, size_t y, double counted,
                                  double template_squares, double *out, CagError *err) {
   CagStatus status = CAG_OK;
@@ -198,7 +203,7 @@ static CagStatus correlation_row(const Correlation *c, size_t y, double counted,
   if (!status) status = for_samples(c, y, add_products, err);
   for (size_t x = 0; !status && x < c->shifts; x++) {
     const bool flat = template_squares == 0 || c->squares[x] <= ONE_GRAY * c->raw[x];
-    const double m = c->products[x] / (sqrt(c->squares[x]) * sqrt(template_squares));
+    const double m = c->products[x] / root_of_product(c->squares[x], template_squares);
     out[x] = flat ? 0 : isnan(m) ? NAN : fmax(-1, fmin(1, m));
   }
   return status;

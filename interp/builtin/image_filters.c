@@ -178,8 +178,7 @@ bool cag_filters_hough_lines(CagCall *call, const struct cag_filters_hough_lines
   CagImageLine *lines = NULL;
   size_t count = 0;
   if (!cag_gray_image(call, 0, a->image) ||
-      !cag_geometry_ok(call,
-                       cag_hough_lines(a->image, (size_t)a->n, &lines, &count, call->err)))
+      !cag_geometry_ok(call, cag_hough_lines(a->image, (size_t)a->n, &lines, &count, call->err)))
     return false;
   cag_hold(call, lines);
   CagBuilder *list = cag_builder_new(call->vm);

@@ -30,9 +30,10 @@ static CagLabels *hold_labels(CagCall *call, const CagRaster *r, int connectivit
 // --- Measures ---
 
 #define MEASURES(X)                                                                                \
-  X(area) X(center_of_area) X(centroid) X(xx) X(yy) X(xy) X(theta) X(least) X(greatest)            \
-  X(roundness) X(thinness) X(direction) X(perimeter) X(chain_length) X(r_min) X(r_max) X(holes)    \
-  X(euler) X(touches_border)
+  X(area)                                                                                          \
+  X(center_of_area) X(centroid) X(xx) X(yy) X(xy) X(theta) X(least) X(greatest) X(roundness)       \
+      X(thinness) X(direction) X(perimeter) X(chain_length) X(r_min) X(r_max) X(holes) X(euler)    \
+          X(touches_border)
 #define X(name) #name,
 static const char *const measure_names[] = {MEASURES(X)};
 #undef X
@@ -41,9 +42,7 @@ enum { MEASURES(X) MEASURE_COUNT };
 #undef X
 
 static CagValue number_if(bool has, double x) { return has ? cag_number(x) : cag_none(); }
-static CagValue angle_if(bool has, double degrees) {
-  return has ? cag_angle(degrees) : cag_none();
-}
+static CagValue angle_if(bool has, double degrees) { return has ? cag_angle(degrees) : cag_none(); }
 
 static void measure_values(CagVm *vm, const CagMeasures *m, CagValue *v) {
   v[MEASURE_area] = cag_number(m->area);
@@ -114,9 +113,9 @@ static double axis_turn(double from, double to) {
 
 // The measures of b minus those of a.
 static CagValue measure_differences(CagVm *vm, const CagMeasures *a, const CagMeasures *b) {
-  static const char *const names[] = {"area",   "center_of_area", "centroid",  "xx",       "yy",
-                                      "xy",     "theta",          "roundness", "thinness", "perimeter",
-                                      "r_min",  "r_max",          "holes",     "euler"};
+  static const char *const names[] = {
+      "area",      "center_of_area", "centroid",  "xx",    "yy",    "xy",    "theta",
+      "roundness", "thinness",       "perimeter", "r_min", "r_max", "holes", "euler"};
   const CagValue values[] = {
       cag_number(b->area - a->area),
       cag_xy(vm, b->center[0] - a->center[0], b->center[1] - a->center[1]),
@@ -138,8 +137,8 @@ static CagValue measure_differences(CagVm *vm, const CagMeasures *a, const CagMe
 // *empty states whether the figure is empty instead.
 static bool measure_or_empty(CagCall *call, const CagMassOf *of, CagMeasures *m, bool *empty) {
   CagStatus status = measure_of(of, 8, m, call->err);
-  *empty = status == CAG_E_DEGENERATE && (call->err->id == CAG_ERR_empty_image ||
-                                          call->err->id == CAG_ERR_empty_silhouette);
+  *empty = status == CAG_E_DEGENERATE &&
+           (call->err->id == CAG_ERR_empty_image || call->err->id == CAG_ERR_empty_silhouette);
   return *empty || cag_geometry_ok(call, status);
 }
 
@@ -184,8 +183,7 @@ bool cag_measures_polar_moment(CagCall *call, const struct cag_measures_polar_mo
   CagMassOf of;
   double moment[2];
   if (!cag_arg_mass(call, 0, (CagMass)a->moments, &of)) return false;
-  if (a->n < a->m || (a->n - a->m) % 2 != 0)
-    return cag_fail_value(call, 2, "m, m + 2, m + 4, ...");
+  if (a->n < a->m || (a->n - a->m) % 2 != 0) return cag_fail_value(call, 2, "m, m + 2, m + 4, ...");
   if (!cag_geometry_ok(call, cag_polar_moment(&of, (int)a->m, (int)a->n, moment, call->err)))
     return false;
   *result = cag_vector(call->vm, moment, 2);
@@ -305,12 +303,11 @@ static CagLayout *region_layout(CagVm *vm) {
 static bool region_values(CagCall *call, const struct cag_measures_label_regions *a,
                           const CagLabels *l, size_t label, CagValue *v) {
   const Box box = region_box(l, label);
-  const CagBounds bounds = {
-      {(double)box.left, (double)(l->height - box.bottom), 0},
-      {(double)box.right, (double)(l->height - box.top), 0}};
+  const CagBounds bounds = {{(double)box.left, (double)(l->height - box.bottom), 0},
+                            {(double)box.right, (double)(l->height - box.top), 0}};
   CagMeasures m;
-  if (!cag_geometry_ok(call, cag_measure_figure(a->image, l, label, (CagMass)a->moments, &m,
-                                                call->err)))
+  if (!cag_geometry_ok(call,
+                       cag_measure_figure(a->image, l, label, (CagMass)a->moments, &m, call->err)))
     return false;
   measure_values(call->vm, &m, v);
   v[REGION_BOUNDS] = cag_bounds_value(call->vm, &bounds, 2);
@@ -376,14 +373,13 @@ static CagValue contour_value(CagVm *vm, const CagContour *c, size_t height) {
     code = cag_list_numbers(vm, c->count, &digits);
     for (size_t i = 0; i < c->count; i++) digits[i] = c->code[i];
   }
-  const CagValue values[] = {cag_bool(c->hole),      cag_xy(vm, (double)c->x, (double)c->y), code,
-                             cag_number(c->length), cag_number(c->area),
-                             contour_points(vm, c, height)};
+  const CagValue values[] = {
+      cag_bool(c->hole),   cag_xy(vm, (double)c->x, (double)c->y), code, cag_number(c->length),
+      cag_number(c->area), contour_points(vm, c, height)};
   return cag_record_new(vm, names, values, 6);
 }
 
-bool cag_measures_contours(CagCall *call, const struct cag_measures_contours *a,
-                           CagValue *result) {
+bool cag_measures_contours(CagCall *call, const struct cag_measures_contours *a, CagValue *result) {
   int connectivity;
   CagLabels *l;
   if (!cag_gray_image(call, 0, a->image) || !cag_arg_connectivity(call, 1, &connectivity) ||

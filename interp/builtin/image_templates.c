@@ -16,8 +16,7 @@ bool cag_templates_error_map(CagCall *call, const struct cag_templates_error_map
 bool cag_templates_correlation_map(CagCall *call, const struct cag_templates_correlation_map *a,
                                    CagValue *result) {
   CagRaster *out = NULL;
-  CagStatus status =
-      cag_template_correlation(a->image, a->template, a->zero_mean, &out, call->err);
+  CagStatus status = cag_template_correlation(a->image, a->template, a->zero_mean, &out, call->err);
   return cag_raster_result(call, status, &out, result);
 }
 
@@ -131,8 +130,7 @@ static bool try_turned(Search *s, double angle, double scale) {
   if (!cag_geometry_ok(call, status)) return false;
   s->fits = true;
   if (!m.found || m.counted == 0) return true;
-  if (s->match.found &&
-      m.error / (double)m.counted >= s->match.error / (double)s->match.counted)
+  if (s->match.found && m.error / (double)m.counted >= s->match.error / (double)s->match.counted)
     return true;
   s->match = m;
   s->angle = angle;
@@ -172,8 +170,8 @@ bool cag_templates_recognize_turned(CagCall *call, const struct cag_templates_re
                          "of the rotations and scales");
   const bool found = s.match.found;
   const CagValue values[] = {found ? cag_angle(s.angle) : cag_none(),
-                             found ? cag_number(s.scale) : cag_none(),
-                             match_at(call->vm, &s.match), match_error(&s.match)};
+                             found ? cag_number(s.scale) : cag_none(), match_at(call->vm, &s.match),
+                             match_error(&s.match)};
   *result = cag_record_new(call->vm, names, values, 4);
   return true;
 }
