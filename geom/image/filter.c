@@ -17,13 +17,34 @@ static void sort_pair(double *a, double *b) {
   *b = high;
 }
 
-// The median of nine numbers by 19 exchanges (Paeth 1990).
-static double median_of_nine(double p[9]) {
-  static const unsigned char pairs[19][2] = {{1, 2}, {4, 5}, {7, 8}, {0, 1}, {3, 4}, {6, 7}, {1, 2},
-                                             {4, 5}, {7, 8}, {0, 3}, {5, 8}, {4, 7}, {3, 6}, {1, 4},
-                                             {2, 5}, {4, 7}, {4, 2}, {6, 4}, {4, 2}};
-  for (int i = 0; i < 19; i++) sort_pair(&p[pairs[i][0]], &p[pairs[i][1]]);
-  return p[4];
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double greater(double a, double b) { return a < b ? b : a; }
+static double middle_of(double a, double b, double c) {
+  return greater(lesser(a, b), lesser(greater(a, b), c));
+}
+
+// The columns of windows that are sorted together.
+#define STRIP 256
+
+// Medians of 3 x 3 pixels. Each column of three is sorted once; the median is that of the greatest
+// of the least, the middle of the middle, and the least of the greatest numbers of three columns
+// (Kopp and Purgathofer 1994).
+static void medians_of_nine(const double *a, const double *b, const double *c, size_t width,
+                            double *out) {
+  double low[STRIP + 2], middle[STRIP + 2], high[STRIP + 2];
+  for (size_t from = 0; from < width; from += STRIP) {
+    const size_t n = width - from < STRIP ? width - from : STRIP;
+    for (size_t i = 0; i < n + 2; i++) {
+      const double p = a[from + i], q = b[from + i], r = c[from + i];
+      low[i] = lesser(lesser(p, q), r);
+      middle[i] = middle_of(p, q, r);
+      high[i] = greater(greater(p, q), r);
+    }
+    for (size_t i = 0; i < n; i++)
+      out[from + i] = middle_of(greater(greater(low[i], low[i + 1]), low[i + 2]),
+                                middle_of(middle[i], middle[i + 1], middle[i + 2]),
+                                lesser(lesser(high[i], high[i + 1]), high[i + 2]));
+  }
 }
 
 // The k-th smallest of n numbers, which are reordered so that smaller ones are before it (Wirth 1976,
@@ -62,11 +83,7 @@ static void median_row(const void *context, const double *const *rows, size_t wi
                        double *out) {
   const Median *m = context;
   if (m->size == 3 && !has_none) {
-    const double *a = rows[0], *b = rows[1], *c = rows[2];
-    for (size_t x = 0; x < width; x++) {
-      double p[9] = {a[x], a[x + 1], a[x + 2], b[x], b[x + 1], b[x + 2], c[x], c[x + 1], c[x + 2]};
-      out[x] = median_of_nine(p);
-    }
+    medians_of_nine(rows[0], rows[1], rows[2], width, out);
     return;
   }
   for (size_t x = 0; x < width && !cag_stopped(); x++) {
