@@ -38,8 +38,7 @@ static inline double pixel_or(const CagRaster *r, long x, long y, double outside
 }
 
 // The figures of the reference: an L, and a scene of several regions.
-#define PICTURE_L                                                                                  \
-  "00000000/01100000/01100000/01100000/01100000/01111100/01111100/00000000"
+#define PICTURE_L "00000000/01100000/01100000/01100000/01100000/01111100/01111100/00000000"
 #define PICTURE_SCENE "1100000/1100111/0000101/0000111/1001000/0100011"
 
 #endif
