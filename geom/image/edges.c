@@ -70,9 +70,10 @@ CagStatus cag_edges_gradient(const CagRaster *r, CagRaster **gx, CagRaster **gy,
   CagRaster *a, *b;
   CagStatus status = pair_of_images(r->width, r->height, &a, &b, err);
   if (status) return status;
-  status = cag_window_rows(r, 0, 1, 1, CAG_BORDER_REPLICATE, sobel_x_row, NULL, a, err);
-  if (!status)
-    status = cag_window_rows(r, 0, 1, 1, CAG_BORDER_REPLICATE, sobel_y_row, NULL, b, err);
+  CagWindow w = {1, 1, CAG_BORDER_REPLICATE, sobel_x_row, NULL};
+  status = cag_window_rows(r, 0, &w, a, err);
+  w.row = sobel_y_row;
+  if (!status) status = cag_window_rows(r, 0, &w, b, err);
   if (status) {
     cag_raster_release(a);
     cag_raster_release(b);

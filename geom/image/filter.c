@@ -99,7 +99,8 @@ CagStatus cag_image_median(const CagRaster *r, size_t size, CagBorder border, Ca
                            CagError *err) {
   Median m = {.size = size, .room = cag_malloc(size * size * sizeof *m.room)};
   if (!m.room) return cag_fail_memory(err);
-  CagStatus status = cag_window_image(r, size / 2, size / 2, border, median_row, &m, out, err);
+  const CagWindow w = {size / 2, size / 2, border, median_row, &m};
+  CagStatus status = cag_window_image(r, &w, out, err);
   cag_free(m.room);
   return status;
 }
@@ -120,7 +121,8 @@ static void majority_row(const void *context, const double *const *rows, size_t 
 }
 
 CagStatus cag_image_majority(const CagRaster *r, CagBorder border, CagRaster **out, CagError *err) {
-  return cag_window_image(r, 1, 1, border, majority_row, NULL, out, err);
+  const CagWindow w = {1, 1, border, majority_row, NULL};
+  return cag_window_image(r, &w, out, err);
 }
 
 // --- Sharpness ---
@@ -137,7 +139,8 @@ static void sharpen_row(const void *context, const double *const *rows, size_t w
 
 CagStatus cag_image_sharpen(const CagRaster *r, double k, CagBorder border, CagRaster **out,
                             CagError *err) {
-  return cag_window_image(r, 1, 1, border, sharpen_row, &k, out, err);
+  const CagWindow w = {1, 1, border, sharpen_row, &k};
+  return cag_window_image(r, &w, out, err);
 }
 
 // --- Single pixels ---
@@ -169,7 +172,8 @@ CagStatus cag_image_stretch(const CagRaster *r, double low, double high, double 
                             CagRaster **out, CagError *err) {
   const bool same = low == high;
   const Stretch s = {same ? 0 : low, same ? 1 : top / (high - low)};
-  return cag_window_image(r, 0, 0, CAG_BORDER_ZERO, stretch_row, &s, out, err);
+  const CagWindow w = {0, 0, CAG_BORDER_ZERO, stretch_row, &s};
+  return cag_window_image(r, &w, out, err);
 }
 
 typedef struct Threshold {
@@ -189,7 +193,8 @@ static void threshold_row(const void *context, const double *const *rows, size_t
 CagStatus cag_image_threshold(const CagRaster *r, double t, bool keep, CagRaster **out,
                               CagError *err) {
   const Threshold threshold = {t, keep};
-  return cag_window_image(r, 0, 0, CAG_BORDER_ZERO, threshold_row, &threshold, out, err);
+  const CagWindow w = {0, 0, CAG_BORDER_ZERO, threshold_row, &threshold};
+  return cag_window_image(r, &w, out, err);
 }
 
 // --- Convolution ---
@@ -215,7 +220,8 @@ static void convolve_row(const void *context, const double *const *rows, size_t 
 CagStatus cag_image_convolve(const CagRaster *r, const double *kernel, size_t width, size_t height,
                              CagBorder border, CagRaster **out, CagError *err) {
   const Kernel k = {kernel, width, height};
-  return cag_window_image(r, width / 2, height / 2, border, convolve_row, &k, out, err);
+  const CagWindow w = {width / 2, height / 2, border, convolve_row, &k};
+  return cag_window_image(r, &w, out, err);
 }
 
 CagStatus cag_image_blur(const CagRaster *r, double sigma, CagBorder border, CagRaster **out,

@@ -92,26 +92,35 @@ static bool may_be_best(const double *errors, size_t n, double best) {
   return any;
 }
 
+// A search, with room for the errors of a row of shifts.
+typedef struct Search {
+  const CagRaster *image;
+  const CagTemplatePart *parts;
+  size_t count;
+  Frame frame;
+  size_t shifts;
+  double *errors;
+  CagMatch best;
+} Search;
+
 // Searches the shifts at which the upper left corner of the frame is in row y.
-static CagStatus search_row(const CagRaster *image, const CagTemplatePart *parts, size_t n, Frame f,
-                            size_t y, size_t shifts, double *errors, CagMatch *best,
-                            CagError *err) {
-  memset(errors, 0, shifts * sizeof *errors);
-  for (size_t k = 0; k < n; k++) {
-    const CagTemplatePart *p = &parts[k];
-    const size_t dx = (size_t)(p->dx - f.left), dy = (size_t)(p->dy - f.top);
+static CagStatus search_row(Search *s, size_t y, CagError *err) {
+  memset(s->errors, 0, s->shifts * sizeof *s->errors);
+  for (size_t k = 0; k < s->count; k++) {
+    const CagTemplatePart *p = &s->parts[k];
+    const size_t dx = (size_t)(p->dx - s->frame.left), dy = (size_t)(p->dy - s->frame.top);
     for (size_t j = 0; j < p->pattern->height; j++) {
-      row_errors(image, p->pattern, j, dx, y + dy, shifts, errors);
+      row_errors(s->image, p->pattern, j, dx, y + dy, s->shifts, s->errors);
       if (cag_stopped()) return cag_stop_fail(err);
-      if (!may_be_best(errors, shifts, best->error)) return CAG_OK;
+      if (!may_be_best(s->errors, s->shifts, s->best.error)) return CAG_OK;
     }
   }
-  for (size_t x = 0; x < shifts; x++)
-    if (errors[x] < best->error) {
-      best->found = true;
-      best->x = (long)x - f.left;
-      best->y = (long)y - f.top;
-      best->error = errors[x];
+  for (size_t x = 0; x < s->shifts; x++)
+    if (s->errors[x] < s->best.error) {
+      s->best.found = true;
+      s->best.x = (long)x - s->frame.left;
+      s->best.y = (long)y - s->frame.top;
+      s->best.error = s->errors[x];
     }
   return CAG_OK;
 }
@@ -130,18 +139,18 @@ CagStatus cag_template_find(const CagRaster *image, const CagTemplatePart *parts
                             CagMatch *out, CagError *err) {
   const Frame f = frame_of_parts(parts, n);
   const size_t width = (size_t)(f.right - f.left), height = (size_t)(f.bottom - f.top);
-  CagMatch best = {.error = INFINITY, .counted = count_samples(parts, n)};
+  Search s = {.image = image, .parts = parts, .count = n, .frame = f};
   CagStatus status = CAG_OK;
   for (size_t k = 0; !status && k < n; k++) status = check_channels(image, parts[k].pattern, err);
   if (status) return status;
   if (width > image->width || height > image->height) return fail_larger(image, width, height, err);
-  const size_t shifts = image->width - width + 1;
-  double *errors = cag_malloc(shifts * sizeof *errors);
-  if (!errors) return cag_fail_memory(err);
-  for (size_t y = 0; !status && y + height <= image->height; y++)
-    status = search_row(image, parts, n, f, y, shifts, errors, &best, err);
-  cag_free(errors);
-  if (!status) *out = best;
+  s.best = (CagMatch){.error = INFINITY, .counted = count_samples(parts, n)};
+  s.shifts = image->width - width + 1;
+  s.errors = cag_malloc(s.shifts * sizeof *s.errors);
+  if (!s.errors) return cag_fail_memory(err);
+  for (size_t y = 0; !status && y + height <= image->height; y++) status = search_row(&s, y, err);
+  cag_free(s.errors);
+  if (!status) *out = s.best;
   return status;
 }
 

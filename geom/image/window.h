@@ -18,13 +18,19 @@ long cag_border_index(long i, size_t n, CagBorder border);
 typedef void CagWindowRow(const void *context, const double *const *rows, size_t width,
                           bool has_none, double *out);
 
-// Applies the function to all rows of a channel, with windows that reach rx pixels to both sides
-// and ry pixels up and down. `to` has one channel of the same size, or more.
-CagStatus cag_window_rows(const CagRaster *from, size_t channel, size_t rx, size_t ry,
-                          CagBorder border, CagWindowRow *f, const void *context, CagRaster *to,
+// An operation on windows that reach rx pixels to both sides, and ry pixels up and down.
+typedef struct CagWindow {
+  size_t rx, ry;
+  CagBorder border;
+  CagWindowRow *row;
+  const void *context;
+} CagWindow;
+
+// Applies the operation to all rows of a channel. `to` has the same size, and such a channel.
+CagStatus cag_window_rows(const CagRaster *from, size_t channel, const CagWindow *w, CagRaster *to,
                           CagError *err);
 // The same for all channels: makes the result.
-CagStatus cag_window_image(const CagRaster *from, size_t rx, size_t ry, CagBorder border,
-                           CagWindowRow *f, const void *context, CagRaster **out, CagError *err);
+CagStatus cag_window_image(const CagRaster *from, const CagWindow *w, CagRaster **out,
+                           CagError *err);
 
 #endif
