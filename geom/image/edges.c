@@ -134,8 +134,7 @@ static bool is_ridge(const Canny *c, size_t x, size_t y) {
   return here >= side[forward ? 0 : 1] && here > side[forward ? 1 : 0];
 }
 
-// Marks a pixel as an edge if it may be one: a ridge of at least the lower threshold has the value
-// 2 until then.
+// While edges grow, ridges of at least the lower threshold are marked with 2, and edges with 1.
 static CagStatus mark_edge(Canny *c, size_t x, size_t y, CagError *err) {
   *cag_raster_at(c->out, 0, x, y) = 1;
   if (!CAG_RESERVE(c->pending, c->capacity, c->count + 1)) return cag_fail_memory(err);
@@ -166,12 +165,14 @@ static CagStatus find_edges(Canny *c, double low, double high, CagError *err) {
     }
     status = cag_stop_check(err);
   }
-  for (size_t y = 0; !status && y < out->height; y++)
+  for (size_t y = 0; !status && y < out->height; y++) {
     for (size_t x = 0; !status && x < out->width; x++)
       if (*cag_raster_at(out, 0, x, y) == 2 && *cag_raster_at(c->magnitude, 0, x, y) >= high) {
         status = mark_edge(c, x, y, err);
         if (!status) status = grow_edges(c, err);
       }
+    if (!status) status = cag_stop_check(err);
+  }
   const size_t n = out->width * out->height;
   for (size_t i = 0; i < n; i++)
     if (out->data[i] == 2) out->data[i] = 0;

@@ -148,7 +148,7 @@ typedef struct Boundary {
   CagMass mass;
   double cx, cy; // the centroid, y down
   size_t sides;
-  double least, most;          // squared or not: distances from the centroid
+  double least, most;          // distances from the centroid
   long corners, edges, pixels; // of the union of the closed pixels, or of the graph of neighbors
   bool touches;
 } Boundary;
