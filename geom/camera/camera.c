@@ -50,6 +50,28 @@ CagStatus cag_camera_map(const double rows[3][4], CagCameraMap *out, CagError *e
   return CAG_OK;
 }
 
+CagStatus cag_camera_map_of_parts(const CagCameraParts *parts, CagVec3 eye, bool parallel,
+                                  double start, CagCameraMap *out, CagError *err) {
+  const double(*k)[3] = parts->k, (*r)[3] = parts->r;
+  const double at[3] = {eye.x, eye.y, eye.z};
+  CagCameraMap c = {.parallel = parallel, .has_depth = true, .center = eye, .start = start};
+  c.view = cag_vec3(r[2][0], r[2][1], r[2][2]);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      c.p[i][j] = parallel ? 0 : k[i][2] * r[2][j];
+      for (int m = i; m < 2; m++) c.p[i][j] += k[i][m] * r[m][j];
+    }
+    c.p[i][3] = parallel ? k[i][2] : 0;
+    for (int j = 0; j < 3; j++) c.p[i][3] -= c.p[i][j] * at[j];
+    for (int j = 0; j < 4; j++) c.p[i][j] += 0.0; // never -0
+  }
+  if (parallel) c.start = cag_dot(c.view, eye);
+  *out = c;
+  if (invert_rows(row_vector(c.p[0]), row_vector(c.p[1]), c.view, out->inverse)) return CAG_OK;
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_camera_singular, "C", -1,
+                  "the camera is too narrow to measure");
+}
+
 // --- Projection ---
 
 bool cag_camera_project(const CagCameraMap *c, CagVec3 point, double pixel[2], double *depth) {
@@ -66,8 +88,8 @@ void cag_camera_sight(const CagCameraMap *c, const double pixel[2], CagVec3 *ori
                       CagVec3 *direction) {
   if (c->parallel) {
     *direction = c->view;
-    *origin = inverse_times(c->inverse,
-                            cag_vec3(pixel[0] - c->p[0][3], pixel[1] - c->p[1][3], c->start));
+    *origin =
+        inverse_times(c->inverse, cag_vec3(pixel[0] - c->p[0][3], pixel[1] - c->p[1][3], c->start));
     return;
   }
   *origin = c->center;

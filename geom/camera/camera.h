@@ -32,6 +32,20 @@ typedef struct CagCameraMap {
 // the plane through the center. Fails with "camera-singular".
 CagStatus cag_camera_map(const double rows[3][4], CagCameraMap *out, CagError *err);
 
+typedef struct CagCameraParts {
+  double k[3][3];
+  double r[3][3];
+} CagCameraParts;
+
+// Makes the map from its parts. `eye` is the center of projection, or, of a parallel projection, a
+// point that is imaged at (k02, k12), in the plane of depth 0. A point of a central projection has
+// depth 0 at the distance `start` from the center.
+CagStatus cag_camera_map_of_parts(const CagCameraParts *parts, CagVec3 eye, bool parallel,
+                                  double start, CagCameraMap *out, CagError *err);
+
+// Splits P into K and R by Gram-Schmidt from the last row (RQ decomposition).
+void cag_camera_split(const CagCameraMap *c, CagCameraParts *out);
+
 // Projects a point. Returns false if it is not in front of the camera. *depth is set if the camera
 // has one.
 bool cag_camera_project(const CagCameraMap *c, CagVec3 point, double pixel[2], double *depth);
@@ -46,13 +60,6 @@ void cag_camera_sight(const CagCameraMap *c, const double pixel[2], CagVec3 *ori
 // plane, or meets it behind the camera.
 bool cag_camera_on_plane(const CagCameraMap *c, const double pixel[2], const CagPlane *plane,
                          CagVec3 *out);
-
-// Splits P into K and R by Gram-Schmidt from the last row (RQ decomposition).
-typedef struct CagCameraParts {
-  double k[3][3];
-  double r[3][3];
-} CagCameraParts;
-void cag_camera_split(const CagCameraMap *c, CagCameraParts *out);
 
 // The middle of the shortest segment between two lines, and its length (Goldman 1990, "Intersection
 // of two lines in three-space"). Directions have any length. Fails with "parallel-lines".

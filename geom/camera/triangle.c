@@ -21,7 +21,8 @@ static CagStatus fail_factor(CagError *err) {
 
 static CagStatus factor_rows(CagTriangle *t, CagError *err) {
   double tau[CAG_TRIANGLE_COLUMNS], work[CAG_TRIANGLE_COLUMNS * CAG_TRIANGLE_ROWS];
-  double transposed[CAG_TRIANGLE_COLUMNS][CAG_TRIANGLE_ROWS]; // by columns, as LAPACK works in place
+  double transposed[CAG_TRIANGLE_COLUMNS]
+                   [CAG_TRIANGLE_ROWS]; // by columns, as LAPACK works in place
   const size_t n = t->columns;
   for (size_t i = 0; i < t->count; i++)
     for (size_t j = 0; j < n; j++) transposed[j][i] = t->rows[i][j];
