@@ -15,6 +15,10 @@ CagValue cag_color_value(CagVm *vm, CagColor c);
 // is NULL.
 double cag_number_field(const CagRecord *r, const char *name, double fallback);
 CagVec3 cag_point_field(const CagRecord *r, const char *name, CagVec3 fallback);
+// Pixels along one side of a picture: more would be 10 GB.
+#define CAG_PICTURE_PIXELS_MAX 65536
+// Reads the size of a picture: two whole numbers of pixels.
+bool cag_picture_size(CagCall *call, int argument, CagNumbers size, double out[2]);
 // A camera as plain data, without a name.
 CagCamera cag_camera_of_value(const CagSceneValue *v);
 

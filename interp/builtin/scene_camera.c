@@ -34,7 +34,8 @@ static void read_pinhole(const CagRecord *r, CagCamera *c) {
   const double width = c->size[0], height = c->size[1];
   const CagVec3 principal = cag_point_field(r, "principal", cag_vec3(width / 2, height / 2, 0));
   c->focal = cag_number_field(r, "focal", 1);
-  c->fov = 2 * atan2(width * pitch.x / 2, c->focal);
+  c->width = width * pitch.x;
+  c->fov = 2 * atan2(c->width / 2, c->focal);
   c->shift[0] = (width / 2 - principal.x) / width;
   c->shift[1] = (height / 2 - principal.y) / width;
   c->skew = cag_number_field(r, "skew", 0) * pitch.x / c->focal;

@@ -8,7 +8,8 @@ static CagVec3 column(const CagTransform *t, int j) {
 
 // The width of the picture: of a perspective camera, at the distance 1 of the eye.
 static double picture_width(const CagCamera *c) {
-  return c->orthographic ? c->width : 2 * tan(c->fov / 2);
+  if (c->orthographic) return c->width;
+  return c->focal > 0 ? c->width / c->focal : 2 * tan(c->fov / 2);
 }
 
 // A pixel to the right is the vector x / f, and one down is (y - skew x) / (f (1 + stretch)), where f

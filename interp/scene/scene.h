@@ -125,7 +125,7 @@ typedef struct CagCamera {
   CagVec3 eye, target, up; // up is perpendicular to the view direction
   bool orthographic;
   double fov;             // horizontal, radians (perspective)
-  double width;           // mm (orthographic)
+  double width;           // mm (orthographic; with `focal`, of the image plane)
   int size[2];            // pixels
   double focus, aperture; // mm; the aperture is the diameter of a lens; 0: everything is sharp
   bool mirrored;          // the picture is mirrored: its frame is left-handed
