@@ -1,7 +1,7 @@
 # Every command line of the manual and the README, in a folder that has the files they name. Pictures are made small and in
 # draft quality, and films short: what is tried is that the words are right.
 
-page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/geometry.md docs/getting-started.md docs/language.md docs/robots.md docs/scenes-and-files.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
+page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/geometry.md docs/getting-started.md docs/language.md docs/robots.md docs/scenes-and-files.md docs/sensing.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
 
 # The lines of the blocks of shell commands; and the commands within the text, other than those with a placeholder such as FILE.
 block_lines() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$1"; }
