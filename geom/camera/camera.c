@@ -32,7 +32,9 @@ static bool invert_rows(CagVec3 a, CagVec3 b, CagVec3 c, double out[3][3]) {
 CagStatus cag_camera_map(const double rows[3][4], CagCameraMap *out, CagError *err) {
   CagCameraMap c = {.has_depth = true};
   const CagVec3 forward = row_vector(rows[2]);
-  const double length = cag_norm(forward);
+  // Without overflow of the squares.
+  const double largest = fmax(fabs(forward.x), fmax(fabs(forward.y), fabs(forward.z)));
+  const double length = largest > 0 ? largest * cag_norm(cag_scaled(forward, 1 / largest)) : 0;
   const double scale = length > 0 ? length : rows[2][3];
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) c.p[i][j] = rows[i][j] / scale + 0.0; // never -0

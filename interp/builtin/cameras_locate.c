@@ -65,6 +65,8 @@ bool cag_cameras_pose_error(CagCall *call, const struct cag_cameras_pose_error *
   if (!cag_geometry_ok(call, cag_axis_angle_of(&relative, &axis, &angle, &singular, call->err)))
     return false;
   const CagVec3 shift = frame_column(&relative, 3);
+  if (!isfinite(cag_norm(shift)))
+    return cag_fail_call(call, 1, CAG_ERR_not_finite, "overflows: the poses are too far apart");
   relative.planar = false;
   CagVm *vm = call->vm;
   const CagVec3 zero = {0, 0, 0}; // added to avoid -0
