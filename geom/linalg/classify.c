@@ -223,11 +223,11 @@ static CagStatus from_frame(const CagVec3 *p, const char *argument, CagTransform
       return fail_position(argument, CAG_ERR_collinear_points,
                            "include three on one line; no three of the four may be collinear", err);
   }
-  CagTransform m = {{{p[0].x, p[1].x, 0, p[2].x},
-                     {p[0].y, p[1].y, 0, p[2].y},
-                     {0, 0, 1, 0},
-                     {1, 1, 0, 1}},
-                    true},
+  CagTransform m = {.m = {{p[0].x, p[1].x, 0, p[2].x},
+                          {p[0].y, p[1].y, 0, p[2].y},
+                          {0, 0, 1, 0},
+                          {1, 1, 0, 1}},
+                    .planar = true},
                inverse;
   CagStatus status = cag_transform_inverse(&m, &inverse, err);
   if (status) return status;

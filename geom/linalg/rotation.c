@@ -82,12 +82,13 @@ CagStatus cag_quaternion(const double wxyz[4], CagTransform *out, CagError *err)
                     "the quaternion [0, 0, 0, 0] is not a rotation; the identity is [1, 0, 0, 0]");
   double w = wxyz[0] / size, x = wxyz[1] / size, y = wxyz[2] / size, z = wxyz[3] / size;
   double n = w * w + x * x + y * y + z * z;
-  *out = (CagTransform){
-      {{(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n, 0},
-       {2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n, 0},
-       {2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n, 0},
-       {0, 0, 0, 1}},
-      false};
+  *out = (CagTransform){.m = {{(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n,
+                               2 * (x * z + w * y) / n, 0},
+                              {2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n,
+                               2 * (y * z - w * x) / n, 0},
+                              {2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n,
+                               (w * w - x * x - y * y + z * z) / n, 0},
+                              {0, 0, 0, 1}}};
   return CAG_OK;
 }
 

@@ -49,7 +49,8 @@ void cag_sincos(double angle, double *sine, double *cosine) {
 // --- Algebra ---
 
 CagTransform cag_transform_identity(void) {
-  return (CagTransform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
+  return (CagTransform){.m = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+                        .planar = true};
 }
 
 static CagTransform space_identity(void) {
@@ -59,7 +60,7 @@ static CagTransform space_identity(void) {
 }
 
 CagTransform cag_transform_multiply(const CagTransform *a, const CagTransform *b) {
-  CagTransform t = {.planar = a->planar && b->planar};
+  CagTransform t = {.planar = a->planar && b->planar, .in_front = a->in_front || b->in_front};
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
       for (int k = 0; k < 4; k++) t.m[i][j] += a->m[i][k] * b->m[k][j];
@@ -200,7 +201,7 @@ CagStatus cag_transform_inverse(const CagTransform *t, CagTransform *out, CagErr
   if (!finite_transform(t))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "T", -1,
                     "the transform has an entry that is not a finite number");
-  CagTransform r = {.planar = t->planar};
+  CagTransform r = {.planar = t->planar, .in_front = t->in_front};
   CagStatus status =
       cag_transform_is_affine(t) ? invert_affine(t, &r, err) : invert_general(t, &r, err);
   if (!status) *out = r;
@@ -341,6 +342,17 @@ CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out, CagError *er
   return CAG_OK;
 }
 
+CagStatus cag_perspective(double f, bool keep_depth, CagTransform *out, CagError *err) {
+  CagTransform t = space_identity();
+  t.m[2][2] = keep_depth;
+  t.m[3][2] = 1 / f;
+  t.in_front = true;
+  if (!finite_transform(&t))
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "f", -1, "1/f is not finite");
+  *out = t;
+  return CAG_OK;
+}
+
 CagTransform cag_reflect_point(CagVec3 p) {
   CagTransform t = space_identity();
   for (int i = 0; i < 3; i++) t.m[i][i] = -1;
@@ -349,7 +361,7 @@ CagTransform cag_reflect_point(CagVec3 p) {
 }
 
 CagTransform cag_shear(double xy, double xz, double yx, double yz, double zx, double zy) {
-  return (CagTransform){{{1, xy, xz, 0}, {yx, 1, yz, 0}, {zx, zy, 1, 0}, {0, 0, 0, 1}}, false};
+  return (CagTransform){.m = {{1, xy, xz, 0}, {yx, 1, yz, 0}, {zx, zy, 1, 0}, {0, 0, 0, 1}}};
 }
 
 // --- Planes and projections ---
@@ -462,11 +474,10 @@ CagStatus cag_project_central(const CagPlane *onto, CagVec3 from, CagTransform *
 // --- Frames ---
 
 static CagTransform frame_of(CagVec3 x, CagVec3 y, CagVec3 z, CagVec3 origin) {
-  return (CagTransform){{{x.x, y.x, z.x, origin.x},
-                         {x.y, y.y, z.y, origin.y},
-                         {x.z, y.z, z.z, origin.z},
-                         {0, 0, 0, 1}},
-                        false};
+  return (CagTransform){.m = {{x.x, y.x, z.x, origin.x},
+                              {x.y, y.y, z.y, origin.y},
+                              {x.z, y.z, z.z, origin.z},
+                              {0, 0, 0, 1}}};
 }
 
 CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagError *err) {
@@ -511,11 +522,10 @@ CagTransform cag_dh(double theta, double d, double a, double alpha) {
   double st, ct, sa, ca;
   cag_sincos(theta, &st, &ct);
   cag_sincos(alpha, &sa, &ca);
-  return (CagTransform){{{ct, -st * ca, st * sa, a * ct},
-                         {st, ct * ca, -ct * sa, a * st},
-                         {0, sa, ca, d},
-                         {0, 0, 0, 1}},
-                        false};
+  return (CagTransform){.m = {{ct, -st * ca, st * sa, a * ct},
+                              {st, ct * ca, -ct * sa, a * st},
+                              {0, sa, ca, d},
+                              {0, 0, 0, 1}}};
 }
 
 // Rot(x, alpha) Trans(a, 0, 0) Rot(z, theta) Trans(0, 0, d).
@@ -523,9 +533,8 @@ CagTransform cag_mdh(double theta, double d, double a, double alpha) {
   double st, ct, sa, ca;
   cag_sincos(theta, &st, &ct);
   cag_sincos(alpha, &sa, &ca);
-  return (CagTransform){{{ct, -st, 0, a},
-                         {st * ca, ct * ca, -sa, -sa * d},
-                         {st * sa, ct * sa, ca, ca * d},
-                         {0, 0, 0, 1}},
-                        false};
+  return (CagTransform){.m = {{ct, -st, 0, a},
+                              {st * ca, ct * ca, -sa, -sa * d},
+                              {st * sa, ct * sa, ca, ca * d},
+                              {0, 0, 0, 1}}};
 }

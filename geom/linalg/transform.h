@@ -1,7 +1,8 @@
 // 4x4 homogeneous transforms on column vectors: constructors, composition, and decomposition.
 //
 // Angles are radians. m[row][column]. `planar`: made from 2-D data only, so plane objects stay
-// plane under it.
+// plane under it. `in_front`: a perspective, which has images only of points with w > 0; products
+// and inverses keep this.
 
 #ifndef CAG_GEOM_TRANSFORM_H
 #define CAG_GEOM_TRANSFORM_H
@@ -11,7 +12,7 @@
 
 typedef struct CagTransform {
   double m[4][4];
-  bool planar;
+  bool planar, in_front;
 } CagTransform;
 
 // Sine and cosine of an angle in radians, exact (0, +-1/2, +-1 ...) if the angle is the double
@@ -48,6 +49,9 @@ CagStatus cag_reflect(CagVec3 normal, CagVec3 through, CagTransform *out, CagErr
 CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out,
                            CagError *err); // line in the XY plane
 CagTransform cag_reflect_point(CagVec3 p);
+// The image in the plane z = 0 from the center z = -f; x and y are divided by 1 + z/f. With
+// keep_depth, the image has z f / (f + z) as its depth, which increases with z.
+CagStatus cag_perspective(double f, bool keep_depth, CagTransform *out, CagError *err);
 CagTransform cag_shear(double xy, double xz, double yx, double yz, double zx, double zy);
 
 // A plane: point and unit normal; row is [a b c d] with a x + b y + c z + d = 0 and unit [a b c].

@@ -170,11 +170,10 @@ static void flatten(const CagTrace *t, const Chart *chart, CagConic *conic) {
 // The frame of the conic's axes in the world: x, y rotated by the angle about its center.
 static CagTransform own_frame(const Chart *chart, const CagConicClass *k, bool other_branch) {
   double turn = k->angle + (other_branch ? FULL_TURN / 2 : 0), c = cos(turn), s = sin(turn);
-  CagTransform in_plane = {{{c, -s, 0, k->center.x * chart->unit},
-                            {s, c, 0, k->center.y * chart->unit},
-                            {0, 0, 1, 0},
-                            {0, 0, 0, 1}},
-                           false};
+  CagTransform in_plane = {.m = {{c, -s, 0, k->center.x * chart->unit},
+                                 {s, c, 0, k->center.y * chart->unit},
+                                 {0, 0, 1, 0},
+                                 {0, 0, 0, 1}}};
   return cag_transform_multiply(&chart->frame, &in_plane);
 }
 

@@ -137,7 +137,7 @@ static CagStatus circle_beside(const TorusForm *form, const CagVec3 axes[3], dou
                                CagCurve **out, CagError *err) {
   const CagVec3 x = axes[0], y = axes[1], z = axes[2], c = cag_scaled(x, side * form->minor);
   const CagTransform frame = {
-      {{x.x, y.x, z.x, c.x}, {x.y, y.y, z.y, c.y}, {x.z, y.z, z.z, c.z}, {0, 0, 0, 1}}, false};
+      .m = {{x.x, y.x, z.x, c.x}, {x.y, y.y, z.y, c.y}, {x.z, y.z, z.z, c.z}, {0, 0, 0, 1}}};
   CagCurve *circle = NULL;
   CagStatus status = cag_curve_arc(form->major, form->major, 0, FULL_TURN, &frame, &circle, err);
   if (!status) status = cag_curve_transform(circle, &form->map, out, err);

@@ -35,11 +35,10 @@ static inline void cag_robot_frame_from(const CagTransform *t, CagRobotFrame *f)
 
 // Without negative zeros.
 static inline void cag_robot_frame_to(const CagRobotFrame *f, CagTransform *t) {
-  *t = (CagTransform){{{f->x.x + 0.0, f->y.x + 0.0, f->z.x + 0.0, f->p.x + 0.0},
-                       {f->x.y + 0.0, f->y.y + 0.0, f->z.y + 0.0, f->p.y + 0.0},
-                       {f->x.z + 0.0, f->y.z + 0.0, f->z.z + 0.0, f->p.z + 0.0},
-                       {0, 0, 0, 1}},
-                      false};
+  *t = (CagTransform){.m = {{f->x.x + 0.0, f->y.x + 0.0, f->z.x + 0.0, f->p.x + 0.0},
+                            {f->x.y + 0.0, f->y.y + 0.0, f->z.y + 0.0, f->p.y + 0.0},
+                            {f->x.z + 0.0, f->y.z + 0.0, f->z.z + 0.0, f->p.z + 0.0},
+                            {0, 0, 0, 1}}};
 }
 
 // Multiplies the frame by a stage's matrix from the right; sine and cosine are those of its

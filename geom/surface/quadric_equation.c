@@ -118,11 +118,10 @@ CagStatus cag_quadric_rulings(const CagQuadric *q, CagVec3 p, CagRulings *out, C
 CagTransform cag_plane_frame(const CagPlane *plane) {
   CagVec3 n = plane->normal, near = fabs(n.x) > 0.9 ? cag_vec3(0, 1, 0) : cag_vec3(1, 0, 0);
   CagVec3 x = cag_unit(cag_madd(near, -cag_dot(near, n), n)), y = cag_cross(n, x);
-  CagTransform t = {{{x.x, y.x, n.x, plane->point.x},
-                     {x.y, y.y, n.y, plane->point.y},
-                     {x.z, y.z, n.z, plane->point.z},
-                     {0, 0, 0, 1}},
-                    false};
+  CagTransform t = {.m = {{x.x, y.x, n.x, plane->point.x},
+                          {x.y, y.y, n.y, plane->point.y},
+                          {x.z, y.z, n.z, plane->point.z},
+                          {0, 0, 0, 1}}};
   return t;
 }
 

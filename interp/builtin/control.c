@@ -4,9 +4,16 @@
 #include "interp/vm/vm.h"
 
 bool cag_control_error(CagCall *call, const struct cag_control_error *a, CagValue *result) {
+  CagErrorId id = CAG_ERR_user;
   (void)result;
+  if (cag_given(call, 1)) {
+    id = cag_error_by_reason(a->reason);
+    // An attempt does not catch limits.
+    if (id == CAG_ERR_COUNT || cag_error_is_limit(id))
+      return cag_fail_value(call, 1, "the short name of a kind of error that can be caught");
+  }
   // The script's message is shown unchanged, without the name of a function.
-  return cag_vm_fail(call->vm, CAG_ERR_user, "%s", a->message);
+  return cag_vm_fail(call->vm, id, "%s", a->message);
 }
 
 bool cag_control_attempt(CagCall *call, const struct cag_control_attempt *a, CagValue *result) {

@@ -741,6 +741,10 @@ static bool transform_point(CagVm *vm, const CagTransform *t, const CagList *l, 
         return false;
     }
   }
+  const CagValue w = cag_plain(out[3]);
+  if (n < 4 && t->in_front && !(w.as.number > 0))
+    return cag_vm_fail_at(vm, 0, CAG_ERR_point_not_in_front,
+                          "the point is not in front of the center of this perspective");
   const bool divides = n < 4 && !(out[3].type == CAG_NUMBER && out[3].as.number == 1);
   for (size_t i = 0; divides && i < rows; i++)
     if (!cag_arithmetic(vm, CAG_OP_DIVIDE, out[i], out[3], &out[i])) return false;

@@ -61,10 +61,16 @@ static bool scene_result(CagCall *call, CagType type, const char *kind, const ch
 
 // --- Camera ---
 
-// The maximum number of pixels of one side. The next power of two would need pictures of 10 GB.
-#define PIXELS_MAX 65536
+static bool is_pixels(double x) { return x >= 1 && x <= CAG_PICTURE_PIXELS_MAX && x == floor(x); }
 
-static bool is_pixels(double x) { return x >= 1 && x <= PIXELS_MAX && x == floor(x); }
+bool cag_picture_size(CagCall *call, int argument, CagNumbers size, double out[2]) {
+  if (size.count != 2 || !is_pixels(size.items[0]) || !is_pixels(size.items[1]))
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects [width, height] in whole pixels, at most %d, as `size`",
+                         CAG_PICTURE_PIXELS_MAX);
+  memcpy(out, size.items, 2 * sizeof *out);
+  return true;
+}
 
 bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValue *result) {
   static const char *const names[] = {"eye",   "target", "up",    "fov",     "kind",
@@ -78,14 +84,7 @@ bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValu
   if (!(a->fov > 0 && a->fov <= widest * CAG_RADIANS_PER_DEGREE))
     return cag_fail_call(call, 3, CAG_ERR_view,
                          "expects a `fov` greater than 0deg and at most 179deg");
-  if (cag_given(call, 6)) {
-    const double *x = a->size.items;
-    if (a->size.count != 2 || !is_pixels(x[0]) || !is_pixels(x[1]))
-      return cag_fail_call(call, 6, CAG_ERR_value,
-                           "expects [width, height] in whole pixels, at most %d, as `size`",
-                           PIXELS_MAX);
-    memcpy(size, x, sizeof size);
-  }
+  if (cag_given(call, 6) && !cag_picture_size(call, 6, a->size, size)) return false;
   if (!(a->aperture >= 0 && isfinite(a->aperture)))
     return cag_fail_call(call, 8, CAG_ERR_value, "expects an `aperture` of at least 0");
   CagValue fields[] = {cag_point(call->vm, a->eye.at, 3),

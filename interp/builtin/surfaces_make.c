@@ -12,7 +12,7 @@
 
 // [x, y] -> [x, 0, y]
 static CagTransform upright(void) {
-  CagTransform t = {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}, false};
+  CagTransform t = {.m = {{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}};
   return t;
 }
 
@@ -222,7 +222,8 @@ bool cag_surfaces_sphere_surface(CagCall *call, const struct cag_surfaces_sphere
                                  CagValue *result) {
   CagCurve *meridian = NULL;
   CagSurface *s = NULL;
-  CagTransform from_pole = {{{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
+  CagTransform from_pole = {.m = {{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+                            .planar = true};
   CagStatus status =
       cag_curve_arc(a->radius, a->radius, 0, FULL_TURN / 2, &from_pole, &meridian, call->err);
   if (!status)

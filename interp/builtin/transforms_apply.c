@@ -9,6 +9,18 @@
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
+// The factor that the image of a point is divided by.
+static double point_divisor(const CagTransform *t, CagVec3 p) {
+  return t->m[3][0] * p.x + t->m[3][1] * p.y + t->m[3][2] * p.z + t->m[3][3];
+}
+
+// A perspective has images of the points in front of its center only.
+static bool fail_behind(CagCall *call) {
+  cag_vm_fail_at(call->vm, 0, CAG_ERR_point_not_in_front,
+                 "the point is not in front of the center of this perspective");
+  return cag_fail_help(call->vm, "use `T * homogeneous(P)`, whose w is 0 or less for such points");
+}
+
 // Maps n vectors of 2, 3, or 4 numbers. Those of 2 stay in the plane if the transform is planar.
 static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x, size_t n,
                           size_t dim, size_t out_dim, double *out) {
@@ -17,7 +29,9 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
       cag_transform_homogeneous(t, x, out);
       continue;
     }
-    CagVec3 p = cag_transform_point(t, cag_vec3(x[0], x[1], dim == 3 ? x[2] : 0));
+    CagVec3 p = cag_vec3(x[0], x[1], dim == 3 ? x[2] : 0);
+    if (t->in_front && !(point_divisor(t, p) > 0)) return fail_behind(call);
+    p = cag_transform_point(t, p);
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) {
       cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform maps this point to infinity");
       return cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
@@ -57,9 +71,26 @@ bool cag_move_list(CagCall *call, const CagTransform *t, CagValue v, CagValue *r
   return true;
 }
 
+// A shape is in front if the corners of its box are.
+static bool check_in_front(CagCall *call, const CagTransform *t, CagValue v) {
+  CagBounds box;
+  int dimension;
+  bool empty = v.type == CAG_LABEL;
+  if (!empty && v.type != CAG_GROUP && !cag_value_is_empty(call, v, &empty)) return false;
+  if (empty) return true;
+  if (!cag_value_bounds(call, v, &box, &dimension)) return false;
+  for (int k = 0; k < 8; k++) {
+    const CagVec3 corner = cag_vec3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                                    k & 4 ? box.max.z : box.min.z);
+    if (!(point_divisor(t, corner) > 0)) return fail_behind(call);
+  }
+  return true;
+}
+
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagValueType *type = cag_value_type(v);
   if (v.type == CAG_LIST) return cag_move_list(call, t, v, result);
+  if (t->in_front && cag_is_shape(v) && !check_in_front(call, t, v)) return false;
   if (type->transform) return type->transform(call, t, v, result);
   if (cag_holds_jet(v)) return cag_fail_differentiate(call, 0);
   CagString found = {0};

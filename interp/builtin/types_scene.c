@@ -36,7 +36,7 @@ static const char *staged_member_name(CagVm *vm, CagValue v, size_t i) {
 static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   static const char *const points[] = {"eye", "target", "position"};
   static const char *const vectors[] = {"up", "direction"};
-  static const char *const sizes[] = {"width", "focus", "aperture"};
+  static const char *const sizes[] = {"width", "focus", "aperture", "focal", "pitch"};
   const CagSceneValue *old = CAG_AS_SCENE(v);
   size_t n = old->fields->layout->count;
   double scale = 1;
@@ -61,8 +61,11 @@ static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagVal
         is_flat |= cag_norm(image) == 0;
         fields[i] = cag_point(call->vm, image, 3);
       }
-    for (size_t k = 0; f.type == CAG_NUMBER && k < sizeof sizes / sizeof *sizes; k++)
-      if (!strcmp(name, sizes[k])) fields[i] = cag_number(f.as.number * scale);
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+      if (strcmp(name, sizes[k]) != 0) continue;
+      if (f.type == CAG_NUMBER) fields[i] = cag_number(f.as.number * scale);
+      else if (vector) fields[i] = cag_vector(call->vm, (double[]){x[0] * scale, x[1] * scale}, 2);
+    }
   }
   // A camera needs a viewing direction and an up direction.
   if (is_flat || (v.type == CAG_CAMERA && cag_norm(cag_sub(images[0], images[1])) == 0))

@@ -587,6 +587,12 @@ static void put_cameras(Writer *w) {
     key_pair(w, "size", c->size[0], c->size[1]);
     key_number(w, "focus", c->focus);
     key_number(w, "aperture", c->aperture);
+    if (c->focal > 0) {
+      key_number(w, "focal", c->focal);
+      key_pair(w, "shift", c->shift[0], c->shift[1]);
+      key_number(w, "skew", c->skew);
+      key_number(w, "stretch", c->stretch);
+    }
     key_transform(w, "frame", &frame);
     close(w, "}");
   }

@@ -19,7 +19,10 @@
 //     "ground"  z, size (null: infinite)
 //   cameras     [{name, projection "perspective" | "orthographic", eye, target, up, fov | width,
 //   size,
-//               focus, aperture, frame (camera to world: x right, y down, z view)}]
+//               focus, aperture, frame (camera to world: x right, y down, z view)}], of a pinhole
+//               also focal, shift [right, down] (from the view axis to the middle of the picture, in
+//               widths of it), skew and stretch (K[0][1]/K[0][0] and K[1][1]/K[0][0] - 1 of its
+//               matrix)
 //   lights      [{kind "sun" | "point" | "spot" | "area", position, direction, angle, size, color,
 //               strength}], each with what its kind has
 //   sky         {colors} or {image} or null;  background  color or null

@@ -109,8 +109,10 @@ static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
 void cag_pov_camera(CagPovWriter *w) {
   const CagCamera *c = w->camera;
   CagTransform frame = cag_camera_frame(c);
-  CagVec3 right = column(&frame, 0), up = cag_scaled(column(&frame, 1), -1);
+  const CagCameraWindow window = cag_camera_window(c);
+  CagVec3 right = window.right, up = cag_scaled(window.down, -1);
   CagVec3 view = column(&frame, 2), eye = column(&frame, 3);
+  if (c->orthographic) eye = cag_madd(eye, c->width, window.shift);
   const int *size = w->options->size[0] > 0 && w->options->size[1] > 0 ? w->options->size : c->size;
   double aspect = (double)size[0] / size[1];
 
@@ -133,6 +135,7 @@ void cag_pov_camera(CagPovWriter *w) {
     write_axis(w, "up", up, 1, false);
     // Moving the location does not change the visible part of the plane in focus.
     CagVec3 middle = cag_madd(view, -1 / focus_distance(c), shift);
+    middle = cag_madd(middle, 2 * tan(c->fov / 2), window.shift);
     write_axis(w, "direction", middle, aspect / 2 / tan(c->fov / 2), false);
   }
   write_focus(w, c, view);

@@ -428,12 +428,15 @@ static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagEr
                     "the scene has %zu cameras, but none with the number %zu",
                     p->scene->camera_count, camera);
   const CagCamera *c = p->camera = &p->scene->cameras[camera];
-  CagTransform frame = cag_camera_frame(c), up = cag_transform_identity();
+  CagTransform frame = cag_camera_frame(c), up = cag_transform_identity(), pixels = up;
   CagStatus status = cag_transform_inverse(&frame, &p->view, err);
   p->affine = c->orthographic;
   p->scale = cag_norm(cag_sub(c->target, c->eye));
   p->near = 1e-3 * p->scale;
   up.m[1][1] = -1; // the camera's y points down; a perspective view flips it after the division
+  pixels.m[0][1] = c->skew;
+  pixels.m[1][1] = 1 + c->stretch;
+  p->view = cag_transform_multiply(&pixels, &p->view);
   if (p->affine) p->view = cag_transform_multiply(&up, &p->view);
   return status;
 }

@@ -8,6 +8,7 @@
 #ifndef CAG_INTERP_SCENE_H
 #define CAG_INTERP_SCENE_H
 
+#include "geom/camera/camera.h"
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
 #include "geom/mesh/mesh.h"
@@ -124,11 +125,16 @@ typedef struct CagCamera {
   CagVec3 eye, target, up; // up is perpendicular to the view direction
   bool orthographic;
   double fov;             // horizontal, radians (perspective)
-  double width;           // mm (orthographic)
+  double width;           // mm (orthographic; with `focal`, of the image plane)
   int size[2];            // pixels
   double focus, aperture; // mm; the aperture is the diameter of a lens; 0: everything is sharp
   bool mirrored;          // the picture is mirrored: its frame is left-handed
-  bool framed;            // placed so that it sees everything, for any shape of the picture
+  // Of cameras that measure. The middle of the picture is at `shift` to the right of and below the
+  // view axis, as fractions of the width in pixels; `skew` and `stretch` are K[0][1] / K[0][0] and
+  // K[1][1] / K[0][0] - 1 of the camera matrix K (geom/camera/camera.h). Depths are measured from
+  // the plane at the distance `focal`.
+  double shift[2], skew, stretch, focal;
+  bool framed; // placed so that it sees everything, for any shape of the picture
 } CagCamera;
 
 typedef enum CagLightKind {
@@ -210,6 +216,15 @@ double cag_scene_radius(const CagBounds *b);
 // Returns the transform from camera to world: columns x (right), y (down), z (view direction),
 // origin.
 CagTransform cag_camera_frame(const CagCamera *c);
+// The directions in the picture, in units of its width: right, down, and from the view axis to the
+// middle of the picture. Without skew and stretch, right and down are unit vectors at right angles.
+typedef struct CagCameraWindow {
+  CagVec3 right, down, shift;
+} CagCameraWindow;
+CagCameraWindow cag_camera_window(const CagCamera *c);
+// Returns K and R, and the map from points to pixels, of the camera with a picture of its size.
+CagCameraParts cag_camera_parts(const CagCamera *c);
+CagStatus cag_scene_camera_map(const CagCamera *c, CagCameraMap *out, CagError *err);
 // Tests whether the camera has depth of field. The rays of orthographic cameras are parallel.
 bool cag_camera_has_lens(const CagCamera *c);
 CagMaterial cag_material_default(void);

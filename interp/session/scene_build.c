@@ -5,6 +5,7 @@
 
 #include "interp/session/scene_build.h"
 #include "interp/builtin/robots.h"
+#include "interp/builtin/scene.h"
 #include "interp/session/lead.h"
 
 #include <stdio.h>
@@ -57,21 +58,8 @@ static const char *text_field(const CagRecord *r, const char *name, const char *
   return v.type == CAG_TEXT ? CAG_AS_TEXT(v)->bytes : fallback;
 }
 
-static double number_field(const CagRecord *r, const char *name, double fallback) {
-  CagValue v = r ? cag_record_get(r, name) : cag_unset();
-  return v.type == CAG_NUMBER || v.type == CAG_ANGLE ? v.as.number : fallback;
-}
-
-static CagVec3 point_field(const CagRecord *r, const char *name, CagVec3 fallback) {
-  const double *x;
-  size_t n;
-  CagValue v = cag_record_get(r, name);
-  if (v.type != CAG_LIST || !cag_as_vector(v, &x, &n) || n < 2) return fallback;
-  return cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
-}
-
 static CagColor color_field(const CagRecord *r, const char *name, CagColor fallback) {
-  CagVec3 c = point_field(r, name, cag_vec3(fallback.r, fallback.g, fallback.b));
+  CagVec3 c = cag_point_field(r, name, cag_vec3(fallback.r, fallback.g, fallback.b));
   return (CagColor){c.x, c.y, c.z};
 }
 
@@ -144,12 +132,12 @@ static size_t material_of(Build *b, const CagRecord *r, size_t fallback) {
   m.color = color_field(r, "color", m.color);
   m.color2 = color_field(r, "color2", m.color2);
   m.emission = color_field(r, "emission", m.emission);
-  m.metallic = number_field(r, "metallic", m.metallic);
-  m.roughness = number_field(r, "roughness", m.roughness);
-  m.ior = number_field(r, "ior", m.ior);
-  m.transmission = number_field(r, "transmission", m.transmission);
-  m.coat = number_field(r, "coat", m.coat);
-  m.texture_scale = number_field(r, "texture_scale", m.texture_scale);
+  m.metallic = cag_number_field(r, "metallic", m.metallic);
+  m.roughness = cag_number_field(r, "roughness", m.roughness);
+  m.ior = cag_number_field(r, "ior", m.ior);
+  m.transmission = cag_number_field(r, "transmission", m.transmission);
+  m.coat = cag_number_field(r, "coat", m.coat);
+  m.texture_scale = cag_number_field(r, "texture_scale", m.texture_scale);
   // copied when the material is added
   m.texture = (char *)text_field(r, "texture", m.texture);
   m.pov = (char *)text_field(r, "pov", NULL);
@@ -339,36 +327,12 @@ static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
 
 static const CagVec3 none = {0, 0, 0};
 
-// Makes up perpendicular to the view direction. If they are parallel, uses Y.
-static CagVec3 square_up(CagVec3 view, CagVec3 up) {
-  const double along_view = 1e-9; // sine of the angle below which up and view count as parallel
-  CagVec3 v = cag_unit(view), u = cag_unit(up);
-  if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 1, 0);
-  if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 0, 1);
-  return cag_unit(cag_madd(u, -cag_dot(u, v), v));
-}
-
 static void add_camera(Build *b, const CagSceneValue *v, const char *name) {
   CagScene *s = b->scene;
-  const CagRecord *r = v->fields;
-  const CagTransform *place = &v->placement;
   s->cameras = grown(b, s->cameras, s->camera_count, &b->camera_capacity, sizeof *s->cameras);
   if (b->failed) return;
-  CagVec3 size = point_field(r, "size", cag_vec3(1280, 720, 0));
-  CagCamera c = {.eye = cag_transform_point(place, point_field(r, "eye", none)),
-                 .target = cag_transform_point(place, point_field(r, "target", none)),
-                 .orthographic = !strcmp(v->kind, "orthographic"),
-                 .fov = number_field(r, "fov", 40) * CAG_RADIANS_PER_DEGREE,
-                 .width = number_field(r, "width", 0),
-                 .size = {(int)size.x, (int)size.y},
-                 .focus = number_field(r, "focus", 0),
-                 .aperture = number_field(r, "aperture", 0),
-                 .mirrored = v->mirrored != cag_transform_mirrors(place)};
-  CagVec3 view = cag_sub(c.target, c.eye);
-  CagVec3 up = cag_transform_vector(place, point_field(r, "up", cag_vec3(0, 0, 1)));
-  c.up = square_up(view, up);
-  if (c.width <= 0) c.width = 2 * cag_norm(view) * tan(c.fov / 2);
-  c.name = copy_text(b, text_field(r, "name", name ? name : "camera"));
+  CagCamera c = cag_camera_of_value(v);
+  c.name = copy_text(b, text_field(v->fields, "name", name ? name : "camera"));
   s->cameras[s->camera_count++] = c;
 }
 
@@ -386,16 +350,16 @@ static void add_light(Build *b, const CagSceneValue *v) {
   s->lights = grown(b, s->lights, s->light_count, &b->light_capacity, sizeof *s->lights);
   if (b->failed) return;
   CagLight l = {.kind = CAG_LIGHT_SUN,
-                .position = cag_transform_point(place, point_field(r, "position", none)),
-                .angle = number_field(r, "angle", 30) * CAG_RADIANS_PER_DEGREE,
-                .size = number_field(r, "size", 0),
+                .position = cag_transform_point(place, cag_point_field(r, "position", none)),
+                .angle = cag_number_field(r, "angle", 30) * CAG_RADIANS_PER_DEGREE,
+                .size = cag_number_field(r, "size", 0),
                 .color = color_field(r, "color", (CagColor){1, 1, 1}),
-                .strength = number_field(r, "strength", 1)};
+                .strength = cag_number_field(r, "strength", 1)};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
     if (!strcmp(v->kind, kinds[i].kind)) l.kind = kinds[i].id;
-  CagVec3 target = cag_transform_point(place, point_field(r, "target", none));
+  CagVec3 target = cag_transform_point(place, cag_point_field(r, "target", none));
   CagVec3 direction = l.kind == CAG_LIGHT_SUN
-                          ? cag_transform_vector(place, point_field(r, "direction", none))
+                          ? cag_transform_vector(place, cag_point_field(r, "direction", none))
                           : cag_sub(target, l.position);
   l.direction = l.kind == CAG_LIGHT_POINT ? cag_vec3(0, 0, -1) : cag_unit(direction);
   s->lights[s->light_count++] = l;
@@ -430,8 +394,8 @@ static void add_ground(Build *b, const CagRecord *r, const char *name) {
   CagItem *item = add_item(b, CAG_ITEM_GROUND, text_field(r, "name", name ? name : "ground"));
   if (!item) return;
   item->material = index;
-  item->ground_z = number_field(r, "z", 0);
-  item->ground_size = number_field(r, "size", INFINITY);
+  item->ground_z = cag_number_field(r, "z", 0);
+  item->ground_size = cag_number_field(r, "size", INFINITY);
 }
 
 static void add_setting(Build *b, const CagSceneValue *v, const char *name) {

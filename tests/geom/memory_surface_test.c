@@ -148,7 +148,7 @@ static CagStatus of_curve(CagStatus (*make)(const CagCurve *c, CagSurface **out,
 }
 static CagStatus turned(const CagCurve *c, CagSurface **out, CagError *e) {
   CagCurve *upright;
-  const CagTransform up = {{{1, 0, 0, 4}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}, false};
+  const CagTransform up = {.m = {{1, 0, 0, 4}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}};
   CagStatus status = cag_curve_transform(c, &up, &upright, e);
   if (status) return status;
   status = cag_surface_revolve(upright, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 4, out, e);
