@@ -5,8 +5,10 @@
 #include <signal.h>
 #include <stdatomic.h>
 
+#include "base/memory.h"
 #include "base/stop.h"
 
+static _Thread_local bool on_worker;
 static atomic_int chosen; // 0: the number of processors
 
 typedef struct Loop {
@@ -47,6 +49,7 @@ static void run_iterations(Loop *loop, int thread) {
 static void *run_worker(void *context) {
   Worker *w = context;
   cag_stop_lend(w->loop->stop);
+  on_worker = true;
   run_iterations(w->loop, w->thread);
   return NULL;
 }
@@ -74,4 +77,40 @@ void cag_parallel(size_t n, void (*work)(void *context, size_t i, int thread), v
   const int started = start_workers(workers, wanted, &loop);
   run_iterations(&loop, 0);
   for (int i = 0; i < started; i++) pthread_join(workers[i].id, NULL);
+}
+
+bool cag_on_worker(void) { return on_worker; }
+
+CagStatus cag_worker_fail(CagError *err) {
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_internal, "", -1,
+                  "a formula of the script was evaluated by another thread than the script's");
+}
+
+typedef struct Checked {
+  bool (*work)(void *context, size_t i, int thread);
+  void *context;
+  bool *again; // of iterations that failed on a worker
+  atomic_bool failed;
+} Checked;
+
+static void run_checked(void *context, size_t i, int thread) {
+  Checked *c = context;
+  if (atomic_load(&c->failed) || c->work(c->context, i, thread)) return;
+  if (thread > 0) c->again[i] = true;
+  else atomic_store(&c->failed, true);
+}
+
+bool cag_parallel_checked(size_t n, bool (*work)(void *context, size_t i, int thread),
+                          void *context) {
+  Checked c = {.work = work, .context = context, .again = cag_calloc(n + 1, sizeof *c.again)};
+  if (!c.again) { // there is no memory to use threads
+    for (size_t i = 0; i < n; i++)
+      if (!work(context, i, 0)) return false;
+    return true;
+  }
+  cag_parallel(n, run_checked, &c);
+  for (size_t i = 0; i < n && !atomic_load(&c.failed); i++)
+    if (c.again[i] && !work(context, i, 0)) atomic_store(&c.failed, true);
+  cag_free(c.again);
+  return !atomic_load(&c.failed);
 }

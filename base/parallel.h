@@ -7,7 +7,10 @@
 #ifndef CAG_BASE_PARALLEL_H
 #define CAG_BASE_PARALLEL_H
 
+#include <stdbool.h>
 #include <stddef.h>
+
+#include "base/status.h"
 
 // The largest number of threads of a loop.
 #define CAG_THREADS_MAX 64
@@ -21,5 +24,17 @@ void cag_set_thread_count(int n);
 // start in ascending order. The calling thread takes part, and its stop flag applies to all. Where
 // threads cannot be started, fewer are used.
 void cag_parallel(size_t n, void (*work)(void *context, size_t i, int thread), void *context);
+
+// The same for work that may fail. What fails on another thread is repeated by the calling thread at
+// the end, since some work is possible there only (cag_on_worker). Returns false if that fails, too;
+// iterations that have not started then are left out.
+bool cag_parallel_checked(size_t n, bool (*work)(void *context, size_t i, int thread),
+                          void *context);
+
+// Whether this is a thread that was started by these functions. Such threads must not call scripts:
+// functions that would do so fail.
+bool cag_on_worker(void);
+// The error of such a function.
+CagStatus cag_worker_fail(CagError *err);
 
 #endif

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "geom/curve/family.h"
 
 // Highest cached derivative; higher ones are needed rarely, and at few parameters.
@@ -100,6 +101,7 @@ static void known_grow(Source *s) {
 // Value and derivatives of the function itself at its own parameter.
 static CagStatus source_eval(Source *s, double t, int order, CagVec3 *out, CagError *err) {
   const CagCurveFunction *f = &s->function;
+  if (cag_on_worker()) return cag_worker_fail(err);
   if (order > KNOWN_ORDER) return f->eval(f->context, t, order, out, err);
   if (s->slots) {
     const Known *k = known_slot(s->known, s->slots, t);

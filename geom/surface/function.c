@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "geom/curve/family.h"
 #include "geom/surface/family.h"
 
@@ -37,6 +38,7 @@ static CagStatus eval(const CagSurface *s, double u, double v, int n, CagSide su
   (void)su;
   (void)sv;
   const CagSurfaceFunction *f = &((const Function *)s)->function;
+  if (cag_on_worker()) return cag_worker_fail(err);
   CagStatus status = f->eval(f->context, u, v, n, out, err);
   if (status) return status;
   for (int i = 0; i <= n; i++)
@@ -48,6 +50,7 @@ static CagStatus eval(const CagSurface *s, double u, double v, int n, CagSide su
 static CagStatus eval_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
   const CagSurfaceFunction *f = &((const Function *)s)->function;
+  if (cag_on_worker()) return cag_worker_fail(err);
   const bool partials = du || dv;
   const size_t each = partials ? 3 : 1;
   CagVec3 *row = cag_malloc((nv ? nv : 1) * each * sizeof *row);

@@ -65,6 +65,7 @@ static CagStatus fill_target(CagVm *vm, CagTarget *t, const CagList *shapes, Cag
     if (!has_surface(v)) continue;
     CagTargetPart *part = &t->parts[t->count];
     part->shape = CAG_AS_SHAPE(v);
+    part->number = t->count;
     status = make_caster(v, &part->caster, err);
     if (status) break;
     const CagBounds b = cag_caster_bounds(part->caster);

@@ -10,6 +10,7 @@
 typedef struct CagTargetPart {
   const CagShape *shape;
   CagCaster *caster; // owned by the target
+  size_t number;     // among the parts in the order of the script
 } CagTargetPart;
 
 // Curves and labels, which have no surface, and hidden shapes are left out.

@@ -36,7 +36,12 @@ static bool equal_images(CagVm *vm, CagValue a, CagValue b) {
 static void retain_image(CagObject *o) { cag_raster_retain(((CagImageValue *)o)->raster); }
 static void destroy_image(CagObject *o) { cag_raster_release(((CagImageValue *)o)->raster); }
 
-static const char *const members[] = {"width", "height", "channels", NULL};
+static void scan_image(CagHeap *h, CagObject *o) {
+  const CagImageValue *v = (CagImageValue *)o;
+  if (v->parts) cag_mark_object(h, &v->parts->head);
+}
+
+static const char *const members[] = {"width", "height", "channels", "parts", NULL};
 
 static bool image_member(CagVm *vm, CagValue v, const char *name, CagValue *out) {
   const CagRaster *r = CAG_AS_IMAGE(v)->raster;
@@ -47,17 +52,20 @@ static bool image_member(CagVm *vm, CagValue v, const char *name, CagValue *out)
     for (size_t c = 0; c < r->channel_count; c++)
       if (!cag_builder_add(vm, names, cag_text_c(vm, r->names[c]))) return false;
     *out = cag_builder_finish(vm, names);
-  } else return false;
+  } else if (!strcmp(name, members[3]) && CAG_AS_IMAGE(v)->parts)
+    *out = cag_object(CAG_LIST, CAG_AS_IMAGE(v)->parts);
+  else return false;
   return true;
 }
 
 static const char *image_member_name(CagVm *vm, CagValue v, size_t i) {
-  (void)vm, (void)v;
-  return cag_name_at(members, i);
+  (void)vm;
+  return i == 3 && !CAG_AS_IMAGE(v)->parts ? NULL : cag_name_at(members, i);
 }
 
 const CagValueType cag_type_image = {.print = print_image,
                                      .equal = equal_images,
+                                     .scan = scan_image,
                                      .retain = retain_image,
                                      .destroy = destroy_image,
                                      .member = image_member,

@@ -239,6 +239,7 @@ typedef struct CagRobotValue {
 typedef struct CagImageValue {
   CagObject head;
   CagRaster *raster; // holds one reference
+  CagList *parts;    // names of the parts whose numbers it shows; NULL: it shows something else
 } CagImageValue;
 
 typedef struct CagModuleValue {
