@@ -238,6 +238,7 @@ typedef struct CagRobotValue {
 typedef struct CagImageValue {
   CagObject head;
   CagRaster *raster; // holds one reference
+  CagText *name;     // NULL: not set
 } CagImageValue;
 
 typedef struct CagModuleValue {
