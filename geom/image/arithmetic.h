@@ -27,9 +27,9 @@ CagStatus cag_raster_with_number(CagRasterOp op, const CagRaster *a, double k, b
 
 // Figures of all samples that have a value.
 typedef struct CagRasterFigures {
-  size_t count; // of samples with a value
+  size_t count;           // of samples with a value
   double least, greatest; // NaN if there are none
-  double sum; // rounding errors do not accumulate (Neumaier 1974)
+  double sum;             // rounding errors do not accumulate (Neumaier 1974)
 } CagRasterFigures;
 CagStatus cag_raster_figures(const CagRaster *r, CagRasterFigures *out, CagError *err);
 

@@ -208,8 +208,7 @@ static Lines lines_between(double from, double to, size_t count, bool vertical) 
 }
 
 static CagStatus find_next(const Tracer *tr, Lines *l, Spot at, Spot end) {
-  return l->done ? CAG_OK
-                 : find_crossing(tr, at, end, l->vertical, (double)l->next, &l->crossing);
+  return l->done ? CAG_OK : find_crossing(tr, at, end, l->vertical, (double)l->next, &l->crossing);
 }
 
 // Moves to the next line, and returns the point on it.
@@ -406,8 +405,7 @@ CagStatus cag_raster_of_region(const CagRegion *region, const CagGrid *grid, Cag
   CagStatus status = cag_raster_new(grid->width, grid->height, 1, &made, err);
   if (status) return status;
   Tracer tr = {.grid = grid, .rule = rule, .image = made, .err = err};
-  for (size_t i = 0; !status && i < region->count; i++)
-    status = trace_loop(&tr, region->loops[i]);
+  for (size_t i = 0; !status && i < region->count; i++) status = trace_loop(&tr, region->loops[i]);
   for (size_t y = 0; !status && y < made->height; y++) {
     sum_row(cag_raster_at(made, 0, 0, y), made->width);
     status = cag_stop_check(err);

@@ -16,7 +16,7 @@ typedef struct CagGrid {
 
 typedef enum CagPixelRule {
   CAG_PIXEL_COVERAGE, // the fraction of the pixel's area that lies in the region
-  CAG_PIXEL_CENTER    // 1 if the pixel's center lies in the region, or on a left or lower edge; or 0
+  CAG_PIXEL_CENTER // 1 if the pixel's center lies in the region, or on a left or lower edge; or 0
 } CagPixelRule;
 
 // One channel without a name. Fractions are exact to rounding, also along curved edges: the boundary

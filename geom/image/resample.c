@@ -163,9 +163,9 @@ CagStatus cag_raster_turn(const CagRaster *r, double angle, double outside, CagR
   const double cosine = cos(angle), sine = sin(angle);
   const double w = (double)r->width, h = (double)r->height;
   CagRaster *made;
-  CagStatus status = cag_raster_new(side_of_box(w * cosine, h * sine),
-                                    side_of_box(w * sine, h * cosine), r->channel_count, &made,
-                                    err);
+  CagStatus status =
+      cag_raster_new(side_of_box(w * cosine, h * sine), side_of_box(w * sine, h * cosine),
+                     r->channel_count, &made, err);
   if (status) return status;
   for (size_t c = 0; !status && c < r->channel_count; c++)
     status = cag_raster_name(made, c, r->names[c], err);

@@ -304,16 +304,15 @@ static bool convert(CagCall *call, CagValue v, int bits, double white, RasterCon
   if (!isfinite(white)) return cag_fail_value(call, 2, "a finite number");
   if (v.type == CAG_NUMBER) return cag_give_number(call, number(v.as.number, bits, white), result);
   if (v.type != CAG_IMAGE) return cag_fail_type(call, 0, "an image or a number");
-  return cag_raster_result(
-      call, image(CAG_AS_IMAGE(v)->raster, bits, white, &made, call->err), &made, result);
+  return cag_raster_result(call, image(CAG_AS_IMAGE(v)->raster, bits, white, &made, call->err),
+                           &made, result);
 }
 
 bool cag_images_quantize(CagCall *call, const struct cag_images_quantize *a, CagValue *result) {
   return convert(call, a->value, (int)a->bits, a->white, cag_raster_to_codes, cag_code_of, result);
 }
 
-bool cag_images_dequantize(CagCall *call, const struct cag_images_dequantize *a,
-                           CagValue *result) {
+bool cag_images_dequantize(CagCall *call, const struct cag_images_dequantize *a, CagValue *result) {
   return convert(call, a->code, (int)a->bits, a->white, cag_raster_from_codes, cag_value_of_code,
                  result);
 }

@@ -20,8 +20,8 @@ static bool fail_channel(CagCall *call, int argument, const CagRaster *r, const 
     cag_string_printf(&names, "%s\"%s\"", c ? ", " : "", r->names[c]);
   if (r->channel_count > NAMES_LISTED) cag_string_printf(&names, ", ...");
   cag_string_check(call->vm, &names);
-  cag_fail_call(call, argument, CAG_ERR_no_channel,
-                "expects a channel of the image, found \"%s\"", name);
+  cag_fail_call(call, argument, CAG_ERR_no_channel, "expects a channel of the image, found \"%s\"",
+                name);
   if (r->channel_count == 1 && !*r->names[0])
     cag_fail_help(call->vm, "the image has a single channel, which has no name");
   else cag_fail_help(call->vm, "its channels are %s", names.bytes);
@@ -67,9 +67,8 @@ bool cag_images_crop(CagCall *call, const struct cag_images_crop *a, CagValue *r
 bool cag_images_resize(CagCall *call, const struct cag_images_resize *a, CagValue *result) {
   CagRaster *made = NULL;
   return cag_raster_result(
-      call,
-      cag_raster_resize(a->image, (size_t)a->width, (size_t)a->height, &made, call->err), &made,
-      result);
+      call, cag_raster_resize(a->image, (size_t)a->width, (size_t)a->height, &made, call->err),
+      &made, result);
 }
 
 bool cag_images_enlarge(CagCall *call, const struct cag_images_enlarge *a, CagValue *result) {
@@ -121,8 +120,10 @@ static bool take_field(CagCall *call, CagValue f, double t, bool even, CagRaster
   CagValue v;
   if (!cag_call(call->vm, f, &at, 1, &v)) return false;
   if (v.type != CAG_IMAGE)
-    return cag_fail_call(call, 0, CAG_ERR_type, "expects a function that returns an image, found "
-                         "that it returns %s", cag_type_article(v));
+    return cag_fail_call(call, 0, CAG_ERR_type,
+                         "expects a function that returns an image, found "
+                         "that it returns %s",
+                         cag_type_article(v));
   *frame = cag_hold_raster(call, cag_raster_retain(CAG_AS_IMAGE(v)->raster));
   *out = NULL;
   if (even && (*frame)->height == 1) return true;
@@ -131,8 +132,7 @@ static bool take_field(CagCall *call, CagValue f, double t, bool even, CagRaster
   return true;
 }
 
-bool cag_images_interlaced(CagCall *call, const struct cag_images_interlaced *a,
-                           CagValue *result) {
+bool cag_images_interlaced(CagCall *call, const struct cag_images_interlaced *a, CagValue *result) {
   CagRaster *first, *second, *odd, *even, *made = NULL;
   cag_root_push(call->vm, a->f);
   const bool good = take_field(call, a->f, 0, false, &first, &odd) &&

@@ -48,6 +48,6 @@ bool cag_images_rasterize(CagCall *call, const struct cag_images_rasterize *a, C
     return false;
   if (!isfinite(grid.pixel)) return cag_fail_value(call, 2, "a finite number");
   const CagPixelRule rule = a->rule == 0 ? CAG_PIXEL_COVERAGE : CAG_PIXEL_CENTER;
-  return cag_raster_result(call, cag_raster_of_region(region, &grid, rule, &made, call->err),
-                           &made, result);
+  return cag_raster_result(call, cag_raster_of_region(region, &grid, rule, &made, call->err), &made,
+                           result);
 }

@@ -388,8 +388,8 @@ bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
   else {
     CagString s = {0};
     cag_describe_value(vm, &s, v);
-    cag_vm_fail(vm, CAG_ERR_operand, "`-` expects a number, an angle, a vector, or an image, found %s",
-                s.bytes);
+    cag_vm_fail(vm, CAG_ERR_operand,
+                "`-` expects a number, an angle, a vector, or an image, found %s", s.bytes);
     cag_string_free(&s);
     return false;
   }
