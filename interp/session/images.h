@@ -26,9 +26,6 @@ void cag_shown_images_free(CagShownImages *images);
 // The image of a name; NULL: the only one. Otherwise adds a diagnostic and returns its status.
 int cag_shown_image_find(CagSession *s, const CagShownImages *images, const char *name,
                          const CagShownImage **out);
-// Whether the script shows an image, in a list or by itself.
-bool cag_session_shows_image(const CagSession *s);
-
 // Writes the image that is shown, or the first one, as a PNG picture of at most width x height
 // pixels to look at: enlarged or reduced, black for the least number and white for the greatest,
 // unless all are in 0..1. *out_width and *out_height are the size of the picture.

@@ -11,7 +11,6 @@
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
 #include "geom/solid/csg.h"
-#include "interp/session/images.h"
 #include "interp/session/lead.h"
 #include "interp/session/scene_build.h"
 #include "interp/session/watch.h"

@@ -74,6 +74,8 @@ int cag_session_fail_io(CagSession *s, CagErrorId id, const CagError *err);
 bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out);
 // Runs the statements `show` of an interactive session again. Of others, it does nothing.
 int cag_session_refresh(CagSession *s);
+// Whether the script shows an image, in a list or by itself.
+bool cag_session_shows_image(const CagSession *s);
 // Writes the image of `options` (NULL: the only one) that is shown to a .png or .exr file.
 int cag_session_write_image(CagSession *s, const char *path, bool png,
                             const CagImageOptions *options);

@@ -22,6 +22,7 @@ typedef struct CagSiteExample {
   char *function; // documented function, of whose call a picture may be made; NULL: none
   char *output;   // printed output, including an expected error
   char *picture;  // "pictures/0123456789abcdef.png"; NULL: none
+  size_t picture_width, picture_height;
   char *failure;  // why it failed; NULL: it succeeded
 } CagSiteExample;
 
