@@ -229,9 +229,8 @@ static void add_errors(Reader *r, Piece text, bool alone) {
 
 // Parses `: depth.exr` or ` depth: depth.exr`, after `expect image`. False: it is something else.
 static bool add_image(Reader *r, Piece text, bool alone) {
-  const char *colon = text.start < text.end
-                          ? memchr(text.start, ':', (size_t)(text.end - text.start))
-                          : NULL;
+  const char *colon =
+      text.start < text.end ? memchr(text.start, ':', (size_t)(text.end - text.start)) : NULL;
   if (!colon || (*text.start != ':' && !isspace((unsigned char)*text.start))) return false;
   add_expected(r, trim((Piece){colon + 1, text.end}), false, alone);
   const Plan *p = r->plans->count ? &r->plans->items[r->plans->count - 1] : NULL;
@@ -255,7 +254,8 @@ static void read_comment(Reader *r, Piece text, bool alone) {
   text = trim(text);
   if (begins_with(text, "expect error:", &rest)) {
     add_errors(r, rest, alone);
-  } else if (begins_with(text, "expect image", &rest) && add_image(r, after(text, "expect image"), alone)) {
+  } else if (begins_with(text, "expect image", &rest) &&
+             add_image(r, after(text, "expect image"), alone)) {
     return;
   } else if (begins_with(text, "expect:", &rest)) {
     add_expected(r, rest, false, alone);
@@ -515,10 +515,10 @@ static char *image_path(const Run *r, Piece text) {
   const int n = (int)(text.end - text.start);
   char *path = NULL;
   if (*text.start == '/') return cag_strndup(text.start, (size_t)n);
-  const int made = r->folder ? cag_asprintf(&path, "%s/%.*s", r->folder, n, text.start)
-                             : cag_asprintf(&path, "%.*s%.*s",
-                                            slash ? (int)(slash + 1 - r->path) : 0, r->path, n,
-                                            text.start);
+  const int made = r->folder
+                       ? cag_asprintf(&path, "%s/%.*s", r->folder, n, text.start)
+                       : cag_asprintf(&path, "%.*s%.*s", slash ? (int)(slash + 1 - r->path) : 0,
+                                      r->path, n, text.start);
   return made < 0 ? NULL : path;
 }
 

@@ -46,8 +46,8 @@ static CagStatus find_differences(const CagRaster *found, const CagRaster *expec
   CagRasterFigures f;
   CagStatus status = cag_raster_figures(expected, &f, err);
   const double size = f.count ? fmax(fabs(f.least), fabs(f.greatest)) : 0;
-  const double slack = png ? CAG_TEST_IMAGE_PNG * (1 + CAG_TEST_IMAGE_EXR)
-                           : CAG_TEST_IMAGE_EXR * size;
+  const double slack =
+      png ? CAG_TEST_IMAGE_PNG * (1 + CAG_TEST_IMAGE_EXR) : CAG_TEST_IMAGE_EXR * size;
   *out = (Differences){0};
   for (size_t y = 0; !status && y < found->height * found->channel_count; y++) {
     for (size_t i = y * found->width; i < (y + 1) * found->width; i++) {
