@@ -35,8 +35,16 @@ CagValue cag_image_result(CagCall *call, CagRaster *r) {
 
 static CagValue sample_value(double x) { return isnan(x) ? cag_none() : cag_number(x); }
 
+// Whether a pixel has a value in any channel.
+static bool has_value(const CagRaster *r, size_t x, size_t y) {
+  for (size_t c = 0; c < r->channel_count; c++)
+    if (!isnan(*cag_raster_at(r, c, x, y))) return true;
+  return false;
+}
+
 CagValue cag_pixel_value(CagVm *vm, const CagRaster *r, size_t x, size_t y) {
   if (r->channel_count == 1) return sample_value(*cag_raster_at(r, 0, x, y));
+  if (!has_value(r, x, y)) return cag_none();
   CagBuilder *channels = cag_builder_new(vm);
   for (size_t c = 0; c < r->channel_count; c++)
     cag_builder_add(vm, channels, sample_value(*cag_raster_at(r, c, x, y)));
@@ -202,13 +210,6 @@ static bool image_of_function(CagCall *call, CagValue *result) {
 bool cag_images_image(CagCall *call, CagValue *result) {
   return call->values[0].type == CAG_NUMBER ? image_of_function(call, result)
                                             : image_of_rows(call, result);
-}
-
-// Whether a pixel has a value in any channel.
-static bool has_value(const CagRaster *r, size_t x, size_t y) {
-  for (size_t c = 0; c < r->channel_count; c++)
-    if (!isnan(*cag_raster_at(r, c, x, y))) return true;
-  return false;
 }
 
 // Calls f(pixel) for each pixel that has a value. It is rooted.

@@ -21,7 +21,7 @@ bool cag_raster_result(CagCall *call, CagStatus status, CagRaster **made, CagVal
 bool cag_channel_find(CagCall *call, int argument, const CagRaster *r, const char *name,
                       size_t *channel);
 // The pixel [x, y], y down: a number or, if there are several channels, a list. A channel without a
-// value is none.
+// value is none, and so is a pixel without one in any channel.
 CagValue cag_pixel_value(CagVm *vm, const CagRaster *r, size_t x, size_t y);
 
 #endif
