@@ -266,11 +266,14 @@ static void png_row(const CagRaster *r, const CagRasterRange *range, size_t c, s
 bool cag_raster_write_png(const char *path, const CagRaster *r, const CagRasterRange *range,
                           CagError *err) {
   CagPngSamples s = {r->width, r->height, r->channel_count, range->bits, NULL};
-  if (!has_png_channels(r))
-    return cag_fail_io(err, CAG_E_USAGE,
-                       "write .exr, or show one of the channels: show channel(image, name)",
-                       "cannot write '%s': a PNG has 1, 3, or 4 channels, the image has %zu", path,
-                       r->channel_count);
+  if (!has_png_channels(r)) {
+    cag_fail_io(err, CAG_E_USAGE,
+                "write .exr, or show one of the channels: show channel(image, name)",
+                "cannot write '%s': a PNG has 1, 3, or 4 channels, the image has %zu", path,
+                r->channel_count);
+    err->id = CAG_ERR_image_channels;
+    return false;
+  }
   if (!cag_png_samples_create(&s, err)) return false;
   for (size_t c = 0; c < r->channel_count; c++)
     for (size_t y = 0; y < r->height && !cag_stopped(); y++) png_row(r, range, c, y, &s);

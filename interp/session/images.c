@@ -148,8 +148,7 @@ static int export_image(CagSession *s, void *context) {
   if (cag_shown_images(s, &images, &err)) return cag_session_fail_geometry(s, &err);
   int status = cag_shown_image_find(s, &images, e->options.image, &image);
   if (status == CAG_STATUS_OK && !write_image(e, image->raster, &err))
-    status = cag_session_fail_io(
-        s, err.status == CAG_E_USAGE ? CAG_ERR_image_channels : CAG_ERR_output_file, &err);
+    status = cag_session_fail_io(s, CAG_ERR_output_file, &err);
   cag_shown_images_free(&images);
   return status;
 }
