@@ -24,6 +24,7 @@ static const CagDocChapter chapters[] = {
     {"docs/solids-and-meshes.md", "solids-and-meshes", "Solids and meshes",
      "basic solids, set operations, and meshes"},
     {"docs/robots.md", "robots", "Robots", "chains of links, their motion, and URDF files"},
+    {"docs/sensing.md", "sensing", "Sensing", "images, and how they are made and stored"},
     {"docs/scenes-and-files.md", "scenes-and-files", "Scenes and files",
      "cameras, lights, materials, and exported files"},
     {"docs/batch.md", "batch", "Rendering and batches", "pictures, films, and many jobs at once"},

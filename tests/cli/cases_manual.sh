@@ -1,7 +1,7 @@
 # Every command line of the manual and the README, in a folder that has the files they name. Pictures are made small and in
 # draft quality, and films short: what is tried is that the words are right.
 
-page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/geometry.md docs/getting-started.md docs/language.md docs/robots.md docs/scenes-and-files.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
+page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/geometry.md docs/getting-started.md docs/language.md docs/robots.md docs/scenes-and-files.md docs/sensing.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
 
 # The lines of the blocks of shell commands; and the commands within the text, other than those with a placeholder such as FILE.
 block_lines() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$1"; }
@@ -14,6 +14,8 @@ script vase.cag 'param height = 120 in 50..300
 param color = "red" in ["red", "teal"]
 param quality_of_mesh = 1
 show material(cylinder(height, 20), {color: color})'
+script depth.cag 'depth = image(4, 3, (x, y) => 100 + 20*x + 30*y)
+show depth'
 mkdir -p tests/language parts
 script tests/language/one.cag 'print 1   // expect: 1'
 cp film.cag parts/
