@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -233,12 +234,14 @@ static int write_preview(CagSession *s, void *context) {
   if (cag_shown_images(s, &images, &err)) return cag_session_fail_geometry(s, &err);
   CagStatus status = images.count ? viewable(images.items[0].raster, &seen, &err) : CAG_E_USAGE;
   if (!status) status = fit(seen, p, &fitted, &err);
-  if (!status) status = preview_range(fitted, &range, &err);
   if (!status) {
     *p->out_width = fitted->width;
     *p->out_height = fitted->height;
-    if (!cag_raster_write_png(p->path, fitted, &range, &err)) status = CAG_E_FILE;
   }
+  const bool writes = !status && access(p->path, R_OK) != 0;
+  if (writes) status = preview_range(fitted, &range, &err);
+  if (writes && !status && !cag_raster_write_png(p->path, fitted, &range, &err))
+    status = CAG_E_FILE;
   cag_raster_release(seen);
   cag_raster_release(fitted);
   cag_shown_images_free(&images);

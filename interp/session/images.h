@@ -27,7 +27,7 @@ void cag_shown_images_free(CagShownImages *images);
 int cag_shown_image_find(CagSession *s, const CagShownImages *images, const char *name,
                          const CagShownImage **out);
 // Writes the image that is shown, or the first one, as a PNG picture of at most width x height
-// pixels to look at: enlarged or reduced, black for the least number and white for the greatest,
+// pixels to look at, unless the file exists: enlarged or reduced, black for the least number and white for the greatest,
 // unless all are in 0..1. *out_width and *out_height are the size of the picture.
 int cag_session_write_preview(CagSession *s, const char *path, size_t width, size_t height,
                               size_t *out_width, size_t *out_height);
