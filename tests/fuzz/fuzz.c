@@ -175,6 +175,8 @@ static const char *const planes[] = {"plane(origin, Z)", "plane([1, 2, 3], [1, 1
 static const char *const robots[] = {
     "robot([revolute(a: 1), revolute(a: 1)])", "robot([prismatic(limits: 0..1)])",
     "robot([revolute(alpha: 90deg), revolute(a: 300), revolute(a: 100)])"};
+static const char *const images[] = {"image([[1, 2], [none, 4]])", "image([[[1, 2, 3], [4, 5, 6]]])",
+                                     "image([[none]])", "enlarge(image([[1e308, -1]]), 300)"};
 static const char *const others[] = {"none",
                                      "true",
                                      "false",
@@ -202,7 +204,7 @@ static const Pool pools[] = {
     POOL(CAG_CLOSURE, functions), POOL(CAG_TRANSFORM, transforms), POOL(CAG_CURVE, curves),
     POOL(CAG_REGION, regions),    POOL(CAG_SURFACE, surfaces),     POOL(CAG_SOLID, solids),
     POOL(CAG_MESH, meshes),       POOL(CAG_PLANE, planes),         POOL(CAG_ROBOT, robots),
-    POOL(CAG_NONE, others)};
+    POOL(CAG_IMAGE, images),      POOL(CAG_NONE, others)};
 #define POOL_COUNT (sizeof pools / sizeof *pools)
 
 static const char *any_value(Draws *d) {
