@@ -142,7 +142,7 @@ static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, Cag
   s->slot = slot_take();
   if (!s->slot)
     return cag_fail_io(err, CAG_E_LIMIT, "close some of them first",
-                       "cannot write '%s': %d output files are open already", s->shown, SLOT_COUNT);
+                       "cannot write '%s': %d output files are already open", s->shown, SLOT_COUNT);
   s->slot->folder = s->folder;
   s->slot->owner = getpid();
   int code = EEXIST;
@@ -170,7 +170,7 @@ static bool open_folder(struct CagAtomicFileState *s, bool exists, CagError *err
   const char *name = slash ? slash + 1 : resolved;
   bool ok = false;
   if (!*name || !strcmp(name, ".") || !strcmp(name, "..")) {
-    cag_fail_io(err, CAG_E_FILE, "name a file", "cannot write '%s': it is a folder's name",
+    cag_fail_io(err, CAG_E_FILE, "name a file", "cannot write '%s': it is the name of a folder",
                 s->shown);
     goto done;
   }

@@ -19,6 +19,6 @@ CagStatus cag_stop_fail(CagError *err) {
   err->argument[0] = 0;
   err->index = -1;
   err->help[0] = 0;
-  strcpy(err->message, "it was stopped");
+  strcpy(err->message, "it was interrupted");
   return err->status;
 }

@@ -81,8 +81,8 @@ static void settle_workers(CagBatch *b) {
 static int read_jobs(CagBatch *b) {
   size_t length;
   if (!has_ending(b->path, ".csv") && !has_ending(b->path, ".json"))
-    return cag_tool_fail(b->tool, CAG_STATUS_USAGE, "name a .csv or .json file",
-                         "'%s' is not the name of a file of jobs", b->path);
+    return cag_tool_fail(b->tool, CAG_STATUS_USAGE, "name a table of jobs, such as jobs.csv",
+                         "'%s' is not a .csv or .json file", b->path);
   char *text = cag_tool_read_file(b->tool, b->path, &length);
   if (!text) return CAG_STATUS_FILE;
   bool ok = cag_jobs_read(&b->jobs, text, length, has_ending(b->path, ".json"));

@@ -65,8 +65,8 @@ static bool check_script(CagBatch *b, const CagJob *job) {
   free(path);
   if (!why) return true;
   return cag_jobs_problem(&b->jobs, job, CODE_SCRIPT,
-                          *name == '/' ? NULL : "the name is seen from the folder of the jobs",
-                          "the script '%s' cannot be read: %s", name, why);
+                          *name == '/' ? NULL : "paths are relative to the folder of the table",
+                          "cannot read the script '%s': %s", name, why);
 }
 
 static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
@@ -77,7 +77,7 @@ static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
   const char *format = ending(output);
   row->renders = format && is_picture(format);
   if (row->renders || (format && is_export(format))) return true;
-  char help[300] = "there are .exr .png";
+  char help[300] = "the formats are .exr .png";
   for (const char *const *f = cag_export_formats(); *f; f++)
     if (!is_picture(*f)) snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
   if (!format)
@@ -125,7 +125,7 @@ static bool check_pattern(CagBatch *b, const CagJob *job, const CagBatchRow *row
                             output);
   if (row->film && places == 0 && row->last > row->first)
     return cag_jobs_problem(&b->jobs, job, CODE_TWICE, HELP,
-                            "all frames would be written to the one output '%s'", output);
+                            "all frames would be written to the same output '%s'", output);
   return true;
 }
 
@@ -144,7 +144,7 @@ static bool check_tiles(CagBatch *b, const CagJob *job, CagBatchRow *row, const 
                             "a picture in tiles needs its size");
   if (cag_tiles_fit(row->width, row->tile_columns) && cag_tiles_fit(row->height, row->lines))
     return true;
-  return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "take fewer tiles",
+  return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "use fewer tiles",
                           "tiles %s of a picture of %d by %d pixels are smaller than %d pixels",
                           tiles, row->width, row->height, CAG_TILE_STEP);
 }
@@ -158,7 +158,7 @@ static bool check_length(CagBatch *b, const CagJob *job, const CagBatchRow *row)
     const double frames = strtod(d->value, &end);
     if (*end || !(frames > (double)row->last))
       return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "the frames of a film of N are 0..N-1",
-                              "frames %ld..%ld reach beyond -D frames=%s", row->first, row->last,
+                              "frames %ld..%ld exceed -D frames=%s", row->first, row->last,
                               d->value);
   }
   return true;
@@ -201,8 +201,8 @@ static bool make_tasks(CagBatch *b, size_t i) {
   row->task = b->task_count;
   const double count = ((double)row->last - (double)row->first + 1) * (tiles + 1);
   if (count + (double)b->task_count > TASKS_MAX)
-    return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "take several files of jobs",
-                            "with this row there are more than %d pictures to make", TASKS_MAX);
+    return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "split the table into several files",
+                            "with this row, the batch has more than %d pictures", TASKS_MAX);
   for (long frame = row->first; frame <= row->last; frame++) {
     for (int tile = 0; tile < tiles; tile++) {
       CagTask *task = add_task(b, i, frame);
@@ -269,9 +269,9 @@ static bool tell_twice(CagBatch *b, const Output *first, const Output *second) {
   const CagJob *job = &b->jobs.rows[second->row];
   if (first->row == SIZE_MAX)
     return cag_jobs_problem(&b->jobs, job, CODE_TWICE, "choose another name",
-                            "the output '%s' is a file that the batch itself needs", second->path);
-  return cag_jobs_problem(&b->jobs, job, CODE_TWICE, "each output belongs to one row",
-                          "the output '%s' is that of row %zu too", second->path,
+                            "the output '%s' is one of the batch's own files", second->path);
+  return cag_jobs_problem(&b->jobs, job, CODE_TWICE, "give each row its own output",
+                          "the output '%s' is also the output of row %zu", second->path,
                           b->jobs.rows[first->row].number);
 }
 

@@ -63,7 +63,7 @@ void cag_batch_progress_show(CagBatchProgress *p, const CagBatch *b, size_t at_w
   fputs("\r\033[K", stderr);
   if (width > 0) fputc('[', stderr);
   for (int i = 0; i < width; i++) fputc(i < full ? '#' : '-', stderr);
-  fprintf(stderr, "%s%zu of %zu done, %zu at work", width > 0 ? "] " : "", c.done, b->task_count,
+  fprintf(stderr, "%s%zu of %zu done, %zu running", width > 0 ? "] " : "", c.done, b->task_count,
           at_work);
   if (c.failed) fprintf(stderr, ", %zu failed", c.failed);
   write_rest(p, &c);

@@ -59,8 +59,8 @@ void cag_batch_tell_problems(CagBatch *b) {
     report_problem(b, p->row, p->line, p->code, p->message, p->help);
   }
   cag_tool_fail(b->tool, CAG_STATUS_USAGE,
-                jobs->problem_count > PROBLEMS_TOLD ? "the first of them are told" : NULL,
-                "%s has %zu problem%s, nothing was run", b->path, jobs->problem_count,
+                jobs->problem_count > PROBLEMS_TOLD ? "only the first ones are listed" : NULL,
+                "%s has %zu problem%s; nothing was run", b->path, jobs->problem_count,
                 jobs->problem_count == 1 ? "" : "s");
 }
 
@@ -115,7 +115,7 @@ int cag_batch_close(const CagBatch *b, bool interrupted) {
   for (size_t i = 0; i < b->jobs.count; i++) counts[cag_batch_sum(b, i).state]++;
   rmdir(b->tiles_folder); // if it is empty
   if (!b->tool->quiet) {
-    printf("%zu done, %zu failed, %zu left out (already done)", counts[CAG_ROW_DONE],
+    printf("%zu done, %zu failed, %zu skipped (already done)", counts[CAG_ROW_DONE],
            counts[CAG_ROW_FAILED], counts[CAG_ROW_KEPT]);
     if (counts[CAG_ROW_WAITING]) printf(", %zu not done", counts[CAG_ROW_WAITING]);
     putchar('\n');

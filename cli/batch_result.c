@@ -61,24 +61,24 @@ int cag_child_result(const CagChild *c, double max_time, size_t limit_memory, ch
   *message = NULL;
   if (WIFEXITED(c->status) && WEXITSTATUS(c->status) == CAG_STATUS_OK) return CAG_STATUS_OK;
   if (c->stop == CAG_CHILD_STOP_TIME) {
-    *message = print("it was stopped after the time limit of %g %s", max_time, "s");
+    *message = print("exceeded the time limit of %g %s", max_time, "s");
     return CAG_STATUS_LIMIT;
   }
   if (c->stop == CAG_CHILD_STOP_MEMORY) {
-    *message = print("it was stopped for taking more memory than %.0f %s",
-                     (double)limit_memory / (1 << 20), "MB");
+    *message =
+        print("exceeded the memory limit of %.0f %s", (double)limit_memory / (1 << 20), "MB");
     return CAG_STATUS_LIMIT;
   }
   if (WIFSIGNALED(c->status)) {
     const int number = WTERMSIG(c->status);
-    *message = print(number == SIGKILL ? "it was killed by signal %.0f (%s), as the system does "
-                                         "when memory runs out"
-                                       : "it was ended by signal %.0f (%s)",
+    *message = print(number == SIGKILL
+                         ? "killed by signal %.0f (%s); the system may have run out of memory"
+                         : "ended by signal %.0f (%s)",
                      number, strsignal(number));
     return CAG_STATUS_SCRIPT;
   }
   *message = told(c->text);
-  if (!*message) *message = print("it ended with status %.0f%s", WEXITSTATUS(c->status), "");
+  if (!*message) *message = print("failed with exit status %.0f%s", WEXITSTATUS(c->status), "");
   make_line(*message);
   return WEXITSTATUS(c->status);
 }

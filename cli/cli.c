@@ -64,7 +64,7 @@ static bool read_whole(const char *text, const char **end, long *out) {
 static bool read_count(const CagTool *t, const char *option, const char *value, size_t *out) {
   double n;
   if (!read_number(value, NULL, &n) || n < 1 || n > COUNT_MAX || n != floor(n))
-    return reject(t, "give a whole number from 1 on", option, value, "expected a count");
+    return reject(t, "give a whole number of at least 1", option, value, "expected a count");
   *out = (size_t)n;
   return true;
 }
@@ -100,7 +100,7 @@ static bool set_size(CagTool *t, const char *value) {
   if (!read_whole(at, &at, &w) || *at++ != 'x' || !read_whole(at, &at, &h) || *at)
     return reject(t, HELP, "--size", value, "expected a size");
   if (w < 1 || h < 1 || (size_t)w > CAG_IMAGE_SIDE_MAX || (size_t)h > CAG_IMAGE_SIDE_MAX)
-    return reject(t, HELP, "--size", value, "sides are from 1 to 131072 pixels");
+    return reject(t, HELP, "--size", value, "width and height must be 1 to 131072 pixels");
   t->width = (int)w;
   t->height = (int)h;
   return true;
@@ -110,7 +110,7 @@ static bool set_quality(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"draft", "normal", "final"};
   size_t i;
   t->quality = value;
-  return one_of(t, "--quality", value, CHOICES, 3, "there are draft, normal and final", &i);
+  return one_of(t, "--quality", value, CHOICES, 3, "choose draft, normal, or final", &i);
 }
 
 static bool set_camera(CagTool *t, const char *value) {
@@ -123,10 +123,11 @@ static bool set_frames(CagTool *t, const char *value) {
   const char *at = value;
   if (!read_whole(at, &at, &t->first_frame) || strncmp(at, "..", 2) ||
       !read_whole(at + 2, &at, &t->last_frame) || *at)
-    return reject(t, HELP, "--frames", value, "these are not frames");
+    return reject(t, HELP, "--frames", value, "expected a range of frames");
   if (t->last_frame < t->first_frame)
     return reject(t, HELP, "--frames", value, "the last frame comes before the first");
-  if (t->last_frame >= INT_MAX) return reject(t, HELP, "--frames", value, "that is too many");
+  if (t->last_frame >= INT_MAX)
+    return reject(t, HELP, "--frames", value, "there are too many frames");
   t->has_frames = true;
   return true;
 }
@@ -168,19 +169,19 @@ static bool set_exposure(CagTool *t, const char *value) {
 static bool set_engine(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"povray"};
   size_t i;
-  return one_of(t, "--engine", value, CHOICES, 1, "the renderer that there is: povray", &i);
+  return one_of(t, "--engine", value, CHOICES, 1, "the only renderer is povray", &i);
 }
 
 static bool set_pov_csg(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"auto", "native", "mesh"};
   size_t i;
   t->session.pov_csg = value;
-  return one_of(t, "--pov-csg", value, CHOICES, 3, "there are auto, native and mesh", &i);
+  return one_of(t, "--pov-csg", value, CHOICES, 3, "choose auto, native, or mesh", &i);
 }
 
 static bool set_threshold(CagTool *t, const char *value) {
   if (read_number(value, NULL, &t->threshold) && t->threshold >= 0) return true;
-  return reject(t, "give a number from 0 on, such as 0.01", "--threshold", value,
+  return reject(t, "give a number of at least 0, such as 0.01", "--threshold", value,
                 "expected a number of at least 0");
 }
 
@@ -225,8 +226,8 @@ static bool set_include(CagTool *t, const char *value) {
 
 static bool set_tolerance(CagTool *t, const char *value) {
   if (read_number(value, "mm", &t->session.tolerance) && t->session.tolerance > 0) return true;
-  return reject(t, "give millimeters above 0, such as 0.05", "--tolerance", value,
-                "expected a distance");
+  return reject(t, "give a number of millimeters greater than 0, such as 0.05", "--tolerance",
+                value, "expected a distance");
 }
 
 static bool set_max_memory(CagTool *t, const char *value) {
@@ -241,15 +242,16 @@ static bool set_max_memory(CagTool *t, const char *value) {
     if (!strcasecmp(end, "iB") || !strcasecmp(end, "B")) end += strlen(end);
   }
   if (!begins || *end || !(bytes >= 1) || bytes > COUNT_MAX)
-    return reject(t, "give bytes, or a number with K, M, G or T: 512M", "--max-memory", value,
-                  "expected a size");
+    return reject(t, "give a number of bytes, or a number with K, M, G, or T, such as 512M",
+                  "--max-memory", value, "expected a size");
   t->session.max_memory = (size_t)bytes;
   return true;
 }
 
 static bool set_max_time(CagTool *t, const char *value) {
   if (read_number(value, "s", &t->session.max_time) && t->session.max_time > 0) return true;
-  return reject(t, "give seconds above 0, such as 60", "--max-time", value, "expected a time");
+  return reject(t, "give a number of seconds greater than 0, such as 60", "--max-time", value,
+                "expected a time");
 }
 
 static bool set_max_depth(CagTool *t, const char *value) {
@@ -263,7 +265,7 @@ static bool set_max_triangles(CagTool *t, const char *value) {
 static bool set_diagnostics(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"text", "json"};
   size_t i;
-  if (!one_of(t, "--diagnostics", value, CHOICES, 2, "there are text and json", &i)) return false;
+  if (!one_of(t, "--diagnostics", value, CHOICES, 2, "choose text or json", &i)) return false;
   t->style = i == 1 ? CAG_STYLE_JSON : CAG_STYLE_TEXT;
   return true;
 }
@@ -271,8 +273,7 @@ static bool set_diagnostics(CagTool *t, const char *value) {
 static bool set_color(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"auto", "always", "never"}; // in the order of CagToolColor
   size_t i;
-  if (!one_of(t, "--color", value, CHOICES, 3, "there are auto, always and never", &i))
-    return false;
+  if (!one_of(t, "--color", value, CHOICES, 3, "choose auto, always, or never", &i)) return false;
   t->color = (CagToolColor)i;
   return true;
 }
@@ -293,8 +294,8 @@ static bool set_report(CagTool *t, const char *value) {
 }
 
 static bool set_region(CagTool *t, const char *value) {
-  static const char HELP[] = "write width x height, and where it begins from the left and the top, "
-                             "such as 640x360+640+0";
+  static const char HELP[] =
+      "write the width x height, and the offset from the left and the top, such as 640x360+640+0";
   long n[4];
   const char *at = value, *between = "x++";
   for (int i = 0; i < 4; i++) {
@@ -349,14 +350,14 @@ static bool set_engine_queue(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"slurm"};
   size_t i;
   t->queue = value;
-  return one_of(t, "--engine-queue", value, CHOICES, 1, "the queue that there is: slurm", &i);
+  return one_of(t, "--engine-queue", value, CHOICES, 1, "the only queue is slurm", &i);
 }
 
 static bool set_tiles(CagTool *t, const char *value) {
   int columns, lines;
   t->tiles = value;
   return cag_tiles_read(value, &columns, &lines) ||
-         reject(t, "write columns x lines, such as 4x3; at most 64x64", "--tiles", value,
+         reject(t, "write columns x rows, such as 4x3; at most 64x64", "--tiles", value,
                 "expected tiles");
 }
 
@@ -563,7 +564,7 @@ static bool reject_command(CagTool *t, const char *word) {
   const size_t n = strlen(word);
   t->command = NULL;
   if (n > 4 && !strcmp(word + n - 4, ".cag"))
-    snprintf(help, sizeof help, "to run the script write `cag run %.200s`", word);
+    snprintf(help, sizeof help, "to run the script, write `cag run %.200s`", word);
   else if (nearest) snprintf(help, sizeof help, "did you mean `cag %s`?", nearest);
   else snprintf(help, sizeof help, "`cag --help` lists the commands");
   cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown command `%s`", word);
@@ -591,7 +592,7 @@ static bool check_operands(const CagTool *t, int count, char **operands) {
     return false;
   }
   if (count > c->most) {
-    cag_tool_fail(t, CAG_STATUS_USAGE, help, "'%s' is one too many", operands[c->most]);
+    cag_tool_fail(t, CAG_STATUS_USAGE, help, "unexpected argument '%s'", operands[c->most]);
     return false;
   }
   return true;

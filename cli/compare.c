@@ -32,8 +32,8 @@ static int check_heatmap(const CagTool *t) {
   const bool picture = n > 4 && (is_png(t->heatmap) || !strcasecmp(t->heatmap + n - 4, ".exr"));
   if (!t->heatmap) return CAG_STATUS_OK;
   if (!picture && strcmp(t->heatmap, "-") != 0)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "a picture is .exr or .png",
-                         "--heatmap '%s' is not the name of a picture", t->heatmap);
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "name an .exr or .png file",
+                         "cannot write the heatmap '%s': expected .exr or .png", t->heatmap);
   return cag_tool_check_output(t, t->heatmap);
 }
 
@@ -56,7 +56,7 @@ int cag_tool_compare(CagTool *t, int argc, char **argv) {
   CagError err = {0};
   bool differ = false;
   if (!strcmp(argv[0], "-") && !strcmp(argv[1], "-"))
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "name a file for one of them",
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "name a file for one of the two",
                          "both pictures cannot come from standard input");
   const int status = check_heatmap(t);
   if (status != CAG_STATUS_OK) return status;

@@ -32,7 +32,7 @@ static int reject(CagTool *t, CagSession *s, const char *name) {
   cag_session_document_names(s, keep_name, &names);
   const char *nearest = cag_nearest_name(name, (const char *const *)names.items, names.count);
   const char *form = cag_foreign_name(name);
-  if (form) snprintf(help, sizeof help, "in cag write %.280s", form);
+  if (form) snprintf(help, sizeof help, "in cag, write %.280s", form);
   else if (nearest) snprintf(help, sizeof help, "did you mean `cag doc %.200s`?", nearest);
   const int status = cag_tool_fail(t, CAG_STATUS_USAGE, help,
                                    "unknown function, module, or error code `%s`", name);
@@ -88,9 +88,10 @@ static int keep_path(void *context, const char *path) {
 static int reject_operand(CagTool *t, const char *operand) {
   if (strcmp(operand, "-") == 0)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "save the script to a file",
-                         "a site tells of files and folders, found '-'");
-  return cag_tool_fail(t, CAG_STATUS_USAGE, "leave the name away, or name a script or a folder",
-                       "the site has all functions and modules, found '%s'", operand);
+                         "--html expects scripts and folders, found '-'");
+  return cag_tool_fail(t, CAG_STATUS_USAGE,
+                       "omit the name: the site includes all functions and modules",
+                       "--html expects scripts and folders, found '%s'", operand);
 }
 
 // Names always have pages, so only scripts and folders are added.

@@ -20,7 +20,7 @@ static bool is_format(const char *name) {
 }
 
 static int reject_format(const CagTool *t, const char *format) {
-  char help[300] = "there are";
+  char help[300] = "the formats are";
   for (const char *const *f = cag_export_formats(); *f; f++)
     snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
   return cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown format '.%s'", format);
@@ -44,7 +44,7 @@ static int check_image_options(const CagTool *t, const char *format) {
 static int check(const CagTool *t) {
   if (!t->output)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "name the output with -o OUT, such as -o vase.stl",
-                         "there is no output");
+                         "the output is missing");
   const char *format = t->format ? t->format : ending(t->output);
   if (!format)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",

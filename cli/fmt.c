@@ -27,7 +27,7 @@ static void write_back(Formatting *f, const char *path, const char *text, size_t
   if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) { // a pipe cannot be read again
     remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE,
                               "`-` reads standard input and writes standard output",
-                              "cannot write %s anew: it is not a regular file", path));
+                              "cannot rewrite %s: it is not a regular file", path));
     return;
   }
   CagAtomicFile *file = cag_atomic_file_open(path, &err);

@@ -91,11 +91,9 @@ static void command_help(const CagToolCommand *c, FILE *out) {
 }
 
 static void program_help(FILE *out) {
-  fputs("cag: scripts of geometry as meshes, scenes and pictures\n\n"
-        "Usage: cag COMMAND [OPERAND ...] [OPTION ...]\n"
-        "       cag                     work interactively\n\n"
-        "Commands:\n",
-        out);
+  fputs(
+      "cag: turn geometry scripts into meshes, scenes, and pictures\n\nUsage: cag COMMAND [OPERAND ...] [OPTION ...]\n       cag                     work interactively\n\nCommands:\n",
+      out);
   for (size_t i = 0; i < CAG_TOOL_COMMAND_COUNT; i++) {
     const CagToolCommand *c = &cag_tool_commands[i];
     char usage[64];

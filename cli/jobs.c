@@ -112,8 +112,8 @@ static bool check_columns(CagJobs *jobs, char *const *names, size_t count) {
   for (size_t i = 0; ok && i < count; i++)
     for (size_t k = 0; ok && k < i; k++)
       if (strcmp(names[i], names[k]) == 0 && *names[i])
-        ok = cag_jobs_problem(jobs, NULL, CODE_COLUMN, "leave one of them out",
-                              "there are two columns '%s'", names[i]);
+        ok = cag_jobs_problem(jobs, NULL, CODE_COLUMN, "remove one of them",
+                              "duplicate column '%s'", names[i]);
   for (size_t n = 0; ok && n < sizeof NEEDED / sizeof *NEEDED; n++) {
     const char *wanted = cag_job_column_names[NEEDED[n]];
     char help[200];
@@ -121,7 +121,7 @@ static bool check_columns(CagJobs *jobs, char *const *names, size_t count) {
     for (size_t i = 0; i < count; i++) found |= strcmp(names[i], wanted) == 0;
     if (found) continue;
     const char *nearest = cag_nearest_name(wanted, (const char *const *)names, count);
-    if (nearest) snprintf(help, sizeof help, "is the column '%.80s' meant?", nearest);
+    if (nearest) snprintf(help, sizeof help, "if the column '%.80s' is meant, rename it", nearest);
     else snprintf(help, sizeof help, "the first line names the columns, such as script,output");
     ok = cag_jobs_problem(jobs, NULL, CODE_COLUMN, help, "the column '%s' is missing", wanted);
   }
@@ -222,14 +222,15 @@ static bool take_row(CagJobs *jobs, const Record *names, const Record *record, s
   CagJob *row = add_row(jobs, line);
   bool ok = row != NULL;
   if (ok && record->open_quote)
-    ok = cag_jobs_problem(jobs, row, CODE_FILE, "a quote within a field is written twice",
-                          "a field begins with a quote that nothing closes");
+    ok = cag_jobs_problem(jobs, row, CODE_FILE, "write a quote inside a field twice",
+                          "the quote at the beginning of a field is never closed");
   for (size_t i = 0; ok && i < record->count; i++) {
     const char *text = record->fields[i], *name = i < names->count ? names->fields[i] : "";
     if (*name) ok = set_field(row, name, text);
     else if (text[strspn(text, " \t\r")])
-      ok = cag_jobs_problem(jobs, row, CODE_FILE, "put a field that holds the separator in quotes",
-                            "the row has more fields than there are named columns: '%.80s'", text);
+      ok = cag_jobs_problem(
+          jobs, row, CODE_FILE, "put a field that contains the separator in quotes",
+          "the row has more fields than the first line has columns: '%.80s'", text);
   }
   return ok;
 }
@@ -276,8 +277,8 @@ static bool take_member(CagJobs *jobs, CagJob *row, const cJSON *member) {
                             "the value of '%s' is a record", member->string);
   for (const cJSON *other = member->prev; other && other->next; other = other->prev)
     if (strcmp(other->string, member->string) == 0)
-      return cag_jobs_problem(jobs, row, CODE_COLUMN, "leave one of them out",
-                              "'%s' is given twice", member->string);
+      return cag_jobs_problem(jobs, row, CODE_COLUMN, "remove one of them", "'%s' is given twice",
+                              member->string);
   char *text = value_text(member);
   const bool ok = text && set_field(row, member->string, text);
   free(text);
@@ -314,7 +315,7 @@ static const char *find_zero(const char *text, size_t length) {
 static bool read_json(CagJobs *jobs, const char *text, size_t length) {
   const char *zero = find_zero(text, length);
   if (zero)
-    return cag_jobs_problem(jobs, NULL, CODE_FILE, "leave the character out",
+    return cag_jobs_problem(jobs, NULL, CODE_FILE, "remove the character",
                             "line %zu: expected texts without \\u0000", line_of(text, zero));
   const char *stopped = text;
   // The zero after the text makes cJSON check that nothing else follows.
@@ -322,10 +323,10 @@ static bool read_json(CagJobs *jobs, const char *text, size_t length) {
   bool ok = true;
   if (!list) {
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "a list of records: [{\"script\": ...}, ...]",
-                          "line %zu: this is not JSON", line_of(text, stopped));
+                          "line %zu: invalid JSON", line_of(text, stopped));
   } else if (!cJSON_IsArray(list)) {
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "put the records between [ and ]",
-                          "the jobs are not a list");
+                          "expected a list of records");
   } else {
     for (const cJSON *m = list->child; ok && m; m = m->next) ok = take_record(jobs, m);
   }
@@ -357,6 +358,7 @@ bool cag_jobs_read(CagJobs *jobs, const char *text, size_t length, bool is_json)
     if (jobs->rows[i].param_count)
       qsort(jobs->rows[i].params, jobs->rows[i].param_count, sizeof(CagJobParam), by_name);
   if (ok && !jobs->count && !jobs->problem_count)
-    return cag_jobs_problem(jobs, NULL, CODE_FILE, "a row is a job", "the file has no row");
+    return cag_jobs_problem(jobs, NULL, CODE_FILE, "add a row for each job",
+                            "the file has no rows");
   return ok;
 }

@@ -19,7 +19,7 @@ static const char *const WHATS[] = {"done", "failed", "submitted", "collected"};
 #define LINE_MAX_BYTES 256
 
 static bool fail(const CagJournal *j, const char *help, const char *problem, CagError *err) {
-  return cag_fail_io(err, CAG_E_FILE, help, "the journal '%s' %s", j->path, problem);
+  return cag_fail_io(err, CAG_E_FILE, help, "the journal '%s': %s", j->path, problem);
 }
 
 // --- Reading ---
@@ -84,7 +84,7 @@ static bool read_lines(CagJournal *j, const char *text, size_t length, CagError 
     ours += good;
     at = newline + 1;
   }
-  if (others && !ours) return fail(j, "move it away", "is another file", err);
+  if (others && !ours) return fail(j, "move it away", "the file is not a journal", err);
   return true;
 }
 
@@ -159,15 +159,15 @@ bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagError *err
   *j = (CagJournal){.fd = -1, .path = path};
   j->fd = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
   if (j->fd < 0)
-    return cag_fail_io(err, CAG_E_FILE,
-                       "the journal stands beside the jobs; it must be "
-                       "possible to write there",
-                       "the journal '%s' cannot be opened: %s", path, strerror(errno));
+    return cag_fail_io(
+        err, CAG_E_FILE,
+        "the journal is written to the folder of the table; make this folder writable",
+        "cannot open the journal '%s': %s", path, strerror(errno));
   bool ok = true;
   if (fstat(j->fd, &st) != 0 || !S_ISREG(st.st_mode))
-    ok = fail(j, "move it away", "is not a file", err);
+    ok = fail(j, "move it away", "it is not a regular file", err);
   else if (flock(j->fd, LOCK_EX | LOCK_NB) != 0)
-    ok = fail(j, "wait for its end", "is held by another batch of these jobs that runs now", err);
+    ok = fail(j, "wait until it has ended", "another batch of this table is running", err);
   else ok = read_journal(j, err);
   if (ok && fresh) {
     free(j->entries);
@@ -189,8 +189,9 @@ void cag_journal_close(CagJournal *j) {
 // --- Writing ---
 
 static bool fail_write(const CagJournal *j, CagError *err) {
-  return cag_fail_io(err, CAG_E_FILE, "free some space: what is done is not kept otherwise",
-                     "the journal '%s' cannot be written: %s", j->path, strerror(errno));
+  return cag_fail_io(err, CAG_E_FILE,
+                     "free some space; without the journal, finished rows would run again",
+                     "cannot write the journal '%s': %s", j->path, strerror(errno));
 }
 
 bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagError *err) {

@@ -38,7 +38,7 @@ static bool has_ending(const char *path, const char *ending) {
 }
 
 static int check_ending(const CagTool *t) {
-  static const char HELP[] = "a picture is .exr or .png; `cag export` writes meshes and scenes";
+  static const char HELP[] = "pictures are .exr or .png; `cag export` writes meshes and scenes";
   const char *format = t->format;
   if (format && strcasecmp(format, "exr") != 0 && strcasecmp(format, "png") != 0)
     return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "unknown picture format '.%s'", format);
@@ -50,9 +50,10 @@ static int check_ending(const CagTool *t) {
                        : has_ending(t->output, ".png") ? "png"
                                                        : NULL;
   if (!ending)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "'%s' is not the name of a picture", t->output);
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "cannot render to '%s': expected .exr or .png",
+                         t->output);
   if (format && strcasecmp(format, ending) != 0)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "leave --format out, or change the ending",
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "omit --format, or change the extension",
                          "--format %s and the output '%s' contradict each other", format,
                          t->output);
   return CAG_STATUS_OK;
@@ -75,7 +76,7 @@ static int check_pattern(const CagTool *t) {
                          t->output);
   if (places == 0 && t->last_frame > t->first_frame)
     return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
-                         "all frames would be written to the one output '%s'", t->output);
+                         "all frames would be written to the same output '%s'", t->output);
   return CAG_STATUS_OK;
 }
 
@@ -85,7 +86,7 @@ static int find_length(const CagTool *t, double *frames) {
   for (size_t i = 0; i < t->define_count; i++) {
     const CagToolDefine *d = &t->defines[i];
     if (!strcmp(d->name, "frame") || !strcmp(d->name, "time"))
-      return cag_tool_fail(t, CAG_STATUS_USAGE, "leave one of them out",
+      return cag_tool_fail(t, CAG_STATUS_USAGE, "omit one of them",
                            "--frames sets `%s`, and so does -D", d->name);
     if (strcmp(d->name, "frames") != 0) continue;
     char *end;
@@ -105,7 +106,7 @@ static int check(const CagTool *t, double *frames) {
   *frames = 1;
   if (!t->output)
     return cag_tool_fail(t, CAG_STATUS_USAGE, "name the output with -o OUT, such as -o out.png",
-                         "there is no output");
+                         "the output is missing");
   int status = check_ending(t);
   if (status == CAG_STATUS_OK) status = check_pattern(t);
   if (status == CAG_STATUS_OK && t->has_frames) status = find_length(t, frames);
@@ -148,7 +149,7 @@ static int render_to_output(Film *f) {
   snprintf(folder, sizeof folder, "%s/cag-output-XXXXXX", base && *base == '/' ? base : "/tmp");
   if (!mkdtemp(folder))
     return cag_tool_fail(f->tool, CAG_STATUS_FILE, "set TMPDIR to a folder that you may write to",
-                         "no temporary file '%s' can be made", folder);
+                         "cannot create the temporary file '%s'", folder);
   snprintf(path, sizeof path, "%s/out.%s", folder, f->tool->format);
   int status = cag_session_render(f->session, &f->options, path);
   FILE *picture = status == CAG_STATUS_OK ? fopen(path, "rbe") : NULL;
@@ -190,7 +191,7 @@ static int render_frame(Film *f, long frame) {
 static int render_film(Film *f) {
   const CagTool *t = f->tool;
   if (!strcmp(f->script.path, "-") && t->last_frame > t->first_frame && !read_input(&f->script))
-    return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "standard input cannot be read");
+    return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read standard input");
   int status = CAG_STATUS_OK;
   for (long frame = t->first_frame; status == CAG_STATUS_OK && frame <= t->last_frame; frame++) {
     status = render_frame(f, frame);

@@ -31,21 +31,20 @@ static const struct Command {
 } commands[] = {
     {":help", "[NAME]", MAYBE, false, show_help, "this list, or what NAME is"},
     {":doc", "[NAME]", MAYBE, false, show_doc,
-     "documentation of a function, a definition, a command or an error code; of all functions by "
-     "name"},
+     "documentation of a function, a definition, a command, or an error code; without NAME, all functions"},
     {":type", "EXPR", NEEDED, false, show_type, "the type of a value"},
     {":time", "EXPR", NEEDED, false, show_time, "a value, and how long it took"},
     {":list", "", NOTHING, false, list_names, "the definitions"},
     {":scene", "", NOTHING, false, show_scene, "what is shown"},
-    {":hide", "NAME", NEEDED, false, hide, "take what `show NAME` shows out of the scene"},
+    {":hide", "NAME", NEEDED, false, hide, "remove what `show NAME` shows from the scene"},
     {":load", "FILE", NEEDED, true, load, "add the definitions of a script"},
-    {":reload", "", NOTHING, false, reload, "begin anew with the scripts that were loaded"},
+    {":reload", "", NOTHING, false, reload, "start again with the scripts that were loaded"},
     {":save", "FILE", NEEDED, true, save, "write the definitions and what is shown as a script"},
     {":edit", "[FILE]", MAYBE, true, edit,
      "open FILE, the script loaded last, or the definitions in $VISUAL or $EDITOR, then load it"},
-    {":render", "[OUT]", MAYBE, true, render, "make a picture, .png or .exr, of what is shown"},
+    {":render", "[OUT]", MAYBE, true, render, "render a picture of what is shown: .png or .exr"},
     {":export", "OUT", NEEDED, true, export_scene, "write what is shown: .obj .stl .pov ..."},
-    {":clear", "", NOTHING, false, clear, "forget all definitions and what is shown"},
+    {":clear", "", NOTHING, false, clear, "remove all definitions and everything that is shown"},
     {":quit", "", NOTHING, false, quit, "end (Ctrl-D)"},
 };
 #define COUNT (sizeof commands / sizeof *commands)
@@ -104,7 +103,7 @@ void cag_repl_command(CagRepl *repl, char *line) {
   const struct Command *c = find_command(line, &several);
   if (!c) fail_unknown(repl, line, several);
   else if (c->wants == NEEDED && !*operand)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s expects something after it: %s %s", c->name, c->name,
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s needs an argument: %s %s", c->name, c->name,
                   c->operand);
   else if (c->wants == NOTHING && *operand)
     cag_repl_fail(repl, CAG_STATUS_USAGE, "%s takes no argument, found `%s`", c->name, operand);
@@ -155,9 +154,9 @@ static void list_commands(void) {
     else printf("%-*s", column, head);
     print_wrapped(commands[i].story, (size_t)column, (size_t)column);
   }
-  print_wrapped("Anything else is a definition, a statement or an expression of the language. Tab "
-                "completes names, Ctrl-C stops what runs.",
-                0, 0);
+  print_wrapped(
+      "Anything else is a definition, a statement, or an expression of the language. Tab completes names. Ctrl-C stops a running evaluation.",
+      0, 0);
 }
 
 // Lists all built-in functions by family.
@@ -387,8 +386,8 @@ static bool run_editor(CagRepl *repl, const char *path) {
   sigaction(SIGINT, &before, NULL);
   free(command);
   if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  cag_repl_fail(repl, CAG_STATUS_FILE, "the editor `%s` failed; VISUAL or EDITOR names another",
-                editor);
+  cag_repl_fail(repl, CAG_STATUS_FILE,
+                "the editor `%s` failed; set VISUAL or EDITOR to another one", editor);
   return false;
 }
 

@@ -95,7 +95,7 @@ static size_t ask_elements(CagBatch *b) {
   size_t elements = equals ? strtoul(equals + 1, NULL, 10) : 0;
   if (elements < 2) elements = ELEMENTS_USUAL;
   if (status != 0 && !cag_tool_interrupt) {
-    refuse(b, said ? "Slurm does not respond" : "Slurm's programs cannot be run", said);
+    refuse(b, said ? "Slurm does not respond" : "cannot run Slurm's programs", said);
     elements = 0;
   }
   free(said);
@@ -171,7 +171,7 @@ static bool prepare(const Array *a, char **script, CagError *err) {
   char *plan = NULL;
   mkdir(b->queue_folder, 0777);
   bool ok = mkdir(a->folder, 0777) == 0 ||
-            cag_fail_io(err, CAG_E_FILE, NULL, "the folder '%s' cannot be made", a->folder);
+            cag_fail_io(err, CAG_E_FILE, NULL, "cannot create the folder '%s'", a->folder);
   ok = ok && asprintf(&plan, "%s/plan.json", a->folder) >= 0 &&
        asprintf(script, "%s/array.sh", a->folder) >= 0 && write_plan(a, plan, err) &&
        write_script(a, *script, err);
@@ -209,8 +209,8 @@ static bool submit(Array *a, char *script) {
   if (t->threads) words[n++] = threads;
   words[n] = script;
   const int status = cag_child_run(words, ANSWER_LIMIT, NULL, &said);
-  if (status != 0) refuse(a->batch, "Slurm does not take the job", said);
-  else cag_tool_say(t, "Slurm's job %s with %zu tasks", last_line(said), a->count);
+  if (status != 0) refuse(a->batch, "Slurm refused the job", said);
+  else cag_tool_say(t, "submitted Slurm job %s with %zu tasks", last_line(said), a->count);
   free(said);
   return status == 0;
 }
@@ -282,7 +282,7 @@ static int read_states(Array *a, char *said) {
     if (is_over(state) && status == CAG_STATUS_OK) status = lose(a, element, state);
   }
   for (size_t e = 0; e < a->elements && status == CAG_STATUS_OK; e++)
-    if (!seen[e]) status = lose(a, e, "it is not known any more");
+    if (!seen[e]) status = lose(a, e, "the job is no longer known");
   free(seen);
   return status;
 }
@@ -305,7 +305,7 @@ static int query_states(Array *a, bool *silent) {
     cag_batch_progress_clear(&a->progress);
     if (!a->silent)
       cag_tool_say(a->batch->tool, "Slurm does not respond (%s), waiting",
-                   said ? last_line(said) : "squeue cannot be run");
+                   said ? last_line(said) : "cannot run squeue");
     a->silent = true;
     *silent = now - a->answered > SILENCE_LIMIT;
   }
@@ -429,7 +429,7 @@ static int take_up(CagBatch *b, bool *over) {
     cag_batch_progress_begin(&a.progress, b);
     if (status == CAG_STATUS_OK) status = collect(&a, &open);
     if (status == CAG_STATUS_OK && open && is_known(&a)) {
-      cag_tool_say(b->tool, "taking up Slurm's job %s", a.name);
+      cag_tool_say(b->tool, "resuming Slurm job %s", a.name);
       status = follow(&a, over);
     }
     if (status == CAG_STATUS_OK && *over) status = finish(&a);

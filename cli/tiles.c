@@ -68,7 +68,7 @@ static bool add_tile(CagImage *picture, const CagImage *tile, CagRenderRegion r,
     fits = cag_image_find(tile, picture->channels[c].name, &from);
     if (fits) paste(picture, c, tile, from, r);
   }
-  return fits || cag_fail_io(err, CAG_E_FILE, "remove it, so that it is made again",
+  return fits || cag_fail_io(err, CAG_E_FILE, "remove it to render it again",
                              "the tile '%s' does not fit its picture", path);
 }
 

@@ -9,7 +9,7 @@
 //     return status;
 //
 // A session runs one script at a time and keeps what the script showed until the next run. The
-// program `cag` is itself a client of these calls.
+// program `cag` uses the same calls.
 //
 // Threads: a session may be used by one thread at a time. Different sessions are independent of
 // each other, so each thread can have its own. A session evaluates scripts on a thread of its own,
@@ -18,15 +18,15 @@
 //
 // Callbacks: a callback must not start work on its session. Calls that evaluate, check, format,
 // export, render, document, or clear are refused: they return CAG_STATUS_USAGE, false, or NULL and
-// add no diagnostic, or do nothing if they return nothing. Questions about diagnostics and names
-// are answered. cag_session_free takes effect when the call that is under way returns.
+// add no diagnostic, or do nothing if they return nothing. Calls that only query diagnostics and
+// names are allowed. cag_session_free takes effect when the call that is under way returns.
 //
 // Memory: texts that a call returns, or that it passes to a callback, belong to the library. Those
 // about a session stay valid until the next call that evaluates, checks, formats, builds the scene,
 // exports, renders, documents, or clears; those passed to a callback until it returns. The only
 // memory that the host must free is the text made by cag_session_format, with free().
 //
-// An index beyond the end is not an error: the answer is NULL, false, or a view full of NULLs.
+// An index beyond the end is not an error: the result is NULL, false, or a view full of NULLs.
 // Unless stated otherwise, pointers must not be NULL.
 
 #ifndef CAG_H
@@ -43,10 +43,10 @@ extern "C" {
 
 #define CAG_API __attribute__((visibility("default")))
 
-// What calls return. The program `cag` exits with the same numbers.
+// The statuses that calls return. They are the exit statuses of the program `cag`.
 enum {
   CAG_STATUS_OK = 0,
-  CAG_STATUS_SCRIPT = 1,   // the script has an error, or shows nothing that the output can hold
+  CAG_STATUS_SCRIPT = 1,   // the script has an error, or shows nothing that the output can contain
   CAG_STATUS_USAGE = 2,    // wrong arguments (unknown format or camera), or a refused call
   CAG_STATUS_FILE = 3,     // a file could not be read or written
   CAG_STATUS_RENDERER = 4, // POV-Ray is missing or failed
@@ -62,7 +62,7 @@ typedef struct CagSession CagSession;
 // Defaults are in parentheses.
 typedef struct CagSessionOptions {
   double tolerance;  // mm, largest distance between mesh and surface; 0: by the size of each shape
-  size_t max_memory; // bytes that a run may take, with the values that it leaves (4 GiB)
+  size_t max_memory; // memory limit of a run, in bytes, including its values (4 GiB)
   size_t max_depth;  // nested calls in a script (10,000)
   size_t max_triangles;           // of all meshes together (100 million)
   double max_time;                // seconds for a run and all output of its scene; 0: no limit
@@ -95,7 +95,7 @@ CAG_API CagSession *cag_session_new(const CagSessionOptions *options);
 CAG_API void cag_session_free(CagSession *s);
 
 // Sets a param in later runs, like -D. The value is the text of an expression; for a param that is
-// a text, the quotes may be left out. The last value of a name counts. Errors appear when a script
+// a text, the quotes are optional. The last value of a name counts. Errors appear when a script
 // runs: if it has no such param, if the value is wrong, or if memory ran out here.
 CAG_API void cag_session_define(CagSession *s, const char *name, const char *value);
 CAG_API void cag_session_clear_defines(CagSession *s);
@@ -119,7 +119,7 @@ CAG_API int cag_session_format(CagSession *s, const char *name, const char *text
                                char **out, size_t *out_length);
 
 // Checks a script without running it. Reports errors of syntax, names, arity, and types, and, as
-// warnings, definitions that nothing uses. Reads imported modules. The path "-" is standard input.
+// warnings, unused definitions. Reads imported modules. The path "-" is standard input.
 CAG_API int cag_session_check_file(CagSession *s, const char *path);
 CAG_API int cag_session_check_text(CagSession *s, const char *name, const char *text,
                                    size_t length);
@@ -150,15 +150,16 @@ typedef struct CagShownCounts {
 // Builds the scene of what was shown, unless it was built since the run. Export and render do so as
 // well. A camera, lights, and a floor are added if the script shows none, and counted.
 CAG_API int cag_session_scene(CagSession *s, CagShownCounts *out);
-// Writes a line for each thing shown, such as "vase: revolution surface, ...", to `out`.
+// Writes a line for each shown item, such as "vase: revolution surface, ...", to `out`.
 CAG_API void cag_session_describe_scene(CagSession *s, FILE *out);
 // Returns the name of camera i of the scene, or NULL.
 CAG_API const char *cag_session_camera(CagSession *s, size_t i);
 
 // Writes the scene to a file, under a temporary name that is renamed at the end. `format` is one of
 // "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", "json", and, for
-// an image that is shown, "exr" and "png"; NULL: that of the path's ending. The path "-" is standard output and needs a format. Three formats
-// write files beside the path: obj its materials, gltf its data, and urdf its meshes.
+// an image that is shown, "exr" and "png"; NULL: that of the path's extension. The path "-" is
+// standard output and needs a format. Three formats write files next to the path: obj its materials,
+// gltf its data, and urdf its meshes.
 CAG_API int cag_session_export(CagSession *s, const char *path, const char *format);
 // Returns the name of image i that is shown, or NULL.
 CAG_API const char *cag_session_image(CagSession *s, size_t i);
@@ -176,7 +177,7 @@ CAG_API int cag_session_export_image(CagSession *s, const char *path, const char
                                      const CagImageOptions *options);
 // Returns the formats, ending with NULL.
 CAG_API const char *const *cag_export_formats(void);
-// Returns what a format is, in a phrase, or NULL if there is no such format.
+// Returns a short description of a format, or NULL if there is no such format.
 CAG_API const char *cag_export_format_story(const char *format);
 
 // A part of a picture: pixels from its left and top edge. A width of 0 means the whole picture.
@@ -208,7 +209,7 @@ CAG_API const char *cag_find_povray(char *buffer, size_t size);
 
 // --- Interactive use ---
 // Definitions remain until the next run, check, format, document, or clear call. A name can be
-// defined again, and everything that depends on it then follows.
+// defined again; everything that depends on it is then updated.
 
 // Evaluates definitions, statements, and expressions. Calls `value` (may be NULL) with the printed
 // value and the type of each expression.
@@ -265,7 +266,7 @@ CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, 
 CAG_API void cag_session_document_names(CagSession *s,
                                         void (*give)(void *context, const char *name),
                                         void *context);
-// Writes what the `///` comments of a script say about its definitions and params.
+// Writes the documentation in the `///` comments of a script.
 CAG_API int cag_session_document_text(CagSession *s, const char *name, const char *text,
                                       size_t length, bool styled, FILE *out);
 typedef struct CagSiteOptions {
@@ -278,7 +279,7 @@ typedef struct CagSiteOptions {
   void *context;
 } CagSiteOptions;
 // Writes all documentation as a site of static pages into a folder, which is created. Pictures that
-// exist are kept. Fails if an example does not do what it says.
+// exist are kept. Fails if an example does not print the expected output.
 CAG_API int cag_session_write_site(CagSession *s, const char *folder,
                                    const CagSiteOptions *options);
 

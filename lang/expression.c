@@ -44,8 +44,8 @@ bool cag_parse_deeper(Parser *p) {
     p->depth++;
     return true;
   }
-  cag_parse_error(p, CAG_ERR_too_deep, cag_parse_here(p), "operators nest more than %d deep here",
-                  CAG_MAX_NESTING);
+  cag_parse_error(p, CAG_ERR_too_deep, cag_parse_here(p),
+                  "operators are nested more than %d deep here", CAG_MAX_NESTING);
   return false;
 }
 
@@ -212,7 +212,7 @@ static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
   if (over) {
     CagDiagnostic *d =
         cag_parse_error(p, CAG_ERR_if_without_else, opening, "this `if` has no `else`");
-    cag_parse_help(d, "its value in the other case is missing: else none");
+    cag_parse_help(d, "add a value for the other case, such as else none");
   } else {
     cag_parse_unexpected(p, value, CAG_ERR_expected_word, "`else`");
   }
@@ -338,7 +338,7 @@ static CagExpr *range_end(Parser *p) {
   if (!p->panic && (kind == CAG_TOKEN_RIGHT_SQUARE || kind == CAG_TOKEN_RIGHT_PAREN)) {
     cag_parse_help(
         cag_parse_error(p, CAG_ERR_open_range, p->previous.span, "this range has no end"),
-        kind == CAG_TOKEN_RIGHT_SQUARE ? "the last element is number -1: 1..-1"
+        kind == CAG_TOKEN_RIGHT_SQUARE ? "the last element has the index -1: 1..-1"
                                        : "an unbounded range ends at inf");
     return cag_parse_error_node(p);
   }
@@ -397,7 +397,7 @@ static void report_chained_comparison(Parser *p, const CagExpr *e) {
   char a[QUOTE_SIZE], b[QUOTE_SIZE], c[QUOTE_SIZE], op1[8], op2[8];
   const char *middle = cag_parse_quote(p, e->as.binary.right->span, b, sizeof b, "b");
   CagDiagnostic *d =
-      cag_parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons do not chain");
+      cag_parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons cannot be chained");
   cag_parse_help(d, "write %s %s %s and %s %s %s",
                  cag_parse_quote(p, e->as.binary.left->span, a, sizeof a, "a"),
                  cag_parse_quote(p, first, op1, sizeof op1, "<"), middle, middle,

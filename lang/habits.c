@@ -5,8 +5,8 @@
 
 #include "lang/parse.h"
 
-const char cag_parse_minus_help[] = "a line that starts with `-` is a new statement; to continue "
-                                    "the line above, end that line with `-`";
+const char cag_parse_minus_help[] =
+    "a line that starts with `-` is a new statement; to continue the previous line, end that line with `-`";
 
 // Reports a form and enters panic mode. Returns true.
 static bool report_form(Parser *p, CagSpan span, CagForeignSyntax id, const char *message) {
@@ -38,7 +38,8 @@ static bool braces_behind(Parser *p, const CagExpr *before) {
   if (is_name(before, "try"))
     return report_form(p, before->span, CAG_FOREIGN_try_braces, "`try` does not exist in cag");
   if (is_called(before, "switch") || is_called(before, "match"))
-    return report_form(p, before->span, CAG_FOREIGN_switch_word, "a choice is an `if`");
+    return report_form(p, before->span, CAG_FOREIGN_switch_word,
+                       "a conditional is written with `if`");
   for (size_t i = 0; i < sizeof operations / sizeof *operations; i++)
     if (is_called(before, operations[i].name) || is_name(before, operations[i].name))
       return report_form(p, cag_parse_here(p), operations[i].id,
@@ -112,8 +113,9 @@ static bool text_behind(Parser *p, const CagExpr *before) {
   static const char *const printing[] = {"echo", "puts", "println", "printf"};
   if (before->kind != CAG_EXPR_NAME) return false;
   if (before->span.end == parse_current(p)->span.start)
-    return report_form(p, before->span, CAG_FOREIGN_prefixed_text,
-                       "a text has no letter before it: the { } of any text hold expressions");
+    return report_form(
+        p, before->span, CAG_FOREIGN_prefixed_text,
+        "a text has no letter before it; the { } of any text can contain expressions");
   for (size_t i = 0; i < sizeof printing / sizeof *printing; i++)
     if (is_name(before, printing[i]))
       return report_form(p, before->span, CAG_FOREIGN_print_word, "values are printed by `print`");
@@ -148,7 +150,7 @@ bool cag_parse_foreign_behind(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_COLON:
     if (p->bracket_count || !before || before->kind != CAG_EXPR_NAME) return false;
     return report_form(p, cag_parse_here(p), CAG_FOREIGN_typed_definition,
-                       "a definition states no type");
+                       "a definition does not state a type");
   default: return false;
   }
 }

@@ -41,8 +41,8 @@ static void help(CagDiagnostic *d, const char *format, ...) {
   cag_diagnostic_set_help(d, "%s", text);
 }
 
-const char cag_lexer_brace_help[] = "the { } of a text hold an expression; write \\{ for a brace "
-                                    "itself, or `...` for the whole text";
+const char cag_lexer_brace_help[] =
+    "the { } of a text contain an expression; write \\{ for a brace, or `...` around the whole text";
 
 static byte at(const CagLexer *lx, uint32_t offset) { return (byte)lx->source->text[offset]; }
 
@@ -153,7 +153,7 @@ static bool skip_block_comment(CagLexer *lx, bool *newline) {
     if (p >= length) {
       lx->position = length;
       lx->cut_off = true;
-      help(report(lx, CAG_ERR_comment_not_closed, start, start + 2, "this comment has no end"),
+      help(report(lx, CAG_ERR_comment_not_closed, start, start + 2, "this comment is never closed"),
            "close it with */");
       return false;
     }
@@ -239,7 +239,7 @@ static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t
   const char *text = lx->source->text;
   int digits = (int)(start - number), length = (int)(end - start);
   if (length > 40 || digits > 40) {
-    report(lx, CAG_ERR_unknown_unit, start, end, "a number runs into a long word");
+    report(lx, CAG_ERR_unknown_unit, start, end, "a number is followed directly by a long word");
     return;
   }
   if (text[start] == '_') {
@@ -270,7 +270,7 @@ static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t
   if (meant)
     help(d, "write %.*s%s, or %.*s * %.*s", digits, text + number, meant, digits, text + number,
          length, text + start);
-  else help(d, "to multiply write %.*s * %.*s", digits, text + number, length, text + start);
+  else help(d, "to multiply, write %.*s * %.*s", digits, text + number, length, text + start);
 }
 
 static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -450,8 +450,9 @@ static uint32_t lex_code_point(CagLexer *lx, uint32_t backslash, size_t *length)
   if (at(lx, p) == '}') p++;
   if (good) put_code_point(lx, length, c);
   else
-    help(report(lx, CAG_ERR_bad_code_point, backslash, p, "this escape names no character"),
-         "\\u{3b8} holds one to six hexadecimal digits, up to 10FFFF");
+    help(
+        report(lx, CAG_ERR_bad_code_point, backslash, p, "this escape sequence is not a character"),
+        "\\u{3b8} contains one to six hexadecimal digits, up to 10FFFF");
   return p;
 }
 
@@ -469,12 +470,14 @@ static uint32_t lex_escape(CagLexer *lx, uint32_t backslash, size_t *length) {
     if (c == 0 || c == '\n' || c == '\r') return backslash + 1; // the missing quote is reported
     uint32_t n;
     code_point(lx, backslash + 1, &n);
-    CagDiagnostic *d = report(lx, CAG_ERR_unknown_escape, backslash, backslash + 1 + n,
-                              "`%.*s` is not an escape", (int)n + 1, lx->source->text + backslash);
+    CagDiagnostic *d =
+        report(lx, CAG_ERR_unknown_escape, backslash, backslash + 1 + n,
+               "`%.*s` is not an escape sequence", (int)n + 1, lx->source->text + backslash);
     if (c == 'x') help(d, "write \\u{41} for the character with the number 41");
     else if (c == 'r') help(d, "write \\u{d} for a carriage return");
     else if (c == '\'') help(d, "a single quote needs no backslash");
-    else help(d, "the escapes are \\\" \\\\ \\n \\t \\{ \\} \\u{...}; a backslash itself is \\\\");
+    else
+      help(d, "the escape sequences are \\\" \\\\ \\n \\t \\{ \\} \\u{...}; a backslash is \\\\");
     return backslash + 1 + n;
   }
   }
@@ -484,7 +487,7 @@ static uint32_t lex_escape(CagLexer *lx, uint32_t backslash, size_t *length) {
 static void text_not_closed(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t end) {
   while (end > quote + 1 && (at(lx, end - 1) == '\r' || at(lx, end - 1) == ' ')) end--;
   CagDiagnostic *d =
-      report(lx, CAG_ERR_text_not_closed, quote, end, "this text does not end on its line");
+      report(lx, CAG_ERR_text_not_closed, quote, end, "this text is not closed on its line");
   if (lx->text_count) help(d, "%s", cag_lexer_brace_help);
   else help(d, "close it with \"; a line break inside is \\n");
   lx->text_count = 0;
@@ -535,7 +538,7 @@ static void lex_raw_text(CagLexer *lx, CagToken *t) {
   const char *close = memchr(text + start, '`', lx->source->length - start);
   if (!close) {
     lx->cut_off = true;
-    help(report(lx, CAG_ERR_raw_text_not_closed, start - 1, start, "this raw text has no end"),
+    help(report(lx, CAG_ERR_raw_text_not_closed, start - 1, start, "this raw text is never closed"),
          "close it with `");
     finish(lx, t, CAG_TOKEN_ERROR, (uint32_t)lx->source->length);
     return;
@@ -704,14 +707,14 @@ static void unknown_character(CagLexer *lx, CagToken *t) {
   if (c == '$' && special_variable(lx, t)) return;
   if (c < 32 || c == 127)
     d = report(lx, CAG_ERR_unknown_character, start, start + n,
-               "the control character U+%04X does not belong here", (unsigned)c);
+               "the control character U+%04X is not allowed here", (unsigned)c);
   else
-    d = report(lx, CAG_ERR_unknown_character, start, start + n, "`%.*s` does not belong here",
+    d = report(lx, CAG_ERR_unknown_character, start, start + n, "`%.*s` is not allowed here",
                (int)n, lx->source->text + start);
   for (size_t i = 0; i < sizeof typeset / sizeof *typeset; i++)
     if (typeset[i].character == c) help(d, "write %s", typeset[i].meant);
-  if (c == '~') help(d, "the opposite of a condition is `not c`");
-  if (c == '\\') help(d, "a function is written x => e, and a line goes on after an operator");
+  if (c == '~') help(d, "the negation of a condition is `not c`");
+  if (c == '\\') help(d, "a function is written x => e; a line continues after an operator");
   if (c == '@') help(d, "a product of transforms is written A * B");
   finish(lx, t, CAG_TOKEN_ERROR, start + n);
 }

@@ -40,7 +40,7 @@ static void count_opener(Parser *p, const CagToken *t, CagTokenKind closer) {
     return;
   }
   p->excess++;
-  cag_parse_error(p, CAG_ERR_too_deep, t->span, "brackets nest more than %d deep here",
+  cag_parse_error(p, CAG_ERR_too_deep, t->span, "brackets are nested more than %d deep here",
                   CAG_MAX_NESTING);
 }
 
@@ -301,7 +301,7 @@ static void report_ternary(Parser *p, const CagExpr *condition) {
   CagExpr *a = cag_parse_expression(p), *b = NULL;
   if (cag_parse_accept(p, CAG_TOKEN_COLON)) b = cag_parse_expression(p);
   char first[QUOTE_SIZE], second[QUOTE_SIZE], third[QUOTE_SIZE];
-  CagDiagnostic *d = cag_parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
+  CagDiagnostic *d = cag_parse_error(p, CAG_ERR_ternary, here, "`?` is not an operator");
   cag_parse_help(d, "write if %s then %s else %s",
                  condition ? cag_parse_quote(p, condition->span, first, sizeof first, "c") : "c",
                  cag_parse_quote(p, a->span, second, sizeof second, "a"),
@@ -319,11 +319,11 @@ static void report_habit(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_EQUALS:
     d = cag_parse_error(p, CAG_ERR_equals_in_expression, here,
                         "`=` defines a name, and is not allowed here");
-    cag_parse_help(d, "to compare write ==");
+    cag_parse_help(d, "to compare, write ==");
     return;
   case CAG_TOKEN_ASSIGN_OPERATOR:
     d = cag_parse_error(p, CAG_ERR_assignment_operator, here,
-                        "values cannot be changed: no value can be assigned");
+                        "values cannot be changed or assigned");
     cag_parse_help(d, "define a new name for the new value");
     return;
   case CAG_TOKEN_NOT:
@@ -337,7 +337,7 @@ static void report_habit(Parser *p, const CagExpr *before) {
     cag_parse_help(d, "write if c then %s else b", value);
     return;
   case CAG_TOKEN_FOR:
-    d = cag_parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension the loop comes first");
+    d = cag_parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension, the loop comes first");
     cag_parse_help(d, "write [for x in xs: %s]", value);
     return;
   case CAG_TOKEN_BY:
@@ -353,7 +353,7 @@ static void report_habit(Parser *p, const CagExpr *before) {
     if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
       return;
     d = cag_parse_error(p, CAG_ERR_format_spec, here,
-                        "the { } of a text hold an expression and no format");
+                        "the { } of a text contain an expression without a format");
     cag_parse_help(d, "write {text(%s, digits: 2)}", value);
     return;
   default: return;

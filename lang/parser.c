@@ -126,7 +126,7 @@ static const char *plain_text(Parser *p, const char *what) {
   if (strlen(text) != t->as.text.length)
     cag_parse_help(cag_parse_error(p, CAG_ERR_text_not_plain, t->span,
                                    "%s has no character \\u{0} in it", what),
-                   "leave the character out");
+                   "remove the character");
   cag_parse_advance(p);
   return text;
 }
@@ -188,9 +188,10 @@ static void import_names(Parser *p, CagStatement *s) {
   do {
     CagToken name;
     if (parse_kind(p) == CAG_TOKEN_STAR) {
-      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p),
-                                     "expected a name of the module, found `*`"),
-                     "name what the file uses, or import the module and write module.name");
+      cag_parse_help(
+          cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p),
+                          "expected a name of the module, found `*`"),
+          "list the names that the file uses, or import the module and write module.name");
       break;
     }
     if (!statement_name(p, &name, "a name of the module")) break;
@@ -295,7 +296,7 @@ static bool name_habit(Parser *p) {
     if (next.kind == CAG_TOKEN_LEFT_PAREN && strcmp(word.as.name, "repeat") == 0) return false;
     cag_parse_help(cag_parse_error(p, CAG_ERR_loop, word.span,
                                    "there is no `%s`; values cannot be changed", word.as.name),
-                   "a list is built by [for x in xs: ...], a value by %s",
+                   "to build a list, write [for x in xs: ...]; to build a value, use %s",
                    cag_foreign_syntax(CAG_FOREIGN_while_loop));
     return true;
   }
@@ -305,7 +306,7 @@ static bool name_habit(Parser *p) {
                 "module", "export", "final", "static", "set")) {
     cag_parse_help(cag_parse_mend(p, CAG_ERR_definition_keyword, word.span,
                                   "a definition starts with its name"),
-                   "leave `%s` out", word.as.name);
+                   "remove `%s`", word.as.name);
     p->habit = word.span.start;
     cag_parse_advance(p);
   }
@@ -342,8 +343,9 @@ bool cag_parse_habit(Parser *p, bool in_block) {
     }
     CagDiagnostic *d = cag_parse_error(p, CAG_ERR_block_statement, here,
                                        "`%s` is only allowed at the top level", found);
-    cag_parse_help(d, kind == CAG_TOKEN_PRINT ? "write trace(x) to see a value from within"
-                                              : "a block has definitions, asserts and its value");
+    cag_parse_help(d, kind == CAG_TOKEN_PRINT
+                          ? "write trace(x) to see a value from within"
+                          : "a block consists of definitions, asserts, and its value");
     return true;
   }
   return false;
@@ -368,7 +370,7 @@ static CagStatement *expression_statement(Parser *p) {
                                     "an expression alone is not a statement");
   if (e->kind == CAG_EXPR_BINARY && e->as.binary.op == CAG_OP_EQUAL &&
       e->as.binary.left->kind == CAG_EXPR_NAME)
-    cag_parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
+    cag_parse_help(d, "to define %s, write =", e->as.binary.left->as.name.id);
   else if (below && p->module->source->text[e->span.start] == '-')
     cag_parse_help(d, "%s", cag_parse_minus_help);
   else cag_parse_help(d, "write print %s, or show it, or give it a name", said);
@@ -564,7 +566,7 @@ static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
   unsigned char byte = (unsigned char)source->text[bad];
   if (byte == 0)
     cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,
-                                                "a zero byte: this is not text"),
+                                                "this is not text: it contains a zero byte"),
                             "a script is a text in UTF-8");
   else
     cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,

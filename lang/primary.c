@@ -203,7 +203,7 @@ static void close_block(Parser *p, Opened o, const CagExpr *value) {
       (cag_parse_is_word(kind) || cag_parse_begins_expression(kind))) {
     cag_parse_help(
         cag_parse_error(p, CAG_ERR_expression_statement, value->span,
-                        "this value is not the last thing of its block, so nothing uses it"),
+                        "this value is not the last expression of its block, so it is not used"),
         "%s", kind == CAG_TOKEN_MINUS ? cag_parse_minus_help : "give it a name, or remove it");
     return;
   }
@@ -379,7 +379,7 @@ CagExpr *cag_parse_missing(Parser *p) {
     cag_parse_help(d, "write 0.%s", cag_parse_quote(p, number, before, sizeof before, "5"));
   } else if (kind == CAG_TOKEN_RANGE || kind == CAG_TOKEN_RANGE_OPEN) {
     d = cag_parse_error(p, CAG_ERR_open_range, here, "this range has no start");
-    cag_parse_help(d, "the first element is number 0: 0..3");
+    cag_parse_help(d, "the first element has the index 0: 0..3");
   } else if (kind == CAG_TOKEN_SPREAD) {
     d = cag_parse_error(p, CAG_ERR_spread_misplaced, here,
                         "`...` is only allowed in a list or a record");
@@ -399,13 +399,13 @@ CagExpr *cag_parse_missing(Parser *p) {
   } else {
     d = cag_parse_error(p, CAG_ERR_expected_expression, here, "expected an expression, found %s",
                         found);
-    if (kind == CAG_TOKEN_PLUS) cag_parse_help(d, "a number has no + before it");
+    if (kind == CAG_TOKEN_PLUS) cag_parse_help(d, "remove the +");
     else if (kind == CAG_TOKEN_EQUALS && p->previous.kind == CAG_TOKEN_GREATER)
       cag_parse_help(d, "write >=");
     else if (kind == CAG_TOKEN_SHOW || kind == CAG_TOKEN_PRINT || kind == CAG_TOKEN_ASSERT)
       cag_parse_help(d, "it starts a statement, not a value");
     else if (kind == CAG_TOKEN_COMMA && p->previous.kind == CAG_TOKEN_COMMA)
-      cag_parse_help(d, "one comma too many");
+      cag_parse_help(d, "remove one comma");
   }
   return cag_parse_error_node(p);
 }
@@ -485,7 +485,7 @@ static CagArgument argument(Parser *p, bool *named) {
     cag_parse_advance(p);
     if (foreign)
       cag_parse_help(cag_parse_mend(p, CAG_ERR_argument_equals, cag_parse_here(p),
-                                    "an argument by name is written with a colon"),
+                                    "a named argument is written with a colon"),
                      "write %s: value", a.name);
     cag_parse_advance(p);
     *named = true;
@@ -502,7 +502,7 @@ static CagArgument argument(Parser *p, bool *named) {
   a.value = cag_parse_expression(p);
   if (*named && !p->panic && a.value->kind != CAG_EXPR_ERROR)
     cag_parse_help(cag_parse_mend(p, CAG_ERR_position_after_name, a.value->span,
-                                  "arguments by position come before those by name"),
+                                  "positional arguments come before named ones"),
                    "name it as well, or move it to the front");
   return a;
 }

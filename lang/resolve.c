@@ -206,7 +206,7 @@ static bool allowed_in_param(Resolver *r, const CagExpr *e, const CagDecl *d) {
     return true;
   CagDiagnostic *error = report(
       r, CAG_ERR_param_not_builtin, e->span,
-      "the param %s can use built-in names only, but %s is defined in the file", r->param, d->name);
+      "the param %s can use only built-in names, but %s is defined in the file", r->param, d->name);
   cag_diagnostic_set_help(error, "write its value");
   cag_diagnostic_add_note(error, CAG_NOTE_RELATED, r->module->source, d->span, "defined here");
   return false;
@@ -216,7 +216,7 @@ static void walk_name(Resolver *r, CagExpr *e) {
   const char *name = e->as.name.id;
   if (is_blank(name)) {
     CagDiagnostic *d =
-        report(r, CAG_ERR_underscore_value, e->span, "`_` is a value that is not used");
+        report(r, CAG_ERR_underscore_value, e->span, "`_` stands for a value that is not used");
     cag_diagnostic_set_help(d, "give it a name in its definition");
     return;
   }
@@ -285,8 +285,9 @@ static void walk_parameters(Resolver *r, CagFunctionAst *f) {
       r->defaults = outer_defaults;
       r->default_index = outer_index;
     } else if (with_default) {
-      CagDiagnostic *d = report(r, CAG_ERR_default_order, p->decl->span,
-                                "%s has no default, but comes after one that has", p->decl->name);
+      CagDiagnostic *d =
+          report(r, CAG_ERR_default_order, p->decl->span,
+                 "%s has no default, but comes after a parameter with a default", p->decl->name);
       cag_diagnostic_set_help(d, "parameters with defaults come last");
       cag_diagnostic_add_note(d, CAG_NOTE_RELATED, r->module->source, with_default->decl->span,
                               "the parameter with a default");

@@ -101,7 +101,7 @@ command_page() {
         print term("**XDG_STATE_HOME**", "the folder of `cag/history`, the history of the REPL (`~/.local/state`)")
         print term("**NO_COLOR**", "if set, errors have no colors")
         print term("**TMPDIR**", "the folder of temporary files (`/tmp`)")
-        print term("**PATH**", "the folders in which POV-Ray is searched")
+        print term("**PATH**", "the folders in which `povray` is searched for")
         examples()
       } else {
         print "**cag " command "**" operand_text(command) " \\[*OPTION* ...\\]"

@@ -128,7 +128,7 @@ static CagStatus check_refinement(const double *x, size_t count, const double *y
   for (size_t j = 0; j < n; j++, run++) {
     if (j > 0 && y[j] < y[j - 1])
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "refined", (long)j,
-                      "`refined` must not decrease: it does at refined[%zu]", j);
+                      "`refined` must not decrease: it decreases at refined[%zu]", j);
     if (j > 0 && y[j] != y[j - 1]) run = 1;
     if (run > (size_t)p + 1)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "refined", (long)j,

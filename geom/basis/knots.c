@@ -88,19 +88,18 @@ CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err) {
   }
   if (!(knots[p] < knots[n]))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", p,
-                    "the usable range of the knots, knots[%d]..knots[%zu], is %s..%s and so has no "
-                    "length",
+                    "the usable range of the knots, knots[%d]..knots[%zu]= %s..%s, has no length",
                     p, n, cag_number_text(knots[p], a), cag_number_text(knots[n], b));
   for (size_t i = 0, run = 1; i < count; i++, run++) {
     if (i > 0 && knots[i] != knots[i - 1]) run = 1;
     bool end = knots[i] <= knots[p] || knots[i] >= knots[n];
     size_t most = end ? (size_t)p + 1 : (size_t)p;
     if (run > most)
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
-                      "the knot %s occurs more than %zu times: %s %s knot of degree %d may be "
-                      "repeated %zu times, more would tear the curve",
-                      cag_number_text(knots[i], a), most, cag_article(end ? "end" : "inner"),
-                      end ? "end" : "inner", p, most);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
+          "the knot %s occurs more than %zu times: %s %s knot of degree %d may occur at most %zu times, or the curve would be discontinuous",
+          cag_number_text(knots[i], a), most, cag_article(end ? "end" : "inner"),
+          end ? "end" : "inner", p, most);
   }
   return CAG_OK;
 }

@@ -32,8 +32,8 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
   if (status) return status;
   if (distinct >= needed) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_underdetermined, "points", -1,
-                  "%zu coefficients need as many points with different x, found %zu", needed,
-                  distinct);
+                  "%zu coefficients need at least as many points with different x, found %zu",
+                  needed, distinct);
 }
 
 // Converts coefficients of p((x - m) / h), in place, to those of powers of x: Horner's scheme on
@@ -84,7 +84,7 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
 
 static CagStatus fail_sign(const char *what, size_t i, CagError *err) {
   return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "points", (long)i,
-                  "%s: `points`[%zu] is not, so its logarithm is undefined", what, i);
+                  "%s; the logarithm of `points`[%zu] is undefined", what, i);
 }
 
 // The line through the logarithms.

@@ -48,11 +48,11 @@ static CagStatus read_points(BoolWork *w, const Operand *o, uint32_t *number) {
     const bool fits = fabs(p.x) <= MOST_COORDINATE && fabs(p.y) <= MOST_COORDINATE &&
                       fabs(p.z) <= MOST_COORDINATE;
     if (!fits)
-      return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_vertex_out_of_range, o->argument,
-                      o->index < 0 ? (long)i : o->index,
-                      "vertices of operands are at most 1e100 from 0 along each axis: vertex %zu "
-                      "of %s is [%g, %g, %g]",
-                      i, name_of(o, name), p.x, p.y, p.z);
+      return cag_fail(
+          w->err, CAG_E_ARGUMENT, CAG_ERR_vertex_out_of_range, o->argument,
+          o->index < 0 ? (long)i : o->index,
+          "coordinates of operands must be at most 1e100: vertex %zu of %s is [%g, %g, %g]", i,
+          name_of(o, name), p.x, p.y, p.z);
     number[i] = cag_bool_points_add(&w->points, p);
     if (number[i] == BOOL_NONE) return cag_fail_memory(w->err);
     if (cag_stop_check(w->err)) return w->err->status;
@@ -67,8 +67,7 @@ static CagStatus open_at(BoolWork *w, const Operand *o, const CagMeshEdge *e, si
   return cag_fail(
       w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, o->argument,
       o->index < 0 ? (long)cag_mesh_edge_triangle(e) : o->index,
-      "the mesh of %s must be closed, with each edge run once in each direction: the edge from "
-      "[%g, %g, %g] to [%g, %g, %g] is run %zu times that way and %zu times back",
+      "the mesh of %s must be closed, with each edge traversed once in each direction: the edge from [%g, %g, %g] to [%g, %g, %g] is traversed %zu times forward and %zu times backward",
       name_of(o, name), p.x, p.y, p.z, q.x, q.y, q.z, ahead, back);
 }
 
@@ -104,10 +103,10 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
   char name[64];
   // Within rounding, results of other operations may be oriented either way.
   if (sum >= -rounding * size - SNAP * most * area) return CAG_OK;
-  return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_inside_out, o->argument, o->index,
-                  "the triangles of %s must run counter-clockwise as seen from outside, its volume "
-                  "is %g: turn it with `flip`",
-                  name_of(o, name), sum / 6);
+  return cag_fail(
+      w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_inside_out, o->argument, o->index,
+      "the triangles of %s must be counter-clockwise as seen from outside, but its volume is %g; reverse it with `flip`",
+      name_of(o, name), sum / 6);
 }
 
 // A face of both operands, or a repeated face, is stored once: a hash table keyed by its corners.
@@ -317,9 +316,10 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   const size_t triangles = o[0].mesh->triangle_count + o[1].mesh->triangle_count;
   const size_t vertices = o[0].mesh->vertex_count + o[1].mesh->vertex_count;
   if (triangles > UINT32_MAX / 16 || vertices > UINT32_MAX / 16)
-    return cag_fail(w->err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, o[0].argument, -1,
-                    "operands have at most %lu vertices and triangles together, not %zu and %zu",
-                    (unsigned long)UINT32_MAX / 16, vertices, triangles);
+    return cag_fail(
+        w->err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, o[0].argument, -1,
+        "operands can have at most %lu vertices and triangles together, found %zu and %zu",
+        (unsigned long)UINT32_MAX / 16, vertices, triangles);
   FaceTable table = {NULL, 1023};
   while (table.mask < 2 * triangles) table.mask = 2 * table.mask + 1;
   table.slots = cag_malloc((table.mask + 1) * sizeof *table.slots);

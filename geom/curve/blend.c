@@ -106,10 +106,10 @@ static CagStatus chord_lengths(const CagVec3 *points, size_t n, double power, bo
     out[i] = pow(cag_norm(cag_sub(points[next], points[i])), power);
     if (next == 0 && !closed) break;
     if (!(out[i] > 0) || !isfinite(out[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)next,
-                      "points[%zu] and points[%zu] coincide, so there is no ratio of chords; drop "
-                      "one of them or give the ratio as a number",
-                      i, next);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)next,
+          "points[%zu] and points[%zu] coincide, so there is no ratio of chords; remove one of them, or give the ratio as a number",
+          i, next);
   }
   return CAG_OK;
 }

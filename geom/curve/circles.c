@@ -25,7 +25,7 @@ static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
 static CagStatus no_circle(CagError *err, const char *why) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_tangent_circle, "", -1,
-                  "no circle of this radius touches both in this way: %s", why);
+                  "no circle of this radius is tangent to both in this way: %s", why);
 }
 
 static CagVec3 foot(const CagTouched *line, CagVec3 p) {
@@ -64,9 +64,10 @@ static CagStatus touch_line_circle(const CagTouched *line, const CagTouched *cir
   double square = (r - h) * (r + h);
   if (fabs(r - h) <= SAME_LENGTH * (r + h + cag_norm(circle->p))) square = 0;
   if (square < 0 || r == 0)
-    return no_circle(err, inside ? "inside the circle the line is too far away, or the radius too "
-                                   "large"
-                                 : "the line is too far from the circle on this side");
+    return no_circle(
+        err, inside
+                 ? "the line is too far from the inside of the circle, or the radius is too large"
+                 : "the line is too far from the circle on this side");
   *center = cag_madd(near, choice.near ? -sqrt(square) : sqrt(square), d);
   return CAG_OK;
 }
@@ -81,7 +82,8 @@ static CagStatus touch_circles(const CagTouched *a, const CagTouched *b, double 
   const double x = (d * d + (ra - rb) * (ra + rb)) / (2 * d);
   double square = (ra - x) * (ra + x);
   if (fabs(ra - fabs(x)) <= SAME_LENGTH * (ra + d + cag_norm(a->p))) square = 0;
-  if (square < 0) return no_circle(err, "it is too small to reach both, or too large to fit");
+  if (square < 0)
+    return no_circle(err, "the radius is too small to reach both, or too large to fit");
   *center = cag_madd(cag_madd(a->p, x, e), choice.right ? -sqrt(square) : sqrt(square), left_of(e));
   return CAG_OK;
 }

@@ -74,20 +74,20 @@ static CagStatus check_range(CagConicForm form, double start, double end, CagErr
   const char *unit = is_angular(form) ? "deg" : "";
   const double shown = is_angular(form) ? 180 / M_PI : 1;
   if (!(start < end))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
-                    "the range %.12g%s..%.12g%s has no length; its start must be less than its end "
-                    "(reverse(C) runs the other way round)",
-                    start * shown, unit, end * shown, unit);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
+        "the range %.12g%s..%.12g%s has no length; its start must be less than its end (to reverse the curve, use reverse(C))",
+        start * shown, unit, end * shown, unit);
   if (is_angular(form) &&
       (strip(start) != strip(end) || off_pole(start) < POLE || M_PI - off_pole(end) < POLE))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_conic_domain, "range", -1,
-                    "the curve goes to infinity at 90deg and every half turn from there: the range "
-                    "%.12gdeg..%.12gdeg must lie between two such angles",
-                    start * shown, end * shown);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_conic_domain, "range", -1,
+        "the curve goes to infinity at odd multiples of 90deg: the range %.12gdeg..%.12gdeg must lie between two of them",
+        start * shown, end * shown);
   if (form == CAG_FORM_HYPERBOLIC && fmax(fabs(start), fabs(end)) > FARTHEST)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_conic_domain, "range", -1,
-                    "a hyperbolic parameter lies in -%g..%g; this range is %s..%s", FARTHEST,
-                    FARTHEST, cag_number_text(start, a), cag_number_text(end, b));
+                    "hyperbolic parameters must lie in -%g..%g, found %s..%s", FARTHEST, FARTHEST,
+                    cag_number_text(start, a), cag_number_text(end, b));
   return CAG_OK;
 }
 

@@ -67,8 +67,7 @@ static CagStatus single(const CagCurve *curve, const CagCurve **branch, CagError
   *branch = c->branch;
   if (c->branch) return CAG_OK;
   return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_single_curve, "", -1,
-                  "this conic (%s) is not one curve; branches(C) gives the curves that it has",
-                  c->name);
+                  "this conic (%s) is not a single curve; branches(C) returns its curves", c->name);
 }
 
 static CagStatus eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,

@@ -81,7 +81,7 @@ CagStatus cag_conic_transform(const CagConic *c, const CagTransform *t, CagConic
     for (int j = 0; j < 3; j++) m[i][j] = t->m[place[i]][place[j]];
   if (carry(s, m, out)) return CAG_OK;
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_singular_transform, "", -1,
-                  "the transform is singular: a conic has no image under it");
+                  "the transform is singular, so the conic has no image");
 }
 
 // --- Classification ---

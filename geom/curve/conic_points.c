@@ -87,12 +87,12 @@ CagStatus cag_conic_points(const CagCurve *c, size_t n, CagVec3 *out, CagError *
   if (cag_curve_conic_branch(c)) c = cag_curve_conic_branch(c);
   if (n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "n", -1,
-                    "both ends are among the points: `n` must be at least 2");
+                    "`n` must be at least 2, because both ends are included");
   if (!read_walk(c, &w))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_a_conic, "", -1,
-                    "expects a circle, ellipse, parabola or hyperbola or an arc of one, found a "
-                    "curve of kind \"%s\"; sample(C, n) serves any curve",
-                    c->kind->name);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_not_a_conic, "", -1,
+        "expects a circle, ellipse, parabola or hyperbola or an arc of one, found a curve of kind \"%s\"; sample(C, n) works for any curve",
+        c->kind->name);
   const double step_t = (c->end - c->start) / (double)(n - 1), d = w.rate * step_t;
   if (w.form == SECANT || w.form == TANGENT) {
     angular_points(&w, n, d, out);

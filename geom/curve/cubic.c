@@ -36,8 +36,7 @@ CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spa
     if (!(out[i] > out[i - 1]))
       return cag_fail(
           err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)i,
-          "points[%zu] and points[%zu] coincide, so the parameter cannot increase by their "
-          "distance; drop one of them or space the parameter uniformly",
+          "points[%zu] and points[%zu] coincide, so the parameter cannot increase by their distance; remove one of them, or use uniform parameters",
           i - 1, i);
   }
   return CAG_OK;

@@ -158,10 +158,10 @@ CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int 
 
 CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
   if (c->kind->to_nurbs) return c->kind->to_nurbs(c, out, err);
-  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "", -1,
-                  "a curve of kind \"%s\" has no exact NURBS form; approximate(C, tolerance) makes "
-                  "one within a tolerance",
-                  c->kind->name);
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "", -1,
+      "a curve of kind \"%s\" has no exact NURBS form; approximate(C, tolerance) returns one within a tolerance",
+      c->kind->name);
 }
 
 // Whether a planar transform maps all of space to the plane: see cag_curve_flatten.

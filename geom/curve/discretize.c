@@ -32,7 +32,7 @@ typedef struct Output {
 
 static CagStatus fail_count(CagError *err) {
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "tolerance", -1,
-                  "the tolerance requires more than %d points on one curve; use a larger one",
+                  "the tolerance requires more than %d points on one curve; use a larger tolerance",
                   MOST_POINTS);
 }
 

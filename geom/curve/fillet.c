@@ -400,6 +400,6 @@ CagStatus cag_curve_rounded(const CagCurve *c, double radius, CagCurve **out, Ca
     return round_polyline(c, p, n, closed, radius, out, err);
   if (c->dimension != 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
-                    "in space only polylines can be rounded");
+                    "in space, only polylines can be rounded");
   return round_curve(c, radius, out, err);
 }

@@ -321,8 +321,7 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
     if (!status && singular)
       status = cag_fail(
           err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", -1,
-          "no curve with these knots passes through all points: the equations are singular; "
-          "take \"averaged\" knots");
+          "no curve with these knots passes through all points: the equations are singular; use \"averaged\" knots");
     for (size_t r = 0; !status && r < n; r++)
       control[r] = cag_vec3(right[r], right[n + r], right[2 * n + r]);
   }
@@ -352,11 +351,10 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
   if (!status) status = find_parameters(d, count, u, err);
   for (size_t i = 1; !status && i < d->n; i++)
     if (!(u[i] > u[i - 1]))
-      status =
-          cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "points", (long)i,
-                   "points %zu and %zu have the same parameter, so no curve passes through both in "
-                   "turn; drop one of them",
-                   i - 1, i);
+      status = cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "points", (long)i,
+          "points %zu and %zu have the same parameter, so no curve passes through both in turn; remove one of them",
+          i - 1, i);
   if (!status) {
     fill_conditions(d, u, tangents, tangent_count, &a);
     status = choose_knots(d, &a, err);
@@ -509,10 +507,10 @@ static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double 
   }
   for (size_t i = 1; i < a->rows; i++)
     if (a->u[i] < a->u[i - 1])
-      return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
-                      "the parameters of points %zu and %zu lose their order; the coordinate must "
-                      "grow or fall all along the data",
-                      i - 1, i);
+      return cag_fail(
+          err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
+          "the parameters of points %zu and %zu lose their order; the coordinate must increase or decrease throughout the data",
+          i - 1, i);
   return CAG_OK;
 }
 
@@ -532,9 +530,10 @@ static CagStatus hold_coordinate(Design *a, int axis, double slack, int dimensio
     *curve = next;
   }
   char x[32], y[32];
-  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", -1,
-                  "after %d rounds the coordinate is still %s off, more than the error %s allowed",
-                  CAG_FIT_ROUNDS, cag_number_text(worst, x), cag_number_text(slack, y));
+  return cag_fail(
+      err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", -1,
+      "after %d rounds, the coordinate is still off by %s, more than the allowed error %s",
+      CAG_FIT_ROUNDS, cag_number_text(worst, x), cag_number_text(slack, y));
 }
 
 static CagStatus make_report(Design *a, const CagCurve *c, int rounds, CagFitReport *out,
@@ -568,7 +567,7 @@ CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int a
   CagStatus status = check_data(d, count, err);
   if (!status && axis >= d->dimension)
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "fixed", -1,
-                      "plane points have no z coordinate to hold");
+                      "plane points have no z coordinate to keep");
   Design a;
   if (!status) status = design_new(d->n, count, d->degree, &a, err);
   if (status) return status;

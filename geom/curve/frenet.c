@@ -39,9 +39,9 @@ CagStatus cag_chain_derivatives(const CagVec3 *d, const double *f, int order, Ca
                                 CagError *err) {
   double bell[CAG_MAX_DERIVATIVE + 1][CAG_MAX_DERIVATIVE + 1] = {{1}};
   if (f[0] == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_parameter_stands_still, "by", 0,
-                    "the first derivative of the old parameter by the new one is 0; it must not "
-                    "vanish where one is to stand for the other");
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_parameter_stands_still, "by", 0,
+        "the first derivative of the old parameter with respect to the new one must not be 0");
   for (int n = 1; n <= order; n++) {
     out[n - 1] = cag_vec3(0, 0, 0);
     for (int k = 1; k <= n; k++) {
@@ -59,19 +59,20 @@ CagStatus cag_triad_derivative(const CagVec3 m[3], const CagVec3 dm[3], double o
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       if (!(fabs(cag_dot(m[i], m[j]) - (i == j)) <= ORTHONORMAL))
-        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_frame_not_orthonormal, "triad", i,
-                        "the three vectors must be of length 1 and at right angles; vector %d %s",
-                        i, i == j ? "has another length" : "is not at right angles to another one");
+        return cag_fail(
+            err, CAG_E_ARGUMENT, CAG_ERR_frame_not_orthonormal, "triad", i,
+            "the three vectors must be unit vectors and perpendicular to each other; vector %d %s",
+            i, i == j ? "is not a unit vector" : "is not perpendicular to another one");
       out[i][j] = cag_dot(dm[i], m[j]);
       largest = fmax(largest, fabs(out[i][j]));
     }
   for (int i = 0; i < 3; i++)
     for (int j = 0; j <= i; j++)
       if (!(fabs(out[i][j] + out[j][i]) <= ORTHONORMAL * largest))
-        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_triad_not_rigid, "derivatives", i,
-                        "with these derivatives the vectors do not stay of length 1 and at right "
-                        "angles: those of %d and %d do not agree",
-                        j, i);
+        return cag_fail(
+            err, CAG_E_ARGUMENT, CAG_ERR_triad_not_rigid, "derivatives", i,
+            "with these derivatives, the vectors do not remain orthonormal: those of vectors %d and %d do not agree",
+            j, i);
   return CAG_OK;
 }
 

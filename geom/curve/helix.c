@@ -70,7 +70,7 @@ CagStatus cag_curve_helix(double radius, double pitch, double turns, double tape
                     "`turns` must not be 0: the helix would be a point");
   if (taper == 0 && pitch == 0 && fabs(turns) > 1)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_pitch, "pitch", -1,
-                    "with pitch 0 and no taper the turns lie on one circle; use circle(radius)");
+                    "with pitch 0 and no taper, the turns lie on one circle; use circle(radius)");
   const Helix like = {.radius = radius, .pitch = pitch, .turns = turns, .taper = taper};
   CagTransform frame = cag_transform_identity();
   frame.planar = false;
@@ -152,9 +152,9 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
                            CagError *err) {
   const Helix *c = (const Helix *)curve;
   if (!cag_transform_is_affine(t))
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "T", -1,
-                    "the image of a helix under a projection has no exact form; "
-                    "approximate(C, tolerance) first");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "T", -1,
+        "the image of a helix under a projection has no exact form; use approximate(C, tolerance) first");
   CagTransform frame = cag_transform_multiply(t, &c->frame);
   return make(c, &frame, curve->start, curve->end, c->phase, c->rate, out, err);
 }

@@ -18,7 +18,7 @@ CagStatus cag_curve_polynomial(const CagVec3 *coefficients, size_t n, double len
   char text[32];
   if (n > CAG_MAX_DEGREE + 1)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "coefficients", -1,
-                    "the degree is at most %d; these are %zu coefficients", CAG_MAX_DEGREE, n);
+                    "the degree must be at most %d, found %zu coefficients", CAG_MAX_DEGREE, n);
   if (!(length > 0) || !isfinite(length))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "length", -1,
                     "the length of a segment must be positive and finite, found %s",

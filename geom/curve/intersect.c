@@ -47,7 +47,7 @@ typedef struct Part {
 
 static CagStatus fail_overlap(CagError *err) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_overlap, "", -1,
-                  "the two overlap: they share more than isolated points");
+                  "the shapes overlap: they share more than isolated points");
 }
 
 static CagStatus merge(Found *found, CagError *err) {

@@ -137,10 +137,10 @@ static Frame frame_after(const Step *step, const Expansion *e, double h) {
 static CagStatus add_step(Natural *c, const Step *step, CagError *err) {
   char text[32];
   if (c->count == STEPS_MOST)
-    return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "curvature", -1,
-                    "curvature and torsion change so fast that at s = %s the curve has taken %d "
-                    "steps",
-                    cag_number_text(step->start, text), STEPS_MOST);
+    return cag_fail(
+        err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "curvature", -1,
+        "the curvature or torsion changes too fast: up to s = %s, the curve needed %d steps",
+        cag_number_text(step->start, text), STEPS_MOST);
   if (!CAG_RESERVE(c->steps, c->capacity, c->count + 1)) return cag_fail_memory(err);
   c->steps[c->count++] = *step;
   return CAG_OK;
@@ -222,9 +222,9 @@ static CagStatus read_frame(const CagTransform *t, Frame *out, CagError *err) {
     for (int j = 0; j < 3; j++) good = good && fabs(cag_dot(axis[i], axis[j]) - (i == j)) <= slack;
   good = good && cag_dot(cag_cross(axis[0], axis[1]), axis[2]) > 0;
   if (!good)
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_frame_not_orthonormal, "frame", -1,
-                    "`frame` must be a motion: its x, y and z axes are tangent, normal and "
-                    "binormal at the start, of length 1 and at right angles");
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_frame_not_orthonormal, "frame", -1,
+        "`frame` must be a rigid motion: its x, y, and z axes are the tangent, normal, and binormal at the start, which are perpendicular unit vectors");
   *out = (Frame){axis[3], cag_unit(axis[0]), axis[1], axis[2]};
   out->n = cag_unit(cag_madd(axis[1], -cag_dot(axis[1], out->t), out->t));
   out->b = cag_cross(out->t, out->n);
@@ -237,7 +237,7 @@ CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
   char text[32];
   if (!(length > 0) || !isfinite(length))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_length_not_positive, "length", -1,
-                    "`length` must be a positive length, found %s", cag_number_text(length, text));
+                    "`length` must be positive, found %s", cag_number_text(length, text));
   Frame start;
   CagStatus status = read_frame(frame, &start, err);
   if (status) return status;

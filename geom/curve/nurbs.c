@@ -279,10 +279,10 @@ CagStatus cag_knots_make(const char *type, size_t n, int degree, const CagVec3 *
     status = cag_curve_check_points(points, n, "points", err);
     if (!status) cag_knots_chord(points, n, degree, knots);
   } else
-    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_type, "knots", -1,
-                      "`knots` is \"open\", \"periodic\", \"chord\" or a list of numbers; this is "
-                      "\"%s\"",
-                      type);
+    status = cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_knot_type, "knots", -1,
+        "`knots` must be \"open\", \"periodic\", \"chord\", or a list of numbers, found \"%s\"",
+        type);
   return status;
 }
 
@@ -453,10 +453,10 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
     cag_transform_homogeneous(&m, c->homogeneous + 4 * i, h + 4 * i);
     if (dimension == 2) h[4 * i + 2] = 0;
     if (!affine && h[4 * i + 3] <= 0 && c->homogeneous[4 * i + 3] > 0) {
-      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_negative_weight, "T", (long)i,
-                        "the projection sends control point %zu to infinity or behind the center; "
-                        "trim the curve to the part in front of it first",
-                        i);
+      status = cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_negative_weight, "T", (long)i,
+          "the projection maps control point %zu to infinity or behind the center; trim the curve to the part in front of it first",
+          i);
       break;
     }
   }

@@ -86,7 +86,7 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
   const int p = c->degree;
   if (p >= CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "times", -1,
-                    "the degree is at most %d", CAG_MAX_DEGREE);
+                    "the degree must be at most %d", CAG_MAX_DEGREE);
   const size_t room = 2 * (c->count + (size_t)p + 1);
   double *z = cag_malloc(sizeof(double) * room), *h = cag_malloc(sizeof(double) * 4 * room);
   size_t n = 0;

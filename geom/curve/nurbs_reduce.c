@@ -169,8 +169,7 @@ CagStatus cag_curve_remove_knot(const CagCurve *c, double t, int times, double t
   int m = t > c->start && t < c->end ? cag_knots_multiplicity(n->knots, n->count, n->degree, t) : 0;
   if (times < 1 || m < times)
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_no_such_knot, "t", -1,
-                      "%s occurs %d times among the inner knots, so it cannot be taken away %d "
-                      "times",
+                      "%s occurs %d times among the inner knots, so it cannot be removed %d times",
                       cag_number_text(t, text), m, times);
   if (!status) status = spline_make(&s, n->degree, n->count, n->rational, err);
   if (!status) status = chain_make(&chain, n->degree, err);

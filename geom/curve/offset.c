@@ -63,7 +63,7 @@ static CagStatus shift_circle(const CagCurve *c, double d, CagVec3 center, doubl
   const double image = r - turns * d;
   if (!(image > CAG_CURVE_SAME * r))
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_collapses, "d", -1,
-                    "nothing is left of an arc of radius %s at the distance %s to its inside",
+                    "an arc of radius %s has no offset at the distance %s to its inside",
                     cag_number_text(r, a), cag_number_text(fabs(d), b));
   CagTransform t = cag_translate(cag_scaled(center, 1 - image / r));
   for (int i = 0; i < 2; i++) t.m[i][i] = image / r;
@@ -115,8 +115,9 @@ static CagStatus shift_polyline(const CagVec3 *v, size_t n, bool closed, double 
     // The intersection of the two shifted lines: d (n1 + n2) / (1 + n1 . n2).
     const double cosine = cag_dot(in, to);
     if (1 + cosine <= STRAIGHT_BACK) {
-      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "C", (long)i,
-                        "the polyline turns straight back at corner %zu: its offset has none", i);
+      status = cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "C", (long)i,
+          "the polyline turns straight back at corner %zu, where an offset has no corner", i);
       break;
     }
     p[m++] = cag_madd(v[i], d / (1 + cosine), cag_add(left_of(in), left_of(to)));
@@ -211,10 +212,10 @@ static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError
   if (best == n) {
     cag_free(found);
     char x[32], y[32];
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "d", -1,
-                    "the parts of the offset at the corner [%s, %s] do not meet: take a smaller "
-                    "distance",
-                    cag_number_text(corner.x, x), cag_number_text(corner.y, y));
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "d", -1,
+        "the parts of the offset at the corner [%s, %s] do not meet: use a smaller distance",
+        cag_number_text(corner.x, x), cag_number_text(corner.y, y));
   }
   const double t = found[best].t, u = found[best].t2;
   cag_free(found);

@@ -158,10 +158,9 @@ static CagStatus check_loop(const CagCurve *c, const char *argument, long index,
   char which[64] = "the outer boundary";
   if (index >= 0) snprintf(which, sizeof which, "%.30s[%ld]", argument, index);
   if (c->dimension != 2)
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, argument, index,
-                    "%s is a curve of space; a region is bounded by plane curves, whose points are "
-                    "[x, y]",
-                    which);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_not_planar, argument, index,
+        "%s is a space curve; a region must be bounded by plane curves, with points [x, y]", which);
   if (c->closed) return CAG_OK;
   CagVec3 p, q;
   CagStatus status = cag_curve_point(c, c->start, &p, err);
@@ -342,7 +341,7 @@ CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, C
   if (status) return status;
   if (n < 3)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "n", -1,
-                    "a polygon has at least 3 corners; `n` is %zu", n);
+                    "`n` must be at least 3, found %zu", n);
   CagVec3 *p = cag_malloc(sizeof *p * n);
   if (!p) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) {
@@ -431,8 +430,7 @@ CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagReg
                                CagError *err) {
   if (!t->planar)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_planar, "T", -1,
-                    "a region stays one under transforms made of plane data alone; this one is of "
-                    "space");
+                    "a region needs a transform of the plane, found one of space");
   CagRegion *image = allocate(r->count);
   if (!image) return cag_fail_memory(err);
   CagStatus status = CAG_OK;

@@ -544,8 +544,7 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   if (d < 0 && -d > disc * (1 + slack)) return cag_region_empty(out, err);
   if (d > FAR * size)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_far, "d", -1,
-                    "`d` is %s, more than 1e9 times the size of the region: what it grows to is a "
-                    "disc but for rounding",
+                    "`d` must be at most 1e9 times the size of the region, found %s",
                     cag_number_text(d, text));
   if (fabs(d) <= NO_DISTANCE * size) {
     *out = cag_region_retain(r);

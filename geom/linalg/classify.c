@@ -221,7 +221,7 @@ static CagStatus from_frame(const CagVec3 *p, const char *argument, CagTransform
     CagTransform e = edges(three, 2);
     if (flat(&e, 2))
       return fail_position(argument, CAG_ERR_collinear_points,
-                           "have three on one line; no three of the four may be", err);
+                           "include three on one line; no three of the four may be collinear", err);
   }
   CagTransform m = {{{p[0].x, p[1].x, 0, p[2].x},
                      {p[0].y, p[1].y, 0, p[2].y},
@@ -280,11 +280,12 @@ CagStatus cag_transform_from(const CagVec3 *points, const CagVec3 *images, size_
   else if (planar && n == 4) status = from_four(points, images, &t, err);
   else if (!planar && n == 4) status = from_simplex(points, images, 3, &t, err);
   else
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_count, "points", -1,
-                    planar ? "a transform of the plane is given by 2 (similarity), 3 (affine) or 4 "
-                             "(projective) pairs of points; these are %zu"
-                           : "a transform of space is given by 4 pairs of points; these are %zu",
-                    n);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_point_count, "points", -1,
+        planar
+            ? "expected 2 (similarity), 3 (affine), or 4 (projective) pairs of points in the plane, found %zu"
+            : "expected 4 pairs of points in space, found %zu",
+        n);
   if (status) return status;
   t.planar = planar;
   *out = t;

@@ -39,10 +39,10 @@ static CagStatus read_order(const char *order, int axes[3], CagError *err) {
     good = axes[i] >= 0 && axes[i] <= 2 && (i == 0 || axes[i] != axes[i - 1]);
   }
   if (good) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_euler_order, "order", -1,
-                  "`order` names three axes of which neighbors differ, such as \"zyx\" or "
-                  "\"zyz\"; this is \"%s\"",
-                  order ? order : "");
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_euler_order, "order", -1,
+      "`order` must name three axes of which neighbors differ, such as \"zyx\" or \"zyz\", found \"%s\"",
+      order ? order : "");
 }
 
 CagStatus cag_euler(double a, double b, double c, const char *order, CagTransform *out,
@@ -108,8 +108,7 @@ static CagStatus rotation_part(const CagTransform *t, double r[3][3], CagError *
     if (!near)
       return cag_fail(
           err, CAG_E_ARGUMENT, CAG_ERR_not_a_rotation, "T", -1,
-          "the linear part of the transform is not a rotation: its axes are not at right "
-          "angles or not of one length");
+          "the linear part of the transform is not a rotation: its axes are not perpendicular or not of equal length");
     scale = sqrt(aa) / fabs(w);
   }
   if (cag_transform_mirrors(t))
@@ -213,9 +212,9 @@ static CagStatus require_rigid(const CagTransform *t, const char *name, CagError
   if (cag_transform_is_similarity(t, &scale) && fabs(scale - 1) <= RIGID &&
       !cag_transform_mirrors(t))
     return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, name, -1,
-                  "only rigid motions can be mixed; this transform scales, shears, mirrors or "
-                  "projects");
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, name, -1,
+      "only rigid motions can be interpolated; this transform scales, shears, mirrors, or projects");
 }
 
 CagStatus cag_transform_mix(const CagTransform *a, const CagTransform *b, double t,

@@ -140,8 +140,7 @@ static bool finite_transform(const CagTransform *t) {
 static CagStatus fail_singular(CagError *err) {
   return cag_fail(
       err, CAG_E_DEGENERATE, CAG_ERR_singular_transform, "T", -1,
-      "the transform is singular (its determinant is 0 to rounding): it flattens space, "
-      "so that no transform undoes it");
+      "the transform is singular (its determinant is 0 to rounding): it flattens space, so it has no inverse");
 }
 
 // Adjugate of the linear part over its determinant: exact if the numbers are.
@@ -298,10 +297,10 @@ CagStatus cag_scale(CagVec3 factors, CagVec3 about, CagTransform *out, CagError 
   CagTransform t = space_identity();
   for (int i = 0; i < 3; i++) {
     if (f[i] == 0)
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_factor, "factor", i,
-                      "the factor along %c is 0, which would flatten the shape; "
-                      "project(onto: plane) is the way to flatten one",
-                      'x' + i);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_zero_factor, "factor", i,
+          "the factor along %c must not be 0; to flatten a shape, use project(onto: plane)",
+          'x' + i);
     t.m[i][i] = f[i];
   }
   fix_point(&t, about);
@@ -331,8 +330,7 @@ CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out, CagError *er
   CagVec3 d = {q.x - p.x, q.y - p.y, 0};
   if (cag_norm(d) == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "Q", -1,
-                    "P and Q are the same point of the XY plane, so that no line is given; take "
-                    "two different points");
+                    "P and Q are the same point of the XY plane; use two different points");
   double size = fmax(fabs(d.x), fabs(d.y)), x = d.x / size, y = d.y / size, n = x * x + y * y;
   CagTransform t = cag_transform_identity();
   t.m[0][0] = (x * x - y * y) / n;
@@ -373,7 +371,7 @@ CagStatus cag_plane_through(CagVec3 p, CagVec3 q, CagVec3 r, CagPlane *out, CagE
   CagVec3 a = cag_sub(q, p), b = cag_sub(r, p), n = cag_cross(a, b);
   if (!(cag_norm(n) > flat * cag_norm(a) * cag_norm(b)))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_collinear_points, "R", -1,
-                    "the points P, Q, R lie on one line, so that many planes pass through them");
+                    "P, Q, and R are collinear, so they do not determine a plane");
   *out = (CagPlane){p, direction(n)};
   return CAG_OK;
 }
@@ -408,7 +406,7 @@ CagStatus cag_plane_transform(const CagPlane *p, const CagTransform *t, CagPlane
     for (int i = 0; i < 4; i++) image[j] += row[i] * inverse.m[i][j];
   if (image[0] == 0 && image[1] == 0 && image[2] == 0)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_plane_at_infinity, "plane", -1,
-                    "the transform sends this plane to infinity");
+                    "the transform maps this plane to infinity");
   CagPlane r;
   status = cag_plane_from_row(image, &r, err);
   if (status) return status;
@@ -431,7 +429,7 @@ CagStatus cag_project_parallel(const CagPlane *onto, CagVec3 along, CagTransform
   double slope = cag_dot(onto->normal, v);
   if (fabs(slope) < SINGULAR)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_to_plane, "along", -1,
-                    "`along` is parallel to the plane `onto`, so that no point reaches it");
+                    "`along` must not be parallel to the plane `onto`");
   const double k[3] = {v.x / slope, v.y / slope, v.z / slope};
   CagTransform t = space_identity();
   for (int i = 0; i < 3; i++)
@@ -482,7 +480,7 @@ CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagE
   CagVec3 across = cag_cross(u, v);
   if (cag_norm(across) <= flat)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_axes, "y", -1,
-                    "`y` is parallel to `x`, so that the two give no plane");
+                    "`y` must not be parallel to `x`");
   CagVec3 w = direction(across);
   *out = frame_of(u, cag_cross(w, u), w, origin);
   return CAG_OK;
@@ -498,7 +496,7 @@ CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, C
   CagVec3 view = cag_sub(to, from);
   if (cag_norm(view) == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "to", -1,
-                    "`from` and `to` are the same point, so that there is no direction to look in");
+                    "`from` and `to` must be different points");
   CagVec3 z = direction(view), across = cag_cross(z, direction(up));
   if (cag_norm(across) <= flat)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_axes, "up", -1,

@@ -89,10 +89,10 @@ static bool sweep_folds(const CagCurve *section, const CagMotion *motion, char *
     const double t = path->start + (path->end - path->start) * i / PATH_SAMPLES;
     double measure;
     if (!folds_at(section, motion, path, t, &measure) || measure <= 1 + BEYOND) continue;
-    snprintf(what, size,
-             "its section reaches %.3g times as far as the path bends at v = %.4g, so that it "
-             "folds there",
-             measure, t);
+    snprintf(
+        what, size,
+        "its section reaches %.3g times as far as the center of curvature of the path at v = %.4g, so the surface folds there",
+        measure, t);
     return true;
   }
   return false;
@@ -188,11 +188,11 @@ static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, 
   if (meets) {
     const bool angle = cag_motion_path(motion)->angular;
     const double shown = angle ? 180 / M_PI : 1;
-    snprintf(what, size,
-             "its path at v = %.4g%s is %.4g from that at v = %.4g%s, where the tube is %.4g "
-             "thick, so that it crosses itself",
-             shown * disks[i].t, angle ? "deg" : "", cag_norm(cag_sub(disks[k].p, disks[i].p)),
-             shown * disks[k].t, angle ? "deg" : "", disks[i].radius + disks[k].radius);
+    snprintf(
+        what, size,
+        "its path at v = %.4g%s is %.4g from that at v = %.4g%s, where the tube is %.4g thick, so it crosses itself",
+        shown * disks[i].t, angle ? "deg" : "", cag_norm(cag_sub(disks[k].p, disks[i].p)),
+        shown * disks[k].t, angle ? "deg" : "", disks[i].radius + disks[k].radius);
   }
   cag_free(disks);
   return meets;
@@ -226,7 +226,7 @@ static bool loft_is_flat(const CagSurface *side, char *what, size_t size) {
   normal = cag_unit(normal);
   for (size_t i = 1; i < n; i++)
     if (fabs(cag_dot(cag_sub(p[i], p[0]), normal)) > flat * extent) return false;
-  snprintf(what, size, "its sections lie in one plane, so that the loft has no thickness");
+  snprintf(what, size, "its sections lie in one plane, so the loft has no volume");
   return true;
 }
 

@@ -644,8 +644,7 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
     return smaller > 0
                ? cag_fail(
                      err, CAG_E_UNSUPPORTED, CAG_ERR_sizes_apart, "A", -1,
-                     "one of the surfaces is %.3g mm large, the other %.3g mm: trim the larger "
-                     "one to what lies about the other",
+                     "the sizes of the surfaces differ too much, %.3g mm and %.3g mm; trim the larger one near the other",
                      m->size, smaller)
                : CAG_OK;
   for (int k = 0; !status && k < 2; k++) {

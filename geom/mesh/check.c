@@ -52,12 +52,13 @@ static CagStatus check_face(const Work *w, size_t f, const uint32_t *face, CagEr
                     (unsigned long)w->counts[f]);
   for (size_t k = 0; k < w->counts[f]; k++) {
     if (face[k] >= w->n)
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_index, "faces", (long)f,
-                      "`faces` must name vertices below %zu, their count: faces[%zu][%zu] = %lu",
-                      w->n, f, k, (unsigned long)face[k]);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_face_index, "faces", (long)f,
+          "vertex indices in `faces` must be less than the number of vertices, %zu: faces[%zu][%zu] = %lu",
+          w->n, f, k, (unsigned long)face[k]);
     if (w->around[face[k]] == f + 1)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
-                      "a face must not name a vertex twice: faces[%zu] names %lu again at [%zu]", f,
+                      "a face must not contain a vertex twice: faces[%zu] repeats %lu at [%zu]", f,
                       (unsigned long)face[k], k);
     w->around[face[k]] = f + 1;
   }

@@ -32,17 +32,17 @@ static CagStatus check(const CagVec3 *points, size_t n, size_t least, CagError *
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "points", -1,
                     "`points` must have fewer than %u points, found %zu", NONE, n);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                  "`points` must hold at least %zu points for a hull, found %zu", least, n);
+                  "a hull needs at least %zu points, found %zu", least, n);
 }
 
 static CagStatus fail_coincident(CagError *err) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_coincident_points, "points", -1,
-                  "all of `points` are the same point; a hull needs some that differ");
+                  "all `points` are the same; a hull needs different points");
 }
 
 static CagStatus fail_collinear(CagError *err) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_collinear_points, "points", -1,
-                  "all of `points` are on one line; their hull is a line from end to end");
+                  "all `points` are on one line, so they have no hull");
 }
 
 // --- Plane ---
@@ -227,9 +227,9 @@ static CagStatus first_points(const Hull *h, uint32_t b[4], CagError *err) {
   const int side =
       cag_side_of_plane(h->points[b[0]], h->points[b[1]], h->points[b[2]], h->points[b[3]]);
   if (most <= h->slack || side == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_coplanar_points, "points", -1,
-                    "all of `points` are in one plane, so their hull holds no volume; give them "
-                    "as points of the plane, or one beside it");
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_coplanar_points, "points", -1,
+        "all `points` are in one plane, so their hull has no volume; write them as points [x, y], or add a point outside of the plane");
   if (side > 0) {
     const uint32_t swap = b[0];
     b[0] = b[1];

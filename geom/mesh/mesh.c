@@ -11,10 +11,10 @@
 #include "geom/mesh/polygon.h"
 
 static CagStatus too_large(size_t vertices, size_t triangles, CagError *err) {
-  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, "", -1,
-                  "a mesh holds at most %lu vertices; %zu vertices and %zu triangles were asked "
-                  "for: use a larger tolerance",
-                  (unsigned long)UINT32_MAX, vertices, triangles);
+  return cag_fail(
+      err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, "", -1,
+      "a mesh can have at most %lu vertices, found %zu vertices and %zu triangles; use a larger tolerance",
+      (unsigned long)UINT32_MAX, vertices, triangles);
 }
 
 CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv, bool weld,
@@ -101,11 +101,11 @@ static CagStatus check_face(const uint32_t *face, size_t count, size_t f, size_t
   for (size_t k = 0; k < count; k++) {
     if (face[k] >= n)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_index, "faces", (long)f,
-                      "`faces` must name vertices 0 to %zu: faces[%zu][%zu] = %lu",
+                      "vertex indices in `faces` must be 0 to %zu: faces[%zu][%zu] = %lu",
                       n > 0 ? n - 1 : 0, f, k, (unsigned long)face[k]);
     if (seen[face[k]] == f + 1)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
-                      "a face must not name a vertex twice: faces[%zu] names %lu again at [%zu]", f,
+                      "a face must not contain a vertex twice: faces[%zu] repeats %lu at [%zu]", f,
                       (unsigned long)face[k], k);
     seen[face[k]] = f + 1;
   }

@@ -134,7 +134,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
 CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagError *err) {
   if (!(tolerance >= 0) || !isfinite(tolerance))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_weld_tolerance, "tolerance", -1,
-                    "`tolerance` must be a length of 0 or more, not %g", tolerance);
+                    "`tolerance` must be at least 0, found %g", tolerance);
   size_t n = m->vertex_count + 1;
   uint32_t *first = cag_malloc(n * sizeof *first), *number = cag_malloc(n * sizeof *number);
   CagStatus status = first && number ? CAG_OK : cag_fail_memory(err);

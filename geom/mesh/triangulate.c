@@ -301,10 +301,10 @@ static CagStatus check_loops(const double *xy, const size_t *counts, size_t loop
 }
 
 static CagStatus crosses(const double *xy, size_t point, CagError *err) {
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_polygon_self_intersection, "points", (long)point,
-                  "the boundary of a polygon must not cross or touch itself: it does at or beside "
-                  "points[%zu] = [%g, %g]",
-                  point, xy[2 * point], xy[2 * point + 1]);
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_polygon_self_intersection, "points", (long)point,
+      "the boundary of a polygon must not cross or touch itself: it does near points[%zu] = [%g, %g]",
+      point, xy[2 * point], xy[2 * point + 1]);
 }
 
 static CagStatus sweep_and_check(const double *xy, const size_t *counts, size_t loops,

@@ -36,8 +36,7 @@ static CagStatus check_rigid(const CagTransform *t, const char *argument, long l
   char place[48] = "";
   if (link >= 0) snprintf(place, sizeof place, " of links[%ld]", link);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, argument, link,
-                  "the transform%s must be a motion: turns and translations only, no scale, shear "
-                  "or mirror",
+                  "the transform%s must be a rigid motion, without scaling, shear, or reflection",
                   place);
 }
 
@@ -55,14 +54,14 @@ static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) 
   cag_number_text(l->high * unit, high);
   cag_number_text(l->home * unit, home);
   if (!isfinite(l->high - l->low))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_joint_limits, "limits", joint,
-                    "the limits of %s are %s%s..%s%s; they must be finite (a joint that "
-                    "turns freely has -360deg..360deg, say)",
-                    of, low, word, high, word);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_joint_limits, "limits", joint,
+        "the limits of %s are %s%s..%s%s; they must be finite; for a joint that rotates freely, use -360deg..360deg",
+        of, low, word, high, word);
   if (l->low > l->high)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_joint_limits, "limits", joint,
-                    "the limits of %s run from %s%s down to %s%s; the lower comes first", of, low,
-                    word, high, word);
+                    "the limits of %s decrease from %s%s to %s%s; the lower limit comes first", of,
+                    low, word, high, word);
   if (!(l->home >= l->low && l->home <= l->high))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_home_outside, "home", joint,
                     "the home value %s%s of %s lies outside of its limits %s%s..%s%s", home, word,
@@ -251,9 +250,9 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
   const bool regular = invert(work, n, r->coupling_inverse);
   cag_free(work);
   if (regular) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coupling_singular, "coupling", -1,
-                  "the coupling matrix is singular: the motors' angles do not determine the "
-                  "joints'; each joint needs a motor of its own");
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_coupling_singular, "coupling", -1,
+      "the coupling matrix is singular: the motor values do not determine the joint values; each joint needs a motor of its own");
 }
 
 void cag_robot_motors(const CagRobot *r, const double *q, double *motors) {

@@ -223,15 +223,15 @@ static size_t joint_at_limit(const CagRobot *r, const double *q) {
 // q is the last configuration that was reached.
 static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size_t step,
                            double part, const char *what, CagError *err) {
-  char cause[80] = "a singular place stands";
+  char cause[80] = "a singular configuration is";
   double at = (double)step - 1 + part;
   if (how == LEFT)
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_leaves, "", (long)step,
-                    "the way leaves the workspace before %s %zu (at %.6g): no joint values within "
-                    "the limits reach what follows",
-                    what, step, at);
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_path_leaves, "", (long)step,
+        "the path leaves the workspace before %s %zu (at %.6g): no joint values within the limits reach what follows",
+        what, step, at);
   size_t joint = joint_at_limit(r, q);
-  if (joint > 0) snprintf(cause, sizeof cause, "the limit of joint %zu stands", joint);
+  if (joint > 0) snprintf(cause, sizeof cause, "the limit of joint %zu is", joint);
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_jumps, "", (long)step,
                   "the joints would have to jump before %s %zu (at %.6g): %s in the way of this "
                   "branch; start from another `near`",
@@ -239,12 +239,12 @@ static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size
 }
 
 static CagStatus fail_singular(size_t step, bool between, CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_singular, "", (long)step,
-                  between ? "the way crosses a singular place between the steps %zu and %zu; "
-                            "`cross: true` lets it"
-                          : "the way meets a singular place at step %zu (before %zu); `cross: "
-                            "true` lets it",
-                  between ? step - 1 : step, between ? step : step + 1);
+  return cag_fail(
+      err, CAG_E_DEGENERATE, CAG_ERR_path_singular, "", (long)step,
+      between
+          ? "the path crosses a singular configuration between steps %zu and %zu; `cross: true` allows it"
+          : "the path meets a singular configuration at step %zu (before %zu); `cross: true` allows it",
+      between ? step - 1 : step, between ? step : step + 1);
 }
 
 static CagStatus fail_stopped(CagError *err) {

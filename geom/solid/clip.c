@@ -174,10 +174,10 @@ static CagStatus add_triangle(Work *w, uint32_t a, uint32_t b, uint32_t c, CagEr
   }
   if (a == b || b == c || c == a) return CAG_OK;
   if (w->triangles >= w->how->max_triangles)
-    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                    "the part within the solid takes more than %zu triangles: use a larger "
-                    "tolerance",
-                    w->how->max_triangles);
+    return cag_fail(
+        err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
+        "the part within the solid needs more than %zu triangles; use a larger tolerance",
+        w->how->max_triangles);
   uint32_t *t = w->t + 3 * w->triangles++;
   t[0] = a, t[1] = b, t[2] = c;
   return CAG_OK;

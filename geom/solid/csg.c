@@ -66,7 +66,7 @@ CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *er
   if (status) return status;
   if (f.class_id == CAG_QUADRIC_EMPTY)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_imaginary, "coefficients", -1,
-                    "the form does not depend on x, y, or z: it has no inside");
+                    "the form does not depend on x, y, or z, so it has no inside");
   bool flat = f.class_id == CAG_QUADRIC_PLANE;
   status = block(flat ? CAG_SOLID_HALF_SPACE : CAG_SOLID_QUADRIC, 0, &s, err);
   if (status) return status;
@@ -91,12 +91,11 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   char x[32], y[32], z[32];
   if (m->triangle_count == 0) return cag_solid_empty(out, err);
   if (!cag_mesh_is_watertight(m, edge))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, "", -1,
-                    "the mesh must be closed: its edge from [%s, %s, %s] to [%.9g, %.9g, %.9g] has "
-                    "not two faces that run it in opposite senses; `weld` joins vertices that "
-                    "nearly meet",
-                    cag_number_text(edge[0].x, x), cag_number_text(edge[0].y, y),
-                    cag_number_text(edge[0].z, z), edge[1].x, edge[1].y, edge[1].z);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, "", -1,
+        "the mesh must be closed: its edge from [%s, %s, %s] to [%.9g, %.9g, %.9g] does not belong to two faces with opposite directions; `weld` merges vertices that nearly coincide",
+        cag_number_text(edge[0].x, x), cag_number_text(edge[0].y, y), cag_number_text(edge[0].z, z),
+        edge[1].x, edge[1].y, edge[1].z);
   CagBounds box = cag_mesh_bounds(m);
   CagTransform shift = cag_translate(cag_scaled(cag_lerp(box.min, box.max, 0.5), -1));
   CagMesh *near = NULL, *outward = NULL;
@@ -107,7 +106,7 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   cag_mesh_release(near);
   if (terms[0] == 0)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_flat, "", -1,
-                    "the mesh encloses no volume: its faces lie on each other");
+                    "the mesh encloses no volume: its faces coincide");
   status = cag_mesh_outward(m, &outward, err);
   if (!status) status = block(CAG_SOLID_MESH, 0, &s, err);
   if (status) {

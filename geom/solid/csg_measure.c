@@ -58,15 +58,13 @@ static CagStatus fail_empty(const CagSolid *s, CagError *err) {
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "the %s of (%s) is empty",
                     cag_solid_kind_name(s->kind), first);
   cag_solid_describe_form(s->core->operands[1], second, sizeof second);
-  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
-                  s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
-                  : s->kind == CAG_SOLID_DIFFERENCE
-                      ? "the %s of (%s) and (%s)%s leaves nothing: the first lies within what is "
-                        "taken away; make it larger or move it"
-                      : "the %s of (%s) and (%s)%s leaves nothing: they do not overlap; move them "
-                        "together",
-                  cag_solid_kind_name(s->kind), first, second,
-                  s->core->count > 2 ? " and others" : "");
+  return cag_fail(
+      err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
+      s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
+      : s->kind == CAG_SOLID_DIFFERENCE
+          ? "the %s of (%s) and (%s)%s is empty: the first is covered; make it larger, or move it"
+          : "the %s of (%s) and (%s)%s is empty: they do not overlap; move them together",
+      cag_solid_kind_name(s->kind), first, second, s->core->count > 2 ? " and others" : "");
 }
 
 // Each bound of the solid is between those of its mesh and of its reach; if these differ by at most

@@ -134,7 +134,7 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
   if (status) return name_operand(s, operands, n, status, err);
   if ((*out)->triangle_count <= how->max_triangles) return CAG_OK;
   status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                    "the %s takes %zu triangles, the limit is %zu: use a larger tolerance",
+                    "the %s needs %zu triangles, and the limit is %zu; use a larger tolerance",
                     cag_solid_kind_name(s->kind), (*out)->triangle_count, how->max_triangles);
   cag_mesh_release(*out);
   return status;
@@ -245,10 +245,10 @@ static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err
 
 static CagStatus unbounded(const CagSolid *s, CagError *err) {
   if (!is_operation(s))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
-                    "the %s is unbounded: intersect it with a solid that bounds it, as in "
-                    "`sphere(10) & half_space(plane(origin, Z))`, or take it away from one",
-                    s->kind == CAG_SOLID_HALF_SPACE ? "half space" : "side of the quadric");
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
+        "the %s is unbounded: intersect it with a solid that bounds it, as in `sphere(10) & half_space(plane(origin, Z))`, or subtract it from one",
+        s->kind == CAG_SOLID_HALF_SPACE ? "half space" : "side of the quadric");
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
                   "the %s is unbounded: one of its %zu operands is a half space or quadric "
                   "that the others do not bound; intersect it with a solid that does",

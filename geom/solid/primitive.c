@@ -156,11 +156,10 @@ CagStatus cag_solid_torus(double major, double minor, CagSolid **out, CagError *
   if (status) return status;
   CagSolid *s;
   if (major < minor)
-    status =
-        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_self_intersection, "major", -1,
-                 "`major` (%s) must not be less than `minor` (%s), or the body crosses itself; "
-                 "torus_surface draws such a torus",
-                 cag_number_text(major, a), cag_number_text(minor, b));
+    status = cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_self_intersection, "major", -1,
+        "`major` must be at least `minor`, found %s and %s; for a torus that crosses itself, use torus_surface",
+        cag_number_text(major, a), cag_number_text(minor, b));
   if (!status) status = cag_solid_block(CAG_SOLID_TORUS, 1, &s, err);
   if (status) {
     cag_surface_release(face);

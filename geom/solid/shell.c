@@ -136,12 +136,11 @@ static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origi
   if (!divided) return CAG_OK;
   const size_t face = origin[divided->face];
   const CagVec3 at = divided->p[0];
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", (long)face,
-                  "the surfaces must share whole edges: the edge of surface %zu (%s) from "
-                  "[%s, %s, %s] on is divided otherwise by its neighbors; divide it at their "
-                  "corners",
-                  face, side_name(divided->side), cag_number_text(at.x, x),
-                  cag_number_text(at.y, y), cag_number_text(at.z, z));
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", (long)face,
+      "the surfaces must share whole edges: the edge of surface %zu (%s) that starts at [%s, %s, %s] is divided differently by its neighbors; divide it at their corners",
+      face, side_name(divided->side), cag_number_text(at.x, x), cag_number_text(at.y, y),
+      cag_number_text(at.z, z));
 }
 
 // Whether two boundaries coincide: +1 in the same direction, -1 reversed, or 0 for different edges.
@@ -304,7 +303,7 @@ CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, Ca
                       i);
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", -1,
-                    "`surfaces` must hold at least one surface");
+                    "`surfaces` must contain at least one surface");
   CagShellFaces own = {0};
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) status = cag_shell_add_face(&own, faces[i], i, err);

@@ -89,14 +89,14 @@ CagStatus cag_solid_check_size(double size, const char *name, long index, CagErr
   if (size >= LENGTH_LEAST && size <= LENGTH_MOST) return CAG_OK;
   if (size > 0 && isfinite(size))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, index,
-                    "`%s` must lie between %g and %g, it is %s", name, LENGTH_LEAST, LENGTH_MOST,
+                    "`%s` must be between %g and %g, found %s", name, LENGTH_LEAST, LENGTH_MOST,
                     cag_number_text(size, text));
   if (index >= 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, index,
                     "`%s` must be positive lengths: %s[%ld] is %s", name, name, index,
                     cag_number_text(size, text));
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, -1,
-                  "`%s` must be a positive length, it is %s", name, cag_number_text(size, text));
+                  "`%s` must be a positive length, found %s", name, cag_number_text(size, text));
 }
 
 CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err) {
@@ -243,9 +243,9 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   CagStatus status = cag_transform_inverse(t, &unused, err);
   if (status) return status;
   if (!cag_transform_is_affine(t))
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_affine, "transform", -1,
-                    "a solid can be moved by affine transforms only: project its faces, or its "
-                    "mesh");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_not_affine, "transform", -1,
+        "a solid needs an affine transform; to project it, project its faces or its mesh");
   CagSolid *moved = NULL;
   status = cag_solid_block(s->kind, s->face_count, &moved, err);
   if (status) return status;

@@ -20,9 +20,8 @@
 CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double scale,
                             CagSolid **out, CagError *err) {
   if (v.z == 0)
-    return cag_fail(
-        err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
-        "`height` must lead out of the plane of the region: it, or its z, must not be 0");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
+                    "`height` must not be 0 or lie in the plane of the region");
   if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   CagSolid *s;
   CagStatus status = cag_solid_block(CAG_SOLID_EXTRUSION, r->count + 2, &s, err);
@@ -72,9 +71,9 @@ static CagStatus set_plane(CagVec3 axis, CagVec3 through, Setting *out, CagError
   bool upright = fabs(w.x) + fabs(w.y) <= ON_AXIS;
   double off = upright ? through.y : fabs(w.z) + fabs(through.z);
   if (fabs(off) > ON_AXIS * (1 + cag_norm(through)))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
-                    "`axis` must lie in the plane of the region: along Z it is the plane y = 0, "
-                    "else z = 0; turn the curve as a surface for a skew axis");
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
+        "`axis` must lie in the plane of the region, which is y = 0 for an axis along Z, otherwise z = 0; for a skew axis, revolve the boundary as a surface");
   double a, b; // the axis in region coordinates
   if (upright) {
     // [x, y] means [x, 0, y].
@@ -119,10 +118,10 @@ static CagStatus check_side(const CagRegion *r, Setting *g, CagError *err) {
   double beyond = g->sense > 0 ? -box.min.x : box.max.x;
   char text[32];
   if (beyond > slack)
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crosses_axis, "region", -1,
-                    "the region must lie on one side of the axis: it reaches %s beyond; move it or "
-                    "cut it along the axis",
-                    cag_number_text(beyond, text));
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_region_crosses_axis, "region", -1,
+        "the region must lie on one side of the axis: it reaches %s beyond it; move it, or cut it along the axis",
+        cag_number_text(beyond, text));
   return CAG_OK;
 }
 
@@ -254,7 +253,7 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
   if (!status && to - from > 2 * M_PI * (1 + 1e-12)) {
     char text[32];
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_self_intersection, "angle", -1,
-                      "`angle` of a solid must span at most 360deg, it spans %sdeg",
+                      "`angle` of a solid must span at most 360deg, found %sdeg",
                       cag_number_text((to - from) * (180 / M_PI), text));
   }
   for (size_t i = 0; !status && i < r->count; i++)

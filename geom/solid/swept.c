@@ -46,9 +46,9 @@ static CagStatus check_home(const CagSolid *s, const CagMotion *m, bool *closed,
   *closed = true;
   for (size_t i = 0; i < s->face_count; i++) *closed = *closed && s->faces[i]->closed_v;
   if (*closed || !path || !path->closed) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_sweep_not_closed, "twist", -1,
-                  "the path is closed, but the section does not come home as it started: let "
-                  "`twist` end in a multiple of 360deg and `scale` at 1, or take `caps: false`");
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_sweep_not_closed, "twist", -1,
+      "the path is closed, but the section does not end as it started: `twist` must end at a multiple of 360deg and `scale` at 1, or use `caps: false`");
 }
 
 CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid **out,
@@ -107,10 +107,10 @@ static CagStatus edge_frame(const CagSurface *side, const CagCurve *edge, double
   const CagStatus status = cag_curve_is_planar(edge, &planar, &own, err);
   if (status) return status;
   if (!planar)
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_section_not_plane, "curves", which,
-                    "the %s section must lie in a plane to get a cap: flatten it or take "
-                    "`caps: false`",
-                    v == side->v0 ? "first" : "last");
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_section_not_plane, "curves", which,
+        "the %s section must lie in a plane to get a cap: flatten it, or use `caps: false`",
+        v == side->v0 ? "first" : "last");
   CagVec3 n = own.normal;
   CagVec3 x = fabs(n.x) < 0.8 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   x = cag_cross(cag_cross(n, x), n);
@@ -218,7 +218,7 @@ CagStatus cag_solid_loft(const CagSurface *side, CagSolid **out, CagError *err) 
   if (!side->closed_u)
     return cag_fail(
         err, CAG_E_ARGUMENT, CAG_ERR_section_open, "curves", -1,
-        "the sections must be closed to bound a solid; `caps: false` gives the surface");
+        "the sections must be closed to bound a solid; to make a surface, use `caps: false`");
   bool outward;
   CagStatus status = faces_outward(side, &outward, err);
   return status ? status : loft_faces(side, !outward, out, err);
@@ -255,10 +255,10 @@ static CagStatus plate_edge(const CagSurface *s, const CagSurface *over, int sid
 CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagError *err) {
   if (cag_surface_trimmed_view(s, NULL, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_trimmed_face, "", -1,
-                    "a trimmed surface has no sides that a plate could close: trim with ranges");
+                    "a surface that is trimmed by curves cannot be thickened; trim it by ranges");
   if (cag_surface_planar_view(s, NULL, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_nurbs, "surface", -1,
-                    "a region becomes a plate by `extrude`");
+                    "to make a plate of a region, use `extrude`");
   CagSurface *faces[6];
   size_t n = 0;
   CagStatus status = cag_surface_offset(s, d, &faces[0], err);

@@ -152,7 +152,7 @@ CagStatus cag_surface_across(const CagCurve *const *curves, const CagNet *cardin
   CagSurface *surface;
   if (cardinal->degree > MOST_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "`degree` of a loft of such curves is at most %d; this is %d", MOST_DEGREE,
+                    "`degree` of a loft of such curves must be at most %d, found %d", MOST_DEGREE,
                     cardinal->degree);
   CagStatus status = cag_surface_block(sizeof(Across), &across_kind, 0, 1, cag_net_start(cardinal),
                                        cag_net_end(cardinal), &surface, err);

@@ -99,7 +99,7 @@ static void compose(const CagVec3 *partials, const Coordinate *x, const Coordina
 
 static CagStatus fail_infinite(CagError *err) {
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
-                  "a point of the curve goes to infinity under the projection");
+                  "the projection maps a point of the curve to infinity");
 }
 
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
@@ -223,7 +223,7 @@ static CagStatus check_direction(char name, double lo, double hi, double from, d
   if (closed && (to - from) / (hi - lo) <= MOST_TURNS) return CAG_OK;
   if (!closed && from >= lo - slack && to <= hi + slack) return CAG_OK;
   return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_curve_outside, "C", -1,
-                  "the plane curve goes to %s = %s, outside of %s..%s where the surface is%s",
+                  "the plane curve reaches %s = %s, outside of the domain %s..%s of the surface%s",
                   name == 'u' ? "x" : "y", cag_number_text(worst, x), cag_number_text(lo, a),
                   cag_number_text(hi, b), angular ? " (radians)" : "");
 }

@@ -139,7 +139,7 @@ static CagStatus check_range(double a, double b, double lo, double hi, bool angu
   const double shown = angular ? 180 / M_PI : 1;
   const char *deg = angular ? "deg" : "";
   return cag_fail(err, CAG_E_DOMAIN, a < b ? CAG_ERR_parameter_range : CAG_ERR_empty_range, name,
-                  -1, "`%s` must be a range within %s%s..%s%s, it is %s%s..%s%s", name,
+                  -1, "`%s` must be a range within %s%s..%s%s, found %s%s..%s%s", name,
                   cag_number_text(shown * lo, from), deg, cag_number_text(shown * hi, to), deg,
                   cag_number_text(shown * a, x), deg, cag_number_text(shown * b, y), deg);
 }
@@ -151,11 +151,13 @@ CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0,
   if (!status) status = check_range(v0, v1, s->v0, s->v1, s->angular_v, "v", err);
   if (status) return status;
   if (cag_surface_planar_view(s, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
-                    "a region has no rectangle of parameters: cut the region itself");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
+        "a plane region cannot be trimmed by ranges of parameters; trim the region itself");
   if (cag_surface_trimmed_view(s, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
-                    "the surface already has an outline: cut the whole one first, then trim it");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
+        "the surface is already trimmed by curves; trim by ranges first, then by curves");
   if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_part(s, u0, u1, v0, v1, out, err);
   const CagSurface *inner = s->kind == &part_kind ? ((const Derived *)s)->inner : s;
   return make(&part_kind, inner, u0, u1, v0, v1, 0, out, err);
@@ -326,7 +328,7 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
   }
   if (!status && !has_normal)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
-                      "the surface has no normal here, so that its offset has no derivatives");
+                      "the surface has no normal here, so its offset has no derivatives");
   out[0] = point;
   return status;
 }

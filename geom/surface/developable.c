@@ -183,7 +183,7 @@ static CagStatus follow(Match *m, double s0, double t0, CagError *err) {
     status = newton(m, s, last + slope * (s - m->s[m->n - 1]), &good, &t, err);
     if (status) return status;
     if (!good || !(t > last) || t - last > range / 4)
-      return no_ruling(err, "on the way the rulings would cross each other");
+      return no_ruling(err, "the rulings would cross each other");
     if (t > m->t_high) {
       // The last ruling ends at the end of b.
       double root;
@@ -200,7 +200,7 @@ static CagStatus follow(Match *m, double s0, double t0, CagError *err) {
   }
   double part_a = (m->s[m->n - 1] - s0) / (m->a->end - m->a->start);
   if (m->n < 2 || part_a < LEAST_PART || (m->t[m->n - 1] - t0) / range < LEAST_PART)
-    return no_ruling(err, "rulings with one tangent plane join no more than a point of them");
+    return no_ruling(err, "rulings with one tangent plane join only single points of them");
   return CAG_OK;
 }
 

@@ -48,7 +48,7 @@ CagStatus cag_surface_hermite_corners(const CagSurface *s, CagHermiteCorners *ou
                       v.degree_u, v.degree_v);
   else if (exact->kind->breaks(exact, 0, NULL, 0) + exact->kind->breaks(exact, 1, NULL, 0) > 0)
     status = cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_one_patch, "", -1,
-                      "the surface has inner knots: take the patches of `to_bezier` one by one");
+                      "the surface has inner knots: use the patches of `to_bezier` one by one");
   else status = cag_surface_corners(exact, out, err);
   cag_surface_release(exact);
   return status;
@@ -65,11 +65,10 @@ CagStatus cag_surface_set_point(const CagSurface *s, size_t i, size_t j, CagVec3
   cag_surface_nurbs_view(exact, &v);
   size_t n = v.distinct_u, m = v.distinct_v;
   if (i >= n || j >= m) {
-    status =
-        cag_fail(err, CAG_E_DOMAIN, CAG_ERR_point_index, i >= n ? "i" : "j", (long)(i >= n ? i : j),
-                 "the net has %zu lines by u and %zu by v, numbered from 0: there is no point "
-                 "[%zu, %zu]",
-                 n, m, i, j);
+    status = cag_fail(
+        err, CAG_E_DOMAIN, CAG_ERR_point_index, i >= n ? "i" : "j", (long)(i >= n ? i : j),
+        "the net has %zu points in u and %zu in v, counted from 0: there is no point [%zu, %zu]", n,
+        m, i, j);
     cag_surface_release(exact);
     return status;
   }
@@ -135,9 +134,9 @@ static CagStatus move_corner(double *h, const CagSurfaceNurbsView *v, const CagC
   double *corner = h + 4 * (u->at * v->nv + w->at), *by_u = h + 4 * (u->next * v->nv + w->at);
   double *by_v = h + 4 * (u->at * v->nv + w->next), *inner = h + 4 * (u->next * v->nv + w->next);
   if (!(corner[3] > 0 && by_u[3] > 0 && by_v[3] > 0 && inner[3] > 0))
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
-                    "a control point at this corner has the weight 0 and moves nothing: give it a "
-                    "positive one first");
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
+        "a control point at this corner has the weight 0, so it has no effect; give it a positive weight first");
   CagVec3 p = point_of(corner);
   double to_u = u->rate * by_u[3] / corner[3], to_v = w->rate * by_v[3] / corner[3];
   CagVec3 du = wanted(e, 0, cag_scaled(cag_sub(point_of(by_u), p), to_u));
@@ -173,9 +172,9 @@ CagStatus cag_surface_edit_corner(const CagSurface *s, const CagCornerEdit *edit
   double *h = NULL;
   if (!end_of(v.knots_u, v.nu, v.degree_u, edit->u, &u) ||
       !end_of(v.knots_v, v.nv, v.degree_v, edit->v, &w))
-    status = cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_clamped, "", -1,
-                      "the surface does not end in its control points: only one with open knots "
-                      "has corners to edit; `trim` over its domain gives it some");
+    status = cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_not_clamped, "", -1,
+        "the surface does not end in its control points, so it has no corners to edit; `trim` over its domain returns the same surface with open knots");
   else {
     h = cag_malloc(4 * v.nu * v.nv * sizeof *h);
     if (!h) status = cag_fail_memory(err);
@@ -228,12 +227,12 @@ static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagErr
   char text[32];
   if (!(how->ratio > 0) || !isfinite(how->ratio))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_join_folds, "ratio", -1,
-                    "`ratio` must be positive, or the surfaces fold over each other; it is %s",
+                    "`ratio` must be positive, or the surfaces fold over each other; found %s",
                     cag_number_text(how->ratio, text));
   if ((how->shear[0] != 0 || how->shear[1] != 0) && edge->count > (size_t)edge->degree + 1)
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_join_shear, "shear", -1,
-                    "`shear` needs an edge of one piece, this one has inner knots: take the "
-                    "patches of `to_bezier`");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_join_shear, "shear", -1,
+        "`shear` needs an edge of one piece, but this one has inner knots; use the patches of `to_bezier`");
   double longest = 0;
   for (int pass = 0; pass < 2; pass++)
     for (size_t j = 0; j < edge->count; j++) {
@@ -241,10 +240,10 @@ static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagErr
       double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]);
       if (pass == 0) longest = fmax(longest, length);
       else if (!(length > SHORT_LINE * longest))
-        return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_join_degenerate, "", (long)j,
-                        "the control points of line %zu beside the edge coincide, so the surface "
-                        "has no direction there to go on in: move one of them",
-                        j);
+        return cag_fail(
+            err, CAG_E_DEGENERATE, CAG_ERR_join_degenerate, "", (long)j,
+            "the control points of line %zu next to the edge coincide, so the tangent across the edge is undefined; move one of them",
+            j);
     }
   return CAG_OK;
 }
@@ -274,10 +273,10 @@ static CagStatus second_line(const CagNet *edge, double rate, double *out, CagEr
     const double *e = edge->data + EDGE_WIDTH * j;
     for (size_t c = 0; c < 4; c++) out[4 * j + c] = e[c] + e[4 + c] / rate;
     if (!(out[4 * j + 3] > 0))
-      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_negative_weight, "ratio", (long)j,
-                      "the neighbor would need a weight that is not positive in line %zu: take a "
-                      "smaller `ratio`",
-                      j);
+      return cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_negative_weight, "ratio", (long)j,
+          "the neighbor would need a weight that is not positive in line %zu; use a smaller `ratio`",
+          j);
   }
   return CAG_OK;
 }

@@ -171,12 +171,12 @@ CagStatus cag_surface_extrude(const CagCurve *c, CagVec3 v, double twist, double
   char text[32];
   if (!(cag_norm(v) > 0) || !isfinite(cag_norm(v)))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
-                    "`height` must be finite and not zero: say how far up, or where to");
+                    "`height` must be a finite length or vector other than 0");
   if (!isfinite(twist))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "twist", -1, "`twist` must be finite");
   if (!(scale >= 0) || !isfinite(scale))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_scale_negative, "scale", -1,
-                    "`scale` must be finite and not negative (0 ends in a point), it is %s",
+                    "`scale` must be finite and not negative (0 ends in a point), found %s",
                     cag_number_text(scale, text));
   CagCurve *section;
   CagStatus status = cag_surface_space_curve(c, &section, err);

@@ -53,20 +53,21 @@ static CagStatus check(const CagGridData *g, size_t nu, size_t nv, CagError *err
   const int degree[2] = {g->degree_u, g->degree_v};
   for (int k = 0; k < 2; k++) {
     if (points[k] < 2)
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "grid", k,
-                      "a surface needs at least 2 rows of at least 2 points, by %c there %s %zu",
-                      "uv"[k], points[k] == 1 ? "is" : "are", points[k]);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_order_range, "grid", k,
+          "a surface needs at least 2 rows of at least 2 points, but in %c there %s %zu", "uv"[k],
+          points[k] == 1 ? "is" : "are", points[k]);
     if (net[k] < 2)
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "count", k,
-                      "a surface needs at least 2 control points in %c, `count` is %zu", "uv"[k],
-                      net[k]);
+                      "a surface needs at least 2 control points in %c, found a `count` of %zu",
+                      "uv"[k], net[k]);
     if (degree[k] < 1 || degree[k] > CAG_GRID_DEGREE_MOST || (size_t)degree[k] >= net[k])
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", k,
-                      "`degree` in %c must lie in 1..%zu for %zu control points, it is %d", "uv"[k],
+                      "`degree` in %c must lie in 1..%zu for %zu control points, found %d", "uv"[k],
                       net[k] - 1, net[k], degree[k]);
     if (net[k] > points[k])
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_underdetermined, "count", k,
-                      "`count` in %c must be at most the %zu data points, it is %zu", "uv"[k],
+                      "`count` in %c must be at most the %zu data points, found %zu", "uv"[k],
                       points[k], net[k]);
   }
   return CAG_OK;
@@ -294,7 +295,7 @@ static CagStatus take_parameters(CagGridFit *f, CagError *err) {
                             : lo + *t;
       if (!(*t >= lo - same && *t <= hi + same))
         return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "parameters", (long)i,
-                        "`parameters` by %c must lie in %s..%s, that of point [%zu, %zu] is %s",
+                        "`parameters` in %c must lie in %s..%s, but that of point [%zu, %zu] is %s",
                         "uv"[k], cag_number_text(lo, from), cag_number_text(hi, to), i / g->s,
                         i % g->s, cag_number_text(*t, text));
       *t = fmin(fmax(*t, lo), hi);
@@ -356,9 +357,10 @@ static CagStatus interpolation_knots(const CagGridData *g, int k, double **out, 
   for (size_t i = 0; !status && g->parameters[k] && i < n; i++) {
     at[i] = g->parameters[k][k ? i : i * g->s];
     if (i > 0 && !(at[i] > at[i - 1]))
-      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "parameters", (long)i,
-                        "`parameters` by %c must grow from point to point: number %zu does not",
-                        "uv"[k], i);
+      status =
+          cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "parameters", (long)i,
+                   "`parameters` in %c must increase from point to point, but number %zu does not",
+                   "uv"[k], i);
   }
   if (!status) cag_net_averaged_knots(at, n, degree, *out);
   cag_free(at);

@@ -48,12 +48,11 @@ static double slack_of(const CagGridFit *f) { return fmax(f->g->slack, ROUNDING 
 static CagStatus fail_turns(const CagGridFit *f, size_t i, size_t before, CagError *err) {
   const size_t s = f->g->s;
   char a[32], b[32];
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coordinate_turns, "fixed", (long)i,
-                  "%s must grow or fall all along the data: it turns back from %s of point [%zu, "
-                  "%zu] to %s of point [%zu, %zu]; order the stations, hold another coordinate, or "
-                  "fit the parts before and after on their own",
-                  name_of(f), cag_number_text(of_data(f, before), a), before / s, before % s,
-                  cag_number_text(of_data(f, i), b), i / s, i % s);
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_coordinate_turns, "fixed", (long)i,
+      "%s must increase or decrease throughout the data, but it turns back from %s at point [%zu, %zu] to %s at point [%zu, %zu]; order the stations, keep another coordinate, or fit the parts before and after separately",
+      name_of(f), cag_number_text(of_data(f, before), a), before / s, before % s,
+      cag_number_text(of_data(f, i), b), i / s, i % s);
 }
 
 // --- Planes ---
@@ -76,14 +75,13 @@ static CagStatus choose_lines(CagGridFit *f, CagError *err) {
     f->planes_along = v && (!u || extent(f, 1) > extent(f, 0));
   }
   if (!f->axis[f->planes_along].closed) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_planes_closed, "planes", -1,
-                  "the surface is closed in %c, where planes that follow one another would have to "
-                  "come back to the first; %s",
-                  f->planes_along ? 'v' : 'u',
-                  f->axis[1 - f->planes_along].closed
-                      ? "leave it open in one direction, or leave the planes out"
-                  : f->planes_along == 0 ? "give them for the other direction as {v: ...}"
-                                         : "give them for the other direction as {u: ...}");
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_planes_closed, "planes", -1,
+      "the surface is closed in %c, so planes in this direction cannot follow one another; %s",
+      f->planes_along ? 'v' : 'u',
+      f->axis[1 - f->planes_along].closed ? "leave it open in one direction, or omit the planes"
+      : f->planes_along == 0              ? "give them for the other direction as {v: ...}"
+                                          : "give them for the other direction as {u: ...}");
 }
 
 static CagStatus check_given(const CagGridFit *f, CagError *err) {
@@ -92,7 +90,7 @@ static CagStatus check_given(const CagGridFit *f, CagError *err) {
   char a[32], b[32];
   if (n != wanted)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_plane_count, "planes", -1,
-                    "%zu lines of control points by %c need as many `planes`, found %zu", wanted,
+                    "%zu lines of control points in %c need as many `planes`, found %zu", wanted,
                     "uv"[f->planes_along], n);
   for (size_t i = 0; i < n; i++)
     if (!isfinite(x[i]))
@@ -100,10 +98,10 @@ static CagStatus check_given(const CagGridFit *f, CagError *err) {
                       "planes[%zu] is not a finite number", i);
   for (size_t i = 1; i < n; i++)
     if (x[1] > x[0] ? !(x[i] > x[i - 1]) : !(x[i] < x[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_planes_not_monotone, "planes", (long)i,
-                      "`planes` must grow from one to the next, or fall from one to the next: "
-                      "planes[%zu] = %s follows planes[%zu] = %s",
-                      i, cag_number_text(x[i], a), i - 1, cag_number_text(x[i - 1], b));
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_planes_not_monotone, "planes", (long)i,
+          "`planes` must increase throughout, or decrease throughout: planes[%zu] = %s follows planes[%zu] = %s",
+          i, cag_number_text(x[i], a), i - 1, cag_number_text(x[i - 1], b));
   return CAG_OK;
 }
 
@@ -155,10 +153,10 @@ static CagStatus find_planes(CagGridFit *f, CagError *err) {
   cag_free(at);
   for (size_t i = 1; i < a->count; i++)
     if (grows ? !(f->planes[i] > f->planes[i - 1]) : !(f->planes[i] < f->planes[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_planes_not_monotone, "planes", (long)i,
-                      "no planes can be told from the data: the means of %s over their %s do not "
-                      "grow, or fall, from one to the next; give the `planes` as a list",
-                      name_of(f), f->planes_along == 0 ? "rows" : "columns");
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_planes_not_monotone, "planes", (long)i,
+          "the data do not determine the planes: the means of %s over their %s neither increase throughout nor decrease throughout; give the `planes` as a list",
+          name_of(f), f->planes_along == 0 ? "rows" : "columns");
   return CAG_OK;
 }
 
@@ -204,12 +202,12 @@ static CagStatus fail_beyond(const CagGridFit *f, size_t i, CagError *err) {
   const CagGridAxis *a = &f->axis[f->planes_along];
   double slope;
   char x[32], from[32], to[32];
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_beyond_planes, "planes", (long)i,
-                  "point [%zu, %zu] has %s = %s, the surface between the `planes` runs from %s to "
-                  "%s; put the outer planes further out, or allow a larger `error`",
-                  i / f->g->s, i % f->g->s, name_of(f), cag_number_text(of_data(f, i), x),
-                  cag_number_text(along_planes(f, cag_grid_start(a), &slope), from),
-                  cag_number_text(along_planes(f, cag_grid_end(a), &slope), to));
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_beyond_planes, "planes", (long)i,
+      "point [%zu, %zu] has %s = %s, but the surface between the `planes` extends from %s to %s; move the outer planes outward, or allow a larger `error`",
+      i / f->g->s, i % f->g->s, name_of(f), cag_number_text(of_data(f, i), x),
+      cag_number_text(along_planes(f, cag_grid_start(a), &slope), from),
+      cag_number_text(along_planes(f, cag_grid_end(a), &slope), to));
 }
 
 // Whether all parameters match; if one does not, all are set from their coordinates.
@@ -286,8 +284,7 @@ static CagStatus fail_match(const CagGridFit *f, size_t i, double gap, CagError 
   const bool border = cag_grid_on_border(f, i, 0) || cag_grid_on_border(f, i, 1);
   return cag_fail(
       err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
-      "the surface comes no nearer than %s to the %s = %s of point [%zu, %zu]%s; allow a "
-      "larger `error`, give the control points `planes`, or take more of them",
+      "the surface comes no nearer than %s to the %s = %s of point [%zu, %zu]%s; allow a larger `error`, give the control points `planes`, or use more of them",
       cag_number_text(fabs(gap), off), name_of(f), cag_number_text(of_data(f, i), x), i / f->g->s,
       i % f->g->s, border ? ", which stays on the edge" : "");
 }

@@ -31,9 +31,9 @@ static void fill_row(const CagGridAxis *a, double t, double *row, size_t stride)
 }
 
 static CagStatus fail_singular(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "count", -1,
-                  "the data do not determine all control points: take fewer, a lower degree, other "
-                  "knots, or data that are spread more evenly");
+  return cag_fail(
+      err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "count", -1,
+      "the data do not determine all control points: use fewer, a lower degree, other knots, or data that are spread more evenly");
 }
 
 // Least squares of a column-major matrix; the first `columns` rows of `right` become the solution.
@@ -183,11 +183,10 @@ static void fill_dense(const CagGridFit *f, size_t row, double *basis, double *m
 static CagStatus solve_dense(CagGridFit *f, CagError *err) {
   size_t nu = f->axis[0].count, nv = f->axis[1].count, columns = nu * nv, rows = f->rows;
   if (rows > DENSE_MOST / columns)
-    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_fit_too_large, "count", -1,
-                    "`count` times the data are more than can be solved at once: %zu unknowns for "
-                    "%zu points; take fewer control points, fit parts, or use the \"mean\" "
-                    "parameters",
-                    columns, rows);
+    return cag_fail(
+        err, CAG_E_LIMIT, CAG_ERR_fit_too_large, "count", -1,
+        "the fit is too large, with %zu unknowns for %zu points; use fewer control points, fit parts of the data, or use the \"mean\" parameters",
+        columns, rows);
   double *matrix = cag_malloc(rows * columns * sizeof *matrix);
   double *right = cag_malloc(3 * rows * sizeof *right),
          *basis = cag_malloc((nu + nv) * sizeof *basis);
@@ -227,11 +226,10 @@ static CagStatus check_edges(const CagGridFit *f, CagError *err) {
       const bool first = line == 0, last = line + 1 == (k == 0 ? f->g->r : f->g->s);
       if ((first && f->parameters[k][i] != cag_grid_start(a)) ||
           (last && f->parameters[k][i] != cag_grid_end(a)))
-        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_ends, "parameters", (long)i,
-                        "the edges stay fixed only where the data's border has the first and last "
-                        "parameter in %c, point [%zu, %zu] has not; give the control points "
-                        "`planes`, or set `fixed` to \"none\"",
-                        "uv"[k], i / f->g->s, i % f->g->s);
+        return cag_fail(
+            err, CAG_E_ARGUMENT, CAG_ERR_fit_ends, "parameters", (long)i,
+            "the edges stay fixed only where the data's border has the first and last parameter in %c, but point [%zu, %zu] does not; give the control points `planes`, or set `fixed` to \"none\"",
+            "uv"[k], i / f->g->s, i % f->g->s);
     }
   }
   return CAG_OK;

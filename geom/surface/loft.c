@@ -56,9 +56,9 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
     status = cag_lu_factor(a, n, pivots, &singular, err);
     if (!status && !singular) status = cag_lu_solve(a, n, pivots, net->data, width, err);
     if (!status && singular)
-      status =
-          cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
-                   "`degree` %zu has no closed loft through %zu curves: take another degree", p, n);
+      status = cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
+          "there is no closed loft of degree %zu through %zu curves; use another `degree`", p, n);
   }
   cag_free(a);
   cag_free(pivots);
@@ -68,15 +68,15 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
 static CagStatus check_closed(int degree, size_t n, CagError *err) {
   if (degree > DEGREE_MOST)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "`degree` of a closed loft must be at most %d, it is %d", DEGREE_MOST, degree);
+                    "`degree` of a closed loft must be at most %d, found %d", DEGREE_MOST, degree);
   if (degree % 2 == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "`degree` of a closed loft must be odd, it is %d: take %d", degree, degree + 1);
+                    "`degree` of a closed loft must be odd, found %d; use %d", degree, degree + 1);
   if ((size_t)degree >= n)
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                    "`degree` must be less than the number of curves of a closed loft (%zu), it is "
-                    "%d",
-                    n, degree);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
+        "`degree` must be less than the number of curves of a closed loft (%zu), found %d", n,
+        degree);
   return CAG_OK;
 }
 

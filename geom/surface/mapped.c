@@ -175,9 +175,9 @@ static bool divide_all(Mapping *m, bool *changed) {
   m->triangles = parts;
   m->triangle_count = n / 3;
   if (m->triangle_count <= m->triangle_most) return true;
-  m->status = cag_fail(m->err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
-                       "the image needs more than %zu triangles; a larger tolerance needs fewer",
-                       m->triangle_most);
+  m->status =
+      cag_fail(m->err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
+               "the image needs more than %zu triangles; use a larger tolerance", m->triangle_most);
   return false;
 }
 

@@ -559,10 +559,10 @@ static CagStatus set_miters(CagMotion *t, CagError *err) {
     if (!corner) continue;
     if (cag_norm(cag_sub(reflected(in.n1[0], m), out.n1[0])) > CORNER_FRAME) {
       char text[32];
-      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_corner, "path", -1,
-                      "`path` turns a corner at %s where the frames of both sides do not meet in "
-                      "one section; round the corner or take orient: \"rmf\"",
-                      cag_number_text(a->v1, text));
+      return cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_path_corner, "path", -1,
+          "`path` turns a corner at %s where the frames of both sides do not meet in one section; round the corner, or use orient: \"rmf\"",
+          cag_number_text(a->v1, text));
     }
     t->corner = true;
     miter(&in, m, a->end);
@@ -663,7 +663,7 @@ CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMo
   if (!status) status = cag_curve_bounds(m->path, &box, err);
   if (!status && cag_norm(cag_sub(box.max, box.min)) == 0)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_tangent, "path", -1,
-                      "`path` is one point: it leads nowhere");
+                      "`path` must not be a single point");
   if (!status) {
     m->start = m->path->start;
     m->end = m->path->end;

@@ -147,10 +147,10 @@ static CagStatus check_inner_knots(const CagNet *net, CagError *err) {
   const size_t p = (size_t)net->degree;
   for (size_t i = p + 1; i + p < net->count; i++)
     if (net->knots[i] == net->knots[i + p])
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", -1,
-                      "`knots` must not repeat an inner knot more often than the degree %d: "
-                      "there the pieces come apart",
-                      net->degree);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", -1,
+          "`knots` must not repeat an inner knot more often than the degree %d, or the pieces come apart there",
+          net->degree);
   return CAG_OK;
 }
 
@@ -351,9 +351,9 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
     }
   }
   if (!status && (singular || least < 1e-13))
-    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
-                      "`degree` and knots leave the interpolation without one answer: lower the "
-                      "degree or change the data's spacing");
+    status = cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
+        "`degree` and knots do not determine the interpolation: lower the degree, or change the spacing of the data");
   cag_free(turned);
   cag_free(band);
   cag_free(basis);

@@ -32,14 +32,14 @@ static CagStatus check_knots(const double *knots, size_t count, int degree, cons
   double from = knots[degree], to = knots[count];
   if (!(to > from))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, name, degree,
-                    "`%s` must leave a range of parameters: entries %d and %zu are both %s", name,
+                    "the usable range of `%s` has no length: entries %d and %zu are both %s", name,
                     degree, count, cag_number_text(from, a));
   for (size_t i = 1; i + (size_t)degree + 1 < n; i++)
     if (knots[i] > from && knots[i] < to && knots[i + (size_t)degree] == knots[i])
-      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, name, (long)i,
-                      "`%s` may hold an inner knot at most %d times (the degree), %s stands more "
-                      "often from entry %zu on",
-                      name, degree, cag_number_text(knots[i], a), i);
+      return cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, name, (long)i,
+          "`%s` can contain an inner knot at most %d times (the degree), but %s occurs more often, from entry %zu on",
+          name, degree, cag_number_text(knots[i], a), i);
   return CAG_OK;
 }
 
@@ -47,12 +47,12 @@ static CagStatus check_degree(size_t count, int degree, const char *direction, C
   if (degree >= 1 && degree <= MAX_DEGREE && (size_t)degree < count) return CAG_OK;
   if (count < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", -1,
-                    "a surface needs at least 2 rows of at least 2 points, by %s there %s %zu",
+                    "a surface needs at least 2 rows of at least 2 points, but in %s there %s %zu",
                     direction, count == 1 ? "is" : "are", count);
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", *direction == 'u' ? 0 : 1,
-                  "`degree` by %s must lie in 1..%zu for %zu net lines (and be at most %d), it is "
-                  "%d; add lines or lower the degree",
-                  direction, count ? count - 1 : 0, count, MAX_DEGREE, degree);
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", *direction == 'u' ? 0 : 1,
+      "`degree` in %s must lie in 1..%zu for %zu control points (and be at most %d), found %d; add points, or lower the degree",
+      direction, count ? count - 1 : 0, count, MAX_DEGREE, degree);
 }
 
 static CagStatus check_net(const double *h, size_t nu, size_t nv, CagError *err) {
@@ -307,10 +307,10 @@ static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, Cag
   for (size_t i = 0; !status && i < total; i++) {
     cag_transform_homogeneous(t, b->net + 4 * i, h + 4 * i);
     if (h[4 * i + 3] < 0 || (h[4 * i + 3] == 0 && b->net[4 * i + 3] > 0))
-      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_behind_center, "transform", (long)i,
-                        "the projection sends control point [%zu, %zu] to infinity or behind its "
-                        "center: move the surface or the center",
-                        i / b->v.count, i % b->v.count);
+      status = cag_fail(
+          err, CAG_E_DEGENERATE, CAG_ERR_behind_center, "transform", (long)i,
+          "the projection maps control point [%zu, %zu] to infinity or behind its center; move the surface or the center",
+          i / b->v.count, i % b->v.count);
   }
   if (!status) status = build(h, &b->u, &b->v, out, err);
   cag_free(h);

@@ -209,10 +209,9 @@ static CagStatus check_corners(const CagVec3 end[4][2], double size, CagError *e
       pass = 2;
       break;
     }
-  return cag_fail(
-      err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
-      "`%s` and `%s` must meet in the corner u = %d, v = %d: there they are %s apart; %s", SIDES[i],
-      SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
+                  "`%s` and `%s` must meet in the corner u = %d, v = %d, but they are %s apart; %s",
+                  SIDES[i], SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
 }
 
 CagStatus cag_surface_coons(const CagCurve *u0, const CagCurve *u1, const CagCurve *v0,
@@ -416,7 +415,7 @@ static CagStatus composite_surface(const Composite *c, CagSurface **out, CagErro
 CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, CagError *err) {
   if (g->nu < 2 || g->nv < 2)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "grid", -1,
-                    "`grid` must have 2 or more rows and columns, it has %zu by %zu", g->nu, g->nv);
+                    "`grid` must have at least 2 rows and columns, found %zu by %zu", g->nu, g->nv);
   CagStatus status = check_steps(g->steps_u, g->nu - 1, "u", err);
   if (!status) status = check_steps(g->steps_v, g->nv - 1, "v", err);
   if (status) return status;
@@ -450,7 +449,7 @@ CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface *
                                       CagError *err) {
   if (n < 1 || n > MAX_TRIANGLE)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", -1,
-                    "`net` must have 2 to %d rows, it has %d", MAX_TRIANGLE + 1, n + 1);
+                    "`net` must have 2 to %d rows, found %d", MAX_TRIANGLE + 1, n + 1);
   size_t side = (size_t)n + 1;
   double *h = cag_malloc((side + 2) * side * 4 * sizeof *h),
          *knots = cag_malloc(2 * side * sizeof *knots);

@@ -83,7 +83,7 @@ CagStatus cag_surface_planar(const CagRegion *region, const CagTransform *frame,
                              CagError *err) {
   if (!cag_transform_is_affine(frame))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
-                    "`frame` must be affine: a projection does not place a plane");
+                    "`frame` must be affine, found a projection");
   CagTransform map = *frame;
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) map.m[i][j] /= frame->m[3][3];

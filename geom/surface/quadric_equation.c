@@ -54,10 +54,10 @@ CagStatus cag_quadric_center(const CagQuadric *q, CagVec3 *out, CagError *err) {
   CagStatus status = cag_quadric_classify(q, &form, err);
   if (status) return status;
   if (!form.has_center)
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_not_central, "", -1,
-                    "the %s has no single center; `classify` gives its vertex or axis as the "
-                    "frame's origin",
-                    form.name);
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_quadric_not_central, "", -1,
+        "the %s has no single center; `classify` returns its vertex, or a point of its axis, as the origin of the frame",
+        form.name);
   *out = form.center;
   return CAG_OK;
 }
@@ -69,13 +69,13 @@ CagStatus cag_quadric_tangent_plane(const CagQuadric *q, CagVec3 p, CagPlane *ou
   char text[32];
   if (fabs(value) > ON_SURFACE * sum_of_magnitudes(terms, TERMS))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_not_on_surface, "P", -1,
-                    "the point is not on the quadric: its equation gives %s there, not 0",
+                    "the point is not on the quadric: the value of its equation there is %s, not 0",
                     cag_number_text(value, text));
   CagVec3 g = cag_quadric_gradient(q, p);
   if (cag_norm(g) <= NO_GRADIENT * gradient_size(q, p))
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "P", -1,
-                    "the quadric has no tangent plane there: the point is its apex, or lies on a "
-                    "line that it has twice");
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "P", -1,
+        "the quadric has no tangent plane there: the point is its apex, or lies on a double line");
   return cag_plane(p, g, out, err);
 }
 

@@ -472,7 +472,7 @@ CagStatus cag_quadric_outline(const CagQuadricCells *c, CagSurface **list, size_
   if (!o.vertices || !o.ends || !o.edges || !o.path || !room) status = cag_fail_memory(err);
   else if (!add_all(&o, room))
     status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_quadric_unbounded, "within", -1,
-                      "the quadric has no end within `within`: give a box");
+                      "the quadric is unbounded in `within`; use a box");
   else status = add_surfaces(&o, list, most, n, err);
   cag_free(o.vertices);
   cag_free(o.ends);

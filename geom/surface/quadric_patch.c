@@ -584,7 +584,7 @@ static CagStatus check_within(const CagBounds *w, bool z_only, CagError *err) {
     if (!isfinite(lo[i]) || !isfinite(hi[i]) || !(hi[i] > lo[i])) {
       char a[32], b[32];
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "within", i,
-                      "`within` must be finite and ascend by %c, it is %s..%s", "xyz"[i],
+                      "`within` must be finite and increase in %c, found %s..%s", "xyz"[i],
                       cag_number_text(lo[i], a), cag_number_text(hi[i], b));
     }
   return CAG_OK;
@@ -625,12 +625,12 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
                     "the constant -r^2",
                     f->name);
   }
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_quadric_unbounded, "within", -1,
-                  needs_box ? "a quadric of class %s has no end in any direction of its surface: "
-                              "give `within` a box, as box([4, 4, 4], centered: true)"
-                            : "a quadric of class %s has no end: give `within` a range of z or a "
-                              "box",
-                  f->name);
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_quadric_unbounded, "within", -1,
+      needs_box
+          ? "a quadric of class %s is unbounded, even in a range of z; set `within` to a box, such as box([4, 4, 4], centered: true)"
+          : "a quadric of class %s is unbounded; set `within` to a range of z or a box",
+      f->name);
 }
 
 // Tests whether q has the opposite sign of the equation stored in the patch.

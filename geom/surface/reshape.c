@@ -82,12 +82,12 @@ static CagStatus insert(CagNet *net, const void *how, CagError *err) {
   double start = cag_net_start(net), end = cag_net_end(net);
   if (!(k->t > start && k->t < end))
     return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "", -1,
-                    "the knot must lie inside of %s..%s, it is %s", cag_number_text(start, from),
+                    "the knot must lie inside %s..%s, found %s", cag_number_text(start, from),
                     cag_number_text(end, to), cag_number_text(k->t, text));
   int there = cag_net_multiplicity(net, k->t);
   if (there + k->times > net->degree)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "times", -1,
-                    "no knot may occur more often than the degree %d: %s is there %d times",
+                    "no knot may occur more often than the degree %d: %s occurs %d times",
                     net->degree, cag_number_text(k->t, text), there);
   CagStatus status = CAG_OK;
   for (int i = 0; !status && i < k->times; i++) status = cag_net_insert(net, k->t, err);
@@ -149,7 +149,7 @@ static bool at_knot(const CagNet *net, size_t i, double t) {
 static CagStatus fail_superset(const CagNet *net, size_t i, CagError *err) {
   char text[32];
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_superset, "knots", (long)i,
-                  "the new knots must hold the old ones, with the same ends: %s is missing",
+                  "the new knots must contain the old ones, with the same ends: %s is missing",
                   cag_number_text(net->knots[i], text));
 }
 
@@ -165,17 +165,18 @@ static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
   for (size_t k = 0; !status && k < r->count; k++) {
     double t = r->knots[k];
     if (!isfinite(t) || (k > 0 && t < r->knots[k - 1]))
-      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)k,
-                        "the new knots must be finite and not decrease: entry %zu does", k);
+      status =
+          cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)k,
+                   "the new knots must be finite and must not decrease: entry %zu is wrong", k);
     else if (i < old && at_knot(net, i, t)) i++;
     else if (i < old && net->knots[i] < t) status = fail_superset(net, i, err);
     else if (t > start && t < end) add[more++] = t;
     else {
       char text[32], from[32], to[32];
-      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_superset, "knots", (long)k,
-                        "the new knots must keep the ends of %s..%s: %s is one too many",
-                        cag_number_text(start, from), cag_number_text(end, to),
-                        cag_number_text(t, text));
+      status = cag_fail(
+          err, CAG_E_ARGUMENT, CAG_ERR_knots_not_superset, "knots", (long)k,
+          "the new knots must keep the ends of %s..%s: %s is outside, or repeats an end too often",
+          cag_number_text(start, from), cag_number_text(end, to), cag_number_text(t, text));
     }
   }
   if (!status && i < old) status = fail_superset(net, i, err);

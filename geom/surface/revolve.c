@@ -277,7 +277,7 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
   if (!(to > from) || to - from > MOST_TURN) {
     char a[32], b[32];
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "angle", -1,
-                    "`angle` must ascend and span at most 720deg, it is %sdeg..%sdeg",
+                    "`angle` must increase and span at most 720deg, found %sdeg..%sdeg",
                     cag_number_text(from * (180 / M_PI), a), cag_number_text(to * (180 / M_PI), b));
   }
   CagCurve *space;

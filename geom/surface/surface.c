@@ -79,7 +79,7 @@ static CagStatus check_parameter(double *t, double a, double b, bool angular, co
   char found[32], from[32], to[32];
   const char *unit = angular ? "deg" : "";
   return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, name, -1,
-                  "`%s` must lie in the domain %s%s..%s%s, it is %s%s", name,
+                  "`%s` must lie in the domain %s%s..%s%s, found %s%s", name,
                   cag_number_text(shown(a, angular), from), unit,
                   cag_number_text(shown(b, angular), to), unit,
                   cag_number_text(shown(*t, angular), found), unit);
@@ -102,7 +102,7 @@ CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSi
   if (cag_stop_check(err)) return err->status;
   if (n < 0 || n > CAG_MAX_PARTIAL)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_derivative_order, "order", -1,
-                    "`order` must lie in 0..%d, it is %d", CAG_MAX_PARTIAL, n);
+                    "`order` must lie in 0..%d, found %d", CAG_MAX_PARTIAL, n);
   CagStatus status = check_parameters(s, &u, &v, err);
   if (status) return status;
   return s->kind->eval(s, u, v, n, side_at(u, s->u0, s->u1, su), side_at(v, s->v0, s->v1, sv), out,
@@ -300,10 +300,10 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
       return CAG_OK;
   }
   char text_u[32], text_v[32];
-  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
-                  "the surface has no normal at u = %s, v = %s: its partial derivatives are "
-                  "parallel there; ask at a neighboring point",
-                  cag_number_text(u, text_u), cag_number_text(v, text_v));
+  return cag_fail(
+      err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
+      "the surface has no normal at u = %s, v = %s: its partial derivatives are parallel there; use a neighboring point",
+      cag_number_text(u, text_u), cag_number_text(v, text_v));
 }
 
 // --- Flags ---

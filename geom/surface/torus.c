@@ -105,7 +105,7 @@ CagStatus cag_surface_torus(double major, double minor, CagSurface **out, CagErr
     if (!(sizes[i] > 0) || !isfinite(sizes[i])) {
       char text[32];
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, names[i], -1,
-                      "`%s` must be a positive radius, it is %s", names[i],
+                      "`%s` must be a positive radius, found %s", names[i],
                       cag_number_text(sizes[i], text));
     }
   CagSurface *s;

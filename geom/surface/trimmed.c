@@ -88,8 +88,9 @@ static const CagSurfaceKind trimmed_kind = {
 CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, CagSurface **out,
                               CagError *err) {
   if (cag_surface_trimmed_view(inner, NULL, NULL) || cag_surface_planar_view(inner, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
-                    "the surface already has an outline: trim the whole one, once, by all curves");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
+        "the surface is already trimmed by curves; trim the whole surface once, by all curves");
   CagBounds box;
   CagStatus status = cag_region_bounds(region, &box, err);
   if (status) return status;
@@ -98,13 +99,13 @@ CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, 
   bool out_v = box.min.y < inner->v0 - slack_v || box.max.y > inner->v1 + slack_v;
   char a[32], b[32], c[32], d[32];
   if (out_u || out_v)
-    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_curve_outside, "curves", -1,
-                    "`curves` must stay in the domain %s..%s of %s, they reach %s..%s (radians "
-                    "where it is an angle)",
-                    cag_number_text(out_u ? inner->u0 : inner->v0, a),
-                    cag_number_text(out_u ? inner->u1 : inner->v1, b), out_u ? "u" : "v",
-                    cag_number_text(out_u ? box.min.x : box.min.y, c),
-                    cag_number_text(out_u ? box.max.x : box.max.y, d));
+    return cag_fail(
+        err, CAG_E_DOMAIN, CAG_ERR_curve_outside, "curves", -1,
+        "`curves` must stay in the domain %s..%s of %s, found %s..%s (angles are in radians)",
+        cag_number_text(out_u ? inner->u0 : inner->v0, a),
+        cag_number_text(out_u ? inner->u1 : inner->v1, b), out_u ? "u" : "v",
+        cag_number_text(out_u ? box.min.x : box.min.y, c),
+        cag_number_text(out_u ? box.max.x : box.max.y, d));
   CagSurface *s;
   status = cag_surface_block(sizeof(Trimmed), &trimmed_kind, fmax(box.min.x, inner->u0),
                              fmin(box.max.x, inner->u1), fmax(box.min.y, inner->v0),

@@ -280,10 +280,10 @@ static CagStatus check_plane(const CagCurve *section, const CagMotion *motion, C
   double size = cag_norm(cag_sub(box.max, box.min));
   char low[32], high[32];
   if (fmax(fabs(box.min.z), fabs(box.max.z)) <= CAG_SURFACE_SAME * size) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_section_not_plane, "section", -1,
-                  "the section must lie in z = 0 to be carried around a corner of `path`: its z "
-                  "runs from %s to %s",
-                  cag_number_text(box.min.z, low), cag_number_text(box.max.z, high));
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_section_not_plane, "section", -1,
+      "the section must lie in z = 0 to pass a corner of `path`: its z ranges from %s to %s",
+      cag_number_text(box.min.z, low), cag_number_text(box.max.z, high));
 }
 
 CagStatus cag_surface_sweep(const CagCurve *section, const CagMotion *motion, CagSurface **out,
@@ -317,7 +317,7 @@ CagStatus cag_surface_tube(const CagCurve *path, double radius, CagSurface **out
   char text[32];
   if (!(radius > 0) || !isfinite(radius))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "radius", -1,
-                    "`radius` must be positive, it is %s", cag_number_text(radius, text));
+                    "`radius` must be positive, found %s", cag_number_text(radius, text));
   CagAlong one = {1, 1, NULL};
   CagStatus status = tube_of(path, radius, &one, out, err);
   if (status) return status;

@@ -21,11 +21,10 @@ CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err) {
 
 CagStatus cag_tess_limit(const Tessellator *t, double triangles, CagError *err) {
   char tolerance[32];
-  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                  "a tolerance of %s mm takes more than %.0f triangles, the limit is %zu: use a "
-                  "larger tolerance",
-                  cag_number_text(t->how.tolerance, tolerance), floor(triangles),
-                  t->how.max_triangles);
+  return cag_fail(
+      err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
+      "a tolerance of %s mm needs more than %.0f triangles, and the limit is %zu; use a larger tolerance",
+      cag_number_text(t->how.tolerance, tolerance), floor(triangles), t->how.max_triangles);
 }
 
 static void release(Tessellator *t) {

@@ -177,10 +177,10 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
       if (!status) status = add_vertex(p, x.x, x.y, &vertex, err);
     }
     if (!status && p->vertex_count > how->max_triangles + 2)
-      status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                        "the outline alone takes more than the limit of %zu triangles: use a "
-                        "larger tolerance",
-                        how->max_triangles);
+      status = cag_fail(
+          err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
+          "the outline alone needs more triangles than the limit of %zu; use a larger tolerance",
+          how->max_triangles);
   }
   cag_free(at);
   cag_curve_release(on);
@@ -541,10 +541,10 @@ static CagStatus refine(Plane *p, const CagTessellation *how, CagError *err) {
       if (!bad) p->checked[t] = 1;
       any = any || bad;
       if (p->triangle_count > how->max_triangles)
-        return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                        "the trimmed surface takes more than the limit of %zu triangles: use a "
-                        "larger tolerance",
-                        how->max_triangles);
+        return cag_fail(
+            err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
+            "the trimmed surface needs more triangles than the limit of %zu; use a larger tolerance",
+            how->max_triangles);
     }
     if (how->interrupt && *how->interrupt)
       return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,

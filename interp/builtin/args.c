@@ -113,7 +113,7 @@ bool cag_arg_integer(CagCall *call, int argument, long low, long high, long *out
     char expected[96];
     if (high == LONG_MAX && low == LONG_MIN) snprintf(expected, sizeof expected, "a whole number");
     else if (high == LONG_MAX)
-      snprintf(expected, sizeof expected, "a whole number from %ld on", low);
+      snprintf(expected, sizeof expected, "a whole number of at least %ld", low);
     else snprintf(expected, sizeof expected, "a whole number in %ld..%ld", low, high);
     return cag_fail_value(call, argument, expected);
   }

@@ -21,7 +21,7 @@ static bool check_range(CagCall *call, int argument, const CagParameterType *typ
   cag_number_text(type->high, high);
   if (isfinite(type->high)) snprintf(expected, sizeof expected, "%s in %s..%s", noun, low, high);
   else if (type->above_low) snprintf(expected, sizeof expected, "%s greater than %s", noun, low);
-  else snprintf(expected, sizeof expected, "%s of %s or more", noun, low);
+  else snprintf(expected, sizeof expected, "%s of at least %s", noun, low);
   return cag_fail_value(call, argument, expected);
 }
 

@@ -189,10 +189,10 @@ bool cag_bsplines_nurbs_arc(CagCall *call, const struct cag_bsplines_nurbs_arc *
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                       "the range has no length");
   else if (!(fabs(sweep) / (double)a->segments < HALF_TURN))
-    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
-                      "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
-                      "take more `segments`",
-                      cag_number_text(fabs(sweep), text), a->segments);
+    status = cag_fail(
+        call->err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
+        "one piece of degree 2 must span less than 180 degrees, found %s in %ld; use more `segments`",
+        cag_number_text(fabs(sweep), text), a->segments);
   return cag_geometry_ok(call, status) &&
          give_arcs(call, a->radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
                    (size_t)a->segments, &frame, result);

@@ -24,11 +24,11 @@ static bool read_degree(CagCall *call, CagNumbers knots, int degree_at, int orde
   char a[32], b[32];
   if (*degree < 1 || *degree > CAG_MAX_DEGREE)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
-                      "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, *degree);
+                      "the degree must be 1 to %d, found %d", CAG_MAX_DEGREE, *degree);
   else if (count < (size_t)*degree + 2)
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
-                      "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
-                      count);
+                      "a basis function of degree %d needs %d knots, found %zu", *degree,
+                      *degree + 2, count);
   for (size_t i = 0; !status && i < count; i++) {
     if (!isfinite(x[i]))
       status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
@@ -295,10 +295,10 @@ bool cag_bsplines_oslo(CagCall *call, const struct cag_bsplines_oslo *a, CagValu
   if (!read_degree(call, a->knots, 2, 3, &p)) return false;
   if (n < count)
     return cag_fail_core(call, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
-                         "`refined` has %zu knots, less than the %zu of `knots`", n, count);
+                         "`refined` has %zu knots, fewer than the %zu of `knots`", n, count);
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
   if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than is available");
   double *table = cag_hold_array(call, block * (size_t)(p + 1), sizeof *table);
   if (!cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, call->err))) return false;
   CagBuilder *list = cag_builder_new(call->vm);
@@ -349,7 +349,7 @@ static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n,
   const size_t k = (size_t)p, count = 2 * k + 2;
   if (c->derivative > p)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, last ? "end" : "start", -1,
-                    "a curve of degree %d has no derivative of order %d to choose", p,
+                    "a curve of degree %d cannot have a given derivative of order %d", p,
                     c->derivative);
   double *knots = work, *weights = knots + count, *rest = weights + k + 1;
   for (size_t i = 0; i < count; i++) knots[i] = (double)i;

@@ -28,7 +28,7 @@ static Subject subject(CagCall *call, CagValue f, CagRangeEnds range) {
 static bool check_finite(const Subject *f) {
   if (!isfinite(f->start) || !isfinite(f->end)) return cag_fail_value(f->call, 1, "a finite range");
   return f->start <= f->end ||
-         cag_fail_value(f->call, 1, "a range whose start is not above its end");
+         cag_fail_value(f->call, 1, "a range whose start is not greater than its end");
 }
 
 static CagValue parameter(const Subject *f, double x) {
@@ -43,9 +43,10 @@ static bool evaluate(const Subject *f, double x, CagValue *y) {
 static bool fail_result(const Subject *f, CagValue y, const char *expected) {
   if (cag_holds_jet(y)) return cag_fail_differentiate(f->call, 0);
   char found[120];
-  return cag_fail_call(
-      f->call, 0, CAG_ERR_type, "expects a function that gives %s as `%s`, it gave %s", expected,
-      cag_parameter_name(f->call, 0), cag_value_words(f->call->vm, y, found, sizeof found));
+  return cag_fail_call(f->call, 0, CAG_ERR_type,
+                       "expects a function that returns %s as `%s`, found one that returned %s",
+                       expected, cag_parameter_name(f->call, 0),
+                       cag_value_words(f->call->vm, y, found, sizeof found));
 }
 
 // The value as a number; of a function that gives angles their degrees.
@@ -124,7 +125,7 @@ static bool integrand_at(Integrand *g, double t, double *out) {
     g->vector = vector;
   }
   if (n != g->components || vector != g->vector)
-    return fail_result(&g->subject, y, "vectors of one length, or numbers,");
+    return fail_result(&g->subject, y, "vectors of the same length, or numbers,");
   for (size_t k = 0; k < n; k++) out[k] = numbers[k] * slope;
   return true;
 }
@@ -318,8 +319,8 @@ static bool refine(Integrand *g, Pieces *pieces) {
     if (s.worst == (size_t)-1 || pieces->count == PIECES_MOST)
       return cag_fail_call(
           g->subject.call, 0, CAG_ERR_convergence,
-          "does not settle: after %zu pieces the error is still about %.2g of %.6g", pieces->count,
-          s.error, s.size);
+          "does not converge: after %zu pieces, the error is still about %.2g of %.6g",
+          pieces->count, s.error, s.size);
     if (pieces->count == pieces->capacity) grow(pieces, 2 * pieces->capacity);
     Piece *p = &pieces->at[s.worst], *q = &pieces->at[pieces->count++];
     const Piece parent = *p;
@@ -532,7 +533,7 @@ static bool brent_root(const Subject *f, double a, double fa, double b, double f
     b += fabs(step) > small ? step : copysign(small, half);
     if (!evaluate_number(f, b, &fb)) return false;
   }
-  return cag_fail_call(f->call, 0, CAG_ERR_convergence, "does not settle within %d steps",
+  return cag_fail_call(f->call, 0, CAG_ERR_convergence, "does not converge within %d steps",
                        STEPS_MOST);
 }
 

@@ -130,8 +130,7 @@ bool cag_conics_line_through(CagCall *call, const struct cag_conics_line_through
                              CagValue *result) {
   if (!check_plane_point(call, 0, a->P) || !check_plane_point(call, 1, a->Q)) return false;
   const CagVec3 p = a->P.at, d = cag_sub(a->Q.at, p);
-  if (cag_norm(d) == 0)
-    return cag_fail_value(call, 1, "another point than the first: one point is on many lines");
+  if (cag_norm(d) == 0) return cag_fail_value(call, 1, "a point that differs from the first");
   const double row[3] = {-d.y, d.x, d.y * p.x - d.x * p.y};
   *result = row_value(call, row, 3);
   return true;
@@ -199,7 +198,8 @@ bool cag_conics_intersect_line(CagCall *call, const struct cag_conics_intersect_
     if (!cag_arg_numbers(call, 1, &line.items, &line.count) || !check_line(call, 1, line))
       return false;
     const double *row = line.items, nn = row[0] * row[0] + row[1] * row[1];
-    if (nn == 0) return cag_fail_value(call, 1, "a line at a finite place: p or q must not be 0");
+    if (nn == 0)
+      return cag_fail_value(call, 1, "a line that is not at infinity: p or q must not be 0");
     p.at = cag_vec3(-row[2] * row[0] / nn, -row[2] * row[1] / nn, 0);
     d = cag_vec3(-row[1], row[0], 0);
   }
@@ -265,7 +265,7 @@ bool cag_conics_points_at(CagCall *call, const struct cag_conics_points_at *a, C
   const bool x = cag_given(call, 1);
   if (!check_plane_curve(call, a->C)) return false;
   if (x == cag_given(call, 2))
-    return cag_fail_call(call, -1, CAG_ERR_value, "needs one of `x` and `y`");
+    return cag_fail_call(call, -1, CAG_ERR_value, "needs either `x` or `y`");
   // One of x and y is given, the other is 0.
   const CagPlane plane = {cag_vec3(a->x, a->y, 0), cag_vec3(x, !x, 0)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(a->C, &plane, &meetings, &n, call->err)))

@@ -38,9 +38,8 @@ static bool find_range(CagCall *call, int x_at, double a, double b, Inverse inve
                        CagRangeEnds *range) {
   const bool x = cag_given(call, x_at), y = cag_given(call, x_at + 1);
   if (cag_given(call, x_at - 3) + x + y != 1)
-    return cag_fail_call(
-        call, -1, CAG_ERR_value,
-        "needs one of `range`, `x` and `y` to say which part of the curve is meant");
+    return cag_fail_call(call, -1, CAG_ERR_value,
+                         "needs one of `range`, `x`, and `y`, to select a part of the curve");
   range->angle = false;
   if (x || y) {
     double first, last;
@@ -93,10 +92,9 @@ static bool read_equation(CagCall *call, int argument, CagConic *out) {
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < i; j++)
         if (s[3 * i + j] != s[3 * j + i])
-          return cag_fail_call(call, argument, CAG_ERR_value,
-                               "expects a symmetric matrix, found rows[%d][%d] and rows[%d][%d] "
-                               "different",
-                               i, j, j, i);
+          return cag_fail_call(
+              call, argument, CAG_ERR_value,
+              "expects a symmetric matrix, but rows[%d][%d] and rows[%d][%d] differ", i, j, j, i);
     *out = (CagConic){{s[0], 2 * s[1], s[4], 2 * s[2], 2 * s[5], s[8]}};
   } else {
     return cag_fail_call(call, argument, CAG_ERR_value,
@@ -197,10 +195,10 @@ static bool read_tangent(CagCall *call, CagValue v, size_t index, CagConicTangen
     const double *x;
     size_t n;
     if (!cag_as_vector(part[i], &x, &n) || n != 2)
-      return cag_fail_call(call, 1, CAG_ERR_value,
-                           "expects tangents as {point: [x, y], direction: [u, v]} or [[x, y], "
-                           "[u, v]]; tangents[%zu] is not such a one",
-                           index);
+      return cag_fail_call(
+          call, 1, CAG_ERR_value,
+          "expects tangents as {point: [x, y], direction: [u, v]} or [[x, y], [u, v]]; tangents[%zu] is neither",
+          index);
     *to[i] = cag_vec3(x[0], x[1], 0);
   }
   return true;
@@ -236,7 +234,7 @@ bool cag_conics_conic_arc(CagCall *call, const struct cag_conics_conic_arc *a, C
   if (cag_given(call, 3) + cag_given(call, 4) + cag_given(call, 5) != 1)
     return cag_fail_call(
         call, -1, CAG_ERR_value,
-        "needs one of `rho`, `shoulder` and `weight` to say how far the arc bulges");
+        "needs one of `rho`, `shoulder`, and `weight`, to determine the fullness of the arc");
   if (cag_given(call, 3)) {
     if (!(a->rho >= 0 && a->rho < 1))
       return cag_fail_value(call, 3,
@@ -273,7 +271,7 @@ static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   CagVec3 x, y, p;
   double rate;
   if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
-    return cag_fail_call(call, 0, CAG_ERR_value, "takes this `by` of circles and ellipses only");
+    return cag_fail_call(call, 0, CAG_ERR_value, "accepts this `by` only for circles and ellipses");
   // Any two conjugate half diameters will do for an arc; from them to the axes the angle shifts.
   const double same = 1e-9; // cosine of axes perpendicular to each other, and angles that are one
   if (fabs(cag_dot(x, y)) > same * cag_norm(x) * cag_norm(y)) {
@@ -322,9 +320,9 @@ static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out
   Axes k;
   if (!read_axes(call, c, &k)) return false;
   if (fmin(k.from, k.to) <= -M_PI || fmax(k.from, k.to) >= M_PI)
-    return FAIL_DOMAIN(call, "",
-                       "the rational form reaches its point at 180deg only at infinity: "
-                       "the arc must lie between -180deg and 180deg");
+    return FAIL_DOMAIN(
+        call, "",
+        "the rational form cannot reach 180deg: the arc must lie between -180deg and 180deg");
   const double from = tan(k.from / 2), to = tan(k.to / 2);
   for (size_t i = 0; i < n; i++) {
     const double t = from + (to - from) * ((double)i / (double)(n - 1)), d = 1 + t * t;
@@ -369,7 +367,7 @@ static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double slack = 1e-9 * (box.max.x - box.min.x);
   if (!status && (box.min.x < fmin(from, to) - slack || box.max.x > fmax(from, to) + slack))
-    return FAIL_DOMAIN(call, "", "x must go one way from the start to the end");
+    return FAIL_DOMAIN(call, "", "x must increase or decrease throughout the arc");
   for (size_t i = 1; !status && i + 1 < n; i++) {
     const double x = from + (to - from) * ((double)i / (double)(n - 1));
     status = find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i],

@@ -39,7 +39,7 @@ static bool read_touched(CagCall *call, int argument, CagTouched *out) {
       return true;
   }
   return cag_fail_call(call, argument, CAG_ERR_value,
-                       "expects lines, circles or arcs of circles in the plane");
+                       "expects lines, circles, or arcs of circles in the plane");
 }
 
 // "inside" or "outside", or a list of two such.
@@ -53,7 +53,8 @@ static bool read_contact(CagCall *call, int argument, bool inside[2]) {
       const char *text = item.type == CAG_TEXT ? CAG_AS_TEXT(item)->bytes : "";
       inside[i] = text[0] == 'i';
       if (strcmp(text, words[inside[i]]) != 0)
-        return cag_fail_value(call, argument, "\"outside\" or \"inside\", or a list of two such");
+        return cag_fail_value(call, argument,
+                              "\"outside\" or \"inside\", or a list of two of these");
     }
     return true;
   }

@@ -134,7 +134,7 @@ bool cag_curves_end_point(CagCall *call, const struct cag_curves_end_point *a, C
 bool cag_fail_no_data(CagCall *call, const CagCurve *c, const char *what) {
   return cag_fail_core(
       call, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-      "a curve of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
+      "a curve of kind %s has no %s; `to_nurbs` returns its rational form if there is one",
       c->kind->name, what);
 }
 

@@ -201,7 +201,7 @@ bool cag_bsplines_offset(CagCall *call, const struct cag_bsplines_offset *a, Cag
   if (!tolerance_of_size(call, a->C, OFFSET_TOLERANCE, &tolerance)) return false;
   if (!(tolerance > 0))
     return cag_fail_call(call, 2, CAG_ERR_value,
-                         tolerance < 0 ? "expects a `tolerance` of 0 or more"
+                         tolerance < 0 ? "expects a `tolerance` of at least 0"
                                        : "expects a positive `tolerance`");
   CagStatus status = cag_curve_offset(a->C, a->d, tolerance, &out, call->err);
   return cag_changed_curve_result(call, status, &out, result);

@@ -83,8 +83,7 @@ static CagStatus circumcircle(const CagVec3 p[3], CagVec3 *center, CagVec3 *norm
   if (sqrt(nn) <= FLAT_TRIANGLE * cag_norm(a) * cag_norm(b))
     return cag_fail(
         err, CAG_E_ARGUMENT, CAG_ERR_collinear, "", -1,
-        "the three points lie on one line (or two are the same): no circle goes through "
-        "them");
+        "the three points are collinear (or two are the same), so no circle passes through them");
   // (|a|^2 b - |b|^2 a) x n / 2 |n|^2 leads from the first point to the center.
   CagVec3 w = cag_sub(cag_scaled(b, cag_dot(a, a)), cag_scaled(a, cag_dot(b, b)));
   *center = cag_madd(p[0], 1 / (2 * nn), cag_cross(w, n));

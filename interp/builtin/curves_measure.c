@@ -12,7 +12,8 @@ bool cag_curves_length(CagCall *call, CagValue *result) {
   CagStatus status;
   if (call->values[0].type == CAG_REGION) {
     if (cag_given(call, 1))
-      return cag_fail_call(call, 1, CAG_ERR_value, "takes no range of a region");
+      return cag_fail_call(call, 1, CAG_ERR_value,
+                           "takes no range if the first argument is a region");
     status = cag_region_perimeter(shape->as.region, &length, call->err);
   } else {
     from = c->start;

@@ -62,7 +62,7 @@ bool cag_bsplines_intersect(CagCall *call, const struct cag_bsplines_intersect *
   else if (a->A.type == CAG_PLANE) ok = with_plane(call, a->C, &CAG_AS_PLANE(a->A)->plane, list);
   else if (a->A.type == CAG_SURFACE)
     ok = with_surface(call, a->C, CAG_AS_SHAPE(a->A)->as.surface, list);
-  else return cag_fail_type(call, 1, "a curve, a surface or a plane");
+  else return cag_fail_type(call, 1, "a curve, a surface, or a plane");
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }

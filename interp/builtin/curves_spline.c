@@ -90,7 +90,7 @@ bool cag_curves_nurbs(CagCall *call, const struct cag_curves_nurbs *a, CagValue 
     return cag_curves_bspline(call, &same, result);
   }
   cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, one for each point");
-  cag_fail_help(call->vm, "without weights it is a `bspline`");
+  cag_fail_help(call->vm, "without weights, use `bspline`");
   return false;
 }
 
@@ -117,7 +117,7 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   if (cag_given(call, 4)) {
     if (!cag_arg_interval(call, 4, &from, &to, &angle)) return false;
     if (angle || !isfinite(from) || !isfinite(to) || !(from < to))
-      return cag_fail_type(call, 4, "a range of numbers that ascends");
+      return cag_fail_type(call, 4, "an increasing range of numbers");
   }
   if (!cag_geometry_ok(call, cag_degree_check((size_t)count, degree, call->err))) return false;
   if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {

@@ -101,7 +101,7 @@ static bool read_cell(Csv *c) {
   const char *open = r->at++;
   for (;;) {
     const char *quote = memchr(r->at, '"', (size_t)(r->end - r->at));
-    if (!quote) return fail_at(r, open, "a quote that is not closed");
+    if (!quote) return fail_at(r, open, "a quote that is never closed");
     bool doubled = quote + 1 < r->end && quote[1] == '"';
     cag_string_add(&c->cell, r->at, (size_t)(quote - r->at) + doubled);
     r->at = quote + 1 + doubled;
@@ -266,7 +266,7 @@ static bool read_unicode(Reader *r, CagString *s) {
     bool pair = high < 0xDC00 && r->at[0] == '\\' && r->at[1] == 'u';
     if (pair) r->at += 2;
     if (!pair || !read_hex(r, &low) || low < 0xDC00 || low > 0xDFFF)
-      return fail_at(r, place, "half of a surrogate pair");
+      return fail_at(r, place, "an incomplete surrogate pair");
     high = 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00);
   }
   if (high == 0) return fail_at(r, place, "a NUL character");
@@ -281,7 +281,7 @@ static bool read_json_text(Reader *r, CagString *s) {
   static const char LETTERS[] = "\"\\/bfnrt", MEANT[] = "\"\\/\b\f\n\r\t";
   const char *open = r->at - 1;
   for (;;) {
-    if (r->at == r->end || *r->at == '\n') return fail_at(r, open, "a text that is not closed");
+    if (r->at == r->end || *r->at == '\n') return fail_at(r, open, "a text that is never closed");
     char c = *r->at++;
     if (c == '"') return true;
     if ((unsigned char)c < ' ')
@@ -419,7 +419,7 @@ static bool read_json_number(Reader *r, CagValue *out) {
   while (r->at < r->end && *r->at && strchr("+-.eE0123456789", *r->at)) r->at++;
   if (r->at == from) return fail_at(r, from, "expected a value");
   if (!cag_read_number(from, (size_t)(r->at - from), &x))
-    return fail_at(r, from, "not a number that can be held");
+    return fail_at(r, from, "the number is too large");
   *out = cag_number(x);
   return true;
 }
@@ -455,7 +455,7 @@ bool cag_files_read_json(CagCall *call, const struct cag_files_read_json *a, Cag
   Reader r;
   if (!reader_open(call, a->path, &r) || !read_json_value(&r, 0, result)) return false;
   skip_blank(&r);
-  return r.at == r.end || fail_at(&r, r.at, "something follows the value");
+  return r.at == r.end || fail_at(&r, r.at, "unexpected text after the value");
 }
 
 // --- JSON out ---
@@ -476,7 +476,7 @@ static void write_json_text(CagString *s, const char *bytes, size_t n) {
 static bool write_json_number(CagCall *call, CagString *s, double x) {
   if (!isfinite(x))
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects finite numbers: JSON has none that is infinite");
+                         "expects finite numbers, because JSON has no infinity");
   cag_print_number(s, x);
   return true;
 }
@@ -533,7 +533,7 @@ static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
     char found[120];
     return cag_fail_call(
         call, 0, CAG_ERR_type,
-        "expects numbers, angles, texts, bools, none, lists, records or transforms, found %s",
+        "expects numbers, angles, texts, bools, none, lists, records, or transforms, found %s",
         cag_value_words(call->vm, v, found, sizeof found));
   }
   }

@@ -202,10 +202,10 @@ static bool fail_unknown(Parser *p, Word w) {
   for (size_t i = 0; i < CONSTANT_COUNT; i++) candidates[n++] = constants[i];
   char name[64];
   snprintf(name, sizeof name, "%.*s", (int)w.n, w.s);
-  fail_here(p, w.s, "`%s` is not a parameter, function or constant of formulas", name);
+  fail_here(p, w.s, "`%s` is not a parameter, function, or constant of formulas", name);
   const char *nearest = word_is(w, "log") ? "ln` or `log10" : cag_nearest_name(name, candidates, n);
   if (nearest) cag_fail_help(p->call->vm, "did you mean `%s`?", nearest);
-  else cag_fail_help(p->call->vm, "name it among the parameters: formula(\"...\", [\"%s\"])", name);
+  else cag_fail_help(p->call->vm, "add it to the parameters: formula(\"...\", [\"%s\"])", name);
   return false;
 }
 
@@ -328,7 +328,7 @@ static bool check_parameter(CagCall *call, const CagList *names, size_t i) {
   else if (find_function(w)) why = "is a function of formulas";
   else if (is_constant(w)) why = "is a constant of formulas";
   for (size_t j = 0; j < i && !why; j++)
-    if (word_is(w, CAG_AS_TEXT(cag_list_get(call->vm, names, j))->bytes)) why = "is named twice";
+    if (word_is(w, CAG_AS_TEXT(cag_list_get(call->vm, names, j))->bytes)) why = "occurs twice";
   if (!why) return true;
   return cag_fail_call(
       call, 1, CAG_ERR_value,

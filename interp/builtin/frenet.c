@@ -248,7 +248,7 @@ bool cag_frenet_constant_curve(CagCall *call, const struct cag_frenet_constant_c
                                CagValue *result) {
   static const char *const names[] = {"kind", "radius", "rise", "pitch"};
   const double k = a->curvature, w = a->torsion;
-  if (k < 0) return cag_fail_value(call, 0, "a curvature of 0 or more");
+  if (k < 0) return cag_fail_value(call, 0, "a curvature of at least 0");
   const bool bent = k > 0;
   // In units of the larger of both, so that squares neither overflow nor vanish.
   const double unit = fmax(k, fabs(w)), x = bent ? k / unit : 0, y = bent ? w / unit : 0;

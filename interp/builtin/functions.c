@@ -69,11 +69,11 @@ static bool fail_point(Formula *f, const double *at, CagValue given) {
   parameter_text(f, at, where, sizeof where);
   cag_value_words(vm, given, found, sizeof found);
   const char *wanted = f->variables == 2     ? "a point of 3 numbers"
-                       : f->coordinates == 2 ? "a point of 2 numbers, as it does at the start"
-                       : f->coordinates == 3 ? "a point of 3 numbers, as it does at the start"
+                       : f->coordinates == 2 ? "a point of 2 numbers, as at the start"
+                       : f->coordinates == 3 ? "a point of 3 numbers, as at the start"
                                              : "a point of 2 or 3 numbers";
   return cag_vm_fail_in(vm, vm->kept[f->slot], CAG_ERR_type,
-                        "the function of a %s must give %s; at %s it gave %s",
+                        "the function of a %s must return %s; at %s, it returned %s",
                         f->variables == 1 ? "curve" : "surface", wanted, where, found);
 }
 
@@ -220,10 +220,10 @@ static bool read_number(Formula *f, const double *at, CagValue given, const CagS
   if (!coordinate(f->vm, given, like, out)) {
     if (f->vm->failed) return false;
     char found[160], where[32];
-    return cag_vm_fail_in(f->vm, f->vm->kept[f->slot], CAG_ERR_type,
-                          "curvature and torsion are numbers; at s = %s the function gave %s",
-                          cag_number_text(*at, where),
-                          cag_value_words(f->vm, given, found, sizeof found));
+    return cag_vm_fail_in(
+        f->vm, f->vm->kept[f->slot], CAG_ERR_type,
+        "curvature and torsion must be numbers; at s = %s, the function returned %s",
+        cag_number_text(*at, where), cag_value_words(f->vm, given, found, sizeof found));
   }
   for (size_t k = 0; k < cag_jet_count(1, like->order); k++)
     if (!isfinite(out->c[k])) return fail_not_finite(f, at, k ? "a derivative" : "the value");

@@ -9,6 +9,7 @@
 #include "geom/surface/curve_on.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
 
 // --- Hulls ---
@@ -257,85 +258,30 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   }
 }
 
-// Which side of the boundary of a solid with faces, or of a closed mesh, p is on: -1 inside, 0 on
-// it, 1 outside. By its mesh. Within the tolerance of the boundary the
-// mesh may be on the other side of p: there the place is asked that lies beyond p as seen from the
-// boundary, on the same side but farther from it.
-static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *err) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagBounds box;
-  CagMesh *m;
-  Body body = {0}, point = {0};
-  double distance = 0;
-  CagVec3 foot;
-  *side = 1;
-  CagStatus status = CAG_OK;
-  if (v.type == CAG_MESH && shape->as.mesh->triangle_count == 0) return CAG_OK;
-  if (v.type == CAG_MESH) box = cag_mesh_bounds(shape->as.mesh);
-  else status = cag_solid_bounds(shape->as.solid, &box, err);
-  if (status) return status;
-  const double size = cag_norm(cag_sub(box.max, box.min)), tolerance = HULL_TOLERANCE * size;
-  const double near = BOUNDARY * size;
-  if (p.x < box.min.x - near || p.y < box.min.y - near || p.z < box.min.z - near ||
-      p.x > box.max.x + near || p.y > box.max.y + near || p.z > box.max.z + near)
-    return CAG_OK;
-  status = body_add_shape(vm, &body, v, tolerance, err);
-  if (!status) status = cag_parts_add_point(&point.parts, p, err);
-  if (!status)
-    status = cag_parts_distance(&point.parts, &body.parts, CAG_PARTS_PAIRS, &distance, &foot,
-                                cag_vm_stop(vm), err);
-  body_free(&body);
-  body_free(&point);
-  if (status) return status;
-  *side = distance <= near ? 0 : 1;
-  if (*side == 0) return CAG_OK;
-  const bool exact = v.type == CAG_MESH || cag_solid_is_compound(shape->as.solid);
-  if (!exact && distance < 4 * tolerance)
-    p = cag_madd(foot, 4 * tolerance / distance, cag_sub(p, foot));
-  status = mesh_of(vm, v, tolerance, &m, err);
-  if (status) return status;
-  *side = cag_mesh_winding(m, p) > 0.5 ? -1 : 1;
-  cag_mesh_release(m);
-  return CAG_OK;
-}
-
-static CagStatus side_of_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side,
-                              CagError *err) {
-  // Not a value of the heap, whose allocation could jump over what the callers hold.
-  CagShape shape = {.as.solid = (CagSolid *)leaf};
-  return side_of(context, cag_object(CAG_SOLID, &shape), p, side, err);
-}
-
-// Set operations are asked by their operands: exactly where these are.
-static CagStatus holds(CagVm *vm, CagValue v, CagVec3 p, bool *inside, CagError *err) {
+// Whether a solid or closed mesh contains the point. *body is false for an open mesh.
+static bool holds(CagCall *call, CagValue v, CagVec3 p, bool *inside, bool *body) {
+  const CagCaster *caster;
+  CagCrossings work = {0};
   int side = 1;
-  CagStatus status = CAG_OK;
-  const CagSolid *s = v.type == CAG_SOLID ? CAG_AS_SHAPE(v)->as.solid : NULL;
-  if (s && cag_solid_is_compound(s)) {
-    CagBounds reach;
-    status = cag_solid_reach(s, &reach, err);
-    const double size = status ? 0 : cag_norm(cag_sub(reach.max, reach.min));
-    const double scale = isfinite(size) ? size : cag_norm(p);
-    if (!status) status = cag_csg_side(s, p, BOUNDARY * scale, side_of_leaf, vm, &side, err);
-  } else {
-    status = side_of(vm, v, p, &side, err);
-  }
-  *inside = !status && side <= 0;
-  return status;
-}
-
-static bool is_body(CagValue v) {
-  if (v.type != CAG_MESH) return v.type == CAG_SOLID;
-  const CagMesh *m = CAG_AS_SHAPE(v)->as.mesh;
-  return m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL);
+  if (!cag_shape_caster(call, v, &caster)) return false;
+  *body = cag_caster_is_closed(caster);
+  *inside = false;
+  if (!*body) return true;
+  const CagBounds b = cag_caster_bounds(caster);
+  const double size = cag_norm(cag_sub(b.max, b.min));
+  const double scale = isfinite(size) ? size : cag_norm(p);
+  CagStatus status = cag_caster_side(caster, p, BOUNDARY * scale, &work, &side, call->err);
+  cag_crossings_free(&work);
+  *inside = side <= 0;
+  return cag_geometry_ok(call, status);
 }
 
 bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagValue *result) {
-  bool inside = false;
-  if (!is_body(a->G))
+  bool inside, body;
+  if (!holds(call, a->G, a->P.at, &inside, &body)) return false;
+  if (!body)
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects a closed mesh; this one has an open edge and no inside");
-  if (!cag_geometry_ok(call, holds(call->vm, a->G, a->P.at, &inside, call->err))) return false;
+                         "expects a closed mesh, found one with an open edge");
   *result = cag_bool(inside);
   return true;
 }
@@ -384,34 +330,36 @@ static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
 
 // Whether a body of the first holds any shape of the second. Where surfaces do not meet one point
 // of each shape tells.
-static CagStatus swallows(CagVm *vm, const Side *outer, const Side *inner, bool *yes,
-                          CagError *err) {
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && !*yes && !outer->point && i < outer->shapes->length; i++) {
-    const CagValue v = cag_list_get(vm, outer->shapes, i);
-    if (!is_body(v)) continue;
-    for (size_t k = 0; !status && !*yes && k < side_count(inner); k++) {
+static bool swallows(CagCall *call, const Side *outer, const Side *inner, bool *yes) {
+  for (size_t i = 0; !*yes && !outer->point && i < outer->shapes->length; i++) {
+    const CagValue v = cag_list_get(call->vm, outer->shapes, i);
+    if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
+    bool body;
+    for (size_t k = 0; !*yes && k < side_count(inner); k++) {
       Body one = {0};
-      status = body_add_part(vm, &one, inner, k, err);
-      if (!status && one.parts.n) status = holds(vm, v, one.parts.items[0].p[0], yes, err);
+      const CagStatus status = body_add_part(call->vm, &one, inner, k, call->err);
+      const bool some = !status && one.parts.n > 0;
+      const CagVec3 p = some ? one.parts.items[0].p[0] : cag_vec3(0, 0, 0);
       body_free(&one);
+      if (!cag_geometry_ok(call, status) || (some && !holds(call, v, p, yes, &body))) return false;
     }
   }
-  return status;
+  return true;
 }
 
-static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
-  bool within = false;
-  CagStatus status = fill_side(vm, &side[0], err);
-  if (!status) status = fill_side(vm, &side[1], err);
+static bool measure(CagCall *call, Side side[2], double *out) {
+  CagStatus status = fill_side(call->vm, &side[0], call->err);
+  if (!status) status = fill_side(call->vm, &side[1], call->err);
   if (!status)
     status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, CAG_PARTS_PAIRS, out,
-                                NULL, cag_vm_stop(vm), err);
-  if (status || *out == 0) return status;
-  status = swallows(vm, &side[0], &side[1], &within, err);
-  if (!status && !within) status = swallows(vm, &side[1], &side[0], &within, err);
+                                NULL, cag_vm_stop(call->vm), call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  bool within = false;
+  if (*out == 0) return true;
+  if (!swallows(call, &side[0], &side[1], &within)) return false;
+  if (!within && !swallows(call, &side[1], &side[0], &within)) return false;
   if (within) *out = 0;
-  return status;
+  return true;
 }
 
 bool cag_hulls_distance(CagCall *call, CagValue *result) {
@@ -419,7 +367,7 @@ bool cag_hulls_distance(CagCall *call, CagValue *result) {
   cag_hold_for(call, release_sides, side);
   double distance = 0;
   if (!read_side(call, 0, &side[0]) || !read_side(call, 1, &side[1]) ||
-      !cag_geometry_ok(call, measure(call->vm, side, &distance, call->err)))
+      !measure(call, side, &distance))
     return false;
   *result = cag_number(distance);
   return true;

@@ -393,7 +393,7 @@ static bool fold(CagCall *call, CagBinaryOp o, CagValue *result) {
     if (!good) { // not as an element that holds jets: its type is wrong
       char found[120];
       return cag_fail_call(call, 0, CAG_ERR_type, "expects %s, found %s at xs[%zu]",
-                           o == CAG_OP_ADD ? "numbers, angles or vectors" : "numbers",
+                           o == CAG_OP_ADD ? "numbers, angles, or vectors" : "numbers",
                            cag_value_words(call->vm, v, found, sizeof found), i);
     }
     if (i == 0) *result = v;
@@ -437,7 +437,7 @@ static bool read_two(CagCall *call, Vector *a, Vector *b) {
   if (b->n == 2 && a->n == 3) b->x[b->n++] = cag_number(0);
   return a->n == b->n ||
          cag_fail_call(call, 1, CAG_ERR_length,
-                       "expects vectors of one length, found %zu and %zu numbers", a->n, b->n);
+                       "expects vectors of the same length, found %zu and %zu numbers", a->n, b->n);
 }
 
 static bool jet_dot(CagCall *call, CagValue *result) {

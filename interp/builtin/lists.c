@@ -66,7 +66,8 @@ static bool sum_long_vectors(CagCall *call, CagSequence *s, CagValue *result) {
   double *numbers = NULL;
   for (size_t i = 0; i < s->length; i++) {
     CagValue v = cag_sequence_element(call->vm, s, i);
-    if (!cag_as_vector(v, &x, &n)) return cag_fail_element(call, 0, i, v, "vectors of one length");
+    if (!cag_as_vector(v, &x, &n))
+      return cag_fail_element(call, 0, i, v, "vectors of the same length");
     if (i == 0) {
       count = n;
       *result = cag_list_numbers(call->vm, n, &numbers);
@@ -76,7 +77,8 @@ static bool sum_long_vectors(CagCall *call, CagSequence *s, CagValue *result) {
     if (n != count)
       return cag_fail_call(
           call, 0, CAG_ERR_length,
-          "expects vectors of one length, found %zu numbers at [0] and %zu at [%zu]", count, n, i);
+          "expects vectors of the same length, found %zu numbers at [0] and %zu at [%zu]", count, n,
+          i);
     for (size_t j = 0; j < n; j++) numbers[j] += x[j];
     if (!cag_keep_going(call->vm)) return false;
   }
@@ -97,7 +99,7 @@ bool cag_lists_sum(CagCall *call, CagValue *result) {
     if (v.type != type || (type != CAG_NUMBER && type != CAG_ANGLE))
       return cag_fail_element(call, 0, i, v,
                               type == CAG_ANGLE ? "angles"
-                              : i == 0          ? "numbers, angles or vectors"
+                              : i == 0          ? "numbers, angles, or vectors"
                                                 : "numbers");
     sum_add(&sum, v.as.number);
     if (!may_go_on(call, i)) return false;
@@ -168,10 +170,10 @@ static bool test_element(Loop *loop, CagValue x, bool *answer) {
   *answer = y.type == CAG_BOOL && y.as.boolean;
   if (y.type == CAG_BOOL) return true;
   char found[120];
-  return cag_fail_call(loop->call, 1, CAG_ERR_type,
-                       "expects a function that gives true or false as `%s`, it gave %s",
-                       cag_parameter_name(loop->call, 1),
-                       cag_value_words(loop->call->vm, y, found, sizeof found));
+  return cag_fail_call(
+      loop->call, 1, CAG_ERR_type,
+      "expects a function that returns true or false as `%s`, found one that returned %s",
+      cag_parameter_name(loop->call, 1), cag_value_words(loop->call->vm, y, found, sizeof found));
 }
 
 bool cag_lists_filter(CagCall *call, CagValue *result) {
@@ -219,7 +221,7 @@ static bool search(CagCall *call, bool wanted, CagValue *result) {
     bool answer = x.type == CAG_BOOL && x.as.boolean;
     if (with_function) good = test_element(&loop, x, &answer);
     else if (x.type != CAG_BOOL)
-      good = cag_fail_element(call, 0, i, x, "bools, or a function `f` to ask,");
+      good = cag_fail_element(call, 0, i, x, "bools, or a function `f`,");
     else good = may_go_on(call, i);
     found = good && answer == wanted;
   }
@@ -356,8 +358,8 @@ bool cag_lists_zip(CagCall *call, CagValue *result) {
     if (!cag_sequence_open(call, (int)k, true, &s[k])) return false;
     if (s[k].length != s[0].length)
       return cag_fail_call(call, (int)k, CAG_ERR_length,
-                           "expects lists of one length, found %zu and %zu elements", s[0].length,
-                           s[k].length);
+                           "expects lists of the same length, found %zu and %zu elements",
+                           s[0].length, s[k].length);
   }
   for (size_t i = 0; i < s[0].length; i++) {
     for (size_t k = 0; k < n; k++) parts[k] = cag_sequence_element(call->vm, &s[k], i);
@@ -473,10 +475,10 @@ static bool check_ends(CagCall *call) {
     if (!cag_as_vector(b, &x, &nb)) return cag_fail_type(call, 1, "a vector");
     return na == nb ||
            cag_fail_call(call, 1, CAG_ERR_length,
-                         "expects vectors of one length, found %zu and %zu numbers", na, nb);
+                         "expects vectors of the same length, found %zu and %zu numbers", na, nb);
   }
   if (a.type != CAG_NUMBER && a.type != CAG_ANGLE)
-    return cag_fail_type(call, 0, "a number, an angle or a vector");
+    return cag_fail_type(call, 0, "a number, an angle, or a vector");
   if (a.type != b.type)
     return cag_fail_type(call, 1, a.type == CAG_NUMBER ? "a number" : "an angle");
   if (!isfinite(a.as.number)) return cag_fail_value(call, 0, "a finite end");

@@ -61,7 +61,7 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
     if (n != columns)
       return cag_fail_call(
           call, argument, CAG_ERR_length,
-          "expects rows of one length as `%s`, found %zu numbers in row 0 and %zu in row %zu",
+          "expects rows of the same length as `%s`, found %zu numbers in row 0 and %zu in row %zu",
           cag_parameter_name(call, argument), columns, n, i);
     memcpy(out->x + i * columns, x, columns * sizeof *x);
     if (i % ROWS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
@@ -123,8 +123,9 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
 // --- Linear systems ---
 
 static bool fail_singular(CagCall *call) {
-  return cag_fail_call(call, 0, CAG_ERR_singular,
-                       "expects a matrix that is not singular: its rows depend on each other");
+  return cag_fail_call(
+      call, 0, CAG_ERR_singular,
+      "expects a matrix that is not singular, found one with linearly dependent rows");
 }
 
 static bool is_large(double multiplications) { return multiplications > CAG_LAPACK_MOST; }
@@ -213,7 +214,7 @@ static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
       LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a->rows, (lapack_int)a->columns, columns, a->x,
                      (lapack_int)a->columns, x->x, columns, singular_values, cut, &rank);
   return info == 0 || cag_fail_call(call, 0, CAG_ERR_convergence,
-                                    "does not settle: the singular values could not be found");
+                                    "does not converge: the singular values could not be found");
 }
 
 bool cag_matrices_least_squares(CagCall *call, CagValue *result) {
@@ -335,7 +336,7 @@ bool cag_matrices_eigen(CagCall *call, CagValue *result) {
   if (!large &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
     return cag_fail_call(call, 0, CAG_ERR_convergence,
-                         "does not settle: the eigenvalues could not be found");
+                         "does not converge: the eigenvalues could not be found");
   for (size_t i = 0; i < n; i++) orient(m.x + i * n, n);
   for (size_t i = 0; i < n * n; i++) m.x[i] += 0.0;
   static const char *const names[] = {"values", "vectors"};
@@ -507,7 +508,7 @@ static bool companion_roots(CagCall *call, Roots *r) {
   if (LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'N', (lapack_int)n, m.x, (lapack_int)n, re, im, NULL,
                     (lapack_int)n, NULL, (lapack_int)n) != 0)
     return cag_fail_call(call, 0, CAG_ERR_convergence,
-                         "does not settle: the roots could not be found");
+                         "does not converge: the roots could not be found");
   for (size_t i = 0; i < n; i++) r->z[i] = CMPLX(ldexp(re[i], exponent), ldexp(im[i], exponent));
   return true;
 }
@@ -530,8 +531,7 @@ static bool all_roots(CagCall *call, CagNumbers coefficients, Complex **out, siz
   size_t zeros = 0;
   while (c[zeros] == 0) zeros++;
   size_t degree = n - 1 - zeros;
-  if (degree > DEGREE_MOST)
-    return cag_fail_value(call, 0, "a polynomial of a degree of at most 200");
+  if (degree > DEGREE_MOST) return cag_fail_value(call, 0, "a polynomial of degree 200 or less");
   size_t room = n + 1;
   Roots r = {.c = c + zeros,
              .degree = degree,

@@ -17,9 +17,9 @@ static bool read_mesh(CagCall *call, const CagMesh **m) {
   if (call->values[0].type != CAG_SOLID) return true;
   const CagSolid *s = shape->as.solid;
   if (s->kind != CAG_SOLID_MESH)
-    return cag_fail_call(call, 0, CAG_ERR_type,
-                         "expects a mesh or a polyhedron, found a solid with faces of its own; "
-                         "`tessellate` makes a mesh of it");
+    return cag_fail_call(
+        call, 0, CAG_ERR_type,
+        "expects a mesh or a polyhedron, found another solid; `tessellate` makes a mesh of it");
   CagMesh *moved = NULL;
   CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
   cag_hold_mesh(call, moved);
@@ -40,7 +40,7 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
     size_t n;
     if (!cag_as_vector(cag_list_get(call->vm, faces, i), &x, &n) || n < 3)
       return cag_fail_call(call, argument, CAG_ERR_type,
-                           "expects 3 or more numbers of vertices in each face; faces[%zu] has not",
+                           "expects at least 3 vertex indices in each face; faces[%zu] has fewer",
                            i);
     total += n;
   }
@@ -53,10 +53,10 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
     (*counts)[i] = (uint32_t)n;
     for (size_t k = 0; k < n; k++) {
       if (x[k] < 0 || x[k] >= (double)vertices || x[k] != floor(x[k]))
-        return cag_fail_call(call, argument, CAG_ERR_face_index,
-                             "expects whole numbers below %zu, the count of vertices; found %g at "
-                             "faces[%zu][%zu]",
-                             vertices, x[k], i, k);
+        return cag_fail_call(
+            call, argument, CAG_ERR_face_index,
+            "expects whole numbers less than the number of vertices, %zu; found %g at faces[%zu][%zu]",
+            vertices, x[k], i, k);
       (*indices)[at++] = (uint32_t)x[k];
     }
   }

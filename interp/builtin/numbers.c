@@ -38,7 +38,7 @@ bool cag_numbers_sqrt(CagCall *call, CagValue *result) {
   if (x >= 0) return cag_give_number(call, sqrt(x), result);
   char digits[32];
   return cag_fail_call(call, 0, CAG_ERR_not_finite,
-                       "expects a number of 0 or more, found the number %s",
+                       "expects a number of at least 0, found the number %s",
                        cag_number_text(x, digits));
 }
 
@@ -56,14 +56,14 @@ bool cag_numbers_acosh(CagCall *call, CagValue *result) {
   double x;
   if (!cag_arg_number(call, 0, &x)) return false;
   return x >= 1 ? cag_give_number(call, acosh(x), result)
-                : cag_fail_value(call, 0, "a number of 1 or more");
+                : cag_fail_value(call, 0, "a number of at least 1");
 }
 
 bool cag_numbers_atanh(CagCall *call, CagValue *result) {
   double x;
   if (!cag_arg_number(call, 0, &x)) return false;
   return x > -1 && x < 1 ? cag_give_number(call, atanh(x), result)
-                         : cag_fail_value(call, 0, "a number between -1 and 1, without these");
+                         : cag_fail_value(call, 0, "a number greater than -1 and less than 1");
 }
 
 bool cag_numbers_hypot(CagCall *call, CagValue *result) {
@@ -120,7 +120,7 @@ static bool round_list(CagCall *call, CagValue value, int digits, int depth, Cag
     CagValue element = cag_list_get(call->vm, list, i), rounded;
     if (is_number_or_angle(element)) rounded = round_value(element, digits);
     else if (element.type != CAG_LIST)
-      return cag_fail_element(call, 0, i, element, "numbers, angles or lists of these");
+      return cag_fail_element(call, 0, i, element, "numbers, angles, or lists of these");
     else if (!round_list(call, element, digits, depth + 1, &rounded)) return false;
     if (!cag_builder_add(call->vm, built, rounded)) return false;
   }
@@ -170,7 +170,7 @@ bool cag_numbers_clamp(CagCall *call, CagValue *result) {
   if (!cag_arg_interval(call, 1, &low, &high, &angle)) return false;
   if (angle != (v.type == CAG_ANGLE))
     return cag_fail_type(call, 1, v.type == CAG_ANGLE ? "a range of angles" : "a range of numbers");
-  if (low > high) return cag_fail_value(call, 1, "a range whose start is not above its end");
+  if (low > high) return cag_fail_value(call, 1, "a range whose start is not greater than its end");
   v.as.number = v.as.number < low ? low : v.as.number > high ? high : v.as.number;
   *result = v;
   return true;

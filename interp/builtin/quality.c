@@ -105,8 +105,8 @@ static CagStatus value_mesh(const void *what, const CagShape *shape, CagValue v,
   }
   if ((v.type != CAG_SURFACE && v.type != CAG_SOLID) || n == 0)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
-                    "%s has no surfaces whose curvature could be shown",
-                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                    "%s has no surfaces with a curvature to show",
+                    v.type == CAG_SOLID ? "a solid made by set operations or from meshes"
                                         : cag_type_article(v));
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) {
@@ -183,9 +183,9 @@ bool cag_quality_colored_by(CagCall *call, const struct cag_quality_colored_by *
 static bool check_colored(CagCall *call, const CagMesh *m) {
   return (m->scale.kind && m->uv) ||
          cag_geometry_ok(
-             call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
-                            "the mesh has no values: `colored_by` and `zebra` make meshes that "
-                            "have"));
+             call,
+             cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
+                      "the mesh has no values; `colored_by` and `zebra` make meshes with values"));
 }
 
 bool cag_quality_values_of(CagCall *call, const struct cag_quality_values_of *a, CagValue *result) {
@@ -237,12 +237,12 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
     status = cag_mesh_transform(shape->as.mesh, &still, &mesh, err);
   } else
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
-                    "%s has no smooth normals that could mirror stripes", cag_type_article(v));
+                    "%s has no smooth normals to reflect stripes", cag_type_article(v));
   if (!status && !mesh->normals) {
     cag_mesh_release(mesh);
-    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
-                    "a body of set operations or flat meshes has no smooth normals that could "
-                    "mirror stripes");
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
+        "a solid made by set operations or from flat meshes has no smooth normals to reflect stripes");
   }
   if (!status) status = cag_mesh_reflect(mesh, z->eye, z->across, err);
   if (!status) return add_mesh(out, mesh, err);
@@ -262,7 +262,7 @@ static bool find_across(CagCall *call, CagVec3 v, CagVec3 eye, CagVec3 *out) {
   CagVec3 square = cag_madd(v, -cag_dot(v, eye), eye);
   if (cag_norm(square) < parallel)
     return cag_fail_call(call, 3, CAG_ERR_value,
-                         "expects a direction that is not the one to the eye");
+                         "expects a direction that differs from the direction of the view");
   *out = cag_unit(square);
   return true;
 }
@@ -298,10 +298,10 @@ static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
     if (listed) {
       CagValue v = cag_list_get(call->vm, list, i);
       if (v.type != CAG_ANGLE || !(v.as.number >= 0 && v.as.number <= 180))
-        return cag_fail_call(call, argument, CAG_ERR_value,
-                             "expects a count or a list of angles from 0deg to 180deg; element %zu "
-                             "is none",
-                             i);
+        return cag_fail_call(
+            call, argument, CAG_ERR_value,
+            "expects a number of levels or a list of angles from 0deg to 180deg; element %zu is not such an angle",
+            i);
       angle = v.as.number * CAG_RADIANS_PER_DEGREE;
     }
     // A right angle is where the outline is: its cosine is 0, not rounding.
@@ -318,7 +318,7 @@ static CagStatus isophotes_of(CagValue v, CagVec3 direction, double cosine, doub
   if (v.type != CAG_SOLID || shape->as.solid->face_count == 0)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "%s has no surfaces to draw isophotes on",
-                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                    v.type == CAG_SOLID ? "a solid made by set operations or from meshes"
                                         : cag_type_article(v));
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)

@@ -132,10 +132,10 @@ static CagStatus between_planes(const CagTransform *base, const CagTransform *pl
   const double reach = 1 + fabs(out->m[0][3]) + fabs(out->m[1][3]);
   if (!(fabs(out->m[2][0]) <= same && fabs(out->m[2][1]) <= same &&
         fabs(out->m[2][3]) <= same * reach))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_planes, "", -1,
-                    "operand %zu lies in another plane of space than the first region; set "
-                    "operations join regions of one plane: make them first and move the result",
-                    operand);
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_region_planes, "", -1,
+        "operand %zu lies in another plane than the first region; combine the regions in one plane, then move the result",
+        operand);
   for (int i = 0; i < 4; i++) out->m[2][i] = out->m[i][2] = i == 2;
   out->planar = true;
   return CAG_OK;
@@ -248,7 +248,7 @@ bool cag_regions_inertia(CagCall *call, const struct cag_regions_inertia *a, Cag
   CagVec3 center;
   if (!shape->placement.planar)
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "takes regions of the plane; this one was moved into space");
+                         "expects a region of the plane, found one that was moved into space");
   const bool empty = cag_region_is_empty(shape->as.region);
   CagStatus status = CAG_OK;
   if (!empty)

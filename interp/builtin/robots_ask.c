@@ -61,8 +61,8 @@ bool cag_arg_joints(CagCall *call, int argument, const CagRobot *r, bool limits,
     if (v.type != (turns ? CAG_ANGLE : CAG_NUMBER) || !isfinite(v.as.number)) {
       char expected[80];
       snprintf(expected, sizeof expected,
-               turns ? "a finite angle for joint %zu, which turns,"
-                     : "a finite number for joint %zu, which slides,",
+               turns ? "a finite angle for the revolute joint %zu"
+                     : "a finite number for the prismatic joint %zu",
                i + 1);
       return cag_fail_element(call, argument, i, v, expected);
     }

@@ -42,9 +42,9 @@ static bool fail_no_closed_form(CagCall *call, const CagRobot *r, bool point) {
     return cag_fail_call(call, 1, CAG_ERR_no_closed_form,
                          "expects a pose, since the arm reaches a point in infinitely many ways; "
                          "`ik` finds one of them");
-  return cag_fail_call(call, 0, CAG_ERR_no_closed_form,
-                       "expects an arm whose inverse has a closed form; `ik` solves any other "
-                       "numerically");
+  return cag_fail_call(
+      call, 0, CAG_ERR_no_closed_form,
+      "expects an arm whose inverse has a closed form; `ik` solves other arms numerically");
 }
 
 bool cag_inverse_ik_all(CagCall *call, const struct cag_inverse_ik_all *a, CagValue *result) {

@@ -115,9 +115,10 @@ static bool read_coupling_rows(CagCall *call, CagValue rows, size_t joints, doub
     size_t n;
     CagValue row = cag_list_get(call->vm, CAG_AS_LIST(rows), i);
     if (!cag_as_vector(row, &x, &n) || n != joints)
-      return cag_fail_call(call, 5, CAG_ERR_joint_count,
-                           "expects %zu numbers in each row of the coupling; row [%zu] differs",
-                           joints, i);
+      return cag_fail_call(
+          call, 5, CAG_ERR_joint_count,
+          "expects %zu numbers in each row of the coupling; row [%zu] has another length", joints,
+          i);
     memcpy(matrix + i * joints, x, joints * sizeof *x);
   }
   return true;

@@ -116,8 +116,9 @@ bool cag_robots_line_path(CagCall *call, const struct cag_robots_line_path *a, C
   if (!cag_arg_target(call, 1, &from, &way.position_only) || !cag_arg_target(call, 2, &to, &point))
     return false;
   if (point != way.position_only)
-    return cag_fail_type(
-        call, 2, way.position_only ? "a point, as the start is" : "a pose, as the start is");
+    return cag_fail_type(call, 2,
+                         way.position_only ? "a point, because the start is a point"
+                                           : "a pose, because the start is a pose");
   if (!cag_arg_joints_or_home(call, 4, a->robot, false, near)) return false;
   double *q = take_places(call, a->robot, n);
   CagStatus status = cag_robot_line_path(a->robot, &from, &to, n, &way, q, call->err);
@@ -137,7 +138,7 @@ static bool read_poses(CagCall *call, CagTransform **out, size_t *n, bool *point
     bool finite = *points && isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
     if (finite) (*out)[i] = cag_translate(cag_vec3(x[0], x[1], x[2]));
     else if (v.type != CAG_TRANSFORM)
-      return cag_fail_element(call, 1, i, v, "poses, or points of space,");
+      return cag_fail_element(call, 1, i, v, "poses or points in space");
     else if (!cag_pose_of_value(call, 1, v, &(*out)[i])) return false;
   }
   return true;

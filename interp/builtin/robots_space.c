@@ -133,17 +133,17 @@ static bool read_field_point(CagCall *call, int argument, const CagRecord *recor
   size_t n;
   CagValue v = cag_record_get(record, name);
   if (!cag_as_vector(v, &x, &n) || n != 3 || !isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
-    return cag_fail_call(call, argument, CAG_ERR_type,
-                         "expects records with kind, point and direction as axes; `%s` of [%zu] is "
-                         "not a point of space",
-                         name, index);
+    return cag_fail_call(
+        call, argument, CAG_ERR_type,
+        "expects records with kind, point, and direction as axes; `%s` of [%zu] is not a point in space",
+        name, index);
   *out = cag_vec3(x[0], x[1], x[2]);
   return true;
 }
 
 static bool read_axis(CagCall *call, int argument, CagValue v, size_t index, CagJointAxis *out) {
   if (v.type != CAG_RECORD)
-    return cag_fail_element(call, argument, index, v, "records with kind, point and direction");
+    return cag_fail_element(call, argument, index, v, "records with kind, point, and direction");
   const CagRecord *record = CAG_AS_RECORD(v);
   CagValue kind = cag_record_get(record, "kind");
   const char *name = kind.type == CAG_TEXT    ? CAG_AS_TEXT(kind)->bytes

@@ -46,7 +46,7 @@ static bool is_gltf(const char *file) { return ends_with(file, mesh_endings + 3,
 static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, const char *help) {
   cag_fail_call(m->call, 0, CAG_ERR_urdf_mesh, "cannot read the mesh \"%.120s\" (%s, line %ld): %s",
                 b->file, m->tree.file, b->line, why);
-  return cag_fail_help(m->call->vm, "%s; `shapes: false` reads the chain alone", help);
+  return cag_fail_help(m->call->vm, "%s; to read only the chain, use `shapes: false`", help);
 }
 
 // Reads a mesh at this place. *found is false where there is no such file; the error is set then
@@ -92,9 +92,10 @@ static bool read_near(Import *m, const CagUrdfBody *b, const char *package, int 
     if (ok || found) return ok;
     cag_vm_clear_error(m->call->vm);
   }
-  return fail_mesh(m, b, "there is no such file below the folders that the script may read",
-                   package ? "put the package's folders beside the .urdf file, as in meshes/arm.stl"
-                           : "put the file where the .urdf file says, seen from its own folder");
+  return fail_mesh(m, b, "the file does not exist in the folders that the script can read",
+                   package
+                       ? "put the package's folders next to the .urdf file, as in meshes/arm.stl"
+                       : "put the file at its path relative to the folder of the .urdf file");
 }
 
 // package://NAME/REST; else a path from the folder of the .urdf file. Absolute paths are of another
@@ -104,7 +105,7 @@ static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
   const char *name = b->file;
   if (!can_be_read(name))
     return fail_mesh(m, b, "meshes are read from .stl .obj .ply .gltf .glb",
-                     "convert it, or give the link a <collision> of such a mesh");
+                     "convert it, or add a <collision> with such a mesh to the link");
   if (begins(name, package) || begins(name, model)) {
     name = strstr(name, "://") + 3;
     const char *slash = strchr(name, '/');
@@ -114,8 +115,8 @@ static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
   }
   if (begins(name, file)) name += strlen(file);
   else if (strstr(name, "://"))
-    return fail_mesh(m, b, "nothing is fetched from elsewhere",
-                     "put the file beside the .urdf file and name it so");
+    return fail_mesh(m, b, "files are not downloaded",
+                     "put the file next to the .urdf file and use its relative path");
   const char *slash = strrchr(name, '/');
   return read_near(m, b, NULL, 0, name[0] == '/' && slash ? slash + 1 : name, out);
 }

@@ -31,7 +31,7 @@ static const char *const textures[] = {"", "wood", "marble", "concrete", "clay"}
 static bool fail_field(CagCall *call, const char *name) {
   const char *names[FIELD_COUNT];
   for (size_t i = 0; i < FIELD_COUNT; i++) names[i] = fields[i].name;
-  cag_fail_call(call, 1, CAG_ERR_material_field, "found a field that no material has: `%s`", name);
+  cag_fail_call(call, 1, CAG_ERR_material_field, "has no field `%s`", name);
   const char *nearest = cag_nearest_name(name, names, FIELD_COUNT);
   return nearest && cag_fail_help(call->vm, "did you mean `%s`?", nearest);
 }
@@ -39,9 +39,9 @@ static bool fail_field(CagCall *call, const char *name) {
 static bool check_texture(CagCall *call, const char *text) {
   for (size_t i = 0; i < TEXTURE_COUNT; i++)
     if (!strcmp(text, textures[i])) return true;
-  cag_fail_call(call, 1, CAG_ERR_material_field,
-                "expects \"wood\", \"marble\", \"concrete\" or \"clay\" as `texture`, found \"%s\"",
-                text);
+  cag_fail_call(
+      call, 1, CAG_ERR_material_field,
+      "expects \"wood\", \"marble\", \"concrete\", or \"clay\" as `texture`, found \"%s\"", text);
   const char *nearest = cag_nearest_name(text, textures, TEXTURE_COUNT);
   return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
@@ -56,7 +56,7 @@ static bool check_field(CagCall *call, const Field *f, CagValue *v) {
       *v = cag_color_value(call->vm, (CagColor){x, x, x});
       return (x >= 0 && isfinite(x)) ||
              cag_fail_call(call, 1, CAG_ERR_material_field,
-                           "expects a color, or a number of 0 or more, as `%s`", f->name);
+                           "expects a color, or a number of at least 0, as `%s`", f->name);
     }
     // fall through
   case FIELD_COLOR:

@@ -10,10 +10,10 @@
 static bool fail_color(CagCall *call, int argument, const char *what, const char *text) {
   size_t n;
   const char *const *names = cag_color_names(&n);
-  cag_fail_call(call, argument, CAG_ERR_color,
-                "expects a color as `%s`: a CSS name, \"#0a8\", \"#00aa88\" or [r, g, b]; \"%s\" "
-                "is none",
-                what, text);
+  cag_fail_call(
+      call, argument, CAG_ERR_color,
+      "expects a color as `%s`: a CSS name, \"#0a8\", \"#00aa88\", or [r, g, b]; found \"%s\"",
+      what, text);
   const char *nearest = cag_nearest_name(text, names, n);
   return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
@@ -29,7 +29,7 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
   const bool numbers = v.type == CAG_LIST && cag_as_vector(v, &x, &n);
   if (!numbers || n != 3) {
     cag_fail_call(call, argument, CAG_ERR_type,
-                  "expects a color as `%s`: a CSS name, \"#0a8\" or [r, g, b]; found %s", what,
+                  "expects a color as `%s`: a CSS name, \"#0a8\", or [r, g, b]; found %s", what,
                   cag_type_article(v));
     // Other programs take a fourth part for opacity.
     return numbers && n == 4 &&
@@ -41,7 +41,8 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
   for (size_t i = 0; i < 3; i++)
     if (!(x[i] >= 0 && isfinite(x[i])))
       return cag_fail_call(call, argument, CAG_ERR_value,
-                           "expects parts of 0 or more in the color `%s`, found %g", what, x[i]);
+                           "expects components of at least 0 in the color `%s`, found %g", what,
+                           x[i]);
   *out = (CagColor){x[0], x[1], x[2]};
   return true;
 }
@@ -75,17 +76,18 @@ bool cag_scenes_camera(CagCall *call, const struct cag_scenes_camera *a, CagValu
     return cag_fail_call(call, cag_given(call, 1) ? 1 : 0, CAG_ERR_view,
                          "expects two different points as `eye` and `target`");
   if (!(a->fov > 0 && a->fov <= widest * CAG_RADIANS_PER_DEGREE))
-    return cag_fail_call(call, 3, CAG_ERR_view, "expects a `fov` above 0deg, of 179deg at most");
+    return cag_fail_call(call, 3, CAG_ERR_view,
+                         "expects a `fov` greater than 0deg and at most 179deg");
   if (cag_given(call, 6)) {
     const double *x = a->size.items;
     if (a->size.count != 2 || !is_pixels(x[0]) || !is_pixels(x[1]))
       return cag_fail_call(call, 6, CAG_ERR_value,
-                           "expects [width, height] in whole pixels up to %d as `size`",
+                           "expects [width, height] in whole pixels, at most %d, as `size`",
                            PIXELS_MAX);
     memcpy(size, x, sizeof size);
   }
   if (!(a->aperture >= 0 && isfinite(a->aperture)))
-    return cag_fail_call(call, 8, CAG_ERR_value, "expects an `aperture` of 0 or more");
+    return cag_fail_call(call, 8, CAG_ERR_value, "expects an `aperture` of at least 0");
   CagValue fields[] = {cag_point(call->vm, a->eye.at, 3),
                        cag_point(call->vm, a->target.at, 3),
                        cag_point(call->vm, a->up.at, 3),
@@ -109,7 +111,7 @@ static bool light_result(CagCall *call, const char *kind, const char *const *nam
   if (cag_given(call, color) && !cag_color_read(call, color, "color", call->values[color], &c))
     return false;
   if (!(strength >= 0 && isfinite(strength)))
-    return cag_fail_call(call, color + 1, CAG_ERR_value, "expects a `strength` of 0 or more");
+    return cag_fail_call(call, color + 1, CAG_ERR_value, "expects a `strength` of at least 0");
   fields[n - 2] = cag_color_value(call->vm, c);
   fields[n - 1] = cag_number(strength);
   return scene_result(call, CAG_LIGHT, kind, names, fields, n, result);
@@ -141,7 +143,8 @@ static bool beam_result(CagCall *call, const char *kind, const char *const *name
 bool cag_scenes_spot_light(CagCall *call, const struct cag_scenes_spot_light *a, CagValue *result) {
   static const char *const names[] = {"position", "target", "angle", "color", "strength"};
   if (!(a->angle > 0 && a->angle < 180 * CAG_RADIANS_PER_DEGREE))
-    return cag_fail_call(call, 2, CAG_ERR_value, "expects an `angle` above 0deg and below 180deg");
+    return cag_fail_call(call, 2, CAG_ERR_value,
+                         "expects an `angle` greater than 0deg and less than 180deg");
   return beam_result(call, "spot", names, a->position.at, a->target.at,
                      cag_angle(cag_degrees_shown(a->angle)), a->strength, result);
 }
@@ -172,7 +175,7 @@ bool cag_scenes_sky(CagCall *call, CagValue *result) {
   }
   bool one = v.type == CAG_TEXT || (v.type == CAG_LIST && cag_as_vector(v, &x, &n));
   if (!one && v.type != CAG_LIST)
-    return cag_fail_type(call, 0, "a color, colors from below to above, or an .exr image");
+    return cag_fail_type(call, 0, "a color, a list of colors from bottom to top, or an .exr image");
   CagBuilder *colors = cag_builder_new(call->vm);
   n = one ? 1 : CAG_AS_LIST(v)->length;
   for (size_t i = 0; i < n; i++) {

@@ -53,7 +53,7 @@ bool cag_arg_parameter(CagCall *call, int argument, bool angular, double start, 
     if (!cag_arg_finite(call, argument, &share)) return false;
     if (share < 0 || share > 1)
       return cag_fail_call(call, argument, CAG_ERR_value,
-                           "takes a share in 0..1 with `unit: true`, found %.17g", share);
+                           "expects a fraction in 0..1 with `unit: true`, found %.17g", share);
     *out = share == 1 ? end : start + share * (end - start);
     return true;
   }
@@ -138,6 +138,7 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   const CagShape *own = CAG_AS_SHAPE(item);
   CagRecord *material = cag_material_combine(vm, own->material, group->material);
   bool more = material != own->material || (!own->name && group->name) ||
+              (!own->definition && group->definition) ||
               (own->tolerance == 0 && group->tolerance > 0) ||
               (!own->line.set && group->line.set) || (!own->hidden && group->hidden);
   if (!more) return item;
@@ -145,6 +146,7 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   CagShape *s = CAG_AS_SHAPE(copy);
   s->material = material;
   if (!s->name) s->name = group->name;
+  if (!s->definition) s->definition = group->definition;
   if (!s->line.set) s->line = group->line;
   if (s->tolerance == 0) s->tolerance = group->tolerance;
   s->hidden = s->hidden || group->hidden;
@@ -229,7 +231,7 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
     return cag_geometry_ok(call,
                            cag_region_new(CAG_AS_SHAPE(v)->as.curve, NULL, 0, out, call->err));
   if (v.type != CAG_LIST)
-    return cag_fail_type(call, argument, "a region, a closed plane curve or a list of points");
+    return cag_fail_type(call, argument, "a region, a closed plane curve, or a list of points");
   CagVec3 *points;
   size_t n;
   int dimension;
@@ -313,7 +315,8 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
   *out = CAG_BOUNDS_EMPTY;
   *dimension = 2;
   size_t n = CAG_AS_LIST(list)->length;
-  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "there is no shape in it");
+  cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
+           "the group contains no shapes");
   bool all_empty = true;
   for (size_t i = 0; i < n; i++) {
     CagBounds one;

@@ -143,10 +143,10 @@ static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
     face = shape->as.surface;
     return operand_ok(call, cag_solid_shell(&face, 1, out, call->err), call->err, index);
   default:
-    return cag_fail_call(call, -1, CAG_ERR_csg_operand,
-                         "expects solids, closed meshes and closed surfaces, found %s as operand "
-                         "%zu, which encloses nothing in space",
-                         cag_type_article(v), index + 1);
+    return cag_fail_call(
+        call, -1, CAG_ERR_csg_operand,
+        "expects solids, closed meshes, and closed surfaces, found %s as operand %zu, which encloses no volume",
+        cag_type_article(v), index + 1);
   }
 }
 

@@ -145,9 +145,9 @@ bool cag_solids_solid(CagCall *call, CagValue *result) {
   if (is_form(v))
     return cag_surfaces_read_form(call, &q) && cag_solids_of_form(call, &q, 1, result);
   if (cag_given(call, 1))
-    return cag_fail_call(call, 1, CAG_ERR_value,
-                         "is for a quadric given by its 10 numbers or 4 rows; a surface has its "
-                         "own range");
+    return cag_fail_call(
+        call, 1, CAG_ERR_value,
+        "accepts `within` only for a quadric given by its 10 numbers or 4 rows; a surface has its own range");
   if (v.type == CAG_SOLID) {
     *result = v;
     return true;

@@ -53,8 +53,7 @@ static CagStatus mesh_body(const CagMesh *m, bool volume, Body *out, CagError *e
   if (!cag_mesh_is_watertight(m, edge))
     return cag_fail(
         err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, "", -1,
-        "the mesh is not closed: the edge from [%g, %g, %g] to [%g, %g, %g] has not two "
-        "faces; it holds no volume",
+        "the mesh is not closed, so it has no volume: the edge from [%g, %g, %g] to [%g, %g, %g] does not belong to two faces",
         edge[0].x, edge[0].y, edge[0].z, edge[1].x, edge[1].y, edge[1].z);
   const CagBounds box = cag_mesh_bounds(m);
   const CagTransform shift = to_middle(&box, &middle);
@@ -75,7 +74,7 @@ static CagStatus surface_body(const CagSurface *s, bool volume, Body *out, CagEr
   if (status || !volume) return status;
   if (!cag_surface_is_closed(s))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
-                    "the surface has a boundary, so it holds no volume");
+                    "the surface is open, so it has no volume");
   status = cag_surface_bounds(s, &box, err);
   if (status) return status;
   const CagTransform shift = to_middle(&box, &middle);
@@ -123,7 +122,7 @@ static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   case CAG_SURFACE:
     return cag_geometry_ok(call, surface_body(shape->as.surface, volume, out, call->err));
   default:
-    return cag_fail_call(call, 0, CAG_ERR_type, "expects solids, surfaces and meshes, found %s",
+    return cag_fail_call(call, 0, CAG_ERR_type, "expects solids, surfaces, and meshes, found %s",
                          cag_type_article(v));
   }
 }
@@ -167,7 +166,7 @@ static bool read_massive(CagCall *call, Body *body, bool *empty) {
   if (!read_body(call, true, body)) return false;
   *empty = body->volume == 0 && body->area == 0;
   return body->volume != 0 || *empty ||
-         cag_fail_call(call, 0, CAG_ERR_value, "expects a body with a volume, found none");
+         cag_fail_call(call, 0, CAG_ERR_value, "expects a body with a volume, found one without");
 }
 
 static CagValue center_value(CagCall *call, const Body *body) {

@@ -87,8 +87,8 @@ bool cag_splines_basis_matrix(CagCall *call, const struct cag_splines_basis_matr
     const double ratio = i ? a->beta : a->alpha;
     if (parabolic && !(ratio > 0 && ratio < 1))
       return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, i ? "beta" : "alpha", -1,
-                              "a parabola passes its middle point between 0 and 1: %s = %s",
-                              i ? "beta" : "alpha", cag_number_text(ratio, text));
+                              "`%s` must be between 0 and 1, found %s", i ? "beta" : "alpha",
+                              cag_number_text(ratio, text));
   }
   if (a->kind == BEZIER) bezier_matrix((int)degree, m, NULL, NULL);
   else if (a->kind == BSPLINE) bspline_matrix((int)degree, m);
@@ -136,7 +136,7 @@ bool cag_splines_hermite_basis(CagCall *call, const struct cag_splines_hermite_b
   char text[32];
   if (!(h > 0))
     return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "length", -1,
-                            "the length of a segment is positive; this is %s",
+                            "the length of a segment must be positive, found %s",
                             cag_number_text(h, text));
   *result = cag_list_numbers(call->vm, 4, &f);
   f[0] = (2 * t - 3) * t * t + 1;
@@ -173,9 +173,9 @@ static bool check_segment(CagCall *call, const CagPoint *v[4]) {
   for (int i = 1; i < 4; i++)
     if (!cag_splines_check_dimension(call, i, *v[i], dimension)) return false;
   return dimension == 2 ||
-         cag_splines_fail(call, CAG_ERR_dimension_mismatch, "", -1,
-                          "inflections, cusps and loops are those of plane segments: give points "
-                          "and tangents of 2 numbers");
+         cag_splines_fail(
+             call, CAG_ERR_dimension_mismatch, "", -1,
+             "inflections, cusps, and loops need a plane segment: use points and tangents of 2 numbers");
 }
 
 bool cag_splines_hermite_shape(CagCall *call, const struct cag_splines_hermite_shape *a,
@@ -261,7 +261,8 @@ bool cag_splines_convert_cubic(CagCall *call, const struct cag_splines_convert_c
   if (!cag_splines_check_points(call, 0, &a->points)) return false;
   if (a->points.count != 4)
     return cag_splines_fail(call, CAG_ERR_point_count, "points", -1,
-                            "a cubic has four points and vectors; these are %zu", a->points.count);
+                            "a cubic segment needs four points and vectors, found %zu",
+                            a->points.count);
   to_bezier_points(a->points.items, a->from, b);
   const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
   const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
@@ -304,7 +305,7 @@ bool cag_splines_continuity(CagCall *call, const struct cag_splines_continuity *
   CagJoint j;
   if (!(a->tolerance >= 0))
     return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
-                            "the tolerance is 0 or more");
+                            "the tolerance must be at least 0");
   if (!cag_geometry_ok(call, cag_curve_joint(a->C, a->D, a->tolerance, &j, call->err)))
     return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
@@ -353,7 +354,7 @@ bool cag_splines_line_crossings(CagCall *call, const struct cag_splines_line_cro
   const double square = cag_dot(a->normal.at, a->normal.at);
   if (!(square > 0))
     return cag_splines_fail(call, CAG_ERR_zero_vector, "normal", -1,
-                            "the normal of a line or plane is not the zero vector");
+                            "the normal of a line or plane must not be the zero vector");
   const CagPlane plane = {cag_scaled(a->normal.at, a->offset / square), cag_unit(a->normal.at)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(a->C, &plane, &meetings, &n, call->err)))
     return false;

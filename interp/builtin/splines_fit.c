@@ -83,7 +83,7 @@ static bool fit(CagCall *call, CagFitReport *report, CagPoints *points, CagCurve
     return false;
   if (!(slack >= 0))
     return cag_splines_fail(call, CAG_ERR_bad_parameter, "error", -1,
-                            "the error that is allowed is 0 or more");
+                            "the allowed error must be at least 0");
   // Too many control points are told as that, not as the wrong number of knots.
   if ((size_t)count <= d.n && !read_knots(call, 5, &d, (size_t)count)) return false;
   CagStatus status = cag_curve_fit(&d, (size_t)count, fixed == 0, fixed >= 2 ? fixed - 2 : -1,
@@ -119,7 +119,7 @@ static bool report_surface(CagCall *call, CagValue *result) {
   CagCall other = {call->vm, row, values, sizeof values / sizeof *values, call->err};
   if (given[2].type == CAG_UNSET)
     return cag_fail_call(call, 2, CAG_ERR_arity,
-                         "of rows of points expects a `count`, two for u and v");
+                         "of rows of points expects a `count` of two numbers, for u and v");
   if (cag_given(call, 7))
     return cag_fail_call(call, 7, CAG_ERR_value,
                          "of rows of points takes a degree, not an `order`");

@@ -19,10 +19,10 @@ bool cag_splines_check_points(CagCall *call, int argument, const CagPoints *poin
     cag_as_vector(cag_list_get(call->vm, list, i), &x, &size);
     if (i == 0) first = size;
     else if (size != first)
-      return cag_splines_fail(call, CAG_ERR_dimension_mismatch, name, (long)i,
-                              "the points are of the plane or of space, not both: %s[0] has %zu "
-                              "numbers and %s[%zu] has %zu",
-                              name, first, name, i, size);
+      return cag_splines_fail(
+          call, CAG_ERR_dimension_mismatch, name, (long)i,
+          "points must be all in the plane or all in space: %s[0] has %zu numbers and %s[%zu] has %zu",
+          name, first, name, i, size);
   }
   return true;
 }
@@ -33,14 +33,15 @@ bool cag_splines_tangents(CagCall *call, int argument, int dimension, CagPoints 
   return cag_splines_check_points(call, argument, out) &&
          (out->dimension == dimension ||
           cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
-                           "the points have %d numbers, the tangents %d", dimension,
-                           out->dimension));
+                           "points and tangents must have the same dimension, found %d and %d",
+                           dimension, out->dimension));
 }
 
 bool cag_splines_check_dimension(CagCall *call, int argument, CagPoint p, int dimension) {
   return p.dimension == dimension ||
          cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
-                          "the points have %d numbers, this vector has %d", dimension, p.dimension);
+                          "the vector must have the dimension of the points, %d, found %d",
+                          dimension, p.dimension);
 }
 
 bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, size_t n,
@@ -61,10 +62,10 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
   char text[32];
   if (!cag_arg_numbers(call, argument, &x, &count)) return false;
   if (count != n && count + 1 != n)
-    return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", -1,
-                            "`parameters` are one number for each of the %zu points, or the %zu "
-                            "lengths between them; these are %zu",
-                            n, n - 1, count);
+    return cag_splines_fail(
+        call, CAG_ERR_bad_parameter_length, "parameters", -1,
+        "`parameters` must be one number for each of the %zu points, or the %zu lengths between them, found %zu",
+        n, n - 1, count);
   double *u = cag_hold_array(call, n, sizeof *u);
   if (count == n) memcpy(u, x, n * sizeof *u);
   else u[0] = 0;
@@ -72,8 +73,8 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
     u[i + 1] = u[i] + x[i];
     if (!(x[i] > 0 && isfinite(x[i])))
       return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", (long)i,
-                              "the lengths of the segments are positive: parameters[%zu] = %s", i,
-                              cag_number_text(x[i], text));
+                              "the lengths of the segments must be positive: parameters[%zu] = %s",
+                              i, cag_number_text(x[i], text));
   }
   *own = u;
   return true;
@@ -113,7 +114,7 @@ bool cag_splines_hermite(CagCall *call, const struct cag_splines_hermite *a, Cag
     return false;
   if (tangents.count != d.n)
     return cag_splines_fail(call, CAG_ERR_point_count, "tangents", -1,
-                            "there is one tangent to each point: %zu points, %zu tangents", d.n,
+                            "each point needs one tangent, found %zu points and %zu tangents", d.n,
                             tangents.count);
   if (!cag_geometry_ok(call, cag_parameters_check(d.u, d.n, call->err))) return false;
   if (cag_given(call, 3)) cag_hermite_limit(d.points, tangents.items, d.n, d.u, a->limit);
@@ -167,7 +168,7 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
                          where);
   if ((int)n != d->dimension)
     return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "ends", -1,
-                            "the points have %d numbers, the tangent at the %s has %zu",
+                            "the points have %d numbers, but the tangent at the %s has %zu",
                             d->dimension, where, n);
   for (size_t i = 0; i < n; i++)
     if (!isfinite(x[i]))
@@ -194,9 +195,9 @@ static bool read_ends(CagCall *call, CagValue ends, const Data *d, CagCubicEnds 
   const CagRecord *r = ends.type == CAG_RECORD ? CAG_AS_RECORD(ends) : NULL;
   const CagValue type = r ? cag_record_get(r, "type") : cag_unset();
   if (type.type != CAG_TEXT)
-    return cag_fail_type(call, 1,
-                         "end conditions (clamped(V, V), relaxed(), cyclic(), anticyclic() or "
-                         "ends(start, finish))");
+    return cag_fail_type(
+        call, 1,
+        "end conditions (clamped(V, V), relaxed(), cyclic(), anticyclic(), or ends(start, finish))");
   const char *name = CAG_AS_TEXT(type)->bytes;
   if (strcmp(name, "cyclic") == 0) out->closing = CAG_CUBIC_CYCLIC;
   else if (strcmp(name, "anticyclic") == 0) out->closing = CAG_CUBIC_ANTICYCLIC;
@@ -219,10 +220,10 @@ static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
     return false;
   }
   if (count != inner)
-    return cag_splines_fail(call, CAG_ERR_point_count, "tension", -1,
-                            "a tension is one number, or one for each of the %zu inner points; "
-                            "these are %zu",
-                            inner, count);
+    return cag_splines_fail(
+        call, CAG_ERR_point_count, "tension", -1,
+        "the tension must be one number, or one for each of the %zu inner points, found %zu", inner,
+        count);
   *out = cag_hold_array(call, inner, sizeof **out);
   for (size_t i = 0; i < inner; i++) (*out)[i] = x ? x[i] : same;
   return true;
@@ -268,10 +269,10 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
     return false;
   }
   if (given != count)
-    return cag_splines_fail(call, CAG_ERR_point_count, "alpha", -1,
-                            "`alpha` is one number, \"chord\", or one number for each of the %zu "
-                            "points that a parabola is about; these are %zu",
-                            count, given);
+    return cag_splines_fail(
+        call, CAG_ERR_point_count, "alpha", -1,
+        "`alpha` must be one number, \"chord\", or one number for each of the %zu middle points of a parabola, found %zu",
+        count, given);
   *out = cag_hold_array(call, count, sizeof **out);
   for (size_t i = 0; i < count; i++) (*out)[i] = x ? x[i] : same;
   return true;
@@ -297,7 +298,7 @@ bool cag_splines_catmull_rom(CagCall *call, const struct cag_splines_catmull_rom
   char text[32];
   if (!(a->alpha >= 0 && a->alpha <= 1))
     return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, "alpha", -1,
-                            "the power of the distances is between 0 and 1: alpha = %s",
+                            "the power of the distances, alpha, must be between 0 and 1, found %s",
                             cag_number_text(a->alpha, text));
   if (!cag_splines_check_points(call, 0, p)) return false;
   CagStatus status =

@@ -108,12 +108,12 @@ bool cag_check_defined(CagCall *call, CagValue result) {
              is_defined(result, RESULT_DEPTH)) {
     return true;
   }
-  return cag_fail_call(call, -1, CAG_ERR_not_finite, "gives numbers that are undefined for %.120s",
+  return cag_fail_call(call, -1, CAG_ERR_not_finite, "has an undefined result for %.120s",
                        print_arguments(call));
 }
 
 bool cag_fail_depth(CagCall *call) {
-  return cag_fail_call(call, 0, CAG_ERR_value, "expects lists that nest at most %d deep",
+  return cag_fail_call(call, 0, CAG_ERR_value, "expects lists that are nested at most %d deep",
                        CAG_DEPTH_MOST);
 }
 
@@ -185,11 +185,11 @@ bool cag_order(CagValue a, CagValue b, int *order) {
 bool cag_fail_order(CagCall *call, int argument, CagValue a, CagValue b) {
   if (cag_holds_jet(a) || cag_holds_jet(b)) return cag_fail_differentiate(call, argument);
   char left[120], right[120];
-  return cag_fail_call(call, argument, CAG_ERR_not_comparable,
-                       "cannot tell which of %s and %s comes first: it compares numbers with "
-                       "numbers, angles with angles, texts with texts",
-                       cag_value_words(call->vm, a, left, sizeof left),
-                       cag_value_words(call->vm, b, right, sizeof right));
+  return cag_fail_call(
+      call, argument, CAG_ERR_not_comparable,
+      "cannot compare %s and %s: it compares numbers with numbers, angles with angles, and texts with texts",
+      cag_value_words(call->vm, a, left, sizeof left),
+      cag_value_words(call->vm, b, right, sizeof right));
 }
 
 // --- Mixing ---
@@ -218,7 +218,7 @@ static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double 
   if (!cag_may_nest(call, depth)) return false;
   if (a->length != b->length)
     return cag_fail_call(call, 1, CAG_ERR_length,
-                         "expects lists of one length, found %zu and %zu elements", a->length,
+                         "expects lists of the same length, found %zu and %zu elements", a->length,
                          b->length);
   if (a->dim > 0 && a->dim == b->dim) {
     double *numbers;
@@ -253,11 +253,11 @@ static bool mix_values(CagCall *call, CagValue a, CagValue b, double t, int dept
     return cag_as_list(call->vm, a, &a) && cag_as_list(call->vm, b, &b) &&
            mix_lists(call, CAG_AS_LIST(a), CAG_AS_LIST(b), t, depth + 1, out);
   char left[120], right[120];
-  return cag_fail_call(call, 0, CAG_ERR_type,
-                       "expects two numbers, angles, vectors, lists of these or transforms to go "
-                       "between, found %s and %s",
-                       cag_value_words(call->vm, a, left, sizeof left),
-                       cag_value_words(call->vm, b, right, sizeof right));
+  return cag_fail_call(
+      call, 0, CAG_ERR_type,
+      "expects two numbers, angles, vectors, lists of these, or transforms to interpolate, found %s and %s",
+      cag_value_words(call->vm, a, left, sizeof left),
+      cag_value_words(call->vm, b, right, sizeof right));
 }
 
 bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *out) {

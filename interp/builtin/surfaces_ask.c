@@ -9,7 +9,7 @@ bool cag_arg_side(CagCall *call, int argument, CagSurface **out) {
   return *out ||
          cag_fail_call(
              call, argument, CAG_ERR_type,
-             "expects a surface: this solid has no single side; only swept ones have u and v");
+             "expects a surface, found a solid without u and v; only swept solids have them");
 }
 
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v) {
@@ -87,11 +87,12 @@ bool cag_surfaces_domain(CagCall *call, CagValue *result) {
 bool cag_surface_net(CagCall *call, const CagSurface *s, const char *what,
                      CagSurfaceNurbsView *net) {
   return cag_surface_nurbs_view(s, net) ||
-         cag_geometry_ok(call,
-                         cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
-                                  "a surface of kind %s has no %s; `to_nurbs` gives its "
-                                  "rational form where there is one",
-                                  s->kind->name, what));
+         cag_geometry_ok(
+             call,
+             cag_fail(
+                 call->err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
+                 "a surface of kind %s has no %s; `to_nurbs` returns its rational form if there is one",
+                 s->kind->name, what));
 }
 
 bool cag_surfaces_degree(CagCall *call, const struct cag_surfaces_degree *a, CagValue *result) {

@@ -17,9 +17,9 @@ bool cag_surfaces_volume(CagCall *call, const struct cag_surfaces_volume *a, Cag
   CagStatus status =
       cag_surface_is_closed(a->S)
           ? cag_surface_volume_terms(a->S, terms, call->err)
-          : cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
-                     "the surface has a boundary, so it holds no volume; `solid` of all sides "
-                     "tells the gap");
+          : cag_fail(
+                call->err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
+                "the surface is open, so it has no volume; `solid` of all sides reports the gap");
   if (!cag_geometry_ok(call, status)) return false;
   *result = cag_number(fabs(terms[0]));
   return true;
@@ -83,7 +83,7 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
   bool v = cag_given(call, 2);
   if (u == v)
     return cag_fail_call(call, u ? 2 : -1, CAG_ERR_value,
-                         "expects either `u:` or `v:`, which is fixed");
+                         "expects either `u:` or `v:`, the constant parameter");
   bool read = u ? cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, false, &at)
                 : cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, false, &at);
   return read &&

@@ -41,9 +41,10 @@ static bool read_regular(CagCall *call, Forms *f) {
   if (!read_forms(call, f)) return false;
   return f->area > FLAT_SINE * FLAT_SINE * f->E * f->G ||
          cag_geometry_ok(
-             call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
-                            "the surface has no two independent tangents here (a pole or a fold), "
-                            "so its curvature cannot be told"));
+             call,
+             cag_fail(
+                 call->err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
+                 "the surface has no two independent tangents here (a pole or a fold), so its curvature is undefined"));
 }
 
 bool cag_surfaces_first_form(CagCall *call, CagValue *result) {

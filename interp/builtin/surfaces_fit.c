@@ -68,7 +68,7 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
     if (good) memcpy(out + i * g->s, x, n * sizeof *x);
   }
   return good || cag_fail_call(call, argument, CAG_ERR_length,
-                               "expects as `parameters` by %c %zu numbers, or %zu rows of %zu",
+                               "expects as `parameters` in %c %zu numbers, or %zu rows of %zu",
                                k ? 'v' : 'u', lines, g->r, g->s);
 }
 
@@ -122,7 +122,7 @@ static bool read_planes(CagCall *call, int argument, CagGridData *g) {
   if (g->hold == CAG_GRID_HOLD_NONE)
     return cag_fail_call(
         call, argument, CAG_ERR_value,
-        "expects `fixed` beside `planes`: \"x\", \"y\" or \"z\", along which they are positions");
+        "expects `fixed` with `planes`: the coordinate \"x\", \"y\", or \"z\" of which they are values");
   if (v.type != CAG_RECORD) {
     g->lines = v.type == CAG_TEXT ? CAG_GRID_PLANES_EITHER : CAG_GRID_PLANES_U;
     return read_positions(call, argument, v, g);
@@ -236,7 +236,7 @@ bool cag_surfaces_grid_parameters(CagCall *call, const struct cag_surfaces_grid_
   if (!cag_arg_grid(call, &points, &g.r, &g.s) || !cag_arg_closed(call, 3, g.closed)) return false;
   if (cag_given(call, 2) && (!cag_as_vector(a->ends, &end, &n) || n != 2 ||
                              !(end[0] > 0 && end[1] > 0) || !isfinite(end[0] + end[1])))
-    return cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
+    return cag_fail_value(call, 2, "two positive numbers, the last parameters in u and v");
   double *u = cag_hold_array(call, 2 * g.r * g.s, sizeof *u), *v = u + g.r * g.s;
   g.points = points;
   cag_grid_parameters(&g, end, u, v);

@@ -103,7 +103,7 @@ bool cag_surfaces_revolve(CagCall *call, const struct cag_surfaces_revolve *a, C
   double from, to;
   if (!(cag_norm(axis) > 0))
     return cag_geometry_ok(call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
-                                          "`axis` must have a direction; it is the zero vector"));
+                                          "`axis` must not be the zero vector"));
   if (!read_turn(call, 3, &from, &to)) return false;
   bool along_z = axis.x == 0 && axis.y == 0;
   if (v.type == CAG_CURVE) {

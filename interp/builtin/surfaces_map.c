@@ -163,9 +163,10 @@ static bool refuse_trimmed(CagCall *call, CagValue g) {
   if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
     return true;
   return cag_geometry_ok(
-      call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
-                     "a trimmed surface cannot be mapped: map the whole one and trim that, or map "
-                     "its mesh"));
+      call,
+      cag_fail(
+          call->err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
+          "a trimmed surface cannot be mapped; map the whole surface and trim the result, or map its mesh"));
 }
 
 static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
@@ -217,7 +218,7 @@ bool cag_surfaces_remap(CagCall *call, const struct cag_surfaces_remap *a, CagVa
                            u ? a->u : cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
                            v ? a->v : cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
   if (!cag_call(call->vm, lambda, arguments, 4, result))
-    return tell_of_mapping(call, 1, "expects a function that gives [u, v] of the surface as `f`");
+    return tell_of_mapping(call, 1, "expects a function that returns [u, v] of the surface as `f`");
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

@@ -48,7 +48,7 @@ bool cag_meetings_intersect(CagCall *call, const struct cag_meetings_intersect *
   else if (other.type == CAG_SURFACE)
     status = cag_surface_intersect(a->S, CAG_AS_SHAPE(other)->as.surface, a->tolerance,
                                    cag_vm_stop(call->vm), list, call->err);
-  else return cag_fail_type(call, 1, "a curve, a surface or a plane");
+  else return cag_fail_type(call, 1, "a curve, a surface, or a plane");
   if (!cag_geometry_ok(call, status)) return false;
   *result = cag_curve_list_value(call->vm, list);
   return true;

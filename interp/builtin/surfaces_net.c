@@ -44,9 +44,11 @@ bool cag_arg_grid(CagCall *call, CagVec3 **points, size_t *rows, size_t *columns
     if (row->length != *columns) {
       const char *name = cag_parameter_name(call, 0);
       return cag_geometry_ok(
-          call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_net_not_rectangular, name, (long)i,
-                         "`%s` must have rows of one length: row 0 has %zu points, row %zu has %zu",
-                         name, *columns, i, row->length));
+          call,
+          cag_fail(
+              call->err, CAG_E_ARGUMENT, CAG_ERR_net_not_rectangular, name, (long)i,
+              "`%s` must have rows of the same length: row 0 has %zu points, and row %zu has %zu",
+              name, *columns, i, row->length));
     }
     if (!read_row(call, row, i, *points + i * *columns)) return false;
   }
@@ -95,7 +97,7 @@ static bool read_net(CagCall *call, int argument, Net *net) {
   }
   return fits || cag_geometry_ok(
                      call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
-                                    "`weights` must be %zu rows of %zu numbers, as the points",
+                                    "`weights` must be %zu rows of %zu numbers, like the points",
                                     net->nu, net->nv));
 }
 
@@ -134,20 +136,23 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
   if (v.type == CAG_TEXT) type = CAG_AS_TEXT(v)->bytes;
   bool list = v.type == CAG_LIST;
   if (!list && v.type != CAG_TEXT && v.type != CAG_UNSET)
-    return cag_fail_type(call, argument, "\"open\", \"periodic\" or knots, or two for u and v");
+    return cag_fail_type(call, argument,
+                         "\"open\", \"periodic\", or knots, or two of these for u and v");
   if (!list && strcmp(type, "open") != 0 && strcmp(type, "periodic") != 0)
     return cag_fail_call(call, argument, CAG_ERR_value,
-                         "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
+                         "expects \"open\", \"periodic\", or a list as `knots`, found \"%s\"",
+                         type);
   CagStatus status = CAG_OK;
   if (n < 2)
-    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", direction,
-                      "a surface needs at least 2 rows of at least 2 points, by %c there is %zu",
-                      "uv"[direction], n);
+    status =
+        cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", direction,
+                 "a surface needs at least 2 rows of at least 2 points, but in %c there is %zu",
+                 "uv"[direction], n);
   else if (degree < 1 || n <= (size_t)degree)
-    status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", direction,
-                      "`degree` in %c must lie in 1..%zu for %zu points, it is %d; add points or "
-                      "lower it",
-                      "uv"[direction], n - 1, n, degree);
+    status = cag_fail(
+        call->err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", direction,
+        "`degree` in %c must lie in 1..%zu for %zu points, found %d; add points, or lower the degree",
+        "uv"[direction], n - 1, n, degree);
   else if (list && (!cag_as_vector(v, &x, &count) || count != wanted))
     status = cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                       "%zu points of degree %d need %zu `knots` in %c (points + degree + 1)", n,
@@ -182,7 +187,7 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {
   if (cag_given(call, 4)) return cag_surfaces_bspline_surface(call, result);
-  cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, in rows as the points");
-  cag_fail_help(call->vm, "without weights it is a `bspline_surface`");
+  cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, in rows like the points");
+  cag_fail_help(call->vm, "without weights, use `bspline_surface`");
   return false;
 }

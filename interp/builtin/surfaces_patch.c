@@ -124,7 +124,7 @@ static bool read_edges(CagCall *call, const CagRecord *edges, CagHermiteGrid *g)
     if (line.type == CAG_UNSET)
       return cag_fail_call(
           call, 1, CAG_ERR_value,
-          "expects a record with u0, u1, v0 and v1 as `edge_tangents`: %s is missing", names[k]);
+          "expects a record with u0, u1, v0, and v1 as `edge_tangents`; %s is missing", names[k]);
     if (!read_line(call, 1, line, what, n, at)) return false;
     *into[k] = at;
     at += n;

@@ -289,9 +289,10 @@ bool cag_tensors_polynomials(CagCall *call, const struct cag_tensors_polynomials
   if (!read_net(call, a->S, &n)) return false;
   if (n.view.rational)
     return cag_geometry_ok(
-        call, cag_fail(call->err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
-                       "the surface has weights, so it is not a polynomial: ask for `numerator` "
-                       "and `denominator`"));
+        call,
+        cag_fail(
+            call->err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
+            "the surface has weights, so it is not a polynomial; use `numerator` and `denominator`"));
   const double *lu = span_lengths(call, &n.axis[0]), *lv = span_lengths(call, &n.axis[1]);
   CagSurfaceArray *pieces = cag_hold_surfaces(call);
   CagStatus status = cag_surface_to_bezier(n.s, &pieces->items, &nu, &nv, call->err);
@@ -364,7 +365,7 @@ bool cag_tensors_set_point(CagCall *call, const struct cag_tensors_set_point *a,
   char text[32];
   if (a->weight < 0)
     return cag_geometry_ok(call, cag_fail(call->err, CAG_E_ARGUMENT, CAG_ERR_negative_weight,
-                                          "weight", -1, "`weight` must not be negative, it is %s",
+                                          "weight", -1, "`weight` must not be negative, found %s",
                                           cag_number_text(a->weight, text)));
   const double weight = cag_given(call, 4) ? a->weight : -1; // the core keeps the old one
   CagStatus status =
@@ -433,9 +434,9 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
     good = one.type == CAG_TEXT && sides[out[k]];
   }
   return good ||
-         cag_fail_value(call, argument,
-                        "a side of both surfaces, such as \"u1\" (u0, u1, v0, v1), or one of "
-                        "each, such as [\"u1\", \"u0\"]");
+         cag_fail_value(
+             call, argument,
+             "an edge of both surfaces, such as \"u1\" (u0, u1, v0, v1), or one edge of each, such as [\"u1\", \"u0\"]");
 }
 
 bool cag_tensors_match_edge(CagCall *call, const struct cag_tensors_match_edge *a,
@@ -537,10 +538,11 @@ bool cag_tensors_net_mesh(CagCall *call, const struct cag_tensors_net_mesh *a, C
   for (size_t i = 0; i < nu * nv; i++)
     if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0))
       return cag_geometry_ok(
-          call, cag_fail(call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
-                         "control point [%zu, %zu] has the weight 0 and so no place: the net has a "
-                         "hole there",
-                         i / nv, i % nv));
+          call,
+          cag_fail(
+              call->err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
+              "control point [%zu, %zu] has the weight 0, so it has no location and the net is incomplete",
+              i / nv, i % nv));
   if (!cag_geometry_ok(call,
                        cag_mesh_new(nu * nv, 2 * cu * cv, false, false, false, &m, call->err)))
     return false;

@@ -27,7 +27,7 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
   *z_only = true;
   if (!cag_arg_interval(call, argument, &box->min.z, &box->max.z, &angle)) return false;
   if (angle) return cag_fail_type(call, argument, "a box or a range of z");
-  return box->min.z < box->max.z || cag_fail_value(call, argument, "a range of z that ascends");
+  return box->min.z < box->max.z || cag_fail_value(call, argument, "an increasing range of z");
 }
 
 // One surface, or a group of the sheets or planes.

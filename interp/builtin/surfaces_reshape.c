@@ -69,10 +69,11 @@ bool cag_surfaces_split(CagCall *call, const struct cag_surfaces_split *a, CagVa
     const double shown = (direction == 0 ? s->angular_u : s->angular_v) ? 180 / M_PI : 1;
     const char *deg = shown == 1 ? "" : "deg";
     char from[32], to[32], at[32];
-    return cag_fail_call(call, -1, CAG_ERR_parameter_range,
-                         "cuts within the domain, between %s%s and %s%s: `%c` is %s%s",
-                         cag_number_text(shown * low, from), deg, cag_number_text(shown * high, to),
-                         deg, "uv"[direction], cag_number_text(shown * t, at), deg);
+    return cag_fail_call(
+        call, -1, CAG_ERR_parameter_range,
+        "expects a value inside the domain, between %s%s and %s%s, but `%c` is %s%s",
+        cag_number_text(shown * low, from), deg, cag_number_text(shown * high, to), deg,
+        "uv"[direction], cag_number_text(shown * t, at), deg);
   }
   CagBuilder *parts = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++) {

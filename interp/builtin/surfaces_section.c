@@ -163,7 +163,7 @@ static bool section_of(CagCall *call, CagValue v, const void *question, CagCurve
     status = cag_surface_planar(shape->as.region, &shape->placement, &flat, call->err);
     if (!status) status = cag_surface_section(flat, &a->plane, a->tolerance, list, call->err);
     cag_surface_release(flat);
-  } else return cag_fail_type(call, 0, "surfaces, solids, meshes or regions");
+  } else return cag_fail_type(call, 0, "surfaces, solids, meshes, or regions");
   return (status && cag_is_empty_shape(call->err)) || cag_geometry_ok(call, status);
 }
 
@@ -187,7 +187,7 @@ static bool contour_of(CagCall *call, CagValue v, const void *question, CagCurve
 bool cag_sections_contour(CagCall *call, const struct cag_sections_contour *a, CagValue *result) {
   if (cag_given(call, 1) == cag_given(call, 2))
     return cag_fail_call(call, -1, CAG_ERR_value,
-                         "needs either the direction of the view or, as `from`, the eye's place");
+                         "needs either the direction of the view, or the eye point as `from`");
   return give_curves(call, contour_of, a, result);
 }
 
@@ -243,8 +243,8 @@ static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, Cag
   const size_t n = faces_of(v, &faces);
   if (n == 0)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
-                    "%s has no surfaces to draw lines of equal curvature on",
-                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                    "%s has no surfaces with lines of constant curvature",
+                    v.type == CAG_SOLID ? "a solid made by set operations or from meshes"
                                         : cag_type_article(v));
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) {

@@ -39,7 +39,7 @@ static CagStatus call_at(const Sampled *s, double t, CagType wanted, const char 
   bool good = cag_vm_call_back(s->call->vm, call_sampled, &q);
   if (good && q.answer.type != wanted)
     good = cag_fail_call(s->call, s->argument, CAG_ERR_type,
-                         "expects a function that gives %s, it gave %s", values,
+                         "expects a function that returns %s, found one that returned %s", values,
                          cag_type_article(q.answer));
   *out = q.answer;
   return good ? CAG_OK
@@ -63,7 +63,7 @@ static CagStatus sample_rows(void *context, double t, double *out, CagError *err
   const CagTransform *m = &CAG_AS_TRANSFORM(v)->t;
   if (!cag_transform_is_affine(m))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "map", -1,
-                    "`map` must give affine transforms: a projection has no sweep");
+                    "`map` must return affine transforms, found a projection");
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) out[4 * i + j] = m->m[i][j] / m->m[3][3];
   return CAG_OK;
@@ -162,7 +162,7 @@ bool cag_arg_orient(CagCall *call, int argument, CagPathMotion *how) {
     return cag_arg_direction(call, argument, cag_vec3(0, 0, 1), &how->up, NULL);
   }
   if (v.type != CAG_UNSET && v.type != CAG_TEXT)
-    return cag_fail_type(call, argument, "\"rmf\", \"frenet\", \"fixed\" or a direction");
+    return cag_fail_type(call, argument, "\"rmf\", \"frenet\", \"fixed\", or a direction");
   if (!cag_arg_choice(call, argument, names, &choice)) return false;
   how->orient = orients[choice];
   return true;
@@ -227,10 +227,10 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
   if (v.type != CAG_REGION) return cag_fail_element(call, 0, i, v, "curves or regions");
   const CagShape *shape = CAG_AS_SHAPE(v);
   if (shape->as.region->count != 1)
-    return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects regions of one outline without holes, found %zu outlines in "
-                         "`curves`[%zu]; loft them one by one",
-                         shape->as.region->count, i);
+    return cag_fail_call(
+        call, 0, CAG_ERR_value,
+        "expects regions with one outline and no holes, found %zu outlines in `curves`[%zu]; loft them one by one",
+        shape->as.region->count, i);
   CagCurve *placed = NULL;
   CagStatus status =
       cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, call->err);

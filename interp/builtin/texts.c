@@ -38,7 +38,7 @@ static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, in
   if (v.type != CAG_NUMBER && v.type != CAG_ANGLE) {
     char found[120];
     return cag_fail_call(call, 0, CAG_ERR_type,
-                         "with `digits` expects a number, an angle or a list of these, found %s",
+                         "with `digits` expects a number, an angle, or a list of these, found %s",
                          cag_value_words(call->vm, v, found, sizeof found));
   }
   cag_print_fixed(s, v.as.number, digits);

@@ -19,7 +19,7 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
     }
     CagVec3 p = cag_transform_point(t, cag_vec3(x[0], x[1], dim == 3 ? x[2] : 0));
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) {
-      cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
+      cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform maps this point to infinity");
       return cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
     }
     out[0] = p.x;
@@ -46,7 +46,7 @@ bool cag_move_list(CagCall *call, const CagTransform *t, CagValue v, CagValue *r
   }
   if (dim != 0)
     return cag_fail_call(call, 0, CAG_ERR_operand,
-                         "takes points of 2, 3 or 4 numbers, found vectors of %zu", dim);
+                         "accepts points of 2, 3, or 4 numbers, found vectors of %zu", dim);
   CagBuilder *b = cag_builder_new(call->vm);
   for (size_t i = 0; i < list->length; i++) {
     CagValue moved;
@@ -65,7 +65,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   CagString found = {0};
   cag_describe_value(call->vm, &found, v);
   cag_fail_call(call, 0, CAG_ERR_operand,
-                "takes points, planes, shapes, cameras, lights and lists of these, found %s",
+                "accepts points, planes, shapes, cameras, lights, and lists of these, found %s",
                 found.bytes ? found.bytes : "");
   cag_string_free(&found);
   return false;

@@ -133,8 +133,7 @@ bool cag_transforms_dehomogenize(CagCall *call, const struct cag_transforms_deho
   for (size_t i = 0; i < n; i++) zero = zero && h[i] == 0;
   if (zero)
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects homogeneous coordinates of which one is not 0; all 0 are no "
-                         "point");
+                         "expects homogeneous coordinates that are not all 0");
   const double w = h[n - 1] == 0 ? 1 : h[n - 1];
   const CagVec3 p = cag_vec3(h[0] / w, h[1] / w, n == 4 ? h[2] / w : 0);
   if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))

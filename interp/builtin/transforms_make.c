@@ -36,9 +36,9 @@ static bool read_rows(CagCall *call, double m[4][4], size_t *count, size_t *colu
     size_t n;
     CagValue row = cag_list_get(call->vm, list, i);
     if (!cag_as_vector(row, &x, &n) || n < 2 || n > 4 || (i > 0 && n != *columns))
-      return cag_fail_call(call, 0, CAG_ERR_type,
-                           "expects rows of numbers, all of one length in 2..4; rows[%zu] is none",
-                           i);
+      return cag_fail_call(
+          call, 0, CAG_ERR_type,
+          "expects rows of the same length, 2 to 4 numbers; rows[%zu] is different", i);
     *columns = n;
     memcpy(m[i], x, n * sizeof *x);
   }
@@ -55,7 +55,8 @@ bool cag_transforms_from_rows(CagCall *call, const struct cag_transforms_from_ro
   const bool flat = square && rows == 3 && !linear;
   if (!(square || (rows == 3 && columns == 4)))
     return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects 2x2, 3x3, 3x4 or 4x4 rows, found %zu rows of %zu", rows, columns);
+                         "expects 2x2, 3x3, 3x4, or 4x4 numbers, found %zu rows of %zu", rows,
+                         columns);
   CagTransform t = cag_transform_identity();
   static const size_t place[] = {0, 1, 3};
   for (size_t i = 0; i < rows; i++)
@@ -167,7 +168,7 @@ static bool read_side(CagCall *call, int side, const CagRecord *frames, Unknown 
       return cag_fail_call(call, 2, CAG_ERR_type, "expects a transform as the frame \"%s\"", bytes);
     if (unknown->name)
       return cag_fail_call(call, side, CAG_ERR_value,
-                           "expects one unknown frame that stands once, found \"%s\" and \"%s\"",
+                           "expects one unknown frame that occurs once, found \"%s\" and \"%s\"",
                            unknown->name, bytes);
     *unknown = (Unknown){bytes, side, i};
   }
@@ -193,7 +194,7 @@ bool cag_transforms_solve_frame(CagCall *call, const struct cag_transforms_solve
   if (!read_side(call, 0, a->frames, &unknown) || !read_side(call, 1, a->frames, &unknown))
     return false;
   if (!unknown.name)
-    return cag_fail_call(call, 2, CAG_ERR_value, "expects all frames but one: none is unknown");
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects all frames but one, found all frames");
   // before * X * after = other
   CagTransform before = product(call, unknown.side, 0, unknown.at, a->frames);
   CagTransform after = product(call, unknown.side, unknown.at + 1, SIZE_MAX, a->frames);

@@ -83,7 +83,8 @@ static bool fail_angle(CagCall *call, int dimension, CagVec3 axis) {
   cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
   if (dimension < 3) return false;
   return cag_fail_help(
-      call->vm, "for turns about x, y and z write rpy: [%.15gdeg, %.15gdeg, %.15gdeg], as in %s",
+      call->vm,
+      "for rotations about x, y, and z, write rpy: [%.15gdeg, %.15gdeg, %.15gdeg], as in %s",
       axis.x, axis.y, axis.z, cag_foreign_call("rotate"));
 }
 
@@ -115,7 +116,7 @@ static bool read_rpy(CagCall *call, int argument, double rpy[3]) {
   if (!cag_arg_list(call, argument, &list)) return false;
   if (list->length != 3)
     return cag_fail_call(call, argument, CAG_ERR_type,
-                         "expects three angles as `rpy`, about x, y and z; found %zu",
+                         "expects three angles as `rpy`, about x, y, and z; found %zu",
                          list->length);
   for (size_t i = 0; i < 3; i++) {
     const CagValue v = cag_list_get(call->vm, list, i);
@@ -191,7 +192,7 @@ static bool make_reflect(CagCall *call, int at, CagTransform *out) {
     const CagPlane *plane = &CAG_AS_PLANE(v)->plane;
     if (cag_given(call, at + 1))
       return cag_fail_call(call, at + 1, CAG_ERR_value,
-                           "takes no `through` beside a plane, which has its own point");
+                           "takes no `through` with a plane, which has its own point");
     return made(call, cag_reflect(plane->normal, plane->point, out, call->err), false, out);
   }
   if (v.type != CAG_LIST) return cag_fail_type(call, at, "a normal or a plane");

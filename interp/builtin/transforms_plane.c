@@ -16,10 +16,10 @@ bool cag_transforms_plane(CagCall *call, const struct cag_transforms_plane *a, C
   if (!cag_given(call, 1)) {
     if (!cag_arg_numbers(call, 0, &row, &n)) return false;
     if (n != 4)
-      return cag_fail_call(call, 0, CAG_ERR_value,
-                           "expects the 4 numbers of a x + b y + c z + d = 0, or a point and a "
-                           "normal, or three points; found %zu numbers alone",
-                           n);
+      return cag_fail_call(
+          call, 0, CAG_ERR_value,
+          "expects the 4 numbers of a x + b y + c z + d = 0, a point and a normal, or three points; found only %zu numbers",
+          n);
     status = cag_plane_from_row(row, &plane, call->err);
   } else {
     if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL)) return false;
@@ -65,7 +65,7 @@ bool cag_transforms_distance_to_line(CagCall *call, const struct cag_transforms_
   const double distance = cag_norm(cag_cross(cag_sub(a->P.at, a->Q.at), along)) / cag_norm(along);
   *result = cag_number(distance);
   return isfinite(distance) ||
-         cag_fail_call(call, -1, CAG_ERR_value, "expects points so near that distances are finite");
+         cag_fail_call(call, -1, CAG_ERR_value, "expects points whose distances do not overflow");
 }
 
 // Size of the vector area of the closed polygon, and its centroid: shoelace sums taken from the first point,

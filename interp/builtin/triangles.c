@@ -45,7 +45,8 @@ bool cag_triangles_triangle_elevate(CagCall *call, const struct cag_triangles_tr
   int degree = 0;
   if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
   if (degree + a->times >= CAG_TRIANGLE_ROWS)
-    return cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
+    return cag_fail_call(call, 1, CAG_ERR_value,
+                         "raises the degree to at most %d, found degree %d and `times` %ld",
                          CAG_TRIANGLE_ROWS - 1, degree, a->times);
   for (long i = 0; i < a->times; i++) {
     CagVec3 *raised = cag_hold_array(call, cag_triangle_count(degree + 1), sizeof *raised);

@@ -44,7 +44,7 @@ static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagVal
   bool is_flat = !cag_transform_is_affine(t);
   cag_transform_is_similarity(t, &scale);
   CagValue fields[32];
-  if (n > 32) return cag_fail_call(call, 0, CAG_ERR_internal, "met too many fields");
+  if (n > 32) return cag_fail_call(call, 0, CAG_ERR_internal, "found too many fields");
   for (size_t i = 0; i < n; i++) {
     const char *name = old->fields->layout->names[i]->bytes;
     CagValue f = fields[i] = old->fields->fields[i];
@@ -66,7 +66,8 @@ static bool move_staged(CagCall *call, const CagTransform *t, CagValue v, CagVal
   }
   // A camera needs a direction to look and one that is up.
   if (is_flat || (v.type == CAG_CAMERA && cag_norm(cag_sub(images[0], images[1])) == 0))
-    return cag_fail_call(call, 0, CAG_ERR_operand, "takes no camera or light with a projection");
+    return cag_fail_call(call, 0, CAG_ERR_operand,
+                         "cannot apply a projection to a camera or light");
   CagValue record = cag_record_from_texts(call->vm, old->fields->layout->names, fields, n);
   *result = cag_scene_value(call->vm, v.type, old->kind, record);
   CAG_AS_SCENE(*result)->placement = cag_transform_identity();

@@ -30,7 +30,7 @@ static bool read_two(CagCall *call, Vector *a, Vector *b, size_t *n) {
   bool plane_and_space = a->n >= 2 && a->n <= 3 && b->n >= 2 && b->n <= 3;
   if (a->n == b->n || plane_and_space) return true;
   return cag_fail_call(call, 1, CAG_ERR_length,
-                       "expects vectors of one length, found %zu and %zu numbers", a->n, b->n);
+                       "expects vectors of the same length, found %zu and %zu numbers", a->n, b->n);
 }
 
 // Root of the sum of squares of n numbers x[i * stride], scaled so that it neither overflows nor
@@ -171,7 +171,7 @@ static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out);
 static bool near_lists(Nearness *by, const CagList *a, const CagList *b, bool *out) {
   if (a->length != b->length)
     return cag_fail_call(by->call, 1, CAG_ERR_length,
-                         "expects lists of one length, found %zu and %zu elements", a->length,
+                         "expects lists of the same length, found %zu and %zu elements", a->length,
                          b->length);
   *out = true;
   if (a->dim > 0 && a->dim == b->dim) {
@@ -205,7 +205,7 @@ static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out) {
   char left[120], right[120];
   return cag_fail_call(
       by->call, 1, CAG_ERR_type,
-      "expects two numbers, angles, vectors, transforms or lists of these, found %s and %s",
+      "expects two numbers, angles, vectors, transforms, or lists of these, found %s and %s",
       cag_value_words(vm, a, left, sizeof left), cag_value_words(vm, b, right, sizeof right));
 }
 
@@ -216,7 +216,7 @@ static bool read_tolerance(CagCall *call, int argument, double fallback, double 
   if (v.type == CAG_UNSET) return true;
   if (v.type == CAG_ANGLE && call->values[0].type == CAG_ANGLE) *out = v.as.number;
   else if (!cag_arg_number(call, argument, out)) return false;
-  return *out >= 0 || cag_fail_value(call, argument, "a tolerance of 0 or more");
+  return *out >= 0 || cag_fail_value(call, argument, "a tolerance of at least 0");
 }
 
 bool cag_vectors_near(CagCall *call, CagValue *result) {

@@ -81,7 +81,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
     }
     if (!tell) return false;
     snprintf(text, sizeof text,
-             k < f->count ? "%s has %s already, by position" : "%s has no parameter %s", f->name,
+             k < f->count ? "%s already has %s, by position" : "%s has no parameter %s", f->name,
              a->name);
     CagDiagnostic *d = cag_check_report(c, CAG_ERR_argument_name, a->name_span, text);
     if (k < f->count) return false;

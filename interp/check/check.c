@@ -40,7 +40,7 @@ static void check_param(Check *c, const CagStatement *s) {
   char text[256];
   if (domain && is_elsewhere(s->as.param.value, domain)) {
     snprintf(text, sizeof text, "the default of %s is not in %s", s->as.param.decl->name,
-             domain->kind == CAG_EXPR_LIST ? "the list of what it may be" : "its range");
+             domain->kind == CAG_EXPR_LIST ? "the list of allowed values" : "its range");
     cag_check_report(c, CAG_ERR_param_default, s->as.param.value->span, text);
     return;
   }
@@ -59,7 +59,7 @@ static void check_shown(Check *c, const CagExpr *e) {
   const CagTypes types = cag_check_infer(c, e);
   if (types & ~unseen) return;
   cag_check_report_found(c, CAG_ERR_no_image, e->span,
-                         "show expects shapes, images, lights, cameras or settings of the scene",
+                         "show expects shapes, images, lights, cameras, or settings of the scene",
                          types);
 }
 
@@ -114,20 +114,20 @@ static void warn_unused(Check *c) {
     const CagDecl *decl = c->ast->tops[i];
     if (c->reached[i] || (decl->statement->kind == CAG_STATEMENT_PARAM && decl->used)) continue;
     snprintf(text, sizeof text,
-             decl->used ? "%s is used only by what nothing uses" : "nothing uses %s", decl->name);
+             decl->used ? "%s is used only by unused definitions" : "%s is not used", decl->name);
     cag_check_warn(c, CAG_ERR_unused, decl->span, text);
   }
   for (size_t i = 0; i < c->ast->count; i++) {
     const CagStatement *s = c->ast->statements[i];
     if (s->kind != CAG_STATEMENT_IMPORT) continue;
     if (s->as.import.decl && !s->as.import.decl->used && s->as.import.name_count == 0) {
-      snprintf(text, sizeof text, "nothing uses the module %s", s->as.import.decl->name);
+      snprintf(text, sizeof text, "the module %s is not used", s->as.import.decl->name);
       cag_check_warn(c, CAG_ERR_unused, s->as.import.path_span, text);
     }
     for (size_t k = 0; k < s->as.import.name_count; k++) {
       const CagDecl *decl = s->as.import.names[k].decl;
       if (decl->used) continue;
-      snprintf(text, sizeof text, "nothing uses %s", decl->name);
+      snprintf(text, sizeof text, "%s is not used", decl->name);
       cag_check_warn(c, CAG_ERR_unused, decl->span, text);
     }
   }

@@ -135,7 +135,7 @@ static void report_circle(const Graph *g, const size_t *path, size_t length, siz
   if (s.failed) cag_memory_leave();
   if (first)
     cag_diagnostics_add(errors, CAG_ERR_circle, g->ast->source, span,
-                        "the value of `%s` needs itself: %s%s", first, s.bytes, first);
+                        "the value of `%s` depends on itself: %s%s", first, s.bytes, first);
   cag_string_free(&s);
 }
 

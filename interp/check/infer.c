@@ -30,7 +30,7 @@ static CagTypes infer_binary(Check *c, const CagExpr *e) {
            cag_types_text(b, right, sizeof right));
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_operand, e->span, text);
   const bool mixed = (a | b) == (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE));
-  if (mixed) cag_diagnostic_set_help(d, "give the number a unit: 30deg");
+  if (mixed) cag_diagnostic_set_help(d, "write the number with a unit: 30deg");
   return CAG_TYPES_ANY;
 }
 
@@ -41,10 +41,10 @@ static CagTypes infer_branch(Check *c, const CagExpr *e) {
     cag_check_expect_bool(c, condition, "if");
     if (condition->kind == CAG_EXPR_TRUE)
       cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.otherwise->span,
-                     "this is never reached: the condition is always true");
+                     "this is unreachable: the condition is always true");
     if (condition->kind == CAG_EXPR_FALSE)
       cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.then->span,
-                     "this is never reached: the condition is always false");
+                     "this is unreachable: the condition is always false");
     types |= cag_check_infer(c, e->as.branch.then);
   }
   return types | cag_check_infer(c, e);
@@ -99,7 +99,7 @@ static CagTypes infer_block(Check *c, const CagExpr *e) {
     cag_check_learn(c, decl, CAG_TYPES_ANY); // recursion
     cag_check_learn(c, decl, cag_check_infer(c, s->as.definition.value));
     if (decl->used || decl->name[0] == '_') continue;
-    snprintf(text, sizeof text, "nothing uses %s", decl->name);
+    snprintf(text, sizeof text, "%s is not used", decl->name);
     cag_check_warn(c, CAG_ERR_unused, decl->span, text);
   }
   return cag_check_infer(c, e->as.block.value);
@@ -112,7 +112,7 @@ static CagTypes infer_index(Check *c, const CagExpr *e) {
   const CagTypes types = cag_check_infer(c, e->as.binary.left);
   cag_check_infer(c, e->as.binary.right);
   if (types & indexable) return types == CAG_TYPES(TEXT) ? types : CAG_TYPES_ANY;
-  snprintf(text, sizeof text, "[ ] expects a list, a range, a text or a record, found %s",
+  snprintf(text, sizeof text, "[ ] expects a list, a range, a text, or a record, found %s",
            cag_types_text(types, found, sizeof found));
   cag_check_report(c, CAG_ERR_type, e->as.binary.left->span, text);
   return CAG_TYPES_ANY;
@@ -141,7 +141,7 @@ static void check_mixed_range(Check *c, const CagExpr *e, CagTypes low, CagTypes
            high == CAG_TYPES(NUMBER) ? "a number" : "an angle");
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_type, e->span, text);
   if (number->kind == CAG_EXPR_NUMBER)
-    cag_diagnostic_set_help(d, "give the number a unit: %.15gdeg", number->as.number);
+    cag_diagnostic_set_help(d, "write the number with a unit: %.15gdeg", number->as.number);
 }
 
 static CagTypes infer_range(Check *c, const CagExpr *e) {
@@ -152,7 +152,8 @@ static CagTypes infer_range(Check *c, const CagExpr *e) {
   for (int i = 0; i < 3 && ends[i]; i++) {
     types[i] = cag_check_infer(c, ends[i]);
     if (types[i] & (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE))) continue;
-    snprintf(text, sizeof text, "the ends and the step of a range are numbers or angles, found %s",
+    snprintf(text, sizeof text,
+             "the ends and the step of a range must be numbers or angles, found %s",
              cag_types_text(types[i], found, sizeof found));
     cag_check_report(c, CAG_ERR_type, ends[i]->span, text);
     known = false;

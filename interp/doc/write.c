@@ -255,9 +255,7 @@ void cag_doc_write_overview(const CagDocWriter *w) {
   heading(w, "Manual");
   for (size_t i = 0; (c = cag_doc_chapter(i)); i++)
     fprintf(w->out, "  %-18s %s\n", c->name, c->title);
-  fputs("\n`cag doc NAME` shows a function, a module, a word of the language such as `if` or "
-        "`|>`, a "
-        "topic such as\n`gear`, a chapter or an error code, `cag doc FILE.cag` of a script, "
-        "`cag doc --html DIR` makes all of it\na site.\n",
-        w->out);
+  fputs(
+      "\n`cag doc NAME` shows a function, a module, a word of the language such as `if` or `|>`, a topic such as\n`gear`, a chapter, or an error code. `cag doc FILE.cag` shows the documentation of a script.\n`cag doc --html DIR` writes all documentation as a site.\n",
+      w->out);
 }

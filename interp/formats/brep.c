@@ -175,16 +175,15 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
 static CagStatus fail_operation(const CagItem *item, CagError *err) {
   return cag_fail(
       err, CAG_E_UNSUPPORTED, CAG_ERR_export_operation, "", -1,
-      "%s is a union, difference or intersection of solids, whose faces meet in curves "
-      "that are not NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
+      "%s is a union, difference, or intersection of solids, whose faces meet in curves that are not NURBS: show its parts one by one, or write .stl, .obj, .ply, or .glb",
       item->name);
 }
 
 static CagStatus fail_mesh(const CagItem *item, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
-                  "%s is a mesh, and files of exact geometry hold curves and surfaces: show the "
-                  "surfaces that it was made of, or write .stl, .obj, .ply or .glb",
-                  item->name);
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
+      "%s is a mesh, but files of exact geometry contain curves and surfaces: show the surfaces from which it was made, or write .stl, .obj, .ply, or .glb",
+      item->name);
 }
 
 // The normals of a closed surface point outward, as for a solid.
@@ -246,11 +245,10 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
   if (!status) status = cag_brep_join(w, err);
   if (!status) status = make_shells(w, &closed, err);
   if (!status && shape->kind == CAG_BREP_SOLID && !closed)
-    status =
-        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_export_open, "", -1,
-                 "%s does not close within %g mm: some of its faces have an edge that no other "
-                 "shares; show its surfaces instead, or write a mesh",
-                 w->item->name, w->same);
+    status = cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_export_open, "", -1,
+        "%s does not close within %g mm: some edges belong to only one face; show its surfaces instead, or write a mesh",
+        w->item->name, w->same);
   // A closed surface is the boundary of a solid.
   if (!status && closed && w->item->kind == CAG_ITEM_SURFACE &&
       cag_surface_is_closed(w->item->as.surface))
@@ -295,7 +293,8 @@ CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) 
   if (!out->shapes) return cag_fail_memory(err);
   for (size_t i = 0; i < scene->item_count; i++) {
     if (scene->interrupt && *scene->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                      "the export was interrupted");
     if (scene->items[i].kind == CAG_ITEM_GROUND) continue;
     CagStatus status = add_item(out, scene, &scene->items[i], err);
     if (status) return status;

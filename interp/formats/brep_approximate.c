@@ -68,10 +68,9 @@ static CagStatus lines_halve(Lines *l, const bool *marked, CagError *err) {
     jumps |= marked[i] && l->t[i + 1] - l->t[i] <= narrowest;
   }
   if (jumps || l->n + more > LINES_MAX)
-    return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "surface", -1,
-                    "the surface is not smooth enough to be approximated: no cut of a sensible "
-                    "size brings it within the tolerance; give a larger one, or cut the surface "
-                    "where it is sharp");
+    return cag_fail(
+        err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "surface", -1,
+        "the surface is not smooth enough to be approximated within the tolerance; use a larger tolerance, or split the surface where it is sharp");
   double *t = cag_malloc((l->n + more) * sizeof *t);
   bool *broken = cag_calloc(l->n + more, sizeof *broken);
   if (!t || !broken) {

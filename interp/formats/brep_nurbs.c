@@ -25,30 +25,28 @@
 // --- Shapes without an exact form ---
 
 static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
-                  "%s has no exact form as a NURBS (%s): to approximate it within 0.01 mm, use "
-                  "--tolerance 0.01, or tolerance(.., 0.01) for this shape only",
-                  w->item->name, what);
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
+      "%s has no exact NURBS form (%s): to approximate it within 0.01 mm, use --tolerance 0.01, or tolerance(.., 0.01) for this shape only",
+      w->item->name, what);
 }
 
 // Reports a shape that cannot be approximated at some point, and what to do.
 static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *what,
                             CagError *err) {
   if (status != CAG_E_CONVERGENCE) return status;
-  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "", -1,
-                  "%s (%s) is not smooth at a point, so that no B-spline of a sensible size "
-                  "comes within %g mm of it: give a larger --tolerance, cut the shape there, or "
-                  "write .stl, .obj, .ply or .glb",
-                  w->item->name, what, w->asked);
+  return cag_fail(
+      err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "", -1,
+      "%s (%s) is not smooth at a point, so it cannot be approximated within %g mm: use a larger --tolerance, split the shape there, or write .stl, .obj, .ply, or .glb",
+      w->item->name, what, w->asked);
 }
 
 static CagStatus fail_weight(const CagBrepWork *w, double weight, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_weight, "weights", -1,
-                  "%s has a control point of weight %s, and files of exact geometry take positive "
-                  "weights only: raise the degree with elevate(..), or insert a knot, until all "
-                  "are positive",
-                  w->item->name, cag_number_text(weight, text));
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_weight, "weights", -1,
+      "%s has a control point of weight %s, but files of exact geometry need positive weights: raise the degree with elevate(..), or insert a knot, until all are positive",
+      w->item->name, cag_number_text(weight, text));
 }
 
 static bool no_exact_form(CagStatus status) {

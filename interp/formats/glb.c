@@ -11,10 +11,10 @@ static CagStatus write_file(const CagGltfPlan *p, const CagGltfText *json, CagAt
   uint64_t data = p->data_bytes;
   uint64_t total = GLB_HEADER + CHUNK_HEADER + json->length + (data ? CHUNK_HEADER + data : 0);
   if (total > UINT32_MAX)
-    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
-                    "a GLB file holds at most 4 GB, the scene takes %.1f GB: use a larger "
-                    "tolerance or PLY",
-                    (double)total / 1e9);
+    return cag_fail(
+        err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
+        "a GLB file can have at most 4 GB, but the scene needs %.1f GB; use a larger tolerance or PLY",
+        (double)total / 1e9);
   const uint32_t header[] = {magic, version, (uint32_t)total, (uint32_t)json->length, json_chunk};
   const uint32_t data_header[] = {(uint32_t)data, binary_chunk};
   cag_atomic_file_expect(file, total);

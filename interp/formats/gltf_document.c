@@ -109,10 +109,10 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
   if (status) return status;
   if (g->json && cJSON_IsObject(g->json)) return CAG_OK;
   bool ended = quoted || depth > 0;
-  return cag_mesh_file_fail_line(g->draft->file, err,
-                                 ended ? CAG_ERR_mesh_file_truncated : CAG_ERR_mesh_file_syntax,
-                                 text + at, "the JSON of the file cannot be read%s",
-                                 ended ? ": it ends within; write or fetch the file again" : "");
+  return cag_mesh_file_fail_line(
+      g->draft->file, err, ended ? CAG_ERR_mesh_file_truncated : CAG_ERR_mesh_file_syntax,
+      text + at, "the JSON of the file cannot be read%s",
+      ended ? ": it is incomplete; write or download the file again" : "");
 }
 
 static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagError *err) {
@@ -144,11 +144,11 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
   if (f->size < 4 || memcmp(f->bytes, "glTF", 4) != 0) return CAG_OK;
   const char *text = NULL;
   if (f->size < GLB_HEADER || cag_read_u32(f->bytes + 8) > f->size)
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
-                         "it has %zu bytes of the %lu that it says; write or fetch it again",
-                         f->size,
-                         f->size < GLB_HEADER ? (unsigned long)GLB_HEADER
-                                              : (unsigned long)cag_read_u32(f->bytes + 8));
+    return cag_gltf_fail(
+        g, err, CAG_ERR_mesh_file_truncated,
+        "it has %zu bytes of the %lu that its header states; write or download it again", f->size,
+        f->size < GLB_HEADER ? (unsigned long)GLB_HEADER
+                             : (unsigned long)cag_read_u32(f->bytes + 8));
   if (cag_read_u32(f->bytes + 4) != 2)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is GLB of version %lu; write it as glTF 2.0",
@@ -158,16 +158,16 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
     uint32_t kind = cag_read_u32(f->bytes + at + 4);
     at += CHUNK_HEADER;
     if (size > f->size - at)
-      return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, f->bytes + at,
-                                     "a chunk of %zu bytes, where %zu are left; write or fetch the "
-                                     "file again",
-                                     size, f->size - at);
+      return cag_mesh_file_fail_byte(
+          f, err, CAG_ERR_mesh_file_truncated, f->bytes + at,
+          "a chunk has %zu bytes, but only %zu are left; write or download the file again", size,
+          f->size - at);
     if (kind == JSON_CHUNK && !text) text = f->bytes + at, *json_size = size;
     if (kind == BINARY_CHUNK && !binary->bytes)
       *binary = (CagGltfBuffer){(char *)f->bytes + at, size, false};
     at += size;
   }
-  if (!text) return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "it has no chunk of JSON");
+  if (!text) return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "it has no JSON chunk");
   *json = text;
   return CAG_OK;
 }
@@ -237,7 +237,7 @@ static CagStatus open_buffer(CagGltf *g, const char *uri, CagGltfBuffer *b, CagE
   const CagMeshFile *f = g->draft->file;
   if (strstr(uri, "://") || !f->open)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
-                         "a buffer lies at %.100s; put it into a file beside this one", uri);
+                         "a buffer is at %.100s; put it into a file next to this one", uri);
   char *path = decode_path(uri);
   if (!path) return cag_fail_memory(err);
   CagStatus status = f->open(f->context, path, &b->bytes, &b->size, err);
@@ -264,11 +264,10 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
     if (!cag_gltf_whole(list.items[i], "byteLength", 0, &size))
       status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "buffers[%zu] has no byteLength", i);
     else if (size > b->size)
-      status =
-          cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
-                        "buffers[%zu] states a length of %zu bytes, but has %zu; write or fetch "
-                        "it again",
-                        i, size, b->size);
+      status = cag_gltf_fail(
+          g, err, CAG_ERR_mesh_file_truncated,
+          "buffers[%zu] states a length of %zu bytes, but has %zu; write or download it again", i,
+          size, b->size);
     else b->size = size;
   }
   cag_free(list.items);
@@ -288,7 +287,7 @@ static CagStatus check_extensions(CagGltf *g, CagError *err) {
       known |= name && strncmp(name, harmless[i], strlen(harmless[i])) == 0;
     if (known) continue;
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
-                         "it requires the extension %.80s; write it without",
+                         "it requires the extension %.80s; write it without this extension",
                          name ? name : "that is not text");
   }
   return CAG_OK;
@@ -306,7 +305,7 @@ CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err) {
   const cJSON *version = cJSON_GetObjectItemCaseSensitive(asset, "version");
   if (!cJSON_IsString(version))
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
-                         "it is JSON, but no glTF: it has no asset");
+                         "it is JSON, but not glTF: it has no asset");
   if (version->valuestring[0] != '2')
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is glTF of version %.20s; write it as glTF 2.0", version->valuestring);
@@ -365,10 +364,10 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
                          "bufferViews[%zu] refers to a buffer that does not exist", view);
   const CagGltfBuffer *b = &g->buffers[buffer];
   if (at > b->size || length > b->size - at)
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
-                         "bufferViews[%zu] reaches to byte %zu of a buffer of %zu; write the file "
-                         "again",
-                         view, at + length, b->size);
+    return cag_gltf_fail(
+        g, err, CAG_ERR_mesh_file_truncated,
+        "bufferViews[%zu] extends to byte %zu of a buffer of %zu bytes; write the file again", view,
+        at + length, b->size);
   if (*stride == 0) *stride = size;
   if (*stride < size) // overlapping elements
     return cag_gltf_fail(
@@ -379,10 +378,10 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
       offset <= length &&
       (count == 0 || (length - offset >= size && (length - offset - size) / *stride >= count - 1));
   if (!fits)
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
-                         "accessors[%zu] has %zu elements, more than its view of %zu bytes holds; "
-                         "write the file again",
-                         accessor, count, length);
+    return cag_gltf_fail(
+        g, err, CAG_ERR_mesh_file_truncated,
+        "accessors[%zu] has %zu elements, more than fit its view of %zu bytes; write the file again",
+        accessor, count, length);
   *data = (const unsigned char *)b->bytes + at + offset;
   return CAG_OK;
 }
@@ -429,7 +428,7 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
       !cag_gltf_whole(a, "componentType", 0, &component) || component > FLOAT ||
       component_size((int)component) == 0)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
-                         "accessors[%zu] has no count, or a component type that is none", number);
+                         "accessors[%zu] has no count, or an invalid component type", number);
   if (!cJSON_IsString(type) || strcmp(type->valuestring, types[width]) != 0)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] must be of the type %s",
                          number, types[width]);

@@ -108,7 +108,8 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
   double k = cJSON_IsNumber(number) ? number->valuedouble : -1;
   if (!(k >= 0 && k < (double)w->g->nodes.count) || k != floor(k))
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_index,
-                         "the scene names node %g, of %zu nodes", k, w->g->nodes.count);
+                         "the scene refers to node %g, but there are %zu nodes", k,
+                         w->g->nodes.count);
   size_t i = (size_t)k, mesh;
   if (w->seen[i])
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_syntax,
@@ -118,7 +119,7 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
   CagTransform own;
   if (!read_place(node, &own))
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_syntax,
-                         "nodes[%zu] has a matrix, translation, rotation or scale that is none", i);
+                         "nodes[%zu] has an invalid matrix, translation, rotation, or scale", i);
   if (!cag_gltf_whole(node, "mesh", SIZE_MAX, &mesh) ||
       (mesh != SIZE_MAX && mesh >= w->g->meshes.count))
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_index,
@@ -215,10 +216,9 @@ static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *ou
   if (status) return status;
   size_t n = out->positions.count;
   if ((out->has_normals && out->normals.count != n) || (out->has_uv && out->uv.count != n))
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
-                         "accessors[%zu] has %zu points, and those that go with it have another "
-                         "count",
-                         position, n);
+    return cag_gltf_fail(
+        g, err, CAG_ERR_mesh_file_syntax,
+        "accessors[%zu] has %zu points, but the other attributes have another number", position, n);
   return CAG_OK;
 }
 
@@ -228,12 +228,13 @@ static CagStatus read_primitive(const CagGltf *g, const cJSON *p, Primitive *out
   *out = (Primitive){0};
   const cJSON *extensions = cJSON_GetObjectItemCaseSensitive(p, "extensions");
   if (cJSON_GetObjectItemCaseSensitive(extensions, "KHR_draco_mesh_compression"))
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
-                         "it is compressed (KHR_draco_mesh_compression); write it without");
+    return cag_gltf_fail(
+        g, err, CAG_ERR_mesh_file_unsupported,
+        "it is compressed (KHR_draco_mesh_compression); write it without compression");
   if (!cag_gltf_whole(p, "mode", TRIANGLES, &out->mode) || out->mode > FAN ||
       !cag_gltf_whole(p, "indices", SIZE_MAX, &indices))
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
-                         "a primitive has a mode or indices that are none");
+                         "a primitive has an invalid mode or invalid indices");
   if (out->mode < TRIANGLES) return CAG_OK;
   CagStatus status = read_attributes(g, p, out, err);
   if (status) return status;
@@ -246,7 +247,7 @@ static CagStatus read_primitive(const CagGltf *g, const cJSON *p, Primitive *out
           cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] has no indices", indices);
     if (!status && (!out->indices.data || out->indices.sparse_count > 0))
       status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
-                             "accessors[%zu] has sparse indices; write them in full", indices);
+                             "accessors[%zu] has sparse indices; write all indices", indices);
     out->has_indices = true;
     out->corners = out->indices.count;
   }
@@ -267,7 +268,7 @@ static CagStatus count_mesh(CagGltf *g, size_t mesh, const CagTransform *place, 
     // Data without a view are zeros, whose number is not limited by the size of the file.
     if (p.positions.count > UINT32_MAX || t->vertices > UINT32_MAX)
       return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
-                           "it has more than %lu vertices; divide it", (unsigned long)UINT32_MAX);
+                           "it has more than %lu vertices; split it", (unsigned long)UINT32_MAX);
     t->vertices += p.positions.count;
     t->triangles += p.triangles;
     t->normals |= p.has_normals;
@@ -344,9 +345,10 @@ static CagStatus fill_triangles(CagGltf *g, const Primitive *p, bool mirrored, s
     for (int j = 0; j < 3; j++) {
       k[j] = corner(p, k[j]);
       if (k[j] >= p->positions.count)
-        return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
-                             "triangle %zu of a mesh names vertex %zu, of %zu vertices", t, k[j],
-                             p->positions.count);
+        return cag_gltf_fail(
+            g, err, CAG_ERR_mesh_file_index,
+            "triangle %zu of a mesh refers to vertex %zu, but there are %zu vertices", t, k[j],
+            p->positions.count);
     }
     size_t b = mirrored ? k[2] : k[1], c = mirrored ? k[1] : k[2];
     cag_draft_triangle(g->draft, (uint32_t)(first + k[0]), (uint32_t)(first + b),

@@ -395,10 +395,10 @@ static CagStatus put_operands(Writer *w, const CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
   const int room = 16; // nesting of a solid without operands
   if (w->depth + room > DEPTH_MAX)
-    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_depth, "", -1,
-                    "set operations nest too deep for the file (more than %d); `tessellate` makes "
-                    "one mesh of them",
-                    DEPTH_MAX / 2);
+    return cag_fail(
+        err, CAG_E_LIMIT, CAG_ERR_limit_depth, "", -1,
+        "set operations are nested too deeply for the file (more than %d); `tessellate` makes one mesh of them",
+        DEPTH_MAX / 2);
   key(w, "operands");
   open(w, "[");
   for (size_t i = 0; !status && i < s->core->count; i++)

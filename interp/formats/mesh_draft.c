@@ -84,8 +84,8 @@ static bool grow(void **items, size_t before, size_t n, size_t size) {
 CagStatus cag_draft_vertices(CagMeshDraft *d, size_t n, bool normals, bool uv, CagError *err) {
   if (n >= NO_VERTEX)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_mesh_too_large, "path", -1,
-                    "%.80s: a mesh holds at most %lu vertices, the file has %zu", d->file->name,
-                    (unsigned long)NO_VERTEX - 1, n);
+                    "%.80s: a mesh can have at most %lu vertices, but the file has %zu",
+                    d->file->name, (unsigned long)NO_VERTEX - 1, n);
   size_t room = n > d->vertex_room ? n : d->vertex_room;
   size_t each = sizeof *d->positions + (normals || d->normals ? sizeof *d->normals : 0) +
                 (uv || d->uv ? 2 * sizeof *d->uv : 0);
@@ -132,7 +132,7 @@ CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, 
   if (tangle == CAG_TANGLE_MEMORY) return cag_fail_memory(err);
   if (tangle == CAG_TANGLE_UNKNOWN)
     return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_unsupported, NULL,
-                                   "a face of %zu corners is too intricate; write it as triangles",
+                                   "a face with %zu corners is too complex; write it as triangles",
                                    n);
   CagError poor;
   uint32_t *to = d->triangles + 3 * d->triangle_count;
@@ -260,12 +260,11 @@ static void drop_unnamed(CagMeshDraft *d, const uint32_t *first, uint32_t *numbe
 }
 
 static CagStatus fail_empty(const CagMeshDraft *d, CagError *err) {
-  return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_empty, NULL,
-                                 d->vertex_count > 0
-                                     ? "it has %zu vertices and no triangle with an area; write it "
-                                       "with faces"
-                                     : "it has no triangle; write it with faces",
-                                 d->vertex_count);
+  return cag_mesh_file_fail_byte(
+      d->file, err, CAG_ERR_mesh_file_empty, NULL,
+      d->vertex_count > 0 ? "it has %zu vertices, but no triangle with an area; write it with faces"
+                          : "it has no triangles; write it with faces",
+      d->vertex_count);
 }
 
 // Welds the draft and removes unused parts. `first` and `number` have an element for each vertex.

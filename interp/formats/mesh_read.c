@@ -58,10 +58,10 @@ static CagMeshReader *find_reader(const CagMeshFile *f) {
 CagStatus cag_mesh_read(const CagMeshFile *f, CagMesh **out, CagError *err) {
   CagMeshReader *read = find_reader(f);
   if (!read)
-    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_kind, NULL,
-                                   f->size ? "it is none of the mesh files that can be read: .stl "
-                                             ".obj .ply .gltf .glb"
-                                           : "the file is empty");
+    return cag_mesh_file_fail_byte(
+        f, err, CAG_ERR_mesh_file_kind, NULL,
+        f->size ? "it is not a supported mesh file: .stl .obj .ply .gltf .glb"
+                : "the file is empty");
   CagMeshDraft draft = {.file = f};
   CagStatus status = read(&draft, err);
   if (!status) status = cag_draft_finish(&draft, out, err);

@@ -98,10 +98,10 @@ static CagStatus fail_range(const CagMeshPart *part, CagError *err) {
   for (size_t v = 0; v < m->vertex_count; v++) {
     CagVec3 p = m->positions[v];
     if (fabs(p.x) <= FLT_MAX && fabs(p.y) <= FLT_MAX && fabs(p.z) <= FLT_MAX) continue;
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_empty, "", (long)v,
-                    "`%s` has a vertex at [%g, %g, %g], too far away for the single precision of "
-                    "the format; OBJ can hold it",
-                    part->name ? part->name : "part", p.x, p.y, p.z);
+    return cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_mesh_empty, "", (long)v,
+        "`%s` has a vertex at [%g, %g, %g], too far away for the single precision of the format; use OBJ",
+        part->name ? part->name : "part", p.x, p.y, p.z);
   }
   return CAG_OK;
 }

@@ -55,7 +55,7 @@ static CagStatus make_room(Obj *o, CagError *err) {
   const Counts *n = &o->all;
   if (n->points >= UINT32_MAX || n->parameters >= UINT32_MAX || n->normals >= UINT32_MAX)
     return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_unsupported, NULL,
-                                   "it has more than 4294967294 vertices; divide it");
+                                   "it has more than 4294967294 vertices; split it");
   CagStatus status = cag_draft_take(o->draft, n->points + n->normals, sizeof(CagVec3), err);
   if (!status) status = cag_draft_take(o->draft, n->parameters, 2 * sizeof(double), err);
   if (!status) status = cag_draft_triangles(o->draft, n->faces, err);
@@ -113,10 +113,10 @@ static CagStatus read_index(Obj *o, size_t count, size_t read, const char *noun,
                                    "expected the number of a %s in the face", noun);
   int64_t number = k < 0 ? (int64_t)read + 1 + k : k;
   if (number < 1 || (uint64_t)number > count)
-    return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_index, o->scan.at,
-                                   "a face names %s %lld; the file has %zu, and %zu before this "
-                                   "line",
-                                   noun, (long long)k, count, read);
+    return cag_mesh_file_fail_line(
+        o->draft->file, err, CAG_ERR_mesh_file_index, o->scan.at,
+        "a face refers to %s %lld, but the file has %zu, and %zu before this line", noun,
+        (long long)k, count, read);
   *out = (uint32_t)number;
   return CAG_OK;
 }

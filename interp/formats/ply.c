@@ -164,7 +164,7 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
     triangles += p[i].triangles;
     if (!status && vertices > UINT32_MAX)
       status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
-                        "a PLY file holds at most %lu vertices: use a larger tolerance",
+                        "a PLY file can have at most %lu vertices; use a larger tolerance",
                         (unsigned long)UINT32_MAX);
   }
   if (!status) {

@@ -139,7 +139,7 @@ static CagStatus read_format(Ply *p, CagError *err) {
     return CAG_OK;
   }
   return fail_line(p, CAG_ERR_mesh_file_syntax,
-                   "expected ascii, binary_little_endian or binary_big_endian", word, n, err);
+                   "expected ascii, binary_little_endian, or binary_big_endian", word, n, err);
 }
 
 static CagStatus read_header(Ply *p, CagError *err) {
@@ -159,13 +159,13 @@ static CagStatus read_header(Ply *p, CagError *err) {
     else if (cag_scan_is(word, n, "element")) status = read_element(p, err);
     else if (cag_scan_is(word, n, "property")) status = read_property(p, err);
     else if (!cag_scan_is(word, n, "comment") && !cag_scan_is(word, n, "obj_info"))
-      return fail_line(p, CAG_ERR_mesh_file_syntax, "expected element, property or end_header",
+      return fail_line(p, CAG_ERR_mesh_file_syntax, "expected element, property, or end_header",
                        word, n, err);
     if (status) return status;
     cag_scan_next_line(&p->scan);
   }
   return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, p->scan.at,
-                                 "the header has no end_header; write or fetch the file again");
+                                 "the header has no end_header; write or download the file again");
 }
 
 // --- Numbers ---
@@ -223,7 +223,7 @@ static CagStatus fail_data(const Ply *p, CagErrorId id, const char *what, size_t
 static CagStatus fail_number(Ply *p, size_t i, CagError *err) {
   bool ended = p->format != TEXT || !cag_scan_to_word(&p->scan);
   return ended ? fail_data(p, CAG_ERR_mesh_file_truncated,
-                           "write or fetch the file again: it ends within its element", i, err)
+                           "write or download the file again: it ends within its element", i, err)
                : fail_data(p, CAG_ERR_mesh_file_syntax, "expected a number in the element", i, err);
 }
 
@@ -240,8 +240,8 @@ static CagStatus read_count(Ply *p, const Property *q, size_t i, size_t *count, 
                      "the count of a list is not a whole number in element", i, err);
   if (x > (double)(rest / each))
     return fail_data(p, CAG_ERR_mesh_file_truncated,
-                     "write or fetch the file again: a list is longer than the rest in element", i,
-                     err);
+                     "write or download the file again: a list is longer than the rest in element",
+                     i, err);
   *count = (size_t)x;
   return CAG_OK;
 }
@@ -312,7 +312,7 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
     if (!restart && (!(x >= 0 && x < (double)d->vertex_count) || x != floor(x)))
       return cag_mesh_file_fail_line(
           d->file, err, CAG_ERR_mesh_file_index, p->format == TEXT ? p->scan.at : NULL,
-          "face %zu names vertex %.9g; there are %zu vertices, numbered from 0", i, x,
+          "face %zu refers to vertex %.9g, but there are %zu vertices, numbered from 0", i, x,
           d->vertex_count);
     p->corners[k] = restart ? UINT32_MAX : (uint32_t)x;
   }
@@ -350,7 +350,7 @@ static CagStatus begin_vertices(Ply *p, const Element *e, CagError *err) {
     has[p->properties[e->first_property + k].role] = true;
   if (!has[X] || !has[Y] || !has[Z])
     return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_syntax, NULL,
-                                   "its vertices lack x, y or z");
+                                   "its vertices lack x, y, or z");
   if (p->draft->vertex_count > 0)
     return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_syntax, NULL,
                                    "it has two lists of vertices");
@@ -364,11 +364,10 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
   size_t least = least_size(p, e), rest = (size_t)(p->scan.end - p->scan.at) + 1;
   if (least == 0 || e->count == 0) return CAG_OK;
   if (e->count > rest / least)
-    return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, NULL,
-                                   "its header states %zu elements of at least %zu "
-                                   "bytes, and %zu bytes are left for them; write or fetch the "
-                                   "file again",
-                                   e->count, least, rest - 1);
+    return cag_mesh_file_fail_line(
+        p->draft->file, err, CAG_ERR_mesh_file_truncated, NULL,
+        "its header states %zu elements of at least %zu bytes, but only %zu bytes are left; write or download the file again",
+        e->count, least, rest - 1);
   CagStatus status = e->kind == VERTICES ? begin_vertices(p, e, err) : CAG_OK;
   // Most faces are triangles, so room for them is reserved at once, as far as the file can contain
   // them.

@@ -202,7 +202,8 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
 static CagStatus write_items(CagPovWriter *w, const bool *closed, CagError *err) {
   for (size_t i = 0; i < w->scene->item_count; i++) {
     if (w->scene->interrupt && *w->scene->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                      "the export was interrupted");
     if (cag_atomic_file_failed(w->file)) return CAG_OK; // its commit reports the error
     CagStatus status = write_item(w, i, closed[i], err);
     if (status) return status;

@@ -198,7 +198,7 @@ CagStatus cag_pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   const double reach = fmax(cag_norm(cag_sub(b.min, origin)), cag_norm(cag_sub(b.max, origin)));
   if (!(reach * powers_of_ten[decimals] < INTEGER_MAX))
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_empty, "", -1,
-                    "the mesh is too large for the renderer's numbers");
+                    "the coordinates of the mesh are too large for the renderer");
   CagMesh *facing = NULL;
   CagStatus status = cag_pov_facing_mesh(w, m, &facing, err);
   if (status) return status;

@@ -108,10 +108,10 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
     shown += parts[i].mesh->triangle_count;
   }
   if (!status && triangles > UINT32_MAX)
-    status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
-                      "an STL file holds at most %lu triangles, the scene has %zu: use a larger "
-                      "tolerance",
-                      (unsigned long)UINT32_MAX, triangles);
+    status = cag_fail(
+        err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
+        "an STL file can have at most %lu triangles, but the scene has %zu; use a larger tolerance",
+        (unsigned long)UINT32_MAX, triangles);
   if (!status) {
     // Readers treat a file that starts with "solid" as the text form.
     char header[HEADER + 4] = {0};

@@ -53,16 +53,16 @@ static CagStatus read_corner(CagMeshDraft *d, const char *at, size_t triangle, C
 static CagStatus read_binary(CagMeshDraft *d, CagError *err) {
   const CagMeshFile *f = d->file;
   if (f->size < HEADER + 4)
-    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, NULL,
-                                   "its %zu bytes are too few for an STL file, which has 84 before "
-                                   "its triangles; write or fetch it again",
-                                   f->size);
+    return cag_mesh_file_fail_byte(
+        f, err, CAG_ERR_mesh_file_truncated, NULL,
+        "its %zu bytes are too few for an STL file, which has 84 bytes before its triangles; write or download it again",
+        f->size);
   uint64_t count = count_of(f), there = (f->size - HEADER - 4) / RECORD;
   if (count > there)
-    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, f->bytes + HEADER,
-                                   "it says it has %llu triangles, and its %zu bytes hold %llu; "
-                                   "write or fetch it again",
-                                   (unsigned long long)count, f->size, (unsigned long long)there);
+    return cag_mesh_file_fail_byte(
+        f, err, CAG_ERR_mesh_file_truncated, f->bytes + HEADER,
+        "its header states %llu triangles, but its %zu bytes contain %llu; write or download it again",
+        (unsigned long long)count, f->size, (unsigned long long)there);
   CagStatus status = cag_draft_triangles(d, count, err);
   if (!status) status = cag_draft_vertices(d, 3 * count, false, false, err);
   const char *at = f->bytes + HEADER + 4;

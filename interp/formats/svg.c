@@ -414,7 +414,7 @@ static CagStatus measure(const CagScene *s, CagBounds *all, CagError *err) {
   for (size_t i = 0; i < s->label_count; i++) cag_bounds_add(all, s->labels[i].at);
   if (found + s->label_count > 0) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_svg_without_curves, "", -1,
-                  "the scene has no curves, regions or labels, and an .svg shows nothing else");
+                  "the scene has no curves, regions, or labels, and an .svg shows nothing else");
 }
 
 static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagError *err) {

@@ -72,7 +72,7 @@ static CagStatus find_root(const CagUrdfTree *t, size_t *out, CagError *err) {
   if (roots.count == 1) return CAG_OK;
   if (roots.count == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "path", -1,
-                    "%s: the joints form a loop, no link is the first", t->file);
+                    "%s: the joints form a loop, so there is no first link", t->file);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_branches, "path", -1,
                   "%s has several links without a parent joint: %s; `base` selects the first one",
                   t->file, roots.text);

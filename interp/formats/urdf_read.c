@@ -108,7 +108,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
             n == 1   ? "a finite number"
             : n == 3 ? "three finite numbers"
                      : "four finite numbers",
-            macro ? "; this is xacro: make a .urdf of it first (ros2 run xacro xacro)" : "");
+            macro ? "; this is xacro: expand it to a .urdf file first (ros2 run xacro xacro)" : "");
     return false;
   }
   if (cag_scan_to_word(&s))
@@ -201,7 +201,7 @@ static void read_geometry(Reader *r, const xmlNode *n, CagUrdfBody *b) {
     b->kind = CAG_URDF_BODY_SPHERE;
     sized = lengths(r, g, "radius", &size[0], 1) && size[0] > LENGTH_LEAST;
   } else {
-    fail_at(r, SYNTAX, b->line, "<geometry> holds no mesh, box, cylinder or sphere");
+    fail_at(r, SYNTAX, b->line, "<geometry> contains no mesh, box, cylinder, or sphere");
   }
   if (!sized)
     fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)g), "<%s> lacks sizes greater than 0",
@@ -213,7 +213,7 @@ static CagUrdfBody *read_body(Reader *r, const xmlNode *n) {
   CagUrdfBody *b = cag_arena_alloc(&r->tree->arena, sizeof *b);
   b->line = xmlGetLineNo((xmlNode *)n);
   if (++r->body_count > BODIES_MOST)
-    fail_at(r, SYNTAX, b->line, "more than %d bodies, which no robot has", BODIES_MOST);
+    fail_at(r, SYNTAX, b->line, "there are more than %d bodies", BODIES_MOST);
   b->place = origin_of(r, n);
   const xmlNode *geometry = child(n, "geometry"), *material = child(n, "material");
   if (geometry) read_geometry(r, geometry, b);
@@ -228,11 +228,11 @@ static void read_link(Reader *r, const xmlNode *n) {
   link.name = wanted(r, n, "name");
   CagUrdfBody **visual = &link.visuals, **collision = &link.collisions;
   if (t->node_count >= LINKS_MOST)
-    fail_at(r, SYNTAX, link.line, "more than %d links, which no robot has", LINKS_MOST);
+    fail_at(r, SYNTAX, link.line, "there are more than %d links", LINKS_MOST);
   for (size_t i = 0; i < t->node_count; i++)
     if (!strcmp(t->nodes[i].name, link.name))
       fail_at(r, CAG_ERR_urdf_chain, link.line,
-              "a second link is named \"%.60s\"; the first is of line %ld", link.name,
+              "a second link is named \"%.60s\"; the first one is in line %ld", link.name,
               t->nodes[i].line);
   for (const xmlNode *c = n->children; c && !r->status; c = c->next) {
     bool seen = is_element(c, "visual");
@@ -264,7 +264,7 @@ static size_t joint_end(Reader *r, const xmlNode *joint, const char *which, cons
   size_t i = find_node(r->tree, link);
   if (i == CAG_URDF_NONE)
     fail_at(r, CAG_ERR_urdf_chain, xmlGetLineNo((xmlNode *)n),
-            "the joint \"%.60s\" names the link \"%.60s\", which is not there", name, link);
+            "the joint \"%.60s\" refers to the link \"%.60s\", which does not exist", name, link);
   return i;
 }
 
@@ -274,7 +274,7 @@ static void read_limits(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   bool slides = e->kind == CAG_URDF_PRISMATIC;
   double unit = slides ? MILLIMETERS : 1;
   if (!l && e->kind != CAG_URDF_CONTINUOUS)
-    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint has",
+    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint needs",
             e->name, cag_article(slides ? "prismatic" : "revolute"),
             slides ? "prismatic" : "revolute");
   numbers(r, l, "lower", &e->low, 1);
@@ -296,7 +296,7 @@ static void read_axis(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   numbers(r, child(n, "axis"), "xyz", x, 3);
   e->axis = cag_unit(cag_vec3(x[0], x[1], x[2]));
   if (!(cag_norm(e->axis) > 0))
-    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" has an axis without direction", e->name);
+    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" has a zero vector as its axis", e->name);
 }
 
 static void read_mimic(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
@@ -318,10 +318,10 @@ static void read_joint(Reader *r, const xmlNode *n) {
   size_t kind = 0, most = sizeof kinds / sizeof *kinds;
   while (kind < most && strcmp(kinds[kind], type) != 0) kind++;
   if (kind == most)
-    fail_at(r, CAG_ERR_urdf_joint, e.line,
-            "the joint \"%.60s\" is \"%.60s\"; there are revolute, continuous, prismatic, fixed, "
-            "floating and planar ones",
-            e.name, type);
+    fail_at(
+        r, CAG_ERR_urdf_joint, e.line,
+        "the joint \"%.60s\" has the unknown type \"%.60s\"; the types are revolute, continuous, prismatic, fixed, floating, and planar",
+        e.name, type);
   e.kind = (CagUrdfJointKind)kind;
   e.origin = origin_of(r, n);
   e.parent = joint_end(r, n, "parent", e.name);
@@ -335,7 +335,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
   CagUrdfNode *below = &t->nodes[e.child];
   if (below->above != CAG_URDF_NONE) {
     fail_at(r, CAG_ERR_urdf_chain, e.line,
-            "the link \"%.60s\" hangs on two joints, \"%.60s\" and \"%.60s\"", below->name,
+            "the link \"%.60s\" has two parent joints, \"%.60s\" and \"%.60s\"", below->name,
             t->edges[below->above].name, e.name);
     return;
   }
@@ -370,7 +370,8 @@ static void read_document(Reader *r, const xmlDoc *doc) {
   const xmlNode *root = xmlDocGetRootElement((xmlDoc *)doc);
   if (!root || !is_element(root, "robot")) {
     fail_at(r, SYNTAX, root ? xmlGetLineNo((xmlNode *)root) : 1,
-            "<robot> must be the outermost, found <%.40s>", root ? (const char *)root->name : "");
+            "<robot> must be the outermost element, found <%.40s>",
+            root ? (const char *)root->name : "");
     return;
   }
   const char *name = attribute(r, root, "name");
@@ -390,7 +391,7 @@ static void refuse_document_type(void *context, const xmlChar *name, const xmlCh
   Reader *r = parser->_private;
   (void)name, (void)external, (void)system;
   fail_at(r, SYNTAX, parser->input ? parser->input->line : 1,
-          "a document type (<!DOCTYPE ...>), which no robot needs: take it out");
+          "a document type (<!DOCTYPE ...>) is not allowed; remove it");
   xmlStopParser(parser);
 }
 
@@ -442,7 +443,7 @@ CagStatus cag_urdf_read(const char *file, const char *bytes, size_t size, CagUrd
   *out = (CagUrdfTree){.file = file, .name = ""};
   Reader r = {.tree = out, .err = err, .status = CAG_OK};
   if (size > FILE_MOST)
-    return fail_at(&r, SYNTAX, 1, "%zu MiB are more than a description of a robot has (16 MiB)",
+    return fail_at(&r, SYNTAX, 1, "the file has %zu MiB, more than the limit of 16 MiB",
                    size >> 20);
   pthread_once(&begun, xmlInitParser);
   r.context = xmlNewParserCtxt();

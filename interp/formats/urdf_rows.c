@@ -222,11 +222,11 @@ static CagStatus fail_joint(const CagUrdfTree *t, const CagUrdfEdge *e, CagError
                     "chain must be independent: remove its <mimic>, or end the chain before it "
                     "(tip: \"%.60s\")",
                     t->file, e->line, e->name, e->mimic, t->nodes[e->parent].name);
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,
-                  "%s, line %ld: the joint \"%.60s\" is %s; the joints of a chain turn or slide "
-                  "about one axis: begin after it (base: \"%.60s\")",
-                  t->file, e->line, e->name, e->kind == CAG_URDF_PLANAR ? "planar" : "floating",
-                  t->nodes[e->child].name);
+  return cag_fail(
+      err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,
+      "%s, line %ld: the joint \"%.60s\" is %s; each joint of a chain must rotate about or slide along one axis; begin after it (base: \"%.60s\")",
+      t->file, e->line, e->name, e->kind == CAG_URDF_PLANAR ? "planar" : "floating",
+      t->nodes[e->child].name);
 }
 
 static CagStatus add_edges(Walk *w, const size_t *chain, size_t n, CagError *err) {

@@ -47,10 +47,10 @@ struct CagZipPacker {
 };
 
 static CagStatus fail_size(uint64_t size, CagError *err) {
-  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
-                  "a 3MF file holds at most 4 GB of text, the scene takes %.1f GB: use a larger "
-                  "tolerance or PLY",
-                  (double)size / 1e9);
+  return cag_fail(
+      err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
+      "a 3MF file can have at most 4 GB of text, but the scene needs %.1f GB; use a larger tolerance or PLY",
+      (double)size / 1e9);
 }
 
 CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err) {

@@ -12,14 +12,14 @@
 static size_t *match_channels(const CagImage *a, const char *a_name, const CagImage *b,
                               const char *b_name, CagError *err) {
   if (a->width != b->width || a->height != b->height) {
-    cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures of one size",
+    cag_fail_io(err, CAG_E_ARGUMENT, "compare pictures of the same size",
                 "'%s' is %zu by %zu pixels, but '%s' is %zu by %zu", a_name, a->width, a->height,
                 b_name, b->width, b->height);
     return NULL;
   }
   size_t *match = cag_malloc(a->channel_count * sizeof *match);
   if (!match) {
-    cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory to compare '%s'", a_name);
     return NULL;
   }
   const char *missing = NULL, *holder = a_name, *other = b_name;
@@ -120,7 +120,7 @@ bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b
   CagCompareChannel *channels = cag_calloc(a->channel_count, sizeof *channels);
   if (!channels) {
     cag_free(match);
-    return cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for comparing '%s'", a_name);
+    return cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory to compare '%s'", a_name);
   }
   *out = (CagCompareReport){.width = a->width,
                             .height = a->height,
@@ -154,8 +154,8 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
     if (isfinite(n->psnr)) snprintf(psnr, sizeof psnr, "%.2f dB", n->psnr);
     fprintf(out, "%-12s %12.6g %12.6g %14s %10s\n", n->name, n->rmse, n->largest, at, psnr);
     if (n->not_finite[0] || n->not_finite[1])
-      fprintf(out, "%-12s NaN or infinite: %zu in the first, %zu in the second, %zu unlike\n", "",
-              n->not_finite[0], n->not_finite[1], n->unlike);
+      fprintf(out, "%-12s NaN or infinite: %zu in the first, %zu in the second, %zu different\n",
+              "", n->not_finite[0], n->not_finite[1], n->unlike);
   }
   if (r->has_color)
     fprintf(out, "color difference (CIEDE2000): mean %.4g, largest %.4g\n", r->delta_e_mean,

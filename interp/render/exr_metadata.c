@@ -34,7 +34,7 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagError *err
     return &m->items[i];
   }
   if (!CAG_RESERVE(m->items, m->capacity, m->count + 1)) {
-    cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory for the EXR attribute '%s'", name);
     return NULL;
   }
   CagExrAttribute *a = &m->items[m->count++];
@@ -47,7 +47,8 @@ bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text
   char *copy = cag_strdup(text);
   CagExrAttribute *a = copy ? entry(m, name, err) : NULL;
   if (!a) {
-    if (!copy) cag_fail_io(err, CAG_E_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    if (!copy)
+      cag_fail_io(err, CAG_E_LIMIT, NULL, "not enough memory for the EXR attribute '%s'", name);
     cag_free(copy);
     return false;
   }

@@ -42,9 +42,8 @@ static bool fail_code(CagError *err, const Source *source, exr_result_t code) {
   if (cag_stopped()) return cag_fail_io(err, CAG_E_CALLBACK, NULL, "reading was stopped");
   if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
     return cag_fail_io(
-        err, CAG_E_FILE, "store it with ZIP, PIZ, RLE or no compression",
-        "cannot read '%s' as EXR: its compression, for channels like these, is not one that "
-        "OpenEXRCore decodes rightly",
+        err, CAG_E_FILE, "store it with ZIP, PIZ, RLE, or no compression",
+        "cannot read '%s' as EXR: OpenEXRCore does not decode its compression correctly for channels like these",
         source->shown);
   return fail(err, source, cag_exr_complaint_text(&source->complaint, code));
 }
@@ -382,7 +381,7 @@ bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagI
   Source source = {.bytes = bytes, .size = size, .shown = shown};
   if (!size) return fail(err, &source, "the file is empty");
   if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
-    return fail(err, &source, "it is not an EXR file (its first bytes are not those of one)");
+    return fail(err, &source, "it is not an EXR file (it does not begin like one)");
   cag_exr_complaint_listen(&source.complaint);
   const bool ok = read_source(&source, out, metadata, all_half, err);
   cag_exr_complaint_listen(NULL);
@@ -429,7 +428,7 @@ static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size
     if (*size > FILE_SIZE_MAX || capacity > 2 * FILE_SIZE_MAX)
       return fail_file(err, shown, "the file is too large");
     unsigned char *larger = cag_realloc(*bytes, capacity);
-    if (!larger) return fail_file(err, shown, "no memory for the file");
+    if (!larger) return fail_file(err, shown, "not enough memory for the file");
     *bytes = larger;
     while (*size < capacity) {
       ssize_t n = read(fd, *bytes + *size, capacity - *size);

@@ -33,7 +33,8 @@ static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data
   // The sum does not overflow: a picture has at most CAG_IMAGE_SAMPLES_MAX samples.
   const size_t end = (size_t)(offset + n);
   if (!CAG_RESERVE(sink->bytes, sink->capacity, end)) {
-    cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
+    cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY,
+                           "not enough memory for the compressed picture");
     return -1;
   }
   // The gap that the library leaves for the table of offsets is zero until it is filled.
@@ -122,7 +123,7 @@ static bool check_names(const char *path, const CagImage *image, CagError *err) 
                          "cannot write '%s': channel %zu has no name", path, c);
     cag_image_find(image, name, &first);
     if (first != c)
-      return cag_fail_io(err, CAG_E_USAGE, "give each channel a name of its own",
+      return cag_fail_io(err, CAG_E_USAGE, "give each channel its own name",
                          "cannot write '%s': two channels are named '%s'", path, name);
   }
   return true;

@@ -28,8 +28,8 @@ bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel
     cag_free(channels);
     cag_free(data);
     return cag_fail_io(err, CAG_E_MEMORY, "make it smaller",
-                       "no memory for an image of %zu by %zu pixels with %zu channels", width,
-                       height, channel_count);
+                       "not enough memory for an image of %zu by %zu pixels with %zu channels",
+                       width, height, channel_count);
   }
   *out = (CagImage){width, height, channel_count, channels, data};
   return true;

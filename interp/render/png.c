@@ -69,8 +69,8 @@ static void on_write(png_structp png, png_bytep data, png_size_t n) {
   CagAtomicFile *file = png_get_io_ptr(png);
   cag_atomic_file_write(file, data, n);
   if (cag_atomic_file_failed(file))
-    png_error(png, "the disk refused the data"); // commit reports
-                                                 // the reason
+    png_error(png, "the data could not be written to the disk"); // commit reports
+                                                                 // the reason
 }
 
 static void on_flush(png_structp png) { (void)png; }
@@ -152,7 +152,7 @@ static bool prepare_tone(const char *path, const CagImage *image, const CagPngOp
     return cag_fail_io(err, CAG_E_USAGE, "use 8 or 16",
                        "cannot write '%s': PNG has no %d bits per channel here", path, t->bits);
   if (!cag_image_find_color(image, t->rgb))
-    return cag_fail_io(err, CAG_E_USAGE, "name channels R, G and B, or Y",
+    return cag_fail_io(err, CAG_E_USAGE, "name the channels R, G, and B, or Y",
                        "cannot write '%s': the image has no color channels", path);
   t->has_alpha = !options->drop_alpha && cag_image_find(image, "A", &t->alpha);
   return true;

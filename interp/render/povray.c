@@ -71,7 +71,8 @@ static bool make_folder(char folder[PATH_MAX], CagError *err) {
   const int code = n < PATH_MAX ? errno : ENAMETOOLONG;
   *folder = '\0';
   return cag_fail_io(err, CAG_E_FILE, "set TMPDIR to a folder that you may write to",
-                     "no temporary folder for POV-Ray in '%.300s': %s", base, strerror(code));
+                     "cannot create a temporary folder for POV-Ray in '%.300s': %s", base,
+                     strerror(code));
 }
 
 static bool fail_temporary(CagError *err, const char *path, int code) {
@@ -119,7 +120,7 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagError *e
   const int code = errno;
   if (!ok)
     cag_fail_io(err, CAG_E_FILE, NULL, "cannot read '%s', which the scene uses: %s", file->source,
-                in && !bytes ? "it is not an ordinary file" : strerror(code));
+                in && !bytes ? "it is not a regular file" : strerror(code));
   // Include files are part of the scene.
   const char *ending = strrchr(file->name, '.');
   if (ok && ending && !strcmp(ending, ".inc")) ok = cag_povray_check_files(bytes, size, err);
@@ -233,8 +234,8 @@ static void scene_line(const CagPovrayJob *job, size_t line, char *out, size_t s
 static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagError *err) {
   char text[121] = "";
   if (!strcmp(log->error_file, "scene.pov")) scene_line(job, log->error_line, text, sizeof text);
-  return cag_fail_io(err, CAG_E_RENDERER, "cag export -o scene.pov writes the scene to look at",
-                     "POV-Ray refused the scene at line %zu of '%.80s': %.240s%s%s",
+  return cag_fail_io(err, CAG_E_RENDERER, "to inspect the scene, use `cag export -o scene.pov`",
+                     "POV-Ray rejected the scene at line %zu of '%.80s': %.240s%s%s",
                      log->error_line, log->error_file, log->error_text, *text ? "\n" : "", text);
 }
 
@@ -254,7 +255,7 @@ static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayL
   case CAG_POVRAY_SIGNALED:
     return cag_fail_io(err, CAG_E_RENDERER,
                        end.code == SIGKILL
-                           ? "the system does so when memory runs out: try a coarser tolerance"
+                           ? "the system may have run out of memory; try a larger tolerance"
                            : NULL,
                        "POV-Ray was killed by signal %d (%s)%s%.380s", end.code,
                        strsignal(end.code), *last ? "; its last lines were:" : "", last);
@@ -262,7 +263,7 @@ static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayL
   }
   if (log->error_line) return fail_scene(job, log, err);
   if (end.code == CAG_POVRAY_EXEC_FAILED && !log->line_count)
-    return cag_fail_io(err, CAG_E_RENDERER, "check that povray on PATH is a program that runs",
+    return cag_fail_io(err, CAG_E_RENDERER, "check that `povray` runs",
                        "POV-Ray could not be started");
   if (end.code == 0)
     return cag_fail_io(err, CAG_E_RENDERER, NULL,

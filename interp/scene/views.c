@@ -247,7 +247,7 @@ CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   while (i < VIEW_COUNT && strcmp(VIEWS[i].name, name) != 0) i++;
   if (i == VIEW_COUNT)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", -1,
-                    "no standard view `%s`", name);
+                    "unknown standard view `%s`", name);
   char *copy = cag_strdup(name);
   if (!copy || !CAG_RESIZE(s->cameras, s->camera_count + 1)) {
     cag_free(copy);

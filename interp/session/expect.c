@@ -159,8 +159,7 @@ static bool set_limit(Plan *p, const char *name, const char *value) {
 
 static void set_problem(Plan *p, const char *word) {
   static const char FORM[] =
-      "`%s` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
-      "--max-memory, --max-time and --max-triangles";
+      "`%s` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles";
   cag_free(p->problem);
   if (cag_asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
 }
@@ -451,7 +450,7 @@ static void check_errors(Run *r, const CagSession *s) {
     cag_session_error(s, i, &e);
     if (is_expected(r, &e)) continue;
     if (all) {
-      snprintf(message, sizeof message, "an error that is not expected: %s", e.code);
+      snprintf(message, sizeof message, "unexpected error: %s", e.code);
       line = e.file && strcmp(e.file, r->path) == 0 ? e.line : 0;
     }
     all = false;
@@ -464,7 +463,7 @@ static void check_errors(Run *r, const CagSession *s) {
   for (size_t i = 0; i < r->plan->count; i++) {
     const Expected *e = &r->plan->expected[i];
     if (!e->is_error || e->met) continue;
-    snprintf(message, sizeof message, "the expected error %.*s did not come",
+    snprintf(message, sizeof message, "the expected error %.*s did not occur",
              (int)(e->text.end - e->text.start), e->text.start);
     fail(r, e->line, message, NULL, NULL, NULL);
   }
@@ -491,7 +490,7 @@ static void check_output(Run *r, const char *text, size_t size) {
                 memcmp(got.start, expected, strlen(expected)) == 0;
     if (!same) {
       char *found = cag_strndup(got.start, (size_t)(got.end - got.start));
-      fail(r, e->line, "another line is printed", expected, found, NULL);
+      fail(r, e->line, "the output is different", expected, found, NULL);
       cag_free(found);
       cag_free(expected);
       return;
@@ -502,7 +501,7 @@ static void check_output(Run *r, const char *text, size_t size) {
   if (at == end || last_line == r->plan->line) return; // a script without expected lines may print
   const char *stop = memchr(at, '\n', (size_t)(end - at));
   char *found = cag_strndup(at, (size_t)((stop ? stop : end) - at));
-  fail(r, last_line, "more is printed than expected", NULL, found, NULL);
+  fail(r, last_line, "there is more output than expected", NULL, found, NULL);
   cag_free(found);
 }
 
@@ -606,12 +605,11 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
     char *message = NULL;
     if (cag_asprintf(
             &message,
-            "the picture is not as %s: the mean color difference is %.3g (%g may be), %.3g%% "
-            "of the pixels differ (%g%% may); it is kept in %s",
+            "the picture differs from %s: the mean color difference is %.3g (limit %g), and %.3g%% of the pixels differ (limit %g%%); the picture is kept in %s",
             reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
             100 * CAG_TEST_PIXELS, path) < 0)
       message = NULL;
-    fail(r, 0, message ? message : "the picture is not as its reference", NULL, NULL, NULL);
+    fail(r, 0, message ? message : "the picture differs from its reference", NULL, NULL, NULL);
     cag_free(message);
   }
   cag_compare_report_free(&report);
@@ -642,7 +640,7 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
   char *folder = NULL, *path = NULL;
   if (cag_asprintf(&folder, "%s/cag-test-XXXXXX", root && *root ? root : "/tmp") < 0) return false;
   bool ok = mkdtemp(folder) != NULL;
-  if (!ok) fail(r, 0, "no folder for the picture can be made", NULL, NULL, NULL);
+  if (!ok) fail(r, 0, "cannot create a folder for the picture", NULL, NULL, NULL);
   ok = ok && cag_asprintf(&path, "%s/%s", folder, slash ? slash + 1 : reference_path) >= 0;
   bool keep = false;
   if (ok) ok = render(r, s, reference, path);
@@ -926,7 +924,7 @@ int cag_test_file(const char *path, const CagTestOptions *options, CagTestCounts
   char *text = read_whole(path, &length);
   if (!text) {
     char message[256];
-    snprintf(message, sizeof message, "the script cannot be read: %s",
+    snprintf(message, sizeof message, "cannot read the script: %s",
              errno ? strerror(errno) : "there is not enough memory");
     if (options->failure)
       options->failure(options->context,

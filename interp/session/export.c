@@ -137,10 +137,10 @@ static int check_parts(CagSession *s, const Parts *parts) {
     if (parts->items[i].mesh->triangle_count > 0) return CAG_STATUS_OK;
   CagDiagnostic *d = cag_diagnostics_add(
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
-      "%s shows nothing that a mesh file can hold", s->script ? s->script : "the session");
+      "%s shows nothing that a mesh file can contain", s->script ? s->script : "the session");
   cag_diagnostic_set_help(d, s->scene.label_count > 0
-                                 ? "labels are drawn in .svg only; show a surface, solid or mesh"
-                                 : "a ground is for pictures; show a surface, solid or mesh");
+                                 ? "labels are drawn only in .svg; show a surface, solid, or mesh"
+                                 : "a ground is only for pictures; show a surface, solid, or mesh");
   return CAG_STATUS_SCRIPT;
 }
 
@@ -468,12 +468,14 @@ static int find_robot(CagSession *s, const CagRobotValue **robot) {
       n == 0 ? cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_no_robot, NULL, (CagSpan){0, 0},
                                    "%s shows no robot", script)
              : cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_several, NULL, (CagSpan){0, 0},
-                                   "%s shows %zu robots (%s%s); a .urdf file is of one", script, n,
-                                   names.bytes ? names.bytes : "", n > NAMED ? ", ..." : "");
+                                   "%s shows %zu robots (%s%s), but a .urdf file describes one",
+                                   script, n, names.bytes ? names.bytes : "",
+                                   n > NAMED ? ", ..." : "");
   cag_diagnostic_set_help(
-      d, n == 0 ? "show a robot, as it is or by `posed`: show robot([revolute(a: 300)])"
-                : "show one alone; a param may choose it: `param which = 0`, `show robots[which]`, "
-                  "and -D which=1");
+      d,
+      n == 0
+          ? "show a robot, as it is or by `posed`, such as show robot([revolute(a: 300)])"
+          : "show only one; to select it by a param, use `param which = 0`, `show robots[which]`, and -D which=1");
   cag_string_free(&names);
   return CAG_STATUS_SCRIPT;
 }
@@ -482,8 +484,8 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
   CagError io = {0};
   CagError err = {0};
   if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file are written to this folder beside it",
-                "cannot make the folder %s: %s", folder, strerror(errno));
+    cag_fail_io(&io, CAG_E_FILE, "the meshes of a .urdf file are written to this folder next to it",
+                "cannot create the folder %s: %s", folder, strerror(errno));
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }
   int status = CAG_STATUS_OK;
@@ -509,10 +511,9 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
 static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
   CagError io = {0};
   if (u->meshes && strcmp(path, "-") == 0) {
-    CagDiagnostic *d =
-        cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_output, NULL, (CagSpan){0, 0},
-                            "the links' meshes are files beside the .urdf file, and standard "
-                            "output has no place beside it");
+    CagDiagnostic *d = cag_diagnostics_add(
+        &s->diagnostics, CAG_ERR_urdf_output, NULL, (CagSpan){0, 0},
+        "the meshes of the links are written to files next to the .urdf file, which standard output does not allow");
     cag_diagnostic_set_help(d, "write to a file: -o arm.urdf");
     return CAG_STATUS_USAGE;
   }
@@ -561,18 +562,18 @@ static int export_urdf(CagSession *s, const char *path) {
 
 // X(name, story, function)
 #define FORMATS(X)                                                                                 \
-  X("obj", "mesh, Wavefront OBJ with its materials in an .mtl file beside it", export_obj)         \
+  X("obj", "mesh, Wavefront OBJ with its materials in an .mtl file next to it", export_obj)        \
   X("stl", "mesh, binary STL", export_stl)                                                         \
-  X("ply", "mesh, binary PLY with normals, colors and parameters", export_ply)                     \
+  X("ply", "mesh, binary PLY with normals, colors, and parameters", export_ply)                    \
   X("glb", "mesh, binary glTF 2.0 in meters with Y up", export_glb)                                \
-  X("gltf", "mesh, glTF 2.0 with its data in a .bin file beside it", export_gltf)                  \
-  X("3mf", "mesh, 3MF with objects, copies and colors", export_3mf)                                \
-  X("pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov)         \
-  X("igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges)       \
-  X("step", "exact geometry, STEP AP214 with solids, colors and names", export_step)               \
-  X("urdf", "robot, URDF with its meshes in meters in a folder beside it", export_urdf)            \
-  X("svg", "curves and regions as a flat picture", export_svg)                                     \
-  X("json", "scene, all of it as data", export_json)
+  X("gltf", "mesh, glTF 2.0 with its data in a .bin file next to it", export_gltf)                 \
+  X("3mf", "mesh, 3MF with objects, copies, and colors", export_3mf)                               \
+  X("pov", "scene, POV-Ray 3.7 source that uses POV-Ray's own objects where possible", export_pov) \
+  X("igs", "exact geometry, IGES 5.3 with curves, surfaces, and trimmed planes", export_iges)      \
+  X("step", "exact geometry, STEP AP214 with solids, colors, and names", export_step)              \
+  X("urdf", "robot, URDF with its meshes in meters in a folder next to it", export_urdf)           \
+  X("svg", "drawing of curves and regions", export_svg)                                            \
+  X("json", "data of the whole scene", export_json)
 
 // Formats of shown images, which need no scene.
 static int export_exr(CagSession *s, const char *path) {
@@ -644,7 +645,7 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
         *name ? cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "unknown format `%s`", name)
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
-                                    "%s has no ending that tells the format", path);
+                                    "%s has no extension that determines the format", path);
     cag_diagnostic_set_help(d, FORMAT_HELP);
     return CAG_STATUS_USAGE;
   }

@@ -70,7 +70,7 @@ int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
   if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
   else
     cag_diagnostic_set_help(
-        d, "the scene has `%s`, and always top, bottom, front, back, left, right and iso",
+        d, "the scene has `%s`; top, bottom, front, back, left, right, and iso always work",
         names[0]);
   return CAG_STATUS_USAGE;
 }
@@ -82,7 +82,7 @@ bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out) {
   *out = strcmp(word, "native") == 0 ? CAG_POV_CSG_NATIVE : CAG_POV_CSG_MESH;
   if (*out == CAG_POV_CSG_NATIVE || strcmp(word, "mesh") == 0) return true;
   cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
-                      "expected set operations as native, mesh or auto, found %s", word);
+                      "expected set operations as native, mesh, or auto, found %s", word);
   return false;
 }
 
@@ -276,8 +276,8 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   if (!dot || (strcasecmp(dot, ".exr") != 0 && strcasecmp(dot, ".png") != 0)) {
     CagDiagnostic *d =
         cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
-                            "a picture is an .exr or a .png file, found %s", path);
-    cag_diagnostic_set_help(d, "`export` writes the other formats");
+                            "expected an .exr or .png file, found %s", path);
+    cag_diagnostic_set_help(d, "use `cag export` for other formats");
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);
@@ -285,7 +285,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   Job j = {.session = s, .options = options, .path = path};
   if (!find_quality(options->quality, &j.pov, &j.engine)) {
     cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
-                        "the quality is draft, normal or final, found %s", options->quality);
+                        "expected the quality draft, normal, or final, found %s", options->quality);
     return CAG_STATUS_USAGE;
   }
   if (!cag_session_pov_csg(s, CAG_POV_CSG_MESH, &j.csg)) return CAG_STATUS_USAGE;

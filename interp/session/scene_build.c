@@ -489,13 +489,13 @@ static bool build_scene(Build *build, const CagShown *shown, size_t n) {
       return !vm->failed &&
              cag_vm_fail(
                  vm, CAG_ERR_no_image,
-                 "show expects shapes, images, lights, cameras and lists of these, found %s",
+                 "show expects shapes, images, lights, cameras, and lists of these, found %s",
                  cag_type_article(shown[i].value));
     add_value(build, shown[i].value, cag_lead(shown[i].expr));
   }
   if (!build->failed) return true;
   return !vm->failed &&
-         cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
+         cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than is available");
 }
 
 bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {

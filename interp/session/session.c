@@ -484,11 +484,11 @@ static int fail_nothing_shown(CagSession *s) {
   const bool empty = s->scene.empty_count > 0;
   CagDiagnostic *d = cag_diagnostics_add(
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0}, "%s shows %s",
-      s->script ? s->script : "the session", empty ? "nothing but empty shapes" : "no shape");
-  cag_diagnostic_set_help(d, empty ? "`is_empty` tells what is empty"
+      s->script ? s->script : "the session", empty ? "only empty shapes" : "no shape");
+  cag_diagnostic_set_help(d, empty ? "`is_empty` tests whether a shape is empty"
                              : cag_session_shows_image(s)
-                                 ? "images are exported: cag export FILE -o OUT.exr, or .png"
-                                 : "add `show` and a shape: show sphere(10)");
+                                 ? "to export an image, write cag export FILE -o OUT.exr, or .png"
+                                 : "show a shape, such as show sphere(10)");
   drop_scene(s);
   return CAG_STATUS_SCRIPT;
 }

@@ -29,8 +29,8 @@ static bool make_folder(CagSite *s, const char *name) {
   char *path = cag_doc_text("%s%s%s", s->folder, *name ? "/" : "", name);
   const bool made = mkdir(path, 0777) == 0 || errno == EEXIST;
   if (!made)
-    cag_fail_io(&s->error, CAG_E_FILE, "the folder above it must be there, and writable",
-                "cannot make the folder %s: %s", path, strerror(errno));
+    cag_fail_io(&s->error, CAG_E_FILE, "the folder above it must exist and be writable",
+                "cannot create the folder %s: %s", path, strerror(errno));
   cag_free(path);
   return made;
 }
@@ -194,7 +194,7 @@ static void find_renderer(CagSite *s) {
   char found[256];
   if (s->options->no_pictures) return;
   s->renders = cag_find_povray(found, sizeof found) != NULL;
-  if (!s->renders) report_site(s, "pictures are left out, other than drawings: %s", found);
+  if (!s->renders) report_site(s, "pictures are omitted, except for drawings: %s", found);
 }
 
 // Reports each failed example as an error of the documentation.
@@ -206,8 +206,8 @@ static int judge(CagSite *s) {
     if (!e->failure) continue;
     wrong++;
     cag_diagnostics_add(&s->session->diagnostics, CAG_ERR_doc_example, NULL, (CagSpan){0, 0},
-                        "an example of %s does not do what it says:\n%s\nit printed:\n%s", e->about,
-                        e->text, e->failure);
+                        "an example of %s does not print the expected output:\n%s\nit printed:\n%s",
+                        e->about, e->text, e->failure);
   }
   report_site(s, "%zu scripts run", s->count);
   if (pictures) report_site(s, "%zu pictures", pictures);

@@ -147,13 +147,12 @@ static void index_page(CagSite *s) {
   size_t count;
   const char **families = list_families(&count);
   cag_site_begin(s, &p, "index.html", "Functions", "Functions");
-  fputs(
-      "<h1>A language for geometry</h1>\n<p class=\"lead\">A script says what curves, surfaces, "
-      "solids, robots and scenes <em>are</em>. "
-      "New here? <a href=\"guide/getting-started.html\">Getting started</a> takes ten minutes, the "
-      "<a href=\"cookbook/index.html\">cookbook</a> has scripts to begin from.</p>\n<ul "
-      "class=\"families\">\n",
-      p.out);
+  fputs("<h1>A language for geometry</h1>\n<p class=\"lead\">A script defines curves, surfaces, "
+        "solids, robots, and scenes. "
+        "<a href=\"guide/getting-started.html\">Getting started</a> takes ten minutes. The "
+        "<a href=\"cookbook/index.html\">cookbook</a> contains scripts to start from.</p>\n<ul "
+        "class=\"families\">\n",
+        p.out);
   for (size_t i = 0; i < count; i++) {
     char *anchor = cag_html_anchor(families[i]);
     fprintf(p.out, "<li><a href=\"#%s\">", anchor);
@@ -179,8 +178,8 @@ void cag_site_functions(CagSite *s) {
 void cag_site_errors(CagSite *s) {
   CagSitePage p;
   cag_site_begin(s, &p, "errors.html", "Errors", "Errors");
-  fputs("<h1>Errors</h1>\n<p>Every kind of error has a code that stays. <code>cag explain "
-        "CODE</code> says the same.</p>\n",
+  fputs("<h1>Errors</h1>\n<p>Every kind of error has a permanent code. <code>cag explain "
+        "CODE</code> prints its explanation.</p>\n",
         p.out);
   for (size_t i = 0; i < CAG_ERR_COUNT; i++) {
     const CagErrorInfo *e = cag_error_info((CagErrorId)i);
@@ -269,8 +268,8 @@ static void write_recipe(const CagSitePage *p, const CagDocument *d) {
 void cag_site_cookbook(CagSite *s) {
   CagSitePage p;
   cag_site_begin(s, &p, "cookbook/index.html", "Cookbook", "Cookbook");
-  fputs("<h1>Cookbook</h1>\n<p class=\"lead\">Scripts to begin from. Each is whole: save it as "
-        "<code>x.cag</code> and say "
+  fputs("<h1>Cookbook</h1>\n<p class=\"lead\">Scripts to start from. Each is complete: save it as "
+        "<code>x.cag</code> and run "
         "<code>cag render x.cag -o x.png</code>.</p>\n",
         p.out);
   for (const CagDocument *d = cag_documents; d->path; d++)

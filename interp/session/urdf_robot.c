@@ -419,7 +419,7 @@ static bool measure_plain(Walk *w) {
     if (CAG_AS_LINK(v->links->as.items[i])->shape.type != CAG_NONE) return true;
   CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
   if (!points)
-    return cag_fail_call(&w->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+    return cag_fail_call(&w->call, -1, CAG_ERR_limit_memory, "needs more memory than is available");
   cag_robot_home(r, q);
   size_t n = cag_robot_skeleton(r, q, points);
   for (size_t i = 1; i < n; i++) length += cag_norm(cag_sub(points[i], points[i - 1]));

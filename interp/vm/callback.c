@@ -34,8 +34,7 @@ bool cag_vm_call_back(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *c
   if (vm->failed) return false;
   if (vm->heap.depth == DEPTH_MOST)
     return cag_vm_fail(vm, CAG_ERR_limit_depth,
-                       "formulas of curves and surfaces use one another more than %d deep",
-                       DEPTH_MOST);
+                       "formulas of curves and surfaces are nested more than %d deep", DEPTH_MOST);
   const uint32_t level = vm->differentiation;
   vm->heap.depth++;
   const bool ok = cag_vm_protect(vm, work, context) && !vm->failed;

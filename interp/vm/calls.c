@@ -176,7 +176,7 @@ static bool bind_names(CagVm *vm, const CagSignature *s, CagValue *values, size_
 static bool check_answer(CagVm *vm, const char *name, bool ok) {
   if (!ok) return cag_vm_fail(vm, CAG_ERR_internal, "%s failed without an error", name);
   if (vm->native->probed || cag_vm_at_limit(vm)) return false;
-  return cag_vm_fail(vm, CAG_ERR_internal, "%s went on after the error: %s", name,
+  return cag_vm_fail(vm, CAG_ERR_internal, "%s continued after the error: %s", name,
                      vm->errors.items[0].message);
 }
 

@@ -49,9 +49,8 @@ static void *grown(CagVm *vm, void *p, size_t count, size_t *capacity, size_t si
 
 static void too_large(Unit *u, CagSpan span) {
   if (!u->failed)
-    cag_diagnostics_add(
-        &u->vm->errors, CAG_ERR_too_large, u->proto->source, span,
-        "this expression is too large: move parts of it into definitions of their own");
+    cag_diagnostics_add(&u->vm->errors, CAG_ERR_too_large, u->proto->source, span,
+                        "this expression is too large: move parts of it to other definitions");
   u->failed = true;
 }
 

@@ -58,10 +58,10 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   cag_free(joined);
   if (real && !outside) return real;
   if (outside)
-    snprintf(message, size,
-             "%s lies outside of the folders that the script may read: that of the main script, "
-             "and those of -I",
-             path);
+    snprintf(
+        message, size,
+        "%s is outside of the folders that the script can read: the folder of the main script, and those of -I",
+        path);
   else snprintf(message, size, "%s: %s", path, strerror(why));
   cag_free(real);
   return NULL;
@@ -77,7 +77,7 @@ static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const
     const size_t room = capacity - 1 - n;
     n += fread(bytes + n, 1, room < CHUNK ? room : CHUNK, f);
     if (ferror(f)) *why = strerror(errno);
-    else if (cag_stopped()) *why = "it was stopped";
+    else if (cag_stopped()) *why = "it was interrupted";
     else if (feof(f)) break;
     if (*why || n < capacity - 1) continue;
     const int c = fgetc(f); // files may be longer than their reported size
@@ -152,7 +152,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   if (!*bytes && why == TOO_LARGE) {
     if (left < FILE_MAX)
       return cag_fail_call(call, argument, CAG_ERR_limit_memory,
-                           "%s is larger than the memory that is left (--max-memory)", path);
+                           "%s is larger than the remaining memory (--max-memory)", path);
     why = "it is larger than 1 GiB";
   }
   vm->starved |= !*bytes && why == cag_file_out_of_memory;

@@ -170,6 +170,10 @@ static void mark_roots(CagVm *vm) {
     if (vm->frames[i].closure) cag_mark_object(h, &vm->frames[i].closure->head);
   cag_mark_values(h, vm->roots, vm->root_count);
   cag_mark_values(h, vm->kept, vm->kept_count);
+  for (size_t i = 0; i < CAG_MEMO_COUNT; i++) {
+    cag_mark_object(h, vm->memos[i].owner);
+    cag_mark_value(h, vm->memos[i].held);
+  }
   for (size_t i = 0; i < vm->interned_size; i++)
     if (vm->interned[i]) cag_mark_object(h, &vm->interned[i]->head);
   for (size_t i = 0; i < vm->global_count; i++) cag_mark_value(h, vm->globals[i].value);
@@ -313,6 +317,7 @@ void cag_collect(CagVm *vm) {
   if (h->unfinished) mark_evenly(h);
   h->mark = h->mark == 1 ? 2 : 1;
   const bool short_of_memory = vm->account.used > vm->account.limit / 4;
+  if (vm->account.used > vm->account.limit / 2) cag_memo_clear(vm);
   size_t live = 0, free_bytes = 0;
   h->unfinished = !mark_all(vm) || !sweep(h, short_of_memory, &live, &free_bytes);
   if (h->unfinished) return; // the run ends

@@ -153,7 +153,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
     if (k == CAG_NO_MODULE && vm->errors.count == before)
       suggest_module(cag_diagnostics_add(&vm->errors, CAG_ERR_module_not_found, m->source,
                                          s->as.import.path_span,
-                                         "the standard library has no module %s", name),
+                                         "the standard library has no module `%s`", name),
                      name);
     return k;
   }
@@ -182,7 +182,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
         &vm->errors, outside ? CAG_ERR_import_outside : CAG_ERR_module_not_found, m->source,
         s->as.import.path_span, outside ? "%s" : "unknown module %s", outside ? message : name);
     if (!outside) {
-      cag_diagnostic_set_help(d, "looked for %s beside %s%s", relative ? relative : name, m->name,
+      cag_diagnostic_set_help(d, "looked for %s next to %s%s", relative ? relative : name, m->name,
                               vm->include_count ? " and on the module path" : "");
       if (!strchr(name, '.')) {
         char standard[128];

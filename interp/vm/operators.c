@@ -161,8 +161,7 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
                 l->length, m->length);
     if (l->dim == 1 && m->dim == 1 && l->length + m->length == 5)
       cag_fail_help(vm, "write the 2-D point [x, y] as [x, y, 0]");
-    else if (op == CAG_OP_ADD)
-      cag_fail_help(vm, "to put lists one after the other, write [...a, ...b]");
+    else if (op == CAG_OP_ADD) cag_fail_help(vm, "to concatenate lists, write [...a, ...b]");
     return false;
   }
   if (l->dim && l->dim == m->dim) return packed_sum(vm, op, l, m, result);
@@ -544,7 +543,7 @@ static bool fail_index(CagVm *vm, double at, size_t n, const char *what) {
   char text[32];
   cag_number_text(at, text);
   if (at != rint(at))
-    return cag_vm_fail(vm, CAG_ERR_index, "expected an integer as index, found %s", text);
+    return cag_vm_fail(vm, CAG_ERR_index, "expected an integer as the index, found %s", text);
   cag_vm_fail(vm, CAG_ERR_index, "index %s lies outside of %s %s of %zu", text, cag_article(what),
               what, n);
   if (n) cag_fail_help(vm, "0 to %zu, or -%zu to -1", n - 1, n);
@@ -564,7 +563,7 @@ static bool resolve(CagVm *vm, double at, size_t n, const char *what, size_t *ou
 static bool resolve_part(CagVm *vm, const CagRange *r, size_t n, const char *what, size_t *from,
                          size_t *count) {
   if (r->angle)
-    return cag_vm_fail(vm, CAG_ERR_index, "indices are numbers, found a range of angles");
+    return cag_vm_fail(vm, CAG_ERR_index, "expected integers as indices, found a range of angles");
   if (r->start != rint(r->start) || (r->end != rint(r->end)))
     return cag_vm_fail(vm, CAG_ERR_index, "expected integers as indices");
   double a = r->start < 0 ? r->start + (double)n : r->start;
@@ -661,12 +660,12 @@ bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
     CagString s = {0};
     cag_describe_value(vm, &s, listed || object.type == CAG_RECORD ? index : object);
     if (object.type == CAG_RECORD)
-      cag_vm_fail(vm, CAG_ERR_type, "a field of a record is named by a text, found %s", s.bytes);
+      cag_vm_fail(vm, CAG_ERR_type, "expected a text as the name of a field, found %s", s.bytes);
     else if (listed)
-      cag_vm_fail(vm, CAG_ERR_type, "an index is a number or a range, found %s", s.bytes);
+      cag_vm_fail(vm, CAG_ERR_type, "expected a number or a range as the index, found %s", s.bytes);
     else
-      cag_vm_fail(vm, CAG_ERR_type, "only lists, ranges, texts and records have elements, found %s",
-                  s.bytes);
+      cag_vm_fail(vm, CAG_ERR_type,
+                  "only lists, ranges, texts, and records have elements, found %s", s.bytes);
     cag_string_free(&s);
     return false;
   }

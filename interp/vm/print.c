@@ -128,7 +128,7 @@ bool cag_string_fits(CagVm *vm, const CagString *s) {
   if (!s->failed) return true;
   if (!vm->failed)
     cag_vm_fail(vm, CAG_ERR_limit_memory,
-                "the printed value does not fit the memory (--max-memory)");
+                "the printed value exceeds the memory limit (--max-memory)");
   return false;
 }
 

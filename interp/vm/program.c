@@ -47,7 +47,7 @@ static bool evaluate_define(CagVm *vm, const char *name, const char *text, CagVa
   if (m->ast->count != 1 || m->ast->statements[0]->kind != CAG_STATEMENT_EXPRESSION) {
     vm->failed = true;
     cag_diagnostics_add(&vm->errors, CAG_ERR_param_type, NULL, (CagSpan){0, 0},
-                        "-D %s=%s: the value is one expression", name, text);
+                        "-D %s=%s: expected one expression as the value", name, text);
     return false;
   }
   const CagProto *p = cag_compile_expression(vm, m, m->ast->statements[0]->as.expression, NULL);
@@ -98,9 +98,10 @@ static bool set_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, const 
     vm->failed = true;
     CagString found = {0};
     cag_describe_value(vm, &found, v);
-    CagDiagnostic *e = cag_diagnostics_add(
-        &vm->errors, CAG_ERR_param_type, m->source, s->as.param.decl->span,
-        "the param `%s` is %s, but -D gives %s", d->name, cag_type_article(standard), found.bytes);
+    CagDiagnostic *e =
+        cag_diagnostics_add(&vm->errors, CAG_ERR_param_type, m->source, s->as.param.decl->span,
+                            "the param `%s` is %s, but -D sets it to %s", d->name,
+                            cag_type_article(standard), found.bytes);
     if (standard.type == CAG_ANGLE && v.type == CAG_NUMBER)
       cag_diagnostic_set_help(e, "-D %s=%sdeg", d->name, d->value);
     cag_string_free(&found);
@@ -237,7 +238,7 @@ static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
       cag_describe_value(vm, &found, v);
       CagDiagnostic *d = cag_diagnostics_add(
           &vm->errors, CAG_ERR_no_image, m->source, e->span,
-          "show expects shapes, images, lights, cameras or settings of the scene, found %s",
+          "show expects shapes, images, lights, cameras, or settings of the scene, found %s",
           found.bytes);
       if (v.type <= CAG_TEXT) cag_diagnostic_set_help(d, "to write a value, use `print`");
       cag_string_free(&found);

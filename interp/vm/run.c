@@ -62,8 +62,9 @@ static bool equal(CagVm *vm, CagValue a, CagValue b, bool negated, bool *out) {
 
 static bool fail_depth(CagVm *vm) {
   cag_vm_fail(vm, CAG_ERR_limit_depth, "calls are nested deeper than %zu", vm->frame_limit);
-  return cag_fail_help(vm, "does the recursion end? A call in tail position, `reduce` or a "
-                           "comprehension uses no stack");
+  return cag_fail_help(
+      vm,
+      "does the recursion end? A call in tail position, `reduce`, or a comprehension uses no stack");
 }
 
 static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
@@ -73,7 +74,7 @@ static bool fail_condition(CagVm *vm, CagValue v, const char *what) {
   cag_string_free(&s);
   if (v.type == CAG_NUMBER) cag_fail_help(vm, "compare it: ... != 0");
   else if (v.type == CAG_LIST || v.type == CAG_TEXT)
-    cag_fail_help(vm, "ask for its length: len(...) > 0");
+    cag_fail_help(vm, "compare its length: len(...) > 0");
   else if (v.type == CAG_NONE) cag_fail_help(vm, "compare it: ... != none");
   return false;
 }
@@ -165,8 +166,8 @@ static bool unpack(CagVm *vm, CagValue *out, CagValue v, size_t n) {
   if (!cag_as_list(vm, v, &list)) return false;
   const CagList *l = CAG_AS_LIST(list);
   if (l->length != n)
-    return cag_vm_fail(vm, CAG_ERR_pattern, "the pattern has %zu names, the element %zu parts", n,
-                       l->length);
+    return cag_vm_fail(vm, CAG_ERR_pattern,
+                       "the pattern has %zu names, but the element has %zu parts", n, l->length);
   for (size_t i = 0; i < n; i++) out[i] = cag_list_get(vm, l, i);
   return true;
 }
@@ -816,10 +817,22 @@ static bool fail_circle(CagVm *vm, size_t global) {
     cag_string_printf(&s, "%s -> ", p->name);
   }
   cag_string_add(&s, vm->globals[global].name, strlen(vm->globals[global].name));
-  cag_vm_fail(vm, CAG_ERR_circle, "the value of `%s` needs itself: %s", vm->globals[global].name,
-              s.bytes);
+  cag_vm_fail(vm, CAG_ERR_circle, "the value of `%s` depends on itself: %s",
+              vm->globals[global].name, s.bytes);
   cag_string_free(&s);
   return false;
+}
+
+// Shapes, and those in a list of them, remember the definition whose value they first were.
+static void note_definition(CagVm *vm, const char *name, CagValue v) {
+  if (cag_is_shape(v)) {
+    CagShape *s = CAG_AS_SHAPE(v);
+    if (!s->definition) s->definition = cag_intern(vm, name, strlen(name));
+  } else if (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0) {
+    const CagList *list = CAG_AS_LIST(v);
+    for (size_t i = 0; i < list->length && cag_is_shape(list->as.items[i]); i++)
+      note_definition(vm, name, list->as.items[i]);
+  }
 }
 
 bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
@@ -838,8 +851,10 @@ bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   bool ok = cag_vm_run(vm, p, result);
   g = &vm->globals[global];
   g->state = ok ? CAG_GLOBAL_DONE : CAG_GLOBAL_NEW;
-  if (ok) g->value = *result;
-  return ok;
+  if (!ok) return false;
+  g->value = *result;
+  note_definition(vm, g->name, *result);
+  return true;
 }
 
 typedef struct Work {

@@ -195,7 +195,7 @@ static bool list_member(CagVm *vm, CagValue object, const char *name, CagValue *
   if (axis) {
     CagString s = {0};
     cag_describe_value(vm, &s, object);
-    cag_vm_fail(vm, CAG_ERR_field, "`.%s` is of a vector of 2 to 4 numbers, found %s", name,
+    cag_vm_fail(vm, CAG_ERR_field, "`.%s` needs a vector of 2 to 4 numbers, found %s", name,
                 s.bytes);
     cag_string_free(&s);
     return false;

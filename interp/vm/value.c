@@ -130,7 +130,7 @@ static double range_steps(const CagRange *r, bool *meets) {
 
 bool cag_range_count(CagVm *vm, const CagRange *r, size_t *count) {
   if (!isfinite(r->start) || !isfinite(r->end)) {
-    return cag_vm_fail(vm, CAG_ERR_endless, "a range to inf is an interval and no list");
+    return cag_vm_fail(vm, CAG_ERR_endless, "a range to inf is an interval, not a list");
   }
   bool meets;
   double steps = range_steps(r, &meets);

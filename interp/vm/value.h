@@ -204,6 +204,7 @@ typedef struct CagShape {
                                // shapes are transformed themselves
   CagRecord *material;         // NULL: not set
   CagText *name;               // NULL: not set
+  CagText *definition;         // of the script, whose value it first was; NULL: none
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL

@@ -124,6 +124,7 @@ void cag_module_free(CagModuleUnit *m) {
 void cag_vm_free(CagVm *vm) {
   if (!vm) return;
   CagAccount *before = cag_account_lend(&vm->account);
+  cag_memo_clear(vm);
   cag_heap_free(vm);
   if (vm->stack) munmap(vm->stack, stack_values(vm) * sizeof *vm->stack);
   if (vm->tails) munmap(vm->tails, tail_bytes(vm));

@@ -22,6 +22,7 @@
 #include "base/memory.h"
 #include "interp/vm/builtin.h"
 #include "interp/vm/heap.h"
+#include "interp/vm/memo.h"
 #include "interp/vm/value.h"
 #include "lang/ast.h"
 #include "lang/parser.h"
@@ -211,6 +212,8 @@ struct CagVm {
     void *what;
   } * held;
   size_t held_count, held_capacity;
+  CagMemo memos[CAG_MEMO_COUNT];
+  size_t memo_bytes;
   uint32_t differentiation; // level of the jets in use; 0: none
   CagText **interned;
   size_t interned_count, interned_size;

@@ -251,13 +251,13 @@ script coil.cag 'show tube(helix(10, 3, 4), 2) |> named("coil")'
 try export coil.cag -o coil.stl
 status 0
 says 'warning: coil: its path at v = '
-says 'so that it crosses itself'
+says 'so it crosses itself'
 script eight.cag 'show tube(curve(t => [20*cos(t), 20*sin(2*t), 0], 0deg..360deg), 2)'
 try export eight.cag -o eight.stl
 says 'its path at v = 90deg is 0 from that at v = 270deg, where the tube is 4 thick'
 script bend.cag 'show tube(polyline([[0,0,0], [20,0,0], [20,5,0], [0,5,0]]), 3)'
 try export bend.cag -o bend.stl
-says 'so that it crosses itself'
+says 'so it crosses itself'
 script clear.cag 'show tube(helix(10, 4.1, 4), 2), tube(circle(10), 3), tube(polyline([[0,0,0], [20,0,0], [0,4,0]]), 1)'
 try export clear.cag -o clear.stl
 says_not 'crosses itself'
@@ -266,7 +266,7 @@ it 'a loft whose sections lie in one plane is reported, and exported all the sam
 script plate.cag 'show rotate([1, 2, 3], 30deg) * loft([circle(3), circle(5)]) |> named("plate")'
 try export plate.cag -o plate.stl
 status 0
-says 'warning: plate: its sections lie in one plane, so that the loft has no thickness'
+says 'warning: plate: its sections lie in one plane, so the loft has no volume'
 script cup.cag 'show loft([circle(3), translate([0, 0, 0.01]) * circle(5)])'
 try export cup.cag -o cup.stl
 says_not 'lie in one plane'
@@ -275,5 +275,5 @@ it 'a sweep that folds is reported, and exported all the same'
 script fold.cag 'show sweep(circle(8), helix(5, 3, 4))'
 try export fold.cag -o fold.stl
 status 0
-says 'so that it folds there'
+says 'so the surface folds there'
 exists fold.stl

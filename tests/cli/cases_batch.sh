@@ -18,7 +18,7 @@ ball.cag,c.obj,,,,
 END
 try batch jobs.csv
 status 0
-prints_exactly '3 done, 0 failed, 0 left out (already done)'
+prints_exactly '3 done, 0 failed, 0 skipped (already done)'
 says_nothing
 begins_with a.png 89504e470d0a1a0a
 exists b.stl
@@ -32,19 +32,19 @@ same b.stl expected.stl
 it 'a second call does nothing' povray
 try batch jobs.csv
 status 0
-prints_exactly '0 done, 0 failed, 3 left out (already done)'
+prints_exactly '0 done, 0 failed, 3 skipped (already done)'
 column_is jobs.report.csv 4 'already done already done already done'
 
 it 'a changed row runs again, and an output that is gone' povray
 sed -i 's/,20$/,21/' jobs.csv
 rm c.obj
 try batch jobs.csv
-prints_exactly '2 done, 0 failed, 1 left out (already done)'
+prints_exactly '2 done, 0 failed, 1 skipped (already done)'
 
 it 'a changed script runs all its rows again' povray
 echo '// more' >> ball.cag
 try batch jobs.csv
-prints_exactly '3 done, 0 failed, 0 left out (already done)'
+prints_exactly '3 done, 0 failed, 0 skipped (already done)'
 
 it 'a changed module runs what imports it again'
 mkdir lib
@@ -56,16 +56,16 @@ script,output
 user.cag,user.stl
 END
 try batch module.csv
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 script lib/part.cag 'side = 4'
 try batch module.csv
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 try batch module.csv
-prints_exactly '0 done, 0 failed, 1 left out (already done)'
+prints_exactly '0 done, 0 failed, 1 skipped (already done)'
 
 it '--fresh forgets what was done' povray
 try batch jobs.csv --fresh
-prints_exactly '3 done, 0 failed, 0 left out (already done)'
+prints_exactly '3 done, 0 failed, 0 skipped (already done)'
 
 it 'paths of rows are seen from the folder of the jobs'
 mkdir elsewhere
@@ -107,7 +107,7 @@ film.cag,film.%02d.png,0..3,32x24,draft
 END
 try batch film.csv
 status 0
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 for i in 0 1 2 3; do exists film.0$i.png; done
 rm film.02.png
 try batch film.csv -v
@@ -128,9 +128,9 @@ try batch loops.csv
 status 1
 try batch loops.csv --loop
 status 0
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 try batch loops.csv --loop
-prints_exactly '0 done, 0 failed, 1 left out (already done)'
+prints_exactly '0 done, 0 failed, 1 skipped (already done)'
 try batch loops.csv
 status 1
 table still.csv <<'END'
@@ -163,15 +163,15 @@ END
 try batch bad.csv
 status 2
 prints_nothing
-says "bad.csv:2: E0913: row 1: the script 'nothere.cag' cannot be read"
+says "bad.csv:2: E0913: row 1: cannot read the script 'nothere.cag'"
 says "bad.csv:3: E0912: row 2: size '64x': expected a size"
 says "bad.csv:4: E0912: row 3: quality 'best'"
 says "bad.csv:5: E0916: row 4: unknown format '.foo'"
 says 'bad.csv:6: E0915: row 5: cannot write'
-says 'bad.csv:7: E0914: row 6: all frames would be written to the one output'
+says 'bad.csv:7: E0914: row 6: all frames would be written to the same output'
 says 'bad.csv:8: E0912: row 7: '
 says 'bad.csv:10: E0914: row 9: '
-says 'that of row 8 too'
+says 'also the output of row 8'
 says 'bad.csv:11: E0912: row 10: an export has no size'
 says 'bad.csv:12: E0912: row 11: a picture in tiles needs its size'
 says 'bad.csv:14: E0914: row 13: '
@@ -185,7 +185,7 @@ printf 'scritp,output\nball.cag,a.png\n' > columns.csv
 try batch columns.csv
 status 2
 says "E0911: the column 'script' is missing"
-says "is the column 'scritp' meant?"
+says "if the column 'scritp' is meant, rename it"
 try batch columns.csv --diagnostics json
 says '"code":"E0911"'
 
@@ -218,7 +218,7 @@ ball.cag,s4.stl,nothere
 END
 try batch some.csv --retries 2
 status 1
-prints_exactly '2 done, 2 failed, 0 left out (already done)'
+prints_exactly '2 done, 2 failed, 0 skipped (already done)'
 says 'some.csv:3: E0917: row 2: '
 says 'some.csv:5: E0917: row 4: '
 column_is some.report.csv 4 'done failed done failed'
@@ -227,7 +227,7 @@ is_missing s2.stl
 sed -i 's/-1$/2/; s/nothere$/4/' some.csv
 try batch some.csv
 status 0
-prints_exactly '2 done, 0 failed, 2 left out (already done)'
+prints_exactly '2 done, 0 failed, 2 skipped (already done)'
 
 # A renderer that fails at first.
 mkdir flaky
@@ -256,7 +256,7 @@ ball.cag,e2.stl
 END
 try batch slow.csv --max-time 1
 status 1
-prints_exactly '1 done, 1 failed, 0 left out (already done)'
+prints_exactly '1 done, 1 failed, 0 skipped (already done)'
 column_is slow.report.csv 8 '5 0'
 
 it 'the memory of a row is bounded'
@@ -303,7 +303,7 @@ for signal in TERM KILL; do
   code=$?
   if [ $signal = TERM ]; then
     status 130
-    prints '2 done, 0 failed, 0 left out (already done), 3 not done'
+    prints '2 done, 0 failed, 0 skipped (already done), 3 not done'
     column_is many.report.csv 4 'done done not done not done not done'
   fi
   sleep 1
@@ -312,19 +312,19 @@ for signal in TERM KILL; do
   no_temporaries temporary
   try batch many.csv
   status 0
-  prints_exactly '3 done, 0 failed, 2 left out (already done)'
+  prints_exactly '3 done, 0 failed, 2 skipped (already done)'
 done
 
 it 'a torn last line of the journal is passed over' povray
 printf '{"what":"done","key":"00' >> many.csv.journal
 try batch many.csv
 status 0
-prints_exactly '0 done, 0 failed, 5 left out (already done)'
+prints_exactly '0 done, 0 failed, 5 skipped (already done)'
 rm k1.stl
 try batch many.csv
-prints_exactly '1 done, 0 failed, 4 left out (already done)'
+prints_exactly '1 done, 0 failed, 4 skipped (already done)'
 try batch many.csv
-prints_exactly '0 done, 0 failed, 5 left out (already done)'
+prints_exactly '0 done, 0 failed, 5 skipped (already done)'
 
 it 'killed at any moment, it ends with the same files'
 table kills.csv <<'END'
@@ -354,7 +354,7 @@ child=$!
 sleep 0.7
 try batch flaky.csv
 status 3
-says 'is held by another batch'
+says 'another batch of this table is running'
 kill -TERM $child
 wait $child
 
@@ -382,7 +382,7 @@ try compare t.png whole.png
 status 0
 is_missing tiles.csv.tiles
 try batch tiles.csv
-prints_exactly '0 done, 0 failed, 4 left out (already done)'
+prints_exactly '0 done, 0 failed, 4 skipped (already done)'
 
 it 'tiles in a folder with odd letters' povray
 mkdir 'o d%d'
@@ -444,7 +444,7 @@ printf 'script,output\nball.cag,line.stl\n' > line.csv
 echo 'a shopping list' > line.csv.journal
 try batch line.csv
 status 3
-says 'is another file'
+says 'the file is not a journal'
 holds line.csv.journal 'a shopping list'
 truncate -s 1000 zeros.csv.journal
 cp line.csv zeros.csv
@@ -461,7 +461,7 @@ for size in 1 9 60 106 107 150; do
   status 0
   prints_like '[012] done, 0 failed'
   try batch torn.csv
-  prints_exactly '0 done, 0 failed, 2 left out (already done)'
+  prints_exactly '0 done, 0 failed, 2 skipped (already done)'
 done
 
 it 'two names of one file are one output'

@@ -255,7 +255,7 @@ script coil.cag 'show helix(10, 5, 3) |> named("coil")'
 try export coil.cag -o coil.step
 status 1
 says coil
-says 'no exact form'
+says 'no exact NURBS form'
 says '--tolerance'
 is_missing coil.step
 no_temporaries .
@@ -275,7 +275,7 @@ it 'a surface by a formula is approximated like curves'
 script wave.cag 'show surface((u, v) => [u, v, sin(u * 50deg) * v], u: 0..4, v: 0..3)'
 try export wave.cag -o wave.igs
 status 1
-says 'no exact form'
+says 'no exact NURBS form'
 try export wave.cag -o wave.igs --tolerance 0.001
 status 0
 

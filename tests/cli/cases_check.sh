@@ -22,7 +22,7 @@ says_not 'it ran'
 it 'a warning does not fail'
 try check unused.cag
 status 0
-says 'warning: nothing uses a'
+says 'warning: a is not used'
 
 it 'statements after a syntax error are checked'
 script damaged.cag 'a = [1, 2

@@ -93,7 +93,7 @@ it '--pov-csg takes three words'
 script one.cag 'show sphere(1)'
 try export one.cag --pov-csg both -o one.pov
 status 2
-says 'there are auto, native and mesh'
+says 'choose auto, native, or mesh'
 
 it 'an operation that leaves nothing warns, and is no output alone'
 script nothing.cag 'show box(2) - sphere(9)'
@@ -101,7 +101,7 @@ try export nothing.cag -o nothing.stl
 status 1
 says 'nothing.cag:1:6'
 says 'the shape is empty'
-says 'shows nothing but empty shapes'
+says 'shows only empty shapes'
 
 it 'what leaves nothing or has no end is shown where it was asked for'
 script place.cag 'a = box(2)

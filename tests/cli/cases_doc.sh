@@ -22,7 +22,7 @@ prints 'puma560'
 try doc robots.puma560
 prints 'Unimation PUMA 560'
 try doc kinematics.gripper_tips
-prints 'number, mm: between the jaws'
+prints 'number, mm: the distance between the jaws'
 
 it 'a chapter of the manual is shown'
 try doc geometry
@@ -131,7 +131,7 @@ it 'drawings are made without POV-Ray, and pictures of another site are kept'
 ran="PATH without povray" && PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
 code=$?
 status 0
-says 'pictures are left out'
+says 'pictures are omitted'
 grep -q 'pictures/[0-9a-f]*\.svg' drawings/functions/bspline.html || wrong 'no drawing of a spline'
 first=$(ls -i drawings/pictures | head -n 1)
 PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
@@ -183,7 +183,7 @@ prints 'passed flange.cag: example of plate'
 prints 'passed parts/gripper.cag: example of jaw'
 prints '4 passed, 0 failed, 0 skipped'
 
-it 'an example that does not do what it says is told by its place in the script'
+it 'an example that does not print the expected output is told by its place in the script'
 script off.cag '/// Twice.
 ///
 ///     print twice(3)   // expect: 7
@@ -201,7 +201,7 @@ twice(x) = 2 * x'
 try test off.cag
 status 1
 prints 'FAILED off.cag: example of twice'
-prints 'off.cag:3: another line is printed'
+prints 'off.cag:3: the output is different'
 prints 'FAILED off.cag: example 2 of twice'
 prints 'off.cag:7:15'
 prints '2 passed, 2 failed, 0 skipped'
@@ -230,7 +230,7 @@ it 'a site has no part for scripts where there are none'
 it 'a wrong example of a script fails the site'
 try doc --html own off.cag --no-pictures
 status 1
-says 'an example of off.cag does not do what it says'
+says 'an example of off.cag does not print the expected output'
 
 it 'scripts with errors, and those that are not there, make no site'
 try doc --html none broken.cag --no-pictures
@@ -244,4 +244,4 @@ is_missing none
 it '--html takes no name'
 try doc --html site bspline
 status 2
-says 'leave the name away'
+says 'omit the name'

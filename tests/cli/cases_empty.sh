@@ -13,14 +13,14 @@ if needs povray; then
   status 0
 fi
 
-it 'a script that shows nothing but empty shapes is an error, which tells where'
+it 'a script that shows only empty shapes is an error, which tells where'
 script lost.cag 'lost = box(1) - box(2)
 show lost'
 try export lost.cag -o lost.stl
 status 1
 says 'lost: the shape is empty, so it adds nothing to the scene'
 says 'lost.cag:1:8'
-says 'shows nothing but empty shapes'
+says 'shows only empty shapes'
 [ ! -e lost.stl ] || wrong 'a file was written'
 try export lost.cag -o lost.svg
 status 1

@@ -105,7 +105,7 @@ it 'brackets beyond the limit are told, and long texts are laid out in no time'
 awk 'BEGIN { printf "x = "; for (i = 0; i < 200000; i++) printf "("; print 1 }' > deep.cag
 try fmt --check deep.cag
 status 1
-says 'brackets nest more than 1000 deep'
+says 'brackets are nested more than 1000 deep'
 awk 'BEGIN { printf "x = [1"; for (i = 0; i < 1000000; i++) printf ",%d", i; print "]" }' > wide.cag
 try fmt wide.cag
 status 0

@@ -311,12 +311,12 @@ it 'meshes without a triangle are no output'
 script labels.cag 'show label([1, 2, 3], "here")'
 try export labels.cag -o labels.stl
 status 1
-says 'labels are drawn in .svg only'
+says 'labels are drawn only in .svg'
 is_missing labels.stl
 script ground.cag 'show ground()'
 try export ground.cag -o ground.3mf
 status 1
-says 'a ground is for pictures'
+says 'a ground is only for pictures'
 is_missing ground.3mf
 
 it 'the Khronos validator has nothing to say about .gltf and .glb'
@@ -450,7 +450,7 @@ script inner/beside.gltf '{"asset": {"version": "2.0"}, "buffers": [{"byteLength
 script inner/read.cag 'print read_mesh("beside.gltf")'
 try run inner/read.cag
 status 1
-says 'bodies.bin lies outside'
+says 'bodies.bin is outside'
 
 it 'a file cut anywhere is refused with its place'
 for format in stl ply glb; do
@@ -459,7 +459,7 @@ for format in stl ply glb; do
   try run cut.cag
   status 1
   says "cut.$format"
-  says 'write or fetch'
+  says 'write or download'
 done
 
 it 'facets of any size have normals in .stl'

@@ -233,8 +233,8 @@ fails_whole() {
 }
 
 wave='show surface((u, v) => [u, v, if u > 0.3 and u < 0.4 then sqrt(v - 2) else 0], 0..1, 0..1)'
-fails_whole step "$wave" 'sqrt expects a number of 0 or more' --tolerance 0.01
-fails_whole igs "$wave" 'sqrt expects a number of 0 or more' --tolerance 0.01
+fails_whole step "$wave" 'sqrt expects a number of at least 0' --tolerance 0.01
+fails_whole igs "$wave" 'sqrt expects a number of at least 0' --tolerance 0.01
 undefined='overflows or is undefined'
 fails_whole pov 'show sphere(1), point_light([0, 0, 100], color: [10, 1, 1], strength: 1.7e308)' "$undefined"
 fails_whole svg 'show circle(1), label([1.7e308, -1.7e308], "a"), label([-1.7e308, 0], "b")' "$undefined"

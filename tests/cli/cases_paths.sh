@@ -29,7 +29,7 @@ status 0
 prints_like '^v '
 try export ball.cag -o a.pov --pov-csg other
 status 2
-says 'there are auto, native and mesh'
+says 'choose auto, native, or mesh'
 
 it 'a folder stands for the scripts below it'
 mkdir -p tree/b tree/.hidden 'tree/not.cag'
@@ -94,10 +94,10 @@ prints_exactly '1 passed, 0 failed, 0 skipped'
 it 'words of other languages, and operands that make no site'
 try doc cube
 status 2
-says 'in cag write'
+says 'in cag, write'
 try doc --html site - --no-pictures
 status 2
-says "a site tells of files and folders, found '-'"
+says "--html expects scripts and folders, found '-'"
 is_missing site
 try doc sin cos
 status 0

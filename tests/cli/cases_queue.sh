@@ -34,8 +34,8 @@ good_sbatch
 printf 'script,output,r\nball.cag,a.stl,1\nball.cag,b.stl,2\nball.cag,c.stl,3\n' > jobs.csv
 queue jobs.csv --jobs 2 --threads 3 --max-time 100 --retries 1
 status 0
-prints_exactly '3 done, 0 failed, 0 left out (already done)'
-says "Slurm's job 17 with 3 tasks"
+prints_exactly '3 done, 0 failed, 0 skipped (already done)'
+says "submitted Slurm job 17 with 3 tasks"
 held words '--array=0-1%2'
 held words '--cpus-per-task=3'
 # An element has two of the three tasks, each tried twice at most for 1.1 * 100 + 1 s, and a minute to begin: 8.4 minutes.
@@ -65,7 +65,7 @@ END
 queue two.csv
 status 1
 says 'E0918: Slurm does not respond: no answer'
-prints_exactly '0 done, 2 failed, 0 left out (already done)'
+prints_exactly '0 done, 2 failed, 0 skipped (already done)'
 fake scontrol <<'END'
 #!/bin/sh
 echo 'MaxArraySize = 1001'
@@ -76,7 +76,7 @@ it 'the folder of the job cannot be made'
 queue two.csv
 status 3
 says 'two.csv.slurm/cag-'
-says 'cannot be made'
+says 'cannot create the folder'
 rm two.csv.slurm
 
 it 'elements that Slurm does not know any more are lost'
@@ -90,9 +90,9 @@ printf 'N/A PENDING\n99 RUNNING\nnothing\n'
 END
 queue two.csv
 status 1
-says 'E0917: row 1: Slurm ended its task 0 without a result: it is not known any more'
-says 'E0917: row 2: Slurm ended its task 1 without a result: it is not known any more'
-prints_exactly '0 done, 2 failed, 0 left out (already done)'
+says 'E0917: row 1: Slurm ended its task 0 without a result: the job is no longer known'
+says 'E0917: row 2: Slurm ended its task 1 without a result: the job is no longer known'
+prints_exactly '0 done, 2 failed, 0 skipped (already done)'
 
 it 'a Slurm that does not answer for a while is waited for'
 fake sbatch <<'END'
@@ -114,7 +114,7 @@ END
 queue two.csv
 status 0
 says 'Slurm does not respond (squeue: the controller is away), waiting'
-prints_exactly '2 done, 0 failed, 0 left out (already done)'
+prints_exactly '2 done, 0 failed, 0 skipped (already done)'
 
 # A journal whose last line is a job that was handed in.
 submitted='{"what":"submitted","key":"cag-1"}'
@@ -124,7 +124,7 @@ rm -f a.stl b.stl two.csv.journal
 echo "$submitted" > two.csv.journal
 queue two.csv
 status 0
-prints_exactly '2 done, 0 failed, 0 left out (already done)'
+prints_exactly '2 done, 0 failed, 0 skipped (already done)'
 
 it 'a job that Slurm has forgotten: what it did is taken, the rest is handed in again'
 rm -f two.csv.journal
@@ -133,7 +133,7 @@ mkdir -p two.csv.slurm/cag-1
 echo '{"elements":1,"folder":"/","tasks":[{"key":"ofanotherrow","words":["cag"]}]}' > two.csv.slurm/cag-1/plan.json
 queue two.csv
 status 0
-prints_exactly '2 done, 0 failed, 0 left out (already done)'
+prints_exactly '2 done, 0 failed, 0 skipped (already done)'
 is_missing two.csv.slurm
 
 it 'a plan that is none'

@@ -13,16 +13,16 @@ wrong_rows() {
     try batch wrong.csv
     status 2
     says "wrong.csv:2: ${message# }"
-    says 'has 1 problem, nothing was run'
+    says 'has 1 problem; nothing was run'
   done
 }
 
 it 'a wrong row is told'
 mkdir folder.cag
 wrong_rows script,output,frames,size,tiles <<'END'
--,a.stl,,, | E0913: row 1: the script '-' cannot be read: rows cannot share standard input
-folder.cag,a.stl,,, | E0913: row 1: the script 'folder.cag' cannot be read: it is not a regular file
-/no/where.cag,a.stl,,, | E0913: row 1: the script '/no/where.cag' cannot be read: No such file or directory
+-,a.stl,,, | E0913: row 1: cannot read the script '-': rows cannot share standard input
+folder.cag,a.stl,,, | E0913: row 1: cannot read the script 'folder.cag': it is not a regular file
+/no/where.cag,a.stl,,, | E0913: row 1: cannot read the script '/no/where.cag': No such file or directory
 ,a.stl,,, | E0913: row 1: the script is missing
 ball.cag,ball,,, | E0916: row 1: the output 'ball' has no extension that determines its format
 ball.cag,.png,,, | E0916: row 1: the output '.png' has no extension that determines its format
@@ -31,7 +31,7 @@ ball.cag,a.b/c,,, | E0916: row 1: the output 'a.b/c' has no extension that deter
 ball.cag,-,,, | E0916: row 1: the output '-' has no extension that determines its format
 ball.cag,a%d%d.png,0..1,, | E0912: row 1: the output 'a%d%d.png' has several placeholders for a frame number
 ball.cag,a%q.png,0..1,, | E0912: row 1: a % in the output 'a%q.png' is not a placeholder for a frame number
-ball.cag,a%d.png,0..2000000,, | E0912: row 1: with this row there are more than 1000000 pictures to make
+ball.cag,a%d.png,0..2000000,, | E0912: row 1: with this row, the batch has more than 1000000 pictures
 ball.cag,a.png,,640x32,1x2 | E0912: row 1: tiles 1x2 of a picture of 640 by 32 pixels are smaller than 32 pixels
 ball.cag,a.png,,32x640,2x1 | E0912: row 1: tiles 2x1 of a picture of 32 by 640 pixels are smaller than 32 pixels
 ball.cag,a.stl,,,2x2 | E0912: row 1: an export has no tiles
@@ -45,7 +45,7 @@ if needs_permissions; then
   printf 'script,output\nsecret.cag,a.stl\n' > secret.csv
   try batch secret.csv
   status 2
-  says "the script 'secret.cag' cannot be read: Permission denied"
+  says "cannot read the script 'secret.cag': Permission denied"
 fi
 
 it 'an output is none of the files that the batch needs'
@@ -53,7 +53,7 @@ printf '[{"script": "ball.cag", "output": "own.json"}]' > own.json
 try batch own.json
 status 2
 says 'E0914: row 1: the output'
-says 'is a file that the batch itself needs'
+says 'own files'
 try batch own.json --diagnostics json
 status 2
 says '"row":1'
@@ -61,7 +61,7 @@ says_like '"help":"choose another name"'
 printf 'script,output\nball.cag,/zz-of-cag-test.stl\nball.cag,/./zz-of-cag-test.stl\n' > root.csv
 try batch root.csv
 status 2
-says "E0914: row 2: the output '/zz-of-cag-test.stl' is that of row 1 too"
+says "E0914: row 2: the output '/zz-of-cag-test.stl' is also the output of row 1"
 is_missing /zz-of-cag-test.stl
 
 it 'of many problems the first are told'
@@ -73,15 +73,15 @@ try batch fifty.csv
 status 2
 says 'row 50:'
 says_not 'row 51:'
-says 'has 60 problems, nothing was run'
-says 'the first of them are told'
+says 'has 60 problems; nothing was run'
+says 'only the first ones are listed'
 
 it '-D frames=N is the length of all films'
 printf 'script,output,frames,size,quality\nball.cag,film.%%d.png,2..3,32x24,draft\n' > film.csv
 for frames in 3 x 3x; do
   try batch film.csv -D frames=$frames
   status 2
-  says "E0912: row 1: frames 2..3 reach beyond -D frames=$frames"
+  says "E0912: row 1: frames 2..3 exceed -D frames=$frames"
 done
 
 it 'a film tells its frames the length, and a percent sign stays' povray
@@ -113,7 +113,7 @@ script fails.cag 'show nowhere'
 printf 'script,output,size,quality,tiles\nfails.cag,t.exr,64x64,draft,2x1\n' > tile.csv
 try batch tile.csv
 status 1
-prints_exactly '0 done, 1 failed, 0 left out (already done)'
+prints_exactly '0 done, 1 failed, 0 skipped (already done)'
 says 'E0917: row 1: tile 1 of 2: fails.cag:1: '
 column_is tile.report.csv 4 failed
 
@@ -139,7 +139,7 @@ printf 'script,output\nuser.cag,user.stl\nuser.cag,two.stl\n' > user.csv
 runs() {
   try batch user.csv -I lib --jobs 5000
   status 0
-  prints_exactly "$1 done, 0 failed, $((2 - $1)) left out (already done)"
+  prints_exactly "$1 done, 0 failed, $((2 - $1)) skipped (already done)"
 }
 runs 2
 runs 0
@@ -162,12 +162,12 @@ script large.cag '// reads "large.bin"
 show box(1)'
 printf 'script,output\nlarge.cag,large.stl\n' > large.csv
 try batch large.csv
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 try batch large.csv
-prints_exactly '0 done, 0 failed, 1 left out (already done)'
+prints_exactly '0 done, 0 failed, 1 skipped (already done)'
 truncate -s 66M large.bin
 try batch large.csv
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 
 it 'a param names a file that the row depends on'
 script reads.cag 'param file = ""
@@ -180,7 +180,7 @@ try batch reads.csv -q
 prints_nothing
 echo 2 > a.txt
 try batch reads.csv
-prints_exactly '1 done, 0 failed, 1 left out (already done)'
+prints_exactly '1 done, 0 failed, 1 skipped (already done)'
 
 it 'a row that takes too much memory beside its values is stopped'
 printf 'script,output,tolerance\nball.cag,much.stl,0.00002\n' > much.csv
@@ -210,7 +210,7 @@ kill -KILL ${process:-$batch}
 wait $batch
 code=$?
 status 1
-says 'E0917: row 1: it was killed by signal 9 (Killed), as the system does when memory runs out'
+says 'E0917: row 1: killed by signal 9 (Killed); the system may have run out of memory'
 
 # The bar on a terminal: with counts of what is done, at work, failed, and the time that is left.
 it 'a batch on a terminal shows its progress'
@@ -224,8 +224,8 @@ show box(1)'
   } > progress.csv
   try_command python3 "$here/on_terminal.py" "$CAG" batch progress.csv --jobs 1
   status 1
-  prints_like 'of 7 done, 1 at work, 1 failed, [0-9]*:[0-9][0-9] left'
+  prints_like 'of 7 done, 1 running, 1 failed, [0-9]*:[0-9][0-9] left'
   rm progress.csv.journal
   try_command python3 "$here/on_terminal.py" "$CAG" batch progress.csv --jobs 1 -q
-  ! grep -q 'at work' out || wrong 'a bar is drawn with -q'
+  ! grep -q 'running' out || wrong 'a bar is drawn with -q'
 fi

@@ -15,7 +15,7 @@ code=$?
 ran='cag batch --engine-queue slurm (without Slurm)'
 status 1
 says 'E0918'
-prints_exactly '0 done, 3 failed, 0 left out (already done)'
+prints_exactly '0 done, 3 failed, 0 skipped (already done)'
 
 slurm_missing=
 for program in munged mungekey slurmctld slurmd sbatch squeue; do
@@ -111,7 +111,7 @@ node_is idle || wrong "the node is not there: $(tail -n 5 slurm/controller.log s
 it 'the rows are done as one array job, and one that fails is told'
 try batch jobs.csv --engine-queue slurm --retries 1
 status 1
-prints_exactly '2 done, 1 failed, 0 left out (already done)'
+prints_exactly '2 done, 1 failed, 0 skipped (already done)'
 says 'E0917: row 3: '
 exists a.stl
 exists b.stl
@@ -124,9 +124,9 @@ it 'a second call hands in only what failed'
 sed -i 's/-3$/3/' jobs.csv
 try batch jobs.csv --engine-queue slurm
 status 0
-prints_exactly '1 done, 0 failed, 2 left out (already done)'
+prints_exactly '1 done, 0 failed, 2 skipped (already done)'
 try batch jobs.csv --engine-queue slurm
-prints_exactly '0 done, 0 failed, 3 left out (already done)'
+prints_exactly '0 done, 0 failed, 3 skipped (already done)'
 [ "$(squeue -h -t all -o %F | sort -u | wc -l)" -eq 2 ] || wrong 'there are not two jobs'
 
 it 'more rows than an array may have elements, and a picture in tiles' povray
@@ -137,7 +137,7 @@ it 'more rows than an array may have elements, and a picture in tiles' povray
 } > more.csv
 try batch more.csv --engine-queue slurm
 status 0
-prints_exactly '8 done, 0 failed, 0 left out (already done)'
+prints_exactly '8 done, 0 failed, 0 skipped (already done)'
 try render ball.cag -o whole.exr --size 96x64 --quality draft
 try compare t.exr whole.exr
 status 0
@@ -172,7 +172,7 @@ runs_job || wrong 'the job does not go on'
 touch go
 try batch wait.csv --engine-queue slurm
 status 0
-says "taking up Slurm's job"
+says "resuming Slurm job"
 prints_like '[23] done, 0 failed'
 exists w2.png
 exists w3.png
@@ -185,9 +185,9 @@ wait $child 2> /dev/null
 touch go
 try batch wait.csv --engine-queue slurm
 status 0
-says "taking up Slurm's job"
+says "resuming Slurm job"
 try batch wait.csv
-prints_exactly '0 done, 0 failed, 3 left out (already done)'
+prints_exactly '0 done, 0 failed, 3 skipped (already done)'
 
 it 'a job that somebody cancels: its rows are reported and can be resumed' povray
 rm -f go wait.csv.journal w?.*
@@ -202,7 +202,7 @@ prints_like '1 done, 2 failed'
 touch go
 try batch wait.csv --engine-queue slurm
 status 0
-prints_exactly '2 done, 0 failed, 1 left out (already done)'
+prints_exactly '2 done, 0 failed, 1 skipped (already done)'
 
 it 'a node that is lost: its rows are reported and can be resumed' povray
 rm -f go wait.csv.journal w?.*
@@ -228,7 +228,7 @@ start_node > /dev/null 2>&1
 waits_for node_is idle
 try batch wait.csv --engine-queue slurm
 status 0
-prints_exactly '2 done, 0 failed, 1 left out (already done)'
+prints_exactly '2 done, 0 failed, 1 skipped (already done)'
 
 it 'a job that Slurm refuses: the rows are reported'
 printf 'script,output\nball.cag,r.stl\n' > refused.csv
@@ -236,8 +236,8 @@ ran='cag batch --engine-queue slurm (a partition that there is not)'
 SBATCH_PARTITION=nothere "$CAG" batch refused.csv --engine-queue slurm > out 2> err
 code=$?
 status 1
-says 'E0918: Slurm does not take the job: '
-prints_exactly '0 done, 1 failed, 0 left out (already done)'
+says 'E0918: Slurm refused the job: '
+prints_exactly '0 done, 1 failed, 0 skipped (already done)'
 [ "$(cut -d, -f4 refused.report.csv | tail -n 1)" = failed ] || wrong 'the report is another'
 
 it 'a Slurm that is down: the rows are reported and can be resumed'
@@ -250,7 +250,7 @@ start_controller > /dev/null 2>&1
 waits_for node_is idle
 try batch refused.csv --engine-queue slurm
 status 0
-prints_exactly '1 done, 0 failed, 0 left out (already done)'
+prints_exactly '1 done, 0 failed, 0 skipped (already done)'
 
 end_slurm
 trap 'rm -rf "$work"' EXIT

@@ -102,7 +102,7 @@ if needs povray; then
   cp two/scene.png one/scene.png
   try test one
   status 1
-  prints 'one/scene.cag: the picture is not as one/scene.png'
+  prints 'one/scene.cag: the picture differs from one/scene.png'
   try test one --update
   status 0
   prints 'renewed'
@@ -238,11 +238,11 @@ try test good.cag wrong.cag broken.cag
 status 1
 says_nothing
 prints_exactly 'FAILED wrong.cag -D h=2
-  wrong.cag:4: another line is printed
+  wrong.cag:4: the output is different
     expected: 3
     got:      2
 FAILED broken.cag
-  broken.cag:2: an error that is not expected: E0321
+  broken.cag:2: unexpected error: E0321
   error: cannot apply `+` to the number 1 and the text ""
    --> broken.cag:2:7
     |
@@ -257,7 +257,7 @@ sed 's/ in [0-9]*\.[0-9][0-9] s$/ in T/' out > told
 [ "$(cat told)" = 'passed good.cag in T
 passed wrong.cag in T
 FAILED wrong.cag -D h=2
-  wrong.cag:4: another line is printed
+  wrong.cag:4: the output is different
     expected: 3
     got:      2
 passed wrong.cag -D h=4 in T
@@ -269,7 +269,7 @@ status 0
 prints_exactly '1 passed, 0 failed, 0 skipped'
 try test wrong.cag -D h=5
 status 1
-prints 'wrong.cag:2: another line is printed'
+prints 'wrong.cag:2: the output is different'
 prints '    got:      5'
 prints '1 passed, 2 failed, 0 skipped'
 try test good.cag --filter nowhere
@@ -281,7 +281,7 @@ printf 'print 1 // expect: 2\n' > input
 with_input input test -
 status 1
 prints_exactly 'FAILED <stdin>
-  <stdin>:1: another line is printed
+  <stdin>:1: the output is different
     expected: 2
     got:      1
 0 passed, 1 failed, 0 skipped'
@@ -314,14 +314,14 @@ printf '%s\n' '<?xml version="1.0" encoding="UTF-8"?>
   </testsuite>
   <testsuite name="wrong.cag" tests="3" failures="1" errors="0" skipped="0" time="T">
     <testcase classname="wrong.cag" name="wrong.cag" time="T"/>
-    <testcase classname="wrong.cag" name="wrong.cag -D h=2" time="T"><failure message="not as expected">  wrong.cag:4: another line is printed
+    <testcase classname="wrong.cag" name="wrong.cag -D h=2" time="T"><failure message="not as expected">  wrong.cag:4: the output is different
     expected: 3
     got:      2
 </failure></testcase>
     <testcase classname="wrong.cag" name="wrong.cag -D h=4" time="T"/>
   </testsuite>
   <testsuite name="signs.cag" tests="1" failures="1" errors="0" skipped="0" time="T">
-    <testcase classname="signs.cag" name="signs.cag" time="T"><failure message="not as expected">  signs.cag:1: another line is printed
+    <testcase classname="signs.cag" name="signs.cag" time="T"><failure message="not as expected">  signs.cag:1: the output is different
     expected: &apos;
     got:      a b &quot;&amp;&quot; &lt;i&gt;
 </failure></testcase>

@@ -95,7 +95,7 @@ is_missing plain_meshes
 it 'meshes have no place beside standard output'
 try export arm.cag -o - --format urdf
 status 2
-says 'standard output has no place beside it'
+says 'which standard output does not allow'
 prints_nothing
 
 it 'each mesh has a file of its own'

@@ -81,7 +81,7 @@ says 'cag run FILE'
 it 'an operand too many is wrong usage'
 try compare a.exr b.exr c.exr
 status 2
-says "'c.exr' is one too many"
+says "unexpected argument 'c.exr'"
 
 it 'export expects an output'
 try export ball.cag
@@ -212,10 +212,10 @@ refuses() {
   says "$message"
   says "$help"
 }
-refuses "--threshold 'x': expected a number of at least 0" 'give a number from 0 on' compare a.png b.png --threshold x
-refuses "--threshold '-1': expected a number of at least 0" 'give a number from 0 on' compare a.png b.png --threshold -1
+refuses "--threshold 'x': expected a number of at least 0" 'give a number of at least 0' compare a.png b.png --threshold x
+refuses "--threshold '-1': expected a number of at least 0" 'give a number of at least 0' compare a.png b.png --threshold -1
 refuses "-I '': expected a name" 'name a folder' run option.cag -I=
-refuses 'that is too many' 'the first and the last frame' render option.cag -o a%d.png --frames 0..99999999999
+refuses 'there are too many frames' 'the first and the last frame' render option.cag -o a%d.png --frames 0..99999999999
 refuses 'the last frame comes before the first' 'the first and the last frame' render option.cag -o a%d.png --frames 5..3
 refuses "--frames '1': " 'the first and the last frame' render option.cag -o a%d.png --frames 1
 refuses "--frames '1..2x': " 'the first and the last frame' render option.cag -o a%d.png --frames 1..2x
@@ -223,30 +223,30 @@ refuses "--region '0x5+1+1': the region is empty" 'width x height' render option
 refuses "--region '5x0+1+1': the region is empty" 'width x height' render option.cag -o a.png --region 5x0+1+1
 refuses "--region '1x1+1': expected a region" 'width x height' render option.cag -o a.png --region 1x1+1
 refuses "--region '9999999x1+1+1': expected a region" 'width x height' render option.cag -o a.png --region 9999999x1+1+1
-refuses "--threads 'x': expected a count" 'a whole number from 1 on' render option.cag -o a.png --threads x
-refuses "--threads '': expected a count" 'a whole number from 1 on' render option.cag -o a.png --threads=
-refuses "--threads ' 1': expected a count" 'a whole number from 1 on' render option.cag -o a.png '--threads= 1'
-refuses "--samples '1.5': expected a count" 'a whole number from 1 on' render option.cag -o a.png --samples 1.5
-refuses "--jobs '1e99': expected a count" 'a whole number from 1 on' batch jobs.csv --jobs 1e99
+refuses "--threads 'x': expected a count" 'a whole number of at least 1' render option.cag -o a.png --threads x
+refuses "--threads '': expected a count" 'a whole number of at least 1' render option.cag -o a.png --threads=
+refuses "--threads ' 1': expected a count" 'a whole number of at least 1' render option.cag -o a.png '--threads= 1'
+refuses "--samples '1.5': expected a count" 'a whole number of at least 1' render option.cag -o a.png --samples 1.5
+refuses "--jobs '1e99': expected a count" 'a whole number of at least 1' batch jobs.csv --jobs 1e99
 refuses "--element 'x': expected a number" "the number of the array's task" batch plan --element x
-refuses "--max-memory '1GiX': expected a size" 'K, M, G or T' run option.cag --max-memory 1GiX
-refuses "--max-memory '.': expected a size" 'K, M, G or T' run option.cag --max-memory .
-refuses "--max-memory ':1': expected a size" 'K, M, G or T' run option.cag --max-memory :1
-refuses "--max-memory '9e99': expected a size" 'K, M, G or T' run option.cag --max-memory 9e99
-refuses "--max-time 's': expected a time" 'give seconds above 0' eval 1 --max-time s
-refuses "--max-time 'inf': expected a time" 'give seconds above 0' eval 1 --max-time inf
-refuses "--size '0x5': sides are from 1 to" 'width x height' render option.cag -o a.png --size 0x5
-refuses "--size '5x0': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x0
-refuses "--size '5x99999999': sides are from 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
-refuses "--tiles '0x1': expected tiles" 'columns x lines' batch jobs.csv --tiles 0x1
-refuses 'there is no output' 'name the output with -o OUT' render option.cag
+refuses "--max-memory '1GiX': expected a size" 'K, M, G, or T' run option.cag --max-memory 1GiX
+refuses "--max-memory '.': expected a size" 'K, M, G, or T' run option.cag --max-memory .
+refuses "--max-memory ':1': expected a size" 'K, M, G, or T' run option.cag --max-memory :1
+refuses "--max-memory '9e99': expected a size" 'K, M, G, or T' run option.cag --max-memory 9e99
+refuses "--max-time 's': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time s
+refuses "--max-time 'inf': expected a time" 'give a number of seconds greater than 0' eval 1 --max-time inf
+refuses "--size '0x5': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 0x5
+refuses "--size '5x0': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x0
+refuses "--size '5x99999999': width and height must be 1 to" 'width x height' render option.cag -o a.png --size 5x99999999
+refuses "--tiles '0x1': expected tiles" 'columns x rows' batch jobs.csv --tiles 0x1
+refuses 'the output is missing' 'name the output with -o OUT' render option.cag
 refuses 'unknown picture format' '.exr or .png' render option.cag -o a.png --format gif
-refuses "--format exr and the output 'a.png' contradict each other" 'leave --format out' render option.cag -o a.png --format exr
+refuses "--format exr and the output 'a.png' contradict each other" 'omit --format' render option.cag -o a.png --format exr
 for frames in 0.5 x '' 1.5 1e99; do
   refuses "-D frames=$frames: expected the length of a film" 'an integer, such as 96' render option.cag -o a%d.png --frames 0..3 -D "frames=$frames"
 done
-refuses '--frames sets `time`' 'leave one of them out' render option.cag -o a%d.png --frames 0..3 -D time=0.5
-refuses '--frames sets `frame`' 'leave one of them out' render option.cag -o a%d.png --frames 0..3 -D frame=1
+refuses '--frames sets `time`' 'omit one of them' render option.cag -o a%d.png --frames 0..3 -D time=0.5
+refuses '--frames sets `frame`' 'omit one of them' render option.cag -o a%d.png --frames 0..3 -D frame=1
 refuses "expected A B, found only 'a.png'" 'cag compare A B' compare a.png
 refuses 'FILE is missing' 'cag export FILE' export
 

@@ -175,8 +175,9 @@ static const char *const planes[] = {"plane(origin, Z)", "plane([1, 2, 3], [1, 1
 static const char *const robots[] = {
     "robot([revolute(a: 1), revolute(a: 1)])", "robot([prismatic(limits: 0..1)])",
     "robot([revolute(alpha: 90deg), revolute(a: 300), revolute(a: 100)])"};
-static const char *const images[] = {"image([[1, 2], [none, 4]])", "image([[[1, 2, 3], [4, 5, 6]]])",
-                                     "image([[none]])", "enlarge(image([[1e308, -1]]), 300)"};
+static const char *const images[] = {"image([[1, 2], [none, 4]])",
+                                     "image([[[1, 2, 3], [4, 5, 6]]])", "image([[none]])",
+                                     "enlarge(image([[1e308, -1]]), 300)"};
 static const char *const others[] = {"none",
                                      "true",
                                      "false",

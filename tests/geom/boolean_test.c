@@ -655,11 +655,12 @@ static void messages_of_open_operands_are_true(void **state) {
       int ahead, back;
       const char *at = strstr(err.message, "the edge from");
       assert_non_null(at);
-      assert_int_equal(sscanf(at,
-                              "the edge from [%lg, %lg, %lg] to [%lg, %lg, %lg] is run %d times "
-                              "that way and %d times back",
-                              &p.x, &p.y, &p.z, &q.x, &q.y, &q.z, &ahead, &back),
-                       8);
+      assert_int_equal(
+          sscanf(at,
+                 "the edge from [%lg, %lg, %lg] to [%lg, %lg, %lg] is traversed %d times "
+                 "forward and %d times backward",
+                 &p.x, &p.y, &p.z, &q.x, &q.y, &q.z, &ahead, &back),
+          8);
       long first = -1, second = -1;
       assert_int_equal(ahead, runs(b, p, q, &first));
       assert_int_equal(back, runs(b, q, p, &second));

@@ -138,10 +138,12 @@ static void sweeps_fold_beyond_the_center_of_curvature(void **state) {
     CagSurface *s = swept(section, path, NULL);
     double times, at;
     assert_true(cag_surface_crosses_itself(s, what, sizeof what));
-    assert_int_equal(sscanf(what,
-                            "its section reaches %lf times as far as the path bends at v = %lf",
-                            &times, &at),
-                     2);
+    assert_int_equal(
+        sscanf(
+            what,
+            "its section reaches %lf times as far as the center of curvature of the path at v = %lf",
+            &times, &at),
+        2);
     NEAR(times, beyond, 0.01 * beyond);
     NEAR(at, 0, 0);
     cag_surface_release(s);

@@ -372,12 +372,12 @@ static void curves_must_stay_on_the_surface(void **state) {
   } CASES[] = {
       {{-1, 0, 0}, {3, 2, 0}, NULL},
       {{-1 - 1e-10, 0, 0}, {3 + 1e-10, 2 + 1e-10, 0}, NULL},
-      {{-1.5, 0, 0}, {3, 2, 0}, "goes to x = -1.5, outside of -1..3 where"},
-      {{-1, 0, 0}, {3.5, 2, 0}, "goes to x = 3.5, outside of -1..3 where"},
-      {{-1, -0.25, 0}, {3, 2, 0}, "goes to y = -0.25, outside of 0..2 where"},
-      {{-1, 0, 0}, {3, 2.25, 0}, "goes to y = 2.25, outside of 0..2 where"},
-      {{-1 - 1e-7, 0, 0}, {3, 2, 0}, "goes to x"},
-      {{-1, 0, 0}, {3, 2 + 1e-7, 0}, "goes to y"},
+      {{-1.5, 0, 0}, {3, 2, 0}, "reaches x = -1.5, outside of the domain -1..3 of"},
+      {{-1, 0, 0}, {3.5, 2, 0}, "reaches x = 3.5, outside of the domain -1..3 of"},
+      {{-1, -0.25, 0}, {3, 2, 0}, "reaches y = -0.25, outside of the domain 0..2 of"},
+      {{-1, 0, 0}, {3, 2.25, 0}, "reaches y = 2.25, outside of the domain 0..2 of"},
+      {{-1 - 1e-7, 0, 0}, {3, 2, 0}, "reaches x"},
+      {{-1, 0, 0}, {3, 2 + 1e-7, 0}, "reaches y"},
   };
   for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
     OK(cag_curve_line(CASES[i].a, CASES[i].b, 2, &plane, &err));

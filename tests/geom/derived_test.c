@@ -255,11 +255,11 @@ static void ranges_of_parts_are_checked(void **state) {
     else cag_surface_release(part);
   }
   assert_int_not_equal(cag_surface_part(s, 0.5, 4.5, 0, 1, &part, &e), CAG_OK);
-  assert_string_equal(e.message, "`u` must be a range within -1..3, it is 0.5..4.5");
+  assert_string_equal(e.message, "`u` must be a range within -1..3, found 0.5..4.5");
   cag_surface_release(s);
   s = surface_of(TORUS);
   assert_int_not_equal(cag_surface_part(s, 0, M_PI, -M_PI / 2, M_PI, &part, &e), CAG_OK);
-  assert_string_equal(e.message, "`v` must be a range within 0deg..360deg, it is -90deg..180deg");
+  assert_string_equal(e.message, "`v` must be a range within 0deg..360deg, found -90deg..180deg");
   cag_surface_release(s);
 }
 

@@ -253,7 +253,7 @@ static void parameters_move_as_the_coordinate_says(void **state) {
         assert_int_equal(strstr(err.message, "which stays on the edge") != NULL, border);
       else {
         char text[100];
-        snprintf(text, sizeof text, " of point [%zu, %zu] to ", before / s.g.s, before % s.g.s);
+        snprintf(text, sizeof text, " at point [%zu, %zu] to ", before / s.g.s, before % s.g.s);
         assert_says(text);
       }
       stuck += !strcmp(reason, "fit-no-convergence");
@@ -488,8 +488,8 @@ static void coordinates_off_by_the_slack_are_kept(void **state) {
           assert_int_equal(err.index, (long)i);
           char text[100];
           snprintf(text, sizeof text,
-                   "point [%d, %d] has x = %g, the surface between the `planes` "
-                   "runs from 0 to %d",
+                   "point [%d, %d] has x = %g, but the surface between the `planes` "
+                   "extends from 0 to %d",
                    (int)i / 4, (int)i % 4, s.points[i].x, sign ? -4 : 4);
           assert_says(text);
           continue;
@@ -589,7 +589,7 @@ static void stations_that_turn_back_are_told(void **state) {
           continue;
         }
         FAILS_AT(fit(&s, slack, 0, &f), "coordinate-turns", (long)i);
-        snprintf(text, sizeof text, "turns back from %g of point [%d, %d] to %g of point [%d, %d];",
+        snprintf(text, sizeof text, "turns back from %g at point [%d, %d] to %g at point [%d, %d];",
                  before, (int)i / 4 - 1, (int)i % 4, s.points[i].x, (int)i / 4, (int)i % 4);
         assert_says(text);
       }

@@ -290,9 +290,8 @@ static void singular_places_are_told_by_their_step(void **state) {
     const size_t step = n / 2;
     FAILS_AT(cag_robot_line_path(r, &pose[0], &pose[1], n, &way, q[0], &err), "path-singular",
              (long)step);
-    snprintf(text, sizeof text,
-             between ? "between the steps %zu and %zu;" : "step %zu (before %zu)", step - between,
-             step + !between);
+    snprintf(text, sizeof text, between ? "between steps %zu and %zu;" : "step %zu (before %zu)",
+             step - between, step + !between);
     assert_non_null(strstr(err.message, text));
     way.cross = true;
     OK(cag_robot_line_path(r, &pose[0], &pose[1], n, &way, q[0], &err));
@@ -344,7 +343,7 @@ static void paths_end_where_their_branch_does(void **state) {
     assert_string_equal(cag_error_info(err.id)->reason, "path-jumps");
     assert_int_equal(err.index, (long)ceil(end));
     assert_true(told_place() <= end && told_place() >= end - left);
-    assert_non_null(strstr(err.message, "the limit of joint 1 stands"));
+    assert_non_null(strstr(err.message, "the limit of joint 1 is"));
     assert_non_null(strstr(err.message, "before step"));
     // The reach of 500 ends at x = sqrt(500^2 - 100^2).
     const double leaves = (sqrt(240000) - 300) / 300 * (double)(n - 1);
@@ -386,7 +385,7 @@ static void slides_end_paths_as_well(void **state) {
   FAILS_AT(cag_robot_line_path(r, &from, &to, 9, &way, q[0], &err), "path-jumps", 3);
   // From 50 to 210 in 8 steps of 20, of which two and a half are within the limit.
   assert_true(told_place() <= 2.5 + 1e-6 && told_place() > 2.5 - 1.0 / 2048);
-  assert_non_null(strstr(err.message, "the limit of joint 2 stands"));
+  assert_non_null(strstr(err.message, "the limit of joint 2 is"));
   const double inside[] = {90 * DEGREE, 94};
   cag_robot_forward(r, inside, &to);
   OK(cag_robot_line_path(r, &from, &to, 9, &way, q[0], &err));

@@ -414,8 +414,9 @@ static void bad_numbers_of_links_are_named(void **state) {
   FAILS(cag_robot_link_check(&links[0], &err), "home-outside");
   links[0].home = 0, links[0].low = M_PI / 2;
   FAILS_AT(cag_robot_new(&spec, &r, &err), "joint-limits", 0);
-  assert_string_equal(err.message, "the limits of joint 1 run from 90deg down to 45deg; the lower "
-                                   "comes first");
+  assert_string_equal(
+      err.message,
+      "the limits of joint 1 decrease from 90deg to 45deg; the lower limit comes first");
   links[0].low = -INFINITY;
   FAILS_AT(cag_robot_new(&spec, &r, &err), "joint-limits", 0);
   links[0].low = -1;

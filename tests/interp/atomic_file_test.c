@@ -169,10 +169,18 @@ static void places_that_are_no_files_are_refused(void **state) {
   const struct {
     const char *path, *says;
   } ROWS[] = {
-      {"", "empty name"},     {".", "folder"},         {"sub", "it is a folder"},
-      {"sub/", "folder"},     {"no/a", "No such"},     {"file/a", "Not a"},
-      {"new/", "a folder's"}, {"no/.", "a folder's"},  {"no/..", "a folder's"},
-      {"socket", "a socket"}, {long_name, "too long"}, {"dangling", "symbolic link"},
+      {"", "empty name"},
+      {".", "folder"},
+      {"sub", "it is a folder"},
+      {"sub/", "folder"},
+      {"no/a", "No such"},
+      {"file/a", "Not a"},
+      {"new/", "the name of a folder"},
+      {"no/.", "the name of a folder"},
+      {"no/..", "the name of a folder"},
+      {"socket", "a socket"},
+      {long_name, "too long"},
+      {"dangling", "symbolic link"},
   };
   const int s = socket(AF_UNIX, SOCK_STREAM, 0);
   const struct sockaddr_un place = {.sun_family = AF_UNIX, .sun_path = "socket"};

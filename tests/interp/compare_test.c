@@ -310,8 +310,8 @@ static void the_table_tells_what_cannot_be_compared(void **state) {
       {{NAN, NAN}, {NAN, NAN}, "-       same\n"},
       {{NAN, NAN}, {1, 2}, "-          -\n"},
       {{1, 2}, {INFINITY, 2}, "-          -\n"},
-      {{NAN, 2}, {1, INFINITY}, "NaN or infinite: 1 in the first, 1 in the second, 2 unlike\n"},
-      {{1, 2}, {1, NAN}, "NaN or infinite: 0 in the first, 1 in the second, 1 unlike\n"},
+      {{NAN, 2}, {1, INFINITY}, "NaN or infinite: 1 in the first, 1 in the second, 2 different\n"},
+      {{1, 2}, {1, NAN}, "NaN or infinite: 0 in the first, 1 in the second, 1 different\n"},
       {{1, 2}, {1, 3}, "pixels that differ by more than 0.5: 1 of 2 (50%)\n"},
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {

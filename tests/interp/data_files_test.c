@@ -91,20 +91,20 @@ static void places_of_errors_in_json(void **state) {
   READS("[1,]", "read_json(F)", "line 1, column 4: expected a value");
   READS("nul", "read_json(F)", "line 1, column 1: expected a value");
   READS("truth", "read_json(F)", "line 1, column 1: expected a value");
-  READS("nulls", "read_json(F)", "line 1, column 5: something follows the value");
-  READS("1 2", "read_json(F)", "line 1, column 3: something follows the value");
+  READS("nulls", "read_json(F)", "line 1, column 5: unexpected text after the value");
+  READS("1 2", "read_json(F)", "line 1, column 3: unexpected text after the value");
   READS("{1:2}", "read_json(F)", "line 1, column 2: expected a name in quotes");
   READS("{\"a\" 2}", "read_json(F)", "line 1, column 6: expected `:`");
   READS("{\"a\":2", "read_json(F)", "line 1, column 7: expected `,` or `}`");
   READS("{\"a\":2 3}", "read_json(F)", "line 1, column 8: expected `,` or `}`");
   READS("{\"a\":2,}", "read_json(F)", "line 1, column 8: expected a name in quotes");
-  READS("[1e999]", "read_json(F)", "line 1, column 2: not a number that can be held");
-  READS("[\n -\n]", "read_json(F)", "line 2, column 2: not a number that can be held");
-  READS("[1-2]", "read_json(F)", "line 1, column 2: not a number that can be held");
+  READS("[1e999]", "read_json(F)", "line 1, column 2: the number is too large");
+  READS("[\n -\n]", "read_json(F)", "line 2, column 2: the number is too large");
+  READS("[1-2]", "read_json(F)", "line 1, column 2: the number is too large");
   // Columns count characters.
   READS("[\"\xE2\x82\xAC\xC3\xA9\", ?]", "read_json(F)", "line 1, column 8: expected a value");
-  READS("[\"abc]", "read_json(F)", "line 1, column 2: a text that is not closed");
-  READS("[\"abc\n\"]", "read_json(F)", "line 1, column 2: a text that is not closed");
+  READS("[\"abc]", "read_json(F)", "line 1, column 2: a text that is never closed");
+  READS("[\"abc\n\"]", "read_json(F)", "line 1, column 2: a text that is never closed");
   READS("[\"a\x01\"]", "read_json(F)",
         "line 1, column 4: a control character in a text: write \\u0001");
   READS("[\"a\x1f\"]", "read_json(F)",
@@ -115,16 +115,16 @@ static void places_of_errors_in_json(void **state) {
   READS("\"\\u12G4\"", "read_json(F)", "line 1, column 6: expected four hexadecimal digits");
   READS("\"\\u12@4\"", "read_json(F)", "line 1, column 6: expected four hexadecimal digits");
   READS("\"\\u0000\"", "read_json(F)", "line 1, column 4: a NUL character");
-  READS("\"\\ud800\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\udc00\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\udfff\\ud800\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\n\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800xudc00\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\udbff\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\ue000\"", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\u", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\u12", "read_json(F)", "line 1, column 4: half of a surrogate pair");
-  READS("\"\\ud800\\", "read_json(F)", "line 1, column 4: half of a surrogate pair");
+  READS("\"\\ud800\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\udc00\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\udfff\\ud800\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\n\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800xudc00\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\udbff\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\ue000\"", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\u", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\u12", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
+  READS("\"\\ud800\\", "read_json(F)", "line 1, column 4: an incomplete surrogate pair");
   assert_int_equal(bad, 0);
 }
 
@@ -184,7 +184,7 @@ static void rows_of_csv(void **state) {
 static void places_of_errors_in_csv(void **state) {
   (void)state;
   size_t bad = 0;
-  READS("a,b\n1,\"2\n\n", "read_csv(F)", "line 2, column 3: a quote that is not closed");
+  READS("a,b\n1,\"2\n\n", "read_csv(F)", "line 2, column 3: a quote that is never closed");
   READS("1,\"2\"3\n", "read_csv(F)",
         "line 1, column 6: there is text after the closing quote of a cell");
   READS("a,b\n\n1,2\n3,4,5\n", "read_csv(F)", "line 4, column 1: 3 cells, but the header names 2");
@@ -227,11 +227,11 @@ static void json_both_ways(void **state) {
                  "[[2, 0, 0, 1], [0, 2, 0, 2], [0, 0, 2, 3], [0, 0, 0, 1]]");
   bad += !prints("print json([1..3, 5..1 by -2, 30deg, none, false, [], {a: X, \"b c\": {}}])",
                  "[[1, 2, 3], [5, 3, 1], 30, null, false, [], {\"a\": [1, 0, 0], \"b c\": {}}]");
-  bad += !prints("print attempt(() => json([1, x => x]), e => e.message)",
-                 "json expects numbers, angles, texts, bools, none, lists, records or transforms, "
-                 "found a function");
+  bad += !prints(
+      "print attempt(() => json([1, x => x]), e => e.message)",
+      "json expects numbers, angles, texts, bools, none, lists, records, or transforms, found a function");
   bad += !prints("print attempt(() => json({a: [1, -inf]}), e => e.message)",
-                 "json expects finite numbers: JSON has none that is infinite");
+                 "json expects finite numbers, because JSON has no infinity");
   // Values nest at most 1000 deep, as brackets do: n + 1 lists, the innermost n deep.
   bad += !prints(
       "deep(n) = reduce(1..n, [], (a, i) => [a])\n"
@@ -292,13 +292,13 @@ static void meshes_of_urdf_files(void **state) {
     }
     unlink(places[i]);
   }
-  static const char missing[] = "there is no such file below the folders that the script may read";
+  static const char missing[] = "the file does not exist in the folders that the script can read";
   bad += !reads_mesh("package://p/m/t.obj", missing);
   bad += !reads_mesh("m/t.obj", missing);
   bad += !reads_mesh("/t.obj", missing);
   bad += !reads_mesh("package://p.obj", "the file's name is missing after the package's name");
   bad += !reads_mesh("model://t.obj", "the file's name is missing after the package's name");
-  bad += !reads_mesh("http://example.org/t.obj", "nothing is fetched from elsewhere");
+  bad += !reads_mesh("http://example.org/t.obj", "files are not downloaded");
   static const char ending[] = "meshes are read from .stl .obj .ply .gltf .glb";
   bad += !reads_mesh("m/t.dae", ending);
   bad += !reads_mesh("m/t", ending);

@@ -24,7 +24,7 @@ static void note(const char *format, ...) {
   va_end(args);
 }
 
-// "3: another line is printed [1|2]": the line, the message, what was expected and what came.
+// "3: the output is different [1|2]": the line, the message, what was expected and what came.
 static void write_failure(void *context, const CagTestFailure *f) {
   (void)context;
   note("%zu: %s", f->line, f->message);
@@ -90,16 +90,16 @@ static void printed_lines_are_compared_in_order(void **state) {
       {"print 1 //expect:1", "t passed\n"},
       {"print 1 // \t expect: \t 1 \t ", "t passed\n"},
       {"print \"a b\" // expect: a b\nprint 2 // expect: 2\n", "t passed\n"},
-      {"print 1 // expect: 2", "1: another line is printed [2|1]\nt failed\n"},
+      {"print 1 // expect: 2", "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\n\nprint 12 // expect: 1",
-       "3: another line is printed [1|12]\nt failed\n"},
-      {"print 1 // expect: 12", "1: another line is printed [12|1]\nt failed\n"},
+       "3: the output is different [1|12]\nt failed\n"},
+      {"print 1 // expect: 12", "1: the output is different [12|1]\nt failed\n"},
       {"print 1 // expect: 2\nprint 2 // expect: 1",
-       "1: another line is printed [2|1]\nt failed\n"},
+       "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\n// expect: 2",
        "2: the output ends before this line [2|]\nt failed\n"},
       {"print 1 // expect: 1\nprint 2\nprint 3\n// nothing\n",
-       "1: more is printed than expected [|2]\nt failed\n"},
+       "1: there is more output than expected [|2]\nt failed\n"},
       {"print \"a\\nb\"\n// expect: a\n// expect: b", "t passed\n"},
       {"print \"a\\n\\nb\"\n// expect: a\n// expect:\n// expect: b", "t passed\n"},
       {"print \"  a  \" // expect: a", "t passed\n"},
@@ -114,32 +114,28 @@ static void errors_are_expected_on_their_lines(void **state) {
   static const Row rows[] = {
       {"print y // expect error: E0201", "t passed\n"},
       {"print y // expect error:E0201", "t passed\n"},
-      {"print y", "1: an error that is not expected: E0201 +\nt failed\n"},
-      {"x = 1\nprint y\n", "2: an error that is not expected: E0201 +\nt failed\n"},
+      {"print y", "1: unexpected error: E0201 +\nt failed\n"},
+      {"x = 1\nprint y\n", "2: unexpected error: E0201 +\nt failed\n"},
       {"print y // expect error: E0301",
-       "1: an error that is not expected: E0201 +\n1: the expected error E0301 did not come\n"
-       "t failed\n"},
-      {"print y // expect error: E020", "1: an error that is not expected: E0201 +\n"
-                                        "1: the expected error E020 did not come\nt failed\n"},
+       "1: unexpected error: E0201 +\n1: the expected error E0301 did not occur\nt failed\n"},
+      {"print y // expect error: E020",
+       "1: unexpected error: E0201 +\n1: the expected error E020 did not occur\nt failed\n"},
       {"print y\nprint 1 // expect error: E0201",
-       "1: an error that is not expected: E0201 +\n2: the expected error E0201 did not come\n"
-       "t failed\n"},
+       "1: unexpected error: E0201 +\n2: the expected error E0201 did not occur\nt failed\n"},
       // Of the plain run, a comment alone on its line names the line as well.
       {"print y\n// expect error: E0201",
-       "1: an error that is not expected: E0201 +\n2: the expected error E0201 did not come\n"
-       "t failed\n"},
-      {"print 1 // expect error: E0201", "1: the expected error E0201 did not come\nt failed\n"},
+       "1: unexpected error: E0201 +\n2: the expected error E0201 did not occur\nt failed\n"},
+      {"print 1 // expect error: E0201", "1: the expected error E0201 did not occur\nt failed\n"},
       {"print y + z // expect error: E0201, E0201", "t passed\n"},
       {"print y + z // expect error: E0201 E0201", "t passed\n"},
-      {"print y + z // expect error: E0201",
-       "1: an error that is not expected: E0201 +\nt failed\n"},
+      {"print y + z // expect error: E0201", "1: unexpected error: E0201 +\nt failed\n"},
       {"print y // expect error: E0201, E0201",
-       "1: the expected error E0201 did not come\nt failed\n"},
+       "1: the expected error E0201 did not occur\nt failed\n"},
       // What was printed before the error is compared too.
       {"print 1 // expect: 2\nprint [][0] // expect error: E0305",
-       "1: another line is printed [2|1]\nt failed\n"},
+       "1: the output is different [2|1]\nt failed\n"},
       {"print 1 // expect: 1\nprint [1][1] // expect error: E0305", "t passed\n"},
-      {"print [1][1]\n// expect: 1", "1: an error that is not expected: E0305 +\nt failed\n"},
+      {"print [1][1]\n// expect: 1", "1: unexpected error: E0305 +\nt failed\n"},
   };
   const CagTestOptions options = test_options();
   CHECK(rows, &options);
@@ -150,7 +146,7 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
 #define H "param h = 1\nprint h\n"
   static const Row rows[] = {
       {H "// run: -D h=2\n// expect: 2\n// run: -D h=3\n// expect: 4",
-       "t -D h=2 passed\n6: another line is printed [4|3]\nt -D h=3 failed\n"},
+       "t -D h=2 passed\n6: the output is different [4|3]\nt -D h=3 failed\n"},
       {H "// expect: 1\n// run: -Dh=7\n// expect: 7", "t passed\nt -Dh=7 passed\n"},
       {H "// run:\n// expect: 1", "t  passed\n"},
       {"param a = \"x\"\nparam b = 1\nprint a, b\n// run: -D \"a=y z\" -D b=2\n// expect: y z 2",
@@ -160,34 +156,27 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
       {"param a = \"x\"\nprint a\n// run: -D a=k=v\n// expect: k=v", "t -D a=k=v passed\n"},
       // More is printed than expected: told at the last expectation of the run.
       {H "print h\n// run: -D h=2\n// expect: 2",
-       "5: more is printed than expected [|2]\nt -D h=2 failed\n"},
+       "5: there is more output than expected [|2]\nt -D h=2 failed\n"},
       // Behind `run:` errors are matched by their code where they stand alone on their line.
       {"param h = 1\nprint [5][h]\n// run: -D h=0\n// expect: 5\n// run: -D h=1\n"
        "// expect error: E0305",
        "t -D h=0 passed\nt -D h=1 passed\n"},
       {"param h = 1\nprint [5][h]\n// run: -D h=1\nx = 1 // expect error: E0305",
-       "2: an error that is not expected: E0305 +\n4: the expected error E0305 did not come\n"
-       "t -D h=1 failed\n"},
+       "2: unexpected error: E0305 +\n4: the expected error E0305 did not occur\nt -D h=1 failed\n"},
       {H "// run: -D g=2\n// expect error: E0247", "t -D g=2 passed\n"},
       // Options that there are not.
       {H "\n// run: -q\n// expect: 1",
-       "4: `-q` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
-       "--max-memory, --max-time and --max-triangles\nt -q failed\n"},
+       "4: `-q` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt -q failed\n"},
       {H "// run: -D h\n",
-       "3: `-D` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
-       "--max-memory, --max-time and --max-triangles\nt -D h failed\n"},
+       "3: `-D` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt -D h failed\n"},
       {H "// run: -D =2\n",
-       "3: `-D` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
-       "--max-memory, --max-time and --max-triangles\nt -D =2 failed\n"},
+       "3: `-D` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt -D =2 failed\n"},
       {H "// run: --max-depth 0\n",
-       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
-       "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth 0 failed\n"},
+       "3: `--max-depth` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt --max-depth 0 failed\n"},
       {H "// run: --max-depth 9x\n",
-       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
-       "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth 9x failed\n"},
+       "3: `--max-depth` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt --max-depth 9x failed\n"},
       {H "// run: --max-depth\n",
-       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
-       "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth failed\n"},
+       "3: `--max-depth` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles\nt --max-depth failed\n"},
       {H "// run: --picture\n// expect: 1", "t --picture passed\n"},
       // Limits.
       {"f(n) = if n == 0 then 0 else 1 + f(n - 1)\nprint f(50)\n"
@@ -239,8 +228,8 @@ static void only_line_comments_expect_something(void **state) {
       {"x = 1\nt = `abc // expect error: E0105\n// expect: 1",
        "3: the output ends before this line [1|]\nt failed\n"},
       {"/* abc // expect error: E0103", "t passed\n"},
-      {"t = \"abc // expect: 1\n", "1: an error that is not expected: E0104 +\nt failed\n"},
-      {"x = 1 /", "1: an error that is not expected: E0120 +\nt failed\n"},
+      {"t = \"abc // expect: 1\n", "1: unexpected error: E0104 +\nt failed\n"},
+      {"x = 1 /", "1: unexpected error: E0120 +\nt failed\n"},
       {"x = 1 //", "t passed\n"},
   };
   const CagTestOptions options = test_options();
@@ -252,8 +241,7 @@ static void misspelt_words_are_failures(void **state) {
   static const Row rows[] = {
       {"print 1 // Expect: 1", "1: `// Expect: 1` expects nothing; write `// expect:`\nt failed\n"},
       {"\nprint 1 // expects: 1\n// run: -D h=1",
-       "2: `// expects: 1` expects nothing; write `// expect:`\n0: an error that is not expected: "
-       "E0247 +\nt -D h=1 failed\n"},
+       "2: `// expects: 1` expects nothing; write `// expect:`\n0: unexpected error: E0247 +\nt -D h=1 failed\n"},
       {"print 1 // run: --picture\n// Expect: 1\n// run:",
        "2: `// Expect: 1` expects nothing; write `// expect:`\nt --picture failed\nt  passed\n"},
       {"x = 1 // as we expect", "t passed\n"},
@@ -286,7 +274,7 @@ static void runs_are_chosen_by_their_names(void **state) {
   CHECK(defined, &options);
   // A limit of the options holds in every run.
   static const Row limited[] = {{"f(n) = if n == 0 then 0 else 1 + f(n - 1)\nprint f(50)\n",
-                                 "1: an error that is not expected: E0601 +\nt failed\n"}};
+                                 "1: unexpected error: E0601 +\nt failed\n"}};
   options = test_options();
   options.session.max_depth = 40;
   CHECK(limited, &options);
@@ -299,11 +287,10 @@ static void examples_of_documentation_are_tests(void **state) {
       {"/// Adds.\n///\n///     print add(1, 2)  // expect: 3\nadd(a, b) = a + b\n",
        "t.cag passed\nt.cag: example of add passed\n"},
       {"x = 1\n/// Adds.\n///     print add(1, 2)\n///     // expect: 4\nadd(a, b) = a + b\n",
-       "t.cag passed\n4: another line is printed [4|3]\nt.cag: example of add failed\n"},
+       "t.cag passed\n4: the output is different [4|3]\nt.cag: example of add failed\n"},
       {"/// Adds.\n///\n///     print add(1, 2)  // expect: 3\n///\n/// And:\n///\n"
        "///     print add(2, 2)\n///     print add(2, q)\nadd(a, b) = a + b\n",
-       "t.cag passed\nt.cag: example of add passed\n8: an error that is not expected: E0201 +\n"
-       "t.cag: example 2 of add failed\n"},
+       "t.cag passed\nt.cag: example of add passed\n8: unexpected error: E0201 +\nt.cag: example 2 of add failed\n"},
       // An example in the first line has the import on its own line.
       {"///     print two + q  // expect error: E0201\ntwo = 2\n",
        "t.cag passed\nt.cag: example of two passed\n"},
@@ -329,7 +316,7 @@ static void examples_of_documentation_are_tests(void **state) {
   CagTestCounts counts = {0};
   log_text[0] = 0;
   assert_int_equal(cag_test_file(file, &options, &counts), CAG_STATUS_FILE);
-  assert_string_equal(log_text, "0: the script cannot be read: No such file or directory\n");
+  assert_string_equal(log_text, "0: cannot read the script: No such file or directory\n");
   assert_int_equal(counts.failed, 1);
   rmdir(path);
   assert_int_equal(bad, 0);

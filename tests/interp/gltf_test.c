@@ -405,7 +405,7 @@ static void buffers_lie_beside(void **state) {
   static const struct {
     const char *json, *reason, *part;
   } bad[] = {
-      {BUFFERS("{\"byteLength\":1,\"uri\":\"a.bin\"}"), "mesh-file-unsupported", "lies at a.bin"},
+      {BUFFERS("{\"byteLength\":1,\"uri\":\"a.bin\"}"), "mesh-file-unsupported", "is at a.bin"},
       {BUFFERS("{\"byteLength\":1,\"uri\":\"data:base64,AAAA\"}"), "mesh-file-unsupported",
        "is not base64"},
       {BUFFERS("{\"byteLength\":1,\"uri\":\"data:x;base64\"}"), "mesh-file-unsupported",
@@ -447,7 +447,7 @@ static void json_that_ends_early_is_told(void **state) {
   assert_int_equal(d.draft.taken, 96 * (1 + 7 + 4) + strlen(whole) + 3 * sizeof(void *));
   close_document(&d);
   for (size_t n = 1; n < strlen(whole); n++)
-    refused(whole, n, "mesh-file-truncated", "it ends within");
+    refused(whole, n, "mesh-file-truncated", "it is incomplete");
   // Broken, and not by its end: brackets in texts do not count.
   static const struct {
     const char *json, *place;
@@ -499,7 +499,7 @@ static void chunks_are_found(void **state) {
     close_document(&d);
   }
   Text t = glb_of(2, 12);
-  refused(t.at, 12, "mesh-file-syntax", "no chunk of JSON");
+  refused(t.at, 12, "mesh-file-syntax", "no JSON chunk");
   refused(t.at, 11, "mesh-file-truncated", "11 bytes of the 12");
   refused(t.at, 4, "mesh-file-truncated", "4 bytes of the 12");
   t = glb_of(2, 13);
@@ -512,7 +512,7 @@ static void chunks_are_found(void **state) {
   add_chunk(&t, "JSON", json, strlen(json));
   add_u32(&t, 5);
   add(&t, "ODD four");
-  refused(t.at, t.n, "mesh-file-truncated", "a chunk of 5 bytes, where 4 are left");
+  refused(t.at, t.n, "mesh-file-truncated", "a chunk has 5 bytes, but only 4 are left");
   // The second buffer has no chunk.
   static const char two[] = ASSET "\"buffers\":[{\"byteLength\":1},{\"byteLength\":1}]}";
   t = glb_of(2, 0);
@@ -690,25 +690,31 @@ static void scenes_and_primitives_are_checked(void **state) {
       {TWO ",\"scene\":-1,\"scenes\":[{}]", 0, "mesh-file-index",
        "the default scene does not exist"},
       {TWO ",\"scenes\":[{}]", 0, "mesh-file-empty", "no triangle"},
-      {TWO ",\"scenes\":[{\"nodes\":[2]}]", 0, "mesh-file-index", "names node 2, of 2 nodes"},
-      {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "names node 0.5"},
-      {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "names node -1"},
-      {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "names node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[2]}]", 0, "mesh-file-index",
+       "refers to node 2, but there are 2 nodes"},
+      {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "refers to node 0.5"},
+      {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "refers to node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "refers to node -1"},
       {TWO ",\"scenes\":[{\"nodes\":[0,0]}]", 0, "mesh-file-syntax", "nodes[0] occurs twice"},
       {"\"nodes\":[{\"children\":[2]},{\"children\":[0]},{\"mesh\":0}]," MESH, 1, NULL, NULL},
-      {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index", "names node 5"},
+      {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index",
+       "refers to node 5"},
       {"\"nodes\":[{\"mesh\":1}]," MESH, 0, "mesh-file-index", "nodes[0] refers to a mesh"},
       {"\"nodes\":[{\"mesh\":0.5}]," MESH, 0, "mesh-file-index", "nodes[0] refers to a mesh"},
       {"\"nodes\":[{\"rotation\":[0,0,0,0]}]," MESH, 0, "mesh-file-syntax",
-       "nodes[0] has a matrix"},
-      {"\"nodes\":[{\"scale\":[1,1]}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
-      {"\"nodes\":[{\"scale\":[1,1,\"\"]}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
-      {"\"nodes\":[{\"translation\":3}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
+       "nodes[0] has an invalid matrix"},
+      {"\"nodes\":[{\"scale\":[1,1]}]," MESH, 0, "mesh-file-syntax",
+       "nodes[0] has an invalid matrix"},
+      {"\"nodes\":[{\"scale\":[1,1,\"\"]}]," MESH, 0, "mesh-file-syntax",
+       "nodes[0] has an invalid matrix"},
+      {"\"nodes\":[{\"translation\":3}]," MESH, 0, "mesh-file-syntax",
+       "nodes[0] has an invalid matrix"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":1"), 1, NULL, NULL},
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":6"), 1, NULL, NULL},
-      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"mode\":7"), 0, "mesh-file-syntax", "a mode"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"mode\":7"), 0, "mesh-file-syntax",
+       "an invalid mode"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":-1"), 0, "mesh-file-syntax",
-       "a mode"},
+       "an invalid mode"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":2"), 0, "mesh-file-syntax",
        "accessors[2] has no indices"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":3"), 0, "mesh-file-unsupported",
@@ -716,7 +722,7 @@ static void scenes_and_primitives_are_checked(void **state) {
       {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":0"), 0, "mesh-file-syntax",
        "accessors[0] must be of the type SCALAR"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":4},\"indices\":1"), 0, "mesh-file-index",
-       "triangle 0 of a mesh names vertex 2, of 2 vertices"},
+       "triangle 0 of a mesh refers to vertex 2, but there are 2 vertices"},
       {PRIMITIVE("\"attributes\":{\"POSITION\":4}"), 0, "mesh-file-empty", ""},
       {PRIMITIVE("\"attributes\":{}"), 0, "mesh-file-empty", ""},
       {PRIMITIVE("\"attributes\":{\"POSITION\":\"\"}"), 0, "mesh-file-syntax", "an attribute"},

@@ -44,7 +44,7 @@ static void text_stl_is_read_with_its_liberties(void **state) {
 static void what_is_wrong_with_an_stl_is_told(void **state) {
   (void)state;
   Bytes b = binary_stl("x", 5);
-  assert_fails("a.stl", b, "mesh-file-truncated", "5 triangles, and its 284 bytes hold 4");
+  assert_fails("a.stl", b, "mesh-file-truncated", "5 triangles, but its 284 bytes contain 4");
   b.at[80] = 4;
   b.n -= 10;
   assert_fails("a.stl", b, "mesh-file-truncated", "byte 80");
@@ -248,9 +248,9 @@ static void what_is_wrong_with_a_ply_is_told(void **state) {
 #define HEAD "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
 #define FACES                                                                                      \
   "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-  assert_text_fails("a.ply", HEAD "end_header\n0 0\n0 0\n0 0\n", "mesh-file-syntax", "x, y or z");
+  assert_text_fails("a.ply", HEAD "end_header\n0 0\n0 0\n0 0\n", "mesh-file-syntax", "x, y, or z");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "mesh-file-index",
-                    "vertex 3; there are 3");
+                    "vertex 3, but there are 3");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "mesh-file-truncated", "");
   assert_text_fails("a.ply", HEAD FACES "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "mesh-file-syntax",
                     "line 11");

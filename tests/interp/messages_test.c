@@ -49,14 +49,14 @@ static void a_line_that_begins_with_minus_is_explained(void **state) {
 
 static void braces_in_texts_are_explained(void **state) {
   (void)state;
-  static const char help[] = "write \\{ for a brace itself";
+  static const char help[] = "write \\{ for a brace";
   expect("x = \"texture { pigment {\"", "E0126", "found `{`", help);
-  expect("x = \"a {\"", "E0104", "does not end", help);
+  expect("x = \"a {\"", "E0104", "is not closed on its line", help);
   expect("x = \"{ a: 1 }\"", "E0126", "found `:`", help);
   expect("x = \"a { b c } d\"", "E0126", "found `c`", help);
   expect("x = \"a { qqzz } d\"", "E0201", "unknown name `qqzz`", help);
   expect("x = \"{}\"", "E0113", "nothing", help);
-  expect("y = 1\nx = \"{y:.2f}\"", "E0167", "no format", "text(y, digits: 2)");
+  expect("y = 1\nx = \"{y:.2f}\"", "E0167", "without a format", "text(y, digits: 2)");
 }
 
 // Functions that the checker does not know before the run.
@@ -86,7 +86,7 @@ static void boxes_of_quadrics_are_boxes(void **state) {
   static const char planes[] = "[1, -1, 0, 0, 0, 0, 0, 0, 0, -1]";
   char script[200];
   snprintf(script, sizeof script, "print quadric(%s)", planes);
-  expect(script, "E0456", "give `within` a box, as box([4, 4, 4], centered: true)", NULL);
+  expect(script, "E0456", "set `within` to a box, such as box([4, 4, 4], centered: true)", NULL);
   snprintf(script, sizeof script, "print quadric(%s, within: [-2..2, -2..2, -2..2])", planes);
   expect(script, "E0301", "expects a box or a range of z", "box([4, 4, 4], centered: true)");
 }
@@ -115,8 +115,9 @@ static void lengths_beyond_a_curve_name_its_length(void **state) {
 
 static void a_circle_names_its_definitions(void **state) {
   (void)state;
-  expect("a = b\nb = a\nprint a", "E0311", "the value of `a` needs itself: a -> b -> a", NULL);
-  expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "needs itself: b -> c -> a -> b", NULL);
+  expect("a = b\nb = a\nprint a", "E0311", "the value of `a` depends on itself: a -> b -> a", NULL);
+  expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "depends on itself: b -> c -> a -> b",
+         NULL);
   // The message ends there.
   CagSession *s;
   const CagErrorView e = first_error(&s, "a = b\nb = a\nprint a");
@@ -195,7 +196,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print 1deg..2deg by 1",
        "the step of a range of angles must be an angle, found the number 1", NULL},
       {"print 1..2 by 0", "a finite number other than 0", NULL},
-      {"print [1, 2][0.5]", "expected an integer as index, found 0.5", NULL},
+      {"print [1, 2][0.5]", "expected an integer as the index, found 0.5", NULL},
       {"print [1, 2][2]", "index 2 lies outside of a list of 2", "0 to 1, or -2 to -1"},
       {"print [][0]", "index 0 lies outside of a list of 0", NULL},
       {"print \"abc\"[3]", "index 3 lies outside of a text of 3", "0 to 2, or -3 to -1"},
@@ -205,18 +206,19 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print [1, 2][0..4 by 2]", "index 2 lies outside of a list of 2", "0 to 1, or -2 to -1"},
       {"print \"ab\"[0..4 by 2]", "index 2 lies outside of a text of 2", "0 to 1, or -2 to -1"},
       {"print (1..3)[5]", "index 5 lies outside of a range of 3", "0 to 2, or -3 to -1"},
-      {"print [1, 2][0deg..1deg]", "indices are numbers, found a range of angles", NULL},
+      {"print [1, 2][0deg..1deg]", "expected integers as indices, found a range of angles", NULL},
       {"print [1, 2][0.5..1]", "expected integers as indices", NULL},
       {"print [1, 2][0..0.5]", "expected integers as indices", NULL},
-      {"print [1, 2][\"a\"]", "an index is a number or a range, found the text \"a\"", NULL},
-      {"print {a: 1}[1]", "a field of a record is named by a text, found the number 1", NULL},
-      {"print 1[0]", "only lists, ranges, texts and records have elements, found the number 1",
+      {"print [1, 2][\"a\"]", "expected a number or a range as the index, found the text \"a\"",
+       NULL},
+      {"print {a: 1}[1]", "expected a text as the name of a field, found the number 1", NULL},
+      {"print 1[0]", "only lists, ranges, texts, and records have elements, found the number 1",
        NULL},
       {"print {a: 1}[\"b\"]", "the record has no field `b`", "its fields are a"},
       {"print {alpha: 1}.alpah", "the record has no field `alpah`", "did you mean `alpha`?"},
       {"print {}.a", "the record has no field `a`", NULL},
       {"print [1, 2].z", "a vector of 2 numbers has no `z`", NULL},
-      {"print [\"a\", \"b\"].x", "of a vector of 2 to 4 numbers", NULL},
+      {"print [\"a\", \"b\"].x", "needs a vector of 2 to 4 numbers", NULL},
       {"print (1..3).first", "a range has no member `first`", "write x |> first(...)"},
       {"print (1..3).middle", "a range has no member `middle`", "it has start, end, step"},
       {"print translate(X).orign", "a transform has no member `orign`", "did you mean `origin`?"},
@@ -232,8 +234,8 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print true and 1", "the right side of `and` must be true or false", "compare it: ... != 0"},
       {"print false or \"a\"", "the right side of `or` must be true or false", "len(...) > 0"},
       {"print [for [a, b] in [1]: a]", "a list of 2 elements, found the number 1", NULL},
-      {"print [for [a, b] in [[1, 2, 3]]: a]", "the pattern has 2 names, the element 3 parts",
-       NULL},
+      {"print [for [a, b] in [[1, 2, 3]]: a]",
+       "the pattern has 2 names, but the element has 3 parts", NULL},
       {"print [for x in 3: x]", "found the number 3", "to count, write 0..<n"},
       {"print [...3]", "spreads a list, found the number 3", NULL},
       {"print {...3}", "spreads a record, found the number 3", NULL},

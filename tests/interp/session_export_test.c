@@ -342,29 +342,29 @@ static void refuses(const char *text, const char *path, const char *format, int 
 static void what_cannot_be_written_is_told(void **state) {
   (void)state;
   refuses("show ground()", "n.obj", NULL, CAG_STATUS_SCRIPT,
-          "part.cag shows nothing that a mesh file can hold", "a ground is for pictures");
+          "part.cag shows nothing that a mesh file can contain", "a ground is only for pictures");
   refuses("show box(1)", "n.urdf", NULL, CAG_STATUS_SCRIPT, "part.cag shows no robot",
           "show a robot, as it is");
   refuses("r(n) = robot([revolute(a: 3)], name: n)\nshow r(\"a\"), r(\"b\")", "n.urdf", NULL,
-          CAG_STATUS_SCRIPT, "part.cag shows 2 robots (a, b); a .urdf file is of one",
-          "show one alone");
+          CAG_STATUS_SCRIPT, "part.cag shows 2 robots (a, b), but a .urdf file describes one",
+          "show only one");
   refuses("show [for i in 0..<9: robot([revolute(a: i + 1)], name: \"{i}\")]", "n.urdf", NULL,
           CAG_STATUS_SCRIPT,
-          "part.cag shows 9 robots (0, 1, 2, 3, 4, 5, 6, 7, ...); a .urdf file is of one",
-          "show one alone");
+          "part.cag shows 9 robots (0, 1, 2, 3, 4, 5, 6, 7, ...), but a .urdf file describes one",
+          "show only one");
   refuses("show [for i in 0..<8: robot([revolute(a: i + 1)], name: \"{i}\")]", "n.urdf", NULL,
           CAG_STATUS_SCRIPT,
-          "part.cag shows 8 robots (0, 1, 2, 3, 4, 5, 6, 7); a .urdf file is of one",
-          "show one alone");
+          "part.cag shows 8 robots (0, 1, 2, 3, 4, 5, 6, 7), but a .urdf file describes one",
+          "show only one");
   refuses("show box(1)", "x.y/noending", NULL, CAG_STATUS_USAGE,
-          "x.y/noending has no ending that tells the format",
+          "x.y/noending has no extension that determines the format",
           "use --format to choose a format: obj stl ply glb");
   refuses("show box(1)", "a.png", NULL, CAG_STATUS_SCRIPT, "part.cag shows no image",
           "`cag render` renders a picture of shapes");
   refuses("show box(1)", "a.EXR", NULL, CAG_STATUS_SCRIPT, "part.cag shows no image",
           "`cag render` renders a picture of shapes");
   refuses("show image([[1]])", "a.stl", NULL, CAG_STATUS_SCRIPT, "part.cag shows no shape",
-          "images are exported");
+          "to export an image");
   refuses("show [image([[1]]), image([[2]])]", "a.exr", NULL, CAG_STATUS_USAGE,
           "part.cag shows 2 images, expected one", "select one by --image: image, image.2");
   refuses("show image([[[1, 2]]])", "a.png", NULL, CAG_STATUS_USAGE,

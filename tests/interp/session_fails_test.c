@@ -100,11 +100,12 @@ static void cameras_are_suggested(void **state) {
              "show sphere(1), [for i in 0..<%d: named(camera([9, 9, 9]), \"place{i}\")]\n", n);
     static const struct {
       const char *name, *help;
-    } cases[] = {{"plac0", "did you mean `place0`?"},
-                 {"fron", "did you mean `front`?"},
-                 {"tpo", "did you mean `top`?"},
-                 {"zzzzzz", "the scene has `place0`, and always top, bottom, front, back, left, "
-                            "right and iso"}};
+    } cases[] = {
+        {"plac0", "did you mean `place0`?"},
+        {"fron", "did you mean `front`?"},
+        {"tpo", "did you mean `top`?"},
+        {"zzzzzz",
+         "the scene has `place0`; top, bottom, front, back, left, right, and iso always work"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
       // Of more cameras than are compared the standard views are not looked at.
       if (n > 57 && (i == 1 || i == 2)) continue;

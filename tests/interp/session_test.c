@@ -479,15 +479,15 @@ static void definitions_that_do_not_fit_are_refused(void **state) {
       {"x = 3", "framess", "1", "E0247", "test has no param `framess`", "did you mean `frames`?"},
       {"param a = 1", "a", "1 2", NULL, NULL, NULL},
       {"param a = 1", "a", "\"x\"", "E0248",
-       "the param `a` is a number, but -D gives the text \"x\"", NULL},
+       "the param `a` is a number, but -D sets it to the text \"x\"", NULL},
       {"param a = 1", "a", "3deg", "E0248",
-       "the param `a` is a number, but -D gives the angle 3deg", NULL},
+       "the param `a` is a number, but -D sets it to the angle 3deg", NULL},
       {"param a = 1deg", "a", "30", "E0248",
-       "the param `a` is an angle, but -D gives the number 30", "-D a=30deg"},
+       "the param `a` is an angle, but -D sets it to the number 30", "-D a=30deg"},
       {"param a = 1deg\nassert a == 0.25turn", "a", "90deg", "", NULL, NULL},
       {"param a = [1]\nassert len(a) == 3", "a", "1..3", "", NULL, NULL},
-      {"param a = 1..3", "a", "[1]", "E0248", "the param `a` is a range, but -D gives the list [1]",
-       NULL},
+      {"param a = 1..3", "a", "[1]", "E0248",
+       "the param `a` is a range, but -D sets it to the list [1]", NULL},
       {"param a = none\nassert a == 4", "a", "4", "", NULL, NULL},
       {"param a = (x => x)\nassert a(4) == 2", "a", "sqrt", "", NULL, NULL},
       {"param a = sqrt\nassert a(4) == 8", "a", "x => 2*x", "", NULL, NULL},
@@ -598,10 +598,10 @@ static void scenes_without_shapes_are_errors(void **state) {
   static const struct {
     const char *text, *message, *help;
   } rows[] = {
-      {"x = 1", "test shows no shape", "add `show` and a shape: show sphere(10)"},
-      {"show sun(-Z)", "test shows no shape", "add `show` and a shape: show sphere(10)"},
-      {"show box(1) - box(2)", "test shows nothing but empty shapes",
-       "`is_empty` tells what is empty"},
+      {"x = 1", "test shows no shape", "show a shape, such as show sphere(10)"},
+      {"show sun(-Z)", "test shows no shape", "show a shape, such as show sphere(10)"},
+      {"show box(1) - box(2)", "test shows only empty shapes",
+       "`is_empty` tests whether a shape is empty"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     CagSession *s = new_session();
@@ -675,8 +675,8 @@ static void flat_lofts_are_warned_of(void **state) {
     CagErrorView e;
     cag_session_error(s, i, &e);
     assert_string_equal(e.message,
-                        i ? "c: its sections lie in one plane, so that the loft has no thickness"
-                          : "b: its sections lie in one plane, so that the loft has no thickness");
+                        i ? "c: its sections lie in one plane, so the loft has no volume"
+                          : "b: its sections lie in one plane, so the loft has no volume");
   }
   cag_session_free(s);
 }
@@ -704,8 +704,8 @@ static void exports_warn_of_open_parts(void **state) {
        CAG_STATUS_OK},
       {"show box(1)", "stl", NULL, NULL, CAG_STATUS_OK},
       {"show sphere_surface(1)", "stl", NULL, NULL, CAG_STATUS_OK},
-      {"show label([0, 0, 0], \"a\")", "stl", "test shows nothing that a mesh file can hold",
-       "labels are drawn in .svg only; show a surface, solid or mesh", CAG_STATUS_SCRIPT},
+      {"show label([0, 0, 0], \"a\")", "stl", "test shows nothing that a mesh file can contain",
+       "labels are drawn only in .svg; show a surface, solid, or mesh", CAG_STATUS_SCRIPT},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

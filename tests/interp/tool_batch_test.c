@@ -100,7 +100,7 @@ static void describe(const CagBatch *b, char *out, size_t size) {
 #define PATTERN_HELP "(write the number as %04d, such as film.%04d.png, and a % as %%)"
 
 #define FORMATS                                                                                    \
-  "there are .exr .png .obj .stl .ply .glb .gltf .3mf .pov .igs .step .urdf .svg .json"
+  "the formats are .exr .png .obj .stl .ply .glb .gltf .3mf .pov .igs .step .urdf .svg .json"
 
 static void rows_become_tasks(void **state) {
   (void)state;
@@ -122,25 +122,21 @@ static void rows_become_tasks(void **state) {
       {"a.cag,t.png,,,1x1", "0:0 t.png\n"},
       // Scripts.
       {",a.stl", "! 1 E0913 the script is missing (name a .cag file)\n"},
-      {"none.cag,a.stl",
-       "! 1 E0913 the script 'none.cag' cannot be read: No such file or directory "
-       "(the name is seen from the folder of the jobs)\n"},
+      {"none.cag,a.stl", "! 1 E0913 cannot read the script 'none.cag': No such file or directory "
+                         "(paths are relative to the folder of the table)\n"},
       {"/none.cag,a.stl",
-       "! 1 E0913 the script '/none.cag' cannot be read: No such file or directory\n"},
+       "! 1 E0913 cannot read the script '/none.cag': No such file or directory\n"},
       {"parts,a.stl",
-       "! 1 E0913 the script 'parts' cannot be read: it is not a regular file (the name is seen "
-       "from the folder of the jobs)\n"},
-      {"-,a.stl", "! 1 E0913 the script '-' cannot be read: rows cannot share standard input (the "
-                  "name is seen from the folder of the jobs)\n"},
+       "! 1 E0913 cannot read the script 'parts': it is not a regular file (paths are relative to the folder of the table)\n"},
+      {"-,a.stl",
+       "! 1 E0913 cannot read the script '-': rows cannot share standard input (paths are relative to the folder of the table)\n"},
       // Values.
       {"a.cag,a.png,,64", "! 1 E0912 size '64': expected a size (write width x height in pixels, "
                           "such as 1280x720)\n"},
       {"a.cag,a.stl,,,,0",
-       "! 1 E0912 tolerance '0': expected a distance (give millimeters above 0, "
-       "such as 0.05)\n"},
-      {"a.cag,a.png,,x,,y", "! 1 E0912 size 'x': expected a size (write width x height in pixels, "
-                            "such as 1280x720)\n! 1 E0912 tolerance 'y': expected a distance (give "
-                            "millimeters above 0, such as 0.05)\n"},
+       "! 1 E0912 tolerance '0': expected a distance (give a number of millimeters greater than 0, such as 0.05)\n"},
+      {"a.cag,a.png,,x,,y",
+       "! 1 E0912 size 'x': expected a size (write width x height in pixels, such as 1280x720)\n! 1 E0912 tolerance 'y': expected a distance (give a number of millimeters greater than 0, such as 0.05)\n"},
       {"a.cag,a.stl,0..1,64x64,2x2,,draft",
        "! 1 E0912 an export has no frames (leave the field empty)\n! 1 E0912 an export has no size "
        "(leave the field empty)\n! 1 E0912 an export has no quality (leave the field empty)\n! 1 "
@@ -150,22 +146,19 @@ static void rows_become_tasks(void **state) {
        "! 1 E0912 the output 'f%d.png' has a placeholder for a frame number, but the row "
        "has no frames (fill in frames, such as 0..47)\n"},
       {"a.cag,f.png,0..1",
-       "! 1 E0914 all frames would be written to the one output 'f.png' " PATTERN_HELP "\n"},
+       "! 1 E0914 all frames would be written to the same output 'f.png' " PATTERN_HELP "\n"},
       {"a.cag,f%d%d.png,0..1",
        "! 1 E0912 the output 'f%d%d.png' has several placeholders for a frame "
        "number " PATTERN_HELP "\n"},
       {"a.cag,f%s.png,0..1",
        "! 1 E0912 a % in the output 'f%s.png' is not a placeholder for a frame number " PATTERN_HELP
        "\n"},
-      {"a.cag,f%d.png,0..999999\na.cag,g.png", "! 2 E0912 with this row there are more than "
-                                               "1000000 pictures to make (take several files of "
-                                               "jobs)\n"},
+      {"a.cag,f%d.png,0..999999\na.cag,g.png",
+       "! 2 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
       {"a.cag,f%d.png,0..1000000",
-       "! 1 E0912 with this row there are more than 1000000 pictures to "
-       "make (take several files of jobs)\n"},
-      {"a.cag,f%d.png,5..1000005", "! 1 E0912 with this row there are more than 1000000 pictures "
-                                   "to make (take several files of "
-                                   "jobs)\n"},
+       "! 1 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
+      {"a.cag,f%d.png,5..1000005",
+       "! 1 E0912 with this row, the batch has more than 1000000 pictures (split the table into several files)\n"},
       {"a.cag,f%d.png,2000000..2000001", "0:2000000 f2000000.png\n0:2000001 f2000001.png\n"},
       // Formats.
       {"a.cag,", "! 1 E0916 the output is missing (name a file, such as vase.png)\n"},
@@ -185,16 +178,14 @@ static void rows_become_tasks(void **state) {
        "! 1 E0912 a picture in tiles needs its size (fill in size, such as 7680x4320)\n"},
       // Outputs that meet.
       {"a.cag,x.stl\na.cag,./x.stl",
-       "! 2 E0914 the output 'DIR/x.stl' is that of row 1 too (each output "
-       "belongs to one row)\n"},
+       "! 2 E0914 the output 'DIR/x.stl' is also the output of row 1 (give each row its own output)\n"},
       {"a.cag,f1.png\na.cag,f%d.png,0..2",
-       "! 2 E0914 the output 'DIR/f1.png' is that of row 1 too (each "
-       "output belongs to one row)\n"},
+       "! 2 E0914 the output 'DIR/f1.png' is also the output of row 1 (give each row its own output)\n"},
       // Two films that meet are told once.
       {"a.cag,f%d.png,0..2\na.cag,f%d.png,1..3",
-       "! 2 E0914 the output 'DIR/f1.png' is that of row 1 too (each output belongs to one row)\n"},
+       "! 2 E0914 the output 'DIR/f1.png' is also the output of row 1 (give each row its own output)\n"},
       {"a.cag,jobs.report.csv.stl\na.cag,parts/../x.stl\na.cag,x.stl",
-       "! 3 E0914 the output 'DIR/x.stl' is that of row 2 too (each output belongs to one row)\n"},
+       "! 3 E0914 the output 'DIR/x.stl' is also the output of row 2 (give each row its own output)\n"},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -226,10 +217,10 @@ static void rows_fit_the_command_line(void **state) {
   } cases[] = {
       {"6", NULL, "a.cag,f%d.png,4..5", "0:4 f4.png\n0:5 f5.png\n"},
       {"5", NULL, "a.cag,f%d.png,4..5",
-       "! 1 E0912 frames 4..5 reach beyond -D frames=5 (the frames of "
+       "! 1 E0912 frames 4..5 exceed -D frames=5 (the frames of "
        "a film of N are 0..N-1)\n"},
       {"x", NULL, "a.cag,f%d.png,4..5",
-       "! 1 E0912 frames 4..5 reach beyond -D frames=x (the frames of "
+       "! 1 E0912 frames 4..5 exceed -D frames=x (the frames of "
        "a film of N are 0..N-1)\n"},
       {"1", NULL, "a.cag,f.png", "0:0 f.png\n"},
       {NULL, "2x1", "a.cag,t.png,,64x64", "0:0/0\n0:0/1\n0:0+2 t.png\n"},
@@ -274,8 +265,9 @@ static void outputs_are_no_files_of_the_batch(void **state) {
       assert_true(cag_jobs_read(&b.jobs, text, strlen(text), false));
       assert_true(cag_batch_check(&b));
       describe(&b, told, sizeof told);
-      assert_string_equal(told, "0:0 y.stl\n1:0 x.stl\n! 2 E0914 the output 'DIR/x.stl' is a file "
-                                "that the batch itself needs (choose another name)\n");
+      assert_string_equal(
+          told,
+          "0:0 y.stl\n1:0 x.stl\n! 2 E0914 the output 'DIR/x.stl' is one of the batch's own files (choose another name)\n");
       remove("x.stl");
       close_batch(&b);
     }

@@ -51,9 +51,9 @@ static void test_ends(void **state) {
   } rows[] = {
       {"exit 0", 0, ""},
       {"echo told >&2; exit 0", 0, ""},
-      {"exit 7", 7, "it ended with status 7"},
+      {"exit 7", 7, "failed with exit status 7"},
       // what it writes to standard output is not kept
-      {"echo out; exit 3", 3, "it ended with status 3"},
+      {"echo out; exit 3", 3, "failed with exit status 3"},
       {"echo first >&2; echo last >&2; echo >&2; exit 3", 3, "last"},
       {"printf 'a\\rb' >&2; exit 3", 3, "a b"},
       {"pwd >&2; exit 1", 1, "/"},
@@ -64,11 +64,10 @@ static void test_ends(void **state) {
       {"echo '{\"severity\":\"error\"}' >&2; exit 2", 2, "{\"severity\":\"error\"}"},
       {"echo '{\"message\":\"m\"}' >&2; exit 2", 2, "{\"message\":\"m\"}"},
       {"echo '{torn' >&2; exit 2", 2, "{torn"},
-      {"exec 2>&- ; sleep 0.1; exit 4", 4, "it ended with status 4"},
-      {"kill -KILL $$", 1,
-       "it was killed by signal 9 (Killed), as the system does when memory runs out"},
-      {"kill -SEGV $$", 1, "it was ended by signal 11 (Segmentation fault)"},
-      {"sleep 30 & exit 3", 3, "it ended with status 3"},
+      {"exec 2>&- ; sleep 0.1; exit 4", 4, "failed with exit status 4"},
+      {"kill -KILL $$", 1, "killed by signal 9 (Killed); the system may have run out of memory"},
+      {"kill -SEGV $$", 1, "ended by signal 11 (Segmentation fault)"},
+      {"sleep 30 & exit 3", 3, "failed with exit status 3"},
       // a flood: its end is kept
       {"head -c 500000 /dev/zero | tr '\\0' x >&2; echo >&2; echo last >&2; exit 3", 3, "last"},
   };
@@ -86,9 +85,9 @@ static void test_limits(void **state) {
   (void)state;
   char message[1024];
   assert_int_equal(run("sleep 30", 0.2, CAG_CHILD_RUNS, message, sizeof message), 5);
-  assert_string_equal(message, "it was stopped after the time limit of 0.2 s");
+  assert_string_equal(message, "exceeded the time limit of 0.2 s");
   assert_int_equal(run("sleep 30", 0, CAG_CHILD_STOP_MEMORY, message, sizeof message), 5);
-  assert_string_equal(message, "it was stopped for taking more memory than 64 MB");
+  assert_string_equal(message, "exceeded the memory limit of 64 MB");
   // One that does not listen is killed.
   assert_int_equal(
       run("trap '' TERM; while :; do sleep 1; done", 0.2, CAG_CHILD_RUNS, message, sizeof message),

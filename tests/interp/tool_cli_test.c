@@ -331,32 +331,34 @@ static void what_is_wrong_is_said(void **state) {
     const char *line, *said;
   } rows[] = {
       {"cag rnu a.cag", "cag: unknown command `rnu`\n  did you mean `cag run`?\n"},
-      {"cag a.cag", "cag: unknown command `a.cag`\n  to run the script write `cag run a.cag`\n"},
+      {"cag a.cag", "cag: unknown command `a.cag`\n  to run the script, write `cag run a.cag`\n"},
       {"cag .cag", "cag: unknown command `.cag`\n  `cag --help` lists the commands\n"},
       {"cag xyzzyx", "cag: unknown command `xyzzyx`\n  `cag --help` lists the commands\n"},
       {"cag run", "cag run: FILE is missing\n  write `cag run FILE`; `cag run --help` shows "
                   "examples\n"},
-      {"cag run a b", "cag run: 'b' is one too many\n  write `cag run FILE`; `cag run --help` "
+      {"cag run a b", "cag run: unexpected argument 'b'\n  write `cag run FILE`; `cag run --help` "
                       "shows examples\n"},
       {"cag compare a", "cag compare: expected A B, found only 'a'\n  write `cag compare A B`; "
                         "`cag compare --help` shows examples\n"},
-      {"cag info a", "cag info: 'a' is one too many\n  write `cag info `; `cag info --help` shows "
-                     "examples\n"},
+      {"cag info a",
+       "cag info: unexpected argument 'a'\n  write `cag info `; `cag info --help` shows "
+       "examples\n"},
       {"cag run a --sizes 3", "cag run: unknown option --sizes\n  `cag run --help` lists the "
                               "options\n"},
       {"cag render a --sizes 3", "cag render: unknown option --sizes\n  did you mean --size?\n"},
-      {"cag run a --size 3x4", "cag run: --size is an option of other commands\n  `cag run "
-                               "--help` lists the options\n"},
+      {"cag run a --size 3x4",
+       "cag run: --size is an option of other commands\n  `cag run --help` lists the options\n"},
       {"cag eval -x", "cag eval: unknown option -x\n  `cag eval --help` lists the options; an "
                       "expression that begins with - comes after --\n"},
       {"cag run a -a", "cag run: unknown option -a\n  `cag run --help` lists the options\n"},
       {"cag run a -z", "cag run: unknown option -z\n  `cag run --help` lists the options\n"},
       {"cag run a -A", "cag run: unknown option -A\n  `cag run --help` lists the options\n"},
       {"cag run a -Z", "cag run: unknown option -Z\n  `cag run --help` lists the options\n"},
-      {"cag run a -[", "cag run: '-[' is one too many\n  write `cag run FILE`; `cag run --help` "
-                       "shows examples\n"},
-      {"cag run a -o", "cag run: -o is an option of other commands\n  `cag run --help` lists the "
-                       "options\n"},
+      {"cag run a -[",
+       "cag run: unexpected argument '-['\n  write `cag run FILE`; `cag run --help` "
+       "shows examples\n"},
+      {"cag run a -o",
+       "cag run: -o is an option of other commands\n  `cag run --help` lists the options\n"},
       {"cag export a -o", "cag export: -o needs a value\n  write -o OUT\n"},
       {"cag export a -o --format stl", "cag export: -o needs a value\n  write -o OUT\n"},
       {"cag run a --max-depth", "cag run: --max-depth needs a value\n  write --max-depth CALLS\n"},
@@ -370,8 +372,8 @@ static void what_is_wrong_is_said(void **state) {
       {"cag run a -D =3", "cag run: -D '=3': expected NAME=VALUE\n  write -D name=value, such as "
                           "-D height=200\n"},
       {"cag run a -I=", "cag run: -I '': expected a name\n  name a folder\n"},
-      {"cag run a --max-depth 0", "cag run: --max-depth '0': expected a count\n  give a whole "
-                                  "number from 1 on\n"},
+      {"cag run a --max-depth 0",
+       "cag run: --max-depth '0': expected a count\n  give a whole number of at least 1\n"},
       {"cag --diagnostics=json run", "{\"severity\":\"error\""},
   };
   size_t bad = 0;

@@ -65,21 +65,20 @@ static const File FILES[] = {
     CSV("script,output,t\na.cag,a.stl,\"1\n2\"\nb.cag,b.stl,3\n",
         "2: script=a.cag output=a.stl t=1\n2\n4: script=b.cag output=b.stl t=3\n"),
     CSV("script,output\na.cag,\"a.stl\"", "2: script=a.cag output=a.stl\n"),
-    CSV("script,output\na.cag,\"a.stl\n", "2: script=a.cag output=a.stl\n! 1 E0910 a field begins "
-                                          "with a quote that nothing closes\n"),
+    CSV("script,output\na.cag,\"a.stl\n",
+        "2: script=a.cag output=a.stl\n! 1 E0910 the quote at the beginning of a field is never closed\n"),
     // columns
     CSV("script,output,,\na.cag,a.stl,,\n", "2: script=a.cag output=a.stl\n"),
     CSV("script,output\na.cag,a.stl,,more\n",
-        "2: script=a.cag output=a.stl\n! 1 E0910 the row has more fields than there are named "
-        "columns: 'more'\n"),
+        "2: script=a.cag output=a.stl\n! 1 E0910 the row has more fields than the first line has columns: 'more'\n"),
     CSV("script,output\na.cag\n", "2: script=a.cag\n"),
-    CSV("script,output,r,r\na.cag,a.stl,1,2\n", "! 0 E0911 there are two columns 'r'\n"),
+    CSV("script,output,r,r\na.cag,a.stl,1,2\n", "! 0 E0911 duplicate column 'r'\n"),
     CSV("x,y\n1,2\n3,4\n", "! 0 E0911 the column 'script' is missing\n"
                            "! 0 E0911 the column 'output' is missing\n"),
     // no rows
     CSV("", "! 0 E0910 the file is empty\n"),
     CSV(" \n\n", "! 0 E0910 the file is empty\n"),
-    CSV("script,output\n", "! 0 E0910 the file has no row\n"),
+    CSV("script,output\n", "! 0 E0910 the file has no rows\n"),
     BYTES("script,output\na\0b,c\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
     BYTES("script,output\n\xC3\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
     // --- JSON ---
@@ -92,13 +91,13 @@ static const File FILES[] = {
     JSON("[{\"r\": {\"a\": 1}}, 3, []]", "0:\n0:\n0:\n! 1 E0910 the value of 'r' is a record\n"
                                          "! 2 E0910 the row is not a record\n"
                                          "! 3 E0910 the row is not a record\n"),
-    JSON("[]", "! 0 E0910 the file has no row\n"),
-    JSON("{\"script\": \"a.cag\"}", "! 0 E0910 the jobs are not a list\n"),
-    JSON("[\n{\"script\":\n", "! 0 E0910 line 3: this is not JSON\n"),
-    JSON("[] more", "! 0 E0910 line 1: this is not JSON\n"),
+    JSON("[]", "! 0 E0910 the file has no rows\n"),
+    JSON("{\"script\": \"a.cag\"}", "! 0 E0910 expected a list of records\n"),
+    JSON("[\n{\"script\":\n", "! 0 E0910 line 3: invalid JSON\n"),
+    JSON("[] more", "! 0 E0910 line 1: invalid JSON\n"),
     JSON("[\n{\"script\": \"a\\u0000b\"}]", "! 0 E0910 line 2: expected texts without \\u0000\n"),
     JSON("[{\"t\": \"\\\\u0000\"}]", "0: t=\\u0000\n"),
-    JSON("", "! 0 E0910 line 1: this is not JSON\n"),
+    JSON("", "! 0 E0910 line 1: invalid JSON\n"),
 };
 #define FILE_COUNT (sizeof FILES / sizeof *FILES)
 

@@ -159,9 +159,9 @@ static void test_refused(void **state) {
   static const struct {
     const char *text, *why;
   } rows[] = {
-      {"my list\n", "is another file"},
-      {"my list", "is another file"},
-      {"{\"what\":\"lost\",\"key\":\"a\"}\nmine\n", "is another file"},
+      {"my list\n", "the file is not a journal"},
+      {"my list", "the file is not a journal"},
+      {"{\"what\":\"lost\",\"key\":\"a\"}\nmine\n", "the file is not a journal"},
   };
   CagJournal j, other;
   CagError err = {0};
@@ -173,15 +173,15 @@ static void test_refused(void **state) {
   remove("journal");
   assert_int_equal(mkfifo("journal", 0666), 0);
   assert_false(cag_journal_open(&j, "journal", false, &err));
-  assert_non_null(strstr(err.message, "is not a file"));
+  assert_non_null(strstr(err.message, "it is not a regular file"));
   remove("journal");
   assert_int_equal(mkdir("journal", 0777), 0);
   assert_false(cag_journal_open(&j, "journal", false, &err));
-  assert_non_null(strstr(err.message, "cannot be opened"));
+  assert_non_null(strstr(err.message, "cannot open the journal"));
   rmdir("journal");
   assert_true(cag_journal_open(&j, "journal", false, &err));
   assert_false(cag_journal_open(&other, "journal", false, &err));
-  assert_non_null(strstr(err.message, "is held by another batch"));
+  assert_non_null(strstr(err.message, "another batch of this table is running"));
   // What cannot be written is told, with the reason.
   close(j.fd);
   assert_int_equal(open("/dev/full", O_WRONLY), j.fd);

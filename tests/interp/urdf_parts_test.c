@@ -240,7 +240,7 @@ static void trees_without_one_root_are_refused(void **state) {
       {"<robot>" LINKS JOINT("j", "a", "b") "</robot>", NULL, "urdf-branches",
        "parent joint: \"a\", \"c\";"},
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",
-       NULL, "urdf-chain", "no link is the first"},
+       NULL, "urdf-chain", "there is no first link"},
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",
        "c", "urdf-chain", "form a loop"}};
   for (size_t i = 0; i < 3; i++) {

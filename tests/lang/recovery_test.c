@@ -47,7 +47,7 @@ static void habits_of_other_languages_get_their_mend(void **state) {
   expect_mend("a = 1\nprint(a, 2)", "E0157", "print a, 2");
   expect_mend("x = 1\nx += 1", "E0151", "x2 = x + ...");
   expect_mend("max(1, 2)", "E0150", "print max(1, 2)");
-  expect_mend("x == 3", "E0150", "define x write =");
+  expect_mend("x == 3", "E0150", "to define x, write =");
   expect_mend("x = if 1 = 2 then 3 else 4", "E0153", "==");
   expect_mend("let x = 1", "E0152", "let");
   expect_mend("def f(x) = x", "E0152", "def");
@@ -225,8 +225,8 @@ static void syntax_errors_mark_what_is_wrong(void **state) {
   } rows[] = {
       {"x «=»\ny = 2", "E0120", "expected an expression after `=`", ""},
       {"x = 1 +«»", "E0120", "expected an expression after `+`", ""},
-      {"x = «+»1", "E0120", "expected an expression, found `+`", "a number has no + before it"},
-      {"x = f(1, «,» 2)", "E0120", "expected an expression, found `,`", "one comma too many"},
+      {"x = «+»1", "E0120", "expected an expression, found `+`", "remove the +"},
+      {"x = f(1, «,» 2)", "E0120", "expected an expression, found `,`", "remove one comma"},
       {"x = «show» 2", "E0120", "expected an expression, found the reserved word `show`",
        "it starts a statement"},
       {"x = «.5»", "E0111", "digits on both sides", "write 0.5"},
@@ -242,9 +242,10 @@ static void syntax_errors_mark_what_is_wrong(void **state) {
       {"x = { «\"a{1}\"»: 2 }", NULL, "the name of a field has no { } in it",
        "record([[name, value], ...])"},
       {"x = { a = 1 «}»", NULL, "this block has no value", "it ends with an expression"},
-      {"x = { «a + 1»\nb }", NULL, "not the last thing of its block", "give it a name"},
-      {"x = { «a»\n-b }", NULL, "not the last thing of its block", "a line that starts with `-`"},
-      {"x = \"a«{}»\"", "E0113", "there is nothing in these { }", "hold an expression"},
+      {"x = { «a + 1»\nb }", NULL, "not the last expression of its block", "give it a name"},
+      {"x = { «a»\n-b }", NULL, "not the last expression of its block",
+       "a line that starts with `-`"},
+      {"x = \"a«{}»\"", "E0113", "there is nothing in these { }", "contain an expression"},
       {"x = «[»1, 2\ny = 3", "E0123", "this bracket is not closed: `]` is missing", "opened here"},
       {"x = f«(»1", NULL, "this bracket is never closed: `)` is missing", "opened here"},
       {"x = 1«)»", NULL, "`)` closes nothing", "no bracket is open here"},
@@ -254,13 +255,13 @@ static void syntax_errors_mark_what_is_wrong(void **state) {
       {"x = f(1«;» 2)", NULL, "found `;`", "separate the items in brackets with commas"},
       {"x = 1 «not in» xs", NULL, "`not in` is not an operator", "write not (1 in xs)"},
       {"x = 1 «if» y", NULL, "the condition comes before the value", "write if c then 1 else b"},
-      {"x = y «for» z in xs", NULL, "in a comprehension the loop comes first",
+      {"x = y «for» z in xs", NULL, "in a comprehension, the loop comes first",
        "write [for x in xs: y]"},
       {"x = 3 «by» 2", NULL, "`by` needs a range before it", "write 0..10 by 2"},
       {"f = 1 «=>» 2", NULL, "expected the names of the parameters", "write x => e"},
-      {"x = a «=» b", "E0153", "is not allowed here", "to compare write =="},
+      {"x = a «=» b", "E0153", "is not allowed here", "to compare, write =="},
       {"x = f(a «+=» 1)", NULL, "values cannot be changed", "define a new name"},
-      {"x = \"{y«:»2}\"", "E0167", "no format", "text(y, digits: 2)"},
+      {"x = \"{y«:»2}\"", "E0167", "without a format", "text(y, digits: 2)"},
       {"x = c «?» a : b", NULL, "", "write if c then a else b"},
       {"x = 1 + «if» c then 2 else 3", NULL, "in parentheses", "write (if c then 2 else 3)"},
       {"x = 2 * «y» => y", "E0136", "put a function in parentheses", "write (y => y)"},

@@ -312,7 +312,7 @@ edits ':edit takes the script loaded last, and loads all again' '41 : number
 width
 :edit
 width'
-edits 'an editor that fails is named' 'error: the editor `false` failed; VISUAL or EDITOR names another
+edits 'an editor that fails is named' 'error: the editor `false` failed; set VISUAL or EDITOR to another one
 3 : number' '' 'x = 3
 :edit
 x'
@@ -336,7 +336,7 @@ got=$(printf 'x = 3\n:edit\n' | env -u TMPDIR -u VISUAL -u EDITOR PATH="$work/bi
 [ -z "$got" ]
 result 'the same without the variables' $? "$got"
 got=$(printf 'x = 3\n:edit\n' | VISUAL='kill -KILL $$ #' "$cag" repl 2>&1)
-[ "${got#*failed; VISUAL or EDITOR names another}" != "$got" ]
+[ "${got#*failed; set VISUAL or EDITOR}" != "$got" ]
 result 'an editor that is killed has failed' $? "$got"
 got=$(printf 'x = 3\n:edit\n' | TMPDIR="$work/missing" VISUAL=true "$cag" repl 2>&1)
 [ "${got#*cannot write "$work"/missing/cag-}" != "$got" ]
@@ -556,7 +556,7 @@ else
   [ "$(printf '%s\n' "$told" | grep -c '^  ')" -ge 4 ] && ! printf '%s\n' "$told" | grep -v -e '->' -e '^ ' | grep -q .
   result 'documentation is wrapped in a narrow window' $? "$(screen)"
   keys C-l ':help' Enter
-  shows 'the list of commands is wrapped as well' '                command or an error code; of all functions'
+  shows 'the list of commands is wrapped as well' '                command, or an error code; without NAME, all'
   awk 'BEGIN { for (i = 1; i <= 500; i++) printf "v%d = %d + 1\n", i, i; print "v500" }' >lines.txt
   tmux -L "$session" load-buffer lines.txt
   tmux -L "$session" paste-buffer -t repl

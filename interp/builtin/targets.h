@@ -1,0 +1,45 @@
+// The shapes of a value as what rays are cast at.
+
+#ifndef CAG_INTERP_BUILTIN_TARGETS_H
+#define CAG_INTERP_BUILTIN_TARGETS_H
+
+#include "geom/ray/bvh.h"
+#include "geom/ray/caster.h"
+#include "interp/vm/builtin.h"
+
+typedef struct CagTargetPart {
+  const CagShape *shape;
+  CagCaster *caster; // owned by the target
+} CagTargetPart;
+
+// Curves and labels, which have no surface, and hidden shapes are left out.
+typedef struct CagTarget {
+  CagTargetPart *parts;
+  size_t count;
+  size_t bounded; // the first parts are bounded, and in `boxes`
+  CagBvh boxes;
+  CagBounds bounds; // of the bounded ones
+  double size;      // diagonal of the bounds
+} CagTarget;
+
+// What a ray meets: the number of the part, and where.
+typedef struct CagTargetHit {
+  size_t part;
+  CagCrossing at;
+} CagTargetHit;
+
+// Finds or makes the target of an argument: a shape, group, or robot, or a list of these. It belongs
+// to the machine and is valid until the next call of this function, or of a built-in.
+bool cag_arg_ray_target(CagCall *call, int argument, const CagTarget **out);
+// The caster of a solid, surface, or mesh, in the same way.
+bool cag_shape_caster(CagCall *call, CagValue shape, const CagCaster **out);
+
+// The first part that the ray meets. `work` is a list whose memory is reused; start with {0}.
+CagStatus cag_target_first(const CagTarget *t, const CagRay *ray, CagCrossings *work,
+                           CagTargetHit *out, bool *met, CagError *err);
+// The name of a part: a text, or none.
+CagValue cag_target_name(const CagTarget *t, size_t part);
+// The material of the part where it was met: a record, or none.
+CagValue cag_target_material(const CagVm *vm, const CagTarget *t, const CagTargetHit *hit);
+
+#endif
