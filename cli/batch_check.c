@@ -79,7 +79,7 @@ static bool check_format(CagBatch *b, const CagJob *job, CagBatchRow *row) {
   if (row->renders || (format && is_export(format))) return true;
   char help[300] = "the formats are .exr .png";
   for (const char *const *f = cag_export_formats(); *f; f++)
-    snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
+    if (!is_picture(*f)) snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
   if (!format)
     return cag_jobs_problem(&b->jobs, job, CODE_FORMAT, help,
                             "the output '%s' has no extension that determines its format", output);

@@ -132,6 +132,34 @@ static bool set_frames(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_image(CagTool *t, const char *value) {
+  t->image = value;
+  return true;
+}
+
+static bool set_range(CagTool *t, const char *value) {
+  static const char HELP[] = "write the numbers that become black and white, such as 0..1";
+  char low[64];
+  const char *dots = strstr(value, "..");
+  const size_t n = dots ? (size_t)(dots - value) : 0;
+  if (n == 0 || n >= sizeof low) return reject(t, HELP, "--range", value, "expected a range");
+  memcpy(low, value, n);
+  low[n] = 0;
+  if (!read_number(low, NULL, &t->range_low) || !read_number(dots + 2, NULL, &t->range_high))
+    return reject(t, HELP, "--range", value, "expected a range");
+  if (t->range_low >= t->range_high)
+    return reject(t, HELP, "--range", value, "the start is not below the end");
+  return t->has_range = true;
+}
+
+static bool set_bits(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"8", "16"};
+  size_t i;
+  if (!one_of(t, "--bits", value, CHOICES, 2, "there are 8 and 16", &i)) return false;
+  t->bits = i == 0 ? 8 : 16;
+  return true;
+}
+
 static bool set_exposure(CagTool *t, const char *value) {
   if (read_number(value, NULL, &t->exposure)) return true;
   return reject(t, "give a number of stops, such as 0.5 or -1", "--exposure", value,

@@ -1,4 +1,5 @@
-// cag export FILE -o OUT: writes the shapes of a script in the format of the output's extension.
+// cag export FILE -o OUT: writes the shapes or an image of a script in the format of the output's
+// extension.
 
 #include <string.h>
 #include <strings.h>
@@ -20,12 +21,23 @@ static bool is_format(const char *name) {
 
 static int reject_format(const CagTool *t, const char *format) {
   char help[300] = "the formats are";
-  if (!strcasecmp(format, "exr") || !strcasecmp(format, "png"))
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "use `cag render` to make a picture",
-                         "'.%s' is a picture format", format);
   for (const char *const *f = cag_export_formats(); *f; f++)
     snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
   return cag_tool_fail(t, CAG_STATUS_USAGE, help, "unknown format '.%s'", format);
+}
+
+// Options of images apply to their formats only.
+static int check_image_options(const CagTool *t, const char *format) {
+  const bool png = !strcasecmp(format, "png"), exr = !strcasecmp(format, "exr");
+  const char *option = t->image && !png && !exr ? "--image"
+                       : t->has_range && !png   ? "--range"
+                       : t->bits && !png        ? "--bits"
+                                                : NULL;
+  if (!option) return CAG_STATUS_OK;
+  return cag_tool_fail(t, CAG_STATUS_USAGE,
+                       t->image && !png && !exr ? "images are written to .exr and .png files"
+                                                : "it applies to .png files",
+                       "%s does not apply to a .%s file", option, format);
 }
 
 // Checks the command line before anything runs. Returns 0, or the status after a message.
@@ -38,7 +50,8 @@ static int check(const CagTool *t) {
     return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",
                          "the output '%s' has no extension that determines its format", t->output);
   if (!is_format(format)) return reject_format(t, format);
-  return cag_tool_check_place(t, t->output);
+  const int status = check_image_options(t, format);
+  return status != CAG_STATUS_OK ? status : cag_tool_check_place(t, t->output);
 }
 
 int cag_tool_export(CagTool *t, int argc, char **argv) {
@@ -52,7 +65,8 @@ int cag_tool_export(CagTool *t, int argc, char **argv) {
   if (status == CAG_STATUS_OK) {
     fflush(stdout);
     cag_tool_make_folder(t->output);
-    status = cag_session_export(s, t->output, t->format);
+    const CagImageOptions image = {t->image, t->range_low, t->range_high, t->bits};
+    status = cag_session_export_image(s, t->output, t->format, &image);
   }
   status = cag_tool_finish(t, s, status);
   if (status == CAG_STATUS_OK && t->verbose) {

@@ -59,6 +59,10 @@ struct CagTool {
   const char *output, *format; // -o, --format
   int width, height;           // --size
   const char *quality, *camera;
+  const char *image; // --image
+  bool has_range;    // --range
+  double range_low, range_high;
+  int bits; // --bits; 0: the default
   double exposure;
   bool has_frames, loop;        // --frames, --loop
   int samples;                  // --samples; 0: depends on the quality

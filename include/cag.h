@@ -156,10 +156,25 @@ CAG_API void cag_session_describe_scene(CagSession *s, FILE *out);
 CAG_API const char *cag_session_camera(CagSession *s, size_t i);
 
 // Writes the scene to a file, under a temporary name that is renamed at the end. `format` is one of
-// "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", and "json"; NULL:
-// that of the path's extension. The path "-" is standard output and needs a format. Three formats
-// write files next to the path: obj its materials, gltf its data, and urdf its meshes.
+// "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", "json", and, for
+// an image that is shown, "exr" and "png"; NULL: that of the path's extension. The path "-" is
+// standard output and needs a format. Three formats write files next to the path: obj its materials,
+// gltf its data, and urdf its meshes.
 CAG_API int cag_session_export(CagSession *s, const char *path, const char *format);
+// Returns the name of image i that is shown, or NULL.
+CAG_API const char *cag_session_image(CagSession *s, size_t i);
+// Zeros are the defaults.
+typedef struct CagImageOptions {
+  const char *image; // the name of one of the images; NULL: the only one
+  double low, high;  // of .png: the numbers that become black and white; both 0: 0 and 1
+  int bits;          // of .png: 8 or 16 per channel; 0: 8
+} CagImageOptions;
+CAG_API void cag_image_options_init(CagImageOptions *o);
+// Writes an image that the script shows to an .exr file, all channels as 32-bit floats, or to a .png
+// file (options NULL: the defaults). Other formats are those of cag_session_export, which also
+// accepts these two.
+CAG_API int cag_session_export_image(CagSession *s, const char *path, const char *format,
+                                     const CagImageOptions *options);
 // Returns the formats, ending with NULL.
 CAG_API const char *const *cag_export_formats(void);
 // Returns a short description of a format, or NULL if there is no such format.

@@ -45,17 +45,9 @@ bool cag_odd_size(CagCall *call, int argument, long size) {
   return size % 2 == 1 || cag_fail_value(call, argument, "an odd number of pixels");
 }
 
-static void release_raster(void *r) { cag_raster_release(r); }
-
 bool cag_hold_image(CagCall *call, CagStatus status, CagRaster **made) {
   if (!cag_geometry_ok(call, status)) return false;
-  cag_hold_for(call, release_raster, *made);
-  return true;
-}
-
-bool cag_raster_result(CagCall *call, CagStatus status, CagRaster **made, CagValue *result) {
-  if (!cag_hold_image(call, status, made)) return false;
-  *result = cag_image_result(call, *made);
+  cag_hold_raster(call, *made);
   return true;
 }
 

@@ -20,8 +20,6 @@ bool cag_odd_size(CagCall *call, int argument, long size);
 // Holds an image that the core has made. The call of the core is an argument before it, so this
 // takes the address.
 bool cag_hold_image(CagCall *call, CagStatus status, CagRaster **made);
-// The same, as the result of the built-in.
-bool cag_raster_result(CagCall *call, CagStatus status, CagRaster **made, CagValue *result);
 
 // A point of the plane.
 CagValue cag_xy(CagVm *vm, double x, double y);

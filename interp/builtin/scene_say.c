@@ -186,6 +186,15 @@ bool cag_scenes_color(CagCall *call, CagValue *result) {
   return set_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
 }
 
+// A copy of an image, with the name unless it has one.
+static CagValue named_image(CagVm *vm, CagValue v, CagValue name) {
+  const CagImageValue *image = CAG_AS_IMAGE(v);
+  if (image->name) return v;
+  const CagValue copy = cag_image_value(vm, cag_raster_retain(image->raster));
+  CAG_AS_IMAGE(copy)->name = CAG_AS_TEXT(name);
+  return copy;
+}
+
 bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue *result) {
   const CagValue v = a->G, name = call->values[1];
   if (!*a->name) return cag_fail_call(call, 1, CAG_ERR_value, "expects a name that is not empty");
@@ -193,6 +202,10 @@ bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue 
     *result = cag_record_get(CAG_AS_SCENE(v)->fields, "name").type == CAG_TEXT
                   ? v
                   : with_field(call->vm, v, "name", name);
+    return true;
+  }
+  if (v.type == CAG_IMAGE) {
+    *result = named_image(call->vm, v, name);
     return true;
   }
   if (!copy_shape(call, result)) return false;

@@ -59,7 +59,8 @@ static void check_shown(Check *c, const CagExpr *e) {
   const CagTypes types = cag_check_infer(c, e);
   if (types & ~unseen) return;
   cag_check_report_found(c, CAG_ERR_no_image, e->span,
-                         "show expects shapes, lights, cameras, or settings of the scene", types);
+                         "show expects shapes, images, lights, cameras, or settings of the scene",
+                         types);
 }
 
 static void walk_statement(Check *c, const CagStatement *s) {

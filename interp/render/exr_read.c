@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 
@@ -38,6 +39,7 @@ static bool fail(CagError *err, const Source *source, const char *what) {
 }
 
 static bool fail_code(CagError *err, const Source *source, exr_result_t code) {
+  if (cag_stopped()) return cag_fail_io(err, CAG_E_CALLBACK, NULL, "reading was stopped");
   if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
     return cag_fail_io(
         err, CAG_E_FILE, "store it with ZIP, PIZ, RLE, or no compression",
@@ -190,6 +192,7 @@ static exr_result_t read_scanlines(PartReader *r) {
   exr_result_t rv = exr_get_scanlines_per_chunk(r->file, r->part, &lines);
   for (int64_t y = r->data.min.y; !rv && y <= r->data.max.y; y += lines) {
     exr_chunk_info_t chunk;
+    if (cag_stopped()) return EXR_ERR_UNKNOWN;
     rv = exr_read_scanline_chunk_info(r->file, r->part, (int)y, &chunk);
     if (!rv) rv = read_chunk(r, &chunk, r->data.min.x, y);
   }
@@ -206,6 +209,7 @@ static exr_result_t read_tiles(PartReader *r) {
   for (int64_t ty = 0; !rv && ty * tile_h < height; ty++) {
     for (int64_t tx = 0; !rv && tx * tile_w < width; tx++) {
       exr_chunk_info_t chunk;
+      if (cag_stopped()) return EXR_ERR_UNKNOWN;
       rv = exr_read_tile_chunk_info(r->file, r->part, (int)tx, (int)ty, 0, 0, &chunk);
       if (!rv) rv = read_chunk(r, &chunk, r->data.min.x + tx * tile_w, r->data.min.y + ty * tile_h);
     }
@@ -328,7 +332,7 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
   int64_t height = (int64_t)display.max.y - display.min.y + 1;
   CagError inner;
   if (!cag_image_create(out, (size_t)width, (size_t)height, channels, &inner))
-    return cag_fail_io(err, cag_exit_status(&inner), inner.help, "cannot read '%s' as EXR: %.300s",
+    return cag_fail_io(err, inner.status, inner.help, "cannot read '%s' as EXR: %.300s",
                        source->shown, inner.message);
 
   size_t next = 0;

@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/atomic_file.h"
 #include "base/memory.h"
+#include "base/stop.h"
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 
@@ -99,13 +100,14 @@ static exr_result_t write_chunks(exr_context_t file, const CagImage *image) {
   bool begun = false;
   for (size_t y = 0; !rv && y < image->height; y += (size_t)lines) {
     exr_chunk_info_t chunk;
-    rv = exr_write_scanline_chunk_info(file, 0, (int)y, &chunk);
+    if (cag_stopped()) rv = EXR_ERR_UNKNOWN;
+    if (!rv) rv = exr_write_scanline_chunk_info(file, 0, (int)y, &chunk);
     if (!rv)
       rv = begun ? exr_encoding_update(file, 0, &chunk, &encoder)
                  : exr_encoding_initialize(file, 0, &chunk, &encoder);
     if (!rv) rv = aim_channels(&encoder, image, y);
     if (!rv && !begun) rv = exr_encoding_choose_default_routines(file, 0, &encoder);
-    begun = true;
+    begun = begun || !rv;
     if (!rv) rv = exr_encoding_run(file, 0, &encoder);
   }
   if (begun) exr_encoding_destroy(file, &encoder);
@@ -145,6 +147,7 @@ static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
   }
   cag_exr_complaint_listen(NULL);
   if (rv == EXR_ERR_SUCCESS) return true;
+  if (cag_stopped()) return cag_fail_io(err, CAG_E_CALLBACK, NULL, "writing was stopped");
   return cag_fail_io(err, CAG_E_FILE, NULL, "cannot write '%s' as EXR: %s", sink->shown,
                      cag_exr_complaint_text(&sink->complaint, rv));
 }

@@ -27,7 +27,7 @@ bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel
   if (!channels || !data) {
     cag_free(channels);
     cag_free(data);
-    return cag_fail_io(err, CAG_E_LIMIT, "make it smaller",
+    return cag_fail_io(err, CAG_E_MEMORY, "make it smaller",
                        "not enough memory for an image of %zu by %zu pixels with %zu channels",
                        width, height, channel_count);
   }

@@ -32,7 +32,7 @@ typedef struct CagImage {
 } CagImage;
 
 // Makes an image of zeros with unnamed channels. Release it with cag_image_free. A size of zero or
-// above the limits is an error of status CAG_E_LIMIT.
+// above the limits is an error of status CAG_E_LIMIT, exhausted memory one of CAG_E_MEMORY.
 bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
                       CagError *err);
 

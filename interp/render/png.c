@@ -246,8 +246,8 @@ bool cag_png_read(const char *path, CagImage *out, CagError *err) {
   if (!ok) {
     fail_read(err, path, s.message[0] ? s.message : "no memory");
   } else if (!s.image.data) {
-    ok = cag_fail_io(err, cag_exit_status(&inner), inner.help, "cannot read '%s' as PNG: %.300s",
-                     path, inner.message);
+    ok = cag_fail_io(err, inner.status, inner.help, "cannot read '%s' as PNG: %.300s", path,
+                     inner.message);
   } else {
     to_linear(&s);
     *out = s.image;

@@ -21,6 +21,7 @@
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
+#include "interp/session/expect_image.h"
 #include "interp/session/expect_near.h"
 #include "interp/session/session.h"
 
@@ -35,9 +36,10 @@ typedef struct Piece {
 } Piece;
 
 typedef struct Expected {
-  Piece text; // the line, or the error's code
+  Piece text; // the line, the error's code, or the path of an image
+  Piece name; // of the image; empty: the only one
   size_t line;
-  bool is_error;
+  bool is_error, is_image;
   bool alone; // nothing else is on the line
   bool met;
 } Expected;
@@ -202,6 +204,9 @@ static bool begins_with(Piece p, const char *word, Piece *rest) {
   return true;
 }
 
+// The rest of a text that begins with a word, with its blanks.
+static Piece after(Piece p, const char *word) { return (Piece){p.start + strlen(word), p.end}; }
+
 static void add_expected(Reader *r, Piece text, bool is_error, bool alone) {
   if (r->plans->count == 0 && !add_plan(r->plans, r->limits, 0)) return;
   Plan *p = &r->plans->items[r->plans->count - 1];
@@ -221,6 +226,19 @@ static void add_errors(Reader *r, Piece text, bool alone) {
   }
 }
 
+// Parses `: depth.exr` or ` depth: depth.exr`, after `expect image`. False: it is something else.
+static bool add_image(Reader *r, Piece text, bool alone) {
+  const char *colon =
+      text.start < text.end ? memchr(text.start, ':', (size_t)(text.end - text.start)) : NULL;
+  if (!colon || (*text.start != ':' && !isspace((unsigned char)*text.start))) return false;
+  add_expected(r, trim((Piece){colon + 1, text.end}), false, alone);
+  const Plan *p = r->plans->count ? &r->plans->items[r->plans->count - 1] : NULL;
+  if (r->plans->memory || !p || p->count == 0) return true;
+  p->expected[p->count - 1].is_image = true;
+  p->expected[p->count - 1].name = trim((Piece){text.start, colon});
+  return true;
+}
+
 static void note_miss(Reader *r, Piece text) {
   const char *meant = cag_test_meant(text.start, (size_t)(text.end - text.start));
   if (!meant) return;
@@ -235,6 +253,9 @@ static void read_comment(Reader *r, Piece text, bool alone) {
   text = trim(text);
   if (begins_with(text, "expect error:", &rest)) {
     add_errors(r, rest, alone);
+  } else if (begins_with(text, "expect image", &rest) &&
+             add_image(r, after(text, "expect image"), alone)) {
+    return;
   } else if (begins_with(text, "expect:", &rest)) {
     add_expected(r, rest, false, alone);
   } else if (begins_with(text, "run:", &rest)) {
@@ -454,7 +475,7 @@ static void check_output(Run *r, const char *text, size_t size) {
   size_t last_line = r->plan->line;
   for (size_t i = 0; i < r->plan->count; i++) {
     const Expected *e = &r->plan->expected[i];
-    if (e->is_error) continue;
+    if (e->is_error || e->is_image) continue;
     char *expected = cag_strndup(e->text.start, (size_t)(e->text.end - e->text.start));
     last_line = e->line;
     if (at == end) {
@@ -482,6 +503,57 @@ static void check_output(Run *r, const char *text, size_t size) {
   char *found = cag_strndup(at, (size_t)((stop ? stop : end) - at));
   fail(r, last_line, "there is more output than expected", NULL, found, NULL);
   cag_free(found);
+}
+
+// --- Images ---
+
+// Returns the path of an expected image, which is relative to the script, or NULL if memory ran
+// out.
+static char *image_path(const Run *r, Piece text) {
+  const char *slash = strrchr(r->path, '/');
+  const int n = (int)(text.end - text.start);
+  char *path = NULL;
+  if (*text.start == '/') return cag_strndup(text.start, (size_t)n);
+  const int made = r->folder
+                       ? cag_asprintf(&path, "%s/%.*s", r->folder, n, text.start)
+                       : cag_asprintf(&path, "%.*s%.*s", slash ? (int)(slash + 1 - r->path) : 0,
+                                      r->path, n, text.start);
+  return made < 0 ? NULL : path;
+}
+
+// Writes the expected image anew.
+static void update_image(Run *r, CagSession *s, const Expected *e, const char *name,
+                         const char *path) {
+  CagImageOptions options;
+  cag_image_options_init(&options);
+  options.image = name;
+  if (cag_session_export_image(s, path, NULL, &options) == CAG_STATUS_OK) return;
+  char *errors = rendered_errors(s);
+  fail(r, e->line, "the image cannot be written", NULL, NULL, errors);
+  cag_free(errors);
+}
+
+static void check_image(Run *r, CagSession *s, const Expected *e) {
+  char *path = image_path(r, e->text);
+  const bool named = e->name.start < e->name.end;
+  char *name = named ? cag_strndup(e->name.start, (size_t)(e->name.end - e->name.start)) : NULL;
+  if (!path || (named && !name)) {
+    fail(r, e->line, "there is not enough memory for the image", NULL, NULL, NULL);
+  } else if (r->options->update) {
+    update_image(r, s, e, name, path);
+  } else {
+    char *message = cag_test_image(s, name, path);
+    if (!message || *message)
+      fail(r, e->line, message ? message : "the image cannot be compared", NULL, NULL, NULL);
+    cag_free(message);
+  }
+  cag_free(path);
+  cag_free(name);
+}
+
+static void check_images(Run *r, CagSession *s) {
+  for (size_t i = 0; i < r->plan->count; i++)
+    if (r->plan->expected[i].is_image) check_image(r, s, &r->plan->expected[i]);
 }
 
 // --- Pictures ---
@@ -681,6 +753,7 @@ static int perform(Run *r) {
       check_errors(r, s);
       // Output that is missing because of an error is not reported separately.
       if (!r->failed) check_output(r, output, size);
+      if (!r->failed) check_images(r, s);
       bool ok = !r->failed;
       end_run(r, ok ? CAG_TEST_PASSED : CAG_TEST_FAILED, cag_clock_seconds() - begin, NULL);
       status = ok && status == CAG_STATUS_OK ? test_reference(r, s) : CAG_STATUS_OK;

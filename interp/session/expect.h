@@ -17,6 +17,10 @@
 // (below). Errors without a location in the script (a -D for an unknown param, an error in an
 // imported module) are matched by code only.
 //
+// `expect image: depth.exr` compares the image that the script shows with a file beside it, and
+// `expect image left: left.exr` the image of that name (see expect_image.h). PNG files are compared
+// after clipping to 0..1.
+//
 // Examples in the documentation of its definitions, lines of /// indented by four, are also tests.
 // Each runs separately, with the names that it uses imported from the script.
 //

@@ -39,7 +39,9 @@ const char *cag_test_meant(const char *text, size_t length) {
   if (!colon || n > KEY_MOST) return NULL;
   for (size_t i = 0; i < n; i++) key[i] = (char)tolower((unsigned char)text[i]);
   for (size_t i = n; i > 0 && key[i - 1] == ' '; i--) key[i - 1] = 0;
-  if (strncmp(text, "expect:", 7) == 0 || strncmp(text, "expect error:", 13) == 0) return NULL;
+  if (strncmp(text, "expect image", 12) == 0 || strncmp(text, "expect:", 7) == 0 ||
+      strncmp(text, "expect error:", 13) == 0)
+    return NULL;
   if ((second = strpbrk(key, " -_"))) *second++ = 0;
   const bool is_first = IS_ONE_OF(key, "expect", "expects", "expected", "expecting") ||
                         (is_one_off(key, "expect") && strcmp(key, "expert") != 0);

@@ -575,25 +575,40 @@ static int export_urdf(CagSession *s, const char *path) {
   X("svg", "drawing of curves and regions", export_svg)                                            \
   X("json", "data of the whole scene", export_json)
 
+// Formats of shown images, which need no scene.
+static int export_exr(CagSession *s, const char *path) {
+  return cag_session_write_image(s, path, false, NULL);
+}
+static int export_png(CagSession *s, const char *path) {
+  return cag_session_write_image(s, path, true, NULL);
+}
+#define IMAGE_FORMATS(X)                                                                           \
+  X("exr", "image that is shown, OpenEXR with all channels as 32-bit floats", export_exr)          \
+  X("png", "image that is shown, PNG", export_png)
+
 static const struct Format {
   const char *name, *story;
   ExportFunction write;
+  bool of_image;
 } formats[] = {
-#define X(name, story, function) {name, story, function},
+#define X(name, story, function) {name, story, function, false},
     FORMATS(X)
+#undef X
+#define X(name, story, function) {name, story, function, true},
+        IMAGE_FORMATS(X)
 #undef X
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
 static const char FORMAT_HELP[] =
 #define X(name, story, function) " " name
-    "use --format to choose a format:" FORMATS(X);
+    "use --format to choose a format:" FORMATS(X) IMAGE_FORMATS(X);
 #undef X
 
 const char *const *cag_export_formats(void) {
   static const char *const names[] = {
 #define X(name, story, function) name,
-      FORMATS(X)
+      FORMATS(X) IMAGE_FORMATS(X)
 #undef X
           NULL};
   return names;
@@ -631,11 +646,10 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
                                     "unknown format `%s`", name)
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no extension that determines the format", path);
-    cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
-                                   ? "use `cag render` to make pictures"
-                                   : FORMAT_HELP);
+    cag_diagnostic_set_help(d, FORMAT_HELP);
     return CAG_STATUS_USAGE;
   }
+  if (f->of_image) return f->write(s, path);
   int status = cag_session_build_scene(s);
   return status == CAG_STATUS_OK ? cag_session_geometry(s, write_output, &(Output){f, path})
                                  : status;

@@ -151,9 +151,9 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
   fputs("</div>\n", out);
   if (e && e->picture)
     fprintf(out,
-            "<img src=\"%s%s\" width=\"%d\" height=\"%d\" loading=\"lazy\" alt=\"what the script "
+            "<img src=\"%s%s\" width=\"%zu\" height=\"%zu\" loading=\"lazy\" alt=\"what the script "
             "makes\">\n",
-            root, e->picture, CAG_SITE_WIDTH, CAG_SITE_HEIGHT);
+            root, e->picture, e->picture_width, e->picture_height);
   fputs("</div>\n", out);
 }
 

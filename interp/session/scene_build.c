@@ -1,4 +1,4 @@
-// Converts the values that a script shows to a scene: groups are split, attributes of a group apply
+// Converts the values that a script shows, except images, to a scene: groups are split, attributes of a group apply
 // to its shapes that have none, and records become plain structs.
 //
 // Nothing here calls back into the script, so values need no roots.
@@ -451,9 +451,10 @@ static bool build_scene(Build *build, const CagShown *shown, size_t n) {
   for (size_t i = 0; i < n && !build->failed; i++) {
     if (!cag_value_is_shown(vm, shown[i].value))
       return !vm->failed &&
-             cag_vm_fail(vm, CAG_ERR_no_image,
-                         "show expects shapes, lights, cameras, and lists of these, found %s",
-                         cag_type_article(shown[i].value));
+             cag_vm_fail(
+                 vm, CAG_ERR_no_image,
+                 "show expects shapes, images, lights, cameras, and lists of these, found %s",
+                 cag_type_article(shown[i].value));
     add_value(build, shown[i].value, cag_lead(shown[i].expr));
   }
   if (!build->failed) return true;

@@ -435,6 +435,14 @@ static bool rerun_shows(CagVm *vm, CagSession *s) {
   return true;
 }
 
+static bool refresh(CagVm *vm, void *context) { return rerun_shows(vm, context); }
+
+int cag_session_refresh(CagSession *s) {
+  if (!s->interactive) return CAG_STATUS_OK;
+  cag_session_renew_time(s);
+  return cag_session_work(s, refresh, s);
+}
+
 static bool build(CagVm *vm, void *context) {
   CagSession *s = context;
   if (s->interactive && !rerun_shows(vm, s)) return false;
@@ -478,7 +486,9 @@ static int fail_nothing_shown(CagSession *s) {
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0}, "%s shows %s",
       s->script ? s->script : "the session", empty ? "only empty shapes" : "no shape");
   cag_diagnostic_set_help(d, empty ? "`is_empty` tests whether a shape is empty"
-                                   : "show a shape, such as show sphere(10)");
+                             : cag_session_shows_image(s)
+                                 ? "to export an image, write cag export FILE -o OUT.exr, or .png"
+                                 : "show a shape, such as show sphere(10)");
   drop_scene(s);
   return CAG_STATUS_SCRIPT;
 }
@@ -552,9 +562,12 @@ typedef struct Listing {
   FILE *out;
 } Listing;
 
-// Returns the name of the shape, or else of the definition.
+// Returns the name of the shape or image, or else of the definition.
 static const char *shown_name(const CagShown *shown) {
-  const CagText *own = cag_is_shape(shown->value) ? CAG_AS_SHAPE(shown->value)->name : NULL;
+  const CagValue v = shown->value;
+  const CagText *own = cag_is_shape(v)       ? CAG_AS_SHAPE(v)->name
+                       : v.type == CAG_IMAGE ? CAG_AS_IMAGE(v)->name
+                                             : NULL;
   return own ? own->bytes : cag_lead(shown->expr).name;
 }
 

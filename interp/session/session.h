@@ -72,6 +72,13 @@ int cag_session_fail_io(CagSession *s, CagErrorId id, const CagError *err);
 // Reads the option that states how set operations are written in POV-Ray source; "auto" means
 // `usual`. Returns false, after a diagnostic, if its value is invalid.
 bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out);
+// Runs the statements `show` of an interactive session again. Of others, it does nothing.
+int cag_session_refresh(CagSession *s);
+// Whether the script shows an image, in a list or by itself.
+bool cag_session_shows_image(const CagSession *s);
+// Writes the image of `options` (NULL: the only one) that is shown to a .png or .exr file.
+int cag_session_write_image(CagSession *s, const char *path, bool png,
+                            const CagImageOptions *options);
 // Builds the scene and adds default camera and lights.
 int cag_session_build_scene(CagSession *s);
 

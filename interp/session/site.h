@@ -22,7 +22,8 @@ typedef struct CagSiteExample {
   char *function; // documented function, of whose call a picture may be made; NULL: none
   char *output;   // printed output, including an expected error
   char *picture;  // "pictures/0123456789abcdef.png"; NULL: none
-  char *failure;  // why it failed; NULL: it succeeded
+  size_t picture_width, picture_height;
+  char *failure; // why it failed; NULL: it succeeded
 } CagSiteExample;
 
 // A user's file that the site documents.

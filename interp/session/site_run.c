@@ -1,9 +1,9 @@
 // Runs the examples of the site, each in its own session, and makes their pictures.
 //
 // A picture shows what the example shows. If the example shows nothing, the picture shows the call
-// of the documented function if that returns a shape, or else the last shape that the example
-// defines. Curves and regions of one plane become .svg, and all others are rendered. File names of
-// pictures are derived from their contents, so that existing pictures need not be made again.
+// of the documented function if that returns a shape or an image, or else the last one that the
+// example defines. Images are written as they are, curves and regions of one plane become .svg, and
+// all others are rendered. File names of pictures are derived from their contents, so that existing pictures need not be made again.
 
 #include <pthread.h>
 #include <string.h>
@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "interp/render/povray.h"
 #include "interp/scene/scene.h"
+#include "interp/session/images.h"
 #include "interp/session/session.h"
 #include "interp/session/site.h"
 
@@ -72,9 +73,10 @@ static Type type_of(CagSession *s, const char *expression) {
   return t;
 }
 
-// Tests whether an expression is a shape, or a list of shapes.
+// Tests whether an expression is a shape or an image, or a list of these.
 static bool is_shape(CagSession *s, const char *expression, Type t) {
-  static const char *const shapes[] = {"curve", "region", "surface", "solid", "mesh", "group"};
+  static const char *const shapes[] = {"curve", "region", "surface", "solid",
+                                       "mesh",  "group",  "image"};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
     if (strcmp(t.name, shapes[i]) == 0) return true;
   if (strcmp(t.name, "list") != 0) return false;
@@ -157,10 +159,27 @@ static char *picture_name(const char *text, const char *shape, const char *endin
   return cag_doc_text("pictures/%016llx.%s", (unsigned long long)h, ending);
 }
 
+// Writes the image that a session shows.
+static void make_preview(const CagSite *site, CagSession *s, CagSiteExample *e, const char *shape) {
+  char *name = picture_name(e->text, shape, "png");
+  char *path = cag_doc_text("%s/%s", site->folder, name);
+  const int status = cag_session_write_preview(s, path, CAG_SITE_WIDTH, CAG_SITE_HEIGHT,
+                                               &e->picture_width, &e->picture_height);
+  if (status == CAG_STATUS_OK) e->picture = name;
+  else cag_free(name);
+  cag_free(path);
+}
+
 // Makes the picture of a session's scene unless it exists.
 static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, const char *shape) {
   CagShownCounts counts;
+  if (cag_session_shows_image(s)) {
+    make_preview(site, s, e, shape);
+    return;
+  }
   if (cag_session_scene(s, &counts) != CAG_STATUS_OK || counts.items == 0) return;
+  e->picture_width = CAG_SITE_WIDTH;
+  e->picture_height = CAG_SITE_HEIGHT;
   const bool drawing = is_drawing(&s->scene);
   if (!drawing && !site->renders) return;
   char *name = picture_name(e->text, shape, drawing ? "svg" : "png");
@@ -185,7 +204,8 @@ static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, 
 
 static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FILE *out) {
   CagShownCounts counts = {0};
-  if (cag_session_scene(ran, &counts) == CAG_STATUS_OK && counts.items > 0) {
+  if (cag_session_shows_image(ran) ||
+      (cag_session_scene(ran, &counts) == CAG_STATUS_OK && counts.items > 0)) {
     make_picture(site, ran, e, NULL);
     return;
   }

@@ -328,6 +328,18 @@ static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result
   return ok && !vm->failed;
 }
 
+// Operators of the types of values beyond those of the language.
+static bool of_type(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result,
+                    bool *known) {
+  const CagValueType *types[] = {cag_value_type(a), cag_value_type(b)};
+  *known = false;
+  for (int i = 0; i < 2 && !*known && op <= CAG_OP_DIVIDE; i++) {
+    *known = types[i]->arithmetic != NULL;
+    if (*known && types[i]->arithmetic(vm, op, a, b, result, known)) return true;
+  }
+  return false;
+}
+
 bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   bool known;
   if (op <= CAG_OP_POWER) {
@@ -361,7 +373,8 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
     break;
   default: break;
   }
-  return fail_operands(vm, op, a, b, operand_help(op, a, b));
+  const bool ok = of_type(vm, op, a, b, result, &known);
+  return known ? ok : fail_operands(vm, op, a, b, operand_help(op, a, b));
 }
 
 bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
@@ -369,11 +382,13 @@ bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
   else if (v.type == CAG_ANGLE) *result = cag_angle(-v.as.number);
   else if (v.type == CAG_JET) return jets(vm, CAG_OP_MULTIPLY, v, cag_number(-1), result);
   else if (is_list(v)) return list_scaled(vm, CAG_OP_MULTIPLY, v, cag_number(-1), false, result);
+  else if (cag_value_type(v)->arithmetic)
+    return cag_arithmetic(vm, CAG_OP_MULTIPLY, v, cag_number(-1), result);
   else {
     CagString s = {0};
     cag_describe_value(vm, &s, v);
-    cag_vm_fail(vm, CAG_ERR_operand, "`-` expects a number, an angle, or a vector, found %s",
-                s.bytes);
+    cag_vm_fail(vm, CAG_ERR_operand,
+                "`-` expects a number, an angle, a vector, or an image, found %s", s.bytes);
     cag_string_free(&s);
     return false;
   }

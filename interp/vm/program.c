@@ -224,7 +224,7 @@ bool cag_value_is_shown(CagVm *vm, CagValue v) {
     return true;
   }
   return cag_is_shape(v) || v.type == CAG_ROBOT || v.type == CAG_CAMERA || v.type == CAG_LIGHT ||
-         v.type == CAG_SETTING;
+         v.type == CAG_SETTING || v.type == CAG_IMAGE;
 }
 
 static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
@@ -238,7 +238,8 @@ static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
       cag_describe_value(vm, &found, v);
       CagDiagnostic *d = cag_diagnostics_add(
           &vm->errors, CAG_ERR_no_image, m->source, e->span,
-          "show expects shapes, lights, cameras, or settings of the scene, found %s", found.bytes);
+          "show expects shapes, images, lights, cameras, or settings of the scene, found %s",
+          found.bytes);
       if (v.type <= CAG_TEXT) cag_diagnostic_set_help(d, "to write a value, use `print`");
       cag_string_free(&found);
       vm->failed = true;

@@ -240,6 +240,7 @@ typedef struct CagImageValue {
   CagObject head;
   CagRaster *raster; // holds one reference
   CagList *parts;    // names of the parts whose numbers it shows; NULL: it shows something else
+  CagText *name;     // NULL: not set
 } CagImageValue;
 
 typedef struct CagModuleValue {

@@ -8,6 +8,7 @@
 #define CAG_INTERP_VM_VALUE_TYPE_H
 
 #include "interp/vm/value.h"
+#include "lang/ast.h"
 
 typedef struct CagCall CagCall;
 typedef struct CagHeap CagHeap;
@@ -31,6 +32,10 @@ typedef struct CagValueType {
   // Calls the value: v(arguments). Returns false if an error was set.
   bool (*call)(CagVm *vm, CagValue v, const CagValue *arguments, size_t n,
                CagValue *result); // NULL: the value cannot be called
+  // Computes + - * / of operands of which one is of the type, and -v as v * -1. Sets *known to false
+  // if the operator does not apply to them. Returns false if an error was set.
+  bool (*arithmetic)(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result,
+                     bool *known); // NULL: it has no operators
   // Computes T * v. Returns false if an error was set.
   bool (*transform)(CagCall *call, const CagTransform *t, CagValue v,
                     CagValue *result); // NULL: the value cannot be moved

@@ -14,6 +14,8 @@ script vase.cag 'param height = 120 in 50..300
 param color = "red" in ["red", "teal"]
 param quality_of_mesh = 1
 show material(cylinder(height, 20), {color: color})'
+script depth.cag 'depth = image(4, 3, (x, y) => 100 + 20*x + 30*y)
+show depth'
 mkdir -p tests/language parts
 script tests/language/one.cag 'print 1   // expect: 1'
 cp film.cag parts/

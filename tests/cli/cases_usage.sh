@@ -109,10 +109,12 @@ for ending in dxf xyz; do
   is_missing "a.$ending"
 done
 
-it 'export of a picture gets its mend'
+it 'export of a picture of shapes is refused with the fix'
 try export ball.cag -o a.png
-status 2
+status 1
+says 'shows no image'
 says 'cag render'
+is_missing a.png
 
 it 'render of a mesh gets its mend'
 try render ball.cag -o a.stl

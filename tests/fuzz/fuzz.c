@@ -184,7 +184,8 @@ static const char *const images[] = {"image([[1]])",
                                      "image([[[1, 2, 3], [4, 5, 6]]])",
                                      "image(9, 7, (x, y) => if x > y then 1 else 0)",
                                      "image(16, 16, (x, y) => x*y)",
-                                     "image([[1e308, 1e308, -1e308], [1e-308, 0, 0.1]])"};
+                                     "image([[1e308, 1e308, -1e308], [1e-308, 0, 0.1]])",
+                                     "enlarge(image([[1e308, -1]]), 300)"};
 static const char *const others[] = {"none",
                                      "true",
                                      "false",

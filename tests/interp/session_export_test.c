@@ -360,10 +360,17 @@ static void what_cannot_be_written_is_told(void **state) {
   refuses("show box(1)", "x.y/noending", NULL, CAG_STATUS_USAGE,
           "x.y/noending has no extension that determines the format",
           "use --format to choose a format: obj stl ply glb");
-  refuses("show box(1)", "a.png", NULL, CAG_STATUS_USAGE, "unknown format `png`",
-          "use `cag render` to make pictures");
-  refuses("show box(1)", "a.EXR", NULL, CAG_STATUS_USAGE, "unknown format `EXR`",
-          "use `cag render` to make pictures");
+  refuses("show box(1)", "a.png", NULL, CAG_STATUS_SCRIPT, "part.cag shows no image",
+          "`cag render` renders a picture of shapes");
+  refuses("show box(1)", "a.EXR", NULL, CAG_STATUS_SCRIPT, "part.cag shows no image",
+          "`cag render` renders a picture of shapes");
+  refuses("show image([[1]])", "a.stl", NULL, CAG_STATUS_SCRIPT, "part.cag shows no shape",
+          "to export an image");
+  refuses("show [image([[1]]), image([[2]])]", "a.exr", NULL, CAG_STATUS_USAGE,
+          "part.cag shows 2 images, expected one", "select one by --image: image, image.2");
+  refuses("show image([[[1, 2]]])", "a.png", NULL, CAG_STATUS_USAGE,
+          "cannot write 'a.png': a PNG has 1, 3, or 4 channels, the image has 2",
+          "show channel(image, name)");
   refuses("show box(1)", "a.abc", NULL, CAG_STATUS_USAGE, "unknown format `abc`",
           "use --format to choose a format: obj stl ply glb");
 }
