@@ -167,9 +167,10 @@ static bool set_exposure(CagTool *t, const char *value) {
 }
 
 static bool set_engine(CagTool *t, const char *value) {
-  static const char *const CHOICES[] = {"povray"};
+  static const char *const CHOICES[] = {"auto", "povray", "preview"};
   size_t i;
-  return one_of(t, "--engine", value, CHOICES, 1, "the only renderer is povray", &i);
+  t->engine = value;
+  return one_of(t, "--engine", value, CHOICES, 3, "choose povray, preview, or auto", &i);
 }
 
 static bool set_pov_csg(CagTool *t, const char *value) {
@@ -326,6 +327,11 @@ static bool set_samples(CagTool *t, const char *value) {
 static bool set_loop(CagTool *t, const char *value) {
   (void)value;
   return t->loop = true;
+}
+
+static bool set_keep_partial(CagTool *t, const char *value) {
+  (void)value;
+  return t->keep_partial = true;
 }
 
 static bool set_progress(CagTool *t, const char *value) {

@@ -58,13 +58,14 @@ struct CagTool {
 
   const char *output, *format; // -o, --format
   int width, height;           // --size
-  const char *quality, *camera;
+  const char *quality, *camera, *engine;
   const char *image; // --image
   bool has_range;    // --range
   double range_low, range_high;
   int bits; // --bits; 0: the default
   double exposure;
   bool has_frames, loop;        // --frames, --loop
+  bool keep_partial;            // --keep-partial
   int samples;                  // --samples; 0: depends on the quality
   bool progress;                // --progress
   long first_frame, last_frame; // --frames

@@ -189,11 +189,15 @@ typedef struct CagRenderRegion {
 typedef struct CagRenderOptions {
   int width, height;   // pixels, both or none; 0: the camera's
   const char *quality; // "draft", "normal", or "final"; NULL: normal
-  int samples;         // per pixel, for cameras with an aperture; 0: by the quality
-  const char *camera;  // a name, or top, bottom, front, back, left, right, or iso; NULL: the first
-  double exposure;     // stops; only for .png
-  int threads;         // of the renderer; 0: one per processor
-  double time_limit; // seconds for the renderer, in place of max_time; 0: what is left of max_time
+  // "povray"; "preview", the built-in renderer; or NULL: preview for drafts and where POV-Ray is not
+  // found, and else povray.
+  const char *engine;
+  int samples;        // per pixel: of light for preview, of the lens for povray; 0: by the quality
+  bool keep_partial;  // preview: write what is complete if the work is stopped
+  const char *camera; // a name, or top, bottom, front, back, left, right, or iso; NULL: the first
+  double exposure;    // stops; only for .png
+  int threads;        // of the renderer; 0: one per processor
+  double time_limit;  // seconds for the renderer, in place of max_time; 0: what is left of max_time
   CagRenderRegion region; // renders and writes only this part
   // Called during rendering, with the percentage of a phase ("parsing", "photons", "radiosity", or
   // "rendering"). May be NULL.
@@ -201,7 +205,7 @@ typedef struct CagRenderOptions {
   void *progress_context;
 } CagRenderOptions;
 CAG_API void cag_render_options_init(CagRenderOptions *o);
-// Renders what was shown with POV-Ray and writes an .exr or .png file (options NULL: the defaults).
+// Renders what was shown and writes an .exr or .png file (options NULL: the defaults).
 CAG_API int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path);
 // Looks for POV-Ray. If it is found, writes its version to `buffer`, of `size` bytes, and returns
 // the buffer. Otherwise writes the reason to the buffer and returns NULL.

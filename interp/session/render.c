@@ -1,14 +1,17 @@
-// Renders a scene: POV-Ray source, the renderer, and output as EXR or PNG.
+// Renders a scene by POV-Ray, from its source, or by the built-in renderer, and writes EXR or PNG.
 
 #include <math.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "base/stop.h"
 #include "interp/formats/pov.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
 #include "interp/render/povray.h"
+#include "interp/render/preview.h"
 #include "interp/session/output.h"
 
 #define SKY_FILE "sky.exr"
@@ -116,7 +119,10 @@ static bool make_metadata(const CagSession *s, const CagCamera *camera, const ch
 
 // --- Rendering ---
 
+typedef enum Engine { POVRAY, PREVIEW } Engine;
+
 typedef struct Job {
+  Engine renderer;
   CagSession *session;
   const CagRenderOptions *options;
   CagCamera camera;
@@ -252,6 +258,74 @@ static int make_picture(CagSession *s, void *context) {
   return status;
 }
 
+// --- The built-in renderer ---
+
+// Samples of light for a picture of each quality; a draft is a sketch.
+static const int PREVIEW_SAMPLES[] = {
+    [CAG_POV_DRAFT] = 0, [CAG_POV_NORMAL] = 16, [CAG_POV_FINAL] = 128};
+
+static bool write_preview(const Job *j, const CagImage *image, bool finished, CagError *io) {
+  CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
+                        {"Title", j->session->script ? j->session->script : ""},
+                        {"Comment", "unfinished"}};
+  if (is_png(j->path))
+    return cag_png_write(j->path, image,
+                         &(CagPngOptions){.exposure = j->options->exposure, .bits = 8}, texts,
+                         finished ? 2 : 3, io);
+  CagExrMetadata m = {0};
+  bool ok = make_metadata(j->session, &j->camera, "cag preview", &m, io);
+  if (ok && !finished) ok = cag_exr_metadata_text(&m, "cag.unfinished", "stopped", io);
+  if (ok) ok = cag_exr_write(j->path, image, CAG_EXR_FLOAT, &m, io);
+  cag_exr_metadata_free(&m);
+  return ok;
+}
+
+// Renders and writes. A picture that was stopped is written if it is to be kept; the status is that
+// of the stop in any case.
+static int make_preview(CagSession *s, void *context) {
+  Job *j = context;
+  const CagRenderRegion r = j->options->region;
+  const CagPreviewOptions options = {
+      .sky_light = j->pov == CAG_POV_FINAL || s->scene.light_count == 0,
+      .samples = j->options->samples > 0 ? j->options->samples : PREVIEW_SAMPLES[j->pov],
+      .region_x = r.x,
+      .region_y = r.y,
+      .region_width = r.width,
+      .region_height = r.height,
+      .progress = j->options->progress,
+      .progress_user = j->options->progress_context};
+  CagImage image = {0};
+  CagError err = {0}, io = {0};
+  bool finished = false;
+  cag_set_thread_count(j->options->threads);
+  CagStatus status = cag_preview_render(&s->scene, &j->camera, &options, &image, &finished, &err);
+  cag_set_thread_count(0);
+  if (!status && !finished) cag_stop_fail(&err);
+  const bool kept = !status && (finished || j->options->keep_partial);
+  int result = CAG_STATUS_OK;
+  if (kept && !write_preview(j, &image, finished, &io))
+    result = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  cag_image_free(&image);
+  if (result != CAG_STATUS_OK || (!status && finished)) return result;
+  cag_session_checked(s, status ? status : CAG_E_CALLBACK, &err);
+  return cag_session_fail_geometry(s, &err);
+}
+
+static bool find_engine(CagSession *s, const CagRenderOptions *options, CagPovQuality quality,
+                        Engine *out) {
+  const char *name = options->engine;
+  if (!name || !strcmp(name, "auto")) {
+    char reason[256];
+    *out = quality == CAG_POV_DRAFT || !cag_find_povray(reason, sizeof reason) ? PREVIEW : POVRAY;
+    return true;
+  }
+  *out = !strcmp(name, "povray") ? POVRAY : PREVIEW;
+  if (*out == POVRAY || !strcmp(name, "preview")) return true;
+  cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                      "expected povray, preview, or auto as the renderer, found %s", name);
+  return false;
+}
+
 static int frame_all(CagSession *s, void *context) {
   cag_camera_frame_all(&s->scene, context);
   return CAG_STATUS_OK;
@@ -289,6 +363,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
     return CAG_STATUS_USAGE;
   }
   if (!cag_session_pov_csg(s, CAG_POV_CSG_MESH, &j.csg)) return CAG_STATUS_USAGE;
+  if (!find_engine(s, options, j.pov, &j.renderer)) return CAG_STATUS_USAGE;
   size_t camera;
   status = cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;
@@ -306,10 +381,11 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   }
   if (!check_region(&j)) return CAG_STATUS_USAGE;
   j.index = camera;
-  status = cag_session_geometry(s, write_source, &j);
+  if (j.renderer == POVRAY) status = cag_session_geometry(s, write_source, &j);
   const double left = s->time_left;
   if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a separate time limit
-  if (status == CAG_STATUS_OK) status = cag_session_geometry(s, make_picture, &j);
+  if (status == CAG_STATUS_OK)
+    status = cag_session_geometry(s, j.renderer == POVRAY ? make_picture : make_preview, &j);
   if (options->time_limit > 0) s->time_left = left;
   cag_free(j.source);
   cag_povray_result_free(&j.result);

@@ -1,0 +1,248 @@
+#include "interp/render/preview.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/stop.h"
+#include "interp/render/preview_shade.h"
+#include "interp/render/preview_smooth.h"
+
+// Side of a tile in pixels: what one thread works on.
+enum { TILE = 16 };
+// Samples of a pixel of a sketch at an edge, as a square of so many.
+enum { EDGE_SIDE = 3 };
+// Neighbors that differ by more than this fraction of their brightness are at an edge.
+#define EDGE_CONTRAST 0.06
+#define EDGE_FLOOR 0.02
+
+typedef struct Frame {
+  const CagPreviewWorld *world;
+  const CagCamera *camera;
+  const CagPreviewOptions *options;
+  CagCameraMap map;
+  CagVec3 right, down, view; // of the lens
+  int x, y, width, height;   // of the region
+  size_t columns;            // of tiles
+  int round;                 // number of the sample, or of the pass of a sketch
+  CagImage *out;
+  CagPreviewSum *sum;  // of the samples so far
+  unsigned char *edge; // pixels of a sketch that get more samples
+  CagStatus status;
+  CagError *err;
+} Frame;
+
+// --- Rays ---
+
+// The ray of a point of the picture, in pixels; a lens bends it about the plane in focus.
+static CagRay ray_through(const Frame *f, const double at[2], CagPreviewShader *s) {
+  CagRay ray = {.least = 0, .most = INFINITY};
+  const CagCamera *c = f->camera;
+  cag_camera_sight(&f->map, at, &ray.origin, &ray.direction);
+  if (s->sketch || !cag_camera_has_lens(c)) return ray;
+  const double to_target = cag_norm(cag_sub(c->target, c->eye));
+  const double focus = c->focus > 0 ? c->focus : to_target > 0 ? to_target : 1;
+  double chance[2];
+  cag_preview_roll(&s->dice, chance);
+  const double radius = c->aperture / 2 * sqrt(chance[0]), angle = 2 * M_PI * chance[1];
+  const CagVec3 sharp =
+      cag_madd(ray.origin, focus / cag_dot(ray.direction, f->view), ray.direction);
+  ray.origin =
+      cag_madd(cag_madd(ray.origin, radius * cos(angle), f->right), radius * sin(angle), f->down);
+  ray.direction = cag_unit(cag_sub(sharp, ray.origin));
+  return ray;
+}
+
+static CagStatus light_at(const Frame *f, CagPreviewShader *s, const double at[2], CagColor *out,
+                          CagError *err) {
+  const CagRay ray = ray_through(f, at, s);
+  return cag_preview_light(s, &ray, 0, 1, out, err);
+}
+
+// --- Pixels ---
+
+static size_t pixel_index(const Frame *f, int x, int y) {
+  return (size_t)y * (size_t)f->width + (size_t)x;
+}
+
+static void add_color(float sum[3], CagColor c) {
+  sum[0] += (float)c.r;
+  sum[1] += (float)c.g;
+  sum[2] += (float)c.b;
+}
+
+static void add_sample(CagPreviewSum *sum, const CagColor *c, const CagPreviewFirst *first) {
+  add_color(sum->color, *c);
+  if (!first->met) return;
+  const CagColor l = first->light;
+  const float bright = (float)(0.3 * l.r + 0.6 * l.g + 0.1 * l.b);
+  add_color(sum->light, l);
+  add_color(sum->albedo, first->albedo);
+  sum->square += bright * bright;
+  sum->normal[0] += (float)first->normal.x;
+  sum->normal[1] += (float)first->normal.y;
+  sum->normal[2] += (float)first->normal.z;
+  sum->distance += (float)first->distance;
+  sum->met++;
+}
+
+// One more sample of a pixel, anywhere in it.
+static CagStatus sample_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
+  const size_t i = pixel_index(f, x, y);
+  double chance[2];
+  CagColor c;
+  s->dice = (CagPreviewDice){.pixel = (uint64_t)(f->y + y) << 32 | (uint32_t)(f->x + x),
+                             .index = (uint32_t)f->round};
+  cag_preview_roll(&s->dice, chance);
+  const double at[2] = {f->x + x + chance[0], f->y + y + chance[1]};
+  s->first.met = false;
+  CagStatus status = light_at(f, s, at, &c, err);
+  if (status) return status;
+  add_sample(&f->sum[i], &c, &s->first);
+  return CAG_OK;
+}
+
+// The middle of a pixel in the first round; a square of samples at edges in the second.
+static CagStatus sketch_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
+  const size_t i = pixel_index(f, x, y);
+  const int side = f->round == 0 ? 1 : EDGE_SIDE;
+  CagColor sum = {0, 0, 0}, c;
+  if (f->round > 0 && !f->edge[i]) return CAG_OK;
+  for (int k = 0; k < side * side; k++) {
+    const double at[2] = {f->x + x + (k % side + 0.5) / side, f->y + y + (k / side + 0.5) / side};
+    CagStatus status = light_at(f, s, at, &c, err);
+    if (status) return status;
+    sum = (CagColor){sum.r + c.r, sum.g + c.g, sum.b + c.b};
+  }
+  const double n = side * side;
+  memset(f->sum[i].color, 0, sizeof f->sum[i].color);
+  add_color(f->sum[i].color, (CagColor){sum.r / n, sum.g / n, sum.b / n});
+  return CAG_OK;
+}
+
+static CagStatus render_tile(const Frame *f, CagPreviewShader *s, size_t tile, CagError *err) {
+  const int left = (int)(tile % f->columns) * TILE, top = (int)(tile / f->columns) * TILE;
+  CagStatus status = CAG_OK;
+  for (int y = top; y < top + TILE && y < f->height; y++)
+    for (int x = left; !status && x < left + TILE && x < f->width; x++) {
+      status = cag_stop_check(err);
+      if (status) break;
+      status = s->sketch ? sketch_pixel(f, s, x, y, err) : sample_pixel(f, s, x, y, err);
+    }
+  return status;
+}
+
+static bool render_numbered_tile(void *context, size_t tile, int thread) {
+  Frame *f = context;
+  CagError own;
+  CagError *err = thread == 0 ? f->err : &own;
+  CagPreviewShader s = {
+      .world = f->world, .sky_light = f->options->sky_light, .sketch = f->options->samples <= 0};
+  const CagStatus status = render_tile(f, &s, tile, err);
+  cag_crossings_free(&s.work);
+  if (thread == 0 && status) f->status = status;
+  return !status;
+}
+
+static float brightness_of(const float *c) { return 0.3f * c[0] + 0.6f * c[1] + 0.1f * c[2]; }
+
+static bool differ(const float *a, const float *b) {
+  const float p = brightness_of(a), q = brightness_of(b);
+  return fabsf(p - q) > EDGE_CONTRAST * fmaxf(p, q) + EDGE_FLOOR * EDGE_CONTRAST;
+}
+
+static void find_edges(Frame *f) {
+  for (int y = 0; y < f->height; y++)
+    for (int x = 0; x < f->width; x++) {
+      const size_t i = pixel_index(f, x, y), below = i + (size_t)f->width;
+      if (x + 1 < f->width && differ(f->sum[i].color, f->sum[i + 1].color))
+        f->edge[i] = f->edge[i + 1] = 1;
+      if (y + 1 < f->height && differ(f->sum[i].color, f->sum[below].color))
+        f->edge[i] = f->edge[below] = 1;
+    }
+}
+
+// --- Rounds ---
+
+static void report(const Frame *f, double percent) {
+  if (f->options->progress) f->options->progress(f->options->progress_user, percent, "rendering");
+}
+
+// Renders round by round. Sets the number of complete ones.
+static CagStatus render_rounds(Frame *f, int *complete) {
+  const int rounds = f->options->samples > 0 ? f->options->samples : 2;
+  const size_t rows = (size_t)(f->height + TILE - 1) / TILE;
+  const size_t pixels = (size_t)f->width * (size_t)f->height;
+  CagPreviewSum *before = cag_malloc(pixels * sizeof *before);
+  if (!before) return cag_fail_memory(f->err);
+  bool good = true;
+  for (*complete = 0; good && *complete < rounds; *complete += good) {
+    f->round = *complete;
+    if (f->round == 1 && f->edge) find_edges(f);
+    memcpy(before, f->sum, pixels * sizeof *before);
+    good = cag_parallel_checked(f->columns * rows, render_numbered_tile, f);
+    if (good) report(f, 100.0 * (*complete + 1) / rounds);
+  }
+  if (!good) memcpy(f->sum, before, pixels * sizeof *before);
+  cag_free(before);
+  if (good) return CAG_OK;
+  return f->status ? f->status : cag_stop_check(f->err);
+}
+
+static void write_picture(const Frame *f, int complete) {
+  static const char *const names[] = {"R", "G", "B"};
+  const float k = f->options->samples > 0 ? 1 / (float)complete : 1;
+  const size_t n = (size_t)f->width * (size_t)f->height;
+  for (size_t c = 0; c < 3; c++) {
+    cag_image_set_name(f->out, c, names[c]);
+    for (size_t i = 0; i < n; i++) cag_image_plane(f->out, c)[i] = k * f->sum[i].color[c];
+  }
+}
+
+static CagStatus render_frame(Frame *f, bool *finished) {
+  const size_t n = (size_t)f->width * (size_t)f->height;
+  int complete = 0;
+  f->columns = (size_t)(f->width + TILE - 1) / TILE;
+  f->sum = cag_calloc(n, sizeof *f->sum);
+  if (f->options->samples <= 0) f->edge = cag_calloc(n, 1);
+  CagStatus status =
+      f->sum && (f->edge || f->options->samples > 0) ? CAG_OK : cag_fail_memory(f->err);
+  if (!status && !cag_image_create(f->out, (size_t)f->width, (size_t)f->height, 3, f->err))
+    status = f->err->status;
+  if (!status) {
+    status = render_rounds(f, &complete);
+    *finished = !status;
+    if (status == CAG_E_CALLBACK && complete > 0) status = CAG_OK;
+    if (!status && complete > 1 && f->options->samples > 0)
+      cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, complete);
+    if (!status) write_picture(f, complete);
+    else cag_image_free(f->out);
+  }
+  cag_free(f->sum);
+  cag_free(f->edge);
+  return status;
+}
+
+CagStatus cag_preview_render(const CagScene *scene, const CagCamera *camera,
+                             const CagPreviewOptions *options, CagImage *out, bool *finished,
+                             CagError *err) {
+  const CagTransform frame = cag_camera_frame(camera);
+  Frame f = {.camera = camera, .options = options, .out = out, .err = err};
+  f.right = cag_vec3(frame.m[0][0], frame.m[1][0], frame.m[2][0]);
+  f.down = cag_vec3(frame.m[0][1], frame.m[1][1], frame.m[2][1]);
+  f.view = cag_vec3(frame.m[0][2], frame.m[1][2], frame.m[2][2]);
+  const bool whole = options->region_width <= 0;
+  f.x = whole ? 0 : options->region_x;
+  f.y = whole ? 0 : options->region_y;
+  f.width = whole ? camera->size[0] : options->region_width;
+  f.height = whole ? camera->size[1] : options->region_height;
+  CagPreviewWorld world;
+  CagStatus status = cag_scene_camera_map(camera, &f.map, err);
+  if (status) return status;
+  status = cag_preview_world(scene, &world, err);
+  if (status) return status;
+  f.world = &world;
+  status = render_frame(&f, finished);
+  cag_preview_world_free(&world);
+  return status;
+}

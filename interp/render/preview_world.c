@@ -1,0 +1,365 @@
+#include "interp/render/preview_world.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/stop.h"
+#include "geom/ray/bvh_walk.h"
+#include "geom/solid/csg.h"
+#include "interp/scene/color_scale.h"
+
+// Set operations with more operands than this are met as meshes.
+enum { OPERANDS_MAX = 64 };
+// A finite ground is a slab of this thickness, as a fraction of its size.
+#define SLAB 1e-3
+// The fraction of the sky's mean color that replaces its light in a sketch, as in POV-Ray's source.
+#define SKY_FRACTION 0.5
+#define DIM_WHITE 0.12
+// Highlights: see interp/formats/pov_material.c.
+#define MIRROR_ROUGHNESS 0.5
+#define MIRROR_LEAST 0.01
+#define SPECULAR_ROUGHNESS_MIN 0.0008
+#define COAT_IOR 1.5
+#define COAT_EXPONENT 600.0
+
+// --- Surfaces ---
+
+static double clamp01(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
+
+static double normal_reflectance(double ior) {
+  const double f = (ior - 1) / (ior + 1);
+  return f * f;
+}
+
+// The factors by which POV-Ray normalizes highlights ("albedo").
+static double highlight_norm(double n) { return (n + 2) / (4 * (2 - pow(2, -n / 2))); }
+static double coat_norm(double n) { return (n + 1) / 2; }
+
+static CagPreviewSurface surface_of(const CagMaterial *m) {
+  const double metallic = clamp01(m->metallic), rough = clamp01(m->roughness);
+  const double coat = clamp01(m->coat), mirror = metallic * 0.95 * pow(1 - rough, 1.5);
+  const double blurred = metallic - mirror, g = clamp01(1 - rough / MIRROR_ROUGHNESS);
+  CagPreviewSurface s = {.color = m->color,
+                         .emission = m->emission,
+                         .metal = metallic > 0.5,
+                         .ior = m->ior,
+                         .material = m};
+  s.passed = clamp01(m->transmission) * (1 - metallic);
+  s.diffuse = (1 - metallic) + 0.4 * blurred;
+  s.exponent = 1 / fmax(SPECULAR_ROUGHNESS_MIN, rough * rough * rough * rough / 2);
+  s.highlight = (s.metal ? 0.35 * blurred + 0.1 : 1.5 * normal_reflectance(m->ior)) *
+                highlight_norm(s.exponent);
+  s.coat = coat * normal_reflectance(COAT_IOR) * coat_norm(COAT_EXPONENT);
+  s.mirror = s.metal ? mirror : fmax(g * g, coat);
+  if (s.mirror < MIRROR_LEAST) s.mirror = 0;
+  return s;
+}
+
+// --- Parts ---
+
+void cag_preview_world_free(CagPreviewWorld *w) {
+  for (size_t i = 0; i < w->count; i++) {
+    cag_caster_free(w->parts[i].caster);
+    cag_ray_mesh_free(w->parts[i].mesh);
+  }
+  cag_free(w->parts);
+  cag_bvh_free(&w->boxes);
+  cag_free(w->surfaces);
+  cag_free(w->planes);
+  cag_free(w->plane_items);
+  *w = (CagPreviewWorld){0};
+}
+
+// Whether rays meet the solid quickly without a mesh of it.
+static bool has_equations(const CagSolid *s, int *operands) {
+  CagQuadric form;
+  if (++*operands > OPERANDS_MAX) return false;
+  if (s->kind == CAG_SOLID_BOX || s->kind == CAG_SOLID_SPHERE || s->kind == CAG_SOLID_CYLINDER ||
+      s->kind == CAG_SOLID_TORUS)
+    return cag_transform_is_affine(&s->placement);
+  if (cag_solid_form(s, &form)) return true;
+  if (!s->core || s->kind == CAG_SOLID_MESH || s->core->count == 0) return false;
+  for (size_t i = 0; i < s->core->count; i++)
+    if (!has_equations(s->core->operands[i], operands)) return false;
+  return true;
+}
+
+static CagStatus add_mesh(const CagScene *s, const CagItem *item, CagPreviewPart *part,
+                          CagError *err) {
+  CagMesh *m = NULL;
+  CagStatus status = cag_item_mesh(s, item, &m, err);
+  if (!status) status = cag_ray_mesh_new(m, &part->mesh, err);
+  if (!status) part->bounds = cag_mesh_bounds(m);
+  cag_mesh_release(m);
+  return status;
+}
+
+static CagStatus add_planar(const CagItem *item, CagPreviewPart *part, CagError *err) {
+  CagSurface *flat = NULL;
+  CagStatus status = cag_surface_planar(item->as.region, &item->placement, &flat, err);
+  if (!status) status = cag_caster_of_surface(flat, &part->caster, err);
+  cag_surface_release(flat);
+  return status;
+}
+
+static CagStatus add_slab(const CagItem *item, CagPreviewPart *part, CagError *err) {
+  const double size = item->ground_size, half = size / 2;
+  const CagTransform shift = cag_translate(cag_vec3(-half, -half, item->ground_z - SLAB * size));
+  CagSolid *box = NULL, *moved = NULL;
+  CagStatus status = cag_solid_box(cag_vec3(size, size, SLAB * size), false, &box, err);
+  if (!status) status = cag_solid_transform(box, &shift, &moved, err);
+  if (!status) status = cag_caster_of_solid(moved, &part->caster, err);
+  cag_solid_release(box);
+  cag_solid_release(moved);
+  return status;
+}
+
+static bool is_flat(const CagSurface *s) {
+  CagVec3 o, x, y;
+  return cag_surface_planar_view(s, NULL, NULL) || cag_surface_parallelogram_view(s, &o, &x, &y);
+}
+
+static CagStatus make_part(const CagScene *s, size_t i, CagPreviewPart *part, CagError *err) {
+  const CagItem *item = &s->items[i];
+  int operands = 0;
+  CagStatus status;
+  *part = (CagPreviewPart){.item = i, .closed = true};
+  if (item->kind == CAG_ITEM_GROUND) status = add_slab(item, part, err);
+  else if (item->kind == CAG_ITEM_REGION) status = add_planar(item, part, err);
+  else if (item->kind == CAG_ITEM_SURFACE && is_flat(item->as.surface))
+    status = cag_caster_of_surface(item->as.surface, &part->caster, err);
+  else if (item->kind == CAG_ITEM_SOLID && has_equations(item->as.solid, &operands))
+    status = cag_caster_of_solid(item->as.solid, &part->caster, err);
+  else status = add_mesh(s, item, part, err);
+  if (status) return status;
+  if (part->caster) part->bounds = cag_caster_bounds(part->caster);
+  if (item->kind == CAG_ITEM_REGION) part->closed = false;
+  if (item->kind == CAG_ITEM_SURFACE) part->closed = cag_surface_is_closed(item->as.surface);
+  if (item->kind == CAG_ITEM_MESH)
+    return cag_mesh_watertight(item->as.mesh, &part->closed, NULL, err);
+  return CAG_OK;
+}
+
+static CagStatus make_parts(CagPreviewWorld *w, CagError *err) {
+  const CagScene *s = w->scene;
+  CagStatus status = CAG_OK;
+  w->parts = cag_calloc(s->item_count + 1, sizeof *w->parts);
+  w->planes = cag_calloc(s->item_count + 1, sizeof *w->planes);
+  w->plane_items = cag_calloc(s->item_count + 1, sizeof *w->plane_items);
+  if (!w->parts || !w->planes || !w->plane_items) return cag_fail_memory(err);
+  for (size_t i = 0; !status && i < s->item_count; i++) {
+    status = cag_stop_check(err);
+    if (status) break;
+    if (s->items[i].kind == CAG_ITEM_GROUND && isinf(s->items[i].ground_size)) {
+      w->plane_items[w->plane_count] = i;
+      w->planes[w->plane_count++] = s->items[i].ground_z;
+      continue;
+    }
+    CagPreviewPart *part = &w->parts[w->count];
+    status = make_part(s, i, part, err);
+    w->count++; // a part that failed is freed with the others
+  }
+  if (status) return status;
+  CagBounds *boxes = cag_malloc((w->count + 1) * sizeof *boxes);
+  if (!boxes) return cag_fail_memory(err);
+  for (size_t i = 0; i < w->count; i++) boxes[i] = w->parts[i].bounds;
+  status = cag_bvh_build(boxes, w->count, &w->boxes, err);
+  cag_free(boxes);
+  return status;
+}
+
+static CagColor ambient_of(const CagScene *s) {
+  const size_t n = s->sky.color_count;
+  if (n == 0 && s->sky.image) return (CagColor){SKY_FRACTION, SKY_FRACTION, SKY_FRACTION};
+  if (n == 0) return (CagColor){DIM_WHITE, DIM_WHITE, DIM_WHITE};
+  CagColor sum = {0, 0, 0};
+  for (size_t i = 0; i < n; i++) {
+    sum.r += s->sky.colors[i].r;
+    sum.g += s->sky.colors[i].g;
+    sum.b += s->sky.colors[i].b;
+  }
+  const double k = SKY_FRACTION / (double)n;
+  return (CagColor){k * sum.r, k * sum.g, k * sum.b};
+}
+
+CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err) {
+  *out = (CagPreviewWorld){.scene = scene, .ambient = ambient_of(scene)};
+  const CagBounds box = cag_scene_framed(scene);
+  out->radius = cag_scene_radius(&box);
+  out->center = cag_lerp(box.min, box.max, 0.5);
+  out->surfaces = cag_calloc(scene->material_count + 1, sizeof *out->surfaces);
+  CagStatus status = out->surfaces ? make_parts(out, err) : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < scene->material_count; i++) {
+    out->surfaces[i] = surface_of(&scene->materials[i]);
+    out->transparent = out->transparent || out->surfaces[i].passed > 0;
+  }
+  if (status) cag_preview_world_free(out);
+  return status;
+}
+
+// --- Hits ---
+
+// The normal of shading, from those of the corners. It stays on the side of the flat one.
+static CagVec3 smooth_normal(const CagMesh *m, const CagCrossing *c) {
+  if (!m->normals) return c->normal;
+  const uint32_t *t = m->triangles + 3 * (size_t)c->face;
+  const double b = c->weight[0], d = c->weight[1], a = 1 - b - d;
+  const CagVec3 n = cag_unit(cag_madd(
+      cag_madd(cag_scaled(m->normals[t[0]], a), b, m->normals[t[1]]), d, m->normals[t[2]]));
+  return cag_dot(n, c->normal) > 0 ? n : c->normal;
+}
+
+static void fill_hit(const CagPreviewWorld *w, const CagPreviewPart *part, const CagRay *ray,
+                     const CagCrossing *c, CagPreviewHit *out) {
+  const CagItem *item = &w->scene->items[part->item];
+  const CagMesh *m = part->mesh ? part->mesh->mesh : NULL;
+  *out = (CagPreviewHit){.t = c->t,
+                         .point = cag_ray_point(ray, c->t),
+                         .normal = m ? smooth_normal(m, c) : c->normal,
+                         .flat = c->normal,
+                         .u = c->u,
+                         .v = c->v,
+                         .item = part->item,
+                         .material = cag_item_label_material(item, c->label),
+                         .leaves = c->sign > 0,
+                         .closed = part->closed};
+  if (!m || m->scale.kind == CAG_SCALE_NONE) return;
+  out->scale = &m->scale;
+  out->scale_value = c->u;
+}
+
+static CagStatus meet_part(const CagPreviewPart *part, const CagRay *ray, CagCrossings *work,
+                           CagCrossing *out, bool *met, CagError *err) {
+  if (part->caster) return cag_caster_first(part->caster, ray, work, out, met, err);
+  *met = cag_ray_mesh_first(part->mesh, ray, out);
+  return CAG_OK;
+}
+
+static bool meet_ground(const CagPreviewWorld *w, const CagRay *ray, double most, double *t,
+                        size_t *which) {
+  bool met = false;
+  for (size_t i = 0; i < w->plane_count; i++) {
+    const double at = (w->planes[i] - ray->origin.z) / ray->direction.z;
+    if (ray->direction.z == 0 || !(at > ray->least && at < most)) continue;
+    met = true;
+    *t = most = at;
+    *which = i;
+  }
+  return met;
+}
+
+CagStatus cag_preview_meet(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,
+                           CagPreviewHit *out, bool *met, CagError *err) {
+  CagRay rest = *ray;
+  CagBvhRay walked;
+  CagCrossing nearest = {0}, c;
+  size_t part = SIZE_MAX, plane = 0, first, count;
+  CagStatus status = CAG_OK;
+  double ground;
+  const bool grounded = meet_ground(w, ray, ray->most, &ground, &plane);
+  if (grounded) rest.most = ground;
+  if (cag_bvh_ray(&w->boxes, ray->origin, ray->direction, ray->least, rest.most, &walked)) {
+    CagBvhWalk walk;
+    cag_bvh_start(&w->boxes, &walk);
+    while (!status && cag_bvh_next(&w->boxes, &walked, &walk, &first, &count))
+      for (size_t k = first; !status && k < first + count; k++) {
+        bool here = false;
+        const size_t i = w->boxes.order[k];
+        status = meet_part(&w->parts[i], &rest, work, &c, &here, err);
+        if (status || !here) continue;
+        // Of two parts at one distance, the first counts.
+        if (part != SIZE_MAX && c.t == rest.most && i > part) continue;
+        part = i;
+        nearest = c;
+        rest.most = c.t;
+        walked.most = nextafterf((float)(c.t - walked.start), INFINITY);
+      }
+  }
+  *met = !status && (part != SIZE_MAX || grounded);
+  if (part != SIZE_MAX) fill_hit(w, &w->parts[part], ray, &nearest, out);
+  else if (grounded) {
+    const size_t item = w->plane_items[plane];
+    *out = (CagPreviewHit){.t = ground,
+                           .point = cag_ray_point(ray, ground),
+                           .normal = {0, 0, 1},
+                           .flat = {0, 0, 1},
+                           .u = NAN,
+                           .v = NAN,
+                           .item = item,
+                           .material = w->scene->items[item].material,
+                           .leaves = ray->direction.z > 0,
+                           .closed = true};
+    out->point.z = w->planes[plane];
+  }
+  return status;
+}
+
+// Whether anything is in the way of the ray, if everything is opaque.
+static CagStatus is_blocked(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,
+                            bool *blocked, CagError *err) {
+  CagBvhRay walked;
+  CagBvhWalk walk;
+  size_t first, count, plane;
+  double ground;
+  CagStatus status = CAG_OK;
+  *blocked = meet_ground(w, ray, ray->most, &ground, &plane);
+  if (*blocked ||
+      !cag_bvh_ray(&w->boxes, ray->origin, ray->direction, ray->least, ray->most, &walked))
+    return CAG_OK;
+  cag_bvh_start(&w->boxes, &walk);
+  while (!status && !*blocked && cag_bvh_next(&w->boxes, &walked, &walk, &first, &count))
+    for (size_t k = first; !status && !*blocked && k < first + count; k++) {
+      const CagPreviewPart *part = &w->parts[w->boxes.order[k]];
+      CagCrossing c;
+      if (part->caster) status = cag_caster_first(part->caster, ray, work, &c, blocked, err);
+      else *blocked = cag_ray_mesh_blocks(part->mesh, ray);
+    }
+  return status;
+}
+
+// The largest number of transparent surfaces that light passes.
+enum { PASSAGE_MAX = 24 };
+
+CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,
+                              CagColor *out, CagError *err) {
+  *out = (CagColor){1, 1, 1};
+  if (!w->transparent) {
+    bool blocked;
+    const CagStatus status = is_blocked(w, ray, work, &blocked, err);
+    if (blocked) *out = (CagColor){0, 0, 0};
+    return status;
+  }
+  CagRay rest = *ray;
+  const double step = fmax(ray->least, 1e-9 * w->radius);
+  for (int i = 0; i < PASSAGE_MAX; i++) {
+    CagPreviewHit hit;
+    bool met;
+    CagStatus status = cag_preview_meet(w, &rest, work, &hit, &met, err);
+    if (status || !met) return status;
+    const CagPreviewSurface *s = &w->surfaces[hit.material];
+    if (s->passed == 0) break;
+    const CagColor c = cag_preview_color(w, &hit);
+    out->r *= s->passed * c.r;
+    out->g *= s->passed * c.g;
+    out->b *= s->passed * c.b;
+    rest.least = hit.t + step;
+  }
+  *out = (CagColor){0, 0, 0};
+  return CAG_OK;
+}
+
+CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit) {
+  if (hit->scale) return cag_color_scale_at(hit->scale, hit->scale_value);
+  return w->surfaces[hit->material].color;
+}
+
+CagColor cag_preview_sky(const CagScene *s, CagVec3 direction) {
+  const size_t n = s->sky.color_count;
+  if (n == 0) return s->has_background ? s->background : (CagColor){0, 0, 0};
+  if (n == 1) return s->sky.colors[0];
+  const double at = clamp01((direction.z + 1) / 2) * (double)(n - 1);
+  const size_t k = at >= (double)(n - 1) ? n - 2 : (size_t)at;
+  const double f = at - (double)k;
+  const CagColor a = s->sky.colors[k], b = s->sky.colors[k + 1];
+  return (CagColor){a.r + f * (b.r - a.r), a.g + f * (b.g - a.g), a.b + f * (b.b - a.b)};
+}

@@ -1,0 +1,73 @@
+// A scene as the built-in renderer sees it: shapes that rays meet, materials, and lights.
+
+#ifndef CAG_INTERP_RENDER_PREVIEW_WORLD_H
+#define CAG_INTERP_RENDER_PREVIEW_WORLD_H
+
+#include "geom/ray/bvh.h"
+#include "geom/ray/caster.h"
+#include "geom/ray/ray_mesh.h"
+#include "interp/scene/scene.h"
+
+// How a material reflects light, as in interp/formats/pov_material.c.
+typedef struct CagPreviewSurface {
+  CagColor color, emission;
+  double diffuse;
+  double highlight, exponent; // of the surface, and its power of N.H, normalized
+  double coat;                // highlight of the clear coat, normalized
+  double mirror;              // the largest part that is reflected like a mirror
+  double passed;              // the part of the light that passes, in the material's color
+  double ior;
+  bool metal; // reflections have its color
+  const CagMaterial *material;
+} CagPreviewSurface;
+
+typedef struct CagPreviewPart {
+  size_t item;       // of the scene
+  CagCaster *caster; // exact surfaces; NULL: a mesh
+  CagRayMesh *mesh;
+  bool closed; // transparent parts refract
+  CagBounds bounds;
+} CagPreviewPart;
+
+typedef struct CagPreviewWorld {
+  const CagScene *scene;
+  CagPreviewPart *parts;
+  size_t count;
+  CagBvh boxes;
+  CagPreviewSurface *surfaces; // by index of the material
+  double *planes;              // heights of the unbounded grounds
+  size_t *plane_items;
+  size_t plane_count;
+  bool transparent; // some material passes light
+  double radius;    // of the scene
+  CagVec3 center;
+  CagColor ambient; // light from everywhere, in a sketch
+} CagPreviewWorld;
+
+// What a ray meets.
+typedef struct CagPreviewHit {
+  double t;
+  CagVec3 point, normal; // the normal is that of shading; unit, towards the outside
+  CagVec3 flat;          // the normal of the surface that the ray meets
+  double u, v;
+  size_t item, material;
+  bool leaves; // the ray goes out of the part
+  bool closed;
+  double scale_value;         // of a mesh with a color scale
+  const CagColorScale *scale; // NULL: none
+} CagPreviewHit;
+
+CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err);
+void cag_preview_world_free(CagPreviewWorld *w);
+// Finds the first part that the ray meets. *met is false if there is none.
+CagStatus cag_preview_meet(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,
+                           CagPreviewHit *out, bool *met, CagError *err);
+// The light that passes along a ray, by color: 1 if nothing is in its way, 0 behind opaque parts.
+CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,
+                              CagColor *out, CagError *err);
+// The color of the surface at a hit: of the material's pattern or the mesh's scale.
+CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit);
+// The light of the sky in a direction.
+CagColor cag_preview_sky(const CagScene *s, CagVec3 direction);
+
+#endif
