@@ -392,8 +392,8 @@ static bool clip_axis(double origin, double direction, double low, double high, 
     in = out;
     out = swap;
   }
-  *least = fmax(*least, in);
-  *most = fmin(*most, out);
+  *least = in > *least ? in : *least;
+  *most = out < *most ? out : *most;
   return *least <= *most;
 }
 

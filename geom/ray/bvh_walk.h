@@ -3,6 +3,8 @@
 #ifndef CAG_GEOM_RAY_BVH_WALK_H
 #define CAG_GEOM_RAY_BVH_WALK_H
 
+#include <stdint.h>
+
 #include "geom/basis/wide.h"
 #include "geom/ray/bvh.h"
 
@@ -21,6 +23,47 @@ INLINE void cag_bvh_start(const CagBvh *b, CagBvhWalk *w) {
   w->child[0] = b->root;
   w->key[0] = -INFINITY;
 }
+
+// Four floats, in one register where the compiler has vectors.
+#if defined(__GNUC__)
+typedef float CagFloat4 __attribute__((vector_size(16)));
+typedef int32_t CagMask4 __attribute__((vector_size(16)));
+typedef union CagLanes {
+  CagFloat4 v;
+  float f[CAG_BVH_WIDTH];
+} CagLanes;
+INLINE CagFloat4 cag_load4(const float *p) { return *(const CagFloat4 *)p; }
+INLINE CagFloat4 cag_all4(float x) { return (CagFloat4){x, x, x, x}; }
+INLINE CagFloat4 cag_select4(CagMask4 mask, CagFloat4 a, CagFloat4 b) {
+  return (CagFloat4)(((CagMask4)a & mask) | ((CagMask4)b & ~mask));
+}
+INLINE CagFloat4 cag_larger4(CagFloat4 a, CagFloat4 b) { return cag_select4(a > b, a, b); }
+INLINE CagFloat4 cag_smaller4(CagFloat4 a, CagFloat4 b) { return cag_select4(a < b, a, b); }
+#define CAG_PLUS4(a, b) ((a) + (b))
+#define CAG_MINUS4(a, b) ((a) - (b))
+#define CAG_TIMES4(a, b) ((a) * (b))
+#else
+typedef struct CagFloat4 {
+  float f[CAG_BVH_WIDTH];
+} CagFloat4;
+typedef union CagLanes {
+  CagFloat4 v;
+  float f[CAG_BVH_WIDTH];
+} CagLanes;
+INLINE CagFloat4 cag_load4(const float *p) { return (CagFloat4){{p[0], p[1], p[2], p[3]}}; }
+INLINE CagFloat4 cag_all4(float x) { return (CagFloat4){{x, x, x, x}}; }
+#define CAG_LANEWISE(name, expression)                                                             \
+  INLINE CagFloat4 name(CagFloat4 a, CagFloat4 b) {                                                \
+    CagFloat4 r;                                                                                   \
+    for (int i = 0; i < CAG_BVH_WIDTH; i++) r.f[i] = (expression);                                 \
+    return r;                                                                                      \
+  }
+CAG_LANEWISE(cag_larger4, a.f[i] > b.f[i] ? a.f[i] : b.f[i])
+CAG_LANEWISE(cag_smaller4, a.f[i] < b.f[i] ? a.f[i] : b.f[i])
+CAG_LANEWISE(CAG_PLUS4, a.f[i] + b.f[i])
+CAG_LANEWISE(CAG_MINUS4, a.f[i] - b.f[i])
+CAG_LANEWISE(CAG_TIMES4, a.f[i] * b.f[i])
+#endif
 
 // Pushes the children whose key is at most `most`, so that the one with the least key is on top.
 INLINE void cag_bvh_push(const CagBvhNode *node, const float *key, const float *most,
@@ -56,22 +99,16 @@ INLINE bool cag_bvh_next(const CagBvh *b, const CagBvhRay *ray, CagBvhWalk *w, s
       return true;
     }
     const CagBvhNode *node = &b->nodes[child];
-    float enter[CAG_BVH_WIDTH], leave[CAG_BVH_WIDTH];
-    for (int i = 0; i < CAG_BVH_WIDTH; i++) {
-      enter[i] = ray->least;
-      leave[i] = ray->most;
-    }
+    CagLanes enter = {.v = cag_all4(ray->least)}, leave = {.v = cag_all4(ray->most)};
     for (int k = 0; k < 3; k++) {
-      const float o = ray->origin[k], inverse = ray->inverse[k];
-      const float *near = inverse >= 0 ? node->low[k] : node->high[k];
-      const float *far = inverse >= 0 ? node->high[k] : node->low[k];
-      for (int i = 0; i < CAG_BVH_WIDTH; i++) {
-        const float in = (near[i] - o) * inverse, out = (far[i] - o) * inverse;
-        enter[i] = in > enter[i] ? in : enter[i];
-        leave[i] = out < leave[i] ? out : leave[i];
-      }
+      const CagFloat4 o = cag_all4(ray->origin[k]), inverse = cag_all4(ray->inverse[k]);
+      const bool up = ray->inverse[k] >= 0;
+      const CagFloat4 near = cag_load4(up ? node->low[k] : node->high[k]);
+      const CagFloat4 far = cag_load4(up ? node->high[k] : node->low[k]);
+      enter.v = cag_larger4(CAG_TIMES4(CAG_MINUS4(near, o), inverse), enter.v);
+      leave.v = cag_smaller4(CAG_TIMES4(CAG_MINUS4(far, o), inverse), leave.v);
     }
-    cag_bvh_push(node, enter, leave, w);
+    cag_bvh_push(node, enter.f, leave.f, w);
   }
   return false;
 }
@@ -92,14 +129,15 @@ INLINE bool cag_bvh_near(const CagBvh *b, const float p[3], double most2, CagBvh
       return true;
     }
     const CagBvhNode *node = &b->nodes[child];
-    float square[CAG_BVH_WIDTH] = {0};
-    for (int k = 0; k < 3; k++)
-      for (int i = 0; i < CAG_BVH_WIDTH; i++) {
-        const float below = node->low[k][i] - p[k], above = p[k] - node->high[k][i];
-        const float off = below > above ? below : above;
-        square[i] += off > 0 ? off * off : 0;
-      }
-    cag_bvh_push(node, square, most, w);
+    CagLanes square = {.v = cag_all4(0)};
+    for (int k = 0; k < 3; k++) {
+      const CagFloat4 at = cag_all4(p[k]);
+      const CagFloat4 below = CAG_MINUS4(cag_load4(node->low[k]), at);
+      const CagFloat4 above = CAG_MINUS4(at, cag_load4(node->high[k]));
+      const CagFloat4 off = cag_larger4(cag_larger4(below, above), cag_all4(0));
+      square.v = CAG_PLUS4(square.v, CAG_TIMES4(off, off));
+    }
+    cag_bvh_push(node, square.f, most, w);
   }
   return false;
 }

@@ -96,6 +96,13 @@ static double sign_of_edge(const Projected *a, const Projected *b) {
   return a->y != b->y ? a->y - b->y : b->x - a->x;
 }
 
+// The number, or the least or largest of the three others beyond which it is.
+INLINE double within_corners(double z, double a, double b, double c) {
+  const double ab = a < b ? a : b, low = ab < c ? ab : c;
+  const double ba = a > b ? a : b, high = ba > c ? ba : c;
+  return z < low ? low : z > high ? high : z;
+}
+
 // A triangle that the ray meets.
 typedef struct Met {
   double t, weight[2];
@@ -123,7 +130,7 @@ INLINE bool meet_triangle(const Shear *s, const CagRayTriangle *triangle, Met *o
     out->weight[1] = w * inverse;
     z = (u * a.z + v * b.z + w * c.z) * inverse;
     // Of a triangle that is nearly parallel to the ray, the quotient may be far off.
-    z = fmin(fmax(z, fmin(fmin(a.z, b.z), c.z)), fmax(fmax(a.z, b.z), c.z));
+    z = within_corners(z, a.z, b.z, c.z);
   } else {
     out->weight[0] = out->weight[1] = 0;
     z = a.z;

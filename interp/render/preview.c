@@ -136,8 +136,10 @@ static bool render_numbered_tile(void *context, size_t tile, int thread) {
   Frame *f = context;
   CagError own;
   CagError *err = thread == 0 ? f->err : &own;
-  CagPreviewShader s = {
-      .world = f->world, .sky_light = f->options->sky_light, .sketch = f->options->samples <= 0};
+  CagPreviewShader s = {.world = f->world,
+                        .sky_light = f->options->sky_light,
+                        .samples = f->options->samples,
+                        .sketch = f->options->samples <= 0};
   const CagStatus status = render_tile(f, &s, tile, err);
   cag_crossings_free(&s.work);
   if (thread == 0 && status) f->status = status;

@@ -6,14 +6,11 @@
 // light that is followed.
 enum { DEPTH_MAX = 12 };
 #define WEIGHT_LEAST 0.004
-// Diffuse reflections one after another.
+// Diffuse reflections one after another in pictures with the sky's light; others have one, beyond
+// which light from everywhere is a constant.
 enum { BOUNCES_MAX = 2 };
 // A ray starts this fraction of the scene's size beside the surface that it leaves.
 #define START 1e-6
-// A sun's distance in radii of the scene, and its angular diameter in radians (formats/pov_stage.c).
-#define SUN_WIDTH 0.0175
-// The part of a spot's cone with full light.
-#define SPOT_CORE 0.8
 #define COAT_EXPONENT 600.0
 // A sample of indirect light is at most this bright: brighter ones, which are rare, would be specks.
 #define BRIGHTEST 12.0
@@ -69,40 +66,32 @@ typedef struct Beam {
 } Beam;
 
 // The inner part of the cone is fully lit; towards the edge, the light fades by a cubic.
-static double spot_fade(const CagLight *l, CagVec3 direction) {
-  const double cosine = -cag_dot(direction, cag_unit(l->direction));
-  const double inner = cos(SPOT_CORE * l->angle / 2), outer = cos(l->angle / 2);
-  if (cosine >= inner) return 1;
-  if (cosine <= outer) return 0;
-  const double x = (cosine - outer) / (inner - outer);
+static double spot_fade(const CagPreviewLamp *l, CagVec3 direction) {
+  const double cosine = -cag_dot(direction, l->direction);
+  if (cosine >= l->inner) return 1;
+  if (cosine <= l->outer) return 0;
+  const double x = (cosine - l->outer) / (l->inner - l->outer);
   return x * x * (3 - 2 * x);
 }
 
-static Beam beam_of(CagPreviewShader *s, const CagLight *l, CagVec3 at) {
-  const double far = 1000 * s->world->radius;
-  CagVec3 to = l->kind == CAG_LIGHT_SUN ? cag_scaled(cag_unit(l->direction), -far)
-                                        : cag_sub(l->position, at);
-  Beam beam = {.direction = cag_unit(to), .color = color_scaled(l->color, l->strength)};
-  const double size = l->kind == CAG_LIGHT_SUN    ? far * SUN_WIDTH
-                      : l->kind == CAG_LIGHT_AREA ? l->size
-                                                  : 0;
-  if (!s->sketch && size > 0) {
-    CagVec3 a, b;
+static Beam beam_of(CagPreviewShader *s, const CagPreviewLamp *l, CagVec3 at) {
+  const CagLightKind kind = l->light->kind;
+  CagVec3 to = kind == CAG_LIGHT_SUN ? l->to_sun : cag_sub(l->light->position, at);
+  Beam beam = {.direction = cag_unit(to), .color = l->color};
+  if (!s->sketch && l->wide) {
     double chance[2];
-    perpendicular_pair(cag_unit(l->direction), &a, &b);
     cag_preview_roll(&s->dice, chance);
     double x = chance[0] - 0.5, y = chance[1] - 0.5;
-    if (l->kind == CAG_LIGHT_SUN) { // a disk
+    if (kind == CAG_LIGHT_SUN) { // a disk
       const double radius = sqrt(chance[0]) / 2, angle = 2 * M_PI * chance[1];
       x = radius * cos(angle);
       y = radius * sin(angle);
     }
-    to = cag_madd(cag_madd(to, x * size, a), y * size, b);
+    to = cag_madd(cag_madd(to, x, l->across), y, l->over);
   }
   beam.distance = cag_norm(to);
   beam.shadow = cag_scaled(to, 1 / beam.distance);
-  if (l->kind == CAG_LIGHT_SPOT)
-    beam.color = color_scaled(beam.color, spot_fade(l, beam.direction));
+  if (kind == CAG_LIGHT_SPOT) beam.color = color_scaled(beam.color, spot_fade(l, beam.direction));
   return beam;
 }
 
@@ -129,28 +118,53 @@ static CagColor highlight_of(const Spot *p, const Beam *beam) {
   return sum;
 }
 
+// The samples of a pixel ask the lights in turn. Each stands for as many samples as do not ask it,
+// so that light without shadows has no noise. With few samples, all are asked: returns their number.
+static size_t lamp_in_turn(const CagPreviewShader *s, double *all) {
+  const size_t n = s->world->lamp_count, samples = (size_t)s->samples;
+  if (samples < 4 * n) return n;
+  const size_t shift = (size_t)(s->dice.pixel ^ s->dice.pixel >> 32) % n;
+  const size_t lamp = (s->dice.index + shift) % n;
+  const size_t count = samples / n + ((lamp + n - shift) % n < samples % n);
+  *all = (double)samples / (double)count;
+  return lamp;
+}
+
+static size_t lamp_by_chance(CagPreviewShader *s, double *all) {
+  double chance[2];
+  cag_preview_roll(&s->dice, chance);
+  *all = (double)s->world->lamp_count;
+  return (size_t)(chance[0] * *all);
+}
+
 // The light of all sources that arrives at a point, weighted by the cosine, and their highlights
 // (NULL: not wanted). Paths that have left a diffuse surface see no highlights, which would be
 // specks.
 static CagStatus light_of_sources(CagPreviewShader *s, const Spot *p, CagColor *arriving,
                                   CagColor *highlights, CagError *err) {
-  const CagScene *scene = s->world->scene;
+  const CagPreviewWorld *w = s->world;
+  size_t first = 0, last = w->lamp_count;
+  double all = 1; // how many the lights that are asked stand for
   *arriving = BLACK;
   if (highlights) *highlights = BLACK;
-  for (size_t i = 0; i < scene->light_count; i++) {
-    const Beam beam = beam_of(s, &scene->lights[i], p->point);
+  if (!s->sketch && last > 1) {
+    first = highlights ? lamp_in_turn(s, &all) : lamp_by_chance(s, &all);
+    if (first < last) last = first + 1;
+    else first = 0;
+  }
+  for (size_t i = first; i < last; i++) {
+    const Beam beam = beam_of(s, &w->lamps[i], p->point);
     const double facing = cag_dot(p->normal, beam.direction);
     // The light may come from behind the surface itself.
     if (facing <= 0 || cag_dot(p->flat, beam.shadow) <= 0) continue;
-    if (beam.color.r + beam.color.g + beam.color.b <= 0) continue;
     const CagRay ray = {p->point, beam.shadow, start_step(s->world), beam.distance};
     CagColor passed;
     CagStatus status = cag_preview_passage(s->world, &ray, &s->work, &passed, err);
     if (status) return status;
     passed = color_product(passed, beam.color);
-    *arriving = color_add(*arriving, facing, passed);
+    *arriving = color_add(*arriving, facing * all, passed);
     if (highlights && passed.r + passed.g + passed.b > 0)
-      *highlights = color_add(*highlights, 1, color_product(passed, highlight_of(p, &beam)));
+      *highlights = color_add(*highlights, all, color_product(passed, highlight_of(p, &beam)));
   }
   return CAG_OK;
 }
@@ -217,7 +231,8 @@ static CagStatus diffuse_light(CagPreviewShader *s, const CagRay *ray, int bounc
   const Spot p = spot_of(s->world, ray, &hit);
   CagColor direct, indirect = BLACK;
   status = light_of_sources(s, &p, &direct, NULL, err);
-  if (!status && bounces + 1 < BOUNCES_MAX)
+  if (!s->sky_light) indirect = s->world->ambient;
+  else if (!status && bounces + 1 < BOUNCES_MAX)
     status = light_from_everywhere(s, &p, bounces + 1, &indirect, err);
   // Of metals, the mirror's part counts as diffuse, too.
   const double kept =

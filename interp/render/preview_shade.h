@@ -27,6 +27,7 @@ typedef struct CagPreviewFirst {
 typedef struct CagPreviewShader {
   const CagPreviewWorld *world;
   bool sky_light; // see preview.h
+  int samples;    // of a pixel
   bool sketch;    // lights are points, and light from everywhere is a constant
   CagCrossings work;
   CagPreviewDice dice;

@@ -65,6 +65,7 @@ void cag_preview_world_free(CagPreviewWorld *w) {
   cag_free(w->parts);
   cag_bvh_free(&w->boxes);
   cag_free(w->surfaces);
+  cag_free(w->lamps);
   cag_free(w->planes);
   cag_free(w->plane_items);
   *w = (CagPreviewWorld){0};
@@ -182,13 +183,50 @@ static CagColor ambient_of(const CagScene *s) {
   return (CagColor){k * sum.r, k * sum.g, k * sum.b};
 }
 
+// A sun's distance in radii of the scene, and its angular diameter in radians (formats/pov_stage.c).
+#define SUN_DISTANCE 1000.0
+#define SUN_WIDTH 0.0175
+// The part of a spot's cone with full light.
+#define SPOT_CORE 0.8
+
+static CagPreviewLamp lamp_of(const CagLight *l, double radius) {
+  const double far = SUN_DISTANCE * radius;
+  CagPreviewLamp lamp = {.light = l, .direction = cag_unit(l->direction)};
+  lamp.color =
+      (CagColor){l->color.r * l->strength, l->color.g * l->strength, l->color.b * l->strength};
+  const double size = l->kind == CAG_LIGHT_SUN    ? far * SUN_WIDTH
+                      : l->kind == CAG_LIGHT_AREA ? l->size
+                                                  : 0;
+  const CagVec3 other = fabs(lamp.direction.z) < 0.9 ? cag_vec3(0, 0, 1) : cag_vec3(1, 0, 0);
+  const CagVec3 a = cag_unit(cag_cross(lamp.direction, other));
+  lamp.wide = size > 0;
+  lamp.across = cag_scaled(a, size);
+  lamp.over = cag_scaled(cag_cross(lamp.direction, a), size);
+  lamp.to_sun = cag_scaled(lamp.direction, -far);
+  lamp.inner = cos(SPOT_CORE * l->angle / 2);
+  lamp.outer = cos(l->angle / 2);
+  return lamp;
+}
+
+static CagStatus make_lamps(CagPreviewWorld *w, CagError *err) {
+  const CagScene *s = w->scene;
+  w->lamps = cag_calloc(s->light_count + 1, sizeof *w->lamps);
+  if (!w->lamps) return cag_fail_memory(err);
+  for (size_t i = 0; i < s->light_count; i++) {
+    const CagPreviewLamp lamp = lamp_of(&s->lights[i], w->radius);
+    if (lamp.color.r + lamp.color.g + lamp.color.b > 0) w->lamps[w->lamp_count++] = lamp;
+  }
+  return CAG_OK;
+}
+
 CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err) {
   *out = (CagPreviewWorld){.scene = scene, .ambient = ambient_of(scene)};
   const CagBounds box = cag_scene_framed(scene);
   out->radius = cag_scene_radius(&box);
   out->center = cag_lerp(box.min, box.max, 0.5);
   out->surfaces = cag_calloc(scene->material_count + 1, sizeof *out->surfaces);
-  CagStatus status = out->surfaces ? make_parts(out, err) : cag_fail_memory(err);
+  CagStatus status = out->surfaces ? make_lamps(out, err) : cag_fail_memory(err);
+  if (!status) status = make_parts(out, err);
   for (size_t i = 0; !status && i < scene->material_count; i++) {
     out->surfaces[i] = surface_of(&scene->materials[i]);
     out->transparent = out->transparent || out->surfaces[i].passed > 0;

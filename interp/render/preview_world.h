@@ -29,6 +29,17 @@ typedef struct CagPreviewPart {
   CagBounds bounds;
 } CagPreviewPart;
 
+// A light, prepared.
+typedef struct CagPreviewLamp {
+  const CagLight *light;
+  CagColor color;       // with its strength
+  CagVec3 direction;    // of the light, unit
+  CagVec3 across, over; // perpendicular to it, of the length of the source
+  CagVec3 to_sun;       // SUN: from any point to its middle
+  bool wide;            // the source is not a point
+  double inner, outer;  // SPOT: cosines of the cone with full light, and of all of it
+} CagPreviewLamp;
+
 typedef struct CagPreviewWorld {
   const CagScene *scene;
   CagPreviewPart *parts;
@@ -38,6 +49,8 @@ typedef struct CagPreviewWorld {
   double *planes;              // heights of the unbounded grounds
   size_t *plane_items;
   size_t plane_count;
+  CagPreviewLamp *lamps; // of the lights of the scene that shine
+  size_t lamp_count;
   bool transparent; // some material passes light
   double radius;    // of the scene
   CagVec3 center;
