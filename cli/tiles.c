@@ -79,7 +79,9 @@ static bool is_png(const char *path) {
 
 static bool write_picture(const CagImage *picture, const CagExrMetadata *m, const char *output,
                           CagError *err) {
-  if (!is_png(output)) return cag_exr_write(output, picture, CAG_EXR_HALF, m, err);
+  if (!is_png(output))
+    return cag_exr_write(output, picture, cag_image_is_half(picture) ? CAG_EXR_HALF : CAG_EXR_FLOAT,
+                         m, err);
   const CagExrAttribute *script = cag_exr_metadata_find(m, "cag.script");
   CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
                         {"Title", script && script->text ? script->text : ""}};

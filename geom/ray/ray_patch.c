@@ -364,25 +364,71 @@ static bool is_known(const Root *found, int n, const Root *r, const CagRayCell *
   return false;
 }
 
+// Where the ray meets the surface again if it grazes it at a root: along the direction of the ray,
+// the surface bends away from it by a parabola. Returns false if it does not bend.
+static CagStatus partner_of(const CagRayPatch *s, const Line *line, const Root *root, Root *out,
+                            bool *bends, CagError *err) {
+  CagVec3 d[9];
+  *bends = false;
+  CagStatus status = cag_surface_eval(s->surface, root->at[0], root->at[1], 2, CAG_SIDE_RIGHT,
+                                      CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  const CagVec3 du = root->du, dv = root->dv, ray = line->ray->direction;
+  const CagVec3 normal = cag_unit(cag_cross(du, dv));
+  // The parameters change by wu and wv along the ray, as far as it is in the tangent plane.
+  const double uu = cag_dot(du, du), uv = cag_dot(du, dv), vv = cag_dot(dv, dv);
+  const double ru = cag_dot(du, ray), rv = cag_dot(dv, ray), det = uu * vv - uv * uv;
+  if (!(det > 0)) return CAG_OK;
+  const double wu = (vv * ru - uv * rv) / det, wv = (uu * rv - uv * ru) / det;
+  const CagVec3 second = cag_madd(
+      cag_madd(cag_scaled(d[cag_partial(2, 2, 0)], wu * wu), 2 * wu * wv, d[cag_partial(2, 1, 1)]),
+      wv * wv, d[cag_partial(2, 0, 2)]);
+  const double bend = cag_dot(second, normal), along = 2 * cag_dot(normal, ray) / bend;
+  if (!(fabs(along) < s->size)) return CAG_OK;
+  *bends = true;
+  out->at[0] = clamped(root->at[0] + along * wu, s->surface->u0, s->surface->u1);
+  out->at[1] = clamped(root->at[1] + along * wv, s->surface->v0, s->surface->v1);
+  return CAG_OK;
+}
+
+// The roots of a ray in a cell.
+typedef struct CellRoots {
+  Root found[2 * START_COUNT];
+  int n;
+} CellRoots;
+
+// Searches from a start. *again is whether another start may lead elsewhere.
+static CagStatus search_cell(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
+                             Root start, CellRoots *roots, bool *again, CagCrossings *out,
+                             CagError *err) {
+  Outcome outcome;
+  CagStatus status = refine_root(s, cell, line, &start, &outcome, err);
+  *again = outcome == FAILED;
+  if (status || outcome != FOUND || !is_in_cell(s, cell, &start) ||
+      is_known(roots->found, roots->n, &start, cell))
+    return status;
+  roots->found[roots->n++] = start;
+  return add_root(s, line, &start, out, err);
+}
+
 static CagStatus meet_cell(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
                            CagCrossings *out, CagError *err) {
-  const double slope = fabs(cag_dot(cell->axis, line->ray->direction));
-  const bool single = slope > cell->sine;
-  Root found[START_COUNT];
-  int n = 0;
+  const bool single = fabs(cag_dot(cell->axis, line->ray->direction)) > cell->sine;
+  CellRoots roots = {.n = 0};
   for (int k = 0; k < START_COUNT; k++) {
     Root r;
+    bool again;
     for (int j = 0; j < 2; j++)
       r.at[j] = cell->from[j] + STARTS[k][j] * (cell->to[j] - cell->from[j]);
-    Outcome outcome;
-    CagStatus status = refine_root(s, cell, line, &r, &outcome, err);
+    const int known = roots.n;
+    CagStatus status = search_cell(s, cell, line, r, &roots, &again, out, err);
     if (status) return status;
-    if (outcome == FOUND && is_in_cell(s, cell, &r) && !is_known(found, n, &r, cell)) {
-      found[n++] = r;
-      status = add_root(s, line, &r, out, err);
-      if (status) return status;
-    }
-    if (outcome != FAILED && single) return CAG_OK;
+    if (single && !again) return CAG_OK;
+    if (single || roots.n == known) continue;
+    bool bends;
+    status = partner_of(s, line, &roots.found[known], &r, &bends, err);
+    if (!status && bends) status = search_cell(s, cell, line, r, &roots, &again, out, err);
+    if (status) return status;
   }
   return CAG_OK;
 }

@@ -2,6 +2,8 @@
 
 #include "interp/render/image.h"
 
+#include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -63,5 +65,23 @@ bool cag_image_find_color(const CagImage *image, size_t rgb[3]) {
     rgb[0] = 0;
   }
   rgb[1] = rgb[2] = rgb[0];
+  return true;
+}
+
+// A half float has 11 digits, and a multiple of 2^-24 (IEEE 754-2019, 3.6).
+static bool is_half(float x) {
+  const float largest = 65504, step = 0x1p-24f, normal = 0x1p-14f;
+  if (!isfinite(x)) return true;
+  if (fabsf(x) > largest) return false;
+  if (fabsf(x) < normal) return x / step == rintf(x / step);
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return (bits & 0x1fff) == 0;
+}
+
+bool cag_image_is_half(const CagImage *image) {
+  const size_t n = image->width * image->height * image->channel_count;
+  for (size_t i = 0; i < n; i++)
+    if (!is_half(image->data[i])) return false;
   return true;
 }

@@ -50,6 +50,9 @@ static inline float *cag_image_plane(const CagImage *image, size_t c) {
 // Finds a channel by its name.
 bool cag_image_find(const CagImage *image, const char *name, size_t *index);
 
+// Whether all samples are half floats, such as those of POV-Ray's pictures.
+bool cag_image_is_half(const CagImage *image);
+
 // Finds the color channels: R, G, and B, or three times a luminance Y or the only channel. Returns
 // false if there are none.
 bool cag_image_find_color(const CagImage *image, size_t rgb[3]);

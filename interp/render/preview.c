@@ -11,7 +11,7 @@
 // Side of a tile in pixels: what one thread works on.
 enum { TILE = 16 };
 // Samples of a pixel of a sketch at an edge, as a square of so many.
-enum { EDGE_SIDE = 3 };
+enum { EDGE_SIDE = 3, LENS_SIDE = 6 };
 // Neighbors that differ by more than this fraction of their brightness are at an edge.
 #define EDGE_CONTRAST 0.06
 #define EDGE_FLOOR 0.02
@@ -22,7 +22,7 @@ typedef struct Frame {
   const CagPreviewOptions *options;
   CagCameraMap map;
   CagVec3 right, down, view; // of the lens
-  int x, y, width, height;   // of the region
+  int x, y, width, height;   // of what is rendered: the region and its neighbors
   size_t columns;            // of tiles
   int round;                 // number of the sample, or of the pass of a sketch
   CagImage *out;
@@ -39,7 +39,7 @@ static CagRay ray_through(const Frame *f, const double at[2], CagPreviewShader *
   CagRay ray = {.least = 0, .most = INFINITY};
   const CagCamera *c = f->camera;
   cag_camera_sight(&f->map, at, &ray.origin, &ray.direction);
-  if (s->sketch || !cag_camera_has_lens(c)) return ray;
+  if (!cag_camera_has_lens(c)) return ray;
   const double to_target = cag_norm(cag_sub(c->target, c->eye));
   const double focus = c->focus > 0 ? c->focus : to_target > 0 ? to_target : 1;
   double chance[2];
@@ -86,13 +86,17 @@ static void add_sample(CagPreviewSum *sum, const CagColor *c, const CagPreviewFi
   sum->met++;
 }
 
+static CagPreviewDice pixel_dice(const Frame *f, int x, int y, int index) {
+  return (CagPreviewDice){.pixel = (uint64_t)(f->y + y) << 32 | (uint32_t)(f->x + x),
+                          .index = (uint32_t)index};
+}
+
 // One more sample of a pixel, anywhere in it.
 static CagStatus sample_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
   const size_t i = pixel_index(f, x, y);
   double chance[2];
   CagColor c;
-  s->dice = (CagPreviewDice){.pixel = (uint64_t)(f->y + y) << 32 | (uint32_t)(f->x + x),
-                             .index = (uint32_t)f->round};
+  s->dice = pixel_dice(f, x, y, f->round);
   cag_preview_roll(&s->dice, chance);
   const double at[2] = {f->x + x + chance[0], f->y + y + chance[1]};
   s->first.met = false;
@@ -105,10 +109,12 @@ static CagStatus sample_pixel(const Frame *f, CagPreviewShader *s, int x, int y,
 // The middle of a pixel in the first round; a square of samples at edges in the second.
 static CagStatus sketch_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
   const size_t i = pixel_index(f, x, y);
-  const int side = f->round == 0 ? 1 : EDGE_SIDE;
+  const int fine = cag_camera_has_lens(f->camera) ? LENS_SIDE : EDGE_SIDE;
+  const int side = f->round == 0 ? 1 : fine;
   CagColor sum = {0, 0, 0}, c;
   if (f->round > 0 && !f->edge[i]) return CAG_OK;
   for (int k = 0; k < side * side; k++) {
+    s->dice = pixel_dice(f, x, y, k);
     const double at[2] = {f->x + x + (k % side + 0.5) / side, f->y + y + (k / side + 0.5) / side};
     CagStatus status = light_at(f, s, at, &c, err);
     if (status) return status;
@@ -153,7 +159,9 @@ static bool differ(const float *a, const float *b) {
   return fabsf(p - q) > EDGE_CONTRAST * fmaxf(p, q) + EDGE_FLOOR * EDGE_CONTRAST;
 }
 
+// With a lens, all pixels may be of edges that are not sharp.
 static void find_edges(Frame *f) {
+  if (cag_camera_has_lens(f->camera)) memset(f->edge, 1, (size_t)f->width * (size_t)f->height);
   for (int y = 0; y < f->height; y++)
     for (int x = 0; x < f->width; x++) {
       const size_t i = pixel_index(f, x, y), below = i + (size_t)f->width;
@@ -191,17 +199,42 @@ static CagStatus render_rounds(Frame *f, int *complete) {
   return f->status ? f->status : cag_stop_check(f->err);
 }
 
-static void write_picture(const Frame *f, int complete) {
+// The part of the picture that was asked for.
+typedef struct Region {
+  int x, y, width, height;
+} Region;
+
+static Region region_of(const CagCamera *c, const CagPreviewOptions *o) {
+  if (o->region_width <= 0) return (Region){0, 0, c->size[0], c->size[1]};
+  return (Region){o->region_x, o->region_y, o->region_width, o->region_height};
+}
+
+// Pixels of a region depend on neighbors beyond it, so that its parts are those of the picture.
+static void render_around(Frame *f, const Region *r) {
+  const int margin = f->options->samples > 0 ? CAG_PREVIEW_SMOOTH_REACH : 1;
+  const int *size = f->camera->size;
+  f->x = r->x > margin ? r->x - margin : 0;
+  f->y = r->y > margin ? r->y - margin : 0;
+  const int right = r->x + r->width + margin, bottom = r->y + r->height + margin;
+  f->width = (right < size[0] ? right : size[0]) - f->x;
+  f->height = (bottom < size[1] ? bottom : size[1]) - f->y;
+}
+
+static void write_picture(const Frame *f, const Region *r, int complete) {
   static const char *const names[] = {"R", "G", "B"};
   const float k = f->options->samples > 0 ? 1 / (float)complete : 1;
-  const size_t n = (size_t)f->width * (size_t)f->height;
   for (size_t c = 0; c < 3; c++) {
     cag_image_set_name(f->out, c, names[c]);
-    for (size_t i = 0; i < n; i++) cag_image_plane(f->out, c)[i] = k * f->sum[i].color[c];
+    float *to = cag_image_plane(f->out, c);
+    for (int y = 0; y < r->height; y++)
+      for (int x = 0; x < r->width; x++)
+        *to++ = k * f->sum[pixel_index(f, r->x + x - f->x, r->y + y - f->y)].color[c];
   }
 }
 
 static CagStatus render_frame(Frame *f, bool *finished) {
+  const Region r = region_of(f->camera, f->options);
+  render_around(f, &r);
   const size_t n = (size_t)f->width * (size_t)f->height;
   int complete = 0;
   f->columns = (size_t)(f->width + TILE - 1) / TILE;
@@ -209,7 +242,7 @@ static CagStatus render_frame(Frame *f, bool *finished) {
   if (f->options->samples <= 0) f->edge = cag_calloc(n, 1);
   CagStatus status =
       f->sum && (f->edge || f->options->samples > 0) ? CAG_OK : cag_fail_memory(f->err);
-  if (!status && !cag_image_create(f->out, (size_t)f->width, (size_t)f->height, 3, f->err))
+  if (!status && !cag_image_create(f->out, (size_t)r.width, (size_t)r.height, 3, f->err))
     status = f->err->status;
   if (!status) {
     status = render_rounds(f, &complete);
@@ -217,7 +250,7 @@ static CagStatus render_frame(Frame *f, bool *finished) {
     if (status == CAG_E_CALLBACK && complete > 0) status = CAG_OK;
     if (!status && complete > 1 && f->options->samples > 0)
       cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, complete);
-    if (!status) write_picture(f, complete);
+    if (!status) write_picture(f, &r, complete);
     else cag_image_free(f->out);
   }
   cag_free(f->sum);
@@ -233,11 +266,6 @@ CagStatus cag_preview_render(const CagScene *scene, const CagCamera *camera,
   f.right = cag_vec3(frame.m[0][0], frame.m[1][0], frame.m[2][0]);
   f.down = cag_vec3(frame.m[0][1], frame.m[1][1], frame.m[2][1]);
   f.view = cag_vec3(frame.m[0][2], frame.m[1][2], frame.m[2][2]);
-  const bool whole = options->region_width <= 0;
-  f.x = whole ? 0 : options->region_x;
-  f.y = whole ? 0 : options->region_y;
-  f.width = whole ? camera->size[0] : options->region_width;
-  f.height = whole ? camera->size[1] : options->region_height;
   CagPreviewWorld world;
   CagStatus status = cag_scene_camera_map(camera, &f.map, err);
   if (status) return status;

@@ -155,8 +155,9 @@ static CagStatus light_of_sources(CagPreviewShader *s, const Spot *p, CagColor *
   for (size_t i = first; i < last; i++) {
     const Beam beam = beam_of(s, &w->lamps[i], p->point);
     const double facing = cag_dot(p->normal, beam.direction);
-    // The light may come from behind the surface itself.
-    if (facing <= 0 || cag_dot(p->flat, beam.shadow) <= 0) continue;
+    if (facing <= 0) continue;
+    // The light comes from behind the surface itself. A sheet has only the normal of shading.
+    if (p->hit->closed && cag_dot(p->flat, beam.shadow) <= 0) continue;
     const CagRay ray = {p->point, beam.shadow, start_step(s->world), beam.distance};
     CagColor passed;
     CagStatus status = cag_preview_passage(s->world, &ray, &s->work, &passed, err);

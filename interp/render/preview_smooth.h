@@ -11,6 +11,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// How far a pixel's neighbors influence it.
+#define CAG_PREVIEW_SMOOTH_REACH 14
+
 // Sums over the samples of a pixel.
 typedef struct CagPreviewSum {
   float color[3];

@@ -239,8 +239,8 @@ END
 chmod +x flaky/povray
 it 'a renderer that fails is tried again' povray
 table flaky.csv <<'END'
-script,output,size,quality
-ball.cag,flaky.png,32x24,draft
+script,output,size,engine
+ball.cag,flaky.png,32x24,povray
 END
 (PATH=$PWD/flaky:$PATH; try batch flaky.csv --retries 1; status 1; echo "$test_state" > state)
 [ "$(cat state)" != bad ] || test_state=bad
@@ -279,12 +279,12 @@ END
 chmod +x hanging/povray
 renders() { grep -l -a '71\.3519' /proc/[0-9]*/cmdline 2> /dev/null | grep -q .; }
 table many.csv <<'END'
-script,output,size,quality
+script,output,size,engine
 ball.cag,k1.stl,,
 ball.cag,k2.stl,,
-ball.cag,k3.png,32x24,draft
-ball.cag,k4.png,32x24,draft
-ball.cag,k5.png,32x24,draft
+ball.cag,k3.png,32x24,povray
+ball.cag,k4.png,32x24,povray
+ball.cag,k5.png,32x24,povray
 END
 mkdir temporary
 for signal in TERM KILL; do

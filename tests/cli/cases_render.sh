@@ -148,7 +148,7 @@ printf earlier > kept.exr
 # stand_in STATUS TEXT: checks the result of a render with it.
 stand_in() {
   ran="cag render with the povray of this test"
-  PATH=$PWD/fake:$PATH timeout 60 "$CAG" render ball.cag -o kept.exr $quick > out 2> err
+  PATH=$PWD/fake:$PATH timeout 60 "$CAG" render ball.cag -o kept.exr $quick --engine povray > out 2> err
   code=$?
   check_end
   status "$1"
@@ -158,9 +158,67 @@ stand_in() {
   no_temporaries temporary
 }
 
+it 'without POV-Ray, the built-in renderer is used'
+mkdir nothing
+ran='cag render without POV-Ray' && PATH=$PWD/nothing "$CAG" render ball.cag -o built_in.exr --size 64x48 > out 2> err
+code=$?
+status 0
+exists built_in.exr
+try render ball.cag -o built_in_here.exr --size 64x48 --engine preview
+try compare built_in.exr built_in_here.exr
+status 0
+
+# --- The built-in renderer ---
+it 'previews are the same for any number of threads, and in parts'
+script glass.cag 'show sphere(8) |> material({color: "white", transmission: 1, ior: 1.5})
+show box([20, 20, 2]) |> translate([-10, -10, -11]) |> material({color: "teal", roughness: 0.1})
+show torus(14, 2) |> material({color: "gold", metallic: 1, roughness: 0.2})'
+for quality in draft normal; do
+  try render glass.cag -o one.exr --engine preview --quality $quality --size 96x64 --threads 1
+  status 0
+  try render glass.cag -o two.exr --engine preview --quality $quality --size 96x64 --threads 2
+  try compare one.exr two.exr
+  status 0
+done
+try render glass.cag -o whole.png --engine preview --size 96x64
+try render glass.cag -o part.png --engine preview --size 96x64 --region 40x30+20+10
+python3 "$here/png_part.py" whole.png part.png 20 10 > part || wrong "$(cat part)"
+
+it 'a preview of POV-Ray drafts looks the same' povray
+script clean.cag 'show sphere(10) |> translate([0, 0, 10]) |> material({color: "tomato", roughness: 0.4})
+show box([12, 12, 12]) |> translate([14, -4, 0]) |> material({color: "#dddddd", roughness: 1})
+show ground()
+show point_light([-60, -90, 120])'
+for engine in povray preview; do
+  try render clean.cag -o clean_$engine.exr --engine $engine --quality draft --size 160x120
+  status 0
+done
+try compare clean_povray.exr clean_preview.exr
+color=$(sed -n 's/^color difference (CIEDE2000): mean \([0-9.e-]*\),.*/\1/p' out)
+awk "BEGIN { exit !(${color:-9} < 0.5) }" || wrong "the mean color difference is ${color:-missing}"
+
+it 'a preview that is stopped is kept if it is asked for'
+script long.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])]'
+"$CAG" render long.cag -o stopped.exr --engine preview --samples 100000 --size 320x240 --keep-partial > out 2> err &
+child=$!
+sleep 2
+kill -INT $child
+wait $child
+code=$? ran='cag render --keep-partial, interrupted'
+status 130
+exists stopped.exr
+"$CAG" render long.cag -o not_kept.exr --engine preview --samples 100000 --size 320x240 > out 2> err &
+child=$!
+sleep 1
+kill -INT $child
+wait $child
+code=$? ran='cag render, interrupted'
+status 130
+is_missing not_kept.exr
+
 it 'POV-Ray is missing'
 mkdir empty
-ran='cag render without POV-Ray' && PATH=$PWD/empty "$CAG" render ball.cag -o kept.exr $quick > out 2> err
+ran='cag render without POV-Ray' && PATH=$PWD/empty "$CAG" render ball.cag -o kept.exr $quick --engine povray > out 2> err
 code=$?
 status 4
 says 'POV-Ray is not installed'
@@ -185,7 +243,7 @@ stand_in 4 'no picture'
 
 it 'POV-Ray writes no EXR'
 fake 'echo nonsense > out.exr'
-PATH=$PWD/fake:$PATH "$CAG" render ball.cag -o kept.exr $quick > out 2> err
+PATH=$PWD/fake:$PATH "$CAG" render ball.cag -o kept.exr $quick --engine povray > out 2> err
 code=$?
 [ "$code" -eq 3 ] || [ "$code" -eq 4 ] || wrong 'expected status 3 or 4'
 holds kept.exr earlier
@@ -201,14 +259,14 @@ stand_in 4 'POV-Ray'
 it 'POV-Ray takes longer than --max-time'
 fake 'sleep 60'
 ran='cag render with a povray that sleeps'
-PATH=$PWD/fake:$PATH timeout 60 "$CAG" render ball.cag -o kept.exr $quick --max-time 0.7 > out 2> err
+PATH=$PWD/fake:$PATH timeout 60 "$CAG" render ball.cag -o kept.exr $quick --engine povray --max-time 0.7 > out 2> err
 code=$?
 status 5
 holds kept.exr earlier
 no_temporaries temporary
 
 it 'a disk for temporary files that is not there' povray
-ran='cag render with a wrong TMPDIR' && TMPDIR=/nowhere "$CAG" render ball.cag -o kept.exr $quick > out 2> err
+ran='cag render with a wrong TMPDIR' && TMPDIR=/nowhere "$CAG" render ball.cag -o kept.exr $quick --engine povray > out 2> err
 code=$?
 status 3
 says 'TMPDIR'
@@ -273,11 +331,11 @@ show sun(direction: [0, 0, -1])'
 it 'framing fills the picture for long and thin shapes' povray python3
 for view in front top iso; do
   try export rod.cag -o rod.json
-  try render rod.cag -o "rod_$view.png" --size 100x100 --quality draft --camera $view
+  try render rod.cag -o "rod_$view.png" --size 100x100 --quality draft --engine povray --camera $view
   status 0
   python3 "$here/png_extent.py" "rod_$view.png" 0.80 0.97 > extent || wrong "$view: $(cat extent)"
 done
-try render rod.cag -o rod_own.png --size 100x100 --quality draft
+try render rod.cag -o rod_own.png --size 100x100 --quality draft --engine povray
 python3 "$here/png_extent.py" rod_own.png 0.80 0.97 > extent || wrong "$(cat extent)"
 
 # --- Depth of field ---

@@ -121,10 +121,10 @@ try render ball.cag -o a.stl
 status 2
 says 'cag export'
 
-it 'an engine that is not there names the one that is'
-try render ball.cag -o a.png --engine preview
+it 'an engine that is not there names those that are'
+try render ball.cag -o a.png --engine cycles
 status 2
-says 'povray'
+says 'choose povray, preview, or auto'
 
 it 'there are no passes'
 try render ball.cag -o a.exr --passes color
