@@ -248,10 +248,13 @@ static CagStatus render_frame(Frame *f, bool *finished) {
     status = render_rounds(f, &complete);
     *finished = !status;
     if (status == CAG_E_CALLBACK && complete > 0) status = CAG_OK;
+    // What is complete is finished even if the work is stopped.
+    const volatile int *flag = cag_stop_lend(NULL);
     if (!status && complete > 1 && f->options->samples > 0)
       cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, complete);
     if (!status) write_picture(f, &r, complete);
     else cag_image_free(f->out);
+    cag_stop_lend(flag);
   }
   cag_free(f->sum);
   cag_free(f->edge);

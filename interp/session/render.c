@@ -303,8 +303,10 @@ static int make_preview(CagSession *s, void *context) {
   if (!status && !finished) cag_stop_fail(&err);
   const bool kept = !status && (finished || j->options->keep_partial);
   int result = CAG_STATUS_OK;
+  const volatile int *flag = cag_stop_lend(NULL); // the picture is written in any case
   if (kept && !write_preview(j, &image, finished, &io))
     result = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  cag_stop_lend(flag);
   cag_image_free(&image);
   if (result != CAG_STATUS_OK || (!status && finished)) return result;
   cag_session_checked(s, status ? status : CAG_E_CALLBACK, &err);

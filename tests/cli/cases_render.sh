@@ -202,7 +202,7 @@ script long.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor
 "$CAG" render long.cag -o stopped.exr --engine preview --samples 100000 --size 320x240 --keep-partial > out 2> err &
 child=$!
 sleep 2
-kill -INT $child
+kill -TERM $child
 wait $child
 code=$? ran='cag render --keep-partial, interrupted'
 status 130
@@ -210,7 +210,7 @@ exists stopped.exr
 "$CAG" render long.cag -o not_kept.exr --engine preview --samples 100000 --size 320x240 > out 2> err &
 child=$!
 sleep 1
-kill -INT $child
+kill -TERM $child
 wait $child
 code=$? ran='cag render, interrupted'
 status 130
@@ -404,24 +404,24 @@ says '--frames'
 it 'the outline of a twisted blade has no dark specks' povray python3
 script blade.cag 'c = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
 show loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
-try render blade.cag -o blade.png --size 1440x1080 --region 160x400+580+100 --quality draft
+try render blade.cag -o blade.png --size 1440x1080 --region 160x400+580+100 --quality draft --engine povray
 status 0
 python3 "$here/png_specks.py" blade.png > specks || wrong "$(cat specks)"
 
 it 'the outlines of open sheets have no dark specks' povray python3
 script sleeve.cag 'c = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
 show loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false)'
-try render sleeve.cag -o sleeve.png --size 1440x1080 --region 140x420+640+100 --quality draft
+try render sleeve.cag -o sleeve.png --size 1440x1080 --region 140x420+640+100 --quality draft --engine povray
 status 0
 python3 "$here/png_specks.py" sleeve.png > specks || wrong "sleeve: $(cat specks)"
 script saddle.cag 'show surface((u, v) => [u, v, u*u/12 - v*v/12], -12..12, -12..12)'
-try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --quality draft
+try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --quality draft --engine povray
 status 0
 python3 "$here/png_specks.py" saddle.png > specks || wrong "saddle: $(cat specks)"
 
 # The floor of the studio is slightly below the objects on it: the dark inside must not be visible under the edge.
 it 'a sleeve meets the floor without dark specks' povray python3
 script standing.cag 'show revolve(line([200, 0, 0], [200, 0, 300]), angle: 180deg)'
-try render standing.cag -o standing.png --size 1440x1080 --region 420x60+560+655 --quality draft
+try render standing.cag -o standing.png --size 1440x1080 --region 420x60+560+655 --quality draft --engine povray
 status 0
 python3 "$here/png_specks.py" standing.png > specks || wrong "$(cat specks)"
