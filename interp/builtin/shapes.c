@@ -119,6 +119,8 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   a->tolerance = b->tolerance;
   a->hidden = b->hidden;
   a->drawn = b->drawn;
+  a->origin.source = b->origin.source;
+  a->origin.span = b->origin.span;
 }
 
 bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {
@@ -138,7 +140,7 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   const CagShape *own = CAG_AS_SHAPE(item);
   CagRecord *material = cag_material_combine(vm, own->material, group->material);
   bool more = material != own->material || (!own->name && group->name) ||
-              (!own->definition && group->definition) ||
+              (!own->origin.definition && group->origin.definition) ||
               (own->tolerance == 0 && group->tolerance > 0) ||
               (!own->line.set && group->line.set) || (!own->hidden && group->hidden);
   if (!more) return item;
@@ -146,7 +148,7 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   CagShape *s = CAG_AS_SHAPE(copy);
   s->material = material;
   if (!s->name) s->name = group->name;
-  if (!s->definition) s->definition = group->definition;
+  if (!s->origin.definition) s->origin.definition = group->origin.definition;
   if (!s->line.set) s->line = group->line;
   if (s->tolerance == 0) s->tolerance = group->tolerance;
   s->hidden = s->hidden || group->hidden;

@@ -156,7 +156,7 @@ CagStatus cag_target_first(const CagTarget *t, const CagRay *ray, CagCrossings *
 
 CagValue cag_target_name(const CagTarget *t, size_t part) {
   const CagShape *s = t->parts[part].shape;
-  CagText *name = s->name ? s->name : s->definition;
+  CagText *name = s->name ? s->name : s->origin.definition;
   return name ? cag_object(CAG_TEXT, name) : cag_none();
 }
 

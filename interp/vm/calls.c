@@ -180,6 +180,11 @@ static bool check_answer(CagVm *vm, const char *name, bool ok) {
                      vm->errors.items[0].message);
 }
 
+static void note_origin(CagVm *vm, CagValue shape) {
+  CagOrigin *o = &CAG_AS_SHAPE(shape)->origin;
+  if (!o->source) cag_vm_place(vm, &o->source, &o->span);
+}
+
 static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count,
                          const char *const *names, size_t named, bool direct, CagValue *result) {
   size_t positional = count - named;
@@ -231,6 +236,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   if (vm->stop) ok = cag_stop_answer(vm); // interrupted work may have returned anything
   vm->native = native.outer;
   vm->top = top;
+  if (ok && cag_is_shape(*result)) note_origin(vm, *result);
   return ok;
 }
 

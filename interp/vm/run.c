@@ -827,7 +827,7 @@ static bool fail_circle(CagVm *vm, size_t global) {
 static void note_definition(CagVm *vm, const char *name, CagValue v) {
   if (cag_is_shape(v)) {
     CagShape *s = CAG_AS_SHAPE(v);
-    if (!s->definition) s->definition = cag_intern(vm, name, strlen(name));
+    if (!s->origin.definition) s->origin.definition = cag_intern(vm, name, strlen(name));
   } else if (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0) {
     const CagList *list = CAG_AS_LIST(v);
     for (size_t i = 0; i < list->length && cag_is_shape(list->as.items[i]); i++)

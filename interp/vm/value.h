@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "base/guard.h"
+#include "base/source.h"
 #include "base/string.h"
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
@@ -189,6 +190,14 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
+// Where a shape comes from in the script: the call that made it, which moving, naming, and coloring
+// keep, and the definition whose value it first was.
+typedef struct CagOrigin {
+  const CagSource *source; // NULL: not made by a call
+  CagSpan span;
+  CagText *definition; // NULL: none
+} CagOrigin;
+
 typedef struct CagShape {
   CagObject head;
   union {
@@ -204,7 +213,7 @@ typedef struct CagShape {
                                // shapes are transformed themselves
   CagRecord *material;         // NULL: not set
   CagText *name;               // NULL: not set
-  CagText *definition;         // of the script, whose value it first was; NULL: none
+  CagOrigin origin;
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
