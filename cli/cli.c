@@ -166,6 +166,16 @@ static bool set_exposure(CagTool *t, const char *value) {
                 "expected a number");
 }
 
+static bool set_by_part(CagTool *t, const char *value) {
+  (void)value;
+  return t->by_part = true;
+}
+
+static bool set_passes(CagTool *t, const char *value) {
+  t->passes = value;
+  return true;
+}
+
 static bool set_engine(CagTool *t, const char *value) {
   static const char *const CHOICES[] = {"auto", "povray", "preview"};
   size_t i;
@@ -439,14 +449,17 @@ static bool takes(const CagToolCommand *c, const CagToolOption *o) {
   return o->commands >> (c - cag_tool_commands) & 1;
 }
 
-static Given find_long(const char *word) {
+// Some options of different commands have one name; `command` may be NULL.
+static Given find_long(const CagToolCommand *command, const char *word) {
   Given g = {0};
   const size_t n = strcspn(word + 2, "=");
   snprintf(g.shown, sizeof g.shown, "%.*s", (int)(n + 2), word);
   if (word[n + 2]) g.value = word + n + 3;
   for (size_t i = 0; i < cag_tool_option_count; i++) {
     const char *name = cag_tool_options[i].name;
-    if (name && strlen(name) == n && !strncmp(name, word + 2, n)) g.option = &cag_tool_options[i];
+    const CagToolOption *o = &cag_tool_options[i];
+    if (!name || strlen(name) != n || strncmp(name, word + 2, n) != 0) continue;
+    if (!g.option || (command && takes(command, o))) g.option = o;
   }
   return g;
 }
@@ -508,7 +521,7 @@ static int apply(CagTool *t, const Given *g, const char *next) {
 // Sets the options of one word, which may be several letters in a row. Returns the count as above.
 static int apply_word(CagTool *t, char *word, const char *next) {
   if (word[1] == '-') {
-    const Given g = find_long(word);
+    const Given g = find_long(t->command, word);
     return apply(t, &g, next);
   }
   for (const char *at = word + 1; *at; at++) {
@@ -529,7 +542,7 @@ static bool is_option(const char *word) {
 // Tests whether this word is an option whose value is the next word.
 static bool takes_next(const char *word) {
   if (word[1] == '-') {
-    const Given g = find_long(word);
+    const Given g = find_long(NULL, word);
     return g.option && g.option->argument && !g.value;
   }
   for (const char *at = word + 1; *at; at++) {

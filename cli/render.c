@@ -215,6 +215,7 @@ int cag_tool_render(CagTool *t, int argc, char **argv) {
   f.options.camera = t->camera;
   f.options.samples = t->samples;
   f.options.engine = t->engine;
+  f.options.passes = t->passes;
   f.options.keep_partial = t->keep_partial;
   cag_session_set_loop(f.session, t->loop);
   f.options.exposure = t->exposure;

@@ -58,7 +58,7 @@ struct CagTool {
 
   const char *output, *format; // -o, --format
   int width, height;           // --size
-  const char *quality, *camera, *engine;
+  const char *quality, *camera, *engine, *passes;
   const char *image; // --image
   bool has_range;    // --range
   double range_low, range_high;
@@ -66,6 +66,7 @@ struct CagTool {
   double exposure;
   bool has_frames, loop;        // --frames, --loop
   bool keep_partial;            // --keep-partial
+  bool by_part;                 // --passes of compare
   int samples;                  // --samples; 0: depends on the quality
   bool progress;                // --progress
   long first_frame, last_frame; // --frames

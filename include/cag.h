@@ -192,7 +192,10 @@ typedef struct CagRenderOptions {
   // "povray"; "preview", the built-in renderer; or NULL: preview for drafts and where POV-Ray is not
   // found, and else povray.
   const char *engine;
-  int samples;        // per pixel: of light for preview, of the lens for povray; 0: by the quality
+  int samples; // per pixel: of light for preview, of the lens for povray; 0: by the quality
+  // preview: "color,depth,normal,object,material,uv,curvature", or some of these, in one .exr of
+  // several layers; NULL: the color alone
+  const char *passes;
   bool keep_partial;  // preview: write what is complete if the work is stopped
   const char *camera; // a name, or top, bottom, front, back, left, right, or iso; NULL: the first
   double exposure;    // stops; only for .png

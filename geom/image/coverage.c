@@ -347,8 +347,9 @@ static CagStatus trace_part(Tracer *tr, const CagCurve *c, double a, double b) {
   CagVec3 from, to;
   CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &from, tr->err);
   if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &to, tr->err);
+  if (status) return status;
   const Spot p = spot_of(tr, a, from), q = spot_of(tr, b, to);
-  if (!status) status = trace_segment(tr, tr->last, p);
+  status = trace_segment(tr, tr->last, p);
   if (status) return status;
   if (cag_curve_vertices(c, &points, &n, &closed)) return trace_segment(tr, p, q);
   tr->curve = c;

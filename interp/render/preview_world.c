@@ -120,7 +120,9 @@ static bool is_flat(const CagSurface *s) {
   return cag_surface_planar_view(s, NULL, NULL) || cag_surface_parallelogram_view(s, &o, &x, &y);
 }
 
-static CagStatus make_part(const CagScene *s, size_t i, CagPreviewPart *part, CagError *err) {
+static CagStatus make_part(const CagPreviewWorld *w, size_t i, CagPreviewPart *part,
+                           CagError *err) {
+  const CagScene *s = w->scene;
   const CagItem *item = &s->items[i];
   int operands = 0;
   CagStatus status;
@@ -129,7 +131,8 @@ static CagStatus make_part(const CagScene *s, size_t i, CagPreviewPart *part, Ca
   else if (item->kind == CAG_ITEM_REGION) status = add_planar(item, part, err);
   else if (item->kind == CAG_ITEM_SURFACE && is_flat(item->as.surface))
     status = cag_caster_of_surface(item->as.surface, &part->caster, err);
-  else if (item->kind == CAG_ITEM_SOLID && has_equations(item->as.solid, &operands))
+  else if (item->kind == CAG_ITEM_SOLID && !w->meshes_only &&
+           has_equations(item->as.solid, &operands))
     status = cag_caster_of_solid(item->as.solid, &part->caster, err);
   else status = add_mesh(s, item, part, err);
   if (status) return status;
@@ -157,7 +160,7 @@ static CagStatus make_parts(CagPreviewWorld *w, CagError *err) {
       continue;
     }
     CagPreviewPart *part = &w->parts[w->count];
-    status = make_part(s, i, part, err);
+    status = make_part(w, i, part, err);
     w->count++; // a part that failed is freed with the others
   }
   if (status) return status;
@@ -219,8 +222,10 @@ static CagStatus make_lamps(CagPreviewWorld *w, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err) {
-  *out = (CagPreviewWorld){.scene = scene, .ambient = ambient_of(scene)};
+CagStatus cag_preview_world(const CagScene *scene, bool meshes_only, CagPreviewWorld *out,
+                            CagError *err) {
+  *out =
+      (CagPreviewWorld){.scene = scene, .meshes_only = meshes_only, .ambient = ambient_of(scene)};
   const CagBounds box = cag_scene_framed(scene);
   out->radius = cag_scene_radius(&box);
   out->center = cag_lerp(box.min, box.max, 0.5);
@@ -260,7 +265,9 @@ static void fill_hit(const CagPreviewWorld *w, const CagPreviewPart *part, const
                          .item = part->item,
                          .material = cag_item_label_material(item, c->label),
                          .leaves = c->sign > 0,
-                         .closed = part->closed};
+                         .closed = part->closed,
+                         .mesh = m,
+                         .face = c->face};
   if (!m || m->scale.kind == CAG_SCALE_NONE) return;
   out->scale = &m->scale;
   out->scale_value = c->u;

@@ -12,6 +12,7 @@
 #include "interp/render/png.h"
 #include "interp/render/povray.h"
 #include "interp/render/preview.h"
+#include "interp/render/preview_passes.h"
 #include "interp/session/output.h"
 
 #define SKY_FILE "sky.exr"
@@ -120,9 +121,11 @@ static bool make_metadata(const CagSession *s, const CagCamera *camera, const ch
 // --- Rendering ---
 
 typedef enum Engine { POVRAY, PREVIEW } Engine;
+typedef bool PassList[CAG_PASS_COUNT];
 
 typedef struct Job {
   Engine renderer;
+  PassList passes; // of the built-in renderer
   CagSession *session;
   const CagRenderOptions *options;
   CagCamera camera;
@@ -264,7 +267,8 @@ static int make_picture(CagSession *s, void *context) {
 static const int PREVIEW_SAMPLES[] = {
     [CAG_POV_DRAFT] = 0, [CAG_POV_NORMAL] = 16, [CAG_POV_FINAL] = 128};
 
-static bool write_preview(const Job *j, const CagImage *image, bool finished, CagError *io) {
+static bool write_preview(const Job *j, const CagImage *image, CagExrMetadata *m, bool finished,
+                          CagError *io) {
   CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
                         {"Title", j->session->script ? j->session->script : ""},
                         {"Comment", "unfinished"}};
@@ -272,21 +276,33 @@ static bool write_preview(const Job *j, const CagImage *image, bool finished, Ca
     return cag_png_write(j->path, image,
                          &(CagPngOptions){.exposure = j->options->exposure, .bits = 8}, texts,
                          finished ? 2 : 3, io);
-  CagExrMetadata m = {0};
-  bool ok = make_metadata(j->session, &j->camera, "cag preview", &m, io);
-  if (ok && !finished) ok = cag_exr_metadata_text(&m, "cag.unfinished", "stopped", io);
-  if (ok) ok = cag_exr_write(j->path, image, CAG_EXR_FLOAT, &m, io);
-  cag_exr_metadata_free(&m);
-  return ok;
+  bool ok = make_metadata(j->session, &j->camera, "cag preview", m, io);
+  if (ok && !finished) ok = cag_exr_metadata_text(m, "cag.unfinished", "stopped", io);
+  return ok && cag_exr_write(j->path, image, CAG_EXR_FLOAT, m, io);
 }
 
-// Renders and writes. A picture that was stopped is written if it is to be kept; the status is that
-// of the stop in any case.
-static int make_preview(CagSession *s, void *context) {
-  Job *j = context;
+// Both pictures as one, which takes the channels of both. The first may be empty.
+static bool join_channels(CagImage *a, CagImage *b, CagError *io) {
+  CagImage both;
+  if (b->channel_count == 0) return true;
+  if (!cag_image_create(&both, b->width, b->height, a->channel_count + b->channel_count, io))
+    return false;
+  const size_t n = b->width * b->height;
+  for (size_t c = 0; c < both.channel_count; c++) {
+    const CagImage *from = c < a->channel_count ? a : b;
+    const size_t k = c < a->channel_count ? c : c - a->channel_count;
+    cag_image_set_name(&both, c, from->channels[k].name);
+    memcpy(cag_image_plane(&both, c), cag_image_plane(from, k), n * sizeof(float));
+  }
+  cag_image_free(a);
+  *a = both;
+  return true;
+}
+
+static CagPreviewOptions preview_options(const Job *j) {
   const CagRenderRegion r = j->options->region;
-  const CagPreviewOptions options = {
-      .sky_light = j->pov == CAG_POV_FINAL || s->scene.light_count == 0,
+  return (CagPreviewOptions){
+      .sky_light = j->pov == CAG_POV_FINAL || j->session->scene.light_count == 0,
       .samples = j->options->samples > 0 ? j->options->samples : PREVIEW_SAMPLES[j->pov],
       .region_x = r.x,
       .region_y = r.y,
@@ -294,23 +310,75 @@ static int make_preview(CagSession *s, void *context) {
       .region_height = r.height,
       .progress = j->options->progress,
       .progress_user = j->options->progress_context};
-  CagImage image = {0};
-  CagError err = {0}, io = {0};
-  bool finished = false;
+}
+
+// What the built-in renderer makes: the color, then the other passes.
+typedef struct Preview {
+  CagImage image, passes;
+  CagExrMetadata metadata;
+  bool finished;
+} Preview;
+
+static CagStatus render_preview(const Job *j, Preview *p, CagError *err) {
+  const CagScene *scene = &j->session->scene;
+  const CagPreviewOptions options = preview_options(j);
+  CagStatus status = CAG_OK;
+  p->finished = true;
   cag_set_thread_count(j->options->threads);
-  CagStatus status = cag_preview_render(&s->scene, &j->camera, &options, &image, &finished, &err);
+  if (j->passes[CAG_PASS_COLOR])
+    status = cag_preview_render(scene, &j->camera, &options, &p->image, &p->finished, err);
+  if (!status && p->finished)
+    status =
+        cag_preview_passes(scene, &j->camera, &options, j->passes, &p->passes, &p->metadata, err);
   cag_set_thread_count(0);
-  if (!status && !finished) cag_stop_fail(&err);
-  const bool kept = !status && (finished || j->options->keep_partial);
+  if (!status && !p->finished) cag_stop_fail(err);
+  return status;
+}
+
+// Renders and writes. A picture that was stopped is written if it is to be kept; the status is that
+// of the stop in any case.
+static int make_preview(CagSession *s, void *context) {
+  Job *j = context;
+  Preview p = {.finished = false};
+  CagError err = {0}, io = {0};
+  const CagStatus status = render_preview(j, &p, &err);
   int result = CAG_STATUS_OK;
   const volatile int *flag = cag_stop_lend(NULL); // the picture is written in any case
-  if (kept && !write_preview(j, &image, finished, &io))
+  if (!status && (p.finished || j->options->keep_partial) &&
+      (!join_channels(&p.image, &p.passes, &io) ||
+       !write_preview(j, &p.image, &p.metadata, p.finished, &io)))
     result = cag_session_fail_io(s, CAG_ERR_output_file, &io);
   cag_stop_lend(flag);
-  cag_image_free(&image);
-  if (result != CAG_STATUS_OK || (!status && finished)) return result;
+  cag_image_free(&p.image);
+  cag_image_free(&p.passes);
+  cag_exr_metadata_free(&p.metadata);
+  if (result != CAG_STATUS_OK || (!status && p.finished)) return result;
   cag_session_checked(s, status ? status : CAG_E_CALLBACK, &err);
   return cag_session_fail_geometry(s, &err);
+}
+
+// Reads the passes, which only an .exr of the built-in renderer has.
+static bool find_passes(CagSession *s, const CagRenderOptions *options, const char *path,
+                        PassList out) {
+  char wrong[32];
+  const char *expected = NULL;
+  memset(out, 0, sizeof(PassList));
+  out[CAG_PASS_COLOR] = true;
+  if (!options->passes) return true;
+  if (!cag_preview_read_passes(options->passes, out, wrong)) {
+    CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL,
+                                           (CagSpan){0, 0}, "unknown pass `%s`", wrong);
+    cag_diagnostic_set_help(d, "the passes are color, depth, normal, object, material, uv, and "
+                               "curvature");
+    return false;
+  }
+  if (is_png(path)) expected = "passes need an .exr file";
+  else if (options->engine && !strcmp(options->engine, "povray"))
+    expected = "passes are made by the built-in renderer, not by povray";
+  if (expected)
+    cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0}, "%s",
+                        expected);
+  return !expected;
 }
 
 static bool find_engine(CagSession *s, const CagRenderOptions *options, CagPovQuality quality,
@@ -365,7 +433,9 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
     return CAG_STATUS_USAGE;
   }
   if (!cag_session_pov_csg(s, CAG_POV_CSG_MESH, &j.csg)) return CAG_STATUS_USAGE;
-  if (!find_engine(s, options, j.pov, &j.renderer)) return CAG_STATUS_USAGE;
+  if (!find_passes(s, options, path, j.passes) || !find_engine(s, options, j.pov, &j.renderer))
+    return CAG_STATUS_USAGE;
+  if (options->passes) j.renderer = PREVIEW;
   size_t camera;
   status = cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;

@@ -209,10 +209,10 @@ typedef struct CagShape {
     CagLabelText *label;
     CagList *items; // GROUP: list of shapes (dim 0)
   } as;
-  CagTransform placement;      // REGION only: from z = 0 to the plane of the region; other
-                               // shapes are transformed themselves
-  CagRecord *material;         // NULL: not set
-  CagText *name;               // NULL: not set
+  CagTransform placement; // REGION only: from z = 0 to the plane of the region; other
+                          // shapes are transformed themselves
+  CagRecord *material;    // NULL: not set
+  CagText *name;          // NULL: not set
   CagOrigin origin;
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set

@@ -197,6 +197,47 @@ try compare clean_povray.exr clean_preview.exr
 color=$(sed -n 's/^color difference (CIEDE2000): mean \([0-9.e-]*\),.*/\1/p' out)
 awk "BEGIN { exit !(${color:-9} < 0.5) }" || wrong "the mean color difference is ${color:-missing}"
 
+it 'passes are layers of one file'
+script parts.cag 'ball = sphere(10) |> translate([0, 0, 10])
+plate = box([60, 60, 4]) |> translate([-30, -30, -4])
+param r = 2
+show ball
+show plate
+show torus(16, r) |> translate([0, 0, 2]) |> named("ring")
+show camera(eye: [0, 0, 200], target: origin, up: Y, kind: "orthographic", width: 80)'
+try render parts.cag -o parts.exr --passes color,depth,normal,object,material,uv,curvature --size 80x80
+status 0
+script seen.cag 'img = read_image("parts.exr")
+at(name, x, y) = pixel(channel(img, name), x, y)
+// The top of the ball is 180 mm from the eye, its normal is up, and its curvature 1/10 and 1/100.
+print round(at("depth.Z", 40, 40), 1), round(at("normal.Z", 40, 40), 2), round(at("curvature.mean", 40, 40), 2), round(at("curvature.gaussian", 40, 40), 3)
+// The depth of the floor next to the plate, and no material of it is that of the plate.
+print round(at("depth.Z", 12, 40), 1)
+// Beyond the edge, the first part of the pixel covers all of it.
+print at("CryptoObject00.g", 40, 40), at("CryptoObject00.a", 40, 40)'
+try run seen.cag
+status 0
+prints '180 1 0.1 0.01'
+prints '200'
+prints '1 0'
+
+it 'compare shows which part differs'
+try render parts.cag -o before.exr --passes color,object --size 80x80
+try render parts.cag -o after.exr --passes color,object --size 80x80 -D r=3
+try compare before.exr after.exr --passes --threshold 0.02
+status 1
+# The areas of the rings as seen from above, one pixel a square millimeter: 2 pi 16 times 4 and 6.
+awk '$1 == "ring" { exit !($2 > 400 && $2 < 404 && $3 > 600 && $3 < 606) }' out || wrong "the ring covers: $(grep ring out)"
+try compare before.exr before.exr --passes
+status 0
+try compare parts.exr "$here/../../examples/vase.png" --passes
+status 2
+says 'do not tell which parts they show'
+# The hash of "hello" is a known value of MurmurHash3.
+script hello.cag 'show sphere(1) |> named("hello")'
+try render hello.cag -o hello.exr --passes object --size 8x8
+grep -a -q '"hello":"248bfa47"' hello.exr || wrong 'the manifest has another hash'
+
 it 'a preview that is stopped is kept if it is asked for'
 script long.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])]'
 "$CAG" render long.cag -o stopped.exr --engine preview --samples 100000 --size 320x240 --keep-partial > out 2> err &

@@ -126,10 +126,17 @@ try render ball.cag -o a.png --engine cycles
 status 2
 says 'choose povray, preview, or auto'
 
-it 'there are no passes'
-try render ball.cag -o a.exr --passes color
+it 'a pass that is not there names those that are'
+try render ball.cag -o a.exr --passes color,gloss
 status 2
-says '--passes'
+says 'unknown pass `gloss`'
+says 'color, depth, normal'
+try render ball.cag -o a.png --passes color
+status 2
+says 'passes need an .exr file'
+try render ball.cag -o a.exr --passes color --engine povray
+status 2
+says 'made by the built-in renderer'
 
 for wrong in '--size 10' '--size 0x4' '--size 4x4x4' '--size 999999x4' '--size -3x4' '--quality best' '--exposure bright' '--exposure nan' \
   '--frames 3' '--frames 5..3' '--frames a..b' '--frames 1..2..3' '--tolerance 0' '--tolerance -1' '--tolerance fine' '--max-memory lots' \

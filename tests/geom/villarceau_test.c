@@ -321,8 +321,7 @@ static Torus torus_through(const CagVec3 p[3], double minor) {
   return (Torus){
       .major = hypot(u, v),
       .minor = minor,
-      .map = {{{x.x, y.x, z.x, o.x}, {x.y, y.y, z.y, o.y}, {x.z, y.z, z.z, o.z}, {0, 0, 0, 1}},
-              false}};
+      .map.m = {{x.x, y.x, z.x, o.x}, {x.y, y.y, z.y, o.y}, {x.z, y.z, z.z, o.z}, {0, 0, 0, 1}}};
 }
 
 // Tubes along other paths or of varying radius, and other kinds of surfaces, are not tori, even if
