@@ -8,6 +8,9 @@
 #include "interp/vm/memo.h"
 #include "interp/vm/vm.h"
 
+// What is closer to the start of a ray than this fraction of the size of everything is skipped.
+#define SKIPPED 1e-9
+
 // --- Casters of single shapes ---
 
 static void release_caster(void *c) { cag_caster_free(c); }
@@ -100,6 +103,17 @@ static bool make_target(CagCall *call, CagValue list, CagTarget **out) {
   return true;
 }
 
+// Collects shapes from whatever a script can show.
+static bool collect_shown(CagCall *call, CagValue v, CagBuilder *into) {
+  if (v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING) return true;
+  if (v.type != CAG_LIST) return cag_shapes_collect(call, v, into);
+  if (!cag_may_go_deeper(call->vm, "collected")) return false;
+  const CagList *list = CAG_AS_LIST(v);
+  for (size_t i = 0; i < list->length; i++)
+    if (!collect_shown(call, cag_list_get(call->vm, list, i), into)) return false;
+  return true;
+}
+
 bool cag_arg_ray_target(CagCall *call, int argument, const CagTarget **out) {
   const CagValue v = call->values[argument];
   if (!cag_is_shape(v) && v.type != CAG_LIST && v.type != CAG_ROBOT)
@@ -108,7 +122,7 @@ bool cag_arg_ray_target(CagCall *call, int argument, const CagTarget **out) {
   if (!t) {
     const size_t before = call->vm->account.used;
     CagBuilder *shapes = cag_builder_new(call->vm);
-    if (!cag_shapes_collect(call, v, shapes)) return false;
+    if (!collect_shown(call, v, shapes)) return false;
     const CagValue list = cag_builder_finish(call->vm, shapes);
     if (!make_target(call, list, &t)) return false;
     cag_memo_keep(call, v.as.object, list, t, target_free, before);
@@ -151,6 +165,28 @@ CagStatus cag_target_first(const CagTarget *t, const CagRay *ray, CagCrossings *
   }
   for (size_t i = t->bounded; !status && i < t->count; i++)
     status = meet_part(t, i, &rest, work, out, met, err);
+  return status;
+}
+
+// The size that distances are compared to: that of the shapes, and of the point's distance from
+// them.
+static double target_scale(const CagTarget *t, CagVec3 p) {
+  if (t->bounded == 0) return fmax(1, cag_norm(p));
+  return t->size + cag_norm(cag_sub(p, cag_lerp(t->bounds.min, t->bounds.max, 0.5)));
+}
+
+double cag_target_skipped(const CagTarget *t, CagVec3 p) { return SKIPPED * target_scale(t, p); }
+
+CagStatus cag_target_sees(const CagTarget *t, CagVec3 p, CagVec3 q, CagCrossings *work, bool *sees,
+                          CagError *err) {
+  const CagVec3 way = cag_sub(q, p);
+  const double length = cag_norm(way), skipped = cag_target_skipped(t, p);
+  const CagRay ray = {p, cag_unit(way), skipped, length - skipped};
+  CagTargetHit hit;
+  bool met = false;
+  CagStatus status = CAG_OK;
+  if (length > 2 * skipped) status = cag_target_first(t, &ray, work, &hit, &met, err);
+  *sees = !met;
   return status;
 }
 

@@ -13,7 +13,8 @@ typedef struct CagTargetPart {
   size_t number;     // among the parts in the order of the script
 } CagTargetPart;
 
-// Curves and labels, which have no surface, and hidden shapes are left out.
+// Curves and labels, which have no surface, and hidden shapes are left out, and so are cameras,
+// lights, and settings in lists.
 typedef struct CagTarget {
   CagTargetPart *parts;
   size_t count;
@@ -38,6 +39,11 @@ bool cag_shape_caster(CagCall *call, CagValue shape, const CagCaster **out);
 // The first part that the ray meets. `work` is a list whose memory is reused; start with {0}.
 CagStatus cag_target_first(const CagTarget *t, const CagRay *ray, CagCrossings *work,
                            CagTargetHit *out, bool *met, CagError *err);
+// What is closer to p than this is at p: a ray that starts there skips it.
+double cag_target_skipped(const CagTarget *t, CagVec3 p);
+// Whether the segment from p to q meets no part, apart from points at its ends.
+CagStatus cag_target_sees(const CagTarget *t, CagVec3 p, CagVec3 q, CagCrossings *work, bool *sees,
+                          CagError *err);
 // The name of a part: a text, or none.
 CagValue cag_target_name(const CagTarget *t, size_t part);
 // The material of the part where it was met: a record, or none.
