@@ -17,6 +17,7 @@ CagStatus cag_ray_primitive_set(CagRayPrimitive *p, const CagSolid *s,
   const double w = p->back.m[3][3];
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) p->back.m[i][j] /= w;
+  p->placement = *placement;
   p->solid = cag_solid_retain(s);
   return CAG_OK;
 }
