@@ -62,7 +62,7 @@ static CagVec3 to_world(const CagCaster *c, CagVec3 own) {
   CagTransform placement;
   CagError err;
   return cag_transform_inverse(&c->back, &placement, &err) ? own
-                                                          : cag_transform_point(&placement, own);
+                                                           : cag_transform_point(&placement, own);
 }
 
 // FACES and meshes, in their own coordinates.
@@ -76,7 +76,8 @@ static CagStatus closest_of_parts(const CagCaster *c, CagVec3 p, CagNearest *bes
   if (c->kind == CAG_CASTER_MESH) {
     found.found = cag_ray_mesh_closest(c->mesh, own, found.distance, &found.point, &face);
   } else status = closest_of_faces(c, own, &found, err);
-  if (!status && found.found) offer_point(best, p, c->placed ? to_world(c, found.point) : found.point);
+  if (!status && found.found)
+    offer_point(best, p, c->placed ? to_world(c, found.point) : found.point);
   return status;
 }
 
@@ -107,6 +108,23 @@ static CagStatus closest_of_operands(const CagCaster *c, CagVec3 p, CagCrossings
   }
 }
 
+// Whether a point is on the boundary of one operand only, and so on that of the result if the others
+// do not hide it.
+static CagStatus is_on_one_operand(const CagCaster *c, CagVec3 p, double slack, CagCrossings *work,
+                                   bool *on, CagError *err) {
+  size_t touched = 0;
+  int side;
+  CagStatus status = cag_caster_side(c, p, slack, work, &side, err);
+  *on = false;
+  for (size_t i = 0; !status && side == 0 && touched < 2 && i < c->operand_count; i++) {
+    int one;
+    status = cag_caster_side(c->operands[i], p, slack, work, &one, err);
+    touched += one == 0;
+  }
+  *on = touched == 1;
+  return status;
+}
+
 // Whether the result of the operation begins or ends at a point of an operand's boundary that is
 // the closest one to p.
 static CagStatus is_on_result(const CagCaster *c, CagVec3 p, const CagNearest *found,
@@ -117,21 +135,19 @@ static CagStatus is_on_result(const CagCaster *c, CagVec3 p, const CagNearest *f
   *on = false;
   if (c->operation == CAG_SOLID_UNION) {
     // From outside, no operand is closer.
-    status = cag_caster_side(c, p, 0, work, &side[0], err);
-    if (status || side[0] >= 0) {
+    status = cag_caster_side(c, p, ON_BOUNDARY * scale, work, &side[0], err);
+    if (status || side[0] > 0) {
       *on = true;
       return status;
     }
   }
-  if (found->distance <= ON_BOUNDARY * scale) {
-    status = cag_caster_side(c, found->point, ON_BOUNDARY * scale, work, &side[0], err);
-    *on = side[0] == 0;
-    return status;
-  }
+  if (found->distance <= ON_BOUNDARY * scale)
+    return is_on_one_operand(c, found->point, ON_BOUNDARY * scale, work, on, err);
   const CagVec3 way = cag_scaled(cag_sub(p, found->point), 1 / found->distance);
   const double by = fmin(BESIDE * scale, found->distance / 2);
   status = cag_caster_side(c, cag_madd(found->point, by, way), 0, work, &side[0], err);
-  if (!status) status = cag_caster_side(c, cag_madd(found->point, -by, way), 0, work, &side[1], err);
+  if (!status)
+    status = cag_caster_side(c, cag_madd(found->point, -by, way), 0, work, &side[1], err);
   *on = side[0] * side[1] < 0;
   return status;
 }

@@ -7,7 +7,7 @@
 #include "geom/solid/solid.h"
 
 typedef struct CagRayPrimitive {
-  CagSolid *solid;   // retained; its sizes, in its own coordinates
+  CagSolid *solid;              // retained; its sizes, in its own coordinates
   CagTransform placement, back; // from its own coordinates to the world, and back; affine
 } CagRayPrimitive;
 

@@ -67,8 +67,8 @@ static CagVec3 closest_of_sheared_box(const CagTransform *t, CagVec3 low, CagVec
   CagVec3 corner[8], best = p;
   double least = INFINITY;
   for (int k = 0; k < 8; k++)
-    corner[k] = cag_transform_point(t, cag_vec3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y,
-                                                k & 4 ? high.z : low.z));
+    corner[k] = cag_transform_point(
+        t, cag_vec3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z));
   for (int face = 0; face < 6; face++) {
     const int axis = face / 2, a = 1 << (axis + 1) % 3, b = 1 << (axis + 2) % 3;
     const int from = face % 2 ? 1 << axis : 0;

@@ -106,10 +106,10 @@ static void find_root(const Secular *f, double y[3]) {
     else high = z;
     double next = z - value / slope;
     if (!(next > low && next < high))
-      next = !isfinite(high)     ? low * GROWTH
-             : low == 0          ? high / GROWTH
+      next = !isfinite(high)       ? low * GROWTH
+             : low == 0            ? high / GROWTH
              : high > low * GROWTH ? sqrt(low) * sqrt(high)
-                                 : low + (high - low) / 2;
+                                   : low + (high - low) / 2;
     if (!(fabs(next - z) > DBL_EPSILON * z) || !isfinite(next)) return;
     z = next;
   }
@@ -148,7 +148,8 @@ static bool solve_secular(Secular *f, double y[3]) {
 
 bool cag_quadric_closest(const CagQuadric *q, CagVec3 p, CagVec3 *out) {
   const double *c = q->c;
-  double a[3][3] = {{c[0], c[3] / 2, c[5] / 2}, {c[3] / 2, c[1], c[4] / 2}, {c[5] / 2, c[4] / 2, c[2]}};
+  double a[3][3] = {
+      {c[0], c[3] / 2, c[5] / 2}, {c[3] / 2, c[1], c[4] / 2}, {c[5] / 2, c[4] / 2, c[2]}};
   double axes[3][3], y[3], largest = 0;
   find_axes(a, axes);
   for (int i = 0; i < 3; i++) largest = fmax(largest, fabs(a[i][i]));

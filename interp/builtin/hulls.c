@@ -51,8 +51,6 @@ static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagErr
   return CAG_OK;
 }
 
-// The tolerance for replacing a shape by points, as a fraction of its size.
-#define HULL_TOLERANCE 1e-4
 // A point is on a boundary if it is closer than this fraction of the size.
 #define BOUNDARY 1e-9
 
@@ -62,7 +60,7 @@ static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, Ca
   size_t n = 0;
   CagStatus status = cag_curve_bounds(c, &box, err);
   if (status) return status;
-  if (tolerance <= 0) tolerance = HULL_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
+  if (tolerance <= 0) tolerance = CAG_SHAPE_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
   status = cag_curve_discretize(c, tolerance, CAG_TESSELLATION_DEFAULT.angle, &t, &n, err);
   for (size_t i = 0; !status && i < n; i++) {
     CagVec3 p;
@@ -86,31 +84,6 @@ static CagStatus add_region(Cloud *cloud, const CagShape *shape, CagError *err) 
   return status;
 }
 
-static CagTessellation tessellation_of(const CagVm *vm, double tolerance) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.tolerance = tolerance;
-  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = cag_vm_stop(vm);
-  return how;
-}
-
-static CagStatus mesh_of(const CagVm *vm, CagValue v, double tolerance, CagMesh **out,
-                         CagError *err) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagBounds box;
-  if (v.type == CAG_MESH) {
-    *out = cag_mesh_retain(shape->as.mesh);
-    return CAG_OK;
-  }
-  CagStatus status = v.type == CAG_SOLID ? cag_solid_bounds(shape->as.solid, &box, err)
-                                         : cag_surface_bounds(shape->as.surface, &box, err);
-  if (status) return status;
-  if (tolerance <= 0) tolerance = HULL_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
-  const CagTessellation how = tessellation_of(vm, tolerance);
-  return v.type == CAG_SOLID ? cag_solid_tessellate(shape->as.solid, &how, out, err)
-                             : cag_surface_tessellate(shape->as.surface, &how, out, err);
-}
-
 static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   if (v.type == CAG_CURVE) return add_curve(cloud, shape->as.curve, shape->tolerance, err);
@@ -118,7 +91,7 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
   CagMesh *m;
   cloud->plane = false;
   if (v.type == CAG_LABEL) return cloud_add(cloud, &shape->as.label->at, 1, err);
-  CagStatus status = mesh_of(vm, v, shape->tolerance, &m, err);
+  CagStatus status = cag_shape_mesh(vm, v, shape->tolerance, &m, err);
   if (status) return cag_is_empty_shape(err) ? CAG_OK : status;
   status = cloud_add(cloud, m->positions, m->vertex_count, err);
   cag_mesh_release(m);
@@ -189,7 +162,7 @@ static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, Ca
 
 static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
                                   CagError *err) {
-  const CagTessellation how = tessellation_of(vm, tolerance);
+  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
   const bool flat = cag_surface_planar_view(s, NULL, NULL);
   CagMesh *m = NULL;
   CagStatus status = cag_surface_tessellate(s, &how, &m, err);
@@ -228,7 +201,7 @@ static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face,
 // The distance from set operations and bodies bounded by meshes is that from their triangles.
 static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                    CagError *err) {
-  const CagTessellation how = tessellation_of(vm, tolerance);
+  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
   CagMesh *m = NULL;
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
   if (!status) status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
@@ -318,7 +291,7 @@ static size_t side_count(const Side *s) { return s->point ? 1 : s->shapes->lengt
 static CagStatus body_add_part(CagVm *vm, Body *b, const Side *side, size_t i, CagError *err) {
   return side->point ? cag_parts_add_point(&b->parts, side->p, err)
                      : body_add_shape(vm, b, cag_list_get(vm, side->shapes, i),
-                                      HULL_TOLERANCE * side->body.size, err);
+                                      CAG_SHAPE_TOLERANCE * side->body.size, err);
 }
 
 static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
@@ -362,10 +335,33 @@ static bool measure(CagCall *call, Side side[2], double *out) {
   return true;
 }
 
+// The distance of shapes from a point. Returns false, without an error, if both arguments are
+// shapes or there is nothing that can be near.
+static bool point_distance(CagCall *call, double *out, bool *ok) {
+  CagVec3 p;
+  const CagTarget *t;
+  CagTargetNearest near;
+  const int shapes =
+      cag_is_shape(call->values[0]) || is_list_of_shapes(call->vm, call->values[0]) ? 0 : 1;
+  const CagValue point = call->values[1 - shapes];
+  *ok = true;
+  if (cag_is_shape(point) || is_list_of_shapes(call->vm, point)) return false;
+  *ok = cag_arg_vec(call, 1 - shapes, &p, NULL) && cag_arg_near_target(call, shapes, &t) &&
+        cag_target_closest(call, t, p, INFINITY, &near);
+  *out = near.distance;
+  return *ok && near.found;
+}
+
 bool cag_hulls_distance(CagCall *call, CagValue *result) {
   Side *side = cag_hold_array(call, 2, sizeof *side);
   cag_hold_for(call, release_sides, side);
   double distance = 0;
+  bool ok;
+  if (point_distance(call, &distance, &ok)) {
+    *result = cag_number(distance);
+    return true;
+  }
+  if (!ok) return false;
   if (!read_side(call, 0, &side[0]) || !read_side(call, 1, &side[1]) ||
       !measure(call, side, &distance))
     return false;
