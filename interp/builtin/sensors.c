@@ -1,4 +1,4 @@
-// Range finders and tactile sensors.
+// Range finders, proximity sensors, switches, and tactile sensors.
 
 #include <math.h>
 
@@ -70,6 +70,39 @@ bool cag_sensors_range_scan(CagCall *call, const struct cag_sensors_range_scan *
     ranges[i] = isnan(range) ? cag_none() : cag_number(range);
   }
   *result = cag_list_values(call->vm, ranges, angles->length);
+  return true;
+}
+
+// --- Proximity sensors and switches ---
+
+// The distance of what touches is at most this fraction of the size: the rounding of a touch.
+#define TOUCH 1e-9
+
+bool cag_sensors_proximity(CagCall *call, const struct cag_sensors_proximity *a, CagValue *result) {
+  static const char *const names[] = {"detected", "distance", "part"};
+  const CagTarget *t;
+  CagTargetNearest near;
+  if (!cag_arg_ray_target(call, 0, &t) ||
+      !cag_target_closest(call, t, a->P.at, INFINITY, &near))
+    return false;
+  const bool far = near.distance > a->range + a->hysteresis;
+  const CagValue values[] = {near.distance <= a->range ? cag_bool(true)
+                             : far || !near.found      ? cag_bool(false)
+                                                       : cag_none(),
+                             near.found ? cag_number(near.distance) : cag_none(),
+                             near.found ? cag_target_name(t, near.part) : cag_none()};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+bool cag_sensors_contact_at(CagCall *call, const struct cag_sensors_contact_at *a,
+                            CagValue *result) {
+  const CagTarget *t;
+  CagTargetNearest near;
+  if (!cag_arg_ray_target(call, 0, &t)) return false;
+  const double reach = a->radius + TOUCH * (t->size + a->radius);
+  if (!cag_target_closest(call, t, a->P.at, reach, &near)) return false;
+  *result = cag_bool(near.found);
   return true;
 }
 

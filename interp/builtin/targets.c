@@ -304,8 +304,9 @@ static bool offer_part(CagCall *call, const CagTarget *t, size_t i, CagVec3 p, C
   return true;
 }
 
-static bool offer_other(CagCall *call, const CagTarget *t, CagValue v, CagVec3 p,
+static bool offer_other(CagCall *call, const CagTarget *t, size_t i, CagVec3 p,
                         CagTargetNearest *best) {
+  const CagValue v = t->others[i];
   const CagShape *s = CAG_AS_SHAPE(v);
   CagVec3 point = {0, 0, 0};
   double at, distance;
@@ -316,7 +317,7 @@ static bool offer_other(CagCall *call, const CagTarget *t, CagValue v, CagVec3 p
                               cag_curve_closest(s->as.curve, p, &at, &point, &distance, call->err)))
     return false;
   if (distance < best->distance || (!best->found && distance == best->distance))
-    *best = (CagTargetNearest){true, t->count, point, distance};
+    *best = (CagTargetNearest){true, t->count + i, point, distance};
   return true;
 }
 
@@ -349,7 +350,7 @@ bool cag_target_closest(CagCall *call, const CagTarget *t, CagVec3 p, double mos
     if (!offer_part(call, t, i, p, work, out)) return false;
   for (size_t i = 0; i < t->other_count; i++) {
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
-    if (!offer_other(call, t, t->others[i], p, out)) return false;
+    if (!offer_other(call, t, i, p, out)) return false;
   }
   return true;
 }
@@ -357,7 +358,7 @@ bool cag_target_closest(CagCall *call, const CagTarget *t, CagVec3 p, double mos
 // --- What was met ---
 
 CagValue cag_target_name(const CagTarget *t, size_t part) {
-  const CagShape *s = t->parts[part].shape;
+  const CagShape *s = part < t->count ? t->parts[part].shape : CAG_AS_SHAPE(t->others[part - t->count]);
   CagText *name = s->name ? s->name : s->definition;
   return name ? cag_object(CAG_TEXT, name) : cag_none();
 }

@@ -55,7 +55,7 @@ CagStatus cag_target_sees(const CagTarget *t, CagVec3 p, CagVec3 q, CagCrossings
 // its mesh.
 typedef struct CagTargetNearest {
   bool found;
-  size_t part; // the number of parts: one of the other shapes
+  size_t part; // from the number of parts on: one of the other shapes
   CagVec3 point;
   double distance;
 } CagTargetNearest;
@@ -69,7 +69,7 @@ CagTessellation cag_shape_tessellation(const CagVm *vm, double tolerance);
 // The tolerance for replacing a shape by points or triangles, as a fraction of its size.
 #define CAG_SHAPE_TOLERANCE 1e-4
 
-// The name of a part: a text, or none.
+// The name of a part, or of one of the other shapes: a text, or none.
 CagValue cag_target_name(const CagTarget *t, size_t part);
 // The material of the part where it was met: a record, or none.
 CagValue cag_target_material(const CagVm *vm, const CagTarget *t, const CagTargetHit *hit);
