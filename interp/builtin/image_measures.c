@@ -40,8 +40,8 @@ static CagLabels *hold_labels(CagCall *call, const CagRaster *r, int connectivit
   X(least)                                                                                         \
   X(greatest)                                                                                      \
   X(roundness)                                                                                     \
-  X(thinness) X(direction) X(perimeter) X(chain_length) X(r_min) X(r_max) X(holes) X(euler)        \
-      X(touches_border)
+  X(thinness)                                                                                      \
+  X(direction) X(perimeter) X(chain_length) X(r_min) X(r_max) X(holes) X(euler) X(touches_border)
 #define X(name) #name,
 static const char *const measure_names[] = {MEASURES(X)};
 #undef X

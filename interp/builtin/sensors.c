@@ -82,8 +82,7 @@ bool cag_sensors_proximity(CagCall *call, const struct cag_sensors_proximity *a,
   static const char *const names[] = {"detected", "distance", "part"};
   const CagTarget *t;
   CagTargetNearest near;
-  if (!cag_arg_ray_target(call, 0, &t) ||
-      !cag_target_closest(call, t, a->P.at, INFINITY, &near))
+  if (!cag_arg_ray_target(call, 0, &t) || !cag_target_closest(call, t, a->P.at, INFINITY, &near))
     return false;
   const bool far = near.distance > a->range + a->hysteresis;
   const CagValue values[] = {near.distance <= a->range ? cag_bool(true)

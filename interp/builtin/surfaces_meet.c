@@ -4,8 +4,8 @@
 #include "geom/meet/meet_curve.h"
 #include "geom/meet/meet_surface.h"
 #include "geom/surface/nearest.h"
-#include "interp/builtin/targets.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
 
 bool cag_meetings_closest_shape(CagCall *call, const struct cag_meetings_closest_shape *a,
@@ -13,8 +13,7 @@ bool cag_meetings_closest_shape(CagCall *call, const struct cag_meetings_closest
   static const char *const names[] = {"point", "distance", "part"};
   const CagTarget *t;
   CagTargetNearest near;
-  if (!cag_arg_near_target(call, 0, &t) ||
-      !cag_target_closest(call, t, a->P.at, INFINITY, &near))
+  if (!cag_arg_near_target(call, 0, &t) || !cag_target_closest(call, t, a->P.at, INFINITY, &near))
     return false;
   if (!near.found)
     return cag_fail_call(call, 0, CAG_ERR_empty_shape, "expects a shape that is not empty");

@@ -358,7 +358,8 @@ bool cag_target_closest(CagCall *call, const CagTarget *t, CagVec3 p, double mos
 // --- What was met ---
 
 CagValue cag_target_name(const CagTarget *t, size_t part) {
-  const CagShape *s = part < t->count ? t->parts[part].shape : CAG_AS_SHAPE(t->others[part - t->count]);
+  const CagShape *s =
+      part < t->count ? t->parts[part].shape : CAG_AS_SHAPE(t->others[part - t->count]);
   CagText *name = s->name ? s->name : s->definition;
   return name ? cag_object(CAG_TEXT, name) : cag_none();
 }
