@@ -21,6 +21,11 @@ typedef struct CagNearest {
 CagStatus cag_caster_closest(const CagCaster *c, CagVec3 p, double most, CagCrossings *work,
                              CagNearest *out, CagError *err);
 
+// Finds the point nearest to p from that of a mesh, whose distance from the boundary is at most
+// `reach`. It is certain if it was found.
+CagStatus cag_caster_polish(const CagCaster *c, CagVec3 p, CagVec3 start, double reach,
+                            CagCrossings *work, CagNearest *out, CagError *err);
+
 // The distance of a point from a box: 0 inside.
 double cag_bounds_distance(const CagBounds *b, CagVec3 p);
 

@@ -74,7 +74,8 @@ static bool solid_mesh_caster(CagCall *call, CagValue solid, const CagCaster **o
   if (!made) {
     const size_t before = call->vm->account.used;
     CagMesh *m = NULL;
-    CagStatus status = cag_shape_mesh(call->vm, solid, 0, &m, call->err);
+    CagStatus status =
+        cag_shape_mesh(call->vm, solid, CAG_AS_SHAPE(solid)->tolerance, &m, call->err);
     if (status && cag_is_empty_shape(call->err)) {
       *out = NULL;
       return true;
@@ -139,7 +140,8 @@ static CagStatus fill_target(CagVm *vm, CagTarget *t, const CagList *shapes, boo
     const CagValue v = cag_list_get(vm, shapes, i);
     if (for_rays && CAG_AS_SHAPE(v)->hidden) continue;
     if (has_surface(v)) status = add_part(t, v, err);
-    else if (v.type == CAG_CURVE || v.type == CAG_LABEL) t->others[t->other_count++] = v;
+    else if (!for_rays && (v.type == CAG_CURVE || v.type == CAG_LABEL))
+      t->others[t->other_count++] = v;
   }
   return status;
 }
@@ -275,6 +277,29 @@ static bool side_of_part(CagCall *call, const CagCaster *c, CagVec3 p, double sl
          cag_geometry_ok(call, cag_caster_side(c, p, slack, work, side, call->err));
 }
 
+// The distance from a mesh within which the exact boundary is searched, in tolerances of the mesh.
+#define POLISH_REACH 20.0
+
+// The nearest point by the mesh of a set operation, and from there on the exact boundary.
+static bool mesh_closest(CagCall *call, const CagTargetPart *part, CagVec3 p, double most,
+                         CagCrossings *work, CagNearest *out) {
+  const CagCaster *mesh;
+  CagNearest exact;
+  out->found = false;
+  if (!solid_mesh_caster(call, part->value, &mesh)) return false;
+  if (!mesh) return true;
+  const CagBounds b = cag_caster_bounds(mesh);
+  const double set = part->shape->tolerance;
+  const double tolerance = set > 0 ? set : CAG_SHAPE_TOLERANCE * cag_norm(cag_sub(b.max, b.min));
+  CagStatus status = cag_caster_closest(mesh, p, most + tolerance, work, out, call->err);
+  if (!status && out->found)
+    status = cag_caster_polish(part->caster, p, out->point, POLISH_REACH * tolerance, work, &exact,
+                               call->err);
+  if (!status && out->found && exact.found) *out = exact;
+  out->found = out->found && out->distance <= most;
+  return cag_geometry_ok(call, status);
+}
+
 static bool offer_part(CagCall *call, const CagTarget *t, size_t i, CagVec3 p, CagCrossings *work,
                        CagTargetNearest *best) {
   const CagCaster *c = t->parts[i].caster;
@@ -291,12 +316,9 @@ static bool offer_part(CagCall *call, const CagTarget *t, size_t i, CagVec3 p, C
   }
   CagStatus status = cag_caster_closest(c, p, best->distance, work, &found, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  if (found.found && !found.certain) {
-    if (!solid_mesh_caster(call, t->parts[i].value, &c)) return false;
-    if (!c) return true;
-    status = cag_caster_closest(c, p, best->distance, work, &found, call->err);
-    if (!cag_geometry_ok(call, status)) return false;
-  }
+  if (found.found && !found.certain &&
+      !mesh_closest(call, &t->parts[i], p, best->distance, work, &found))
+    return false;
   if (side == 0 && found.found && found.distance <= slack) found.distance = 0;
   // Of two parts at one distance, the first counts.
   if (found.found && (found.distance < best->distance || !best->found || i < best->part))
