@@ -3,7 +3,7 @@
 #ifndef CAG_GEOM_RAY_CASTER_PARTS_H
 #define CAG_GEOM_RAY_CASTER_PARTS_H
 
-#include "geom/ray/caster.h"
+#include "geom/ray/nearest.h"
 #include "geom/ray/ray_mesh.h"
 #include "geom/ray/ray_patch.h"
 #include "geom/ray/ray_primitive.h"
@@ -37,5 +37,10 @@ struct CagCaster {
   size_t operand_count;
   CagBvh boxes; // of the bounded operands, if they are many
 };
+
+// Whether the boundary of a set operation passes through a point of an operand's boundary that is
+// close to p: the closest one of all, or on the normal through p.
+CagStatus cag_operation_ends_at(const CagCaster *c, CagVec3 p, const CagNearest *found,
+                                CagCrossings *work, bool *on, CagError *err);
 
 #endif

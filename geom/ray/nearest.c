@@ -125,10 +125,8 @@ static CagStatus is_on_one_operand(const CagCaster *c, CagVec3 p, double slack, 
   return status;
 }
 
-// Whether the result of the operation begins or ends at a point of an operand's boundary that is
-// the closest one to p.
-static CagStatus is_on_result(const CagCaster *c, CagVec3 p, const CagNearest *found,
-                              CagCrossings *work, bool *on, CagError *err) {
+CagStatus cag_operation_ends_at(const CagCaster *c, CagVec3 p, const CagNearest *found,
+                                CagCrossings *work, bool *on, CagError *err) {
   const double scale = c->size > 0 ? c->size : cag_norm(p) + found->distance;
   int side[2] = {0, 0};
   CagStatus status;
@@ -158,7 +156,7 @@ static CagStatus closest_of_operation(const CagCaster *c, CagVec3 p, CagCrossing
   CagStatus status = closest_of_operands(c, p, work, &found, err);
   if (status || !found.found) return status;
   bool on = found.certain;
-  if (on) status = is_on_result(c, p, &found, work, &on, err);
+  if (on) status = cag_operation_ends_at(c, p, &found, work, &on, err);
   found.certain = on;
   *best = found;
   return status;

@@ -51,8 +51,7 @@ double cag_target_skipped(const CagTarget *t, CagVec3 p);
 CagStatus cag_target_sees(const CagTarget *t, CagVec3 p, CagVec3 q, CagCrossings *work, bool *sees,
                           CagError *err);
 // The point of a target nearest to p, if it is at most `most` away. Inside of a solid or closed mesh,
-// it is p. Where the nearest point of a set operation is not known from its operands, it is that of
-// its mesh.
+// it is p. Where the operands of a set operation do not decide, the search starts from its mesh.
 typedef struct CagTargetNearest {
   bool found;
   size_t part; // from the number of parts on: one of the other shapes

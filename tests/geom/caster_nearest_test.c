@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "geom/ray/nearest.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/quadric_equation.h"
 #include "geom/surface/quadric_nearest.h"
 
@@ -35,6 +36,9 @@ static CagTransform random_affine(void) {
   return cag_transform_multiply(&turn, &t);
 }
 
+// How many points that are not certain were looked for on the exact boundary, and found.
+static int tried, polished;
+
 // The distance at which a ray first meets the boundary.
 static double first_hit(const CagCaster *c, CagVec3 from, CagVec3 to, CagCrossings *work) {
   const CagRay ray = {from, cag_unit(to), 0, INFINITY};
@@ -44,33 +48,63 @@ static double first_hit(const CagCaster *c, CagVec3 from, CagVec3 to, CagCrossin
   return met ? hit.t : INFINITY;
 }
 
+// The nearest point of a set operation that its operands do not decide.
+static void find_polished(const CagSolid *s, const CagCaster *c, CagVec3 p, double size,
+                          CagCrossings *work, CagNearest *out) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  CagCaster *mesh;
+  CagNearest near;
+  how.tolerance = 1e-4 * size;
+  OK(cag_solid_tessellate(s, &how, &m, &err));
+  OK(cag_caster_of_mesh(m, &mesh, &err));
+  OK(cag_caster_closest(mesh, p, INFINITY, work, &near, &err));
+  OK(cag_caster_polish(c, p, near.point, 2e-3 * size, work, out, &err));
+  cag_caster_free(mesh);
+  cag_mesh_release(m);
+}
+
+// Checks that a point is on the boundary and that no other one is closer.
+static void check_point(const CagCaster *c, CagVec3 p, const CagNearest *found, double size,
+                        CagCrossings *work) {
+  const CagVec3 way = cag_sub(found->point, p);
+  NEAR(found->distance, cag_norm(way), EXACT * size);
+  // Rays that pass it closely meet the boundary near it, even at an edge.
+  double there = INFINITY, least = INFINITY;
+  const double wide = CLOSE * found->distance, narrow = 1e-6 * found->distance + 1e-9;
+  for (int i = 0; i < CLOSE_RAYS; i++) {
+    there = fmin(there, first_hit(c, p, cag_add(way, random_point(narrow)), work));
+    least = fmin(least, first_hit(c, p, cag_add(way, random_point(wide)), work));
+  }
+  assert_true(there <= found->distance + 1e-4 * size);
+  assert_true(found->distance <= least * (1 + EXACT) + EXACT * size);
+}
+
 // Checks the nearest point of p, and returns its distance; less than 0 if it is not certain.
 static double check_nearest(const CagSolid *s, CagVec3 p, double size) {
   CagCaster *c;
   CagCrossings work = {0};
-  CagNearest found;
+  CagNearest found, other;
   OK(cag_caster_of_solid(s, &c, &err));
   OK(cag_caster_closest(c, p, INFINITY, &work, &found, &err));
   assert_true(found.found);
   double least = INFINITY;
   for (int i = 0; i < RAYS; i++) least = fmin(least, first_hit(c, p, random_point(1), &work));
-  if (found.certain) {
-    const CagVec3 way = cag_sub(found.point, p);
-    NEAR(found.distance, cag_norm(way), EXACT * size);
-    // Rays that pass it closely meet the boundary near it, even at an edge.
-    double there = INFINITY;
-    const double wide = CLOSE * found.distance, narrow = 1e-6 * found.distance + 1e-9;
-    for (int i = 0; i < CLOSE_RAYS; i++) {
-      there = fmin(there, first_hit(c, p, cag_add(way, random_point(narrow)), &work));
-      least = fmin(least, first_hit(c, p, cag_add(way, random_point(wide)), &work));
-    }
-    assert_true(there <= found.distance + 1e-4 * size);
-    // Nothing is found within less than the distance.
-    CagNearest nothing;
-    OK(cag_caster_closest(c, p, found.distance * (1 - 1e-9) - 1e-12, &work, &nothing, &err));
-    assert_false(nothing.found);
-  }
   assert_true(found.distance <= least * (1 + EXACT) + EXACT * size);
+  if (found.certain) {
+    check_point(c, p, &found, size, &work);
+    // Nothing is found within less than the distance.
+    OK(cag_caster_closest(c, p, found.distance * (1 - 1e-9) - 1e-12, &work, &other, &err));
+    assert_false(other.found);
+  } else {
+    find_polished(s, c, p, size, &work, &other);
+    tried++;
+    polished += other.found;
+    if (other.found) {
+      assert_true(other.distance >= found.distance - EXACT * size);
+      check_point(c, p, &other, size, &work);
+    }
+  }
   cag_crossings_free(&work);
   cag_caster_free(c);
   return found.certain ? found.distance : -1;
@@ -180,6 +214,36 @@ static CagSolid *cylinder_at(double from, double height, double radius) {
   return moved(s, &t);
 }
 
+static void edges_have_closed_forms(void **state) {
+  (void)state;
+  CagCrossings work = {0};
+  CagCaster *c;
+  CagNearest found;
+  // The rim of a hole, whose cylinder ends at the faces of the plate, from above its middle.
+  CagSolid *s = combined(CAG_DIFFERENCE, centered_box(20, 20, 2), cylinder_at(-1, 2, 3));
+  OK(cag_caster_of_solid(s, &c, &err));
+  find_polished(s, c, cag_vec3(1, 2, 6), 28, &work, &found);
+  assert_true(found.found);
+  near_vec(found.point, cag_vec3(3 / sqrt(5), 6 / sqrt(5), 1), 1e-6);
+  NEAR(found.distance, hypot(3 - sqrt(5), 5), 1e-12);
+  find_polished(s, c, cag_vec3(0, 0, 5), 28, &work, &found);
+  assert_true(found.found);
+  NEAR(found.distance, 5, 1e-12);
+  cag_caster_free(c);
+  cag_solid_release(s);
+  // A corner of two boxes and a cylinder.
+  const CagTransform aside = cag_translate(cag_vec3(4, 4, 0));
+  s = combined(CAG_INTERSECTION, moved(centered_box(8, 8, 9), &aside), cylinder_at(-1, 5, 5));
+  s = combined(CAG_INTERSECTION, s, centered_box(20, 6, 4));
+  OK(cag_caster_of_solid(s, &c, &err));
+  find_polished(s, c, cag_vec3(7, 6, 5), 12, &work, &found);
+  assert_true(found.found);
+  near_vec(found.point, cag_vec3(4, 3, 2), 1e-9);
+  cag_caster_free(c);
+  cag_solid_release(s);
+  cag_crossings_free(&work);
+}
+
 static void set_operations_know_whether_an_operand_decides(void **state) {
   (void)state;
   seed = 7;
@@ -199,6 +263,7 @@ static void set_operations_know_whether_an_operand_decides(void **state) {
     cag_solid_release(s);
   }
   assert_true(certain > all / 2);
+  assert_true(polished > tried * 9 / 10);
 }
 
 // A hole whose cylinder ends exactly at the faces of the plate: the disks that were removed are not
@@ -317,6 +382,7 @@ int main(void) {
       cmocka_unit_test(symmetric_points_have_one_of_the_nearest_points),
       cmocka_unit_test(set_operations_know_whether_an_operand_decides),
       cmocka_unit_test(removed_faces_are_not_near),
+      cmocka_unit_test(edges_have_closed_forms),
       cmocka_unit_test(half_spaces_have_nearest_points),
       cmocka_unit_test(nearest_points_of_quadrics_are_feet_of_normals),
       cmocka_unit_test(points_on_axes_of_quadrics_have_closed_forms),
