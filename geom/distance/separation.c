@@ -35,7 +35,11 @@
 
 // --- Parts ---
 
+static void tree_free(struct CagPartTree *t);
+
 static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
+  tree_free(parts->tree);
+  parts->tree = NULL;
   if (!CAG_RESERVE(parts->items, parts->capacity, parts->n + 1)) return cag_fail_memory(err);
   parts->items[parts->n++] = part;
   return CAG_OK;
@@ -44,6 +48,7 @@ static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
 void cag_parts_free(CagParts *parts) {
   cag_free(parts->items);
   cag_free(parts->cores);
+  tree_free(parts->tree);
 }
 
 // Stores the core; *out is one more than its index.
@@ -56,6 +61,12 @@ static CagStatus add_core(CagParts *parts, const CagCore *core, size_t *out, Cag
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err) {
   return push(parts, (CagPart){.p = {p, p, p}}, err);
+}
+
+CagStatus cag_parts_add_triangle(CagParts *parts, const CagVec3 corners[3], CagError *err) {
+  const CagPart part = {
+      .p = {corners[0], corners[1], corners[2]}, .flat = true, .at = {0.5, 0.5}, .high = {1, 1}};
+  return push(parts, part, err);
 }
 
 CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err) {
@@ -295,12 +306,19 @@ typedef struct Node {
   size_t left;         // children left and left + 1; 0: a leaf
 } Node;
 
-typedef struct Tree {
+typedef struct CagPartTree {
   const CagParts *parts;
   size_t *order;
   Node *nodes;
   size_t n;
 } Tree;
+
+static void tree_free(Tree *t) {
+  if (!t) return;
+  cag_free(t->order);
+  cag_free(t->nodes);
+  cag_free(t);
+}
 
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -343,7 +361,7 @@ static size_t divide(Tree *t, const Node *node) {
   return low == 0 || low == node->count ? node->count / 2 : low;
 }
 
-static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
+static CagStatus grow_tree(CagParts *parts, Tree *t, CagError *err) {
   *t = (Tree){.parts = parts, .n = 1};
   t->order = cag_malloc(parts->n * sizeof *t->order);
   t->nodes = cag_malloc(2 * parts->n * sizeof *t->nodes);
@@ -360,6 +378,19 @@ static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
     t->nodes[t->n++] = node_of(t, node->first + low, rest);
   }
   return CAG_OK;
+}
+
+static CagStatus find_tree(CagParts *parts, CagError *err) {
+  if (parts->tree) {
+    parts->tree->parts = parts; // the structure may have been copied
+    return CAG_OK;
+  }
+  Tree *t = cag_calloc(1, sizeof *t);
+  if (!t) return cag_fail_memory(err);
+  CagStatus status = grow_tree(parts, t, err);
+  if (status) tree_free(t);
+  else parts->tree = t;
+  return status;
 }
 
 static double gap(const CagBounds *a, const CagBounds *b) {
@@ -609,26 +640,20 @@ static void find_nearest(Search *s) {
   certify(s);
 }
 
-CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
-                             CagVec3 *point, const volatile int *interrupt, CagError *err) {
+CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 *point,
+                             const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "", -1,
                     "a surface without area has no triangles to measure from");
-  Tree first = {0}, second = {0};
-  Search s = {&first, &second, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
-  CagStatus status = grow_tree(a, &first, err);
-  if (!status) status = grow_tree(b, &second, err);
-  if (!status) {
-    find_nearest(&s);
-    status = s.status;
-  }
+  CagStatus status = find_tree(a, err);
+  if (!status) status = find_tree(b, err);
+  if (status) return status;
+  Search s = {a->tree, b->tree, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
+  find_nearest(&s);
+  status = s.status;
   if (!status && interrupt && *interrupt)
     status =
         cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the search was interrupted");
-  cag_free(first.order);
-  cag_free(first.nodes);
-  cag_free(second.order);
-  cag_free(second.nodes);
   cag_free(s.tasks);
   if (status) return status;
   *out = s.best <= touching(&s) ? 0 : s.best;

@@ -25,9 +25,12 @@ typedef struct CagParts {
   size_t n, capacity;
   CagCore *cores;
   size_t core_count;
+  struct CagPartTree *tree; // made by the first search, and used by others
 } CagParts;
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
+// A flat triangle.
+CagStatus cag_parts_add_triangle(CagParts *parts, const CagVec3 corners[3], CagError *err);
 CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err);
 // The mesh of a surface, with its parameters, to the tolerance; if surface is NULL, the mesh is the
 // shape itself.
@@ -51,8 +54,8 @@ void cag_parts_free(CagParts *parts);
 // and with "convergence" if more than `most` pairs may be the closest and lead to different
 // distances.
 #define CAG_PARTS_PAIRS 100000
-CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
-                             CagVec3 *point, const volatile int *interrupt, CagError *err);
+CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 *point,
+                             const volatile int *interrupt, CagError *err);
 
 // The winding number of a closed mesh about p: 1 inside, 0 outside, fractions only on the boundary.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p);

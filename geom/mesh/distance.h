@@ -53,4 +53,19 @@ static inline bool cag_foot_in_triangle(CagVec3 p, const CagVec3 t[3], CagVec3 *
   return true;
 }
 
+// The point of the triangle nearest to p.
+static inline CagVec3 cag_nearest_of_triangle(CagVec3 p, const CagVec3 t[3]) {
+  CagVec3 best = t[0];
+  if (cag_foot_in_triangle(p, t, &best)) return best;
+  double least = INFINITY;
+  for (int k = 0; k < 3; k++) {
+    const CagVec3 q = cag_nearest_of_segment(p, t[k], t[(k + 1) % 3]);
+    const CagVec3 off = cag_sub(q, p);
+    if (!(cag_dot(off, off) < least)) continue;
+    least = cag_dot(off, off);
+    best = q;
+  }
+  return best;
+}
+
 #endif

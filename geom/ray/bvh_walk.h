@@ -113,6 +113,10 @@ INLINE bool cag_bvh_next(const CagBvh *b, const CagBvhRay *ray, CagBvhWalk *w, s
   return false;
 }
 
+// The rounding of distances from boxes in floats, as a fraction of the distance of the point from
+// the origin plus the radius of the hierarchy.
+#define CAG_BVH_SLACK 1e-6
+
 // Finds the next leaf whose box is at most the square root of most2 away from the point, near ones
 // first. The point is relative to the origin of the hierarchy.
 INLINE bool cag_bvh_near(const CagBvh *b, const float p[3], double most2, CagBvhWalk *w,

@@ -4,9 +4,7 @@
 #include "base/stop.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/ray/bvh_walk.h"
-#include "geom/ray/ray_mesh.h"
-#include "geom/ray/ray_patch.h"
-#include "geom/ray/ray_primitive.h"
+#include "geom/ray/caster_parts.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/kind.h"
 
@@ -20,34 +18,6 @@ enum { NUDGES = 6 };
 // Operands are found by a hierarchy of their boxes if there are more.
 enum { FEW_OPERANDS = 6 };
 
-typedef enum CasterKind {
-  FACES,     // surfaces; those of a solid close it
-  MESH,      // triangles
-  PRIMITIVE, // a box, sphere, cylinder, or cone
-  FORM,      // the points at which a quadratic form is negative
-  OPERATION  // of other casters
-} CasterKind;
-
-struct CagCaster {
-  CasterKind kind;
-  bool closed;      // a solid or closed mesh
-  CagBounds bounds; // in the world
-  double size;      // diagonal of the bounds; 0 if they are infinite
-  uint32_t label;
-  // Of FACES and MESH in an operation that was moved: from the world to their own coordinates.
-  bool placed;
-  CagTransform back;
-  CagRayPatch **faces;
-  size_t face_count;
-  CagRayMesh *mesh;
-  CagRayPrimitive primitive;
-  CagQuadric form;
-  CagSolidKind operation;
-  CagCaster **operands;
-  size_t operand_count;
-  CagBvh boxes; // of the bounded operands, if they are many
-};
-
 // --- Making ---
 
 void cag_caster_free(CagCaster *c) {
@@ -56,13 +26,14 @@ void cag_caster_free(CagCaster *c) {
   cag_free(c->faces);
   cag_ray_mesh_free(c->mesh);
   cag_ray_primitive_free(&c->primitive);
+  if (c->image) cag_solid_release(c->image);
   for (size_t i = 0; i < c->operand_count; i++) cag_caster_free(c->operands[i]);
   cag_free(c->operands);
   cag_bvh_free(&c->boxes);
   cag_free(c);
 }
 
-static CagStatus caster_new(CasterKind kind, CagCaster **out, CagError *err) {
+static CagStatus caster_new(CagCasterKind kind, CagCaster **out, CagError *err) {
   CagCaster *c = cag_calloc(1, sizeof *c);
   if (!c) return cag_fail_memory(err);
   c->kind = kind;
@@ -110,7 +81,7 @@ static CagStatus place_caster(CagCaster *c, const CagTransform *to_world, CagErr
 
 static CagStatus faces_of(CagSurface *const *faces, size_t n, CagCaster **out, CagError *err) {
   CagCaster *c = NULL;
-  CagStatus status = caster_new(FACES, &c, err);
+  CagStatus status = caster_new(CAG_CASTER_FACES, &c, err);
   if (status) return status;
   c->faces = cag_calloc(n + 1, sizeof *c->faces);
   if (!c->faces) status = cag_fail_memory(err);
@@ -133,7 +104,7 @@ CagStatus cag_caster_of_surface(const CagSurface *s, CagCaster **out, CagError *
 
 CagStatus cag_caster_of_mesh(const CagMesh *m, CagCaster **out, CagError *err) {
   CagCaster *c = NULL;
-  CagStatus status = caster_new(MESH, &c, err);
+  CagStatus status = caster_new(CAG_CASTER_MESH, &c, err);
   if (!status) status = cag_ray_mesh_new(m, &c->mesh, err);
   if (status) {
     cag_caster_free(c);
@@ -168,7 +139,7 @@ static CagStatus find_operand_boxes(CagCaster *c, CagError *err) {
 static CagStatus operation_caster(const CagSolid *s, const CagTransform *to_world, CagCaster **out,
                                   CagError *err) {
   CagCaster *c = NULL;
-  CagStatus status = caster_new(OPERATION, &c, err);
+  CagStatus status = caster_new(CAG_CASTER_OPERATION, &c, err);
   if (status) return status;
   const CagTransform placement = cag_transform_multiply(to_world, &s->placement);
   c->operation = s->kind;
@@ -196,7 +167,7 @@ static CagStatus operation_caster(const CagSolid *s, const CagTransform *to_worl
 static CagStatus form_caster(const CagSolid *s, const CagTransform *to_world, CagCaster **out,
                              CagError *err) {
   CagQuadric own;
-  CagStatus status = caster_new(FORM, out, err);
+  CagStatus status = caster_new(CAG_CASTER_FORM, out, err);
   if (status) return status;
   if (!cag_solid_form(s, &own)) status = CAG_E_ARGUMENT;
   else status = cag_quadric_transform(&own, to_world, &(*out)->form, err);
@@ -205,11 +176,14 @@ static CagStatus form_caster(const CagSolid *s, const CagTransform *to_world, Ca
   return status;
 }
 
-static CagStatus primitive_caster(const CagSolid *s, const CagTransform *placement, CagCaster **out,
-                                  CagError *err) {
+static CagStatus primitive_caster(const CagSolid *s, const CagTransform *to_world,
+                                  const CagTransform *placement, CagCaster **out, CagError *err) {
   CagCaster *c = NULL;
-  CagStatus status = caster_new(PRIMITIVE, &c, err);
+  CagVec3 unused;
+  CagStatus status = caster_new(CAG_CASTER_PRIMITIVE, &c, err);
   if (!status) status = cag_ray_primitive_set(&c->primitive, s, placement, err);
+  if (!status && !cag_ray_primitive_closest(&c->primitive, cag_vec3(0, 0, 0), &unused))
+    status = cag_solid_transform(s, to_world, &c->image, err);
   if (status) {
     cag_caster_free(c);
     return status;
@@ -220,17 +194,33 @@ static CagStatus primitive_caster(const CagSolid *s, const CagTransform *placeme
   return CAG_OK;
 }
 
+// A mesh that is placed by other maps than similarities is moved itself.
+static CagStatus mesh_caster(const CagSolid *s, const CagTransform *placement, CagCaster **out,
+                             CagError *err) {
+  double scale;
+  if (cag_transform_is_similarity(placement, &scale)) {
+    CagStatus status = cag_caster_of_mesh(s->core->mesh, out, err);
+    return status ? status : place_caster(*out, placement, err);
+  }
+  CagMesh *moved = NULL;
+  CagStatus status = cag_mesh_transform(s->core->mesh, placement, &moved, err);
+  if (!status) status = cag_caster_of_mesh(moved, out, err);
+  cag_mesh_release(moved);
+  return status;
+}
+
 // A solid of faces or of a mesh.
 static CagStatus boundary_caster(const CagSolid *s, const CagTransform *to_world, CagCaster **out,
                                  CagError *err) {
   CagCaster *c = NULL;
-  CagTransform placement = *to_world;
   CagStatus status;
   if (s->kind == CAG_SOLID_MESH) {
-    status = cag_caster_of_mesh(s->core->mesh, &c, err);
-    placement = cag_transform_multiply(to_world, &s->placement);
-  } else status = faces_of(s->faces, s->face_count, &c, err);
-  if (!status) status = place_caster(c, &placement, err);
+    const CagTransform placement = cag_transform_multiply(to_world, &s->placement);
+    status = mesh_caster(s, &placement, &c, err);
+  } else {
+    status = faces_of(s->faces, s->face_count, &c, err);
+    if (!status) status = place_caster(c, to_world, err);
+  }
   if (status) cag_caster_free(c);
   else *out = c;
   return status;
@@ -244,7 +234,11 @@ static CagStatus solid_caster(const CagSolid *s, const CagTransform *to_world, C
   if (status) return status;
   const CagTransform placement = cag_transform_multiply(to_world, &s->placement);
   const bool affine = cag_transform_is_affine(&placement);
-  if (!affine && !is_identity(to_world) && !cag_solid_form(s, &form)) {
+  const bool primitive = affine && cag_ray_primitive_can(s);
+  const bool of_faces = !s->core && !primitive;
+  double scale;
+  if ((!affine || (of_faces && !cag_transform_is_similarity(to_world, &scale))) &&
+      !is_identity(to_world) && !cag_solid_form(s, &form)) {
     // The image is a solid of its own.
     CagSolid *image = NULL;
     const CagTransform identity = cag_transform_identity();
@@ -253,7 +247,7 @@ static CagStatus solid_caster(const CagSolid *s, const CagTransform *to_world, C
     cag_solid_release(image);
   } else if (cag_solid_form(s, &form)) status = form_caster(s, to_world, out, err);
   else if (s->core && s->kind != CAG_SOLID_MESH) status = operation_caster(s, to_world, out, err);
-  else if (affine && cag_ray_primitive_can(s)) status = primitive_caster(s, &placement, out, err);
+  else if (primitive) status = primitive_caster(s, to_world, &placement, out, err);
   else status = boundary_caster(s, to_world, out, err);
   if (status) return status;
   (*out)->closed = true;
@@ -321,7 +315,7 @@ static CagStatus meet_parts(const CagCaster *c, const CagRay *line, bool first, 
   const CagRay own = own_line(c, line, &stretch);
   const size_t from = work->n;
   CagStatus status = CAG_OK;
-  if (c->kind == MESH) status = cag_ray_mesh_all(c->mesh, &own, work, err);
+  if (c->kind == CAG_CASTER_MESH) status = cag_ray_mesh_all(c->mesh, &own, work, err);
   for (size_t i = 0; !status && i < c->face_count; i++) {
     const size_t known = work->n;
     status = cag_ray_patch_meet(c->faces[i], &own, first, work, err);
@@ -386,7 +380,7 @@ static CagStatus meet_boundary(const CagCaster *c, const CagRay *line, CagCrossi
   CagStatus status = meet_parts(c, line, false, work, err);
   if (status) return status;
   sort_span(work, out->from);
-  if (c->kind == MESH) {
+  if (c->kind == CAG_CASTER_MESH) {
     keep_changes(work, out->from);
     return CAG_OK;
   }
@@ -624,15 +618,15 @@ static bool misses_bounds(const CagBounds *b, const CagRay *line) {
 static CagStatus meet(const CagCaster *c, const CagRay *line, CagCrossings *work, Span *out,
                       CagError *err) {
   *out = (Span){.from = work->n, .to = work->n};
-  if (c->kind != FORM && misses_bounds(&c->bounds, line)) return CAG_OK;
+  if (c->kind != CAG_CASTER_FORM && misses_bounds(&c->bounds, line)) return CAG_OK;
   CagStatus status = CAG_OK;
   switch (c->kind) {
-  case PRIMITIVE:
+  case CAG_CASTER_PRIMITIVE:
     status = cag_ray_primitive_meet(&c->primitive, line, work, err);
     for (size_t i = out->from; i < work->n; i++) work->items[i].label = c->label;
     break;
-  case FORM: status = meet_form(c, line, work, out, err); break;
-  case OPERATION: status = meet_operation(c, line, work, out, err); break;
+  case CAG_CASTER_FORM: status = meet_form(c, line, work, out, err); break;
+  case CAG_CASTER_OPERATION: status = meet_operation(c, line, work, out, err); break;
   default: status = meet_boundary(c, line, work, out, err);
   }
   out->to = work->n;
@@ -685,13 +679,13 @@ CagStatus cag_caster_first(const CagCaster *c, const CagRay *ray, CagCrossings *
                            CagCrossing *out, bool *met, CagError *err) {
   *met = false;
   work->n = 0;
-  if (c->kind == MESH && !c->placed) {
+  if (c->kind == CAG_CASTER_MESH && !c->placed) {
     *met = cag_ray_mesh_first(c->mesh, ray, out);
     if (*met && c->label) out->label = c->label;
     return CAG_OK;
   }
   CagStatus status;
-  if (c->kind == FACES || c->kind == MESH) {
+  if (c->kind == CAG_CASTER_FACES || c->kind == CAG_CASTER_MESH) {
     if (misses_bounds(&c->bounds, ray)) return CAG_OK;
     status = meet_parts(c, ray, true, work, err);
     if (!status) sort_span(work, 0);
@@ -699,7 +693,7 @@ CagStatus cag_caster_first(const CagCaster *c, const CagRay *ray, CagCrossings *
   if (status || work->n == 0) return status;
   *met = true;
   *out = work->items[0];
-  if (c->kind == PRIMITIVE) cag_ray_primitive_parameters(&c->primitive, ray, out);
+  if (c->kind == CAG_CASTER_PRIMITIVE) cag_ray_primitive_parameters(&c->primitive, ray, out);
   return CAG_OK;
 }
 
@@ -753,12 +747,12 @@ static CagStatus side_of_operation(const CagCaster *c, CagVec3 p, double slack, 
 CagStatus cag_caster_side(const CagCaster *c, CagVec3 p, double slack, CagCrossings *work,
                           int *side, CagError *err) {
   *side = 1;
-  if (c->kind != FORM && is_outside_box(&c->bounds, p, slack)) return CAG_OK;
+  if (c->kind != CAG_CASTER_FORM && is_outside_box(&c->bounds, p, slack)) return CAG_OK;
   switch (c->kind) {
-  case PRIMITIVE: *side = cag_ray_primitive_side(&c->primitive, p, slack); return CAG_OK;
-  case FORM: *side = cag_ray_form_side(&c->form, p, slack); return CAG_OK;
-  case OPERATION: return side_of_operation(c, p, slack, work, side, err);
-  case MESH:
+  case CAG_CASTER_PRIMITIVE: *side = cag_ray_primitive_side(&c->primitive, p, slack); return CAG_OK;
+  case CAG_CASTER_FORM: *side = cag_ray_form_side(&c->form, p, slack); return CAG_OK;
+  case CAG_CASTER_OPERATION: return side_of_operation(c, p, slack, work, side, err);
+  case CAG_CASTER_MESH:
     if (c->placed) break;
     *side = cag_ray_mesh_contains(c->mesh, p, 0) ? -1 : 1;
     if (*side > 0 && slack > 0 && cag_ray_mesh_contains(c->mesh, p, slack)) *side = 0;

@@ -261,27 +261,11 @@ bool cag_ray_mesh_contains(const CagRayMesh *m, CagVec3 p, double slack) {
   return slack > 0 && cag_ray_mesh_closest(m, p, slack, &point, &face);
 }
 
-// The point of a triangle closest to p.
-static CagVec3 closest_of_triangle(const CagRayTriangle *t, CagVec3 p) {
-  CagVec3 foot;
-  if (cag_foot_in_triangle(p, t->p, &foot)) return foot;
-  double least = INFINITY;
-  CagVec3 best = t->p[0];
-  for (int k = 0; k < 3; k++) {
-    const CagVec3 q = cag_nearest_of_segment(p, t->p[k], t->p[(k + 1) % 3]);
-    const CagVec3 off = cag_sub(q, p);
-    if (!(cag_dot(off, off) < least)) continue;
-    least = cag_dot(off, off);
-    best = q;
-  }
-  return best;
-}
-
 bool cag_ray_mesh_closest(const CagRayMesh *m, CagVec3 p, double most, CagVec3 *point,
                           uint32_t *face) {
   const CagVec3 local = cag_sub(p, m->bvh.origin);
   // Boxes that are a few roundings of the point farther away count.
-  const double slack = 1e-6 * (cag_norm(local) + m->bvh.radius);
+  const double slack = CAG_BVH_SLACK * (cag_norm(local) + m->bvh.radius);
   const float at[3] = {(float)local.x, (float)local.y, (float)local.z};
   double least = most;
   bool found = false;
@@ -290,7 +274,7 @@ bool cag_ray_mesh_closest(const CagRayMesh *m, CagVec3 p, double most, CagVec3 *
   cag_bvh_start(&m->bvh, &walk);
   while (cag_bvh_near(&m->bvh, at, (least + slack) * (least + slack), &walk, &first, &count))
     for (size_t i = first; i < first + count; i++) {
-      const CagVec3 q = closest_of_triangle(&m->triangles[i], p);
+      const CagVec3 q = cag_nearest_of_triangle(p, m->triangles[i].p);
       const double distance = cag_norm(cag_sub(q, p));
       if (!(distance < least || (distance == least && !found))) continue;
       least = distance;

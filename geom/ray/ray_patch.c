@@ -196,6 +196,7 @@ CagStatus cag_ray_patch_new(const CagSurface *s, CagRayPatch **out, CagError *er
   const CagRegion *region = NULL;
   bool flat;
   if (!cag_surface_trimmed_view(s, &inner, &region)) inner = s;
+  p->shape = cag_surface_retain(s);
   p->surface = cag_surface_retain(inner);
   CagStatus status = make_flat(p, s, &flat, err);
   if (!status && region) status = cag_ray_outline_new(region, &p->outline, err);
@@ -208,6 +209,7 @@ CagStatus cag_ray_patch_new(const CagSurface *s, CagRayPatch **out, CagError *er
 
 void cag_ray_patch_free(CagRayPatch *p) {
   if (!p) return;
+  cag_surface_release(p->shape);
   cag_surface_release(p->surface);
   cag_ray_outline_free(p->outline);
   cag_bvh_free(&p->bvh);

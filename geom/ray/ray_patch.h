@@ -28,6 +28,7 @@ typedef enum CagRayFlat {
 } CagRayFlat;
 
 typedef struct CagRayPatch {
+  CagSurface *shape;      // retained
   CagSurface *surface;    // retained; the whole one of a trimmed surface
   CagRayOutline *outline; // in parameters; NULL: the whole rectangle
   CagRayFlat flat;

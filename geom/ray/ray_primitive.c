@@ -17,6 +17,7 @@ CagStatus cag_ray_primitive_set(CagRayPrimitive *p, const CagSolid *s,
   const double w = p->back.m[3][3];
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) p->back.m[i][j] /= w;
+  p->placement = *placement;
   p->solid = cag_solid_retain(s);
   return CAG_OK;
 }
@@ -168,11 +169,10 @@ static bool pass_frustum(const CagSolid *s, CagVec3 o, CagVec3 d, Pass *p) {
   const double slope = (s->c - s->b) / s->a;
   const uint32_t top = s->b > 0 ? 2 : 1;
   if (!pass_slab(p, o, d, 2, 0, s->a, 1, top)) return false;
-  // From the middle of the slab's part, or the point closest to the axis.
+  // From the point of the slab's part that is closest to the axis, where rounding matters least.
   const double flat = d.x * d.x + d.y * d.y;
-  const double shift = isfinite(p->t[0]) ? (p->t[0] + p->t[1]) / 2
-                       : flat > 0        ? -(o.x * d.x + o.y * d.y) / flat
-                                         : 0;
+  const double nearest = flat > 0 ? -(o.x * d.x + o.y * d.y) / flat : 0;
+  const double shift = fmin(fmax(nearest, p->t[0]), p->t[1]);
   const CagVec3 m = cag_madd(o, shift, d);
   const double r = s->b + slope * m.z, dr = slope * d.z;
   double roots[2];

@@ -7,8 +7,8 @@
 #include "geom/solid/solid.h"
 
 typedef struct CagRayPrimitive {
-  CagSolid *solid;   // retained; its sizes, in its own coordinates
-  CagTransform back; // from the world to its own coordinates; affine
+  CagSolid *solid;              // retained; its sizes, in its own coordinates
+  CagTransform placement, back; // from its own coordinates to the world, and back; affine
 } CagRayPrimitive;
 
 // Whether the solid is of a kind that has equations here.
@@ -23,6 +23,9 @@ CagStatus cag_ray_primitive_meet(const CagRayPrimitive *p, const CagRay *line, C
                                  CagError *err);
 // Sets the parameters u and v of a crossing on its face of the solid.
 void cag_ray_primitive_parameters(const CagRayPrimitive *p, const CagRay *ray, CagCrossing *c);
+// The point of the boundary nearest to `at`. Returns false for cylinders, cones, and tori that are
+// not placed by a similarity.
+bool cag_ray_primitive_closest(const CagRayPrimitive *p, CagVec3 at, CagVec3 *out);
 // The side that p is on: -1 inside, 1 outside, 0 within `slack` of the boundary.
 int cag_ray_primitive_side(const CagRayPrimitive *p, CagVec3 at, double slack);
 

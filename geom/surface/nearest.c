@@ -17,6 +17,7 @@
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
 #include "geom/surface/nearest_core.h"
+#include "geom/surface/quadric_nearest.h"
 #include "geom/surface/trimmed.h"
 
 #define STEPS 60
@@ -437,6 +438,34 @@ static CagStatus closest_planar(Search *f, const CagTransform *frame, CagError *
   return isfinite(f->best.distance) ? CAG_OK : try_loops(f, frame, err);
 }
 
+// Tries the nearest point of a surface without its outline: if it is inside of it, no other is
+// nearer.
+static CagStatus try_untrimmed(Search *f, bool *done, CagError *err) {
+  CagSurfaceNearest found;
+  *done = cag_surface_quadric_closest(f->s, f->p, &found);
+  CagStatus status = CAG_OK;
+  if (!*done && f->region) {
+    status = cag_surface_closest(f->s, f->p, &found, err);
+    *done = true;
+  }
+  if (!status && *done) status = offer(f, &found, err);
+  *done = !status && isfinite(f->best.distance);
+  return status;
+}
+
+static CagStatus closest_curved(Search *f, CagError *err) {
+  bool certain = false;
+  CagStatus status = find_cuts(f, err);
+  if (!status) status = cag_distance_cells_make(&f->cells, f->s, f->p, f->region != NULL, err);
+  if (!status && f->region) status = try_loops(f, NULL, err);
+  if (!status) status = try_core(f, &certain, err);
+  if (!status && !certain) status = search_cells(f, err);
+  cag_distance_cells_free(&f->cells);
+  cag_free(f->cuts[0]);
+  cag_free(f->cuts[1]);
+  return status;
+}
+
 CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest *out,
                               CagError *err) {
   Search f = {.s = s, .p = p, .best = {.distance = INFINITY}};
@@ -447,16 +476,10 @@ CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest 
   if (cag_surface_planar_view(s, &f.region, &frame)) {
     status = closest_planar(&f, &frame, err);
   } else {
+    bool done;
     if (cag_surface_trimmed_view(s, NULL, &f.region)) cag_surface_trimmed_view(s, &f.s, &f.region);
-    status = find_cuts(&f, err);
-    if (!status) status = cag_distance_cells_make(&f.cells, f.s, p, f.region != NULL, err);
-    if (!status && f.region) status = try_loops(&f, NULL, err);
-    bool certain = false;
-    if (!status) status = try_core(&f, &certain, err);
-    if (!status && !certain) status = search_cells(&f, err);
-    cag_distance_cells_free(&f.cells);
-    cag_free(f.cuts[0]);
-    cag_free(f.cuts[1]);
+    status = try_untrimmed(&f, &done, err);
+    if (!status && !done) status = closest_curved(&f, err);
     // A point on a seam is reported at its start.
     if (s->closed_u && f.best.u >= s->u1) f.best.u = s->u0;
     if (s->closed_v && f.best.v >= s->v1) f.best.v = s->v0;

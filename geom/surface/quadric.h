@@ -106,6 +106,9 @@ typedef enum CagQuadricShape {
   CAG_SHAPE_HYPERBOLIC_CYLINDER    // [cosh u, sinh u, v]: one branch
 } CagQuadricShape;
 
+// The parametric form of a surface of kind "quadric"; false: another kind.
+bool cag_surface_quadric_shape(const CagSurface *s, CagQuadricShape *shape);
+
 // A piece over [u0, u1] x [v0, v1]; frame: affine, unit form to world. Kind "quadric". A frame with
 // a reflection reverses the normals.
 CagStatus cag_surface_quadric(CagQuadricShape shape, const CagTransform *frame, double u0,

@@ -265,6 +265,12 @@ bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
   return true;
 }
 
+bool cag_surface_quadric_shape(const CagSurface *s, CagQuadricShape *shape) {
+  if (s->kind != &quadric_kind) return false;
+  *shape = ((const Patch *)s)->shape;
+  return true;
+}
+
 bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out) {
   const bool trimmed = cag_surface_trimmed_view(s, &s, NULL);
   if (s->kind != &quadric_kind) return false;

@@ -1,8 +1,8 @@
-// Convex hulls, curves on surfaces, containment, and distances.
+// Convex hulls, curves on surfaces, and containment.
 
+#include "interp/builtin/hulls.h"
 #include "base/array.h"
 #include "base/memory.h"
-#include "geom/distance/separation.h"
 #include "geom/mesh/hull.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/tessellate.h"
@@ -51,8 +51,6 @@ static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagErr
   return CAG_OK;
 }
 
-// The tolerance for replacing a shape by points, as a fraction of its size.
-#define HULL_TOLERANCE 1e-4
 // A point is on a boundary if it is closer than this fraction of the size.
 #define BOUNDARY 1e-9
 
@@ -62,7 +60,7 @@ static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, Ca
   size_t n = 0;
   CagStatus status = cag_curve_bounds(c, &box, err);
   if (status) return status;
-  if (tolerance <= 0) tolerance = HULL_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
+  if (tolerance <= 0) tolerance = CAG_SHAPE_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
   status = cag_curve_discretize(c, tolerance, CAG_TESSELLATION_DEFAULT.angle, &t, &n, err);
   for (size_t i = 0; !status && i < n; i++) {
     CagVec3 p;
@@ -86,31 +84,6 @@ static CagStatus add_region(Cloud *cloud, const CagShape *shape, CagError *err) 
   return status;
 }
 
-static CagTessellation tessellation_of(const CagVm *vm, double tolerance) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.tolerance = tolerance;
-  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = cag_vm_stop(vm);
-  return how;
-}
-
-static CagStatus mesh_of(const CagVm *vm, CagValue v, double tolerance, CagMesh **out,
-                         CagError *err) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagBounds box;
-  if (v.type == CAG_MESH) {
-    *out = cag_mesh_retain(shape->as.mesh);
-    return CAG_OK;
-  }
-  CagStatus status = v.type == CAG_SOLID ? cag_solid_bounds(shape->as.solid, &box, err)
-                                         : cag_surface_bounds(shape->as.surface, &box, err);
-  if (status) return status;
-  if (tolerance <= 0) tolerance = HULL_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
-  const CagTessellation how = tessellation_of(vm, tolerance);
-  return v.type == CAG_SOLID ? cag_solid_tessellate(shape->as.solid, &how, out, err)
-                             : cag_surface_tessellate(shape->as.surface, &how, out, err);
-}
-
 static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   if (v.type == CAG_CURVE) return add_curve(cloud, shape->as.curve, shape->tolerance, err);
@@ -118,7 +91,7 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
   CagMesh *m;
   cloud->plane = false;
   if (v.type == CAG_LABEL) return cloud_add(cloud, &shape->as.label->at, 1, err);
-  CagStatus status = mesh_of(vm, v, shape->tolerance, &m, err);
+  CagStatus status = cag_shape_mesh(vm, v, shape->tolerance, &m, err);
   if (status) return cag_is_empty_shape(err) ? CAG_OK : status;
   status = cloud_add(cloud, m->positions, m->vertex_count, err);
   cag_mesh_release(m);
@@ -142,7 +115,7 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
                       : space_hull(call, cloud->points, cloud->n, result);
 }
 
-static bool is_list_of_shapes(CagVm *vm, CagValue v) {
+bool cag_is_list_of_shapes(CagVm *vm, CagValue v) {
   if (v.type != CAG_LIST) return false;
   while (v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0) v = cag_list_get(vm, CAG_AS_LIST(v), 0);
   return cag_is_shape(v);
@@ -150,7 +123,7 @@ static bool is_list_of_shapes(CagVm *vm, CagValue v) {
 
 bool cag_hulls_convex_hull(CagCall *call, CagValue *result) {
   const CagValue v = call->values[0];
-  if (cag_is_shape(v) || is_list_of_shapes(call->vm, v)) return hull_of_shapes(call, result);
+  if (cag_is_shape(v) || cag_is_list_of_shapes(call->vm, v)) return hull_of_shapes(call, result);
   CagVec3 *points;
   size_t n;
   int dimension;
@@ -168,98 +141,9 @@ bool cag_hulls_curve_on(CagCall *call, const struct cag_hulls_curve_on *a, CagVa
   return cag_curve_result(call, cag_curve_on_surface(s, a->C, &on, call->err), &on, result);
 }
 
-// --- Containment and distance ---
+// --- Containment ---
 
-// A shape split into parts. It also owns the surfaces, curves, and meshes created for it.
-typedef struct Body {
-  CagParts parts;
-  CagCurveList curves;
-  double size;
-} Body;
-
-static void body_free(Body *b) {
-  cag_curve_list_free(&b->curves);
-  cag_parts_free(&b->parts);
-}
-
-static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
-  CagStatus status = cag_curve_list_add(&b->curves, cag_curve_retain(c), err);
-  return status ? status : cag_parts_add_curve(&b->parts, c, tolerance, err);
-}
-
-static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
-                                  CagError *err) {
-  const CagTessellation how = tessellation_of(vm, tolerance);
-  const bool flat = cag_surface_planar_view(s, NULL, NULL);
-  CagMesh *m = NULL;
-  CagStatus status = cag_surface_tessellate(s, &how, &m, err);
-  if (!status) status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
-  cag_mesh_release(m);
-  return status;
-}
-
-// Adds the inside of a region as triangles, and its edges exactly.
-static CagStatus body_add_region(const CagVm *vm, Body *b, const CagRegion *r,
-                                 const CagTransform *place, double tolerance, CagError *err) {
-  CagSurface *flat;
-  CagStatus status = cag_surface_planar(r, place, &flat, err);
-  if (status) return status;
-  status = body_add_surface(vm, b, flat, tolerance, err);
-  cag_surface_release(flat);
-  for (size_t i = 0; !status && i < r->count; i++) {
-    CagCurve *loop;
-    status = cag_curve_transform(r->loops[i], place, &loop, err);
-    if (status) break;
-    status = body_add_curve(b, loop, tolerance, err);
-    cag_curve_release(loop);
-  }
-  return status;
-}
-
-static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face, double tolerance,
-                               CagError *err) {
-  const CagRegion *region;
-  CagTransform frame;
-  return cag_surface_planar_view(face, &region, &frame)
-             ? body_add_region(vm, b, region, &frame, tolerance, err)
-             : body_add_surface(vm, b, face, tolerance, err);
-}
-
-// The distance from set operations and bodies bounded by meshes is that from their triangles.
-static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
-                                   CagError *err) {
-  const CagTessellation how = tessellation_of(vm, tolerance);
-  CagMesh *m = NULL;
-  CagStatus status = cag_solid_tessellate(s, &how, &m, err);
-  if (!status) status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
-  cag_mesh_release(m);
-  return status;
-}
-
-// An empty shape adds nothing.
-static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
-                                CagError *err) {
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  CagStatus status = CAG_OK;
-  if (v.type == CAG_REGION && cag_region_is_empty(shape->as.region)) return CAG_OK;
-  switch (v.type) {
-  case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
-  case CAG_REGION:
-    return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
-  case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
-  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, 0, err);
-  case CAG_LABEL: return cag_parts_add_point(&b->parts, shape->as.label->at, err);
-  default:
-    if (cag_solid_is_compound(shape->as.solid))
-      return body_add_compound(vm, b, shape->as.solid, tolerance, err);
-    for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
-      status = body_add_face(vm, b, shape->as.solid->faces[i], tolerance, err);
-    return status;
-  }
-}
-
-// Whether a solid or closed mesh contains the point. *body is false for an open mesh.
-static bool holds(CagCall *call, CagValue v, CagVec3 p, bool *inside, bool *body) {
+bool cag_shape_holds(CagCall *call, CagValue v, CagVec3 p, bool *inside, bool *body) {
   const CagCaster *caster;
   CagCrossings work = {0};
   int side = 1;
@@ -278,97 +162,10 @@ static bool holds(CagCall *call, CagValue v, CagVec3 p, bool *inside, bool *body
 
 bool cag_hulls_contains(CagCall *call, const struct cag_hulls_contains *a, CagValue *result) {
   bool inside, body;
-  if (!holds(call, a->G, a->P.at, &inside, &body)) return false;
+  if (!cag_shape_holds(call, a->G, a->P.at, &inside, &body)) return false;
   if (!body)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects a closed mesh, found one with an open edge");
   *result = cag_bool(inside);
-  return true;
-}
-
-// One argument of `distance`: a point, or shapes.
-typedef struct Side {
-  bool point;
-  CagVec3 p;
-  const CagList *shapes;
-  Body body;
-} Side;
-
-static void release_sides(void *side) {
-  for (int i = 0; i < 2; i++) body_free(&((Side *)side)[i].body);
-}
-
-static bool read_side(CagCall *call, int argument, Side *out) {
-  const CagValue v = call->values[argument];
-  CagBounds box;
-  int dimension;
-  *out = (Side){.point = !cag_is_shape(v) && !is_list_of_shapes(call->vm, v)};
-  if (out->point) return cag_arg_vec(call, argument, &out->p, NULL);
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, v, builder)) return false;
-  out->shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  if (!cag_value_bounds(call, v, &box, &dimension)) return false;
-  out->body.size = cag_norm(cag_sub(box.max, box.min));
-  return true;
-}
-
-static size_t side_count(const Side *s) { return s->point ? 1 : s->shapes->length; }
-
-// Adds the point or the shape with index i.
-static CagStatus body_add_part(CagVm *vm, Body *b, const Side *side, size_t i, CagError *err) {
-  return side->point ? cag_parts_add_point(&b->parts, side->p, err)
-                     : body_add_shape(vm, b, cag_list_get(vm, side->shapes, i),
-                                      HULL_TOLERANCE * side->body.size, err);
-}
-
-static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < side_count(side); i++)
-    status = body_add_part(vm, &side->body, side, i, err);
-  return status;
-}
-
-// Whether a body of `outer` contains a shape of `inner`. The surfaces do not meet, so one point of
-// each shape decides.
-static bool encloses(CagCall *call, const Side *outer, const Side *inner, bool *yes) {
-  for (size_t i = 0; !*yes && !outer->point && i < outer->shapes->length; i++) {
-    const CagValue v = cag_list_get(call->vm, outer->shapes, i);
-    if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
-    bool body;
-    for (size_t k = 0; !*yes && k < side_count(inner); k++) {
-      Body one = {0};
-      const CagStatus status = body_add_part(call->vm, &one, inner, k, call->err);
-      const bool some = !status && one.parts.n > 0;
-      const CagVec3 p = some ? one.parts.items[0].p[0] : cag_vec3(0, 0, 0);
-      body_free(&one);
-      if (!cag_geometry_ok(call, status) || (some && !holds(call, v, p, yes, &body))) return false;
-    }
-  }
-  return true;
-}
-
-static bool measure(CagCall *call, Side side[2], double *out) {
-  CagStatus status = fill_side(call->vm, &side[0], call->err);
-  if (!status) status = fill_side(call->vm, &side[1], call->err);
-  if (!status)
-    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, CAG_PARTS_PAIRS, out,
-                                NULL, cag_vm_stop(call->vm), call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  bool within = false;
-  if (*out == 0) return true;
-  if (!encloses(call, &side[0], &side[1], &within)) return false;
-  if (!within && !encloses(call, &side[1], &side[0], &within)) return false;
-  if (within) *out = 0;
-  return true;
-}
-
-bool cag_hulls_distance(CagCall *call, CagValue *result) {
-  Side *side = cag_hold_array(call, 2, sizeof *side);
-  cag_hold_for(call, release_sides, side);
-  double distance = 0;
-  if (!read_side(call, 0, &side[0]) || !read_side(call, 1, &side[1]) ||
-      !measure(call, side, &distance))
-    return false;
-  *result = cag_number(distance);
   return true;
 }

@@ -7,16 +7,6 @@
 #include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
 
-// What is closer to the start of a ray than this fraction of the size of everything is skipped.
-#define SKIPPED 1e-9
-
-// The size that distances are compared to: that of the shapes, and of the point's distance from
-// them.
-static double target_scale(const CagTarget *t, CagVec3 p) {
-  if (t->bounded == 0) return fmax(1, cag_norm(p));
-  return t->size + cag_norm(cag_sub(p, cag_lerp(t->bounds.min, t->bounds.max, 0.5)));
-}
-
 static CagValue parameter_value(double x, bool is_angle) {
   if (isnan(x)) return cag_none();
   return is_angle ? cag_angle(x * (180 / M_PI)) : cag_number(x);
@@ -48,7 +38,7 @@ bool cag_rays_cast(CagCall *call, const struct cag_rays_cast *a, CagValue *resul
   CagTargetHit hit;
   bool met;
   if (!cag_arg_ray_target(call, 0, &t)) return false;
-  const CagRay ray = {a->P.at, cag_unit(a->V.at), SKIPPED * target_scale(t, a->P.at), a->max};
+  const CagRay ray = {a->P.at, cag_unit(a->V.at), cag_target_skipped(t, a->P.at), a->max};
   if (!first_hit(call, t, &ray, &hit, &met)) return false;
   *result = met ? hit_record(call->vm, t, &ray, &hit) : cag_none();
   return true;
@@ -56,13 +46,11 @@ bool cag_rays_cast(CagCall *call, const struct cag_rays_cast *a, CagValue *resul
 
 bool cag_rays_visible(CagCall *call, const struct cag_rays_visible *a, CagValue *result) {
   const CagTarget *t;
-  CagTargetHit hit;
-  bool met = false;
+  CagCrossings work = {0};
+  bool sees;
   if (!cag_arg_ray_target(call, 0, &t)) return false;
-  const CagVec3 way = cag_sub(a->Q.at, a->P.at);
-  const double length = cag_norm(way), skipped = SKIPPED * target_scale(t, a->P.at);
-  const CagRay ray = {a->P.at, cag_unit(way), skipped, length - skipped};
-  if (length > 2 * skipped && !first_hit(call, t, &ray, &hit, &met)) return false;
-  *result = cag_bool(!met);
-  return true;
+  const CagStatus status = cag_target_sees(t, a->P.at, a->Q.at, &work, &sees, call->err);
+  cag_crossings_free(&work);
+  *result = cag_bool(sees);
+  return cag_geometry_ok(call, status);
 }

@@ -20,5 +20,7 @@ CagVec3 cag_point_field(const CagRecord *r, const char *name, CagVec3 fallback);
 bool cag_picture_size(CagCall *call, int argument, CagNumbers size, double out[2]);
 // A camera as plain data, without a name.
 CagCamera cag_camera_of_value(const CagSceneValue *v);
+// A light as plain data.
+CagLight cag_light_of_value(const CagSceneValue *v);
 
 #endif

@@ -1,4 +1,4 @@
-// Cameras as plain data.
+// Cameras and lights as plain data.
 
 #include <string.h>
 
@@ -61,4 +61,32 @@ CagCamera cag_camera_of_value(const CagSceneValue *v) {
   if (c.width <= 0) c.width = 2 * cag_norm(view) * tan(c.fov / 2);
   if (!strcmp(v->kind, "pinhole")) read_pinhole(r, &c);
   return c;
+}
+
+CagLight cag_light_of_value(const CagSceneValue *v) {
+  static const CagVec3 none = {0, 0, 0};
+  static const struct {
+    const char *kind;
+    CagLightKind id;
+  } kinds[] = {{"sun", CAG_LIGHT_SUN},
+               {"point", CAG_LIGHT_POINT},
+               {"spot", CAG_LIGHT_SPOT},
+               {"area", CAG_LIGHT_AREA}};
+  const CagRecord *r = v->fields;
+  const CagTransform *place = &v->placement;
+  const CagVec3 color = cag_point_field(r, "color", cag_vec3(1, 1, 1));
+  CagLight l = {.kind = CAG_LIGHT_SUN,
+                .position = cag_transform_point(place, cag_point_field(r, "position", none)),
+                .angle = cag_number_field(r, "angle", 30) * CAG_RADIANS_PER_DEGREE,
+                .size = cag_number_field(r, "size", 0),
+                .color = {color.x, color.y, color.z},
+                .strength = cag_number_field(r, "strength", 1)};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (!strcmp(v->kind, kinds[i].kind)) l.kind = kinds[i].id;
+  const CagVec3 target = cag_transform_point(place, cag_point_field(r, "target", none));
+  const CagVec3 direction = l.kind == CAG_LIGHT_SUN
+                                ? cag_transform_vector(place, cag_point_field(r, "direction", none))
+                                : cag_sub(target, l.position);
+  l.direction = l.kind == CAG_LIGHT_POINT ? cag_vec3(0, 0, -1) : cag_unit(direction);
+  return l;
 }

@@ -11,18 +11,26 @@
 
 // --- Materials ---
 
-typedef enum FieldKind { FIELD_COLOR, FIELD_SHARE, FIELD_NUMBER, FIELD_TEXT, FIELD_GLOW } FieldKind;
+typedef enum FieldKind {
+  FIELD_COLOR,
+  FIELD_SHARE,
+  FIELD_NUMBER,
+  FIELD_TEXT,
+  FIELD_GLOW,
+  FIELD_FLAG
+} FieldKind;
 typedef struct Field {
   const char *name;
   FieldKind kind;
 } Field;
 
 static const Field fields[] = {
-    {"color", FIELD_COLOR},          {"metallic", FIELD_SHARE},    {"roughness", FIELD_SHARE},
-    {"ior", FIELD_NUMBER},           {"coat", FIELD_SHARE},        {"transmission", FIELD_SHARE},
-    {"emission", FIELD_GLOW},        {"texture", FIELD_TEXT},      {"color2", FIELD_COLOR},
-    {"texture_scale", FIELD_NUMBER}, {"pov", FIELD_TEXT},          {"name", FIELD_TEXT},
-    {"density", FIELD_NUMBER},       {"reflectivity", FIELD_SHARE}};
+    {"color", FIELD_COLOR},          {"metallic", FIELD_SHARE},     {"roughness", FIELD_SHARE},
+    {"ior", FIELD_NUMBER},           {"coat", FIELD_SHARE},         {"transmission", FIELD_SHARE},
+    {"emission", FIELD_GLOW},        {"texture", FIELD_TEXT},       {"color2", FIELD_COLOR},
+    {"texture_scale", FIELD_NUMBER}, {"pov", FIELD_TEXT},           {"name", FIELD_TEXT},
+    {"density", FIELD_NUMBER},       {"reflectivity", FIELD_SHARE}, {"conductive", FIELD_FLAG},
+    {"ferromagnetic", FIELD_FLAG}};
 #define FIELD_COUNT (sizeof fields / sizeof *fields)
 
 static const char *const textures[] = {"", "wood", "marble", "concrete", "clay"};
@@ -70,6 +78,10 @@ static bool check_field(CagCall *call, const Field *f, CagValue *v) {
     return (x > 0 && isfinite(x)) ||
            cag_fail_call(call, 1, CAG_ERR_material_field, "expects a number greater than 0 as `%s`",
                          f->name);
+  case FIELD_FLAG:
+    return v->type == CAG_BOOL ||
+           cag_fail_call(call, 1, CAG_ERR_material_field, "expects true or false as `%s`, found %s",
+                         f->name, cag_type_article(*v));
   case FIELD_TEXT:
     if (v->type != CAG_TEXT)
       return cag_fail_call(call, 1, CAG_ERR_material_field, "expects a text as `%s`, found %s",

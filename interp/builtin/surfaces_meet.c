@@ -5,7 +5,23 @@
 #include "geom/meet/meet_surface.h"
 #include "geom/surface/nearest.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
+
+bool cag_meetings_closest_shape(CagCall *call, const struct cag_meetings_closest_shape *a,
+                                CagValue *result) {
+  static const char *const names[] = {"point", "distance", "part"};
+  const CagTarget *t;
+  CagTargetNearest near;
+  if (!cag_arg_near_target(call, 0, &t) || !cag_target_closest(call, t, a->P.at, INFINITY, &near))
+    return false;
+  if (!near.found)
+    return cag_fail_call(call, 0, CAG_ERR_empty_shape, "expects a shape that is not empty");
+  const CagValue values[] = {cag_point(call->vm, near.point, 3), cag_number(near.distance),
+                             cag_target_name(t, near.part)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
 
 bool cag_meetings_closest(CagCall *call, const struct cag_meetings_closest *a, CagValue *result) {
   static const char *const names[] = {"u", "v", "point", "distance"};

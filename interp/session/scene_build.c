@@ -325,8 +325,6 @@ static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
 
 // --- Cameras, lights, settings ---
 
-static const CagVec3 none = {0, 0, 0};
-
 static void add_camera(Build *b, const CagSceneValue *v, const char *name) {
   CagScene *s = b->scene;
   s->cameras = grown(b, s->cameras, s->camera_count, &b->camera_capacity, sizeof *s->cameras);
@@ -337,32 +335,9 @@ static void add_camera(Build *b, const CagSceneValue *v, const char *name) {
 }
 
 static void add_light(Build *b, const CagSceneValue *v) {
-  static const struct {
-    const char *kind;
-    CagLightKind id;
-  } kinds[] = {{"sun", CAG_LIGHT_SUN},
-               {"point", CAG_LIGHT_POINT},
-               {"spot", CAG_LIGHT_SPOT},
-               {"area", CAG_LIGHT_AREA}};
   CagScene *s = b->scene;
-  const CagRecord *r = v->fields;
-  const CagTransform *place = &v->placement;
   s->lights = grown(b, s->lights, s->light_count, &b->light_capacity, sizeof *s->lights);
-  if (b->failed) return;
-  CagLight l = {.kind = CAG_LIGHT_SUN,
-                .position = cag_transform_point(place, cag_point_field(r, "position", none)),
-                .angle = cag_number_field(r, "angle", 30) * CAG_RADIANS_PER_DEGREE,
-                .size = cag_number_field(r, "size", 0),
-                .color = color_field(r, "color", (CagColor){1, 1, 1}),
-                .strength = cag_number_field(r, "strength", 1)};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (!strcmp(v->kind, kinds[i].kind)) l.kind = kinds[i].id;
-  CagVec3 target = cag_transform_point(place, cag_point_field(r, "target", none));
-  CagVec3 direction = l.kind == CAG_LIGHT_SUN
-                          ? cag_transform_vector(place, cag_point_field(r, "direction", none))
-                          : cag_sub(target, l.position);
-  l.direction = l.kind == CAG_LIGHT_POINT ? cag_vec3(0, 0, -1) : cag_unit(direction);
-  s->lights[s->light_count++] = l;
+  if (!b->failed) s->lights[s->light_count++] = cag_light_of_value(v);
 }
 
 static void set_sky(Build *b, const CagRecord *r) {

@@ -186,6 +186,24 @@ static const char *const images[] = {"image([[1]])",
                                      "image(16, 16, (x, y) => x*y)",
                                      "image([[1e308, 1e308, -1e308], [1e-308, 0, 0.1]])",
                                      "enlarge(image([[1e308, -1]]), 300)"};
+static const char *const cameras[] = {
+    "camera([1, 2, 3], size: [5, 4])",
+    "camera([1e150, 0, 0], size: [3, 3])",
+    "camera([9, 9, 9], kind: \"orthographic\", size: [4, 4])",
+    "pinhole(look_at([0, 0, 9], origin, Y), 1, 0.1, [7, 5])",
+    "pinhole(identity, 1e-9, 1e9, [2, 3])",
+    "pinhole(look_at([0, 0, 9], origin, Y), 5, 0.1, [1, 1]) |> reflect(X)"};
+static const char *const lights[] = {"sun(-Z)", "point_light([0, 0, 9], strength: 1e308)",
+                                     "spot_light([0, 0, 9], origin, angle: 1e-9deg)",
+                                     "area_light([0, 0, 9], origin, 5)",
+                                     "[sun(X), point_light([1e200, 0, 0])]"};
+static const char *const scenes[] = {"[sphere(2), sun(-Z)]",
+                                     "[box(1), torus(3, 1), camera([9, 9, 9])]",
+                                     "difference(box(2), sphere(1), cylinder(9, 0.1))",
+                                     "half_space(plane(origin, Z)) & sphere(3)",
+                                     "[half_space(plane([0, 0, -5], Z)), cone(3, 1)]",
+                                     "scale([1, 2, 3]) * union(torus(3, 1), cylinder(2, 1))",
+                                     "scale([1, 1e-9, 1]) * torus(3, 1)"};
 static const char *const others[] = {"none",
                                      "true",
                                      "false",
@@ -241,6 +259,25 @@ static const char *further_value(Draws *d) {
   }
 }
 
+// Parameters whose words begin like this usually get a value of that type.
+static const struct {
+  const char *word;
+  const char *const *values;
+  size_t count;
+} typed[] = {{"camera", cameras, sizeof cameras / sizeof *cameras},
+             {"light", lights, sizeof lights / sizeof *lights},
+             {"plane", planes, sizeof planes / sizeof *planes},
+             {"transform", transforms, sizeof transforms / sizeof *transforms},
+             {"shape or robot", scenes, sizeof scenes / sizeof *scenes}};
+
+static const char *argument_value(Draws *d, const CagBuiltin *row, const CagSignature *s,
+                                  size_t i) {
+  for (size_t k = 0; k < sizeof typed / sizeof *typed; k++)
+    if (!strncmp(s->words[i], typed[k].word, strlen(typed[k].word)) && draw(d, 4) > 0)
+      return typed[k].values[draw(d, typed[k].count)];
+  return i == 0 ? first_value(d, row->first) : further_value(d);
+}
+
 // --- Scripts ---
 
 static void write_call(Draws *d, const CagBuiltin *row, const CagSignature *s, char *out) {
@@ -248,7 +285,7 @@ static void write_call(Draws *d, const CagBuiltin *row, const CagSignature *s, c
   size_t given = s->required + draw(d, s->count - s->required + 1);
   bool named = false;
   for (size_t i = 0; i < given && at < LONGEST / 2; i++) {
-    const char *value = i == 0 ? first_value(d, row->first) : further_value(d);
+    const char *value = argument_value(d, row, s, i);
     named = named || (i >= s->required && !s->positional_only[i] && draw(d, 3) == 0);
     if (named && s->positional_only[i]) break;
     at += (size_t)snprintf(out + at, LONGEST - at, "%s%s%s%s", i ? ", " : "",

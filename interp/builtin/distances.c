@@ -1,0 +1,280 @@
+// Distances of shapes.
+
+#include "base/memory.h"
+#include "geom/distance/separation.h"
+#include "geom/solid/csg.h"
+#include "geom/surface/curve_on.h"
+#include "interp/builtin/hulls.h"
+#include "interp/builtin/shapes.h"
+#include "interp/builtin/surfaces.h"
+#include "interp/builtin/targets.h"
+#include "interp/vm/memo.h"
+#include "interp/vm/vm.h"
+
+// Shapes closer than this fraction of their size meet (see separation.c).
+#define TOUCHING 1e-10
+
+// --- Bodies ---
+
+// Shapes split into parts. It also owns the curves created for it.
+typedef struct Body {
+  CagParts parts;
+  CagCurveList curves;
+  const CagList *shapes; // NULL: a point
+  size_t *first;         // of each shape: its first part; the number of parts: it has none
+  CagBounds bounds;
+  double tolerance; // of meshes
+} Body;
+
+static void body_free(void *body) {
+  Body *b = body;
+  cag_curve_list_free(&b->curves);
+  cag_parts_free(&b->parts);
+  cag_free(b->first);
+  cag_free(b);
+}
+
+static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
+  CagStatus status = cag_curve_list_add(&b->curves, cag_curve_retain(c), err);
+  return status ? status : cag_parts_add_curve(&b->parts, c, tolerance, err);
+}
+
+static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
+                                  CagError *err) {
+  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
+  const bool flat = cag_surface_planar_view(s, NULL, NULL);
+  CagMesh *m = NULL;
+  CagStatus status = cag_surface_tessellate(s, &how, &m, err);
+  if (!status) status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
+  cag_mesh_release(m);
+  return status;
+}
+
+// Adds the inside of a region as triangles, and its edges exactly.
+static CagStatus body_add_region(const CagVm *vm, Body *b, const CagRegion *r,
+                                 const CagTransform *place, double tolerance, CagError *err) {
+  CagSurface *flat;
+  CagStatus status = cag_surface_planar(r, place, &flat, err);
+  if (status) return status;
+  status = body_add_surface(vm, b, flat, tolerance, err);
+  cag_surface_release(flat);
+  for (size_t i = 0; !status && i < r->count; i++) {
+    CagCurve *loop;
+    status = cag_curve_transform(r->loops[i], place, &loop, err);
+    if (status) break;
+    status = body_add_curve(b, loop, tolerance, err);
+    cag_curve_release(loop);
+  }
+  return status;
+}
+
+static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face, double tolerance,
+                               CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  return cag_surface_planar_view(face, &region, &frame)
+             ? body_add_region(vm, b, region, &frame, tolerance, err)
+             : body_add_surface(vm, b, face, tolerance, err);
+}
+
+// The distance from set operations and bodies bounded by meshes is that from their triangles.
+static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
+                                   CagError *err) {
+  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
+  CagMesh *m = NULL;
+  CagStatus status = cag_solid_tessellate(s, &how, &m, err);
+  if (!status) status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
+  cag_mesh_release(m);
+  return status;
+}
+
+// The faces of a box as triangles, in any order.
+static CagStatus body_add_box(Body *b, const CagSolid *s, CagError *err) {
+  static const int faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  const CagVec3 size = cag_vec3(s->a, s->b, s->c);
+  const CagVec3 low = s->centered ? cag_scaled(size, -0.5) : cag_vec3(0, 0, 0);
+  CagVec3 corner[8];
+  for (int k = 0; k < 8; k++)
+    corner[k] = cag_transform_point(&s->placement, cag_vec3(low.x + (k & 1 ? size.x : 0),
+                                                            low.y + (k & 2 ? size.y : 0),
+                                                            low.z + (k & 4 ? size.z : 0)));
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 12; k++) {
+    const int *face = faces[k / 2];
+    const CagVec3 triangle[3] = {corner[face[0]], corner[face[1 + k % 2]], corner[face[2 + k % 2]]};
+    status = cag_parts_add_triangle(&b->parts, triangle, err);
+  }
+  return status;
+}
+
+// An empty shape adds nothing.
+static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
+                                CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagStatus status = CAG_OK;
+  if (v.type == CAG_REGION && cag_region_is_empty(shape->as.region)) return CAG_OK;
+  switch (v.type) {
+  case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
+  case CAG_REGION:
+    return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
+  case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
+  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, 0, err);
+  case CAG_LABEL: return cag_parts_add_point(&b->parts, shape->as.label->at, err);
+  default:
+    if (shape->as.solid->kind == CAG_SOLID_BOX &&
+        cag_transform_is_affine(&shape->as.solid->placement))
+      return body_add_box(b, shape->as.solid, err);
+    if (cag_solid_is_compound(shape->as.solid))
+      return body_add_compound(vm, b, shape->as.solid, tolerance, err);
+    for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
+      status = body_add_face(vm, b, shape->as.solid->faces[i], tolerance, err);
+    return status;
+  }
+}
+
+static CagStatus fill_body(CagVm *vm, Body *b, CagError *err) {
+  CagStatus status = CAG_OK;
+  b->first = cag_malloc((b->shapes->length + 1) * sizeof *b->first);
+  if (!b->first) return cag_fail_memory(err);
+  for (size_t i = 0; !status && i < b->shapes->length; i++) {
+    const size_t known = b->parts.n;
+    status = body_add_shape(vm, b, cag_list_get(vm, b->shapes, i), b->tolerance, err);
+    b->first[i] = b->parts.n > known ? known : SIZE_MAX;
+  }
+  return status;
+}
+
+// Makes the body of shapes, or of a point.
+static bool make_body(CagCall *call, int argument, Body **out, CagValue *held) {
+  const CagValue v = call->values[argument];
+  CagBounds box;
+  CagVec3 p;
+  int dimension;
+  Body *b = cag_hold_array(call, 1, sizeof *b);
+  cag_give_held(call, b);
+  cag_hold_for(call, body_free, b);
+  *held = cag_unset();
+  if (!cag_is_shape(v) && !cag_is_list_of_shapes(call->vm, v)) {
+    if (!cag_arg_vec(call, argument, &p, NULL) ||
+        !cag_geometry_ok(call, cag_parts_add_point(&b->parts, p, call->err)))
+      return false;
+    b->bounds = (CagBounds){p, p};
+    *out = b;
+    return true;
+  }
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  *held = cag_builder_finish(call->vm, builder);
+  b->shapes = CAG_AS_LIST(*held);
+  if (!cag_value_bounds(call, v, &box, &dimension)) return false;
+  b->bounds = box;
+  b->tolerance = CAG_SHAPE_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
+  *out = b;
+  return cag_geometry_ok(call, fill_body(call->vm, b, call->err));
+}
+
+// The body of an argument, which the machine keeps for the next call with the same value.
+static bool find_body(CagCall *call, int argument, Body **out) {
+  const CagValue v = call->values[argument];
+  const bool shapes = cag_is_shape(v) || cag_is_list_of_shapes(call->vm, v);
+  *out = shapes ? cag_memo_find(call, v.as.object, body_free) : NULL;
+  if (*out) return true;
+  const size_t before = call->vm->account.used;
+  CagValue held;
+  if (!make_body(call, argument, out, &held)) return false;
+  if (!shapes) return true;
+  cag_give_held(call, *out);
+  cag_memo_keep(call, v.as.object, held, *out, body_free, before);
+  return true;
+}
+
+// --- Distances ---
+
+static bool is_in_bounds(const CagBounds *b, CagVec3 p) {
+  return p.x >= b->min.x && p.x <= b->max.x && p.y >= b->min.y && p.y <= b->max.y &&
+         p.z >= b->min.z && p.z <= b->max.z;
+}
+
+// Whether a body of `outer` contains a shape of `inner`. The surfaces do not meet, so one point of
+// each shape decides.
+static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool *yes) {
+  const size_t inner_count = inner->shapes ? inner->shapes->length : 1;
+  for (size_t i = 0; !*yes && outer->shapes && i < outer->shapes->length; i++) {
+    const CagValue v = cag_list_get(call->vm, outer->shapes, i);
+    if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
+    for (size_t k = 0; !*yes && k < inner_count; k++) {
+      const size_t first = inner->first ? inner->first[k] : 0;
+      if (first >= inner->parts.n) continue;
+      bool body;
+      const CagVec3 p = inner->parts.items[first].p[0];
+      if (is_in_bounds(&outer->bounds, p) && !cag_shape_holds(call, v, p, yes, &body)) return false;
+    }
+  }
+  return true;
+}
+
+static bool body_distance(CagCall *call, Body *a, Body *b, double *out) {
+  const CagStatus status = cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, out, NULL,
+                                              cag_vm_stop(call->vm), call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  bool within = false;
+  if (*out == 0) return true;
+  if (!encloses(call, a, b, &within)) return false;
+  if (!within && !encloses(call, b, a, &within)) return false;
+  if (within) *out = 0;
+  return true;
+}
+
+// A point, or a ball: the points within a radius of its center.
+static bool read_ball(CagCall *call, int argument, CagVec3 *center, double *radius, bool *is_ball) {
+  const CagValue v = call->values[argument];
+  double scale;
+  *radius = 0;
+  *is_ball = !cag_is_shape(v) && !cag_is_list_of_shapes(call->vm, v);
+  if (*is_ball) return cag_arg_vec(call, argument, center, NULL);
+  if (v.type != CAG_SOLID) return true;
+  const CagSolid *s = CAG_AS_SHAPE(v)->as.solid;
+  *is_ball = s->kind == CAG_SOLID_SPHERE && cag_transform_is_similarity(&s->placement, &scale);
+  if (!*is_ball) return true;
+  *center = cag_transform_point(&s->placement, cag_vec3(0, 0, 0));
+  *radius = s->a * scale;
+  return true;
+}
+
+// The distance from a ball follows from that of its center. *known is false if neither argument is a
+// ball, or if there is nothing that can be near.
+static bool ball_distance(CagCall *call, double *out, bool *known) {
+  *known = false;
+  for (int k = 1; k >= 0; k--) {
+    CagVec3 center;
+    double radius;
+    bool is_ball;
+    const CagTarget *t;
+    CagTargetNearest near;
+    const CagValue other = call->values[1 - k];
+    if (!cag_is_shape(other) && !cag_is_list_of_shapes(call->vm, other)) continue;
+    if (!read_ball(call, k, &center, &radius, &is_ball)) return false;
+    if (!is_ball) continue;
+    if (!cag_arg_near_target(call, 1 - k, &t) ||
+        !cag_target_closest(call, t, center, INFINITY, &near))
+      return false;
+    *known = near.found;
+    *out = fmax(0, near.distance - radius);
+    if (*out <= TOUCHING * (near.distance + radius)) *out = 0;
+    return true;
+  }
+  return true;
+}
+
+bool cag_hulls_distance(CagCall *call, CagValue *result) {
+  double distance = 0;
+  bool known;
+  Body *a, *b;
+  if (!ball_distance(call, &distance, &known)) return false;
+  if (!known &&
+      (!find_body(call, 0, &a) || !find_body(call, 1, &b) || !body_distance(call, a, b, &distance)))
+    return false;
+  *result = cag_number(distance);
+  return true;
+}
