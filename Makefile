@@ -235,11 +235,16 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	@mkdir -p $(@D)
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
+# Embree, too.
+EMBREE_H := $(wildcard /usr/include/embree3/rtcore.h)
+$(BUILD)/tests/bench/rays: tests/bench/rays.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $(if $(EMBREE_H),-DCAG_EMBREE) $< $(BUILD)/libcag.a -o $@ $(if $(EMBREE_H),-lembree3) $(LDLIBS_ALL)
 # Completion with Tab is part of the program, not of the library.
 $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
-bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
+bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include base lang geom interp cli tests tools -name '*.[ch]' | sort)

@@ -35,6 +35,10 @@ typedef struct CagBvh {
   uint32_t root;   // a node or leaf
   uint32_t *order; // the items, in the order of the leaves
   size_t item_count;
+  // What the caller reads for each item of a leaf, in the order of `order`, so that the traversal can
+  // fetch it early; NULL: unknown.
+  const void *items;
+  size_t item_size;
   CagBounds bounds;
   CagVec3 origin; // of the boxes
   double radius;  // half the diagonal of the bounds

@@ -65,19 +65,54 @@ CAG_LANEWISE(CAG_MINUS4, a.f[i] - b.f[i])
 CAG_LANEWISE(CAG_TIMES4, a.f[i] * b.f[i])
 #endif
 
+// The lanes in which a <= b, as bits.
+INLINE unsigned cag_no_larger4(CagFloat4 a, CagFloat4 b) {
+#if defined(__SSE__) && defined(__GNUC__)
+  return (unsigned)__builtin_ia32_movmskps((CagFloat4)(a <= b));
+#else
+  const CagLanes x = {.v = a}, y = {.v = b};
+  unsigned bits = 0;
+  for (int i = 0; i < CAG_BVH_WIDTH; i++) bits |= (unsigned)(x.f[i] <= y.f[i]) << i;
+  return bits;
+#endif
+}
+
+INLINE int cag_lowest_bit(unsigned bits) {
+#if defined(__GNUC__)
+  return __builtin_ctz(bits);
+#else
+  int i = 0;
+  while (!(bits >> i & 1)) i++;
+  return i;
+#endif
+}
+
+// Starts to bring a child into the cache.
+INLINE void cag_bvh_fetch(const CagBvh *b, uint32_t child) {
+#if defined(__GNUC__)
+  const char *at = child & CAG_BVH_LEAF
+                       ? (const char *)b->items + (child & CAG_BVH_FIRST_MASK) * b->item_size
+                       : (const char *)&b->nodes[child];
+  __builtin_prefetch(at);
+  __builtin_prefetch(at + 64);
+#endif
+}
+
 // Pushes the children whose key is at most `most`, so that the one with the least key is on top.
-INLINE void cag_bvh_push(const CagBvhNode *node, const float *key, const float *most,
-                         CagBvhWalk *w) {
+INLINE void cag_bvh_push(const CagBvh *b, const CagBvhNode *node, const CagLanes *key,
+                         const CagLanes *most, CagBvhWalk *w) {
   const int from = w->n;
-  for (int i = 0; i < CAG_BVH_WIDTH; i++) {
-    if (!(key[i] <= most[i])) continue;
+  for (unsigned lanes = cag_no_larger4(key->v, most->v); lanes; lanes &= lanes - 1) {
+    const int i = cag_lowest_bit(lanes);
+    const float k = key->f[i];
     int at = w->n++;
-    for (; at > from && w->key[at - 1] < key[i]; at--) {
+    for (; at > from && w->key[at - 1] < k; at--) {
       w->key[at] = w->key[at - 1];
       w->child[at] = w->child[at - 1];
     }
-    w->key[at] = key[i];
+    w->key[at] = k;
     w->child[at] = node->child[i];
+    cag_bvh_fetch(b, node->child[i]);
   }
 }
 
@@ -108,7 +143,7 @@ INLINE bool cag_bvh_next(const CagBvh *b, const CagBvhRay *ray, CagBvhWalk *w, s
       enter.v = cag_larger4(CAG_TIMES4(CAG_MINUS4(near, o), inverse), enter.v);
       leave.v = cag_smaller4(CAG_TIMES4(CAG_MINUS4(far, o), inverse), leave.v);
     }
-    cag_bvh_push(node, enter.f, leave.f, w);
+    cag_bvh_push(b, node, &enter, &leave, w);
   }
   return false;
 }
@@ -123,7 +158,7 @@ INLINE bool cag_bvh_near(const CagBvh *b, const float p[3], double most2, CagBvh
                          size_t *first, size_t *count) {
   // The largest float that is not less.
   const float limit = most2 < 3e38 ? nextafterf((float)most2, INFINITY) : INFINITY;
-  const float most[CAG_BVH_WIDTH] = {limit, limit, limit, limit};
+  const CagLanes most = {.v = cag_all4(limit)};
   while (w->n > 0) {
     w->n--;
     const uint32_t child = w->child[w->n];
@@ -141,7 +176,7 @@ INLINE bool cag_bvh_near(const CagBvh *b, const float p[3], double most2, CagBvh
       const CagFloat4 off = cag_larger4(cag_larger4(below, above), cag_all4(0));
       square.v = CAG_PLUS4(square.v, CAG_TIMES4(off, off));
     }
-    cag_bvh_push(node, square.f, most, w);
+    cag_bvh_push(b, node, &square, &most, w);
   }
   return false;
 }

@@ -31,6 +31,8 @@ CagStatus cag_ray_mesh_new(const CagMesh *m, CagRayMesh **out, CagError *err) {
   cag_free(boxes);
   if (!status) made->triangles = cag_malloc((m->triangle_count + 1) * sizeof *made->triangles);
   if (!status && !made->triangles) status = cag_fail_memory(err);
+  made->bvh.items = made->triangles;
+  made->bvh.item_size = sizeof *made->triangles;
   for (size_t i = 0; !status && i < m->triangle_count; i++) {
     const uint32_t *t = m->triangles + 3 * (size_t)made->bvh.order[i];
     for (int k = 0; k < 3; k++) made->triangles[i].p[k] = m->positions[t[k]];

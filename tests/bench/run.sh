@@ -1,7 +1,7 @@
 #!/bin/sh
 # Benchmarks compared with those of peers, in one run: `make bench`. These are not tests.
 #
-# Peers are used if they are installed (lua5.4, openscad, SISL by libsisl-dev, Open CASCADE by libocct-modeling-algorithms-dev). Without
+# Peers are used if they are installed (lua5.4, openscad, povray, Embree by libembree-dev, SISL by libsisl-dev, Open CASCADE by libocct-modeling-algorithms-dev). Without
 # them, their column is empty.
 B=${BUILD:-build}
 CAG=$B/cag
@@ -166,3 +166,46 @@ show sphere(10 + r)' > "$tmp/batch/ball.cag"
   alone=$(((e - s) / 50000))
   echo "a row without a renderer takes $row us, its process alone $alone us: $((row - alone)) us beside it, aim < 20000 us"
 fi
+
+echo "--- rays, against Embree"
+"$B/tests/bench/rays" 2> /dev/null | while IFS='|' read -r name ours theirs aim; do
+  if [ "$theirs" = - ]; then report "$name" "$ours" "" "" "$aim"; else report "$name" "$ours" "Embree" "$theirs" "$aim"; fi
+done
+# seconds_a_call FILE BODY: by a script that makes 200,000 calls, minus the same without them.
+cat > "$tmp/calls.cag" <<'END'
+param which = 0
+ball = sphere(10)
+cut = box([10, 10, 10]) - sphere(5)
+fine = tessellate(torus(10, 3), tolerance: 0.0012)
+apart = translate(sphere(1), [5, 0, 0])
+n = 200000
+print if which == 0 then sum([for i in 0..n: if i*1e-4 > 3 then 1 else 0])
+else if which == 1 then sum([for i in 0..n: if contains(ball, [i*1e-4, 1, 2]) then 1 else 0])
+else if which == 2 then sum([for i in 0..n: if contains(cut, [i*1e-4, 1, 2]) then 1 else 0])
+else if which == 3 then sum([for i in 0..n: if contains(fine, [i*1e-4, 1, 2]) then 1 else 0])
+else if which == 4 then sum([for i in 0..n: if visible(cut, [20, i*1e-4, 0], [-20, 0, 1]) then 1 else 0])
+else if which == 5 then sum([for i in 0..n: if cast(fine, [20, i*1e-4, 0], [-1, 0, 0.1]) == none then 0 else 1])
+else if which == 6 then sum([for i in 0..n: distance(fine, [i*1e-4, 1, 12])])
+else sum([for i in 0..n/100: distance(ball, translate(apart, [12 + i*1e-4, 0, 0]))])
+END
+nothing=$(best "$CAG" run "$tmp/calls.cag" -D which=0)
+call() {
+  t=$(best "$CAG" run "$tmp/calls.cag" -D "which=$1")
+  awk "BEGIN { printf \"%-44s %9.3f us%49s   aim %s\n\", \"$2\", ($t - $nothing) * 1e6 / $3, \"\", \"$4\" }"
+}
+call 1 "contains of a sphere" 200000 "0.5 us"
+call 2 "contains of a box minus a sphere" 200000 "2 us"
+call 3 "contains of a mesh of 10^5 triangles" 200000 "2 us (with its making)"
+call 4 "visible past a set operation" 200000 "2 us"
+call 5 "cast at a mesh of 10^5 triangles" 200000 "3.3 us (with its making)"
+call 6 "distance of a point and such a mesh" 200000 "20 us"
+call 7 "distance of two spheres" 2000 "500 us"
+echo "--- previews, against POV-Ray"
+"$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --quality draft > /dev/null
+ours=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --quality draft)
+theirs=
+if peer povray; then theirs=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --quality draft --engine povray); fi
+report "vase, draft, 960x540" "$ours" "POV-Ray" "$theirs" "<= 0.1"
+ours=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --engine preview)
+if peer povray; then theirs=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --engine povray); fi
+report "vase, 16 samples of light, 960x540" "$ours" "POV-Ray" "$theirs" "<= 0.25"
