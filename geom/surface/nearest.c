@@ -17,6 +17,7 @@
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
 #include "geom/surface/nearest_core.h"
+#include "geom/surface/nearest_revolved.h"
 #include "geom/surface/quadric_nearest.h"
 #include "geom/surface/trimmed.h"
 
@@ -444,7 +445,8 @@ static CagStatus try_untrimmed(Search *f, bool *done, CagError *err) {
   CagSurfaceNearest found;
   *done = cag_surface_quadric_closest(f->s, f->p, &found);
   CagStatus status = CAG_OK;
-  if (!*done && f->region) {
+  if (!*done) status = cag_surface_revolved_closest(f->s, f->p, &found, done, err);
+  if (!status && !*done && f->region) {
     status = cag_surface_closest(f->s, f->p, &found, err);
     *done = true;
   }

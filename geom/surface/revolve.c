@@ -11,7 +11,11 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "geom/curve/family.h"
 #include "geom/surface/family.h"
+
+// A profile that leaves a plane with the axis by less than this fraction of the size is in it.
+#define ON_MERIDIAN 1e-13
 
 typedef struct Revolution {
   CagSurface base;
@@ -23,6 +27,11 @@ typedef struct Revolution {
   // single point there, and its normal is reversed.
   double *meets;
   size_t meet_count;
+  // Whether the profile is in a plane with the axis; the unit direction from the axis to its farthest
+  // point, and whether all of it is on this side.
+  bool meridian;
+  CagVec3 radial;
+  bool one_sided;
 } Revolution;
 
 static const CagSurfaceKind revolution_kind;
@@ -254,6 +263,27 @@ static void revolution_destroy(CagSurface *s) {
   cag_free(r->meets);
 }
 
+// Finds out whether the profile is in one plane with the axis, from points that determine this.
+static CagStatus find_meridian(Revolution *r, double size, CagError *err) {
+  CagVec3 *p, axial, radial;
+  size_t n;
+  CagStatus status = cag_curve_gather(r->profile, &p, &n, err);
+  if (status) return status;
+  double farthest = 0, off = 0;
+  for (size_t i = 0; i < n; i++) {
+    split_point(r, p[i], &axial, &radial);
+    if (!(cag_norm(radial) > farthest)) continue;
+    farthest = cag_norm(radial);
+    r->radial = cag_scaled(radial, 1 / farthest);
+  }
+  const CagVec3 normal = cag_cross(r->axis, r->radial);
+  for (size_t i = 0; i < n; i++) off = fmax(off, fabs(cag_dot(normal, cag_sub(p[i], r->through))));
+  r->meridian = farthest > 0 && off <= ON_MERIDIAN * size;
+  r->one_sided = r->meet_count == 0;
+  cag_free(p);
+  return CAG_OK;
+}
+
 static const CagSurfaceKind revolution_kind = {
     .name = "revolution",
     .eval = revolution_eval,
@@ -305,6 +335,7 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
   double size = cag_norm(cag_sub(box.max, box.min)) + cag_norm(cag_sub(box.min, through));
   r->on_axis = CAG_SURFACE_SAME * size;
   status = find_all_meets(r, err);
+  if (!status) status = find_meridian(r, size, err);
   if (status) {
     cag_surface_release(s);
     return status;
@@ -312,6 +343,14 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
   cag_surface_judge(s);
   *out = s;
   return CAG_OK;
+}
+
+bool cag_surface_meridian_view(const CagSurface *s, CagVec3 *radial, bool *one_sided) {
+  const Revolution *r = (const Revolution *)s;
+  if (s->kind != &revolution_kind || !r->meridian) return false;
+  *radial = r->radial;
+  *one_sided = r->one_sided;
+  return true;
 }
 
 bool cag_surface_revolution_view(const CagSurface *s, const CagCurve **profile, CagVec3 *axis,

@@ -112,6 +112,9 @@ bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out);
 // Profile, axis, and angles of a revolution, for exporters with native lathes.
 bool cag_surface_revolution_view(const CagSurface *s, const CagCurve **profile, CagVec3 *axis,
                                  CagVec3 *through, double *from, double *to);
+// Of a surface of revolution whose profile is in a plane with the axis: a unit direction from the axis
+// in this plane, and whether the profile is on this side of the axis only. False for others.
+bool cag_surface_meridian_view(const CagSurface *s, CagVec3 *radial, bool *one_sided);
 // Section and direction of an extrusion without twist or scale; false: another surface.
 bool cag_surface_extrusion_view(const CagSurface *s, const CagCurve **section, CagVec3 *along);
 // The parts of a placed surface: S(u, v) is the image of `inner` under `map`, with v reversed if it
