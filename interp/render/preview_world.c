@@ -6,6 +6,7 @@
 #include "base/stop.h"
 #include "geom/ray/bvh_walk.h"
 #include "geom/solid/csg.h"
+#include "interp/render/preview_pattern.h"
 #include "interp/scene/color_scale.h"
 
 // Set operations with more operands than this are met as meshes.
@@ -395,7 +396,8 @@ CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCr
 
 CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit) {
   if (hit->scale) return cag_color_scale_at(hit->scale, hit->scale_value);
-  return w->surfaces[hit->material].color;
+  const CagPreviewSurface *s = &w->surfaces[hit->material];
+  return *s->material->texture ? cag_preview_pattern(s->material, hit->point) : s->color;
 }
 
 CagColor cag_preview_sky(const CagScene *s, CagVec3 direction) {
