@@ -133,7 +133,7 @@ static void sets_of_round_shapes_have_the_distances_of_their_centers_and_axes(vo
     }
     const double expected = distance_of(&a, &b);
     met += expected == 0;
-    const Set *from = round % 2 ? &b : &a, *to = round % 2 ? &a : &b;
+    Set *from = round % 2 ? &b : &a, *to = round % 2 ? &a : &b;
     double out, least, most, nearest = INFINITY;
     CagVec3 foot;
     OK(cag_parts_distance(&from->parts, &to->parts, 500, &out, &foot, NULL, &err));

@@ -238,7 +238,7 @@ static void curves_and_surfaces_are_as_far_apart_as_on_grids(void **state) {
     }
     const double least = distance_by_grids(&s[0], &s[1], 16);
     for (int turn = 0; turn < 2; turn++) {
-      const Shape *a = &s[turn], *b = &s[1 - turn];
+      Shape *a = &s[turn], *b = &s[1 - turn];
       double out;
       CagVec3 foot;
       OK(cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
