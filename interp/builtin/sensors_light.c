@@ -289,7 +289,8 @@ static CagStatus brightness_along(const Glow *g, const CagRay *ray, CagCrossings
                                   CagError *err) {
   CagTargetHit hit;
   bool met;
-  CagStatus status = cag_target_first(g->target, ray, work, &hit, &met, err);
+  CagStatus status = cag_stop_check(err);
+  if (!status) status = cag_target_first(g->target, ray, work, &hit, &met, err);
   *out = 0;
   if (status || !met) return status;
   const CagValue v = cag_target_material(g->vm, g->target, &hit);
@@ -311,7 +312,6 @@ static CagStatus glow_row(const Glow *g, size_t y, CagCrossings *work, CagError 
   CagStatus status = CAG_OK;
   for (size_t x = 0; !status && x < g->image->width; x++) {
     double sum = 0, one = 0;
-    status = cag_stop_check(err);
     for (size_t i = 0; !status && i < g->grid * g->grid; i++) {
       const double pixel[2] = {(double)x + ((double)(i % g->grid) + 0.5) / n,
                                (double)y + ((double)(i / g->grid) + 0.5) / n};
