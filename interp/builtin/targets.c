@@ -1,8 +1,12 @@
 #include "interp/builtin/targets.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "base/memory.h"
 #include "geom/ray/bvh_walk.h"
 #include "geom/ray/nearest.h"
+#include "geom/solid/csg.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
@@ -168,14 +172,45 @@ static bool make_target(CagCall *call, CagValue list, bool for_rays, CagTarget *
   return true;
 }
 
-// Collects shapes from whatever a script can show.
-static bool collect_shown(CagCall *call, CagValue v, CagBuilder *into) {
+// A ground is a slab below its level for finite sizes, as in pictures, and else a half space.
+#define SLAB 1e-3
+
+static CagStatus make_ground(double z, double size, CagSolid **out, CagError *err) {
+  const CagPlane level = {{0, 0, z}, {0, 0, 1}};
+  if (isinf(size)) return cag_solid_half_space(&level, out, err);
+  CagSolid *box = NULL;
+  const CagTransform shift = cag_translate(cag_vec3(-size / 2, -size / 2, z - SLAB * size));
+  CagStatus status = cag_solid_box(cag_vec3(size, size, SLAB * size), false, &box, err);
+  if (!status) status = cag_solid_transform(box, &shift, out, err);
+  cag_solid_release(box);
+  return status;
+}
+
+static bool ground_solid(CagCall *call, CagValue v, CagValue *out) {
+  const CagRecord *fields = CAG_AS_SCENE(v)->fields;
+  const CagValue material = cag_record_get(fields, "material"),
+                 name = cag_record_get(fields, "name");
+  CagSolid *s = NULL;
+  const CagStatus status = make_ground(cag_record_get(fields, "z").as.number,
+                                       cag_record_get(fields, "size").as.number, &s, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  *out = cag_solid_value(call->vm, s);
+  CagShape *shape = CAG_AS_SHAPE(*out);
+  if (material.type == CAG_RECORD) shape->material = CAG_AS_RECORD(material);
+  shape->name = name.type == CAG_TEXT ? CAG_AS_TEXT(name) : cag_intern(call->vm, "ground", 6);
+  return true;
+}
+
+// Collects shapes from whatever a script can show. Rays also meet grounds.
+static bool collect_shown(CagCall *call, CagValue v, bool for_rays, CagBuilder *into) {
+  if (for_rays && v.type == CAG_SETTING && !strcmp(CAG_AS_SCENE(v)->kind, "ground"))
+    return ground_solid(call, v, &v) && cag_builder_add(call->vm, into, v);
   if (v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING) return true;
   if (v.type != CAG_LIST) return cag_shapes_collect(call, v, into);
   if (!cag_may_go_deeper(call->vm, "collected")) return false;
   const CagList *list = CAG_AS_LIST(v);
   for (size_t i = 0; i < list->length; i++)
-    if (!collect_shown(call, cag_list_get(call->vm, list, i), into)) return false;
+    if (!collect_shown(call, cag_list_get(call->vm, list, i), for_rays, into)) return false;
   return true;
 }
 
@@ -188,7 +223,7 @@ static bool find_target(CagCall *call, int argument, bool for_rays, const CagTar
   if (!t) {
     const size_t before = call->vm->account.used;
     CagBuilder *shapes = cag_builder_new(call->vm);
-    if (!collect_shown(call, v, shapes)) return false;
+    if (!collect_shown(call, v, for_rays, shapes)) return false;
     const CagValue list = cag_builder_finish(call->vm, shapes);
     if (!make_target(call, list, for_rays, &t)) return false;
     cag_memo_keep(call, v.as.object, list, t, release, before);
