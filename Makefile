@@ -3,6 +3,7 @@
 #   make             program and libraries          make test            all suites, closing with `N passed, N failed, N skipped`
 #   make test-sanitize  under ASan and UBSan        make bench           benchmarks, with comparisons
 #   make test-threads   code with threads, under the thread sanitizer
+#   make silhouettes    compares the outlines that the preview and POV-Ray draw
 #   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
 #   make format      clang-format everything        make check-format / check-layers / analyze / tidy
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
@@ -65,7 +66,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
 CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench format check-format check-layers analyze tidy install deb editors
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -246,6 +247,8 @@ $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays
 	BUILD=$(BUILD) sh tests/bench/run.sh
+silhouettes: all
+	python3 tests/bench/silhouettes.py $(BUILD)/cag
 
 FORMATTED = $(shell find include base lang geom interp cli tests tools -name '*.[ch]' | sort)
 format:
