@@ -90,6 +90,7 @@ INLINE int cag_lowest_bit(unsigned bits) {
 // Starts to bring a child into the cache.
 INLINE void cag_bvh_fetch(const CagBvh *b, uint32_t child) {
 #if defined(__GNUC__)
+  if (child & CAG_BVH_LEAF && !b->items) return;
   const char *at = child & CAG_BVH_LEAF
                        ? (const char *)b->items + (child & CAG_BVH_FIRST_MASK) * b->item_size
                        : (const char *)&b->nodes[child];

@@ -326,6 +326,7 @@ static CagStatus meet_parts(const CagCaster *c, const CagRay *line, bool first, 
 }
 
 static void sort_span(CagCrossings *work, size_t from) {
+  if (work->n == from) return;
   CagCrossings part = {work->items + from, work->n - from, work->n - from};
   cag_crossings_sort(&part);
 }

@@ -287,7 +287,7 @@ static void what_is_wrong_with_a_gltf_is_told(void **state) {
   Bytes data = gltf_data();
   data.at[50] = 9;
   Bytes b = glb(plain_gltf, &data);
-  assert_fails("a.glb", b, "mesh-file-index", "vertex 9, of 4");
+  assert_fails("a.glb", b, "mesh-file-index", "vertex 9, but there are 4");
   b.n -= 4;
   assert_fails("a.glb", b, "mesh-file-truncated", "bytes of the");
   free(b.at);

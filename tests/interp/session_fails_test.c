@@ -84,6 +84,7 @@ static void regions_up_to_the_edges_are_good(void **state) {
     CagRenderOptions o;
     cag_render_options_init(&o);
     o.quality = qualities[i % 4];
+    o.engine = "povray";
     o.region = regions[i];
     const char *to = paths[i % 4];
     is_refused(s, cag_session_render(s, &o, to), CAG_STATUS_RENDERER, "renderer");
@@ -131,13 +132,15 @@ static void formats_that_a_session_cannot_write(void **state) {
   } cases[] = {{"/dev/null/a", NULL, NULL},
                {"/dev/null/a.doc", NULL, NULL},
                {"/dev/null/a.stl", "doc", NULL},
-               {"/dev/null/a.png", NULL, NULL},
                {"/dev/null/a.pov", NULL, "always"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     CagSession *s = run(cases[i].pov_csg, "show sphere(1)\n", CAG_STATUS_OK);
     is_refused(s, cag_session_export(s, cases[i].path, cases[i].format), CAG_STATUS_USAGE,
                "format-unknown");
   }
+  // Images have formats of their own, but a sphere is not an image.
+  CagSession *s = run(NULL, "show sphere(1)\n", CAG_STATUS_OK);
+  is_refused(s, cag_session_export(s, "/dev/null/a.png", NULL), CAG_STATUS_SCRIPT, "no-image-shown");
 }
 
 static void statuses_tell_what_kind_of_failure_it_was(void **state) {

@@ -114,9 +114,9 @@ static const Line LINES[] = {
      "sphere_surface"},
     // named arguments
     {NULL, "plate(", "thickness: |width: "},
-    {NULL, "plate(1, th", "then|thicken|thickness: "},
-    {NULL, "plate(1, `a` + th", "then|thicken|thickness: "},
-    {NULL, "plate(len([1, 2]), th", "then|thicken|thickness: "},
+    {NULL, "plate(1, th", "then|thicken|thickness: |threshold"},
+    {NULL, "plate(1, `a` + th", "then|thicken|thickness: |threshold"},
+    {NULL, "plate(len([1, 2]), th", "then|thicken|thickness: |threshold"},
     {NULL, "bracket(leg", "leg_one: |leg_three: |leg_two: "},
     {NULL, "label(text_", "text_left: |text_right: "},
     {NULL, "raw(raw_", "raw_one: |raw_three: "},
