@@ -23,8 +23,8 @@ awk '/^```csv/ { on = 1; next } /^```/ { on = 0 } on' "$root/docs/batch.md" | se
 printf '[{"script": "vase.cag", "output": "json/low.png", "size": "32x24", "quality": "draft", "color": "\\"teal\\""}]\n' > jobs.json
 # The cup is the block of the README that has the param.
 awk '/^```/ { if (block ~ /^\/\/ cup.cag/) printf "%s", block; block = ""; next } { block = block $0 "\n" }' "$root/README.md" > cup.cag
-"$CAG" render film.cag -o before.exr --size 32x24 --quality draft
-"$CAG" render film.cag -o after.exr --size 32x24 --quality draft
+"$CAG" render film.cag -o before.exr --size 32x24 --quality draft --passes color,object
+"$CAG" render film.cag -o after.exr --size 32x24 --quality draft --passes color,object
 
 shortened() {
   sed 's/  *#.*//; s/--size [0-9x]*//; s/--quality [a-z]*//; s/0\.\.47 *$/0..1/; s/24\.\.47/24..25/
