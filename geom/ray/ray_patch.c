@@ -321,12 +321,17 @@ static CagStatus refine_root(const CagRayPatch *s, const CagRayCell *cell, const
   return CAG_OK;
 }
 
+static bool is_in_part(const CagRayCell *part, const Root *r) {
+  for (int k = 0; k < 2; k++) {
+    const double slack = EDGE_SLACK * (part->to[k] - part->from[k]);
+    if (r->at[k] < part->from[k] - slack || r->at[k] > part->to[k] + slack) return false;
+  }
+  return true;
+}
+
 // Whether a root is in its cell and in the outline. Cells that meet in an edge both have it.
 static bool is_in_cell(const CagRayPatch *s, const CagRayCell *cell, const Root *r) {
-  for (int k = 0; k < 2; k++) {
-    const double slack = EDGE_SLACK * (cell->to[k] - cell->from[k]);
-    if (r->at[k] < cell->from[k] - slack || r->at[k] > cell->to[k] + slack) return false;
-  }
+  if (!is_in_part(cell, r)) return false;
   if (!s->outline) return true;
   const double range = s->outline->high - s->outline->low;
   return cag_ray_outline_holds(s->outline, r->at[0], r->at[1], EDGE_SLACK * range);
@@ -353,16 +358,22 @@ static CagStatus add_root(const CagRayPatch *s, const Line *line, const Root *r,
   return CAG_OK;
 }
 
-// Where the search starts, as fractions of a cell: its center alone, or all.
-static const double STARTS[][2] = {{0.5, 0.5}, {0.2, 0.2}, {0.8, 0.2}, {0.2, 0.8}, {0.8, 0.8}};
-enum { START_COUNT = sizeof STARTS / sizeof *STARTS };
+// The roots of a ray in a cell. Where the surface bends little, a ray meets it in a few points.
+enum { ROOTS_MAX = 32 };
+typedef struct CellRoots {
+  Root found[ROOTS_MAX];
+  int n;
+} CellRoots;
 
-static bool is_known(const Root *found, int n, const Root *r, const CagRayCell *cell) {
+static bool differ(const Root *a, const Root *b, const CagRayCell *cell) {
   const double same = 1e-6;
-  for (int i = 0; i < n; i++)
-    if (fabs(found[i].at[0] - r->at[0]) <= same * (cell->to[0] - cell->from[0]) &&
-        fabs(found[i].at[1] - r->at[1]) <= same * (cell->to[1] - cell->from[1]))
-      return true;
+  return fabs(a->at[0] - b->at[0]) > same * (cell->to[0] - cell->from[0]) ||
+         fabs(a->at[1] - b->at[1]) > same * (cell->to[1] - cell->from[1]);
+}
+
+static bool is_known(const CellRoots *roots, const Root *r, const CagRayCell *cell) {
+  for (int i = 0; i < roots->n; i++)
+    if (!differ(&roots->found[i], r, cell)) return true;
   return false;
 }
 
@@ -393,46 +404,130 @@ static CagStatus partner_of(const CagRayPatch *s, const Line *line, const Root *
   return CAG_OK;
 }
 
-// The roots of a ray in a cell.
-typedef struct CellRoots {
-  Root found[2 * START_COUNT];
-  int n;
-} CellRoots;
+// What a search in a part of a cell needs.
+typedef struct CellSearch {
+  const CagRayPatch *patch;
+  const CagRayCell *cell;
+  const Line *line;
+  CellRoots roots;
+  CagCrossings *out;
+} CellSearch;
 
-// Searches from a start. *again is whether another start may lead elsewhere.
-static CagStatus search_cell(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
-                             Root start, CellRoots *roots, bool *again, CagCrossings *out,
+// Searches from a start, in a part of the cell and a little around it.
+static CagStatus search_from(CellSearch *c, const CagRayCell *part, Root *r, Outcome *outcome,
                              CagError *err) {
-  Outcome outcome;
-  CagStatus status = refine_root(s, cell, line, &start, &outcome, err);
-  *again = outcome == FAILED;
-  if (status || outcome != FOUND || !is_in_cell(s, cell, &start) ||
-      is_known(roots->found, roots->n, &start, cell))
+  CagStatus status = refine_root(c->patch, part, c->line, r, outcome, err);
+  if (status || *outcome != FOUND || !is_in_cell(c->patch, c->cell, r) ||
+      c->roots.n == ROOTS_MAX || is_known(&c->roots, r, c->cell))
     return status;
-  roots->found[roots->n++] = start;
-  return add_root(s, line, &start, out, err);
+  c->roots.found[c->roots.n++] = *r;
+  return add_root(c->patch, c->line, r, c->out, err);
+}
+
+static Root middle_of(const CagRayCell *part) {
+  Root r = {0};
+  for (int k = 0; k < 2; k++) r.at[k] = part->from[k] + (part->to[k] - part->from[k]) / 2;
+  return r;
+}
+
+// A grid of 3 x 3 points of a part of a cell, as the ray sees them: how far they are from it in two
+// directions, and the cosine of the angle of the normal with it, times the lengths of the partials.
+enum { GRID = 3 };
+typedef struct Seen {
+  double off[2][GRID][GRID], slope[GRID][GRID];
+} Seen;
+
+static CagStatus see_part(const CellSearch *c, const CagRayCell *part, Seen *out, CagError *err) {
+  for (int i = 0; i < GRID; i++)
+    for (int j = 0; j < GRID; j++) {
+      CagVec3 d[4];
+      const double u = i == 2 ? part->to[0] : part->from[0] + i * (part->to[0] - part->from[0]) / 2;
+      const double v = j == 2 ? part->to[1] : part->from[1] + j * (part->to[1] - part->from[1]) / 2;
+      CagStatus status =
+          cag_surface_eval(c->patch->surface, u, v, 1, i == 2 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                           j == 2 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
+      if (status) return status;
+      const CagVec3 off = cag_sub(d[0], c->line->ray->origin);
+      out->off[0][i][j] = cag_dot(off, c->line->a);
+      out->off[1][i][j] = cag_dot(off, c->line->b);
+      out->slope[i][j] = cag_dot(cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]),
+                                 c->line->ray->direction);
+    }
+  return CAG_OK;
+}
+
+// How far a function leaves the range of its values on the grid. Its second differences are four
+// times as large as its distances from the chords of a quarter.
+static double bend_of_grid(const double f[GRID][GRID]) {
+  double bend = 0;
+  for (int a = 0; a < GRID; a++)
+    bend = fmax(bend, fmax(fabs(f[a][0] - 2 * f[a][1] + f[a][2]),
+                           fabs(f[0][a] - 2 * f[1][a] + f[2][a])));
+  return bend / 2;
+}
+
+// Whether a function may be 0 in the square of points whose first corner is [i][j].
+static bool may_vanish(const double f[GRID][GRID], int i, int j, int side, double slack) {
+  double low = INFINITY, high = -INFINITY;
+  for (int a = i; a <= i + side; a++)
+    for (int b = j; b <= j + side; b++) {
+      low = fmin(low, f[a][b]);
+      high = fmax(high, f[a][b]);
+    }
+  slack += bend_of_grid(f);
+  return low <= slack && high >= -slack;
+}
+
+// Finds the crossings of a part that may have several: divides it until each quarter that the ray may
+// pass through has one, or two of which one leads to the other.
+enum { DIVISIONS = 6 };
+static CagStatus divide_part(CellSearch *c, const CagRayCell *part, int depth, CagError *err) {
+  Seen seen;
+  CagStatus status = see_part(c, part, &seen, err);
+  // Where the slope has a sign, there is one crossing at most.
+  const bool one = !status && !may_vanish(seen.slope, 0, 0, 2, 0);
+  for (int k = 0; !status && k < 4; k++) {
+    const int at[2] = {k & 1, k >> 1};
+    const double slack = NEAR_RAY * c->patch->size;
+    if (!may_vanish(seen.off[0], at[0], at[1], 1, slack) ||
+        !may_vanish(seen.off[1], at[0], at[1], 1, slack))
+      continue;
+    CagRayCell quarter = *part;
+    const Root middle = middle_of(part);
+    for (int axis = 0; axis < 2; axis++)
+      if (at[axis]) quarter.from[axis] = middle.at[axis];
+      else quarter.to[axis] = middle.at[axis];
+    Root root = middle_of(&quarter), other;
+    Outcome outcome;
+    bool bends;
+    status = search_from(c, &quarter, &root, &outcome, err);
+    if (status) break;
+    if (outcome == FOUND && is_in_part(&quarter, &root)) {
+      if (one) continue;
+      other = root;
+      status = partner_of(c->patch, c->line, &root, &other, &bends, err);
+      if (!status && bends) status = search_from(c, c->cell, &other, &outcome, err);
+      if (status) break;
+      if (depth >= 2 && bends && outcome == FOUND && is_in_part(&quarter, &other) &&
+          differ(&root, &other, c->cell))
+        continue;
+    }
+    if (depth < DIVISIONS) status = divide_part(c, &quarter, depth + 1, err);
+  }
+  return status;
 }
 
 static CagStatus meet_cell(const CagRayPatch *s, const CagRayCell *cell, const Line *line,
                            CagCrossings *out, CagError *err) {
-  const bool single = fabs(cag_dot(cell->axis, line->ray->direction)) > cell->sine;
-  CellRoots roots = {.n = 0};
-  for (int k = 0; k < START_COUNT; k++) {
-    Root r;
-    bool again;
-    for (int j = 0; j < 2; j++)
-      r.at[j] = cell->from[j] + STARTS[k][j] * (cell->to[j] - cell->from[j]);
-    const int known = roots.n;
-    CagStatus status = search_cell(s, cell, line, r, &roots, &again, out, err);
-    if (status) return status;
-    if (single && !again) return CAG_OK;
-    if (single || roots.n == known) continue;
-    bool bends;
-    status = partner_of(s, line, &roots.found[known], &r, &bends, err);
-    if (!status && bends) status = search_cell(s, cell, line, r, &roots, &again, out, err);
-    if (status) return status;
+  CellSearch c = {.patch = s, .cell = cell, .line = line, .out = out};
+  c.roots.n = 0;
+  if (fabs(cag_dot(cell->axis, line->ray->direction)) > cell->sine) {
+    Outcome outcome;
+    Root r = middle_of(cell);
+    CagStatus status = search_from(&c, cell, &r, &outcome, err);
+    if (status || outcome != FAILED) return status;
   }
-  return CAG_OK;
+  return divide_part(&c, cell, 0, err);
 }
 
 CagStatus cag_ray_patch_meet(const CagRayPatch *p, const CagRay *ray, bool first, CagCrossings *out,

@@ -150,7 +150,7 @@ while [ ! -e $PWD/go ]; do sleep 0.2; done
 exec /usr/bin/povray "\$@"
 END
 chmod +x waiting/povray
-printf 'script,output,size,quality\nball.cag,w1.stl,,\nball.cag,w2.png,32x24,draft\nball.cag,w3.png,32x24,draft\n' > wait.csv
+printf 'script,output,size,quality\nball.cag,w1.stl,,\nball.cag,w2.png,32x24,normal\nball.cag,w3.png,32x24,normal\n' > wait.csv
 runs_job() { squeue -h -t running -o %K 2> /dev/null | grep -q .; }
 begin_waiting() {
   (PATH=$PWD/waiting:$PATH exec "$CAG" batch wait.csv --engine-queue slurm > out 2> err) &

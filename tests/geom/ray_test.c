@@ -195,7 +195,7 @@ static void rays_meet_the_points_that_they_aim_at(void **state) {
   for (size_t f = 0; f < s->face_count; f++) {
     const CagSurface *face = s->faces[f];
     if (cag_surface_planar_view(face, NULL, NULL)) continue;
-    for (int k = 0; k < 1000; k++) {
+    for (int k = 0; k < 30000; k++) {
       // Parameters on the seam, on the borders, and anywhere.
       const double u = k % 3 == 0 ? face->u0 : face->u0 + (face->u1 - face->u0) * uniform(0, 1);
       const double v = k % 3 == 1 ? face->v0 : face->v0 + (face->v1 - face->v0) * uniform(0, 1);
@@ -206,8 +206,11 @@ static void rays_meet_the_points_that_they_aim_at(void **state) {
       if (list.n % 2) fail_msg("%zu crossings at u %g, v %g", list.n, u, v);
       for (size_t i = 0; i < list.n; i++)
         found = found || cag_norm(cag_sub(cag_ray_point(&ray, list.items[i].t), at)) < 1e-6;
-      // On a border, the ray may graze the solid.
-      if (!found && k % 3 != 1) fail_msg("the point at u %g, v %g is not met", u, v);
+      CagVec3 normal;
+      MUST(cag_surface_normal(face, u, v, &normal, err));
+      // On a border, and where it is tangent, the ray may graze the solid.
+      if (!found && k % 3 != 1 && fabs(cag_dot(normal, ray.direction)) > 1e-4)
+        fail_msg("the point at u %g, v %g is not met", u, v);
     }
   }
   cag_crossings_free(&list);
