@@ -417,8 +417,8 @@ typedef struct CellSearch {
 static CagStatus search_from(CellSearch *c, const CagRayCell *part, Root *r, Outcome *outcome,
                              CagError *err) {
   CagStatus status = refine_root(c->patch, part, c->line, r, outcome, err);
-  if (status || *outcome != FOUND || !is_in_cell(c->patch, c->cell, r) ||
-      c->roots.n == ROOTS_MAX || is_known(&c->roots, r, c->cell))
+  if (status || *outcome != FOUND || !is_in_cell(c->patch, c->cell, r) || c->roots.n == ROOTS_MAX ||
+      is_known(&c->roots, r, c->cell))
     return status;
   c->roots.found[c->roots.n++] = *r;
   return add_root(c->patch, c->line, r, c->out, err);
@@ -461,8 +461,8 @@ static CagStatus see_part(const CellSearch *c, const CagRayCell *part, Seen *out
 static double bend_of_grid(const double f[GRID][GRID]) {
   double bend = 0;
   for (int a = 0; a < GRID; a++)
-    bend = fmax(bend, fmax(fabs(f[a][0] - 2 * f[a][1] + f[a][2]),
-                           fabs(f[0][a] - 2 * f[1][a] + f[2][a])));
+    bend = fmax(bend,
+                fmax(fabs(f[a][0] - 2 * f[a][1] + f[a][2]), fabs(f[0][a] - 2 * f[1][a] + f[2][a])));
   return bend / 2;
 }
 

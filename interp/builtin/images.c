@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/image/arithmetic.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
@@ -262,7 +263,9 @@ bool cag_images_pixels(CagCall *call, const struct cag_images_pixels *a, CagValu
     CagBuilder *row = cag_builder_new(call->vm);
     for (size_t x = 0; x < r->width; x++)
       if (!cag_builder_add(call->vm, row, cag_pixel_value(call->vm, r, x, y))) return false;
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row)) ||
+        !cag_geometry_ok(call, cag_stop_check(call->err)))
+      return false;
   }
   *result = cag_builder_finish(call->vm, rows);
   return true;

@@ -385,8 +385,8 @@ static bool find_engine(CagSession *s, const CagRenderOptions *options, CagPovQu
                         Engine *out) {
   const char *name = options->engine;
   if (!name || !strcmp(name, "auto")) {
-    char reason[256];
-    *out = quality == CAG_POV_DRAFT || !cag_find_povray(reason, sizeof reason) ? PREVIEW : POVRAY;
+    CagError missing;
+    *out = quality == CAG_POV_DRAFT || !cag_povray_find(NULL, 0, NULL, &missing) ? PREVIEW : POVRAY;
     return true;
   }
   *out = !strcmp(name, "povray") ? POVRAY : PREVIEW;

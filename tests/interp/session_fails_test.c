@@ -140,7 +140,8 @@ static void formats_that_a_session_cannot_write(void **state) {
   }
   // Images have formats of their own, but a sphere is not an image.
   CagSession *s = run(NULL, "show sphere(1)\n", CAG_STATUS_OK);
-  is_refused(s, cag_session_export(s, "/dev/null/a.png", NULL), CAG_STATUS_SCRIPT, "no-image-shown");
+  is_refused(s, cag_session_export(s, "/dev/null/a.png", NULL), CAG_STATUS_SCRIPT,
+             "no-image-shown");
 }
 
 static void statuses_tell_what_kind_of_failure_it_was(void **state) {
