@@ -2,9 +2,10 @@
 
     python3 tests/bench/silhouettes.py build/cag [SCRIPT...]
 
-Both draw the shapes without ground and sky, with a square of 4 x 4 rays for each pixel. The table shows the area that
-the shapes cover in either picture, in pixels; the area that they cover in only one; and the overlap, which is the area
-that they cover in both divided by that in either. Lens and motion blur are not part of a silhouette.
+Both draw the shapes, as far as the ground does not hide them, with a square of 4 x 4 rays for each pixel. The table
+shows the area that the shapes cover in either picture, in pixels; the area that they cover in only one; and the
+overlap, which is the area that they cover in both divided by that in either. Lens and motion blur are not part of a
+silhouette.
 """
 import glob
 import json
@@ -98,10 +99,11 @@ def povray_coverage(path):
 
 
 def bare_scene(text):
-    """The scene without sky and ground, and with opaque shapes; and the names of the grounds."""
+    """The scene without sky, with white shapes and black grounds; and the names of the grounds."""
     grounds = re.findall(r"^// (.+): ground\b.*\n#declare (\w+) =", text, re.M)
     for _, declared in grounds:
-        text = re.sub(r"object \{\n  %s\n(?:  .*\n)*\}\n" % declared, "", text)
+        text = re.sub(r"(object \{\n  %s\n(?:  .*\n)*?)  material \{ M_\w+ \}" % declared, r"\1  pigment { rgb 0 }",
+                      text)
     text = re.sub(r"^sky_sphere \{.*\n(?: .*\n)*\}\n", "", text, flags=re.M)
     text = re.sub(r"^background .*\n", "", text, flags=re.M)
     text = re.sub(r"material \{ M_\w+ \}", "pigment { rgb 1 }", text)
