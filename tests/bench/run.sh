@@ -200,6 +200,17 @@ call 4 "visible past a set operation" 200000 "2 us"
 call 5 "cast at a mesh of 10^5 triangles" 200000 "3.3 us (with its making)"
 call 6 "distance of a point and such a mesh" 200000 "20 us"
 call 7 "distance of two spheres" 2000 "500 us"
+cat > "$tmp/depth.cag" <<'END'
+import cell
+seen = [
+  cell.arm |> posed(cell.arm.home),
+  [for P in cell.tray: cell.stands(P)],
+  box([900, 900, 14], centered: true)
+]
+eye = pinhole(look_at([900, -800, 700], [300, 0, 100], Z), 8, 0.02, [640, 480])
+print max(depth_image(seen, eye))
+END
+report "depth_image of robots/cell, 640x480" "$(best "$CAG" run -I examples/robots "$tmp/depth.cag")" "" "" "< 0.3 s"
 echo "--- previews, against POV-Ray"
 "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --quality draft > /dev/null
 ours=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --quality draft)
