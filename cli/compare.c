@@ -70,7 +70,7 @@ static bool compare_parts(const CagTool *t, const Picture *a, const Picture *b, 
                      cag_crypto_manifest(&b->metadata, "CryptoObject", &names[1]);
   const CagPartPicture pictures[2] = {{&a->image, &names[0]}, {&b->image, &names[1]}};
   CagPartReport report;
-  bool ok = known || cag_fail_io(err, CAG_E_ARGUMENT, "render them with --passes color,object",
+  bool ok = known || cag_fail_io(err, CAG_E_USAGE, "render them with --passes color,object",
                                  "the pictures do not tell which parts they show");
   if (ok && (ok = cag_compare_parts(pictures, t->threshold, &report, err))) {
     if (!t->quiet) cag_part_report_print(&report, stdout);
