@@ -45,7 +45,7 @@ static void lines_clear_ends(Lines *l) {
 }
 
 static CagStatus lines_new(Lines *l, size_t length, size_t reach, size_t width, CagError *err) {
-  // A window that is longer than the line on both sides is no different.
+  // A longer window has the same result as one that contains the whole line.
   *l = (Lines){.length = length, .reach = reach < length ? reach : length, .width = width};
   const size_t n = (length + 2 * l->reach) * width;
   l->forward = cag_malloc(n * sizeof *l->forward);

@@ -193,25 +193,25 @@ static CagStatus check_corners(const CagVec3 end[4][2], double size, CagError *e
   int i, j, ti, tj;
   double gap = largest_gap(end, 0, &i, &j);
   if (gap <= CORNER_GAP * size) return CAG_OK;
-  char text[32], mend[100] = "move one of the two ends onto the other";
+  char text[32], help[100] = "move one of the two ends onto the other";
   for (int pass = 0; pass < 2; pass++)
     for (unsigned turned = 1; turned < 16; turned++) {
       // Prefer the advice to reverse a single edge.
       bool single = (turned & (turned - 1)) == 0;
       if (single != (pass == 0)) continue;
       if (largest_gap(end, turned, &ti, &tj) > CORNER_GAP * size) continue;
-      int n = snprintf(mend, sizeof mend, "reversing");
+      int n = snprintf(help, sizeof help, "reversing");
       for (int k = 0; k < 4; k++)
         if (turned >> k & 1)
           n +=
-              snprintf(mend + n, sizeof mend - (size_t)n, "%s `%s`", n > 9 ? " and" : "", SIDES[k]);
-      snprintf(mend + n, sizeof mend - (size_t)n, " closes the patch");
+              snprintf(help + n, sizeof help - (size_t)n, "%s `%s`", n > 9 ? " and" : "", SIDES[k]);
+      snprintf(help + n, sizeof help - (size_t)n, " closes the patch");
       pass = 2;
       break;
     }
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
                   "`%s` and `%s` must meet in the corner u = %d, v = %d, but they are %s apart; %s",
-                  SIDES[i], SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
+                  SIDES[i], SIDES[2 + j], i, j, cag_number_text(gap, text), help);
 }
 
 CagStatus cag_surface_coons(const CagCurve *u0, const CagCurve *u1, const CagCurve *v0,

@@ -115,7 +115,7 @@ static void find_root(const Secular *f, double y[3]) {
   }
 }
 
-// y from the form about p. Returns false if there are no real points.
+// y from the form about p. Returns false if the equation has no real solution.
 static bool solve_secular(Secular *f, double y[3]) {
   double limit, least = INFINITY, rounding = 0;
   int axis = 0;

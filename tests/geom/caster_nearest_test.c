@@ -341,7 +341,7 @@ static void nearest_points_of_quadrics_are_feet_of_normals(void **state) {
     const double distance = cag_norm(way);
     assert_true(off_quadric(&q, x) <= 1e-11 * (1 + distance + cag_norm(x)));
     const CagVec3 n = cag_unit(cag_quadric_gradient(&q, x));
-    // At the tip of a cone there is no normal.
+    // The tip of a cone has no normal.
     if (i % 9 != 3) assert_true(cag_norm(cag_cross(way, n)) <= 1e-7 * (1 + distance));
     const double other = fmin(closest_on_lines(&q, p, x, 10 * (1 + distance)),
                               closest_on_lines(&q, p, x, 0.1 * distance));

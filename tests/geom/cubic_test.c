@@ -68,7 +68,7 @@ static void splines_pass_their_points_and_are_smooth(void **state) {
     }
 }
 
-// For n = 2 and n = 3, there are no inner rows of the general system (reference 05a, 4).
+// For n = 2 and n = 3, the system has no inner rows.
 static void the_shortest_splines_are_the_reference_s(void **state) {
   (void)state;
   const CagVec3 two[2] = {{0, 0, 0}, {3, 4, 0}};
