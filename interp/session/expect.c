@@ -1,12 +1,7 @@
-// Scripts as tests: reading the expectations, running, and comparing.
-//
-// Expectations are read by scanning the script for comments and texts only, without parsing the
-// language, because scripts with errors are tests, too. The scan makes a Plan for each run, with
-// its options, the expected lines, and the expected errors.
+// Scripts as tests: running them and comparing the results with the plans of expect_plan.h.
 
 #include "interp/session/expect.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -22,359 +17,12 @@
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
 #include "interp/session/expect_image.h"
-#include "interp/session/expect_near.h"
+#include "interp/session/expect_plan.h"
 #include "interp/session/session.h"
 
 void cag_test_options_init(CagTestOptions *o) {
   *o = (CagTestOptions){0};
   cag_session_options_init(&o->session);
-}
-
-// A part of the script's text.
-typedef struct Piece {
-  const char *start, *end;
-} Piece;
-
-typedef struct Expected {
-  Piece text; // the line, the error's code, or the path of an image
-  Piece name; // of the image; empty: the only one
-  size_t line;
-  bool is_error, is_image;
-  bool alone; // nothing else is on the line
-  bool met;
-} Expected;
-
-typedef struct Define {
-  char *name, *value;
-} Define;
-
-typedef struct Plan {
-  char *options; // as written after `run:`; NULL: the run without options
-  size_t line;
-  Define *defines;
-  size_t define_count;
-  CagSessionOptions limits;
-  bool picture; // the reference picture belongs to this run
-  Expected *expected;
-  size_t count;
-  char *problem; // with the options; NULL: none
-} Plan;
-
-// A comment that looks like an expectation.
-typedef struct Miss {
-  Piece text;
-  const char *meant;
-  size_t line;
-} Miss;
-
-typedef struct Plans {
-  Plan *items;
-  size_t count;
-  Miss *misses;
-  size_t miss_count;
-  bool memory; // memory ran out
-} Plans;
-
-// --- Making plans ---
-
-// Makes room for one more. Returns NULL if memory ran out.
-static void *grow(void **array, size_t *count, size_t size) {
-  char *larger = cag_realloc(*array, (*count + 1) * size);
-  if (!larger) return NULL;
-  *array = larger;
-  void *item = larger + size * (*count)++;
-  memset(item, 0, size);
-  return item;
-}
-
-static void free_plans(Plans *plans) {
-  for (size_t i = 0; i < plans->count; i++) {
-    Plan *p = &plans->items[i];
-    for (size_t k = 0; k < p->define_count; k++) cag_free(p->defines[k].name);
-    cag_free(p->defines);
-    cag_free(p->expected);
-    cag_free(p->options);
-    cag_free(p->problem);
-  }
-  cag_free(plans->items);
-  cag_free(plans->misses);
-}
-
-static Plan *add_plan(Plans *plans, const CagSessionOptions *limits, size_t line) {
-  Plan *p = grow((void **)&plans->items, &plans->count, sizeof *p);
-  if (!p) {
-    plans->memory = true;
-    return NULL;
-  }
-  p->limits = *limits;
-  p->line = line;
-  return p;
-}
-
-static Piece trim(Piece p) {
-  while (p.start < p.end && isspace((unsigned char)*p.start)) p.start++;
-  while (p.end > p.start && isspace((unsigned char)p.end[-1])) p.end--;
-  return p;
-}
-
-// Copies the next word of a line of options to `out` (which is as long as the line), without its
-// quotes. Returns its end, or NULL if there is none.
-static const char *next_word(const char *at, char *out) {
-  while (isspace((unsigned char)*at)) at++;
-  if (!*at) return NULL;
-  char quote = 0;
-  for (; *at && (quote || !isspace((unsigned char)*at)); at++) {
-    if (quote && *at == quote) quote = 0;
-    else if (!quote && (*at == '"' || *at == '\'')) quote = *at;
-    else *out++ = *at;
-  }
-  *out = 0;
-  return at;
-}
-
-static bool add_define(Plan *p, const char *word) {
-  const char *equals = strchr(word, '=');
-  if (!equals || equals == word) return false;
-  Define *d = grow((void **)&p->defines, &p->define_count, sizeof *d);
-  if (!d || !(d->name = cag_strdup(word))) {
-    if (d) p->define_count--;
-    return false;
-  }
-  d->name[equals - word] = 0;
-  d->value = d->name + (equals - word) + 1;
-  return true;
-}
-
-static bool set_limit(Plan *p, const char *name, const char *value) {
-  char *end;
-  double x = strtod(value, &end);
-  if (end == value || *end || !(x > 0)) return false;
-  if (!strcmp(name, "--max-depth")) p->limits.max_depth = (size_t)x;
-  else if (!strcmp(name, "--max-memory")) p->limits.max_memory = (size_t)x;
-  else if (!strcmp(name, "--max-triangles")) p->limits.max_triangles = (size_t)x;
-  else if (!strcmp(name, "--max-time")) p->limits.max_time = x;
-  else return false;
-  return true;
-}
-
-static void set_problem(Plan *p, const char *word) {
-  static const char FORM[] =
-      "`%s` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles";
-  cag_free(p->problem);
-  if (cag_asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
-}
-
-// Parses the options of `// run:` into the plan.
-static void read_options(Plans *plans, Plan *p, Piece text) {
-  p->options = cag_strndup(text.start, (size_t)(text.end - text.start));
-  char *word = cag_malloc((size_t)(text.end - text.start) + 1);
-  const char *at = p->options;
-  if (!at || !word) plans->memory = true;
-  while (at && word && (at = next_word(at, word))) {
-    char *name = cag_strdup(word);
-    bool ok = name != NULL;
-    if (ok && !strncmp(name, "-D", 2) && name[2]) ok = add_define(p, name + 2);
-    else if (ok && !strcmp(name, "--picture")) p->picture = true;
-    else if (ok) {
-      const char *value = next_word(at, word);
-      ok = value && (!strcmp(name, "-D") ? add_define(p, word) : set_limit(p, name, word));
-      if (ok) at = value;
-    }
-    if (!ok) set_problem(p, name ? name : word);
-    cag_free(name);
-    if (!ok) break;
-  }
-  cag_free(word);
-}
-
-// --- Reading the script ---
-
-typedef struct Reader {
-  const char *start, *end; // of the script
-  size_t line;             // of the current byte
-  const char *line_start;
-  const CagSessionOptions *limits;
-  Plans *plans;
-} Reader;
-
-static bool begins_with(Piece p, const char *word, Piece *rest) {
-  size_t n = strlen(word);
-  if ((size_t)(p.end - p.start) < n || memcmp(p.start, word, n) != 0) return false;
-  *rest = trim((Piece){p.start + n, p.end});
-  return true;
-}
-
-// The rest of a text that begins with a word, with its blanks.
-static Piece after(Piece p, const char *word) { return (Piece){p.start + strlen(word), p.end}; }
-
-static void add_expected(Reader *r, Piece text, bool is_error, bool alone) {
-  if (r->plans->count == 0 && !add_plan(r->plans, r->limits, 0)) return;
-  Plan *p = &r->plans->items[r->plans->count - 1];
-  Expected *e = grow((void **)&p->expected, &p->count, sizeof *e);
-  if (e) *e = (Expected){.text = text, .line = r->line, .is_error = is_error, .alone = alone};
-  else r->plans->memory = true;
-}
-
-// Parses `E0201, E0203`: several errors of one line.
-static void add_errors(Reader *r, Piece text, bool alone) {
-  const char *at = text.start;
-  while (at < text.end) {
-    const char *from = at;
-    while (at < text.end && isalnum((unsigned char)*at)) at++;
-    if (at > from) add_expected(r, (Piece){from, at}, true, alone);
-    else at++;
-  }
-}
-
-// Parses `: depth.exr` or ` depth: depth.exr`, after `expect image`. False: it is something else.
-static bool add_image(Reader *r, Piece text, bool alone) {
-  const char *colon =
-      text.start < text.end ? memchr(text.start, ':', (size_t)(text.end - text.start)) : NULL;
-  if (!colon || (*text.start != ':' && !isspace((unsigned char)*text.start))) return false;
-  add_expected(r, trim((Piece){colon + 1, text.end}), false, alone);
-  const Plan *p = r->plans->count ? &r->plans->items[r->plans->count - 1] : NULL;
-  if (r->plans->memory || !p || p->count == 0) return true;
-  p->expected[p->count - 1].is_image = true;
-  p->expected[p->count - 1].name = trim((Piece){text.start, colon});
-  return true;
-}
-
-static void note_miss(Reader *r, Piece text) {
-  const char *meant = cag_test_meant(text.start, (size_t)(text.end - text.start));
-  if (!meant) return;
-  Miss *miss = grow((void **)&r->plans->misses, &r->plans->miss_count, sizeof *miss);
-  if (miss) *miss = (Miss){text, meant, r->line};
-  else r->plans->memory = true;
-}
-
-// Reads the text after the `//` of a comment.
-static void read_comment(Reader *r, Piece text, bool alone) {
-  Piece rest;
-  text = trim(text);
-  if (begins_with(text, "expect error:", &rest)) {
-    add_errors(r, rest, alone);
-  } else if (begins_with(text, "expect image", &rest) &&
-             add_image(r, after(text, "expect image"), alone)) {
-    return;
-  } else if (begins_with(text, "expect:", &rest)) {
-    add_expected(r, rest, false, alone);
-  } else if (begins_with(text, "run:", &rest)) {
-    Plan *p = add_plan(r->plans, r->limits, r->line);
-    if (p) read_options(r->plans, p, rest);
-  } else {
-    note_miss(r, text);
-  }
-}
-
-// Reads the rest of a line with an unterminated text or comment.
-static void read_broken_line(Reader *r, const char *at, const char *line_end) {
-  Piece rest;
-  for (; at + 2 <= line_end; at++)
-    if (at[0] == '/' && at[1] == '/' &&
-        begins_with(trim((Piece){at + 2, line_end}), "expect error:", &rest))
-      add_errors(r, rest, false);
-}
-
-static const char *end_of_line(const Reader *r, const char *at) {
-  const char *newline = memchr(at, '\n', (size_t)(r->end - at));
-  return newline ? newline : r->end;
-}
-
-// Returns the position after the `*/` of the block comment at `at`, or NULL if it is unterminated.
-// Block comments nest.
-static const char *skip_block_comment(const char *at, const char *end) {
-  size_t depth = 0;
-  for (; at + 2 <= end; at++) {
-    if (at[0] == '/' && at[1] == '*') {
-      depth++;
-      at++;
-    } else if (at[0] == '*' && at[1] == '/') {
-      at++;
-      if (--depth == 0) return at + 1;
-    }
-  }
-  return NULL;
-}
-
-static const char *skip_raw(const char *at, const char *end) {
-  const char *close = memchr(at + 1, '`', (size_t)(end - at - 1));
-  return close ? close + 1 : NULL;
-}
-
-// Returns the position after the closing quote of the text at `at`, or NULL if there is none on its
-// line. The { } of a text contain expressions that may contain texts: `holes` counts the open
-// braces in each enclosing text.
-#define TEXT_NESTING 64
-static const char *skip_text(const char *at, const char *line_end) {
-  unsigned holes[TEXT_NESTING] = {0}, depth = 0;
-  for (at++; at < line_end; at++) {
-    const char c = *at;
-    if (holes[depth] == 0) { // within the text
-      if (c == '\\') at++;
-      else if (c == '{') holes[depth] = 1;
-      else if (c == '"' && depth == 0) return at + 1;
-      else if (c == '"') depth--;
-    } else if (c == '"') {
-      if (++depth == TEXT_NESTING) return NULL;
-      holes[depth] = 0;
-    } else if (c == '{') {
-      holes[depth]++;
-    } else if (c == '}') {
-      holes[depth]--;
-    } else if (c == '`') {
-      const char *behind = skip_raw(at, line_end);
-      if (!behind) return NULL;
-      at = behind - 1;
-    }
-  }
-  return NULL;
-}
-
-static void count_lines(Reader *r, const char *from, const char *to) {
-  for (; from < to; from++) {
-    if (*from != '\n') continue;
-    r->line++;
-    r->line_start = from + 1;
-  }
-}
-
-static bool is_blank(const char *from, const char *to) {
-  while (from < to && isspace((unsigned char)*from)) from++;
-  return from == to;
-}
-
-// Reads the comment or text at `at`, if there is one, and returns the next position.
-static const char *read_at(Reader *r, const char *at) {
-  const char *line_end = end_of_line(r, at), *behind;
-  const bool two = at + 2 <= r->end;
-  if (two && at[0] == '/' && at[1] == '/') {
-    read_comment(r, (Piece){at + 2, line_end}, is_blank(r->line_start, at));
-    return line_end;
-  }
-  if (two && at[0] == '/' && at[1] == '*') behind = skip_block_comment(at, r->end);
-  else if (*at == '`') behind = skip_raw(at, r->end);
-  else if (*at == '"') behind = skip_text(at, line_end);
-  else return at + 1;
-  if (behind) return behind;
-  read_broken_line(r, at, line_end);
-  return line_end;
-}
-
-static bool read_plans(const char *text, size_t length, const CagSessionOptions *limits,
-                       Plans *plans) {
-  Reader r = {.start = text,
-              .end = text + length,
-              .line = 1,
-              .line_start = text,
-              .limits = limits,
-              .plans = plans};
-  for (const char *at = text; at < r.end;) {
-    const char *behind = read_at(&r, at);
-    count_lines(&r, at, behind);
-    at = behind;
-  }
-  if (plans->count == 0) add_plan(plans, limits, 0);
-  return !plans->memory;
 }
 
 // --- A run ---
@@ -388,9 +36,9 @@ typedef struct Run {
   const char *about;  // the definition whose documentation contains the example; NULL: a script
   size_t example;     // number among the examples of the definition, from 1
   const char *folder; // of an example: the folder of its script
-  Plan *plan;
-  const Plans *plans; // in the first run of a script: other results of reading it
-  bool pictured;      // the reference picture, if there is one, belongs to this run
+  CagTestPlan *plan;
+  const CagTestPlans *plans; // in the first run of a script: other results of reading it
+  bool pictured;             // the reference picture, if there is one, belongs to this run
   char *name;
   bool failed;
 } Run;
@@ -422,7 +70,7 @@ static char *rendered_errors(const CagSession *s) {
 // Tests whether a line expects the error. An error with a location in this script must be on that
 // line. But in a run with options, a comment on a line of its own expects only the code, because
 // such comments are after the script.
-static bool meets(const Run *r, const CagErrorView *error, const Expected *e) {
+static bool meets(const Run *r, const CagErrorView *error, const CagTestExpected *e) {
   size_t n = (size_t)(e->text.end - e->text.start);
   if (e->met || !e->is_error || strlen(error->code) != n || memcmp(error->code, e->text.start, n))
     return false;
@@ -461,7 +109,7 @@ static void check_errors(Run *r, const CagSession *s) {
     cag_free(errors);
   }
   for (size_t i = 0; i < r->plan->count; i++) {
-    const Expected *e = &r->plan->expected[i];
+    const CagTestExpected *e = &r->plan->expected[i];
     if (!e->is_error || e->met) continue;
     snprintf(message, sizeof message, "the expected error %.*s did not occur",
              (int)(e->text.end - e->text.start), e->text.start);
@@ -474,7 +122,7 @@ static void check_output(Run *r, const char *text, size_t size) {
   const char *at = text, *end = text + size;
   size_t last_line = r->plan->line;
   for (size_t i = 0; i < r->plan->count; i++) {
-    const Expected *e = &r->plan->expected[i];
+    const CagTestExpected *e = &r->plan->expected[i];
     if (e->is_error || e->is_image) continue;
     char *expected = cag_strndup(e->text.start, (size_t)(e->text.end - e->text.start));
     last_line = e->line;
@@ -485,7 +133,7 @@ static void check_output(Run *r, const char *text, size_t size) {
     }
     const char *stop = memchr(at, '\n', (size_t)(end - at));
     if (!stop) stop = end;
-    Piece got = trim((Piece){at, stop});
+    CagTestPiece got = cag_test_trim((CagTestPiece){at, stop});
     bool same = expected && (size_t)(got.end - got.start) == strlen(expected) &&
                 memcmp(got.start, expected, strlen(expected)) == 0;
     if (!same) {
@@ -509,7 +157,7 @@ static void check_output(Run *r, const char *text, size_t size) {
 
 // Returns the path of an expected image, which is relative to the script, or NULL if memory ran
 // out.
-static char *image_path(const Run *r, Piece text) {
+static char *image_path(const Run *r, CagTestPiece text) {
   const char *slash = strrchr(r->path, '/');
   const int n = (int)(text.end - text.start);
   char *path = NULL;
@@ -522,7 +170,7 @@ static char *image_path(const Run *r, Piece text) {
 }
 
 // Writes the expected image anew.
-static void update_image(Run *r, CagSession *s, const Expected *e, const char *name,
+static void update_image(Run *r, CagSession *s, const CagTestExpected *e, const char *name,
                          const char *path) {
   CagImageOptions options;
   cag_image_options_init(&options);
@@ -533,7 +181,7 @@ static void update_image(Run *r, CagSession *s, const Expected *e, const char *n
   cag_free(errors);
 }
 
-static void check_image(Run *r, CagSession *s, const Expected *e) {
+static void check_image(Run *r, CagSession *s, const CagTestExpected *e) {
   char *path = image_path(r, e->text);
   const bool named = e->name.start < e->name.end;
   char *name = named ? cag_strndup(e->name.start, (size_t)(e->name.end - e->name.start)) : NULL;
@@ -700,7 +348,7 @@ static CagSession *make_session(const Run *r, FILE *out) {
   return s;
 }
 
-static bool expects_error(const Plan *p) {
+static bool expects_error(const CagTestPlan *p) {
   for (size_t i = 0; i < p->count; i++)
     if (p->expected[i].is_error) return true;
   return false;
@@ -724,7 +372,7 @@ static int test_reference(Run *r, CagSession *s) {
 
 static void report_misses(Run *r) {
   for (size_t i = 0; r->plans && i < r->plans->miss_count; i++) {
-    const Miss *miss = &r->plans->misses[i];
+    const CagTestMiss *miss = &r->plans->misses[i];
     char message[160];
     const int shown = (int)(miss->text.end - miss->text.start);
     snprintf(message, sizeof message, "`// %.*s` expects nothing; write `// %s`",
@@ -776,7 +424,7 @@ static char *run_name(const Run *r) {
   return name;
 }
 
-static bool some_pictured(const Plans *plans) {
+static bool some_pictured(const CagTestPlans *plans) {
   for (size_t i = 0; i < plans->count; i++)
     if (plans->items[i].picture) return true;
   return false;
@@ -784,10 +432,10 @@ static bool some_pictured(const Plans *plans) {
 
 // Runs a script with all its runs. `text` is its text, even if the run reads the file.
 static int run_plans(const Run *script, const char *text, size_t length) {
-  Plans plans = {0};
+  CagTestPlans plans = {0};
   const CagTestOptions *options = script->options;
   int status = CAG_STATUS_OK;
-  if (!read_plans(text, length, &options->session, &plans)) status = CAG_STATUS_LIMIT;
+  if (!cag_test_read_plans(text, length, &options->session, &plans)) status = CAG_STATUS_LIMIT;
   for (size_t i = 0; i < plans.count && status == CAG_STATUS_OK; i++) {
     Run r = *script;
     r.plan = &plans.items[i];
@@ -798,7 +446,7 @@ static int run_plans(const Run *script, const char *text, size_t length) {
     else if (is_chosen(&r)) status = perform(&r);
     cag_free(r.name);
   }
-  free_plans(&plans);
+  cag_test_free_plans(&plans);
   return status;
 }
 
