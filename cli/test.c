@@ -3,8 +3,8 @@
 // scripts.h defines which scripts are run, and interp/session/expect.h what a test is. Workers take
 // the scripts in order. The report of a script is delayed until those before it have been reported,
 // so the output does not depend on the number of workers. It goes to standard output: failures,
-// with -v also passed tests, and finally `N passed, N failed, N skipped`. Pictures are skipped
-// without POV-Ray.
+// with -v also passed tests, and finally `N passed, N failed, N skipped`. Pictures of POV-Ray are
+// skipped without it.
 
 #include <cJSON.h>
 #include <pthread.h>
@@ -303,6 +303,8 @@ int cag_tool_test(CagTool *tool, int argc, char **argv) {
   t.options.filter = tool->filter;
   t.options.update = tool->update;
   t.options.no_pictures = tool->no_pictures;
+  t.options.engine = tool->engine;
+  t.options.quality = tool->quality;
   t.options.failure = report_failure;
   t.options.ended = report_end;
   if (!copy_defines(&t.options, tool))

@@ -10,6 +10,11 @@
 
 // Side of a tile in pixels: what one thread works on.
 enum { TILE = 16 };
+// The first round renders one pixel of each square of so many, which stands for the others until the
+// second round: the first picture is there after a fraction of the time. Divides TILE.
+enum { COARSE = 4 };
+// The most samples that a round adds to each pixel: rounds double until then.
+enum { ROUND_SAMPLES = 4 };
 // Samples of a pixel of a sketch at an edge, as a square of so many.
 enum { EDGE_SIDE = 3, LENS_SIDE = 6 };
 // Neighbors that differ by more than this fraction of their brightness are at an edge.
@@ -24,7 +29,8 @@ typedef struct Frame {
   CagVec3 right, down, view; // of the lens
   int x, y, width, height;   // of what is rendered: the region and its neighbors
   size_t columns;            // of tiles
-  int round;                 // number of the sample, or of the pass of a sketch
+  int round;                 // the first two share the first sample of each pixel
+  int first_sample, samples; // that this round adds to its pixels
   CagImage *out;
   CagPreviewSum *sum;  // of the samples so far
   unsigned char *edge; // pixels of a sketch that get more samples
@@ -91,28 +97,41 @@ static CagPreviewDice pixel_dice(const Frame *f, int x, int y, int index) {
                           .index = (uint32_t)index};
 }
 
-// One more sample of a pixel, anywhere in it.
-static CagStatus sample_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
-  const size_t i = pixel_index(f, x, y);
+static bool is_coarse(int x, int y) { return x % COARSE == 0 && y % COARSE == 0; }
+
+static bool in_round(const Frame *f, int x, int y) {
+  return f->round > 1 || is_coarse(x, y) == (f->round == 0);
+}
+
+// Adds a sample of a pixel, anywhere in it.
+static CagStatus sample_pixel(const Frame *f, CagPreviewShader *s, int x, int y, int index,
+                              CagError *err) {
   double chance[2];
   CagColor c;
-  s->dice = pixel_dice(f, x, y, f->round);
+  s->dice = pixel_dice(f, x, y, index);
   cag_preview_roll(&s->dice, chance);
   const double at[2] = {f->x + x + chance[0], f->y + y + chance[1]};
   s->first.met = false;
   CagStatus status = light_at(f, s, at, &c, err);
-  if (status) return status;
-  add_sample(&f->sum[i], &c, &s->first);
-  return CAG_OK;
+  if (!status) add_sample(&f->sum[pixel_index(f, x, y)], &c, &s->first);
+  return status;
 }
 
-// The middle of a pixel in the first round; a square of samples at edges in the second.
+static CagStatus sample_pixel_often(const Frame *f, CagPreviewShader *s, int x, int y,
+                                    CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < f->samples; k++)
+    status = sample_pixel(f, s, x, y, f->first_sample + k, err);
+  return status;
+}
+
+// The middle of a pixel in the first two rounds; a square of samples at edges in the third.
 static CagStatus sketch_pixel(const Frame *f, CagPreviewShader *s, int x, int y, CagError *err) {
   const size_t i = pixel_index(f, x, y);
   const int fine = cag_camera_has_lens(f->camera) ? LENS_SIDE : EDGE_SIDE;
-  const int side = f->round == 0 ? 1 : fine;
+  const int side = f->round < 2 ? 1 : fine;
   CagColor sum = {0, 0, 0}, c;
-  if (f->round > 0 && !f->edge[i]) return CAG_OK;
+  if (f->round > 1 && !f->edge[i]) return CAG_OK;
   for (int k = 0; k < side * side; k++) {
     s->dice = pixel_dice(f, x, y, k);
     const double at[2] = {f->x + x + (k % side + 0.5) / side, f->y + y + (k / side + 0.5) / side};
@@ -131,9 +150,10 @@ static CagStatus render_tile(const Frame *f, CagPreviewShader *s, size_t tile, C
   CagStatus status = CAG_OK;
   for (int y = top; y < top + TILE && y < f->height; y++)
     for (int x = left; !status && x < left + TILE && x < f->width; x++) {
+      if (!in_round(f, x, y)) continue;
       status = cag_stop_check(err);
       if (status) break;
-      status = s->sketch ? sketch_pixel(f, s, x, y, err) : sample_pixel(f, s, x, y, err);
+      status = s->sketch ? sketch_pixel(f, s, x, y, err) : sample_pixel_often(f, s, x, y, err);
     }
   return status;
 }
@@ -178,25 +198,41 @@ static void report(const Frame *f, double percent) {
   if (f->options->progress) f->options->progress(f->options->progress_user, percent, "rendering");
 }
 
-// Renders round by round. Sets the number of complete ones.
-static CagStatus render_rounds(Frame *f, int *complete) {
-  const int rounds = f->options->samples > 0 ? f->options->samples : 2;
-  const size_t rows = (size_t)(f->height + TILE - 1) / TILE;
+static int least(int a, int b) { return a < b ? a : b; }
+
+// Renders round by round. Sets the numbers of complete rounds, and of samples of each pixel in them.
+// The edges of a sketch count as its second sample.
+static CagStatus render_rounds(Frame *f, int *complete, int *samples) {
+  const int most = f->options->samples > 0 ? f->options->samples : 2;
+  const size_t tiles = f->columns * ((size_t)(f->height + TILE - 1) / TILE);
   const size_t pixels = (size_t)f->width * (size_t)f->height;
   CagPreviewSum *before = cag_malloc(pixels * sizeof *before);
   if (!before) return cag_fail_memory(f->err);
   bool good = true;
-  for (*complete = 0; good && *complete < rounds; *complete += good) {
+  *complete = *samples = 0;
+  while (good && *samples < most) {
     f->round = *complete;
-    if (f->round == 1 && f->edge) find_edges(f);
+    f->first_sample = *samples;
+    f->samples = f->round < 2 ? 1 : least(least(*samples, ROUND_SAMPLES), most - *samples);
+    if (f->round == 2 && f->edge) find_edges(f);
     memcpy(before, f->sum, pixels * sizeof *before);
-    good = cag_parallel_checked(f->columns * rows, render_numbered_tile, f);
-    if (good) report(f, 100.0 * (*complete + 1) / rounds);
+    good = cag_parallel_checked(tiles, render_numbered_tile, f);
+    if (!good) break;
+    ++*complete;
+    if (f->round > 0) *samples += f->samples;
+    report(f, 100 * (f->round > 0 ? *samples : 1.0 / (COARSE * COARSE)) / most);
   }
   if (!good) memcpy(f->sum, before, pixels * sizeof *before);
   cag_free(before);
   if (good) return CAG_OK;
   return f->status ? f->status : cag_stop_check(f->err);
+}
+
+// Spreads the pixels of the coarse round over their squares.
+static void spread_coarse(Frame *f) {
+  for (int y = 0; y < f->height; y++)
+    for (int x = 0; x < f->width; x++)
+      f->sum[pixel_index(f, x, y)] = f->sum[pixel_index(f, x - x % COARSE, y - y % COARSE)];
 }
 
 // The part of the picture that was asked for.
@@ -220,9 +256,9 @@ static void render_around(Frame *f, const Region *r) {
   f->height = (bottom < size[1] ? bottom : size[1]) - f->y;
 }
 
-static void write_picture(const Frame *f, const Region *r, int complete) {
+static void write_picture(const Frame *f, const Region *r, int samples) {
   static const char *const names[] = {"R", "G", "B"};
-  const float k = f->options->samples > 0 ? 1 / (float)complete : 1;
+  const float k = f->options->samples > 0 ? 1 / (float)samples : 1;
   for (size_t c = 0; c < 3; c++) {
     cag_image_set_name(f->out, c, names[c]);
     float *to = cag_image_plane(f->out, c);
@@ -236,7 +272,7 @@ static CagStatus render_frame(Frame *f, bool *finished) {
   const Region r = region_of(f->camera, f->options);
   render_around(f, &r);
   const size_t n = (size_t)f->width * (size_t)f->height;
-  int complete = 0;
+  int complete = 0, samples = 0;
   f->columns = (size_t)(f->width + TILE - 1) / TILE;
   f->sum = cag_calloc(n, sizeof *f->sum);
   if (f->options->samples <= 0) f->edge = cag_calloc(n, 1);
@@ -245,14 +281,18 @@ static CagStatus render_frame(Frame *f, bool *finished) {
   if (!status && !cag_image_create(f->out, (size_t)r.width, (size_t)r.height, 3, f->err))
     status = f->err->status;
   if (!status) {
-    status = render_rounds(f, &complete);
+    status = render_rounds(f, &complete, &samples);
     *finished = !status;
     if (status == CAG_E_CALLBACK && complete > 0) status = CAG_OK;
     // What is complete is finished even if the work is stopped.
     const volatile int *flag = cag_stop_lend(NULL);
-    if (!status && complete > 1 && f->options->samples > 0)
-      cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, complete);
-    if (!status) write_picture(f, &r, complete);
+    if (!status && complete == 1) {
+      spread_coarse(f);
+      samples = 1;
+    }
+    if (!status && samples > 1 && f->options->samples > 0)
+      cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, samples);
+    if (!status) write_picture(f, &r, samples);
     else cag_image_free(f->out);
     cag_stop_lend(flag);
   }

@@ -17,7 +17,8 @@ enum { BOUNCES_MAX = 2 };
 
 // --- Chance ---
 
-static double fraction_of(double x) { return x - floor(x); }
+// Of x >= 0. The conversion takes less time than floor.
+static double fraction_of(double x) { return x - (double)(int64_t)x; }
 
 // The R2 sequence (Roberts 2018), which is even for any number of samples, from a start that differs
 // from pixel to pixel by interleaved gradient noise (Jimenez 2014): neighbors complement each other.

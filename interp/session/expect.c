@@ -16,6 +16,7 @@
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
+#include "interp/render/povray.h"
 #include "interp/session/expect_image.h"
 #include "interp/session/expect_plan.h"
 #include "interp/session/session.h"
@@ -264,10 +265,24 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
   return ok;
 }
 
+// How the picture is made: as the run says, else as the options of the test say.
+static CagRenderOptions rendering_of(const Run *r) {
+  CagRenderOptions o = r->plan->rendering, usual;
+  cag_render_options_init(&usual);
+  if (!o.engine) o.engine = r->options->engine;
+  if (!o.quality) o.quality = r->options->quality ? r->options->quality : usual.quality;
+  return o;
+}
+
+// Whether the reference is a picture of POV-Ray, which nothing else can be compared with.
+static bool needs_povray(const CagRenderOptions *o) {
+  if (o->engine && strcmp(o->engine, "auto") != 0) return strcmp(o->engine, "povray") == 0;
+  return strcmp(o->quality, "draft") != 0;
+}
+
 // Renders to `path` at the size of the reference. Returns false after a failure was reported.
 static bool render(Run *r, CagSession *s, const CagImage *reference, const char *path) {
-  CagRenderOptions options;
-  cag_render_options_init(&options);
+  CagRenderOptions options = rendering_of(r);
   options.width = (int)reference->width;
   options.height = (int)reference->height;
   const double limit = r->options->session.max_time;
@@ -304,14 +319,14 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
 }
 
 static int test_picture(Run *r, CagSession *s, const char *reference_path) {
-  char version[256];
   double begin = cag_clock_seconds();
   CagImage reference;
   CagError err = {0};
+  const CagRenderOptions rendering = rendering_of(r);
   const char *remark = NULL;
   r->failed = false;
-  if (!cag_find_povray(version, sizeof version)) {
-    end_run(r, CAG_TEST_SKIPPED, 0, version);
+  if (needs_povray(&rendering) && !cag_povray_find(NULL, 0, NULL, &err)) {
+    end_run(r, CAG_TEST_SKIPPED, 0, err.message);
     return CAG_STATUS_OK;
   }
   if (!read_picture(reference_path, &reference, &err)) {

@@ -13,8 +13,8 @@
 // unless it is unterminated: the missing end is then the error that the line expects.
 //
 // The options of a `run:` are -D name=value (values with blanks in quotes), and --max-depth,
-// --max-memory (in bytes), --max-time, and --max-triangles, for tests of the limits, and --picture
-// (below). Errors without a location in the script (a -D for an unknown param, an error in an
+// --max-memory (in bytes), --max-time, and --max-triangles, for tests of the limits, and --picture,
+// --engine, --quality, --camera, and --samples for its picture (below). Errors without a location in the script (a -D for an unknown param, an error in an
 // imported module) are matched by code only.
 //
 // `expect image: depth.exr` compares the image that the script shows with a file beside it, and
@@ -26,8 +26,9 @@
 //
 // A picture beside the script, NAME.exr or NAME.png, is the reference picture for the run without
 // options, or for the run with --picture if there is one: `run: -D time=0.5 --picture`. The scene
-// is rendered at the size of the reference with quality "normal", and compared (see
-// CAG_TEST_DELTA_E). Without POV-Ray, pictures are skipped.
+// is rendered at the size of the reference and compared (see CAG_TEST_DELTA_E). It is a picture of
+// POV-Ray with quality "normal" unless the run says otherwise by the options of `cag render`:
+// `run: --picture --engine preview --quality draft`. Without POV-Ray, its pictures are skipped.
 
 #ifndef CAG_INTERP_SESSION_EXPECT_H
 #define CAG_INTERP_SESSION_EXPECT_H
@@ -67,6 +68,8 @@ typedef struct CagTestOptions {
   const char *filter; // runs whose name contains this text; NULL: all
   bool update;        // write the reference pictures instead of comparing with them
   bool no_pictures;   // do not render
+  // How pictures are rendered where a run does not say: as in CagRenderOptions. May be NULL.
+  const char *engine, *quality;
   void (*failure)(void *context, const CagTestFailure *failure);
   // Called after each run. `remark` gives details (why it was skipped, or that a picture was
   // updated) or is NULL.

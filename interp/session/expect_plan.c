@@ -7,6 +7,9 @@
 #include "base/memory.h"
 #include "interp/session/expect_near.h"
 
+// The most samples of a picture, as on the command line.
+enum { SAMPLES_MAX = 10000 };
+
 // --- Making plans ---
 
 // Makes room for one more. Returns NULL if memory ran out.
@@ -26,6 +29,9 @@ void cag_test_free_plans(CagTestPlans *plans) {
     cag_free(p->defines);
     cag_free(p->expected);
     cag_free(p->options);
+    cag_free((void *)(size_t)p->rendering.engine);
+    cag_free((void *)(size_t)p->rendering.quality);
+    cag_free((void *)(size_t)p->rendering.camera);
     cag_free(p->problem);
   }
   cag_free(plans->items);
@@ -89,11 +95,68 @@ static bool set_limit(CagTestPlan *p, const char *name, const char *value) {
   return true;
 }
 
-static void set_problem(CagTestPlan *p, const char *word) {
-  static const char FORM[] =
-      "`%s` is not an option of `// run:`; the options are -D name=value, --picture, --max-depth, --max-memory, --max-time, and --max-triangles";
+static bool keep_word(const char **to, const char *word) {
+  char *copy = cag_strdup(word);
+  if (!copy) return false;
+  cag_free((void *)(size_t)*to);
+  *to = copy;
+  return true;
+}
+
+// Sets an option of the picture. The renderer checks words.
+static bool set_rendering(CagTestPlan *p, const char *name, const char *value) {
+  CagRenderOptions *o = &p->rendering;
+  if (!strcmp(name, "--engine")) return keep_word(&o->engine, value);
+  if (!strcmp(name, "--quality")) return keep_word(&o->quality, value);
+  if (!strcmp(name, "--camera")) return keep_word(&o->camera, value);
+  if (strcmp(name, "--samples") != 0) return false;
+  char *end;
+  const long samples = strtol(value, &end, 10);
+  o->samples = (int)samples;
+  return end > value && !*end && samples >= 1 && samples <= SAMPLES_MAX;
+}
+
+static void set_problem(CagTestPlan *p, const char *format, const char *word, const char *value) {
   cag_free(p->problem);
-  if (cag_asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
+  if (cag_asprintf(&p->problem, format, word, value) < 0) p->problem = NULL;
+}
+
+static bool is_value_option(const char *word) {
+  static const char *const NAMES[] = {"-D",         "--engine",     "--quality",
+                                      "--camera",   "--samples",    "--max-depth",
+                                      "--max-time", "--max-memory", "--max-triangles"};
+  for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
+    if (!strcmp(NAMES[i], word)) return true;
+  return false;
+}
+
+// Reads an option after its name. Returns where the next one starts, or NULL if it is wrong.
+static const char *read_option(CagTestPlan *p, const char *name, const char *at, char *word) {
+  static const char UNKNOWN[] =
+      "`%s` is not an option of `// run:`; the options are -D name=value, --picture, --engine, --quality, --camera, --samples, --max-depth, --max-memory, --max-time, and --max-triangles";
+  if (!strcmp(name, "--picture")) {
+    p->picture = true;
+    return at;
+  }
+  if (!strncmp(name, "-D", 2) && name[2]) {
+    if (add_define(p, name + 2)) return at;
+    set_problem(p, "expected -D name=value, found `%s`", name, NULL);
+    return NULL;
+  }
+  if (!is_value_option(name)) {
+    set_problem(p, UNKNOWN, name, NULL);
+    return NULL;
+  }
+  const char *next = next_word(at, word);
+  if (!next) set_problem(p, "`%s` needs a value", name, NULL);
+  else if (!strcmp(name, "-D")) {
+    if (add_define(p, word)) return next;
+    set_problem(p, "expected -D name=value, found `-D %s`", word, NULL);
+  } else {
+    if (set_limit(p, name, word) || set_rendering(p, name, word)) return next;
+    set_problem(p, "`%s` cannot be `%s`", name, word);
+  }
+  return NULL;
 }
 
 // Parses the options of `// run:` into the plan.
@@ -104,17 +167,10 @@ static void read_options(CagTestPlans *plans, CagTestPlan *p, CagTestPiece text)
   if (!at || !word) plans->memory = true;
   while (at && word && (at = next_word(at, word))) {
     char *name = cag_strdup(word);
-    bool ok = name != NULL;
-    if (ok && !strncmp(name, "-D", 2) && name[2]) ok = add_define(p, name + 2);
-    else if (ok && !strcmp(name, "--picture")) p->picture = true;
-    else if (ok) {
-      const char *value = next_word(at, word);
-      ok = value && (!strcmp(name, "-D") ? add_define(p, word) : set_limit(p, name, word));
-      if (ok) at = value;
-    }
-    if (!ok) set_problem(p, name ? name : word);
+    if (name) at = read_option(p, name, at, word);
+    else plans->memory = true;
     cag_free(name);
-    if (!ok) break;
+    if (!name) break;
   }
   cag_free(word);
 }

@@ -33,7 +33,8 @@ typedef struct CagTestPlan {
   CagTestDefine *defines;
   size_t define_count;
   CagSessionOptions limits;
-  bool picture; // the reference picture belongs to this run
+  bool picture;               // the reference picture belongs to this run
+  CagRenderOptions rendering; // of the picture; NULL and 0 where the run says nothing
   CagTestExpected *expected;
   size_t count;
   char *problem; // with the options; NULL: none

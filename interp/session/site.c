@@ -10,7 +10,6 @@
 #include "base/atomic_file.h"
 #include "base/json_text.h"
 #include "base/memory.h"
-#include "interp/render/povray.h"
 #include "interp/session/session.h"
 #include "interp/session/site.h"
 
@@ -190,13 +189,6 @@ static void report_site(const CagSite *s, const char *format, ...) {
   cag_free(message);
 }
 
-static void find_renderer(CagSite *s) {
-  char found[256];
-  if (s->options->no_pictures) return;
-  s->renders = cag_find_povray(found, sizeof found) != NULL;
-  if (!s->renders) report_site(s, "pictures are omitted, except for drawings: %s", found);
-}
-
 // Reports each failed example as an error of the documentation.
 static int judge(CagSite *s) {
   size_t pictures = 0, wrong = 0;
@@ -218,7 +210,6 @@ static int make(CagSite *s) {
   if (!cag_site_read_scripts(s)) return cag_session_status(s->session);
   if (!make_folders(s)) return cag_session_fail_io(s->session, CAG_ERR_output_file, &s->error);
   if (!read_modules(s)) return cag_session_status(s->session);
-  find_renderer(s);
   write_pages(s);
   cag_site_run(s);
   if (s->options->session.interrupt && *s->options->session.interrupt)

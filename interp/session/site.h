@@ -37,7 +37,6 @@ typedef struct CagSite {
   CagSession *session; // reads modules
   const CagSiteOptions *options;
   const char *folder;
-  bool renders; // POV-Ray is available
   CagSiteExample *examples;
   size_t count, capacity, next;
   bool final;  // the second pass

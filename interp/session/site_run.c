@@ -12,7 +12,6 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "interp/render/povray.h"
 #include "interp/scene/scene.h"
 #include "interp/session/images.h"
 #include "interp/session/session.h"
@@ -181,7 +180,6 @@ static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, 
   e->picture_width = CAG_SITE_WIDTH;
   e->picture_height = CAG_SITE_HEIGHT;
   const bool drawing = is_drawing(&s->scene);
-  if (!drawing && !site->renders) return;
   char *name = picture_name(e->text, shape, drawing ? "svg" : "png");
   char *path = cag_doc_text("%s/%s", site->folder, name);
   int status = CAG_STATUS_OK;

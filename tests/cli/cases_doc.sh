@@ -127,15 +127,15 @@ elif needs node; then
   prints 'Enter leads to functions/bspline.html: bspline'
 fi
 
-it 'drawings are made without POV-Ray, and pictures of another site are kept'
+it 'pictures are made without POV-Ray, and those of another site are kept'
 ran="PATH without povray" && PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
 code=$?
 status 0
-says 'pictures are omitted'
 grep -q 'pictures/[0-9a-f]*\.svg' drawings/functions/bspline.html || wrong 'no drawing of a spline'
+grep -q 'pictures/[0-9a-f]*\.png' drawings/functions/sphere.html || wrong 'no picture of a sphere'
 first=$(ls -i drawings/pictures | head -n 1)
 PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
-[ "$(ls -i drawings/pictures | head -n 1)" = "$first" ] || wrong 'a drawing was made again'
+[ "$(ls -i drawings/pictures | head -n 1)" = "$first" ] || wrong 'a picture was made again'
 
 it 'a folder that cannot be made is told'
 try doc --html flange.cag/site --no-pictures

@@ -149,6 +149,34 @@ says_nothing
 without_povray test still --no-pictures
 prints_exactly '1 passed, 0 failed, 0 skipped'
 
+it 'pictures of the built-in renderer are compared without POV-Ray'
+mkdir preview
+script preview/ball.cag 'param r = 10
+show sphere(r), camera([90, -60, 40], size: [64, 48])
+// run: --picture --engine preview --samples 2'
+"$CAG" render preview/ball.cag --engine preview --samples 2 -o preview/ball.png > out 2> err || wrong 'there is no picture'
+without_povray test preview
+status 0
+prints_exactly '2 passed, 0 failed, 0 skipped'
+without_povray test preview -D r=14
+status 1
+prints 'preview/ball.cag: the picture differs from preview/ball.png'
+"$CAG" render preview/ball.cag --quality draft --camera top -o preview/ball.png > out 2> err || wrong 'there is no picture'
+without_povray test preview
+status 1
+sed -i 's/--engine.*/--quality draft --camera top/' preview/ball.cag
+without_povray test preview
+status 0
+sed -i '/run:/d' preview/ball.cag
+"$CAG" render preview/ball.cag --quality draft -o preview/ball.png > out 2> err || wrong 'there is no picture'
+without_povray test preview --engine preview --quality draft
+status 0
+prints_exactly '2 passed, 0 failed, 0 skipped'
+sed -i '$a // run: --picture --engine raytracer' preview/ball.cag
+try test preview
+status 1
+prints 'found raytracer'
+
 it 'what is skipped is a note in JSON'
 script still/ball.cag 'show sphere(10), camera([90, -60, 40], size: [32, 24])'
 without_povray test still --diagnostics json

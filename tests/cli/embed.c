@@ -1,5 +1,5 @@
 // A program that uses libcag: it makes a vase of the height given on the command line, writes it as
-// a mesh, and renders it if POV-Ray is installed. It compiles as C and as C++.
+// a mesh, and renders it. It compiles as C and as C++.
 
 #include <cag.h>
 #include <signal.h>
@@ -40,11 +40,6 @@ static int make_vase(CagSession *s, const char *height) {
   if (status != CAG_STATUS_OK) return report(s, status);
   printf("%zu items, %zu lights, camera `%s`\n", counts.items, counts.lights,
          cag_session_camera(s, 0));
-  char version[256];
-  if (!cag_find_povray(version, sizeof version)) {
-    printf("no picture: %s\n", version);
-    return report(s, status);
-  }
   CagRenderOptions options;
   cag_render_options_init(&options);
   options.width = 160;
