@@ -245,7 +245,7 @@ $(BUILD)/tests/bench/rays: tests/bench/rays.c $(BUILD)/libcag.a
 $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
-bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays
+bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays $(BUILD)/tests/bench/first_picture
 	BUILD=$(BUILD) sh tests/bench/run.sh
 silhouettes: all
 	python3 tests/bench/silhouettes.py $(BUILD)/cag

@@ -206,7 +206,7 @@ static CagStatus render_rounds(Frame *f, int *complete, int *samples) {
   const int most = f->options->samples > 0 ? f->options->samples : 2;
   const size_t tiles = f->columns * ((size_t)(f->height + TILE - 1) / TILE);
   const size_t pixels = (size_t)f->width * (size_t)f->height;
-  CagPreviewSum *before = cag_malloc(pixels * sizeof *before);
+  CagPreviewSum *before = cag_malloc(pixels * sizeof *before); // the complete rounds
   if (!before) return cag_fail_memory(f->err);
   bool good = true;
   *complete = *samples = 0;
@@ -215,14 +215,14 @@ static CagStatus render_rounds(Frame *f, int *complete, int *samples) {
     f->first_sample = *samples;
     f->samples = f->round < 2 ? 1 : least(least(*samples, ROUND_SAMPLES), most - *samples);
     if (f->round == 2 && f->edge) find_edges(f);
-    memcpy(before, f->sum, pixels * sizeof *before);
+    if (f->round > 0) memcpy(before, f->sum, pixels * sizeof *before);
     good = cag_parallel_checked(tiles, render_numbered_tile, f);
     if (!good) break;
     ++*complete;
     if (f->round > 0) *samples += f->samples;
     report(f, 100 * (f->round > 0 ? *samples : 1.0 / (COARSE * COARSE)) / most);
   }
-  if (!good) memcpy(f->sum, before, pixels * sizeof *before);
+  if (!good && *complete > 0) memcpy(f->sum, before, pixels * sizeof *before);
   cag_free(before);
   if (good) return CAG_OK;
   return f->status ? f->status : cag_stop_check(f->err);
