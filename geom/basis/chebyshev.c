@@ -259,3 +259,15 @@ size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity)
   cag_free(side);
   return n;
 }
+
+void cag_chebyshev_digest(const CagChebyshev *c, CagDigest *d) {
+  cag_digest_word(d, (uint64_t)c->parts);
+  cag_digest_word(d, c->count);
+  for (size_t i = 0; i < c->count; i++) {
+    const Piece *p = &c->pieces[i];
+    cag_digest_number(d, p->a);
+    cag_digest_number(d, p->b);
+    for (int part = 0; part < c->parts; part++)
+      cag_digest_numbers(d, p->series + (size_t)part * ORDERS * COUNT, COUNT);
+  }
+}

@@ -7,6 +7,7 @@
 #ifndef CAG_GEOM_CHEBYSHEV_H
 #define CAG_GEOM_CHEBYSHEV_H
 
+#include "base/digest.h"
 #include "base/status.h"
 #include "geom/basis/interval.h"
 
@@ -24,6 +25,7 @@ CagStatus cag_chebyshev_fit(CagSampled f, void *context, double a, double b, int
                             double tolerance, const char *name, CagChebyshev **out, CagError *err);
 CagChebyshev *cag_chebyshev_retain(const CagChebyshev *c);
 void cag_chebyshev_release(CagChebyshev *c); // c may be NULL
+void cag_chebyshev_digest(const CagChebyshev *c, CagDigest *d);
 // Taylor coefficients 0..n about t (limit from the left where `left`): out[part * (n + 1) + k].
 void cag_chebyshev_series(const CagChebyshev *c, double t, bool left, int n, double *out);
 // Ranges of these coefficients about all t of [a, b], which must not contain a joint of pieces; n

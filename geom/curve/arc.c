@@ -270,8 +270,17 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
              cag_number_text(cag_norm(c->y), b));
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Arc *c = (const Arc *)curve;
+  cag_vec3s_digest(&c->center, 1, d);
+  cag_vec3s_digest(&c->x, 1, d);
+  cag_vec3s_digest(&c->y, 1, d);
+  cag_digest_number(d, c->phase);
+  cag_digest_number(d, c->rate);
+}
+
 #define ARC_KIND(NAME)                                                                             \
-  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL, digest }
 static const CagCurveKind arc_kind = ARC_KIND("arc");
 static const CagCurveKind circle_kind = ARC_KIND("circle");
 static const CagCurveKind ellipse_kind = ARC_KIND("ellipse");

@@ -431,8 +431,15 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
   snprintf(buffer, size, "%zu pieces", ((const Composite *)curve)->n);
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Composite *c = (const Composite *)curve;
+  cag_digest_word(d, c->n);
+  for (size_t i = 0; i < c->n; i++) cag_curve_digest(c->pieces[i], d);
+  cag_digest_numbers(d, c->cuts, c->n + 1);
+}
+
 static const CagCurveKind composite_kind = {"composite", eval, NULL,   to_nurbs, transform,
-                                            part,        hull, breaks, describe, destroy};
+                                            part,        hull, breaks, describe, destroy, digest};
 
 void cag_curve_lay_flat(CagCurve *c) {
   c->dimension = 2;

@@ -347,7 +347,17 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
   else snprintf(buffer, size, "semi-axes %s and %s", cag_number_text(x, a), cag_number_text(y, b));
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Open *c = (const Open *)curve;
+  cag_digest_word(d, (uint64_t)c->d.form);
+  cag_vec3s_digest(&c->d.center, 1, d);
+  cag_vec3s_digest(&c->d.x, 1, d);
+  cag_vec3s_digest(&c->d.y, 1, d);
+  cag_digest_number(d, c->d.phase);
+  cag_digest_number(d, c->d.rate);
+}
+
 #define OPEN_KIND(NAME)                                                                            \
-  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, NULL, digest }
 static const CagCurveKind parabola_kind = OPEN_KIND("parabola");
 static const CagCurveKind hyperbola_kind = OPEN_KIND("hyperbola");

@@ -121,5 +121,11 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 
 static void destroy(CagCurve *c) { cag_curve_release(((Conic *)c)->branch); }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Conic *c = (const Conic *)curve;
+  cag_digest_numbers(d, c->conic.c, 6);
+  if (c->branch) cag_curve_digest(c->branch, d);
+}
+
 static const CagCurveKind conic_kind = {"conic", eval, NULL,   to_nurbs, transform,
-                                        part,    hull, breaks, describe, destroy};
+                                        part,    hull, breaks, describe, destroy, digest};

@@ -40,6 +40,15 @@ void cag_curve_release(CagCurve *c) {
   cag_free(c);
 }
 
+void cag_curve_digest(const CagCurve *c, CagDigest *d) {
+  cag_digest_text(d, c->kind->name);
+  cag_digest_word(d, (uint64_t)c->dimension << 1 | c->angular);
+  cag_digest_number(d, c->start);
+  cag_digest_number(d, c->end);
+  if (c->kind->digest) c->kind->digest(c, d);
+  else d->unknown = true;
+}
+
 bool cag_check_curve(const CagCurve *c) {
   return c && c->kind && c->kind->eval && c->references > 0 &&
          (c->dimension == 2 || c->dimension == 3) && isfinite(c->start) && isfinite(c->end) &&

@@ -54,6 +54,8 @@ typedef struct CagCurveKind {
   void (*describe)(const CagCurve *c, char *buffer, size_t size);
   void (*destroy)(
       CagCurve *c); // frees the data of the kind; cag_curve_release frees the block itself
+  // Adds what the curve was made of, apart from its kind, dimension, and domain.
+  void (*digest)(const CagCurve *c, CagDigest *d);
 } CagCurveKind;
 
 struct CagCurve {
@@ -67,6 +69,8 @@ struct CagCurve {
 
 CagCurve *cag_curve_retain(const CagCurve *c);
 void cag_curve_release(CagCurve *c); // c may be NULL
+// Adds everything that the curve depends on to a digest: curves with equal digests are the same.
+void cag_curve_digest(const CagCurve *c, CagDigest *d);
 
 // Whether the header of a curve is valid: kind, references, dimension, and domain. For CAG_ASSERT
 // and tests; surfaces, meshes, and solids have the same.

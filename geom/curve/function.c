@@ -297,6 +297,16 @@ static void destroy(CagCurve *curve) {
   cag_free(source);
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Function *c = (const Function *)curve;
+  const CagCurveFunction *f = &c->source->function;
+  if (f->digest) f->digest(f->context, d);
+  else d->unknown = true;
+  cag_digest_number(d, c->from);
+  cag_digest_number(d, c->to);
+  if (c->mapped) cag_transform_digest(&c->map, d);
+}
+
 static const CagCurveKind function_kind = {
     .name = "function",
     .eval = eval,
@@ -305,4 +315,5 @@ static const CagCurveKind function_kind = {
     .hull = hull,
     .describe = describe,
     .destroy = destroy,
+    .digest = digest,
 };

@@ -12,6 +12,8 @@ typedef struct CagCurveFunction {
   CagStatus (*eval)(void *context, double t, int order, CagVec3 *out, CagError *err);
   void (*release)(void *context); // called when the last curve that uses the function is released
   void *context;
+  // Adds what the function computes to a digest. NULL: nothing can be said.
+  void (*digest)(void *context, CagDigest *d);
 } CagCurveFunction;
 
 // Kind "function" over [start, end]. On success the curve owns the context; on failure the caller

@@ -195,5 +195,13 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
     snprintf(buffer + used, size - (size_t)used, ", taper %s", cag_number_text(c->taper, k));
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Helix *c = (const Helix *)curve;
+  cag_digest_numbers(d, (const double[]){c->radius, c->pitch, c->turns, c->taper}, 4);
+  cag_transform_digest(&c->frame, d);
+  cag_digest_number(d, c->phase);
+  cag_digest_number(d, c->rate);
+}
+
 static const CagCurveKind helix_kind = {"helix", eval, eval_many, NULL,     transform,
-                                        part,    hull, NULL,      describe, NULL};
+                                        part,    hull, NULL,      describe, NULL, digest};

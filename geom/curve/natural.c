@@ -246,7 +246,7 @@ CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
   c->equations = *equations;
   c->length = length;
   status = solve(c, start, err);
-  const CagCurveFunction function = {eval, release, c};
+  const CagCurveFunction function = {.eval = eval, .release = release, .context = c};
   if (!status) status = cag_curve_function(&function, dimension, 0, length, false, out, err);
   if (status) {
     c->equations.release = NULL; // the caller keeps the context

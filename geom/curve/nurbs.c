@@ -569,8 +569,16 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
            c->periodic ? ", closed" : "");
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const CagNurbs *c = (const CagNurbs *)curve;
+  cag_digest_word(d, (uint64_t)c->degree);
+  cag_digest_word(d, c->count);
+  cag_digest_numbers(d, c->knots, c->count + (size_t)c->degree + 1);
+  cag_digest_numbers(d, c->homogeneous, 4 * c->count);
+}
+
 #define NURBS_KIND(NAME)                                                                           \
-  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, destroy }
+  { NAME, eval, eval_many, to_nurbs, transform, part, hull, breaks, describe, destroy, digest }
 static const CagCurveKind kinds[3] = {NURBS_KIND("bezier"), NURBS_KIND("bspline"),
                                       NURBS_KIND("nurbs")};
 

@@ -80,6 +80,11 @@ static void describe(const CagCurve *c, char *buffer, size_t size) {
   else snprintf(buffer, size, "[%s, %s, %s]", x[0], x[1], x[2]);
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Point *c = (const Point *)curve;
+  cag_vec3s_digest(&c->p, 1, d);
+}
+
 static const CagCurveKind point_kind = {
     .name = "point",
     .eval = eval,
@@ -88,4 +93,5 @@ static const CagCurveKind point_kind = {
     .part = part,
     .hull = hull,
     .describe = describe,
+    .digest = digest,
 };

@@ -220,7 +220,13 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
   snprintf(buffer, size, "%zu points%s", c->n - c->ring, c->ring ? ", closed" : "");
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const Polyline *c = (const Polyline *)curve;
+  cag_vec3s_digest(c->points, c->n, d);
+  cag_digest_numbers(d, c->params, c->n);
+}
+
 #define STRAIGHT_KIND(NAME)                                                                        \
-  { NAME, eval, NULL, to_nurbs, transform, part, hull, breaks, describe, destroy }
+  { NAME, eval, NULL, to_nurbs, transform, part, hull, breaks, describe, destroy, digest }
 static const CagCurveKind line_kind = STRAIGHT_KIND("line");
 static const CagCurveKind polyline_kind = STRAIGHT_KIND("polyline");

@@ -15,6 +15,11 @@
 // Points this close to a loop, as a fraction of its size, lie on it.
 #define ON_BOUNDARY 1e-10
 
+void cag_region_digest(const CagRegion *r, CagDigest *d) {
+  cag_digest_word(d, r->count);
+  for (size_t i = 0; i < r->count; i++) cag_curve_digest(r->loops[i], d);
+}
+
 CagRegion *cag_region_retain(const CagRegion *r) {
   CagRegion *mine = (CagRegion *)r;
   if (mine) mine->references++;

@@ -27,6 +27,8 @@ CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **ou
 CagStatus cag_region_empty(CagRegion **out, CagError *err);
 bool cag_region_is_empty(const CagRegion *r);
 CagRegion *cag_region_retain(const CagRegion *r);
+// Adds the loops of the region to a digest.
+void cag_region_digest(const CagRegion *r, CagDigest *d);
 void cag_region_release(CagRegion *r);
 
 CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **out,

@@ -538,3 +538,13 @@ CagTransform cag_mdh(double theta, double d, double a, double alpha) {
                               {st * sa, ct * sa, ca, ca * d},
                               {0, 0, 0, 1}}};
 }
+
+void cag_vec3s_digest(const CagVec3 *points, size_t n, CagDigest *d) {
+  for (size_t i = 0; i < n; i++)
+    cag_digest_numbers(d, (const double[]){points[i].x, points[i].y, points[i].z}, 3);
+}
+
+void cag_transform_digest(const CagTransform *t, CagDigest *d) {
+  cag_digest_numbers(d, t->m[0], 16);
+  cag_digest_word(d, (uint64_t)t->planar << 1 | t->in_front);
+}

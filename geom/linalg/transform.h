@@ -7,6 +7,7 @@
 #ifndef CAG_GEOM_TRANSFORM_H
 #define CAG_GEOM_TRANSFORM_H
 
+#include "base/digest.h"
 #include "base/status.h"
 #include "geom/linalg/vec.h"
 
@@ -108,5 +109,9 @@ typedef struct CagTransformClass {
                        // plane
 } CagTransformClass;
 CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, CagError *err);
+
+// Add the coordinates of points, and the map, to a digest.
+void cag_vec3s_digest(const CagVec3 *points, size_t n, CagDigest *d);
+void cag_transform_digest(const CagTransform *t, CagDigest *d);
 
 #endif

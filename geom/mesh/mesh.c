@@ -47,6 +47,18 @@ CagMesh *cag_mesh_retain(const CagMesh *m) {
   return shared;
 }
 
+void cag_mesh_digest(const CagMesh *m, CagDigest *d) {
+  const size_t v = m->vertex_count, t = m->triangle_count;
+  cag_digest_bytes(d, m->positions, v * sizeof *m->positions);
+  cag_digest_bytes(d, m->triangles, 3 * t * sizeof *m->triangles);
+  if (m->normals) cag_digest_bytes(d, m->normals, v * sizeof *m->normals);
+  if (m->uv) cag_digest_bytes(d, m->uv, 2 * v * sizeof *m->uv);
+  if (m->labels) cag_digest_bytes(d, m->labels, t * sizeof *m->labels);
+  cag_digest_word(d, (uint64_t)m->scale.kind << 32 | (uint64_t)m->scale.stripes);
+  cag_digest_number(d, m->scale.from);
+  cag_digest_number(d, m->scale.to);
+}
+
 void cag_mesh_release(CagMesh *m) {
   if (!m || --m->references > 0) return;
   cag_free(m->positions);

@@ -43,6 +43,8 @@ CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv,
                        CagMesh **out, CagError *err); // contents unset
 CagMesh *cag_mesh_retain(const CagMesh *m);
 void cag_mesh_release(CagMesh *m);
+// Adds the contents of the mesh to a digest.
+void cag_mesh_digest(const CagMesh *m, CagDigest *d);
 // Whether the invariant above holds, and all positions are finite. Linear time.
 bool cag_check_mesh(const CagMesh *m);
 // A validated copy of lists; faces are polygons of 3 or more vertices, given by their counts and

@@ -66,6 +66,32 @@ void cag_solid_release(CagSolid *s) {
   cag_free(s);
 }
 
+bool cag_solid_has_own_frame(const CagSolid *s) {
+  return s->core || s->kind == CAG_SOLID_BOX || s->kind == CAG_SOLID_SPHERE ||
+         s->kind == CAG_SOLID_CYLINDER || s->kind == CAG_SOLID_TORUS;
+}
+
+static void core_digest(const CagSolidCore *c, bool of_mesh, CagDigest *d) {
+  cag_digest_word(d, c->count);
+  for (size_t i = 0; i < c->count; i++) cag_solid_digest(c->operands[i], d);
+  cag_digest_numbers(d, c->form, 10);
+  if (of_mesh) cag_mesh_digest(c->mesh, d);
+}
+
+void cag_solid_digest_in_own_frame(const CagSolid *s, CagDigest *d) {
+  cag_digest_word(d, (uint64_t)s->kind << 1 | s->centered);
+  cag_digest_word(d, s->label);
+  cag_digest_numbers(d, (const double[]){s->a, s->b, s->c}, 3);
+  if (s->core) core_digest(s->core, s->kind == CAG_SOLID_MESH, d);
+}
+
+void cag_solid_digest(const CagSolid *s, CagDigest *d) {
+  cag_solid_digest_in_own_frame(s, d);
+  if (cag_solid_has_own_frame(s)) cag_transform_digest(&s->placement, d);
+  else
+    for (size_t i = 0; i < s->face_count; i++) cag_surface_digest(s->faces[i], d);
+}
+
 bool cag_check_solid(const CagSolid *s) {
   if (!s || s->references < 1 || (int)s->kind < 0 || s->kind > CAG_SOLID_INTERSECTION) return false;
   if (s->face_count == 0 && !s->core) return false;

@@ -96,6 +96,12 @@ const CagSurface *cag_solid_side(const CagSolid *s);
 CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, CagError *err);
 
 CagSolid *cag_solid_retain(const CagSolid *s);
+// Adds everything that the solid depends on to a digest: those with equal digests are the same.
+void cag_solid_digest(const CagSolid *s, CagDigest *d);
+// Whether the solid is one that keeps its own coordinates beside its placement: a primitive, a set
+// operation, or a mesh. The second function then adds the solid in its own coordinates to a digest.
+bool cag_solid_has_own_frame(const CagSolid *s);
+void cag_solid_digest_in_own_frame(const CagSolid *s, CagDigest *d);
 void cag_solid_release(CagSolid *s);
 CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid **out,
                               CagError *err);

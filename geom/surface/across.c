@@ -137,6 +137,15 @@ static void destroy(CagSurface *surface) {
   cag_net_free(&s->spline);
 }
 
+static void digest(const CagSurface *surface, CagDigest *d) {
+  const Across *s = (const Across *)surface;
+  cag_digest_word(d, s->n);
+  for (size_t i = 0; i < s->n; i++) cag_curve_digest(s->curve[i], d);
+  cag_digest_word(d, (uint64_t)s->spline.degree);
+  cag_digest_numbers(d, s->spline.knots, s->spline.count + (size_t)s->spline.degree + 1);
+  cag_digest_numbers(d, s->spline.data, s->spline.count * s->spline.width);
+}
+
 static const CagSurfaceKind across_kind = {
     .name = "loft",
     .eval = eval,
@@ -145,6 +154,7 @@ static const CagSurfaceKind across_kind = {
     .breaks = breaks,
     .describe = describe,
     .destroy = destroy,
+    .digest = digest,
 };
 
 CagStatus cag_surface_across(const CagCurve *const *curves, const CagNet *cardinal,

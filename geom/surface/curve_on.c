@@ -320,6 +320,13 @@ static void destroy(CagCurve *curve) {
   cag_free(c->breaks);
 }
 
+static void digest(const CagCurve *curve, CagDigest *d) {
+  const OnSurface *s = (const OnSurface *)curve;
+  cag_surface_digest(s->surface, d);
+  cag_curve_digest(s->plane, d);
+  if (s->mapped) cag_transform_digest(&s->map, d);
+}
+
 static const CagCurveKind on_surface_kind = {
     .name = "on surface",
     .eval = eval,
@@ -329,4 +336,5 @@ static const CagCurveKind on_surface_kind = {
     .breaks = breaks,
     .describe = describe,
     .destroy = destroy,
+    .digest = digest,
 };

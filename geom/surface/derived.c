@@ -122,6 +122,12 @@ static CagStatus part_to_nurbs(const CagSurface *s, CagSurface **out, CagError *
   return status;
 }
 
+static void derived_digest(const CagSurface *surface, CagDigest *d) {
+  const Derived *s = (const Derived *)surface;
+  cag_surface_digest(s->inner, d);
+  cag_digest_number(d, s->distance);
+}
+
 static const CagSurfaceKind part_kind = {
     .name = "part",
     .eval = part_eval,
@@ -130,6 +136,7 @@ static const CagSurfaceKind part_kind = {
     .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
+    .digest = derived_digest,
 };
 
 static CagStatus check_range(double a, double b, double lo, double hi, bool angular,
@@ -193,6 +200,7 @@ static const CagSurfaceKind transposed_kind = {
     .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
+    .digest = derived_digest,
 };
 
 CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err) {
@@ -339,6 +347,7 @@ static const CagSurfaceKind offset_kind = {
     .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
+    .digest = derived_digest,
 };
 
 CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err) {

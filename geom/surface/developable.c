@@ -286,12 +286,22 @@ static void developable_destroy(CagSurface *s) {
   cag_chebyshev_release(w->t);
 }
 
+static void developable_digest(const CagSurface *surface, CagDigest *d) {
+  const Developable *s = (const Developable *)surface;
+  cag_curve_digest(s->a, d);
+  cag_curve_digest(s->b, d);
+  cag_digest_number(d, s->s0);
+  cag_digest_number(d, s->s1);
+  if (s->t) cag_chebyshev_digest(s->t, d);
+}
+
 static const CagSurfaceKind developable_kind = {
     .name = "developable",
     .eval = developable_eval,
     .breaks = developable_breaks,
     .describe = developable_describe,
     .destroy = developable_destroy,
+    .digest = developable_digest,
 };
 
 // Whether rulings match equal fractions of the domains.

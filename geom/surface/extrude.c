@@ -155,6 +155,14 @@ static void extrusion_describe(const CagSurface *s, char *buffer, size_t size) {
 
 static void extrusion_destroy(CagSurface *s) { cag_curve_release(((Extrusion *)s)->section); }
 
+static void extrusion_digest(const CagSurface *surface, CagDigest *d) {
+  const Extrusion *s = (const Extrusion *)surface;
+  cag_curve_digest(s->section, d);
+  cag_vec3s_digest(&s->along, 1, d);
+  cag_digest_number(d, s->twist);
+  cag_digest_number(d, s->scale);
+}
+
 static const CagSurfaceKind extrusion_kind = {
     .name = "extrusion",
     .eval = extrusion_eval,
@@ -164,6 +172,7 @@ static const CagSurfaceKind extrusion_kind = {
     .breaks = extrusion_breaks,
     .describe = extrusion_describe,
     .destroy = extrusion_destroy,
+    .digest = extrusion_digest,
 };
 
 CagStatus cag_surface_extrude(const CagCurve *c, CagVec3 v, double twist, double scale,

@@ -82,12 +82,19 @@ static void destroy(CagSurface *s) {
   if (f->release) f->release(f->context);
 }
 
+static void digest(const CagSurface *surface, CagDigest *d) {
+  const Function *s = (const Function *)surface;
+  if (s->function.digest) s->function.digest(s->function.context, d);
+  else d->unknown = true;
+}
+
 static const CagSurfaceKind function_kind = {
     .name = "function",
     .eval = eval,
     .eval_grid = eval_grid,
     .describe = describe,
     .destroy = destroy,
+    .digest = digest,
 };
 
 static CagStatus check_range(double a, double b, bool angular, const char *name, CagError *err) {

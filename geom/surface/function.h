@@ -15,6 +15,8 @@ typedef struct CagSurfaceFunction {
                         CagError *err);
   void (*release)(void *context); // called when the surface is released
   void *context;
+  // Adds what the function computes to a digest. NULL: nothing can be said.
+  void (*digest)(void *context, CagDigest *d);
 } CagSurfaceFunction;
 
 // Kind "function". Closed directions and poles are detected to rounding. On success the surface

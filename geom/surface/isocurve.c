@@ -183,6 +183,13 @@ static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagErr
                   cag_article(c->surface->kind->name), c->surface->kind->name);
 }
 
+static void isocurve_digest(const CagCurve *curve, CagDigest *d) {
+  const Isocurve *s = (const Isocurve *)curve;
+  cag_surface_digest(s->surface, d);
+  cag_digest_word(d, (uint64_t)s->direction);
+  cag_digest_numbers(d, (const double[]){s->at, s->offset, s->factor}, 3);
+}
+
 static const CagCurveKind isocurve_kind = {
     .name = "isocurve",
     .eval = isocurve_eval,
@@ -193,6 +200,7 @@ static const CagCurveKind isocurve_kind = {
     .breaks = isocurve_breaks,
     .describe = isocurve_describe,
     .destroy = isocurve_destroy,
+    .digest = isocurve_digest,
 };
 
 // --- NURBS ---

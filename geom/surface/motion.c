@@ -755,3 +755,20 @@ CagStatus cag_motion_frame(const CagMotion *m, double t, CagTransform *out, CagE
   }
   return CAG_OK;
 }
+
+static void along_digest(const CagAlong *a, CagDigest *d) {
+  cag_digest_number(d, a->start);
+  cag_digest_number(d, a->end);
+  if (a->function) cag_chebyshev_digest(a->function, d);
+}
+
+void cag_motion_digest(const CagMotion *m, CagDigest *d) {
+  cag_digest_numbers(d, (const double[]){m->start, m->end}, 2);
+  if (m->rows) cag_chebyshev_digest(m->rows, d);
+  if (!m->path) return;
+  cag_curve_digest(m->path, d);
+  cag_digest_word(d, (uint64_t)m->how.orient);
+  cag_vec3s_digest(&m->how.up, 1, d);
+  along_digest(&m->how.twist, d);
+  along_digest(&m->how.scale, d);
+}

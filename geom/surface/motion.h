@@ -50,6 +50,7 @@ CagStatus cag_motion_affine(const CagChebyshev *rows, double a, double b, bool a
                             CagMotion **out, CagError *err);
 CagMotion *cag_motion_retain(const CagMotion *m);
 void cag_motion_release(CagMotion *m);
+void cag_motion_digest(const CagMotion *m, CagDigest *d);
 
 CagStatus cag_motion_at(const CagMotion *m, double t, int n, CagSide side, CagMotionSeries *out,
                         CagError *err);

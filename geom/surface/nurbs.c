@@ -338,11 +338,23 @@ static void nurbs_describe(const CagSurface *s, char *buffer, size_t size) {
            b->u.distinct, b->v.distinct, closed);
 }
 
+static void nurbs_digest(const CagSurface *surface, CagDigest *d) {
+  const Nurbs *s = (const Nurbs *)surface;
+  const Direction *const directions[] = {&s->u, &s->v};
+  for (int i = 0; i < 2; i++) {
+    const Direction *k = directions[i];
+    cag_digest_word(d, (uint64_t)k->degree);
+    cag_digest_word(d, k->count);
+    cag_digest_numbers(d, k->knots, k->count + (size_t)k->degree + 1);
+  }
+  cag_digest_numbers(d, s->net, 4 * s->u.count * s->v.count);
+}
+
 #define NURBS_TABLE(text)                                                                          \
   {                                                                                                \
     .name = text, .eval = cag_tensor_eval, .eval_grid = cag_tensor_grid,                           \
     .to_nurbs = nurbs_to_nurbs, .transform = nurbs_transform, .breaks = nurbs_breaks,              \
-    .describe = nurbs_describe, .destroy = nurbs_destroy,                                          \
+    .describe = nurbs_describe, .destroy = nurbs_destroy, .digest = nurbs_digest,                  \
   }
 static const CagSurfaceKind bezier_kind = NURBS_TABLE("bezier");
 static const CagSurfaceKind bspline_kind = NURBS_TABLE("bspline");

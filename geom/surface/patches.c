@@ -165,6 +165,11 @@ static void coons_destroy(CagSurface *s) {
   for (int k = 0; k < 4; k++) cag_curve_release(((Coons *)s)->side[k]);
 }
 
+static void coons_digest(const CagSurface *surface, CagDigest *d) {
+  const Coons *s = (const Coons *)surface;
+  for (int i = 0; i < 4; i++) cag_curve_digest(s->side[i], d);
+}
+
 static const CagSurfaceKind coons_kind = {
     .name = "coons",
     .eval = coons_eval,
@@ -173,6 +178,7 @@ static const CagSurfaceKind coons_kind = {
     .breaks = coons_breaks,
     .describe = coons_describe,
     .destroy = coons_destroy,
+    .digest = coons_digest,
 };
 
 static const char *const SIDES[] = {"u0", "u1", "v0", "v1"};

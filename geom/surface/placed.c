@@ -122,6 +122,13 @@ static void placed_destroy(CagSurface *s) {
   cag_free(p->breaks.at);
 }
 
+static void placed_digest(const CagSurface *surface, CagDigest *d) {
+  const Placed *s = (const Placed *)surface;
+  cag_surface_digest(s->inner, d);
+  cag_transform_digest(&s->map, d);
+  cag_digest_word(d, s->flip);
+}
+
 static const CagSurfaceKind placed_kind = {
     .name = "transformed",
     .eval = placed_eval,
@@ -131,6 +138,7 @@ static const CagSurfaceKind placed_kind = {
     .breaks = placed_breaks,
     .describe = placed_describe,
     .destroy = placed_destroy,
+    .digest = placed_digest,
 };
 
 static bool is_identity(const CagTransform *t) {

@@ -70,6 +70,12 @@ static void planar_describe(const CagSurface *s, char *buffer, size_t size) {
 
 static void planar_destroy(CagSurface *s) { cag_region_release(((Planar *)s)->region); }
 
+static void planar_digest(const CagSurface *surface, CagDigest *d) {
+  const Planar *s = (const Planar *)surface;
+  cag_region_digest(s->region, d);
+  cag_transform_digest(&s->frame, d);
+}
+
 static const CagSurfaceKind planar_kind = {
     .name = "planar",
     .eval = planar_eval,
@@ -77,6 +83,7 @@ static const CagSurfaceKind planar_kind = {
     .transform = planar_transform,
     .describe = planar_describe,
     .destroy = planar_destroy,
+    .digest = planar_digest,
 };
 
 CagStatus cag_surface_planar(const CagRegion *region, const CagTransform *frame, CagSurface **out,

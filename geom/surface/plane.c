@@ -68,6 +68,13 @@ static void plane_describe(const CagSurface *s, char *buffer, size_t size) {
            cag_number_text(cag_norm(p->y), y));
 }
 
+static void plane_digest(const CagSurface *surface, CagDigest *d) {
+  const Parallelogram *s = (const Parallelogram *)surface;
+  cag_vec3s_digest(&s->origin, 1, d);
+  cag_vec3s_digest(&s->x, 1, d);
+  cag_vec3s_digest(&s->y, 1, d);
+}
+
 static const CagSurfaceKind plane_kind = {
     .name = "plane",
     .eval = plane_eval,
@@ -75,6 +82,7 @@ static const CagSurfaceKind plane_kind = {
     .to_nurbs = plane_to_nurbs,
     .transform = plane_transform,
     .describe = plane_describe,
+    .digest = plane_digest,
 };
 
 CagStatus cag_surface_parallelogram(CagVec3 origin, CagVec3 x, CagVec3 y, CagSurface **out,

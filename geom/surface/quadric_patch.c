@@ -221,6 +221,12 @@ static void patch_describe(const CagSurface *s, char *buffer, size_t size) {
   snprintf(buffer, size, "%s", SHAPE[((const Patch *)s)->shape].text);
 }
 
+static void patch_digest(const CagSurface *surface, CagDigest *d) {
+  const Patch *s = (const Patch *)surface;
+  cag_digest_word(d, (uint64_t)s->shape);
+  cag_transform_digest(&s->frame, d);
+}
+
 static const CagSurfaceKind quadric_kind = {
     .name = "quadric",
     .eval = patch_eval,
@@ -228,6 +234,7 @@ static const CagSurfaceKind quadric_kind = {
     .to_nurbs = patch_to_nurbs,
     .transform = patch_transform,
     .describe = patch_describe,
+    .digest = patch_digest,
 };
 
 CagStatus cag_surface_quadric(CagQuadricShape shape, const CagTransform *frame, double u0,

@@ -284,6 +284,13 @@ static CagStatus find_meridian(Revolution *r, double size, CagError *err) {
   return CAG_OK;
 }
 
+static void revolution_digest(const CagSurface *surface, CagDigest *d) {
+  const Revolution *s = (const Revolution *)surface;
+  cag_curve_digest(s->profile, d);
+  cag_vec3s_digest(&s->axis, 1, d);
+  cag_vec3s_digest(&s->through, 1, d);
+}
+
 static const CagSurfaceKind revolution_kind = {
     .name = "revolution",
     .eval = revolution_eval,
@@ -293,6 +300,7 @@ static const CagSurfaceKind revolution_kind = {
     .breaks = revolution_breaks,
     .describe = revolution_describe,
     .destroy = revolution_destroy,
+    .digest = revolution_digest,
 };
 
 // A revolution may overlap itself, but at most once.

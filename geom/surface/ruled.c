@@ -176,6 +176,12 @@ static CagStatus ruled_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
   return status;
 }
 
+static void pair_digest(const CagSurface *surface, CagDigest *d) {
+  const Pair *s = (const Pair *)surface;
+  cag_curve_digest(s->a, d);
+  cag_curve_digest(s->b, d);
+}
+
 static const CagSurfaceKind ruled_kind = {
     .name = "ruled",
     .eval = ruled_eval,
@@ -185,6 +191,7 @@ static const CagSurfaceKind ruled_kind = {
     .breaks = ruled_breaks,
     .describe = ruled_describe,
     .destroy = pair_destroy,
+    .digest = pair_digest,
 };
 
 CagStatus cag_surface_ruled(const CagCurve *first, const CagCurve *second, CagSurface **out,
@@ -235,6 +242,7 @@ static const CagSurfaceKind bilinear_kind = {
     .transform = ruled_transform,
     .describe = bilinear_describe,
     .destroy = pair_destroy,
+    .digest = pair_digest,
 };
 
 // --- Translational ---
@@ -361,4 +369,5 @@ static const CagSurfaceKind translational_kind = {
     .breaks = translational_breaks,
     .describe = translational_describe,
     .destroy = pair_destroy,
+    .digest = pair_digest,
 };

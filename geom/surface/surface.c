@@ -43,6 +43,14 @@ void cag_surface_release(CagSurface *s) {
   cag_free(s);
 }
 
+void cag_surface_digest(const CagSurface *s, CagDigest *d) {
+  cag_digest_text(d, s->kind->name);
+  cag_digest_numbers(d, (const double[]){s->u0, s->u1, s->v0, s->v1}, 4);
+  cag_digest_word(d, (uint64_t)s->angular_u << 1 | s->angular_v);
+  if (s->kind->digest) s->kind->digest(s, d);
+  else d->unknown = true;
+}
+
 bool cag_check_surface(const CagSurface *s) {
   return s && s->kind && s->kind->eval && s->references > 0 && isfinite(s->u0) && isfinite(s->u1) &&
          isfinite(s->v0) && isfinite(s->v1) && s->u0 < s->u1 && s->v0 < s->v1;

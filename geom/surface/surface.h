@@ -40,6 +40,8 @@ typedef struct CagSurfaceKind {
                    size_t capacity); // interior breaks, as for curves; direction 0: u, 1: v
   void (*describe)(const CagSurface *s, char *buffer, size_t size);
   void (*destroy)(CagSurface *s);
+  // Adds what the surface was made of, apart from its kind and domain.
+  void (*digest)(const CagSurface *s, CagDigest *d);
 } CagSurfaceKind;
 
 struct CagSurface {
@@ -54,6 +56,8 @@ struct CagSurface {
 
 CagSurface *cag_surface_retain(const CagSurface *s);
 void cag_surface_release(CagSurface *s);
+// Adds everything that the surface depends on to a digest: those with equal digests are the same.
+void cag_surface_digest(const CagSurface *s, CagDigest *d);
 bool cag_check_surface(const CagSurface *s); // see cag_check_curve
 
 // --- Constructors ---

@@ -90,12 +90,19 @@ static void torus_describe(const CagSurface *s, char *buffer, size_t size) {
            cag_number_text(t->minor, b));
 }
 
+static void torus_digest(const CagSurface *surface, CagDigest *d) {
+  const Torus *s = (const Torus *)surface;
+  cag_digest_number(d, s->major);
+  cag_digest_number(d, s->minor);
+}
+
 static const CagSurfaceKind torus_kind = {
     .name = "torus",
     .eval = torus_eval,
     .eval_grid = torus_grid,
     .to_nurbs = torus_to_nurbs,
     .describe = torus_describe,
+    .digest = torus_digest,
 };
 
 CagStatus cag_surface_torus(double major, double minor, CagSurface **out, CagError *err) {

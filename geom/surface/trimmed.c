@@ -75,6 +75,12 @@ static void trimmed_destroy(CagSurface *s) {
   cag_free(w->breaks[1].at);
 }
 
+static void trimmed_digest(const CagSurface *surface, CagDigest *d) {
+  const Trimmed *s = (const Trimmed *)surface;
+  cag_surface_digest(s->inner, d);
+  cag_region_digest(s->region, d);
+}
+
 static const CagSurfaceKind trimmed_kind = {
     .name = "trimmed",
     .eval = trimmed_eval,
@@ -83,6 +89,7 @@ static const CagSurfaceKind trimmed_kind = {
     .breaks = trimmed_breaks,
     .describe = trimmed_describe,
     .destroy = trimmed_destroy,
+    .digest = trimmed_digest,
 };
 
 CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, CagSurface **out,

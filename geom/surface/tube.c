@@ -232,6 +232,12 @@ static CagStatus sweep_to_nurbs(const CagSurface *surface, CagSurface **out, Cag
 
 // --- Construction ---
 
+static void sweep_digest(const CagSurface *surface, CagDigest *d) {
+  const Sweep *s = (const Sweep *)surface;
+  cag_curve_digest(s->section, d);
+  cag_motion_digest(s->motion, d);
+}
+
 static const CagSurfaceKind sweep_kind = {
     .name = "sweep",
     .eval = sweep_eval,
@@ -240,6 +246,7 @@ static const CagSurfaceKind sweep_kind = {
     .breaks = sweep_breaks,
     .describe = sweep_describe,
     .destroy = sweep_destroy,
+    .digest = sweep_digest,
 };
 
 static const CagSurfaceKind tube_kind = {
@@ -250,6 +257,7 @@ static const CagSurfaceKind tube_kind = {
     .breaks = sweep_breaks,
     .describe = tube_describe,
     .destroy = sweep_destroy,
+    .digest = sweep_digest,
 };
 
 static CagStatus make(const CagSurfaceKind *kind, const CagCurve *section, const CagMotion *motion,

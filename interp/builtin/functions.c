@@ -191,7 +191,7 @@ bool cag_functions_curve(CagCall *call, const struct cag_functions_curve *a, Cag
   // The first point determines whether the curve lies in the plane or in space.
   CagVec3 p;
   CagCurve *c = NULL;
-  const CagCurveFunction geometry = {curve_eval, formula_free, f};
+  const CagCurveFunction geometry = {.eval = curve_eval, .release = formula_free, .context = f};
   CagStatus status = t.start < t.end ? curve_eval(f, t.start, 0, &p, call->err) : CAG_OK;
   if (!status)
     status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, t.start, t.end, t.angle, &c,
@@ -335,7 +335,8 @@ bool cag_functions_surface(CagCall *call, const struct cag_functions_surface *a,
   Formula *f = formula_new(call, a->f, 2);
   f->angular[0] = u.angle;
   f->angular[1] = v.angle;
-  const CagSurfaceFunction geometry = {surface_eval, surface_row, formula_free, f};
+  const CagSurfaceFunction geometry = {
+      .eval = surface_eval, .eval_row = surface_row, .release = formula_free, .context = f};
   CagSurface *s;
   CagStatus status = cag_surface_function(&geometry, u.start, u.end, u.angle, v.start, v.end,
                                           v.angle, &s, call->err);
