@@ -539,6 +539,17 @@ CagTransform cag_mdh(double theta, double d, double a, double alpha) {
                               {0, 0, 0, 1}}};
 }
 
+bool cag_transform_is_rigid(const CagTransform *t) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j <= i; j++) {
+      double dot = t->m[0][i] * t->m[0][j] + t->m[1][i] * t->m[1][j] + t->m[2][i] * t->m[2][j];
+      if (!(fabs(dot - (i == j)) <= CAG_PARALLEL)) return false;
+    }
+  for (int j = 0; j < 4; j++)
+    if (t->m[3][j] != (j == 3) || (j < 3 && !isfinite(t->m[j][3]))) return false;
+  return cag_transform_determinant(t) > 0;
+}
+
 void cag_vec3s_digest(const CagVec3 *points, size_t n, CagDigest *d) {
   for (size_t i = 0; i < n; i++)
     cag_digest_numbers(d, (const double[]){points[i].x, points[i].y, points[i].z}, 3);

@@ -110,6 +110,8 @@ typedef struct CagTransformClass {
 } CagTransformClass;
 CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, CagError *err);
 
+// Tests whether the map is a rotation and a translation, to CAG_PARALLEL.
+bool cag_transform_is_rigid(const CagTransform *t);
 // Add the coordinates of points, and the map, to a digest.
 void cag_vec3s_digest(const CagVec3 *points, size_t n, CagDigest *d);
 void cag_transform_digest(const CagTransform *t, CagDigest *d);

@@ -19,20 +19,9 @@
 
 // --- Checks ---
 
-bool cag_robot_is_rigid(const CagTransform *t) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j <= i; j++) {
-      double dot = t->m[0][i] * t->m[0][j] + t->m[1][i] * t->m[1][j] + t->m[2][i] * t->m[2][j];
-      if (!(fabs(dot - (i == j)) <= RIGID)) return false;
-    }
-  for (int j = 0; j < 4; j++)
-    if (t->m[3][j] != (j == 3) || (j < 3 && !isfinite(t->m[j][3]))) return false;
-  return cag_transform_determinant(t) > 0;
-}
-
 static CagStatus check_rigid(const CagTransform *t, const char *argument, long link,
                              CagError *err) {
-  if (cag_robot_is_rigid(t)) return CAG_OK;
+  if (cag_transform_is_rigid(t)) return CAG_OK;
   char place[48] = "";
   if (link >= 0) snprintf(place, sizeof place, " of links[%ld]", link);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, argument, link,

@@ -22,7 +22,6 @@ typedef struct CagRobotTurns {
   double sine[CAG_ROBOT_JOINTS_MAX], cosine[CAG_ROBOT_JOINTS_MAX];
 } CagRobotTurns;
 
-bool cag_robot_is_rigid(const CagTransform *t);
 CagTransform cag_robot_rigid_inverse(const CagTransform *t);
 
 static inline void cag_robot_frame_from(const CagTransform *t, CagRobotFrame *f) {

@@ -119,8 +119,7 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   a->tolerance = b->tolerance;
   a->hidden = b->hidden;
   a->drawn = b->drawn;
-  a->origin.source = b->origin.source;
-  a->origin.span = b->origin.span;
+  a->origin.last = b->origin.last;
 }
 
 bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {

@@ -7,6 +7,13 @@
 #include "interp/vm/jet.h"
 #include "interp/vm/vm.h"
 
+// Whether the mesh of a shape that only moves is worth keeping. Solids with a frame of their own
+// tell by it that they only moved, and regions are meshed in their plane.
+static bool keeps_mesh(CagValue v) {
+  return v.type == CAG_CURVE || v.type == CAG_SURFACE || v.type == CAG_MESH ||
+         (v.type == CAG_SOLID && !cag_solid_has_own_frame(CAG_AS_SHAPE(v)->as.solid));
+}
+
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
 // The factor that the image of a point is divided by.
@@ -91,7 +98,11 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   const CagValueType *type = cag_value_type(v);
   if (v.type == CAG_LIST) return cag_move_list(call, t, v, result);
   if (t->in_front && cag_is_shape(v) && !check_in_front(call, t, v)) return false;
-  if (type->transform) return type->transform(call, t, v, result);
+  if (type->transform) {
+    if (!type->transform(call, t, v, result)) return false;
+    if (keeps_mesh(v) && cag_transform_is_rigid(t)) cag_shape_moved(call->vm, *result, v, t);
+    return true;
+  }
   if (cag_holds_jet(v)) return cag_fail_differentiate(call, 0);
   CagString found = {0};
   cag_describe_value(call->vm, &found, v);

@@ -150,6 +150,8 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
   if (s->material) cag_mark_object(h, &s->material->head);
   if (s->name) cag_mark_object(h, &s->name->head);
+  if (s->origin.last) cag_mark_object(h, &s->origin.last->head);
+  if (s->still) cag_mark_object(h, &s->still->head);
 }
 
 static void add_count(CagString *s, size_t n, const char *one, const char *many) {

@@ -80,6 +80,17 @@ bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span) {
   return true;
 }
 
+bool cag_vm_caller(const CagVm *vm, const CagSource **source, CagSpan *span) {
+  for (size_t i = vm->frame_count; i-- > 0;) {
+    const CagFrame *f = &vm->frames[i];
+    if (f->proto->source->library) continue;
+    *source = f->proto->source;
+    *span = place_of(f, WHOLE_CALL);
+    return true;
+  }
+  return false;
+}
+
 static const char *memory_message(const CagVm *vm, char *buffer, size_t size) {
   static const char *const units[] = {"B", "KiB", "MiB", "GiB"};
   double limit = (double)vm->account.limit;

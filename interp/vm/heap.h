@@ -22,7 +22,13 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size);
 void cag_collect(CagVm *vm);
 
 // Kinds of objects with the type CAG_INTERNAL, in their head.flags.
-enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2, CAG_INTERNAL_LABEL = 3 };
+enum {
+  CAG_INTERNAL_BUILDER = 1,
+  CAG_INTERNAL_LAYOUT = 2,
+  CAG_INTERNAL_LABEL = 3,
+  CAG_INTERNAL_STEP = 4,
+  CAG_INTERNAL_STILL = 5
+};
 
 void cag_heap_init(CagVm *vm);
 void cag_heap_free(CagVm *vm);

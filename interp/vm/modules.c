@@ -63,7 +63,11 @@ static size_t find_standard(CagVm *vm, const char *name) {
       return i;
   for (const CagStdlibFile *f = cag_stdlib; f->module; f++)
     if (strcmp(f->module, name) == 0)
-      return load_unit(vm, new_unit(vm, name, NULL, f->text, f->length), CAG_PARSE_FILE);
+{
+      CagModuleUnit *m = new_unit(vm, name, NULL, f->text, f->length);
+      m->source->library = true;
+      return load_unit(vm, m, CAG_PARSE_FILE);
+    }
   return CAG_NO_MODULE;
 }
 

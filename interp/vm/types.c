@@ -412,6 +412,9 @@ static void scan_internal(CagHeap *h, CagObject *o) {
   if (o->flags == CAG_INTERNAL_BUILDER && (b->mixed || b->dim == 0))
     cag_mark_values(h, b->data, b->length);
   if (o->flags == CAG_INTERNAL_LABEL) cag_mark_object(h, &((CagLabelText *)o)->text->head);
+  const CagOriginStep *step = (CagOriginStep *)o;
+  if (o->flags == CAG_INTERNAL_STEP && step->before) cag_mark_object(h, &step->before->head);
+  if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
 }
 
 static void destroy_internal(CagObject *o) {

@@ -247,6 +247,7 @@ CagValue cag_plane_value(CagVm *vm, const CagPlane *p) {
 static CagShape *shape_new(CagVm *vm, CagType type) {
   CagShape *s = cag_alloc(vm, type, sizeof *s);
   s->placement = cag_transform_identity();
+  s->fresh = true;
   return s;
 }
 
@@ -335,9 +336,32 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
   CagObject head = s->head;
   *s = *from;
   s->head = head;
+  s->fresh = true;
   const CagValueType *type = cag_value_type(shape);
   if (type->retain) type->retain(&s->head);
   return cag_object(shape.type, s);
+}
+
+void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
+  CagOriginStep *before = o->last;
+  if (before && before->depth >= CAG_ORIGIN_DEPTH) before = before->before; // drops the latest one
+  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step);
+  const CagObject head = step->head;
+  *step = *like;
+  step->head = head;
+  step->head.flags = CAG_INTERNAL_STEP;
+  step->before = before;
+  step->depth = before ? before->depth + 1 : 0;
+  o->last = step;
+}
+
+void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
+  CagShape *to = CAG_AS_SHAPE(moved), *shape = CAG_AS_SHAPE(from);
+  CagStill *before = shape->still, *still = cag_alloc(vm, CAG_INTERNAL, sizeof *still);
+  still->head.flags = CAG_INTERNAL_STILL;
+  still->shape = before ? before->shape : shape;
+  still->motion = before ? cag_transform_multiply(motion, &before->motion) : *motion;
+  to->still = still;
 }
 
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record) {

@@ -190,13 +190,34 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
-// Where a shape comes from in the script: the call that made it, which moving, naming, and coloring
-// keep, and the definition whose value it first was.
-typedef struct CagOrigin {
-  const CagSource *source; // NULL: not made by a call
+// A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
+typedef struct CagOriginStep {
+  CagObject head; // CAG_INTERNAL
+  const CagSource *source;
   CagSpan span;
-  CagText *definition; // NULL: none
+  const CagSource *caller; // in the library: the nearest call outside of it; else NULL
+  CagSpan caller_span;
+  struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
+  uint32_t depth;               // number of calls before it
+} CagOriginStep;
+
+// The most calls that are kept. Of more, those in between are dropped: first the latest ones.
+enum { CAG_ORIGIN_DEPTH = 12 };
+
+// Where a shape comes from in the script.
+typedef struct CagOrigin {
+  CagOriginStep *last; // NULL: not made by a call
+  CagText *definition; // the definition whose value it first was; NULL: none
 } CagOrigin;
+
+// The shape that was moved to make another one, and the rigid motion between them. The mesh of what
+// only moves is made once.
+struct CagShape;
+typedef struct CagStill {
+  CagObject head; // CAG_INTERNAL
+  struct CagShape *shape;
+  CagTransform motion;
+} CagStill;
 
 typedef struct CagShape {
   CagObject head;
@@ -214,10 +235,12 @@ typedef struct CagShape {
   CagRecord *material;    // NULL: not set
   CagText *name;          // NULL: not set
   CagOrigin origin;
+  CagStill *still;             // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
+  bool fresh; // the call that makes it has not been added to its origin yet
 } CagShape;
 
 // --- Cameras, lights, and settings (sky, background, ground) ---
@@ -352,6 +375,10 @@ CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
 CagValue cag_image_value(CagVm *vm, CagRaster *r);
 CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
+// Adds a call to an origin, which is changed in place. `like` has its location.
+void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
+// Notes that a shape is another one after a rigid motion.
+void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the
                                                     // caller may change the copy
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);

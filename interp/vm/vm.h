@@ -324,6 +324,8 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
 // --- failure.c ---
 // Returns the location of the running call, or false if there is none.
 bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span);
+// The same for the nearest call outside of the standard library.
+bool cag_vm_caller(const CagVm *vm, const CagSource **source, CagSpan *span);
 // Sets the error at the current instruction of the top frame (or without a location if there is
 // none), with the chain of calls. Returns false.
 bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...)

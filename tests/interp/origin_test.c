@@ -9,9 +9,11 @@ static void expect_origin(const CagVm *vm, size_t shown, const char *text, size_
   const CagValue v = vm->shown[shown].value;
   assert_true(cag_is_shape(v));
   const CagOrigin *o = &CAG_AS_SHAPE(v)->origin;
-  assert_non_null(o->source);
-  assert_int_equal(o->span.start, at);
-  assert_int_equal(o->span.end, at + strlen(text));
+  const CagOriginStep *made = o->last;
+  assert_non_null(made);
+  while (made->before) made = made->before;
+  assert_int_equal(made->span.start, at);
+  assert_int_equal(made->span.end, at + strlen(text));
   if (definition) assert_string_equal(o->definition->bytes, definition);
   else assert_null(o->definition);
 }
