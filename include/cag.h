@@ -214,6 +214,119 @@ CAG_API int cag_session_render(CagSession *s, const CagRenderOptions *options, c
 // the buffer. Otherwise writes the reason to the buffer and returns NULL.
 CAG_API const char *cag_find_povray(char *buffer, size_t size);
 
+// --- What a page shows ---
+// These calls describe the last run, for programs that show its scene and let its params be changed.
+
+// A location in a script.
+typedef struct CagPlaceView {
+  const char *file;                          // NULL: none
+  size_t line, column, end_line, end_column; // from 1; columns count code points
+  bool library;                              // in the standard library
+} CagPlaceView;
+
+typedef struct CagParamView {
+  const char *name, *description; // description: NULL if there is none
+  const char *kind;            // "number", "angle", "choice", "bool", "color", "text", or "other"
+  const char *value, *initial; // expressions, such as `140` and `"teal"`; initial: without -D
+  // Of numbers and angles (in degrees) with a range; infinite if it has no end.
+  bool ranged;
+  double low, high;
+  size_t choice_count;
+  CagPlaceView place;
+} CagParamView;
+// Returns whether there is a param i of the main script. Params are known even if the run failed,
+// unless the script has an error of syntax.
+CAG_API bool cag_session_param(CagSession *s, size_t i, CagParamView *out);
+// Returns the expression of choice i of a param, or NULL.
+CAG_API const char *cag_session_param_choice(CagSession *s, size_t param, size_t i);
+// Whether the script uses `time`, `frame`, or `frames`.
+CAG_API bool cag_session_is_timed(CagSession *s);
+
+// The following need a scene, as cag_session_scene makes it.
+
+typedef struct CagPartView {
+  const char *name;       // unique in the scene
+  const char *type;       // "curve", "region", "surface", "solid", "mesh", or "ground"
+  const char *story;      // such as "box, 10 x 20 x 30 mm"; NULL for a ground
+  size_t material;        // index for cag_session_material
+  double low[3], high[3]; // bounds; low > high for a ground
+  double z, size;         // of a ground; size: infinite if it has no end
+} CagPartView;
+CAG_API bool cag_session_part(CagSession *s, size_t i, CagPartView *out);
+// Location k in the origin of a part: the `show` it came through, then calls that moved it or gave
+// it attributes, the latest first, and finally the call that made it. For a call in the library, the
+// location in the user's script comes before it. *what receives "show", "changed", or "made".
+CAG_API bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **what,
+                                    CagPlaceView *out);
+// The material of triangles with a label, of a part with several materials. Returns false after the
+// last one.
+CAG_API bool cag_session_part_label(CagSession *s, size_t part, size_t k, uint32_t *label,
+                                    size_t *material);
+
+typedef struct CagMeshView {
+  // The identity of the mesh: equal texts, equal meshes, also of other runs.
+  char id[33];
+  // The rows of the map from the mesh to the scene: what only moves keeps its mesh.
+  double placement[3][4];
+  bool placed;   // the map is not the identity
+  bool line;     // of a curve, which has edges only
+  double radius; // of a line as pictures draw it
+  size_t vertex_count, triangle_count, edge_count;
+  const float *positions, *normals; // 3 per vertex; normals may be NULL
+  const uint32_t *triangles;        // 3 per triangle
+  const uint32_t *labels;           // of triangles; NULL: all 0
+  const uint32_t *edges;            // 2 per feature edge, or segment of a curve
+} CagMeshView;
+// Makes the mesh of a part, which is valid until the next mesh of the session is made. `coarse`: the
+// tolerance is so many times larger; 1: as in exports. `has`, which may be NULL, is asked whether the
+// host already has the mesh with this identity: then only the identity and the placement are set.
+// Not for grounds.
+CAG_API int cag_session_part_mesh(CagSession *s, size_t part, double coarse,
+                                  bool (*has)(void *context, const char *id), void *context,
+                                  CagMeshView *out);
+
+typedef struct CagMaterialView {
+  const char *name, *texture;              // texture: "" for none
+  double color[3], color2[3], emission[3]; // linear light
+  double metallic, roughness, transmission, ior, coat, texture_scale;
+} CagMaterialView;
+CAG_API bool cag_session_material(CagSession *s, size_t i, CagMaterialView *out);
+
+typedef struct CagCameraView {
+  const char *name;
+  double eye[3], target[3], up[3];
+  bool orthographic, automatic; // automatic: the script shows no camera
+  double fov, width;            // horizontal: degrees, and of orthographic ones mm
+  int size[2];                  // pixels
+} CagCameraView;
+CAG_API bool cag_session_camera_view(CagSession *s, size_t i, CagCameraView *out);
+
+typedef struct CagLightView {
+  const char *kind; // "sun", "point", "spot", or "area"
+  double position[3], direction[3], color[3];
+  double angle, size, strength; // angle: degrees
+} CagLightView;
+CAG_API bool cag_session_light(CagSession *s, size_t i, CagLightView *out);
+
+typedef struct CagLabelView {
+  const char *text, *place, *mark;
+  double at[3], along[3];
+  double size; // mm; 0: by the size of the picture
+  size_t material;
+} CagLabelView;
+CAG_API bool cag_session_label(CagSession *s, size_t i, CagLabelView *out);
+
+typedef struct CagStageView {
+  bool studio;  // the lights were added, because the script shows none
+  bool drawing; // all parts are curves and regions of one plane z = constant
+  bool has_background;
+  double background[3];
+  size_t sky_count;       // colors of the sky, from bottom to top
+  double low[3], high[3]; // bounds of all parts, except grounds
+} CagStageView;
+CAG_API bool cag_session_stage(CagSession *s, CagStageView *out);
+CAG_API bool cag_session_sky_color(CagSession *s, size_t i, double out[3]);
+
 // --- Interactive use ---
 // Definitions remain until the next run, check, format, document, or clear call. A name can be
 // defined again; everything that depends on it is then updated.

@@ -61,6 +61,7 @@ typedef struct CagItemLabel {
 // "vase.2").
 typedef struct CagItem {
   CagItemKind kind;
+  size_t number; // in the order in which items were added, before empty ones were moved away
   char *name;
   union {
     CagCurve *curve;

@@ -24,12 +24,14 @@ typedef struct Build {
   CagVm *vm;
   CagScene *scene;
   size_t item_capacity, label_capacity, material_capacity, camera_capacity, light_capacity;
-  CagHashIndex names;     // items by name
-  size_t *name_numbers;   // for each item: the last number appended to its name for other items
-  size_t number_capacity; // of name_numbers
-  CagHashIndex materials; // by appearance, and by appearance and name
-  CagHashIndex labels;    // of the current item
-  bool failed;            // memory ran out
+  CagHashIndex names;      // items by name
+  size_t *name_numbers;    // for each item: the last number appended to its name for other items
+  size_t number_capacity;  // of name_numbers
+  CagItemSources *sources; // NULL: not wanted
+  size_t shown;            // the shown value that is being added
+  CagHashIndex materials;  // by appearance, and by appearance and name
+  CagHashIndex labels;     // of the current item
+  bool failed;             // memory ran out
 } Build;
 
 // The attributes of the groups around a shape.
@@ -182,7 +184,10 @@ static CagItem *add_item(Build *b, CagItemKind kind, const char *name) {
   if (b->failed) return NULL;
   b->name_numbers[s->item_count] = 1;
   CagItem *item = &s->items[s->item_count++];
-  *item = (CagItem){.kind = kind, .name = own, .placement = cag_transform_identity()};
+  *item = (CagItem){.kind = kind,
+                    .number = s->item_count - 1,
+                    .name = own,
+                    .placement = cag_transform_identity()};
   return item;
 }
 
@@ -262,6 +267,20 @@ static void note_labels(Build *b, CagItem *item, CagRecord *outer) {
   if (item->label_count) qsort(item->labels, item->label_count, sizeof *item->labels, by_label);
 }
 
+// Notes where the last item comes from.
+static void note_source(Build *b, const CagShape *shape) {
+  CagItemSources *k = b->sources;
+  const size_t n = b->scene->item_count;
+  if (!k || b->failed) return;
+  if (!CAG_RESERVE(k->items, k->capacity, n)) {
+    b->failed = true;
+    return;
+  }
+  memset(k->items + k->count, 0, (n - k->count) * sizeof *k->items); // grounds have none
+  k->items[n - 1] = (CagItemSource){shape, b->shown};
+  k->count = n;
+}
+
 static void add_shape(Build *b, CagValue v, const Said *said) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagItem *item = NULL;
@@ -295,6 +314,7 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
     if (item) item->as.mesh = cag_mesh_retain(shape->as.mesh);
   }
   if (!item) return;
+  note_source(b, shape);
   item->material = material;
   item->tolerance = said->tolerance;
   note_labels(b, item, said->material);
@@ -430,6 +450,7 @@ static bool build_scene(Build *build, const CagShown *shown, size_t n) {
                  vm, CAG_ERR_no_image,
                  "show expects shapes, images, lights, cameras, and lists of these, found %s",
                  cag_type_article(shown[i].value));
+    build->shown = i;
     add_value(build, shown[i].value, cag_lead(shown[i].expr));
   }
   if (!build->failed) return true;
@@ -437,8 +458,10 @@ static bool build_scene(Build *build, const CagShown *shown, size_t n) {
          cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than is available");
 }
 
-bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
-  Build b = {.vm = vm, .scene = out};
+bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out,
+                           CagItemSources *sources) {
+  Build b = {.vm = vm, .scene = out, .sources = sources};
+  if (sources) sources->count = 0;
   CagCleanup scene, building;
   *out = (CagScene){.bounds = CAG_BOUNDS_EMPTY};
   cag_cleanup_push(&scene, free_scene, out);

@@ -47,6 +47,10 @@ void cag_session_drop_vm(CagSession *s) {
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   drop_scene(s);
   cag_free(s->inputs);
+  cag_session_drop_params(s);
+  cag_session_drop_mesh(s);
+  cag_free(s->sources.items);
+  s->sources = (CagItemSources){0};
   cag_account_lend(before);
   cag_session_clear_diagnostics(s);
   cag_vm_free(s->vm);
@@ -369,6 +373,7 @@ static bool run(CagVm *vm, void *context) {
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
   if (k == CAG_NO_MODULE) return false;
+  s->main = k + 1;
   CagCleanup cleanup;
   CagDefine *defines = cag_temporary(&cleanup, s->define_count, sizeof *defines);
   vm->loop = s->loop;
@@ -382,6 +387,7 @@ static bool run(CagVm *vm, void *context) {
 static int start_run(CagSession *s, Run *r) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
+  s->main = 0;
   cag_free(s->script);
   s->script = cag_strdup(r->path ? r->path : r->name);
   const bool ready = s->script && !s->define_lost;
@@ -446,7 +452,7 @@ int cag_session_refresh(CagSession *s) {
 static bool build(CagVm *vm, void *context) {
   CagSession *s = context;
   if (s->interactive && !rerun_shows(vm, s)) return false;
-  if (!cag_scene_from_values(vm, vm->shown, vm->shown_count, &s->scene)) return false;
+  if (!cag_scene_from_values(vm, vm->shown, vm->shown_count, &s->scene, &s->sources)) return false;
   s->has_scene = true;
   return true;
 }

@@ -13,6 +13,7 @@
 #include "cag.h"
 #include "interp/formats/pov.h"
 #include "interp/scene/scene.h"
+#include "interp/session/scene_build.h"
 #include "interp/vm/program.h"
 
 struct CagSession {
@@ -31,6 +32,10 @@ struct CagSession {
                   // keep
   CagScene scene;
   bool has_scene;
+  CagItemSources sources;          // of the scene's items
+  size_t main;                     // the module of the script, plus 1; 0: it could not be read
+  struct CagSessionParams *params; // of the main script; NULL: not listed yet
+  struct CagSessionMesh *mesh;     // the one that was made last; may be NULL
   // Modules of the interactive session in order; their shows form its scene.
   size_t *inputs;
   size_t input_count;
@@ -79,6 +84,10 @@ bool cag_session_shows_image(const CagSession *s);
 // Writes the image of `options` (NULL: the only one) that is shown to a .png or .exr file.
 int cag_session_write_image(CagSession *s, const char *path, bool png,
                             const CagImageOptions *options);
+void cag_session_drop_params(CagSession *s);
+// A location for the host. No source: none.
+CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
+void cag_session_drop_mesh(CagSession *s);
 // Builds the scene and adds default camera and lights.
 int cag_session_build_scene(CagSession *s);
 

@@ -254,7 +254,7 @@ static bool add_shapes(Walk *w, CagValue shape) {
     if (bodies && !is_body(leaf)) continue;
     CagScene scene;
     CagShown shown = {.value = leaf};
-    if (!cag_keep_going(vm) || !cag_scene_from_values(vm, &shown, 1, &scene)) return false;
+    if (!cag_keep_going(vm) || !cag_scene_from_values(vm, &shown, 1, &scene, NULL)) return false;
     if (scene.item_count > 0) ok = add_item(w, &scene, leaf); // labels are not items
     cag_scene_free(&scene);
   }

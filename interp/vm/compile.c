@@ -224,6 +224,7 @@ static void compile_name(Unit *u, const CagExpr *e, uint32_t target) {
   }
   if (e->as.name.binding == CAG_BIND_BUILTIN) {
     size_t i = e->as.name.index;
+    if (i >= cag_builtin_count()) u->vm->uses_time = true;
     if (i >= cag_builtin_count())
       emit_wide(u, e->span, CAG_CODE_GLOBAL, target, (int32_t)(i - cag_builtin_count()));
     else

@@ -252,6 +252,7 @@ struct CagVm {
   double max_time;   // seconds; 0: none
   struct timespec started;
   size_t max_triangles;
+  bool uses_time; // code was compiled that reads `time`, `frame`, or `frames`
   bool loop; // time is frame/frames
   double tolerance;
   char *root;     // real path of the folder of the main script; NULL: none, so no file may be read
