@@ -27,7 +27,7 @@ Q := $(if $(V),,@)
 # For each library: its pkg-config name, and the Debian package to install if it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
          libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev \
-         libcmark-gfm:libcmark-gfm-dev libxml-2.0:libxml2-dev
+         libcmark-gfm:libcmark-gfm-dev libxml-2.0:libxml2-dev libmicrohttpd:libmicrohttpd-dev
 MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
 ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
 MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))
@@ -48,6 +48,7 @@ BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
 INTERP_SRC := $(shell find interp -name '*.c' | sort)
+LIVE_SRC   := $(shell find live -name '*.c' | sort)
 MAIN_SRC   := cli/main.c
 CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
 # The documentation lists the families of built-in functions in this order.
@@ -64,7 +65,9 @@ BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
-CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
+CLI_OBJ  := $(call obj,$(CLI_SRC) $(LIVE_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
+# The page of `cag view`, as `make web` leaves it.
+PAGE     := $(sort $(wildcard web/dist/*.gz))
 
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors
 .SECONDARY:
@@ -93,6 +96,9 @@ $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
+$(BUILD)/gen/page_files.c: $(PAGE) tools/embed_page.sh
+	@mkdir -p $(@D)
+	sh tools/embed_page.sh $(PAGE) > $@.tmp && mv $@.tmp $@
 # The built-in functions. The prototypes do not depend on summaries and examples.
 $(BUILD)/gen/builtins.c: $(PARAMETERS) $(ROWS) tools/rows.awk
 	@mkdir -p $(@D)

@@ -326,6 +326,24 @@ static bool set_threads(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_port(CagTool *t, const char *value) {
+  size_t n = 0;
+  if (!read_count(t, "--port", value, &n)) return false;
+  if (n > 65535) return reject(t, "a port is 1 to 65535", "--port", value, "a port");
+  t->port = (int)n;
+  return true;
+}
+
+static bool set_no_open(CagTool *t, const char *value) {
+  (void)value;
+  return t->no_open = true;
+}
+
+static bool set_read_only(CagTool *t, const char *value) {
+  (void)value;
+  return t->read_only = true;
+}
+
 static bool set_samples(CagTool *t, const char *value) {
   size_t n = 0;
   const size_t most = 10000;
@@ -427,7 +445,7 @@ static bool set_version(CagTool *t, const char *value) {
 
 #define ON(name) (1u << CAG_TOOL_##name)
 #define ALL (~0u)
-#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch))
+#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch) | ON(view))
 const CagToolOption cag_tool_options[] = {
 #define CAG_OPTION(id, letter, name, argument, commands, help)                                     \
   {#id, letter, name, argument, commands, help, set_##id},

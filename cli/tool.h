@@ -86,6 +86,9 @@ struct CagTool {
   const char *tiles;      // --tiles
   const char *element;    // --element
   const char *html;       // --html
+  int port;               // --port; 0: any free one
+  bool no_open;           // --no-open
+  bool read_only;         // --read-only
 
   // Receives the error of an invalid option value; NULL: it is written to standard error.
   struct CagToolRefusal *refusal;
@@ -93,7 +96,7 @@ struct CagTool {
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
     cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
-    cag_tool_repl, cag_tool_batch;
+    cag_tool_repl, cag_tool_batch, cag_tool_view;
 
 // Makes a session with the options and the -D of the command line. Returns NULL, after a message,
 // if memory ran out.

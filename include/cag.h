@@ -198,9 +198,10 @@ typedef struct CagRenderOptions {
   const char *passes;
   bool keep_partial;  // preview: write what is complete if the work is stopped
   const char *camera; // a name, or top, bottom, front, back, left, right, or iso; NULL: the first
-  double exposure;    // stops; only for .png
-  int threads;        // of the renderer; 0: one per processor
-  double time_limit;  // seconds for the renderer, in place of max_time; 0: what is left of max_time
+  const struct CagCameraView *view; // a camera of the host's own, in place of `camera`; NULL: none
+  double exposure;                  // stops; only for .png
+  int threads;                      // of the renderer; 0: one per processor
+  double time_limit; // seconds for the renderer, in place of max_time; 0: what is left of max_time
   CagRenderRegion region; // renders and writes only this part
   // Called during rendering, with the percentage of a phase ("parsing", "photons", "radiosity", or
   // "rendering"). May be NULL.

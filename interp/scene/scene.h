@@ -207,6 +207,8 @@ void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
 // adds a camera of such a name after the others, which frames what is shown, without perspective.
 const char *cag_standard_view(size_t i);
 CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err);
+// Adds a camera after the others. Copies its name.
+CagStatus cag_scene_add_camera(CagScene *s, const CagCamera *camera, CagError *err);
 // Computes the bounds of an item under a transform (NULL: none). A ground has none.
 CagStatus cag_item_bounds(const CagItem *item, const CagTransform *t, CagBounds *out,
                           CagError *err);

@@ -242,30 +242,38 @@ static void drop_floor(CagScene *s) {
   s->item_count--;
 }
 
+CagStatus cag_scene_add_camera(CagScene *s, const CagCamera *camera, CagError *err) {
+  char *copy = cag_strdup(camera->name);
+  if (!copy || !CAG_RESIZE(s->cameras, s->camera_count + 1)) {
+    cag_free(copy);
+    return cag_fail_memory(err);
+  }
+  CagCamera *c = &s->cameras[s->camera_count++];
+  *c = *camera;
+  c->name = copy;
+  return CAG_OK;
+}
+
 CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   size_t i = 0;
   while (i < VIEW_COUNT && strcmp(VIEWS[i].name, name) != 0) i++;
   if (i == VIEW_COUNT)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", -1,
                     "unknown standard view `%s`", name);
-  char *copy = cag_strdup(name);
-  if (!copy || !CAG_RESIZE(s->cameras, s->camera_count + 1)) {
-    cag_free(copy);
-    return cag_fail_memory(err);
-  }
   const CagBounds whole = cag_scene_framed(s);
   const CagVec3 center = cag_lerp(whole.min, whole.max, 0.5), back = cag_unit(VIEWS[i].back);
   const double distance = 4 * cag_scene_radius(&whole); // nothing is behind the camera
-  CagCamera *c = &s->cameras[s->camera_count++];
-  *c = (CagCamera){.name = copy,
-                   .eye = cag_madd(center, distance, back),
-                   .target = center,
-                   .up = cag_unit(cag_madd(VIEWS[i].up, -cag_dot(VIEWS[i].up, back), back)),
-                   .orthographic = true,
-                   .framed = true,
-                   .size = {1280, 720}};
-  if (s->camera_count > 1) memcpy(c->size, s->cameras[0].size, sizeof c->size);
+  CagCamera c = {.name = (char *)(size_t)name,
+                 .eye = cag_madd(center, distance, back),
+                 .target = center,
+                 .up = cag_unit(cag_madd(VIEWS[i].up, -cag_dot(VIEWS[i].up, back), back)),
+                 .orthographic = true,
+                 .framed = true,
+                 .size = {1280, 720}};
+  if (s->camera_count > 0) memcpy(c.size, s->cameras[0].size, sizeof c.size);
+  const CagStatus status = cag_scene_add_camera(s, &c, err);
+  if (status) return status;
   if (back.z < 0) drop_floor(s);
-  cag_camera_frame_all(s, c);
+  cag_camera_frame_all(s, &s->cameras[s->camera_count - 1]);
   return CAG_OK;
 }

@@ -49,6 +49,31 @@ static int add_view(CagSession *s, void *name) {
   return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
+// Adds the camera of the host.
+static int add_host_camera(CagSession *s, void *view) {
+  const CagCameraView *v = view;
+  CagError err = {0};
+  const CagCamera c = {.name = (char *)(size_t)(v->name ? v->name : "view"),
+                       .eye = {v->eye[0], v->eye[1], v->eye[2]},
+                       .target = {v->target[0], v->target[1], v->target[2]},
+                       .up = {v->up[0], v->up[1], v->up[2]},
+                       .orthographic = v->orthographic,
+                       .fov = v->fov * M_PI / 180,
+                       .width = v->width,
+                       .size = {v->size[0], v->size[1]}};
+  const CagVec3 view_direction = cag_sub(c.target, c.eye), side = cag_cross(view_direction, c.up);
+  const bool good = cag_norm(side) > 0 && isfinite(cag_norm(side)) &&
+                    (c.orthographic ? c.width > 0 : c.fov > 0 && c.fov < M_PI);
+  CagCamera square = c;
+  if (good) square.up = cag_unit(cag_cross(side, view_direction));
+  const CagStatus status =
+      good ? cag_scene_add_camera(&s->scene, &square, &err)
+           : cag_fail(
+                 &err, CAG_E_ARGUMENT, CAG_ERR_value, "view", -1,
+                 "the camera of the view needs a direction, an up vector, and an angle or width");
+  return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+}
+
 int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
   *out = 0;
   if (!name) return CAG_STATUS_OK;
@@ -436,8 +461,9 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   if (!find_passes(s, options, path, j.passes) || !find_engine(s, options, j.pov, &j.renderer))
     return CAG_STATUS_USAGE;
   if (options->passes) j.renderer = PREVIEW;
-  size_t camera;
-  status = cag_session_find_camera(s, options->camera, &camera);
+  size_t camera = s->scene.camera_count;
+  status = options->view ? cag_session_geometry(s, add_host_camera, (void *)(size_t)options->view)
+                         : cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;
   CagCamera *chosen = &s->scene.cameras[camera];
   if (options->width > 0 && chosen->framed) { // for the shape of the picture

@@ -1,0 +1,34 @@
+// What a page needs to know of a run, as JSON: for the server, and for the program in the browser.
+
+#ifndef CAG_LIVE_SCENE_JSON_H
+#define CAG_LIVE_SCENE_JSON_H
+
+#include "cag.h"
+#include "live/json.h"
+
+// A mesh for the page as bytes: eight numbers of 32 bits (a mark, version 1, counts of vertices,
+// triangles, and edges, and flags), positions and normals as 32-bit floats, and the indices of
+// triangles, labels, and edges. *out is malloc'd. Returns false if memory ran out.
+bool cag_live_mesh_bytes(const CagMeshView *m, unsigned char **out, size_t *size);
+
+// Where the meshes of a scene go. `keep` is called for each mesh that `has` does not know.
+typedef struct CagLiveMeshes {
+  bool (*has)(void *context, const char *id);
+  bool (*keep)(void *context, const CagMeshView *mesh); // false: memory ran out
+  void *context;
+} CagLiveMeshes;
+
+// Adds the scene of the last run to a JSON text, and makes its meshes, with a tolerance that is
+// `coarse` times as large. Returns a status; the text is only complete if it is CAG_STATUS_OK.
+int cag_live_scene(CagSession *s, int run, const char *script, double coarse,
+                   const CagLiveMeshes *meshes, CagString *out);
+
+// What a run printed and complained about.
+typedef struct CagLiveRun {
+  int run, status;
+  double seconds;
+  const char *prints;
+} CagLiveRun;
+void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *out);
+
+#endif

@@ -1,0 +1,596 @@
+#include "live/view.h"
+
+#include <cjson/cJSON.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "live/json.h"
+#include "live/model_files.h"
+#include "live/page_files.h"
+#include "live/render_jobs.h"
+#include "live/runner.h"
+
+// Milliseconds between looks at the files, and at the flag that ends the server.
+enum { LOOK_EVERY = 200, STOP_EVERY = 50 };
+#define MESH_MEMORY ((size_t)512 << 20)
+// Meshes are coarser by this factor while something is dragged.
+#define COARSE 8.0
+#define UNTITLED "untitled.cag"
+
+typedef struct View {
+  const CagViewOptions *options;
+  char folder[PATH_MAX], name[PATH_MAX]; // the script is `name` in `folder`
+  CagServer *server;
+  CagMeshes *meshes;
+  CagRunner *runner;
+  CagRenderJobs *jobs;
+  pthread_mutex_t gate; // held while a request is routed
+  bool closing;
+  char version[CAG_VERSION_SIZE]; // of the script's file, as last seen
+  struct timespec changed;
+} View;
+
+// --- Answers ---
+
+static void answer_text(CagExchange *x, int status, const CagString *s) {
+  if (s->failed) cag_exchange_fail(x, 500, "out of memory", NULL);
+  else cag_exchange_answer(x, &(CagAnswer){.status = status, .bytes = s->bytes, .size = s->length});
+}
+
+static void answer_number(CagExchange *x, int status, const char *key, int number) {
+  char text[64];
+  const int n = snprintf(text, sizeof text, "{\"%s\":%d}", key, number);
+  cag_exchange_answer(x, &(CagAnswer){.status = status, .bytes = text, .size = (size_t)n});
+}
+
+static void answer_version(CagExchange *x, int status, const char *version) {
+  char text[96];
+  const int n = snprintf(text, sizeof text, "{\"version\":\"%s\"}", version);
+  cag_exchange_answer(x, &(CagAnswer){.status = status, .bytes = text, .size = (size_t)n});
+}
+
+static void answer_out_of_memory(CagExchange *x) {
+  cag_exchange_fail(x, 500, "out of memory", NULL);
+}
+
+// --- The page's own files ---
+
+static const char *type_of(const char *path) {
+  static const char *const TYPES[][2] = {
+      {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},   {".svg", "image/svg+xml"},
+      {".wasm", "application/wasm"},         {".txt", "text/plain; charset=utf-8"}};
+  const char *dot = strrchr(path, '.');
+  for (size_t i = 0; dot && i < sizeof TYPES / sizeof *TYPES; i++)
+    if (!strcmp(dot, TYPES[i][0])) return TYPES[i][1];
+  return "application/octet-stream";
+}
+
+static bool answer_page_file(CagExchange *x) {
+  const char *path = cag_exchange_path(x);
+  if (!strcmp(path, "/")) path = "/index.html";
+  for (const CagPageFile *f = cag_page_files; f->path; f++) {
+    if (strcmp(f->path, path) != 0) continue;
+    cag_exchange_answer(x, &(CagAnswer){.status = 200,
+                                        .type = type_of(path),
+                                        .bytes = f->bytes,
+                                        .size = f->size,
+                                        .gzipped = true});
+    return true;
+  }
+  return false;
+}
+
+// --- Runs ---
+
+static bool read_defines(const cJSON *params, CagLiveRequest *q) {
+  const int n = cJSON_GetArraySize(params);
+  q->defines = calloc((size_t)n + 1, sizeof *q->defines);
+  if (!q->defines) return false;
+  const cJSON *item;
+  cJSON_ArrayForEach(item, params) {
+    if (!cJSON_IsString(item)) continue;
+    CagLiveDefine *d = &q->defines[q->define_count++];
+    d->name = strdup(item->string);
+    d->value = strdup(item->valuestring);
+    if (!d->name || !d->value) return false;
+  }
+  return true;
+}
+
+// The unsaved text of the script, if it is among the given files.
+static bool read_text(const View *v, const cJSON *files, CagLiveRequest *q) {
+  const cJSON *text = cJSON_GetObjectItemCaseSensitive(files, v->name);
+  if (!cJSON_IsString(text)) return true;
+  q->text = strdup(text->valuestring);
+  return q->text != NULL;
+}
+
+static bool read_request(const View *v, const char *body, size_t size, CagLiveRequest *out) {
+  cJSON *json = cJSON_ParseWithLength(body, size);
+  if (!cJSON_IsObject(json)) {
+    cJSON_Delete(json);
+    return false;
+  }
+  const cJSON *time = cJSON_GetObjectItemCaseSensitive(json, "time"),
+              *frames = cJSON_GetObjectItemCaseSensitive(json, "frames");
+  *out = (CagLiveRequest){
+      .coarse = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(json, "coarse")) ? COARSE : 1,
+      .loop = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(json, "loop")),
+      .has_time = cJSON_IsNumber(time),
+      .time = cJSON_IsNumber(time) ? time->valuedouble : 0,
+      .frames = cJSON_IsNumber(frames) ? frames->valuedouble : 1};
+  const bool ok = read_defines(cJSON_GetObjectItemCaseSensitive(json, "params"), out) &&
+                  read_text(v, cJSON_GetObjectItemCaseSensitive(json, "files"), out);
+  cJSON_Delete(json);
+  if (!ok) cag_live_request_free(out);
+  return ok;
+}
+
+static void answer_run(View *v, CagExchange *x) {
+  size_t size;
+  CagLiveRequest q;
+  const char *body = cag_exchange_body(x, &size);
+  if (read_request(v, body, size, &q)) answer_number(x, 202, "run", cag_runner_run(v->runner, &q));
+  else cag_exchange_fail(x, 400, "expected a JSON object", NULL);
+}
+
+static void answer_mesh(View *v, CagExchange *x, const char *id) {
+  size_t size;
+  unsigned char *bytes = cag_meshes_copy(v->meshes, id, &size);
+  if (!bytes) {
+    cag_exchange_fail(x, 404, "there is no such mesh", NULL);
+    return;
+  }
+  cag_exchange_answer(x, &(CagAnswer){.status = 200,
+                                      .type = "application/octet-stream",
+                                      .bytes = bytes,
+                                      .size = size,
+                                      .lasting = true});
+  free(bytes);
+}
+
+// --- Files ---
+
+static void answer_file(View *v, CagExchange *x, const char *path) {
+  char *text, version[CAG_VERSION_SIZE];
+  size_t size;
+  const char *why;
+  if (!v->options->file && !strcmp(path, v->name)) { // an empty script
+    cag_model_version("", 0, version);
+    cag_exchange_answer(x, &(CagAnswer){.status = 200, .type = "text/plain", .etag = version});
+    return;
+  }
+  if (!cag_model_read(v->folder, path, &text, &size, &why)) {
+    cag_exchange_fail(x, 404, why, NULL);
+    return;
+  }
+  cag_model_version(text, size, version);
+  cag_exchange_answer(x, &(CagAnswer){.status = 200,
+                                      .type = "text/plain; charset=utf-8",
+                                      .bytes = text,
+                                      .size = size,
+                                      .etag = version});
+  free(text);
+}
+
+// Whether the file still has the version that the page has changed.
+static bool is_version(const View *v, CagExchange *x, const char *path,
+                       char now[CAG_VERSION_SIZE]) {
+  char *text, quoted[CAG_VERSION_SIZE + 2];
+  size_t size;
+  const char *why, *expected = cag_exchange_header(x, "If-Match");
+  if (cag_model_read(v->folder, path, &text, &size, &why)) {
+    cag_model_version(text, size, now);
+    free(text);
+  } else {
+    cag_model_version("", 0, now);
+  }
+  snprintf(quoted, sizeof quoted, "\"%s\"", now);
+  return !expected || !strcmp(expected, quoted) || !strcmp(expected, "*");
+}
+
+static void save_file(View *v, CagExchange *x, const char *path) {
+  char version[CAG_VERSION_SIZE];
+  size_t size;
+  const char *why, *text = cag_exchange_body(x, &size);
+  if (v->options->read_only || !v->options->file) {
+    cag_exchange_fail(x, 403,
+                      v->options->read_only ? "the page was opened with --read-only"
+                                            : "this script has no file",
+                      v->options->read_only ? NULL : "start cag view with the name of a file");
+    return;
+  }
+  if (!is_version(v, x, path, version)) {
+    answer_version(x, 412, version);
+    return;
+  }
+  if (!cag_model_write(v->folder, path, text, size, &why)) {
+    cag_exchange_fail(x, 403, why, NULL);
+    return;
+  }
+  cag_model_version(text, size, version);
+  if (!strcmp(path, v->name)) memcpy(v->version, version, sizeof version);
+  answer_version(x, 200, version);
+}
+
+static void answer_files(View *v, CagExchange *x) {
+  CagString s = {0};
+  CagJson j = {.to = &s};
+  cag_json_open(&j, '[');
+  cag_json_open(&j, '{');
+  cag_json_text(&j, "path", v->name);
+  cag_json_text(&j, "version", v->version);
+  cag_json_close(&j, '}');
+  cag_json_close(&j, ']');
+  answer_text(x, 200, &s);
+  cag_string_free(&s);
+}
+
+static void params_path(const View *v, char out[PATH_MAX + 16]) {
+  snprintf(out, PATH_MAX + 16, "%s.params.json", v->name);
+}
+
+static void answer_params(View *v, CagExchange *x, bool put) {
+  char path[PATH_MAX + 16], *text;
+  size_t size;
+  const char *why, *body;
+  params_path(v, path);
+  if (!put && !cag_model_read(v->folder, path, &text, &size, &why)) {
+    cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = "{}", .size = 2});
+  } else if (!put) {
+    cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = text, .size = size});
+    free(text);
+  } else if (v->options->read_only || !v->options->file) {
+    cag_exchange_fail(x, 403, "sets of params cannot be written here", NULL);
+  } else {
+    body = cag_exchange_body(x, &size);
+    cJSON *json = cJSON_ParseWithLength(body, size);
+    char *printed = cJSON_IsObject(json) ? cJSON_Print(json) : NULL;
+    if (!printed) cag_exchange_fail(x, 400, "expected a JSON object", NULL);
+    else if (!cag_model_write(v->folder, path, printed, strlen(printed), &why))
+      cag_exchange_fail(x, 403, why, NULL);
+    else cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = "{}", .size = 2});
+    free(printed);
+    cJSON_Delete(json);
+  }
+}
+
+// --- What needs the last session ---
+
+// An exchange that is answered by the runner's thread.
+typedef struct Errand {
+  View *view;
+  CagExchange *x;
+  char *word; // format, or the name of an image or part
+} Errand;
+
+static void free_errand(Errand *e) {
+  free(e->word);
+  free(e);
+}
+
+static void send_on_errand(View *v, CagExchange *x, const char *word, CagLiveTask *task) {
+  Errand *e = calloc(1, sizeof *e);
+  if (e) *e = (Errand){v, x, strdup(word)};
+  if (e && e->word && cag_runner_do(v->runner, task, e)) return;
+  if (e) free_errand(e);
+  answer_out_of_memory(x);
+}
+
+static void fail_with_session(CagExchange *x, const CagSession *s) {
+  CagErrorView e = {0};
+  if (cag_session_error_count(s) > 0) cag_session_error(s, cag_session_error_count(s) - 1, &e);
+  cag_exchange_fail(x, 422, e.message ? e.message : "it failed", e.help);
+}
+
+// Answers with a file that `write` makes in a folder of its own.
+static void answer_written(CagExchange *x, CagSession *s, const char *name, const char *type,
+                           bool attached,
+                           int (*write)(CagSession *s, const char *path, void *context),
+                           void *context) {
+  char folder[] = "/tmp/cag-view-XXXXXX", path[PATH_MAX], *text;
+  size_t size;
+  const char *why;
+  if (!s) {
+    cag_exchange_fail(x, 409, "the script has not run without errors yet", NULL);
+    return;
+  }
+  if (!mkdtemp(folder)) {
+    cag_exchange_fail(x, 500, "cannot create a folder in /tmp", NULL);
+    return;
+  }
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  if (write(s, path, context) != CAG_STATUS_OK) fail_with_session(x, s);
+  else if (!cag_model_read(folder, name, &text, &size, &why)) cag_exchange_fail(x, 500, why, NULL);
+  else {
+    cag_exchange_answer(x, &(CagAnswer){.status = 200,
+                                        .type = type,
+                                        .bytes = text,
+                                        .size = size,
+                                        .file = attached ? name : NULL});
+    free(text);
+  }
+  unlink(path);
+  rmdir(folder);
+}
+
+static int write_export(CagSession *s, const char *path, void *context) {
+  return cag_session_export(s, path, context);
+}
+
+static void do_export(CagSession *s, void *context) {
+  Errand *e = context;
+  char name[PATH_MAX];
+  const char *slash = strrchr(e->view->name, '/');
+  snprintf(name, sizeof name, "%s", slash ? slash + 1 : e->view->name);
+  char *dot = strrchr(name, '.');
+  if (dot) *dot = 0;
+  const size_t n = strlen(name);
+  snprintf(name + n, sizeof name - n, ".%s", e->word);
+  answer_written(e->x, s, name, "application/octet-stream", true, write_export, e->word);
+  free_errand(e);
+}
+
+static void answer_export(View *v, CagExchange *x) {
+  size_t size;
+  const char *body = cag_exchange_body(x, &size);
+  cJSON *json = cJSON_ParseWithLength(body, size);
+  const cJSON *format = cJSON_GetObjectItemCaseSensitive(json, "format");
+  if (!cJSON_IsString(format) || !cag_export_format_story(format->valuestring))
+    cag_exchange_fail(x, 400, "expected a format of cag export", NULL);
+  else send_on_errand(v, x, format->valuestring, do_export);
+  cJSON_Delete(json);
+}
+
+static int write_image(CagSession *s, const char *path, void *context) {
+  return cag_session_export_image(s, path, "png", &(CagImageOptions){.image = context});
+}
+
+static void do_image(CagSession *s, void *context) {
+  Errand *e = context;
+  answer_written(e->x, s, "image.png", "image/png", false, write_image, e->word);
+  free_errand(e);
+}
+
+// --- Pictures ---
+
+static void answer_render(View *v, CagExchange *x) {
+  size_t size;
+  const char *body = cag_exchange_body(x, &size);
+  CagLiveRequest last;
+  if (!cag_runner_last(v->runner, &last)) {
+    answer_out_of_memory(x);
+    return;
+  }
+  const int job = cag_render_jobs_add(v->jobs, body, size, &last);
+  if (job > 0) answer_number(x, 202, "job", job);
+  else
+    cag_exchange_fail(x, job < 0 ? 400 : 503,
+                      job < 0 ? "expected a JSON object" : "too many pictures are under way", NULL);
+}
+
+static void answer_job(View *v, CagExchange *x, const char *number) {
+  char *bytes;
+  size_t size;
+  const int job = atoi(number);
+  if (!strcmp(cag_exchange_method(x), "DELETE")) {
+    cag_render_jobs_cancel(v->jobs, job);
+    cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = "{}", .size = 2});
+  } else if (cag_render_jobs_picture(v->jobs, job, &bytes, &size)) {
+    cag_exchange_answer(
+        x, &(CagAnswer){.status = 200, .type = "image/png", .bytes = bytes, .size = size});
+    free(bytes);
+  } else {
+    cag_exchange_fail(x, 404, "there is no such picture", NULL);
+  }
+}
+
+// --- Routes ---
+
+static void answer_hello(View *v, CagExchange *x) {
+  CagString s = {0};
+  CagJson j = {.to = &s};
+  char povray[256];
+  const char *const *formats = cag_export_formats();
+  cag_json_open(&j, '{');
+  cag_json_text(&j, "version", cag_version());
+  cag_json_text(&j, "file", v->name);
+  cag_json_text(&j, "folder", v->folder);
+  cag_json_bool(&j, "readOnly", v->options->read_only);
+  cag_json_bool(&j, "untitled", !v->options->file);
+  cag_json_text(&j, "engine", "server");
+  cag_json_bool(&j, "povray", cag_find_povray(povray, sizeof povray) != NULL);
+  cag_json_open_in(&j, "formats", '[');
+  for (size_t i = 0; formats[i]; i++) {
+    cag_json_open(&j, '[');
+    cag_json_text(&j, NULL, formats[i]);
+    cag_json_text(&j, NULL, cag_export_format_story(formats[i]));
+    cag_json_close(&j, ']');
+  }
+  cag_json_close(&j, ']');
+  cag_json_close(&j, '}');
+  answer_text(x, 200, &s);
+  cag_string_free(&s);
+}
+
+static const char *rest_after(const char *path, const char *start) {
+  const size_t n = strlen(start);
+  return strncmp(path, start, n) == 0 && path[n] ? path + n : NULL;
+}
+
+static bool is_request(CagExchange *x, const char *method, const char *path) {
+  return !strcmp(cag_exchange_method(x), method) && !strcmp(cag_exchange_path(x), path);
+}
+
+static void route_open(View *v, CagExchange *x) {
+  const char *path = cag_exchange_path(x), *rest, *file = cag_exchange_query(x, "path");
+  const bool get = !strcmp(cag_exchange_method(x), "GET");
+  if (get && answer_page_file(x)) return;
+  if (is_request(x, "GET", "/api/hello")) answer_hello(v, x);
+  else if (is_request(x, "GET", "/api/events")) cag_exchange_listen(x);
+  else if (is_request(x, "POST", "/api/run")) answer_run(v, x);
+  else if (get && (rest = rest_after(path, "/api/mesh/"))) answer_mesh(v, x, rest);
+  else if (is_request(x, "GET", "/api/files")) answer_files(v, x);
+  else if (is_request(x, "GET", "/api/file") && file) answer_file(v, x, file);
+  else if (is_request(x, "PUT", "/api/file") && file) save_file(v, x, file);
+  else if (is_request(x, "GET", "/api/params")) answer_params(v, x, false);
+  else if (is_request(x, "PUT", "/api/params")) answer_params(v, x, true);
+  else if (is_request(x, "POST", "/api/export")) answer_export(v, x);
+  else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
+  else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
+  else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
+  else cag_exchange_fail(x, 404, "there is nothing here", NULL);
+}
+
+static void route(void *context, CagExchange *x) {
+  View *v = context;
+  pthread_mutex_lock(&v->gate);
+  if (v->closing) cag_exchange_fail(x, 503, "the server is ending", NULL);
+  else route_open(v, x);
+  pthread_mutex_unlock(&v->gate);
+}
+
+// --- Files on disk ---
+
+// Notes the version of the script's file. Returns whether it was changed by somebody else.
+static bool look_at_file(View *v) {
+  struct stat st;
+  char *text, version[CAG_VERSION_SIZE];
+  size_t size;
+  const char *why;
+  if (!v->options->file || stat(v->options->file, &st) != 0) return false;
+  if (st.st_mtim.tv_sec == v->changed.tv_sec && st.st_mtim.tv_nsec == v->changed.tv_nsec)
+    return false;
+  if (!cag_model_read(v->folder, v->name, &text, &size, &why)) return false;
+  v->changed = st.st_mtim;
+  cag_model_version(text, size, version);
+  free(text);
+  const bool same = !strcmp(version, v->version);
+  memcpy(v->version, version, sizeof version);
+  return !same;
+}
+
+static void tell_change(View *v) {
+  CagString s = {0};
+  CagJson j = {.to = &s};
+  cag_json_open(&j, '{');
+  cag_json_text(&j, "path", v->name);
+  cag_json_text(&j, "version", v->version);
+  cag_json_close(&j, '}');
+  if (s.bytes) cag_server_publish(v->server, "file", s.bytes, false);
+  cag_string_free(&s);
+  cag_runner_again(v->runner);
+}
+
+// --- The whole ---
+
+static bool find_names(View *v, char *why, size_t size) {
+  char real[PATH_MAX];
+  if (!v->options->file) {
+    snprintf(v->name, sizeof v->name, UNTITLED);
+    if (getcwd(v->folder, sizeof v->folder)) return true;
+    snprintf(why, size, "the working folder is not there");
+    return false;
+  }
+  if (!realpath(v->options->file, real) || access(real, R_OK) != 0) {
+    snprintf(why, size, "cannot read %s", v->options->file);
+    return false;
+  }
+  char *slash = strrchr(real, '/');
+  snprintf(v->name, sizeof v->name, "%s", slash + 1);
+  if (slash == real) slash++;
+  *slash = 0;
+  snprintf(v->folder, sizeof v->folder, "%s", real);
+  return true;
+}
+
+static bool start_parts(View *v) {
+  const CagRunnerOptions runner = {.session = v->options->session,
+                                   .has_file = v->options->file != NULL,
+                                   .folder = v->folder,
+                                   .name = v->name,
+                                   .server = &v->server,
+                                   .meshes = v->meshes = cag_meshes_new(MESH_MEMORY)};
+  v->runner = v->meshes ? cag_runner_start(&runner) : NULL;
+  v->jobs = v->runner ? cag_render_jobs_new(v->runner, &v->server) : NULL;
+  return v->jobs != NULL;
+}
+
+// From the moment that the gate is closed, requests do not use the other parts.
+static void stop_parts(View *v) {
+  pthread_mutex_lock(&v->gate);
+  v->closing = true;
+  pthread_mutex_unlock(&v->gate);
+  if (v->jobs) cag_render_jobs_free(v->jobs);
+  if (v->runner) cag_runner_stop(v->runner);
+  if (v->server) cag_server_stop(v->server);
+  cag_meshes_free(v->meshes);
+}
+
+static void tell_address(const View *v) {
+  char address[128];
+  snprintf(address, sizeof address, "http://localhost:%d/?t=%s", cag_server_port(v->server),
+           cag_server_token(v->server));
+  if (v->options->ready) v->options->ready(v->options->context, address);
+}
+
+static void start_first_run(View *v) {
+  const CagViewOptions *o = v->options;
+  CagLiveRequest q = {.coarse = 1, .defines = calloc(o->define_count + 1, sizeof *q.defines)};
+  for (size_t i = 0; q.defines && i < o->define_count; i++) {
+    CagLiveDefine *d = &q.defines[q.define_count++];
+    *d = (CagLiveDefine){strdup(o->define_names[i]), strdup(o->define_values[i])};
+    if (d->name && d->value) continue;
+    cag_live_request_free(&q);
+    return;
+  }
+  cag_runner_run(v->runner, &q);
+}
+
+static void serve(View *v) {
+  const struct timespec pause = {0, STOP_EVERY * 1000000L};
+  pthread_mutex_lock(&v->gate);
+  v->closing = false;
+  pthread_mutex_unlock(&v->gate);
+  look_at_file(v);
+  start_first_run(v);
+  tell_address(v);
+  for (int at = 0; !(v->options->session.interrupt && *v->options->session.interrupt); at++) {
+    nanosleep(&pause, NULL);
+    if (at % (LOOK_EVERY / STOP_EVERY) == 0 && look_at_file(v)) tell_change(v);
+  }
+}
+
+int cag_view_serve(const CagViewOptions *options, char *why, size_t size) {
+  View *v = calloc(1, sizeof *v);
+  int status = CAG_STATUS_FILE;
+  if (!v) {
+    snprintf(why, size, "out of memory");
+    return CAG_STATUS_LIMIT;
+  }
+  v->options = options;
+  v->closing = true; // until all parts are there
+  pthread_mutex_init(&v->gate, NULL);
+  if (find_names(v, why, size)) {
+    // The server starts first: what publishes events needs it.
+    v->server = cag_server_start(&(CagServerOptions){options->port, route, v}, why, size);
+    if (v->server && start_parts(v)) {
+      serve(v);
+      status = CAG_STATUS_INTERRUPTED;
+    } else if (v->server) {
+      snprintf(why, size, "out of memory");
+      status = CAG_STATUS_LIMIT;
+    }
+  }
+  stop_parts(v);
+  pthread_mutex_destroy(&v->gate);
+  free(v);
+  return status;
+}
