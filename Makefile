@@ -37,7 +37,8 @@ endif
 endif
 PKG_CFLAGS := $(shell pkg-config --cflags $(MODULES) 2>/dev/null)
 # The tables of Markdown come in a library that has no pkg-config file (libcmark-gfm-extensions-dev).
-PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(MODULES) 2>/dev/null)
+# The program loads libmicrohttpd when a server starts.
+PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(filter-out libmicrohttpd,$(MODULES)) 2>/dev/null)
 
 CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trapping-math -ffp-contract=off \
               -fPIC -fvisibility=hidden -MMD -MP -I. -Iinclude -I$(BUILD)/gen \
@@ -256,7 +257,7 @@ bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OC
 silhouettes: all
 	python3 tests/bench/silhouettes.py $(BUILD)/cag
 
-FORMATTED = $(shell find include base lang geom interp cli tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp live cli tests tools -name '*.[ch]' | sort)
 format:
 	clang-format -i $(FORMATTED)
 check-format:
@@ -267,7 +268,7 @@ check-layers:
 # GCC's ordinary warnings, Clang, and the sanitizers detect such values. GCC 12 also reports a leak of memory that is stored in an array
 # element at a variable index, such as that of the tasks of a batch. Leaks in cli/, which allocates with malloc, are therefore left to
 # `make tidy`. The other folders allocate with cag_malloc, which neither tool follows.
-ANALYZED := base lang geom interp cli
+ANALYZED := base lang geom interp live cli
 ANALYZE  := -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value
 $(BUILD)/analyzed/%.o: %.c
 	@mkdir -p $(@D)
@@ -278,7 +279,7 @@ $(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_func
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
 
 # clang-tidy, with the checks of .clang-tidy.
-TIDIED := base lang geom interp cli
+TIDIED := base lang geom interp live cli
 $(BUILD)/tidied/%.ok: %.c .clang-tidy
 	@mkdir -p $(@D)
 	@echo "tidy $<"

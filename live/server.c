@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
-#include <microhttpd.h>
 #include <netinet/in.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include "live/json.h"
+#include "live/microhttpd.h"
 
 enum { KINDS_MAX = 8, IDLE_SECONDS = 30 };
 #define COOKIE "cag-view"
@@ -92,7 +92,7 @@ static bool same_token(const CagServer *s, const char *given) {
 }
 
 static const char *header_of(struct MHD_Connection *c, const char *name) {
-  return MHD_lookup_connection_value(c, MHD_HEADER_KIND, name);
+  return cag_microhttpd.lookup_connection_value(c, MHD_HEADER_KIND, name);
 }
 
 // The page that asks, if a page asks, must be the server's own.
@@ -108,10 +108,10 @@ static const char *refusal(const CagServer *s, struct MHD_Connection *c, const c
   const char *host = header_of(c, "Host");
   if (!host || !is_loopback(host)) return "this server answers only for localhost";
   const bool entry = !strcmp(path, "/");
-  if (entry && same_token(s, MHD_lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "t")))
+  if (entry && same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "t")))
     return NULL; // a link from anywhere may lead here
   if (!is_own_origin(c, host)) return "a page of another origin cannot use this server";
-  if (!same_token(s, MHD_lookup_connection_value(c, MHD_COOKIE_KIND, COOKIE)))
+  if (!same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_COOKIE_KIND, COOKIE)))
     return "open the address that cag view printed";
   return NULL;
 }
@@ -123,36 +123,36 @@ static void add_safety(struct MHD_Response *r) {
   static const char POLICY[] =
       "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' blob: "
       "data:; connect-src 'self'; font-src 'self'; base-uri 'none'; form-action 'none'";
-  MHD_add_response_header(r, "Content-Security-Policy", POLICY);
-  MHD_add_response_header(r, "X-Content-Type-Options", "nosniff");
-  MHD_add_response_header(r, "Referrer-Policy", "no-referrer");
-  MHD_add_response_header(r, "Cross-Origin-Resource-Policy", "same-origin");
+  cag_microhttpd.add_response_header(r, "Content-Security-Policy", POLICY);
+  cag_microhttpd.add_response_header(r, "X-Content-Type-Options", "nosniff");
+  cag_microhttpd.add_response_header(r, "Referrer-Policy", "no-referrer");
+  cag_microhttpd.add_response_header(r, "Cross-Origin-Resource-Policy", "same-origin");
 }
 
 static void conclude(CagExchange *x, unsigned status, struct MHD_Response *r) {
   x->status = status;
   x->response = r;
-  MHD_resume_connection(x->connection);
+  cag_microhttpd.resume_connection(x->connection);
 }
 
 void cag_exchange_answer(CagExchange *x, const CagAnswer *a) {
-  struct MHD_Response *r = MHD_create_response_from_buffer(
+  struct MHD_Response *r = cag_microhttpd.create_response_from_buffer(
       a->size, (void *)(size_t)(a->size ? a->bytes : ""), MHD_RESPMEM_MUST_COPY);
   if (r) {
     add_safety(r);
-    MHD_add_response_header(r, "Content-Type", a->type ? a->type : "application/json");
-    MHD_add_response_header(r, "Cache-Control",
-                            a->lasting ? "private, max-age=31536000, immutable" : "no-store");
-    if (a->gzipped) MHD_add_response_header(r, "Content-Encoding", "gzip");
+    cag_microhttpd.add_response_header(r, "Content-Type", a->type ? a->type : "application/json");
+    cag_microhttpd.add_response_header(
+        r, "Cache-Control", a->lasting ? "private, max-age=31536000, immutable" : "no-store");
+    if (a->gzipped) cag_microhttpd.add_response_header(r, "Content-Encoding", "gzip");
     if (a->etag) {
       char quoted[96];
       snprintf(quoted, sizeof quoted, "\"%s\"", a->etag);
-      MHD_add_response_header(r, "ETag", quoted);
+      cag_microhttpd.add_response_header(r, "ETag", quoted);
     }
     if (a->file) {
       char text[160];
       snprintf(text, sizeof text, "attachment; filename=\"%.128s\"", a->file);
-      MHD_add_response_header(r, "Content-Disposition", text);
+      cag_microhttpd.add_response_header(r, "Content-Disposition", text);
     }
   }
   conclude(x, (unsigned)a->status, r);
@@ -172,14 +172,15 @@ void cag_exchange_fail(CagExchange *x, int status, const char *message, const ch
 // The first visit: the cookie, and the address without the token.
 static void answer_entry(CagExchange *x) {
   char cookie[128];
-  struct MHD_Response *r = MHD_create_response_from_buffer(0, "", MHD_RESPMEM_PERSISTENT);
+  struct MHD_Response *r =
+      cag_microhttpd.create_response_from_buffer(0, "", MHD_RESPMEM_PERSISTENT);
   snprintf(cookie, sizeof cookie, COOKIE "=%s; Path=/; HttpOnly; SameSite=Strict",
            x->server->token);
   if (r) {
     add_safety(r);
-    MHD_add_response_header(r, "Set-Cookie", cookie);
-    MHD_add_response_header(r, "Location", "/");
-    MHD_add_response_header(r, "Cache-Control", "no-store");
+    cag_microhttpd.add_response_header(r, "Set-Cookie", cookie);
+    cag_microhttpd.add_response_header(r, "Location", "/");
+    cag_microhttpd.add_response_header(r, "Cache-Control", "no-store");
   }
   conclude(x, MHD_HTTP_SEE_OTHER, r);
 }
@@ -187,7 +188,7 @@ static void answer_entry(CagExchange *x) {
 const char *cag_exchange_method(const CagExchange *x) { return x->method; }
 const char *cag_exchange_path(const CagExchange *x) { return x->path; }
 const char *cag_exchange_query(const CagExchange *x, const char *name) {
-  return MHD_lookup_connection_value(x->connection, MHD_GET_ARGUMENT_KIND, name);
+  return cag_microhttpd.lookup_connection_value(x->connection, MHD_GET_ARGUMENT_KIND, name);
 }
 const char *cag_exchange_header(const CagExchange *x, const char *name) {
   return header_of(x->connection, name);
@@ -216,7 +217,7 @@ static void wake_listeners(CagServer *s) {
   for (Listener *l = s->listeners; l; l = l->next) {
     if (!l->waiting) continue;
     l->waiting = false;
-    MHD_resume_connection(l->connection);
+    cag_microhttpd.resume_connection(l->connection);
   }
 }
 
@@ -281,7 +282,7 @@ static ssize_t read_events(void *context, uint64_t at, char *buffer, size_t most
     }
   } else {
     l->waiting = true;
-    MHD_suspend_connection(l->connection);
+    cag_microhttpd.suspend_connection(l->connection);
   }
   pthread_mutex_unlock(&s->mutex);
   return n;
@@ -318,12 +319,12 @@ void cag_exchange_listen(CagExchange *x) {
     cag_exchange_fail(x, MHD_HTTP_SERVICE_UNAVAILABLE, "too many pages are open", NULL);
     return;
   }
-  struct MHD_Response *r =
-      MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_events, l, end_listener);
+  struct MHD_Response *r = cag_microhttpd.create_response_from_callback(
+      MHD_SIZE_UNKNOWN, 16384, read_events, l, end_listener);
   if (r) {
     add_safety(r);
-    MHD_add_response_header(r, "Content-Type", "text/event-stream");
-    MHD_add_response_header(r, "Cache-Control", "no-store");
+    cag_microhttpd.add_response_header(r, "Content-Type", "text/event-stream");
+    cag_microhttpd.add_response_header(r, "Cache-Control", "no-store");
   } else {
     end_listener(l);
   }
@@ -333,7 +334,7 @@ void cag_exchange_listen(CagExchange *x) {
 // --- Requests ---
 
 static void free_exchange(CagExchange *x) {
-  if (x->response) MHD_destroy_response(x->response);
+  if (x->response) cag_microhttpd.destroy_response(x->response);
   free(x->method);
   free(x->path);
   free(x->body);
@@ -404,11 +405,11 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *c, const cha
   }
   if (!x->routed) {
     x->routed = true;
-    MHD_suspend_connection(c); // until it is answered, which may be at once
+    cag_microhttpd.suspend_connection(c); // until it is answered, which may be at once
     route(x);
     return MHD_YES;
   }
-  return x->response ? MHD_queue_response(c, x->status, x->response) : MHD_NO;
+  return x->response ? cag_microhttpd.queue_response(c, x->status, x->response) : MHD_NO;
 }
 
 // --- The server ---
@@ -429,11 +430,11 @@ static void ignore_log(void *context, const char *format, va_list arguments) {
 static struct MHD_Daemon *start_daemon(CagServer *s, const struct sockaddr *address, bool v6) {
   const unsigned flags = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME |
                          MHD_USE_ERROR_LOG | (v6 ? MHD_USE_IPv6 : 0);
-  return MHD_start_daemon(flags, 0, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, ignore_log,
-                          NULL, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
-                          end_request, NULL, MHD_OPTION_CONNECTION_LIMIT,
-                          (unsigned)CAG_SERVER_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
-                          (unsigned)IDLE_SECONDS, MHD_OPTION_END);
+  return cag_microhttpd.start_daemon(
+      flags, 0, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, ignore_log, NULL,
+      MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL,
+      MHD_OPTION_CONNECTION_LIMIT, (unsigned)CAG_SERVER_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
+      (unsigned)IDLE_SECONDS, MHD_OPTION_END);
 }
 
 static bool start_daemons(CagServer *s) {
@@ -441,7 +442,7 @@ static bool start_daemons(CagServer *s) {
   v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   s->daemons[0] = start_daemon(s, (struct sockaddr *)&v4, false);
   if (!s->daemons[0]) return false;
-  s->port = MHD_get_daemon_info(s->daemons[0], MHD_DAEMON_INFO_BIND_PORT)->port;
+  s->port = cag_microhttpd.get_daemon_info(s->daemons[0], MHD_DAEMON_INFO_BIND_PORT)->port;
   struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)s->port)};
   v6.sin6_addr = in6addr_loopback;
   s->daemons[1] = start_daemon(s, (struct sockaddr *)&v6, true); // NULL without IPv6
@@ -449,6 +450,7 @@ static bool start_daemons(CagServer *s) {
 }
 
 CagServer *cag_server_start(const CagServerOptions *options, char *why, size_t size) {
+  if (!cag_microhttpd_load(why, size)) return NULL;
   CagServer *s = calloc(1, sizeof *s);
   if (!s) {
     snprintf(why, size, "out of memory");
@@ -471,7 +473,7 @@ void cag_server_stop(CagServer *s) {
   wake_listeners(s);
   pthread_mutex_unlock(&s->mutex);
   for (int i = 0; i < 2; i++)
-    if (s->daemons[i]) MHD_stop_daemon(s->daemons[i]);
+    if (s->daemons[i]) cag_microhttpd.stop_daemon(s->daemons[i]);
   for (size_t i = 0; i < s->kind_count; i++) release_text(s->events[i].text);
   pthread_mutex_destroy(&s->mutex);
   free(s);
