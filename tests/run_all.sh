@@ -124,6 +124,7 @@ for cases in tests/cli/cases_*.sh; do
 done
 suite counted "tests/repl" "sh tests/repl/run.sh"
 suite counted "tests/editors" "sh tests/editors/run.sh"
+suite counted "tests/live view" "python3 tests/live/view.py '$BUILD/cag'"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
