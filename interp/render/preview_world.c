@@ -8,6 +8,7 @@
 #include "geom/solid/csg.h"
 #include "interp/render/preview_pattern.h"
 #include "interp/scene/color_scale.h"
+#include "interp/scene/curve_rods.h"
 
 // Set operations with more operands than this are met as meshes.
 enum { OPERANDS_MAX = 64 };
@@ -61,6 +62,7 @@ static CagPreviewSurface surface_of(const CagMaterial *m) {
 void cag_preview_world_free(CagPreviewWorld *w) {
   for (size_t i = 0; i < w->count; i++) {
     cag_caster_free(w->parts[i].caster);
+    cag_ray_rods_free(w->parts[i].rods);
     cag_ray_mesh_free(w->parts[i].mesh);
   }
   cag_free(w->parts);
@@ -104,6 +106,33 @@ static CagStatus add_planar(const CagItem *item, CagPreviewPart *part, CagError 
   return status;
 }
 
+static CagStatus add_ring(const CagCurveRods *c, CagPreviewPart *part, CagError *err) {
+  CagSolid *torus = NULL, *moved = NULL;
+  CagStatus status = cag_solid_torus(c->circle_radius, c->radius, &torus, err);
+  if (!status) status = cag_solid_transform(torus, &c->frame, &moved, err);
+  if (!status) status = cag_caster_of_solid(moved, &part->caster, err);
+  cag_solid_release(torus);
+  cag_solid_release(moved);
+  return status;
+}
+
+// A curve is drawn as the POV-Ray source does (interp/formats/pov_curve.c). A torus without a hole
+// is a mesh.
+static CagStatus add_curve(const CagScene *s, const CagItem *item, CagPreviewPart *part,
+                           CagError *err) {
+  CagCurveRods c;
+  CagStatus status = cag_curve_rods(s, item, &c, err);
+  if (status) return status;
+  if (c.circle && c.radius < c.circle_radius) status = add_ring(&c, part, err);
+  else if (c.circle) status = add_mesh(s, item, part, err);
+  else {
+    status = cag_ray_rods_new(c.rods, c.count, c.radius, &part->rods, err);
+    if (!status) part->bounds = part->rods->bvh.bounds;
+  }
+  cag_curve_rods_free(&c);
+  return status;
+}
+
 static CagStatus add_slab(const CagItem *item, CagPreviewPart *part, CagError *err) {
   const double size = item->ground_size, half = size / 2;
   const CagTransform shift = cag_translate(cag_vec3(-half, -half, item->ground_z - SLAB * size));
@@ -130,6 +159,7 @@ static CagStatus make_part(const CagPreviewWorld *w, size_t i, CagPreviewPart *p
   *part = (CagPreviewPart){.item = i, .closed = true};
   if (item->kind == CAG_ITEM_GROUND) status = add_slab(item, part, err);
   else if (item->kind == CAG_ITEM_REGION) status = add_planar(item, part, err);
+  else if (item->kind == CAG_ITEM_CURVE) status = add_curve(s, item, part, err);
   else if (item->kind == CAG_ITEM_SURFACE && is_flat(item->as.surface))
     status = cag_caster_of_surface(item->as.surface, &part->caster, err);
   else if (item->kind == CAG_ITEM_SOLID && !w->meshes_only &&
@@ -277,7 +307,8 @@ static void fill_hit(const CagPreviewWorld *w, const CagPreviewPart *part, const
 static CagStatus meet_part(const CagPreviewPart *part, const CagRay *ray, CagCrossings *work,
                            CagCrossing *out, bool *met, CagError *err) {
   if (part->caster) return cag_caster_first(part->caster, ray, work, out, met, err);
-  *met = cag_ray_mesh_first(part->mesh, ray, out);
+  *met = part->rods ? cag_ray_rods_first(part->rods, ray, out)
+                    : cag_ray_mesh_first(part->mesh, ray, out);
   return CAG_OK;
 }
 
@@ -358,6 +389,7 @@ static CagStatus is_blocked(const CagPreviewWorld *w, const CagRay *ray, CagCros
       const CagPreviewPart *part = &w->parts[w->boxes.order[k]];
       CagCrossing c;
       if (part->caster) status = cag_caster_first(part->caster, ray, work, &c, blocked, err);
+      else if (part->rods) *blocked = cag_ray_rods_blocks(part->rods, ray);
       else *blocked = cag_ray_mesh_blocks(part->mesh, ray);
     }
   return status;

@@ -6,6 +6,7 @@
 #include "geom/ray/bvh.h"
 #include "geom/ray/caster.h"
 #include "geom/ray/ray_mesh.h"
+#include "geom/ray/ray_rods.h"
 #include "interp/scene/scene.h"
 
 // How a material reflects light, as in interp/formats/pov_material.c.
@@ -22,8 +23,10 @@ typedef struct CagPreviewSurface {
 } CagPreviewSurface;
 
 typedef struct CagPreviewPart {
-  size_t item;       // of the scene
-  CagCaster *caster; // exact surfaces; NULL: a mesh
+  size_t item; // of the scene
+  // One of these is not NULL.
+  CagCaster *caster; // exact surfaces
+  CagRayRods *rods;  // a curve
   CagRayMesh *mesh;
   bool closed; // transparent parts refract
   CagBounds bounds;
