@@ -5,8 +5,8 @@
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/ray/bvh_walk.h"
+#include "geom/ray/ray_primitive.h"
 #include "geom/solid/csg.h"
-#include "interp/render/preview_pattern.h"
 #include "interp/scene/color_scale.h"
 #include "interp/scene/curve_rods.h"
 
@@ -45,7 +45,8 @@ static CagPreviewSurface surface_of(const CagMaterial *m) {
                          .emission = m->emission,
                          .metal = metallic > 0.5,
                          .ior = m->ior,
-                         .material = m};
+                         .material = m,
+                         .pattern = cag_preview_find_pattern(m)};
   s.passed = clamp01(m->transmission) * (1 - metallic);
   s.diffuse = (1 - metallic) + 0.4 * blurred;
   s.exponent = 1 / fmax(SPECULAR_ROUGHNESS_MIN, rough * rough * rough * rough / 2);
@@ -150,6 +151,17 @@ static bool is_flat(const CagSurface *s) {
   return cag_surface_planar_view(s, NULL, NULL) || cag_surface_parallelogram_view(s, &o, &x, &y);
 }
 
+// POV-Ray's source applies the rigid motion of a primitive after its material.
+static CagStatus place_pattern(const CagSolid *s, CagPreviewPart *part, CagError *err) {
+  const double rounding = 1e-12;
+  double scale;
+  if (!cag_ray_primitive_can(s) || !cag_transform_is_affine(&s->placement) ||
+      !cag_transform_is_similarity(&s->placement, &scale) || fabs(scale - 1) > rounding)
+    return CAG_OK;
+  part->moved = true;
+  return cag_transform_inverse(&s->placement, &part->to_pattern, err);
+}
+
 static CagStatus make_part(const CagPreviewWorld *w, size_t i, CagPreviewPart *part,
                            CagError *err) {
   const CagScene *s = w->scene;
@@ -168,11 +180,12 @@ static CagStatus make_part(const CagPreviewWorld *w, size_t i, CagPreviewPart *p
   else status = add_mesh(s, item, part, err);
   if (status) return status;
   if (part->caster) part->bounds = cag_caster_bounds(part->caster);
+  if (item->kind == CAG_ITEM_SOLID) status = place_pattern(item->as.solid, part, err);
   if (item->kind == CAG_ITEM_REGION) part->closed = false;
   if (item->kind == CAG_ITEM_SURFACE) part->closed = cag_surface_is_closed(item->as.surface);
   if (item->kind == CAG_ITEM_MESH)
     return cag_mesh_watertight(item->as.mesh, &part->closed, NULL, err);
-  return CAG_OK;
+  return status;
 }
 
 static CagStatus make_parts(CagPreviewWorld *w, CagError *err) {
@@ -298,7 +311,8 @@ static void fill_hit(const CagPreviewWorld *w, const CagPreviewPart *part, const
                          .leaves = c->sign > 0,
                          .closed = part->closed,
                          .mesh = m,
-                         .face = c->face};
+                         .face = c->face,
+                         .to_pattern = part->moved ? &part->to_pattern : NULL};
   if (!m || m->scale.kind == CAG_SCALE_NONE) return;
   out->scale = &m->scale;
   out->scale_value = c->u;
@@ -426,10 +440,30 @@ CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCr
   return CAG_OK;
 }
 
+static CagVec3 pattern_point(const CagPreviewHit *hit) {
+  return hit->to_pattern ? cag_transform_point(hit->to_pattern, hit->point) : hit->point;
+}
+
 CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit) {
   if (hit->scale) return cag_color_scale_at(hit->scale, hit->scale_value);
   const CagPreviewSurface *s = &w->surfaces[hit->material];
-  return *s->material->texture ? cag_preview_pattern(s->material, hit->point) : s->color;
+  return s->pattern ? s->pattern->color(s->material, pattern_point(hit)) : s->color;
+}
+
+// The inverse of a rigid motion is its transpose.
+static CagVec3 vector_back(const CagTransform *t, CagVec3 v) {
+  return cag_vec3(t->m[0][0] * v.x + t->m[1][0] * v.y + t->m[2][0] * v.z,
+                  t->m[0][1] * v.x + t->m[1][1] * v.y + t->m[2][1] * v.z,
+                  t->m[0][2] * v.x + t->m[1][2] * v.y + t->m[2][2] * v.z);
+}
+
+CagVec3 cag_preview_normal(const CagPreviewWorld *w, const CagPreviewHit *hit) {
+  const CagPreviewSurface *s = &w->surfaces[hit->material];
+  if (!s->pattern || !s->pattern->bumps || hit->scale) return hit->normal;
+  const CagTransform *t = hit->to_pattern;
+  const CagVec3 normal = t ? cag_transform_vector(t, hit->normal) : hit->normal;
+  const CagVec3 bumpy = s->pattern->bumps(s->material, pattern_point(hit), normal);
+  return t ? vector_back(t, bumpy) : bumpy;
 }
 
 CagColor cag_preview_sky(const CagScene *s, CagVec3 direction) {

@@ -7,6 +7,7 @@
 #include "geom/ray/caster.h"
 #include "geom/ray/ray_mesh.h"
 #include "geom/ray/ray_rods.h"
+#include "interp/render/preview_pattern.h"
 #include "interp/scene/scene.h"
 
 // How a material reflects light, as in interp/formats/pov_material.c.
@@ -20,6 +21,7 @@ typedef struct CagPreviewSurface {
   double ior;
   bool metal; // reflections have its color
   const CagMaterial *material;
+  const CagPreviewPattern *pattern; // NULL: none
 } CagPreviewSurface;
 
 typedef struct CagPreviewPart {
@@ -30,6 +32,10 @@ typedef struct CagPreviewPart {
   CagRayMesh *mesh;
   bool closed; // transparent parts refract
   CagBounds bounds;
+  // Patterns move with primitive solids, as in POV-Ray's source: from the world to the pattern, a
+  // rigid motion.
+  bool moved;
+  CagTransform to_pattern;
 } CagPreviewPart;
 
 // A light, prepared.
@@ -70,10 +76,11 @@ typedef struct CagPreviewHit {
   size_t item, material;
   bool leaves; // the ray goes out of the part
   bool closed;
-  double scale_value;         // of a mesh with a color scale
-  const CagColorScale *scale; // NULL: none
-  const CagMesh *mesh;        // NULL: an exact surface
-  uint32_t face;              // the triangle of the mesh
+  double scale_value;             // of a mesh with a color scale
+  const CagColorScale *scale;     // NULL: none
+  const CagMesh *mesh;            // NULL: an exact surface
+  uint32_t face;                  // the triangle of the mesh
+  const CagTransform *to_pattern; // NULL: patterns are in world coordinates
 } CagPreviewHit;
 
 // With `meshes_only`, rays meet meshes even of what has equations, except planes.
@@ -88,6 +95,8 @@ CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCr
                               CagColor *out, CagError *err);
 // The color of the surface at a hit: of the material's pattern or the mesh's scale.
 CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit);
+// The normal of shading at a hit, with the bumps of the material.
+CagVec3 cag_preview_normal(const CagPreviewWorld *w, const CagPreviewHit *hit);
 // The light of the sky in a direction.
 CagColor cag_preview_sky(const CagScene *s, CagVec3 direction);
 
