@@ -3,7 +3,8 @@
 // It shades surfaces as the POV-Ray source that the exporter writes does, so that its pictures look
 // like POV-Ray's: a diffuse part, highlights of the surface and of a clear coat, mirror reflection
 // by Fresnel's equations, and refraction. In a sketch, light from everywhere is a constant. With
-// samples, it is found by paths of random directions (Kajiya 1986), and lights have their sizes.
+// samples, lights have their sizes, and light from the sky is found by paths of random directions
+// (Kajiya 1986).
 //
 // Numbers that stand for chance depend only on the pixel and the number of the sample. Pictures are
 // therefore the same for any number of threads.
@@ -15,8 +16,8 @@
 #include "interp/scene/scene.h"
 
 typedef struct CagPreviewOptions {
-  // The light from everywhere is that of the sky, as in POV-Ray's final pictures; else it is a
-  // constant where nothing is in its way, as it is for POV-Ray where lights are shown.
+  // The light from everywhere is that of the sky, and is reflected between surfaces, as in POV-Ray's
+  // final pictures; else it is a constant, as it is for POV-Ray where lights are shown.
   bool sky_light;
   int samples; // of light per pixel; 0: a sketch, with smooth edges but without light from others
   int region_x, region_y, region_width, region_height; // width 0: the whole picture

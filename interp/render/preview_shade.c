@@ -6,8 +6,7 @@
 // light that is followed.
 enum { DEPTH_MAX = 12 };
 #define WEIGHT_LEAST 0.004
-// Diffuse reflections one after another in pictures with the sky's light; others have one, beyond
-// which light from everywhere is a constant.
+// Diffuse reflections one after another in pictures with the sky's light.
 enum { BOUNCES_MAX = 2 };
 // A ray starts this fraction of the scene's size beside the surface that it leaves.
 #define START 1e-6
@@ -190,23 +189,27 @@ static CagStatus diffuse_light(CagPreviewShader *s, const CagRay *ray, int bounc
 static CagStatus light_from_everywhere(CagPreviewShader *s, const Spot *p, int bounces,
                                        CagColor *out, CagError *err) {
   *out = s->world->ambient;
-  if (s->sketch) return CAG_OK;
+  if (s->sketch || !s->sky_light) return CAG_OK;
   const CagRay ray = {p->point, cosine_direction(s, p->normal), start_step(s->world), INFINITY};
   return diffuse_light(s, &ray, bounces, out, err);
 }
 
+static CagColor color_limited(CagColor c) {
+  const double most = fmax(c.r, fmax(c.g, c.b));
+  return most > BRIGHTEST ? color_scaled(c, BRIGHTEST / most) : c;
+}
+
 // The sky's light, or what stands for it where there is none.
 static CagColor escaped_light(const CagPreviewShader *s, CagVec3 direction) {
-  const CagScene *scene = s->world->scene;
-  return s->sky_light && scene->sky.color_count > 0 ? cag_preview_sky(scene, direction)
-                                                    : s->world->ambient;
+  const CagPreviewSky *sky = &s->world->sky;
+  return sky->lights ? color_limited(cag_preview_sky_color(sky, direction)) : s->world->ambient;
 }
 
 static Spot spot_of(const CagPreviewWorld *w, const CagRay *ray, const CagPreviewHit *hit) {
   Spot p = {.hit = hit,
             .surface = &w->surfaces[hit->material],
             .point = hit->point,
-            .normal = hit->normal,
+            .normal = cag_preview_normal(w, hit),
             .flat = hit->flat,
             .view = cag_scaled(ray->direction, -1),
             .color = cag_preview_color(w, hit)};
@@ -233,16 +236,14 @@ static CagStatus diffuse_light(CagPreviewShader *s, const CagRay *ray, int bounc
   const Spot p = spot_of(s->world, ray, &hit);
   CagColor direct, indirect = BLACK;
   status = light_of_sources(s, &p, &direct, NULL, err);
-  if (!s->sky_light) indirect = s->world->ambient;
-  else if (!status && bounces + 1 < BOUNCES_MAX)
+  if (!status && bounces + 1 < BOUNCES_MAX)
     status = light_from_everywhere(s, &p, bounces + 1, &indirect, err);
   // Of metals, the mirror's part counts as diffuse, too.
   const double kept =
       p.surface->diffuse * (1 - p.surface->passed) + (p.surface->metal ? p.surface->mirror : 0);
   *out =
       color_add(p.surface->emission, kept, color_product(color_add(direct, 1, indirect), p.color));
-  const double most = fmax(out->r, fmax(out->g, out->b));
-  if (most > BRIGHTEST) *out = color_scaled(*out, BRIGHTEST / most);
+  *out = color_limited(*out);
   return status;
 }
 
@@ -311,7 +312,7 @@ CagStatus cag_preview_light(CagPreviewShader *s, const CagRay *ray, int depth, d
   CagStatus status = cag_preview_meet(s->world, ray, &s->work, &hit, &met, err);
   if (status) return status;
   if (!met) {
-    *out = cag_preview_sky(s->world->scene, ray->direction);
+    *out = cag_preview_sky_color(&s->world->sky, ray->direction);
     return CAG_OK;
   }
   const Spot p = spot_of(s->world, ray, &hit);

@@ -72,6 +72,7 @@ void cag_preview_world_free(CagPreviewWorld *w) {
   cag_free(w->lamps);
   cag_free(w->planes);
   cag_free(w->plane_items);
+  cag_preview_sky_free(&w->sky);
   *w = (CagPreviewWorld){0};
 }
 
@@ -275,6 +276,7 @@ CagStatus cag_preview_world(const CagScene *scene, bool meshes_only, CagPreviewW
   out->center = cag_lerp(box.min, box.max, 0.5);
   out->surfaces = cag_calloc(scene->material_count + 1, sizeof *out->surfaces);
   CagStatus status = out->surfaces ? make_lamps(out, err) : cag_fail_memory(err);
+  if (!status) status = cag_preview_sky_load(scene, &out->sky, err);
   if (!status) status = make_parts(out, err);
   for (size_t i = 0; !status && i < scene->material_count; i++) {
     out->surfaces[i] = surface_of(&scene->materials[i]);
@@ -464,15 +466,4 @@ CagVec3 cag_preview_normal(const CagPreviewWorld *w, const CagPreviewHit *hit) {
   const CagVec3 normal = t ? cag_transform_vector(t, hit->normal) : hit->normal;
   const CagVec3 bumpy = s->pattern->bumps(s->material, pattern_point(hit), normal);
   return t ? vector_back(t, bumpy) : bumpy;
-}
-
-CagColor cag_preview_sky(const CagScene *s, CagVec3 direction) {
-  const size_t n = s->sky.color_count;
-  if (n == 0) return s->has_background ? s->background : (CagColor){0, 0, 0};
-  if (n == 1) return s->sky.colors[0];
-  const double at = clamp01((direction.z + 1) / 2) * (double)(n - 1);
-  const size_t k = at >= (double)(n - 1) ? n - 2 : (size_t)at;
-  const double f = at - (double)k;
-  const CagColor a = s->sky.colors[k], b = s->sky.colors[k + 1];
-  return (CagColor){a.r + f * (b.r - a.r), a.g + f * (b.g - a.g), a.b + f * (b.b - a.b)};
 }

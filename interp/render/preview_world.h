@@ -8,6 +8,7 @@
 #include "geom/ray/ray_mesh.h"
 #include "geom/ray/ray_rods.h"
 #include "interp/render/preview_pattern.h"
+#include "interp/render/preview_sky.h"
 #include "interp/scene/scene.h"
 
 // How a material reflects light, as in interp/formats/pov_material.c.
@@ -65,6 +66,7 @@ typedef struct CagPreviewWorld {
   double radius;    // of the scene
   CagVec3 center;
   CagColor ambient; // light from everywhere, in a sketch
+  CagPreviewSky sky;
 } CagPreviewWorld;
 
 // What a ray meets.
@@ -97,7 +99,5 @@ CagStatus cag_preview_passage(const CagPreviewWorld *w, const CagRay *ray, CagCr
 CagColor cag_preview_color(const CagPreviewWorld *w, const CagPreviewHit *hit);
 // The normal of shading at a hit, with the bumps of the material.
 CagVec3 cag_preview_normal(const CagPreviewWorld *w, const CagPreviewHit *hit);
-// The light of the sky in a direction.
-CagColor cag_preview_sky(const CagScene *s, CagVec3 direction);
 
 #endif
