@@ -281,6 +281,7 @@ static void finish_part(const CagCaster *c, const CagRay *line, double stretch, 
                         size_t from) {
   for (size_t i = from; i < work->n; i++) {
     CagCrossing *x = &work->items[i];
+    x->part = c;
     if (c->label) x->label = c->label;
     if (!c->placed) continue;
     const double n[3] = {x->normal.x, x->normal.y, x->normal.z};
@@ -444,6 +445,7 @@ static CagStatus meet_form(const CagCaster *c, const CagRay *line, CagCrossings 
                        .u = NAN,
                        .v = NAN,
                        .label = c->label,
+                       .part = c,
                        .sign = (i == 0) == out->inside ? 1 : -1};
   }
   return CAG_OK;
@@ -541,6 +543,7 @@ static CagCrossing result_crossing(const CagCaster *c, const CagCrossings *work,
     if (inverted) {
       x.sign = -x.sign;
       x.normal = cag_scaled(x.normal, -1);
+      x.flipped = !x.flipped;
     }
     if (i == 0) best = x;
     if (x.sign != sign) continue;
@@ -624,7 +627,10 @@ static CagStatus meet(const CagCaster *c, const CagRay *line, CagCrossings *work
   switch (c->kind) {
   case CAG_CASTER_PRIMITIVE:
     status = cag_ray_primitive_meet(&c->primitive, line, work, err);
-    for (size_t i = out->from; i < work->n; i++) work->items[i].label = c->label;
+    for (size_t i = out->from; i < work->n; i++) {
+      work->items[i].label = c->label;
+      work->items[i].part = c;
+    }
     break;
   case CAG_CASTER_FORM: status = meet_form(c, line, work, out, err); break;
   case CAG_CASTER_OPERATION: status = meet_operation(c, line, work, out, err); break;

@@ -16,16 +16,20 @@ typedef struct CagRay {
   double least, most;
 } CagRay;
 
+struct CagCaster;
+
 // Where a ray crosses a surface.
 typedef struct CagCrossing {
   double t;
-  CagVec3 normal;  // unit, of the surface there: outward for solids
-  double u, v;     // parameters of the surface; of a mesh without parameters, NaN
-  uint32_t face;   // index of the face of a solid, or of the triangle of a mesh
-  uint32_t label;  // of the solid or the triangle: see mesh.h
-  int sign;        // 1: along the normal, out of a solid; -1: against it; 0: touches
-  bool angular[2]; // whether u and v are angles
-  float weight[2]; // of corners 1 and 2 of the triangle, if the surface is a mesh
+  CagVec3 normal;               // unit, of the surface there: outward for solids
+  double u, v;                  // parameters of the surface; of a mesh without parameters, NaN
+  uint32_t face;                // index of the face of a solid, or of the triangle of a mesh
+  uint32_t label;               // of the solid or the triangle: see mesh.h
+  int sign;                     // 1: along the normal, out of a solid; -1: against it; 0: touches
+  bool angular[2];              // whether u and v are angles
+  bool flipped;                 // the normal is opposite to that of the part, which is subtracted
+  float weight[2];              // of corners 1 and 2 of the triangle, if the surface is a mesh
+  const struct CagCaster *part; // what is met: of a set operation, the operand; NULL: unknown
 } CagCrossing;
 
 // A growing list of crossings. {0} is empty.

@@ -312,7 +312,7 @@ CagStatus cag_preview_render(const CagScene *scene, const CagCamera *camera,
   CagPreviewWorld world;
   CagStatus status = cag_scene_camera_map(camera, &f.map, err);
   if (status) return status;
-  status = cag_preview_world(scene, false, &world, err);
+  status = cag_preview_world(scene, &world, err);
   if (status) return status;
   f.world = &world;
   status = render_frame(&f, finished);

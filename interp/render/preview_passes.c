@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/stop.h"
 #include "interp/render/cryptomatte.h"
-#include "interp/render/preview_world.h"
+#include "interp/render/preview_curvature.h"
 
 // A pixel has a square of so many samples for the fractions of parts.
 enum { SIDE = 4 };
@@ -39,6 +39,7 @@ bool cag_preview_read_passes(const char *text, bool out[CAG_PASS_COUNT], char wr
 typedef struct Passes {
   const CagPreviewWorld *world;
   CagCameraMap map;
+  CagPreviewCurvature curvature;
   const bool *wanted;
   size_t first[CAG_PASS_COUNT]; // channels
   float *items, *materials;     // hashes of names
@@ -47,28 +48,6 @@ typedef struct Passes {
   CagStatus status;
   CagError *err;
 } Passes;
-
-// --- Curvature ---
-
-// The mean and Gaussian curvature within a triangle, from the normals of its corners: the linear map
-// from steps in its plane to changes of the normal (Rusinkiewicz 2004).
-static bool triangle_curvature(const CagMesh *m, uint32_t face, double *mean, double *gaussian) {
-  const uint32_t *t = m->triangles + 3 * (size_t)face;
-  if (!m->normals) return false;
-  const CagVec3 e = cag_sub(m->positions[t[1]], m->positions[t[0]]);
-  const CagVec3 f = cag_sub(m->positions[t[2]], m->positions[t[0]]);
-  const CagVec3 ne = cag_sub(m->normals[t[1]], m->normals[t[0]]);
-  const CagVec3 nf = cag_sub(m->normals[t[2]], m->normals[t[0]]);
-  const CagVec3 u = cag_unit(e), w = cag_unit(cag_cross(e, f)), v = cag_cross(w, u);
-  const double eu = cag_dot(e, u), fu = cag_dot(f, u), fv = cag_dot(f, v);
-  if (eu == 0 || fv == 0) return false;
-  // Columns of the map: along u, and along v.
-  const double uu = cag_dot(ne, u) / eu, uv = cag_dot(ne, v) / eu;
-  const double vu = (cag_dot(nf, u) - uu * fu) / fv, vv = (cag_dot(nf, v) - uv * fu) / fv;
-  *mean = (uu + vv) / 2;
-  *gaussian = uu * vv - uv * vu;
-  return true;
-}
 
 // --- Samples ---
 
@@ -99,20 +78,23 @@ static void store_hit(const Passes *p, const CagPreviewHit *hit, size_t pixel) {
     *sample_at(p, CAG_PASS_UV, 0, pixel) = (float)hit->u;
     *sample_at(p, CAG_PASS_UV, 1, pixel) = (float)hit->v;
   }
-  if (!p->wanted[CAG_PASS_CURVATURE]) return;
-  double mean = 0, gaussian = 0;
-  if (hit->mesh && !triangle_curvature(hit->mesh, hit->face, &mean, &gaussian))
-    mean = gaussian = NAN;
-  *sample_at(p, CAG_PASS_CURVATURE, 0, pixel) = (float)mean;
-  *sample_at(p, CAG_PASS_CURVATURE, 1, pixel) = (float)gaussian;
 }
 
-static CagStatus meet_at(const Passes *p, double u, double v, CagCrossings *work,
-                         CagPreviewHit *hit, bool *met, CagError *err) {
+static CagStatus store_curvature(const Passes *p, const CagRay *ray, const CagPreviewHit *hit,
+                                 size_t pixel, CagCrossings *work, CagError *err) {
+  CagBend bend = {NAN, NAN};
+  if (!p->wanted[CAG_PASS_CURVATURE]) return CAG_OK;
+  CagStatus status = cag_preview_curvature_at(&p->curvature, ray, hit, work, &bend, err);
+  *sample_at(p, CAG_PASS_CURVATURE, 0, pixel) = (float)bend.mean;
+  *sample_at(p, CAG_PASS_CURVATURE, 1, pixel) = (float)bend.gaussian;
+  return status;
+}
+
+static CagRay ray_at(const Passes *p, double u, double v) {
   const double at[2] = {u, v};
   CagRay ray = {.least = 0, .most = INFINITY};
   cag_camera_sight(&p->map, at, &ray.origin, &ray.direction);
-  return cag_preview_meet(p->world, &ray, work, hit, met, err);
+  return ray;
 }
 
 static CagStatus count_parts(const Passes *p, int x, int y, size_t pixel, CagCrossings *work,
@@ -122,8 +104,8 @@ static CagStatus count_parts(const Passes *p, int x, int y, size_t pixel, CagCro
   for (int k = 0; k < SIDE * SIDE; k++) {
     CagPreviewHit hit;
     bool met;
-    CagStatus status =
-        meet_at(p, x + (k % SIDE + 0.5) / SIDE, y + (k / SIDE + 0.5) / SIDE, work, &hit, &met, err);
+    const CagRay ray = ray_at(p, x + (k % SIDE + 0.5) / SIDE, y + (k / SIDE + 0.5) / SIDE);
+    CagStatus status = cag_preview_meet(p->world, &ray, work, &hit, &met, err);
     if (status) return status;
     if (!met) continue;
     cag_crypto_add(&items, p->items[hit.item], fraction);
@@ -144,11 +126,13 @@ static CagStatus render_row(const Passes *p, size_t row, CagCrossings *work, Cag
     const size_t pixel = row * p->out->width + i;
     CagPreviewHit hit;
     bool met;
-    status = meet_at(p, x + 0.5, y + 0.5, work, &hit, &met, err);
+    const CagRay ray = ray_at(p, x + 0.5, y + 0.5);
+    status = cag_preview_meet(p->world, &ray, work, &hit, &met, err);
     if (status) break;
     if (met) store_hit(p, &hit, pixel);
     else store_nothing(p, pixel);
-    if (p->wanted[CAG_PASS_OBJECT] || p->wanted[CAG_PASS_MATERIAL])
+    if (met) status = store_curvature(p, &ray, &hit, pixel, work, err);
+    if (!status && (p->wanted[CAG_PASS_OBJECT] || p->wanted[CAG_PASS_MATERIAL]))
       status = count_parts(p, x, y, pixel, work, err);
   }
   return status;
@@ -239,11 +223,11 @@ CagStatus cag_preview_passes(const CagScene *scene, const CagCamera *camera,
     return CAG_OK;
   }
   CagStatus status = cag_scene_camera_map(camera, &p.map, err);
-  // Curvature is that of meshes.
-  if (!status) status = cag_preview_world(scene, passes[CAG_PASS_CURVATURE], &world, err);
+  if (!status) status = cag_preview_world(scene, &world, err);
   if (status) return status;
   p.world = &world;
-  status = name_parts(&p, scene, metadata, err);
+  if (passes[CAG_PASS_CURVATURE]) status = cag_preview_curvature_new(&world, &p.curvature, err);
+  if (!status) status = name_parts(&p, scene, metadata, err);
   if (!status && !cag_image_create(out, (size_t)width, (size_t)height, n, err))
     status = err->status;
   if (!status) {
@@ -254,6 +238,7 @@ CagStatus cag_preview_passes(const CagScene *scene, const CagCamera *camera,
   }
   cag_free(p.items);
   cag_free(p.materials);
+  cag_preview_curvature_free(&p.curvature);
   cag_preview_world_free(&world);
   return status;
 }

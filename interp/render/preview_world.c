@@ -175,8 +175,7 @@ static CagStatus make_part(const CagPreviewWorld *w, size_t i, CagPreviewPart *p
   else if (item->kind == CAG_ITEM_CURVE) status = add_curve(s, item, part, err);
   else if (item->kind == CAG_ITEM_SURFACE && is_flat(item->as.surface))
     status = cag_caster_of_surface(item->as.surface, &part->caster, err);
-  else if (item->kind == CAG_ITEM_SOLID && !w->meshes_only &&
-           has_equations(item->as.solid, &operands))
+  else if (item->kind == CAG_ITEM_SOLID && has_equations(item->as.solid, &operands))
     status = cag_caster_of_solid(item->as.solid, &part->caster, err);
   else status = add_mesh(s, item, part, err);
   if (status) return status;
@@ -267,10 +266,8 @@ static CagStatus make_lamps(CagPreviewWorld *w, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus cag_preview_world(const CagScene *scene, bool meshes_only, CagPreviewWorld *out,
-                            CagError *err) {
-  *out =
-      (CagPreviewWorld){.scene = scene, .meshes_only = meshes_only, .ambient = ambient_of(scene)};
+CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err) {
+  *out = (CagPreviewWorld){.scene = scene, .ambient = ambient_of(scene)};
   const CagBounds box = cag_scene_framed(scene);
   out->radius = cag_scene_radius(&box);
   out->center = cag_lerp(box.min, box.max, 0.5);
@@ -314,7 +311,10 @@ static void fill_hit(const CagPreviewWorld *w, const CagPreviewPart *part, const
                          .closed = part->closed,
                          .mesh = m,
                          .face = c->face,
-                         .to_pattern = part->moved ? &part->to_pattern : NULL};
+                         .to_pattern = part->moved ? &part->to_pattern : NULL,
+                         .part = part,
+                         .operand = c->part,
+                         .flipped = c->flipped};
   if (!m || m->scale.kind == CAG_SCALE_NONE) return;
   out->scale = &m->scale;
   out->scale_value = c->u;

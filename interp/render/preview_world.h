@@ -61,7 +61,6 @@ typedef struct CagPreviewWorld {
   size_t plane_count;
   CagPreviewLamp *lamps; // of the lights of the scene that shine
   size_t lamp_count;
-  bool meshes_only;
   bool transparent; // some material passes light
   double radius;    // of the scene
   CagVec3 center;
@@ -81,13 +80,14 @@ typedef struct CagPreviewHit {
   double scale_value;             // of a mesh with a color scale
   const CagColorScale *scale;     // NULL: none
   const CagMesh *mesh;            // NULL: an exact surface
-  uint32_t face;                  // the triangle of the mesh
+  uint32_t face;                  // the triangle of the mesh, or the face of CagCrossing
   const CagTransform *to_pattern; // NULL: patterns are in world coordinates
+  const CagPreviewPart *part;     // NULL: an unbounded ground
+  const CagCaster *operand;       // of an exact part, and whether the normal is opposite to its own
+  bool flipped;
 } CagPreviewHit;
 
-// With `meshes_only`, rays meet meshes even of what has equations, except planes.
-CagStatus cag_preview_world(const CagScene *scene, bool meshes_only, CagPreviewWorld *out,
-                            CagError *err);
+CagStatus cag_preview_world(const CagScene *scene, CagPreviewWorld *out, CagError *err);
 void cag_preview_world_free(CagPreviewWorld *w);
 // Finds the first part that the ray meets. *met is false if there is none.
 CagStatus cag_preview_meet(const CagPreviewWorld *w, const CagRay *ray, CagCrossings *work,

@@ -221,6 +221,119 @@ prints '180 1 0.1 0.01'
 prints '200'
 prints '1 0'
 
+it 'curvature is that of the exact surfaces'
+script bends.cag '// In a row, seen from above; pixel [20 + x, 30] shows the point [x, 0].
+show scale(sphere(10), [1, 1, 2])
+show torus(10, 4) |> translate([30, 0, 0])
+show (box([24, 24, 10]) |> translate([-12, -12, -10])) - sphere(8) |> translate([60, 0, 0])
+show revolve(region(circle(4, center: [10, 0]))) |> translate([90, 0, 0])
+show surface((x, y) => [x, y, x*y/20], u: -10..10, v: -10..10) |> translate([120, 0, 0])
+show line_style(line([140, 0], [160, 0]), radius: 5)
+show line_style(polyline([[180, 0, 0], [190, 0, 0], [190, 9, 0]]), radius: 8)
+show camera(eye: [89.5, 0.5, 400], target: [89.5, 0.5, 0], up: Y, kind: "orthographic", width: 220)'
+try render bends.cag -o bends.exr --passes curvature,depth --size 220x60
+status 0
+script bent.cag 'img = read_image("bends.exr")
+at(name, x) = round(pixel(channel(img, name), x + 20, 30), 5) + 0
+// An ellipsoid with the semiaxes 10, 10, and 20: at its end, both principal curvatures are 20/10^2.
+print at("curvature.mean", 0), at("curvature.gaussian", 0)
+// The top of a torus, where it touches a plane along a circle: 1/4 and 0. The second one is a body of revolution.
+print at("curvature.mean", 40), at("curvature.gaussian", 40)
+print at("curvature.mean", 100), at("curvature.gaussian", 100)
+// The hollow of a subtracted ball of radius 8: -1/8 twice.
+print at("curvature.mean", 60), at("curvature.gaussian", 60)
+// The saddle z = xy/20 has the principal curvatures 1/20 and -1/20 in the middle.
+print at("curvature.mean", 120), at("curvature.gaussian", 120)
+// A rod of radius 5: 1/5 and 0.
+print at("curvature.mean", 150), at("curvature.gaussian", 150)'
+try run bent.cag
+status 0
+prints_exactly '0.2 0.04
+0.125 0
+0.125 0
+-0.125 0.01563
+0 -0.0025
+0.1 0'
+
+it 'curves with corners have round ends in previews, and straight lines flat ones'
+script ends.cag 'img = read_image("bends.exr")
+at(name, x) = pixel(channel(img, name), x + 20, 30)
+// 4 mm beyond the end of the rod of radius 8, its ball is sqrt(8^2 - 4^2) high.
+print near(at("depth.Z", 176), 400 - sqrt(48), 1e-4), at("curvature.gaussian", 176)
+// 1 mm beyond the end of the line is nothing but the floor.
+print at("depth.Z", 161) > 410'
+try run ends.cag
+status 0
+prints_exactly 'true 0.015625
+true'
+
+it 'previews show a panorama where POV-Ray does'
+script panorama.cag 'show image(64, 32, (x, y) => [x / 64, y / 32, 0.5], channels: ["R", "G", "B"])'
+try export panorama.cag -o panorama.exr
+status 0
+script under_sky.cag 'show sphere(10) |> material({color: "white", metallic: 1, roughness: 0})
+show sphere(10) |> translate([0, 25, 0]) |> material({color: "gray", roughness: 1})
+show sky("panorama.exr")
+show camera(eye: [70, 12, 20], target: [0, 12, 0], fov: 60deg)
+show camera(eye: [0, 90, 0], target: [0, 100, 0], fov: 20deg) |> named("along_y")'
+try render under_sky.cag -o along_y.exr --engine preview --camera along_y --size 33x33
+status 0
+script toward_y.cag 'img = read_image("along_y.exr")
+// +Y is between the pixels 15 and 16 of a row, and the horizon between rows 15 and 16.
+print near(pixel(img, 16, 16)[0], 15.5/64, 1e-3), near(pixel(img, 16, 16)[1], 15.5/32, 1e-3)
+// +X is to the right, where the panorama begins.
+print pixel(img, 30, 16)[0] < pixel(img, 2, 16)[0]'
+try run toward_y.cag
+status 0
+prints_exactly 'true true
+true'
+
+it 'a preview under a panorama looks like the picture of POV-Ray' povray
+for quality in draft normal; do
+  for engine in povray preview; do
+    try render under_sky.cag -o sky_$engine.exr --engine $engine --quality $quality --size 160x120
+    status 0
+  done
+  try compare sky_povray.exr sky_preview.exr
+  color=$(sed -n 's/^color difference (CIEDE2000): mean \([0-9.e-]*\),.*/\1/p' out)
+  awk "BEGIN { exit !(${color:-9} < 0.5) }" || wrong "the mean color difference is ${color:-missing}"
+done
+
+it 'a pattern moves with its solid in previews'
+script grain.cag 'import std.materials as mat
+param turn = 0
+turned(x) = rotate(x, Z, turn * 1deg)
+show turned(box([40, 30, 10]) |> translate([5, 3, 0])) |> material(mat.clay)
+show turned(sphere(12) |> translate([-25, 0, 0])) |> material(mat.concrete)
+show turned(sun(direction: [-1, -2, -3]))
+show turned(camera(eye: [30, -80, 60], target: origin, fov: 50deg))'
+for turn in 0 40; do
+  try render grain.cag -o grain_$turn.exr --engine preview --quality draft --size 120x90 -D turn=$turn
+  status 0
+done
+try compare grain_0.exr grain_40.exr --threshold 1e-4
+status 0
+
+it 'patterns of previews vary as much as those of POV-Ray' povray
+for name in wood marble concrete clay; do
+  script pattern.cag "import std.materials as mat
+show ground() |> material({...mat.$name, texture_scale: 8, coat: 0})
+show sun(direction: [-1, -1, -1])
+show camera(eye: [0, 0, 200], target: origin, up: Y, kind: \"orthographic\", width: 320)"
+  for engine in povray preview; do
+    try render pattern.cag -o pattern_$engine.exr --engine $engine --quality draft --size 320x240
+    status 0
+  done
+  script spread.cag 'values(path) = flatten(pixels(resize(channel(read_image(path), "r"), width: 80, height: 60)))
+mean(v) = sum(v) / len(v)
+spread(v, m) = sqrt(mean([for x in v: (x - m)^2]))
+a = values("pattern_povray.exr")
+b = values("pattern_preview.exr")
+print abs(mean(a) / mean(b) - 1) < 0.05, abs(spread(a, mean(a)) / spread(b, mean(b)) - 1) < 0.35'
+  try run spread.cag
+  prints_exactly 'true true'
+done
+
 it 'compare shows which part differs'
 try render parts.cag -o before.exr --passes color,object --size 80x80
 try render parts.cag -o after.exr --passes color,object --size 80x80 -D r=3
