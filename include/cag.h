@@ -111,6 +111,11 @@ CAG_API void cag_session_set_loop(CagSession *s, bool loop);
 CAG_API int cag_session_run_file(CagSession *s, const char *path);
 CAG_API int cag_session_run_text(CagSession *s, const char *name, const char *text, size_t length);
 
+// Returns the absolute path of file i that the last run read: the script, imported modules, data,
+// meshes, and images. Files that were looked for and are missing are listed as well, so that a
+// program can run the script again when one of them changes. NULL after the last one.
+CAG_API const char *cag_session_read_file(const CagSession *s, size_t i);
+
 // The following three drop the previous run or the interactive definitions as well.
 
 // Formats a script without running it or reading other files. *out receives a zero-terminated text
@@ -144,16 +149,54 @@ CAG_API void cag_session_write_diagnostics(const CagSession *s, CagStyle style, 
 CAG_API void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out);
 
 // --- What was shown ---
+// Cuts the scene by a plane in later calls: removes the points with a x + b y + c z > d, where
+// `plane` is {a, b, c, d}, and closes the cut of solids. Drawings (.svg) get the outlines of the
+// cut instead. NULL: no section (the default). Returns false if a, b, and c are 0, if a number is
+// not finite, or if the call is refused.
+CAG_API bool cag_session_set_section(CagSession *s, const double plane[4]);
 typedef struct CagShownCounts {
   size_t items, cameras, lights;
 } CagShownCounts;
 // Builds the scene of what was shown, unless it was built since the run. Export and render do so as
 // well. A camera, lights, and a floor are added if the script shows none, and counted.
 CAG_API int cag_session_scene(CagSession *s, CagShownCounts *out);
+// Shows only a definition of the script in later calls, as if the script showed nothing else; its
+// value must be something that can be shown. NULL: what the script shows (the default). Returns
+// false if memory ran out, or if the call is refused.
+CAG_API bool cag_session_show_only(CagSession *s, const char *name);
+// Calls `give` with the printed value and the type of a definition of the script that was run, and
+// whether it can be shown.
+CAG_API int cag_session_definition(CagSession *s, const char *name,
+                                   void (*give)(void *context, const char *text, const char *type,
+                                                bool shown),
+                                   void *context);
+
+// The measures of a part, in mm, mm2, and mm3. Numbers that do not apply to the part are NaN.
+typedef struct CagMeasures {
+  const char *name, *type, *kind; // "vase"; "solid", "mesh", "surface", "region", or "curve";
+                                  // how it was made: "sphere", "revolution"
+  bool empty;                     // nothing is left of it; it has no bounds
+  double min[3], max[3];          // bounds
+  double length;                  // of a curve; of a region, that of its boundary
+  double area;                    // of a solid or closed mesh, that of its boundary
+  double volume;                  // of solids, closed surfaces, and closed meshes
+  double centroid[3];             // of the volume if there is one, else of the area
+  bool closed;      // a curve ends where it starts; each edge of the mesh has two triangles
+  bool exact;       // from formulas or integrals, not from a mesh within the tolerance
+  bool has_faces;   // the number of faces is known; it is not for set operations
+  size_t faces;     // a mesh has those of its triangles
+  size_t triangles; // of the mesh within the tolerance
+} CagMeasures;
+// Measures what is shown, and calls `give` with each part, of which groups have several. The names
+// are those in exported files.
+CAG_API int cag_session_measure(CagSession *s, void (*give)(void *context, const CagMeasures *part),
+                                void *context);
 // Writes a line for each shown item, such as "vase: revolution surface, ...", to `out`.
 CAG_API void cag_session_describe_scene(CagSession *s, FILE *out);
 // Returns the name of camera i of the scene, or NULL.
 CAG_API const char *cag_session_camera(CagSession *s, size_t i);
+// Returns name i of the cameras that every scene has for rendering ("top", "iso"), or NULL.
+CAG_API const char *cag_standard_camera(size_t i);
 
 // Writes the scene to a file, under a temporary name that is renamed at the end. `format` is one of
 // "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", "json", and, for
@@ -383,6 +426,9 @@ CAG_API bool cag_builtin_row(size_t i, const char **signature, const char **summ
 // the language, or an error code; NULL: an overview. `styled` makes headings bold on a terminal.
 // Returns false if the name is unknown or memory ran out.
 CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out);
+// Returns script i of the cookbook: its name ("01-turned-vase.cag") and its text, whose first line is its
+// title as a comment. Returns false after the last one.
+CAG_API bool cag_cookbook(size_t i, const char **name, const char **text);
 // Calls `give` with each name that cag_session_document knows.
 CAG_API void cag_session_document_names(CagSession *s,
                                         void (*give)(void *context, const char *name),

@@ -21,7 +21,7 @@ double cag_item_line_radius(const CagScene *s, const CagItem *item) {
   return item->line_radius > 0 ? item->line_radius : LINE_PART * diagonal(&s->bounds);
 }
 
-static CagTessellation how_fine(const CagScene *s, const CagItem *item) {
+CagTessellation cag_item_fineness(const CagScene *s, const CagItem *item) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = item->tolerance > 0 ? item->tolerance : s->tolerance;
   if (s->max_triangles > 0) how.max_triangles = s->max_triangles;
@@ -53,7 +53,7 @@ static CagStatus surface_mesh(const CagSurface *s, const CagTessellation *how, C
 }
 
 static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
-  CagTessellation how = how_fine(s, item);
+  CagTessellation how = cag_item_fineness(s, item);
   switch (item->kind) {
   case CAG_ITEM_CURVE: {
     double radius = cag_item_line_radius(s, item);

@@ -9,6 +9,9 @@
 // scene.
 double cag_item_line_radius(const CagScene *s, const CagItem *item);
 
+// Returns the tolerance and the limits of the item's mesh.
+CagTessellation cag_item_fineness(const CagScene *s, const CagItem *item);
+
 // Makes a closed mesh around the curve, with round corners and flat ends. If dash > 0, it consists
 // of dashes of this length, with gaps of the same length. The chord tolerance is a fraction of the
 // radius or the tolerance, whichever is finer.

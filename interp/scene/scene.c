@@ -15,7 +15,7 @@ const char *const cag_label_places[] = {
 #undef X
         NULL};
 
-static void free_item(CagItem *item) {
+void cag_item_free(CagItem *item) {
   switch (item->kind) {
   case CAG_ITEM_CURVE: cag_curve_release(item->as.curve); break;
   case CAG_ITEM_REGION: cag_region_release(item->as.region); break;
@@ -29,8 +29,9 @@ static void free_item(CagItem *item) {
 }
 
 void cag_scene_free(CagScene *s) {
-  for (size_t i = 0; i < s->item_count; i++) free_item(&s->items[i]);
-  for (size_t i = 0; i < s->empty_count; i++) free_item(&s->empties[i]);
+  const size_t items = s->item_count + (s->floor_hidden ? 1 : 0);
+  for (size_t i = 0; i < items; i++) cag_item_free(&s->items[i]);
+  for (size_t i = 0; i < s->empty_count; i++) cag_item_free(&s->empties[i]);
   for (size_t i = 0; i < s->label_count; i++) cag_free(s->labels[i].text);
   for (size_t i = 0; i < s->material_count; i++) {
     cag_free(s->materials[i].name);

@@ -179,12 +179,15 @@ typedef struct CagScene {
   double tolerance; // mm: for items without their own; 0: derived from the size of each
   size_t max_triangles;
   bool studio; // the studio lights were added, because no light was shown
+  bool
+      floor_hidden; // the studio's floor is the item after the last one, hidden by a view from below
   bool automatic_camera;
   char *script; // name of the script, for metadata
   const volatile int *interrupt;
 } CagScene;
 
 void cag_scene_free(CagScene *s);
+void cag_item_free(CagItem *item); // what it owns
 // Returns the index of the material of an item's triangles or operands with this label.
 static inline size_t cag_item_label_material(const CagItem *item, uint32_t label) {
   size_t from = 0, to = item->label_count;
@@ -205,8 +208,11 @@ CagStatus cag_scene_complete(CagScene *s, CagError *err);
 void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
 // The first function returns the name of standard view i, or NULL after the last one. The second
 // adds a camera of such a name after the others, which frames what is shown, without perspective.
+// From below, the studio's floor is hidden. The third removes the last camera, which was added by
+// the second.
 const char *cag_standard_view(size_t i);
 CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err);
+void cag_scene_remove_view(CagScene *s);
 // Adds a camera after the others. Copies its name.
 CagStatus cag_scene_add_camera(CagScene *s, const CagCamera *camera, CagError *err);
 // Computes the bounds of an item under a transform (NULL: none). A ground has none.

@@ -232,14 +232,20 @@ static const struct {
 
 const char *cag_standard_view(size_t i) { return i < VIEW_COUNT ? VIEWS[i].name : NULL; }
 
-// Removes the studio's floor, which would hide the shapes from below.
-static void drop_floor(CagScene *s) {
-  CagItem *last = s->item_count ? &s->items[s->item_count - 1] : NULL;
+// Hides the studio's floor, which would hide the shapes from below.
+static void hide_floor(CagScene *s) {
+  const CagItem *last = s->item_count ? &s->items[s->item_count - 1] : NULL;
   if (!s->studio || !last || last->kind != CAG_ITEM_GROUND || !last->name ||
       strcmp(last->name, "studio_floor") != 0)
     return;
-  cag_free(last->name);
   s->item_count--;
+  s->floor_hidden = true;
+}
+
+void cag_scene_remove_view(CagScene *s) {
+  cag_free(s->cameras[--s->camera_count].name);
+  if (s->floor_hidden) s->item_count++;
+  s->floor_hidden = false;
 }
 
 CagStatus cag_scene_add_camera(CagScene *s, const CagCamera *camera, CagError *err) {
@@ -273,7 +279,7 @@ CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   if (s->camera_count > 0) memcpy(c.size, s->cameras[0].size, sizeof c.size);
   const CagStatus status = cag_scene_add_camera(s, &c, err);
   if (status) return status;
-  if (back.z < 0) drop_floor(s);
+  if (back.z < 0) hide_floor(s);
   cag_camera_frame_all(s, &s->cameras[s->camera_count - 1]);
   return CAG_OK;
 }

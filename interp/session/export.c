@@ -625,6 +625,14 @@ const char *cag_export_format_story(const char *format) {
   return f ? f->story : NULL;
 }
 
+// Drawings of a section have the outlines of the cut.
+static bool is_drawing(const struct Format *f) {
+  static const char *const names[] = {"svg", "dxf", "pdf"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(f->name, names[i])) return true;
+  return false;
+}
+
 typedef struct Output {
   const struct Format *format;
   const char *path;
@@ -650,7 +658,7 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
     return CAG_STATUS_USAGE;
   }
   if (f->of_image) return f->write(s, path);
-  int status = cag_session_build_scene(s);
+  const int status = is_drawing(f) ? cag_session_build_drawing(s) : cag_session_build_scene(s);
   return status == CAG_STATUS_OK ? cag_session_geometry(s, write_output, &(Output){f, path})
                                  : status;
 }

@@ -108,7 +108,7 @@ static void read_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, Param
 
 static bool read_params(CagVm *vm, void *context) {
   CagSession *s = context;
-  CagModuleUnit *m = vm->modules[s->main - 1];
+  CagModuleUnit *m = vm->modules[s->main];
   s->params = cag_checked(cag_calloc(1, sizeof *s->params));
   s->params->items = cag_checked(cag_calloc(m->ast->count + 1, sizeof *s->params->items));
   for (size_t i = 0; i < m->ast->count; i++)
@@ -120,7 +120,7 @@ static bool read_params(CagVm *vm, void *context) {
 // Lists the params if that was not done since the run. Nothing here adds a diagnostic.
 static bool list_params(CagSession *s) {
   if (s->params) return true;
-  if (!s->vm || s->main == 0 || s->interactive) return false;
+  if (!s->vm || s->main == CAG_NO_MODULE || s->interactive) return false;
   const bool ok = cag_session_work(s, read_params, s) == CAG_STATUS_OK;
   cag_diagnostics_truncate(&s->diagnostics, s->lasting);
   if (!ok) cag_session_drop_params(s);

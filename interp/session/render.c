@@ -19,6 +19,8 @@
 
 void cag_render_options_init(CagRenderOptions *o) { *o = (CagRenderOptions){.quality = "normal"}; }
 
+const char *cag_standard_camera(size_t i) { return cag_standard_view(i); }
+
 const char *cag_find_povray(char *buffer, size_t size) {
   CagError err = {0};
   char version[64];
@@ -440,6 +442,35 @@ static bool check_region(const Job *j) {
   return false;
 }
 
+// Renders with camera `j->index`.
+static int render_camera(Job *j) {
+  CagSession *s = j->session;
+  const CagRenderOptions *options = j->options;
+  int status = CAG_STATUS_OK;
+  CagCamera *chosen = &s->scene.cameras[j->index];
+  if (options->width > 0 && chosen->framed) { // for the shape of the picture
+    chosen->size[0] = options->width;
+    chosen->size[1] = options->height;
+    status = cag_session_geometry(s, frame_all, chosen);
+    if (status != CAG_STATUS_OK) return status;
+  }
+  j->camera = *chosen;
+  if (options->width > 0) {
+    j->camera.size[0] = options->width;
+    j->camera.size[1] = options->height;
+  }
+  if (!check_region(j)) return CAG_STATUS_USAGE;
+  if (j->renderer == POVRAY) status = cag_session_geometry(s, write_source, j);
+  const double left = s->time_left;
+  if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a separate time limit
+  if (status == CAG_STATUS_OK)
+    status = cag_session_geometry(s, j->renderer == POVRAY ? make_picture : make_preview, j);
+  if (options->time_limit > 0) s->time_left = left;
+  cag_free(j->source);
+  cag_povray_result_free(&j->result);
+  return status;
+}
+
 static int render_scene(CagSession *s, const CagRenderOptions *options, const char *path) {
   const char *dot = strrchr(path, '.');
   if (!dot || (strcasecmp(dot, ".exr") != 0 && strcasecmp(dot, ".png") != 0)) {
@@ -461,32 +492,12 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   if (!find_passes(s, options, path, j.passes) || !find_engine(s, options, j.pov, &j.renderer))
     return CAG_STATUS_USAGE;
   if (options->passes) j.renderer = PREVIEW;
-  size_t camera = s->scene.camera_count;
+  const size_t own = s->scene.camera_count;
+  j.index = own;
   status = options->view ? cag_session_geometry(s, add_host_camera, (void *)(size_t)options->view)
-                         : cag_session_find_camera(s, options->camera, &camera);
-  if (status != CAG_STATUS_OK) return status;
-  CagCamera *chosen = &s->scene.cameras[camera];
-  if (options->width > 0 && chosen->framed) { // for the shape of the picture
-    chosen->size[0] = options->width;
-    chosen->size[1] = options->height;
-    status = cag_session_geometry(s, frame_all, chosen);
-    if (status != CAG_STATUS_OK) return status;
-  }
-  j.camera = *chosen;
-  if (options->width > 0) {
-    j.camera.size[0] = options->width;
-    j.camera.size[1] = options->height;
-  }
-  if (!check_region(&j)) return CAG_STATUS_USAGE;
-  j.index = camera;
-  if (j.renderer == POVRAY) status = cag_session_geometry(s, write_source, &j);
-  const double left = s->time_left;
-  if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a separate time limit
-  if (status == CAG_STATUS_OK)
-    status = cag_session_geometry(s, j.renderer == POVRAY ? make_picture : make_preview, &j);
-  if (options->time_limit > 0) s->time_left = left;
-  cag_free(j.source);
-  cag_povray_result_free(&j.result);
+                         : cag_session_find_camera(s, options->camera, &j.index);
+  if (status == CAG_STATUS_OK) status = render_camera(&j);
+  if (s->scene.camera_count > own) cag_scene_remove_view(&s->scene);
   return status;
 }
 

@@ -366,7 +366,10 @@ static void set_sky(Build *b, const CagRecord *r) {
   cag_free(sky->image);
   *sky = (CagSky){0};
   CagValue image = cag_record_get(r, "image"), colors = cag_record_get(r, "colors");
-  if (image.type == CAG_TEXT) sky->image = copy_text(b, CAG_AS_TEXT(image)->bytes);
+  if (image.type == CAG_TEXT) {
+    sky->image = copy_text(b, CAG_AS_TEXT(image)->bytes);
+    cag_vm_note_file(b->vm, CAG_AS_TEXT(image)->bytes); // the renderer reads it
+  }
   if (colors.type != CAG_LIST) return;
   const CagList *list = CAG_AS_LIST(colors);
   sky->colors = cag_malloc((list->length + 1) * sizeof *sky->colors);

@@ -11,6 +11,7 @@
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
 #include "geom/solid/csg.h"
+#include "interp/scene/section.h"
 #include "interp/session/lead.h"
 #include "interp/session/scene_build.h"
 #include "interp/session/watch.h"
@@ -35,12 +36,15 @@ CagSession *cag_session_new(const CagSessionOptions *options) {
   cag_session_options_init(&s->options);
   if (options) s->options = *options;
   s->frames = 1;
+  s->main = CAG_NO_MODULE;
   return s;
 }
 
 static void drop_scene(CagSession *s) {
+  CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   if (s->has_scene) cag_scene_free(&s->scene);
   s->has_scene = false;
+  cag_account_lend(before);
 }
 
 void cag_session_drop_vm(CagSession *s) {
@@ -56,6 +60,7 @@ void cag_session_drop_vm(CagSession *s) {
   cag_vm_free(s->vm);
   s->vm = NULL;
   s->interactive = false;
+  s->main = CAG_NO_MODULE;
   s->inputs = NULL;
   s->input_count = 0;
   cag_session_renew_time(s);
@@ -63,7 +68,7 @@ void cag_session_drop_vm(CagSession *s) {
 
 void cag_session_clear_diagnostics(CagSession *s) {
   cag_diagnostics_clear(&s->diagnostics);
-  s->lasting = 0;
+  s->lasting = s->run_count = 0;
 }
 
 bool cag_session_begin(CagSession *s) {
@@ -85,6 +90,7 @@ void cag_session_free(CagSession *s) {
   cag_session_drop_vm(s);
   cag_session_clear_defines(s);
   cag_free(s->script);
+  cag_free(s->only);
   cag_free(s);
 }
 
@@ -372,8 +378,8 @@ static bool run(CagVm *vm, void *context) {
     vm->root = cag_vm_real_path(vm, s->options.folder);
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
+  s->main = k;
   if (k == CAG_NO_MODULE) return false;
-  s->main = k + 1;
   CagCleanup cleanup;
   CagDefine *defines = cag_temporary(&cleanup, s->define_count, sizeof *defines);
   vm->loop = s->loop;
@@ -387,12 +393,11 @@ static bool run(CagVm *vm, void *context) {
 static int start_run(CagSession *s, Run *r) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
-  s->main = 0;
   cag_free(s->script);
   s->script = cag_strdup(r->path ? r->path : r->name);
   const bool ready = s->script && !s->define_lost;
   const int status = ready ? cag_session_work(s, run, r) : cag_session_fail_memory(s);
-  s->lasting = s->diagnostics.count;
+  s->lasting = s->run_count = s->diagnostics.count;
   return cag_session_end(s, status);
 }
 
@@ -402,6 +407,10 @@ int cag_session_run_file(CagSession *s, const char *path) {
 
 int cag_session_run_text(CagSession *s, const char *name, const char *text, size_t length) {
   return start_run(s, &(Run){.session = s, .name = name, .text = text, .length = length});
+}
+
+const char *cag_session_read_file(const CagSession *s, size_t i) {
+  return s->vm && i < s->vm->read_count ? s->vm->reads[i] : NULL;
 }
 
 // --- Diagnostics ---
@@ -449,12 +458,22 @@ int cag_session_refresh(CagSession *s) {
   return cag_session_work(s, refresh, s);
 }
 
+// The shapes are named after the definition, as if the script showed it.
+static bool build_definition(CagVm *vm, CagSession *s) {
+  const CagExpr name = {.kind = CAG_EXPR_NAME,
+                        .as.name = {.id = s->only, .binding = CAG_BIND_OUTER}};
+  CagShown shown = {.expr = &name};
+  return cag_session_find_definition(s, s->only, &shown.value) &&
+         cag_scene_from_values(vm, &shown, 1, &s->scene, NULL);
+}
+
 static bool build(CagVm *vm, void *context) {
   CagSession *s = context;
   if (s->interactive && !rerun_shows(vm, s)) return false;
-  if (!cag_scene_from_values(vm, vm->shown, vm->shown_count, &s->scene, &s->sources)) return false;
-  s->has_scene = true;
-  return true;
+  s->sources.count = 0;
+  if (s->only) s->has_scene = build_definition(vm, s);
+  else s->has_scene = cag_scene_from_values(vm, vm->shown, vm->shown_count, &s->scene, &s->sources);
+  return s->has_scene;
 }
 
 static int complete_scene(CagSession *s, void *context) {
@@ -518,12 +537,93 @@ static int look_for_crossings(CagSession *s, void *context) {
   return CAG_STATUS_OK;
 }
 
-int cag_session_build_scene(CagSession *s) {
+// --- What of it is shown ---
+
+// Drops the scene and the warnings about it.
+static void forget_scene(CagSession *s) {
+  drop_scene(s);
+  cag_diagnostics_truncate(&s->diagnostics, s->run_count);
+  s->lasting = s->run_count;
+}
+
+bool cag_session_set_section(CagSession *s, const double plane[4]) {
+  CagError ignored;
+  CagPlane made = {{0, 0, 0}, {0, 0, 1}};
+  if (plane &&
+      cag_plane_from_row((double[]){plane[0], plane[1], plane[2], -plane[3]}, &made, &ignored))
+    return false;
+  if (!cag_session_begin(s)) return false;
+  s->has_section = plane != NULL;
+  s->section = made;
+  forget_scene(s);
+  cag_session_end(s, CAG_STATUS_OK);
+  return true;
+}
+
+bool cag_session_show_only(CagSession *s, const char *name) {
+  char *copy = name ? cag_strdup(name) : NULL;
+  if ((name && !copy) || !cag_session_begin(s)) {
+    cag_free(copy);
+    return false;
+  }
+  cag_free(s->only);
+  s->only = copy;
+  forget_scene(s);
+  cag_session_end(s, CAG_STATUS_OK);
+  return true;
+}
+
+// If the section leaves nothing, the help states where the shapes are.
+static int fail_nothing_left(CagSession *s, CagSectionReach reach) {
+  CagDiagnostic *d = cag_diagnostics_add(
+      &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0}, "the section %s %s",
+      s->form == CAG_SCENE_CUT ? "leaves nothing of what is shown by"
+                               : "does not meet what is shown by",
+      s->script ? s->script : "the session");
+  const CagVec3 n = s->section.normal;
+  const double first = n.x != 0 ? n.x : n.y != 0 ? n.y : n.z, sign = first < 0 ? -1 : 1;
+  if (reach.low <= reach.high)
+    cag_diagnostic_set_help(d, "the shapes reach from %.6g to %.6g along [%.6g, %.6g, %.6g]",
+                            first < 0 ? 0 - reach.high : reach.low,
+                            first < 0 ? 0 - reach.low : reach.high, sign * n.x + 0, sign * n.y + 0,
+                            sign * n.z + 0);
+  drop_scene(s);
+  return CAG_STATUS_SCRIPT;
+}
+
+static int cut_scene(CagSession *s, void *context) {
+  CagSectionReach *reach = context;
+  CagError err = {0};
+  CagStatus status = s->form == CAG_SCENE_CUT
+                         ? cag_scene_cut(&s->scene, &s->section, reach, &err)
+                         : cag_scene_section(&s->scene, &s->section, reach, &err);
+  status = cag_session_checked(s, status, &err);
+  return !status ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+}
+
+static bool shows_shapes(const CagScene *scene) {
+  bool found = scene->label_count > 0;
+  for (size_t i = 0; i < scene->item_count; i++)
+    found = found || scene->items[i].kind != CAG_ITEM_GROUND;
+  return found;
+}
+
+static int apply_section(CagSession *s) {
+  CagSectionReach reach;
+  if (s->form == CAG_SCENE_WHOLE || !shows_shapes(&s->scene)) return CAG_STATUS_OK;
+  const int status = cag_session_geometry(s, cut_scene, &reach);
+  return status == CAG_STATUS_OK && !shows_shapes(&s->scene) ? fail_nothing_left(s, reach) : status;
+}
+
+static int build_scene_as(CagSession *s, CagSceneForm form) {
+  if (!s->has_section) form = CAG_SCENE_WHOLE;
+  if (s->has_scene && s->form != form) forget_scene(s);
   if (s->interactive) {
     drop_scene(s);
     cag_session_renew_time(s);
   }
   if (s->has_scene) return CAG_STATUS_OK;
+  s->form = form;
   if (s->interactive) cag_session_clear_diagnostics(s);
   int status = cag_session_work(s, build, s);
   if (status != CAG_STATUS_OK) return status;
@@ -536,7 +636,9 @@ int cag_session_build_scene(CagSession *s) {
     return cag_session_fail_memory(s);
   }
   if (scene->item_count + scene->label_count == 0) return fail_nothing_shown(s);
-  status = cag_session_geometry(s, complete_scene, NULL);
+  status = apply_section(s);
+  if (!s->has_scene) return status;
+  if (status == CAG_STATUS_OK) status = cag_session_geometry(s, complete_scene, NULL);
   if (status == CAG_STATUS_OK) warn_of_empties(s);
   if (status == CAG_STATUS_OK && scene->item_count + scene->label_count == 0)
     return fail_nothing_shown(s);
@@ -545,6 +647,10 @@ int cag_session_build_scene(CagSession *s) {
   else s->lasting = s->diagnostics.count;
   return status;
 }
+
+int cag_session_build_scene(CagSession *s) { return build_scene_as(s, CAG_SCENE_CUT); }
+
+int cag_session_build_drawing(CagSession *s) { return build_scene_as(s, CAG_SCENE_OUTLINES); }
 
 int cag_session_scene(CagSession *s, CagShownCounts *out) {
   *out = (CagShownCounts){0};

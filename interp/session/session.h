@@ -16,6 +16,9 @@
 #include "interp/session/scene_build.h"
 #include "interp/vm/program.h"
 
+// What the scene has of the shapes: all of them, what a section leaves, or the outlines of its cut.
+typedef enum CagSceneForm { CAG_SCENE_WHOLE, CAG_SCENE_CUT, CAG_SCENE_OUTLINES } CagSceneForm;
+
 struct CagSession {
   CagSessionOptions options;
   CagVm *vm;
@@ -28,14 +31,19 @@ struct CagSession {
   double time_left; // seconds left of max_time, for a run and all output of its scene
   char *script;     // name of the script, for metadata
   CagDiagnostics diagnostics;
-  size_t lasting; // number of diagnostics of the run and of building its scene, which later calls
-                  // keep
+  size_t run_count; // number of diagnostics of the run
+  size_t lasting;   // number of diagnostics of the run and of building its scene, which later calls
+                    // keep
   CagScene scene;
   bool has_scene;
   CagItemSources sources;          // of the scene's items
-  size_t main;                     // the module of the script, plus 1; 0: it could not be read
   struct CagSessionParams *params; // of the main script; NULL: not listed yet
   struct CagSessionMesh *mesh;     // the one that was made last; may be NULL
+  CagSceneForm form; // of the scene
+  bool has_section;
+  CagPlane section; // what lies on its positive side is cut off
+  size_t main;      // the module of the script; CAG_NO_MODULE: it was not loaded
+  char *only;       // the definition that is shown alone; NULL: what the script shows
   // Modules of the interactive session in order; their shows form its scene.
   size_t *inputs;
   size_t input_count;
@@ -88,7 +96,13 @@ void cag_session_drop_params(CagSession *s);
 // A location for the host. No source: none.
 CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
 void cag_session_drop_mesh(CagSession *s);
-// Builds the scene and adds default camera and lights.
+// Returns the value of a definition of the script, for work of the session. Fails with
+// "unknown-name".
+bool cag_session_find_definition(CagSession *s, const char *name, CagValue *out);
+// Builds the scene and adds default camera and lights. If there is a section, the scene is cut by
+// it.
 int cag_session_build_scene(CagSession *s);
+// The same, but with the outlines of the cut as plane curves in z = 0.
+int cag_session_build_drawing(CagSession *s);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/doc/doc.h"
 #include "interp/session/session.h"
 #include "interp/vm/stdlib.h"
 
@@ -10,6 +11,18 @@ const char *cag_library_module(size_t i) {
   for (size_t k = 0; k < i; k++)
     if (!cag_stdlib[k].module) return NULL;
   return cag_stdlib[i].module;
+}
+
+bool cag_cookbook(size_t i, const char **name, const char **text) {
+  static const char FOLDER[] = "docs/cookbook/";
+  const size_t n = sizeof FOLDER - 1;
+  for (const CagDocument *d = cag_documents; d->path; d++) {
+    if (strncmp(d->path, FOLDER, n) != 0 || i-- > 0) continue;
+    *name = d->path + n;
+    *text = d->text;
+    return true;
+  }
+  return false;
 }
 
 const char *const *cag_builtin_name_list(void) { return cag_builtin_names(); }

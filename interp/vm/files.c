@@ -1,9 +1,12 @@
 // Access to files by scripts, and reading files (language, section 8).
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/vm/vm.h"
@@ -38,6 +41,30 @@ char *cag_vm_real_path(CagVm *vm, const char *path) {
   return real;
 }
 
+static void note_absolute(CagVm *vm, const char *path) {
+  const uint64_t hash = cag_hash_text(CAG_HASH_START, path);
+  size_t i;
+  for (CagHashWalk w = cag_hash_walk(&vm->reads_by_path, hash); cag_hash_next(&w, &i);)
+    if (!strcmp(vm->reads[i], path)) return;
+  char *copy = cag_strdup(path);
+  if (!copy || !CAG_RESERVE(vm->reads, vm->read_capacity, vm->read_count + 1) ||
+      !cag_hash_add(&vm->reads_by_path, hash, vm->read_count)) {
+    cag_free(copy);
+    vm->starved = true;
+    return;
+  }
+  vm->reads[vm->read_count++] = copy;
+}
+
+void cag_vm_note_file(CagVm *vm, const char *path) {
+  char *folder = path[0] == '/' ? NULL : getcwd(NULL, 0), *whole = NULL;
+  if (!folder) note_absolute(vm, path);
+  else if (cag_asprintf(&whole, "%s/%s", folder, path) < 0) vm->starved = true;
+  else note_absolute(vm, whole);
+  cag_free(whole);
+  free(folder);
+}
+
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message,
                        size_t size) {
   char *joined = NULL;
@@ -55,6 +82,9 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   // Does not reveal whether a file outside of the folders exists: only files inside are reported as
   // missing.
   bool outside = real ? !is_allowed(vm, real) : path[0] == '/' || strstr(path, "..") != NULL;
+  // A file that is missing may appear, and a link may be changed to another file.
+  if (!outside) cag_vm_note_file(vm, asked);
+  if (!outside && real) cag_vm_note_file(vm, real);
   cag_free(joined);
   if (real && !outside) return real;
   if (outside)

@@ -339,6 +339,7 @@ size_t cag_load_file(CagVm *vm, const char *path, int *exit_status) {
   bool input = strcmp(path, "-") == 0;
   size_t length;
   const char *why;
+  if (!input) cag_vm_note_file(vm, path);
   char *text = cag_read_whole_file(path, &length, &why);
   *exit_status = 1;
   if (!text) {

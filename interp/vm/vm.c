@@ -149,6 +149,9 @@ void cag_vm_free(CagVm *vm) {
   cag_free(vm->root);
   for (size_t i = 0; i < vm->include_count; i++) cag_free(vm->include[i]);
   cag_free(vm->include);
+  for (size_t i = 0; i < vm->read_count; i++) cag_free(vm->reads[i]);
+  cag_free(vm->reads);
+  cag_hash_free(&vm->reads_by_path);
   cag_account_lend(before);
   free(vm);
 }

@@ -258,6 +258,11 @@ struct CagVm {
   char *root;     // real path of the folder of the main script; NULL: none, so no file may be read
   char **include; // real paths of the module path
   size_t include_count;
+
+  // Absolute paths of the files that the run read, or would have read if they existed.
+  char **reads;
+  size_t read_count, read_capacity;
+  CagHashIndex reads_by_path;
 };
 
 // The stop flag for long geometry computations that do not call the script. They end when it is
@@ -365,8 +370,10 @@ const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *tex
 // Returns the absolute path, which the caller frees, or NULL if the file does not exist or memory
 // ran out, which is recorded.
 char *cag_vm_real_path(CagVm *vm, const char *path);
+// Adds a file to the list of those that were read.
+void cag_vm_note_file(CagVm *vm, const char *path);
 // Returns the real path of a file (from malloc) if it may be read, which means that it is below the
-// root or the module path. Otherwise writes the reason to message and returns NULL.
+// root or the module path. Otherwise writes the reason to message and returns NULL. Notes the file.
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);
 // Reads a whole file. Returns NULL, with the reason in *why (static or from strerror), on failure.
 extern const char cag_file_out_of_memory[]; // a value of *why
