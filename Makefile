@@ -49,9 +49,8 @@ BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
 INTERP_SRC := $(shell find interp -name '*.c' | sort)
-LIVE_SRC   := $(shell find live -name '*.c' | sort)
 MAIN_SRC   := cli/main.c
-CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
+CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli live -name '*.c' | sort))
 # The documentation lists the families of built-in functions in this order.
 PARAMETERS := interp/vm/parameter_kinds.def interp/vm/parameter_types.def
 ROWS       := $(patsubst %,interp/builtin/%.rows,constants numbers angles vectors lists texts records control \
@@ -66,7 +65,7 @@ BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
-CLI_OBJ  := $(call obj,$(CLI_SRC) $(LIVE_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
+CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 

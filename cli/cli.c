@@ -344,6 +344,39 @@ static bool set_read_only(CagTool *t, const char *value) {
   return t->read_only = true;
 }
 
+static bool set_views(CagTool *t, const char *value) {
+  t->views = value;
+  return *value || reject(t, "name cameras, such as iso,front,top,right", "--views", value,
+                          "expected a list of cameras");
+}
+
+// z=10 removes what lies above z = 10, and -z=10 what lies below.
+static bool set_section(CagTool *t, const char *value) {
+  static const char AXES[] = "xyz";
+  const char *at = value + (*value == '-'), *axis = *at ? strchr(AXES, *at) : NULL;
+  double height;
+  if (!axis || at[1] != '=' || !read_number(at + 2, "mm", &height))
+    return reject(
+        t,
+        "write an axis and a position in millimeters, such as z=10, or -z=10 to remove the other side",
+        "--section", value, "expected a plane");
+  const double sign = *value == '-' ? -1 : 1;
+  memset(t->section, 0, sizeof t->section);
+  t->section[axis - AXES] = sign;
+  t->section[3] = sign * height;
+  return t->has_section = true;
+}
+
+static bool set_watch(CagTool *t, const char *value) {
+  (void)value;
+  return t->watch = true;
+}
+
+static bool set_json(CagTool *t, const char *value) {
+  (void)value;
+  return t->json = true;
+}
+
 static bool set_samples(CagTool *t, const char *value) {
   size_t n = 0;
   const size_t most = 10000;
@@ -445,7 +478,9 @@ static bool set_version(CagTool *t, const char *value) {
 
 #define ON(name) (1u << CAG_TOOL_##name)
 #define ALL (~0u)
-#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch) | ON(view))
+#define SCRIPTS                                                                                    \
+  (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch) | ON(measure) |  \
+   ON(mcp) | ON(view))
 const CagToolOption cag_tool_options[] = {
 #define CAG_OPTION(id, letter, name, argument, commands, help)                                     \
   {#id, letter, name, argument, commands, help, set_##id},

@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "cli/tool.h"
+#include "cli/watch.h"
 
 // Returns the extension of a path without its point, or NULL.
 static const char *ending(const char *path) {
@@ -54,14 +55,8 @@ static int check(const CagTool *t) {
   return status != CAG_STATUS_OK ? status : cag_tool_check_place(t, t->output);
 }
 
-int cag_tool_export(CagTool *t, int argc, char **argv) {
-  (void)argc;
-  int status = check(t);
-  if (status != CAG_STATUS_OK) return status;
-  if (!strcmp(t->output, "-")) t->session.out = stderr;
-  CagSession *s = cag_tool_session(t);
-  if (!s) return CAG_STATUS_LIMIT;
-  status = cag_session_run_file(s, argv[0]);
+static int export_script(CagTool *t, CagSession *s, void *path) {
+  int status = cag_session_run_file(s, path);
   if (status == CAG_STATUS_OK) {
     fflush(stdout);
     cag_tool_make_folder(t->output);
@@ -73,6 +68,13 @@ int cag_tool_export(CagTool *t, int argc, char **argv) {
     cag_session_describe_scene(s, stderr);
     cag_tool_say(t, "wrote %s", t->output);
   }
-  cag_session_free(s);
   return status;
+}
+
+int cag_tool_export(CagTool *t, int argc, char **argv) {
+  (void)argc;
+  const int status = check(t);
+  if (status != CAG_STATUS_OK) return status;
+  if (!strcmp(t->output, "-")) t->session.out = stderr;
+  return cag_tool_rounds(t, argv[0], export_script, argv[0]);
 }

@@ -44,7 +44,7 @@ static void option_usage(const CagToolOption *o, char *text, size_t size) {
 static void write_options(unsigned mask, bool shared, FILE *out) {
   for (size_t i = 0; i < cag_tool_option_count; i++) {
     const CagToolOption *o = &cag_tool_options[i];
-    const unsigned shared_by = 1u << CAG_TOOL_run; // shared options are those of `run`
+    const unsigned shared_by = 1u << CAG_TOOL_eval; // shared options are those of `eval`
     if (!(o->commands & mask) || (o->commands & shared_by ? !shared : shared)) continue;
     char usage[64];
     option_usage(o, usage, sizeof usage);
@@ -55,7 +55,7 @@ static void write_options(unsigned mask, bool shared, FILE *out) {
 // Tests whether the command has options that not all script commands have.
 static bool has_own_options(unsigned mask) {
   for (size_t i = 0; i < cag_tool_option_count; i++)
-    if (cag_tool_options[i].commands & mask && !(cag_tool_options[i].commands >> CAG_TOOL_run & 1))
+    if (cag_tool_options[i].commands & mask && !(cag_tool_options[i].commands >> CAG_TOOL_eval & 1))
       return true;
   return false;
 }

@@ -1,6 +1,6 @@
-// cag render FILE -o OUT: renders a picture, or the pictures of a film.
+// cag render FILE -o OUT: renders a picture, the pictures of a film, or those of several cameras.
 //
-// Each frame of a film is a separate run of the script, with its own frame and frames. The first
+// The pictures of several cameras are made of one run of the script. Each frame of a film is a separate run of the script, with its own frame and frames. The first
 // failure ends the command. Earlier frames remain complete.
 
 #include <limits.h>
@@ -13,6 +13,8 @@
 #include "cli/frames.h"
 #include "cli/progress.h"
 #include "cli/tool.h"
+#include "cli/views.h"
+#include "cli/watch.h"
 
 // A script from standard input is stored, because each frame runs it.
 typedef struct {
@@ -59,9 +61,48 @@ static int check_ending(const CagTool *t) {
   return CAG_STATUS_OK;
 }
 
+// Names of cameras become parts of file names.
+static int check_view_names(const CagTool *t) {
+  char name[CAG_VIEW_NAME_MAX], other[CAG_VIEW_NAME_MAX];
+  for (const char *at = t->views; cag_views_next(&at, name);) {
+    if (!*name || strchr(name, '/'))
+      return cag_tool_fail(t, CAG_STATUS_USAGE, "name cameras, such as iso,front,top,right",
+                           "--views '%s': expected names of cameras without a slash", t->views);
+    for (const char *rest = at; cag_views_next(&rest, other);)
+      if (!strcmp(name, other))
+        return cag_tool_fail(t, CAG_STATUS_USAGE, NULL, "--views names `%s` twice", name);
+  }
+  return CAG_STATUS_OK;
+}
+
+static int check_views(const CagTool *t) {
+  static const char HELP[] =
+      "write the name of the camera as %s, such as vase.%s.png, and a % as %%";
+  const int places = cag_views_places(t->output);
+  const char *other = t->has_frames ? "--frames" : t->camera ? "--camera" : NULL;
+  if (other)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "omit one of them",
+                         "--views and %s cannot be combined", other);
+  if (!strcmp(t->output, "-"))
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
+                         "standard output cannot have the pictures of several cameras");
+  if (places < 0)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
+                         "a %% in the output '%s' is not a placeholder for a camera", t->output);
+  if (places == 0 && strchr(t->views, ','))
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
+                         "all views would be written to the same output '%s'", t->output);
+  return check_view_names(t);
+}
+
 static int check_pattern(const CagTool *t) {
   static const char HELP[] = "write the number as %04d, such as film.%04d.png, and a % as %%";
   const int places = cag_frames_places(t->output);
+  if (t->views) return check_views(t);
+  if (!t->has_frames && cag_views_places(t->output) > 0)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "add --views, such as --views iso,front,top,right",
+                         "the output '%s' has a placeholder for a camera, but --views is not given",
+                         t->output);
   if (!t->has_frames)
     return places <= 0 ? CAG_STATUS_OK
                        : cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
@@ -113,6 +154,9 @@ static int check(const CagTool *t, double *frames) {
   if (status == CAG_STATUS_OK && t->loop && !t->has_frames)
     status = cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
                            "--loop applies to films, but --frames is missing");
+  if (status == CAG_STATUS_OK && t->watch && t->keep_partial)
+    status = cag_tool_fail(t, CAG_STATUS_USAGE, "omit one of them",
+                           "--watch keeps the last complete picture, but --keep-partial does not");
   return status;
 }
 
@@ -162,6 +206,50 @@ static int render_to_output(Film *f) {
   return status;
 }
 
+static bool has_camera(CagSession *s, const char *name) {
+  const char *one;
+  for (size_t i = 0; (one = cag_standard_camera(i)); i++)
+    if (!strcmp(one, name)) return true;
+  for (size_t i = 0; (one = cag_session_camera(s, i)); i++)
+    if (!strcmp(one, name)) return true;
+  return false;
+}
+
+static int render_view(Film *f, const char *view) {
+  const CagTool *t = f->tool;
+  char path[PATH_MAX];
+  const double begun = cag_clock_seconds();
+  if (!cag_views_name(t->output, view, path, sizeof path))
+    return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "the name of the picture of %s is too long",
+                         view);
+  int status = cag_tool_check_place(t, path);
+  if (status != CAG_STATUS_OK) return status;
+  cag_tool_make_folder(path);
+  f->options.camera = view;
+  status = cag_session_render(f->session, &f->options, path);
+  cag_progress_end(&f->progress);
+  if (status == CAG_STATUS_OK && t->verbose)
+    cag_tool_say(t, "wrote %s in %.1f s", path, cag_clock_seconds() - begun);
+  return status;
+}
+
+// Renders all views of one scene. An unknown one is found before the first is rendered.
+static int render_views(Film *f) {
+  const CagTool *t = f->tool;
+  char name[CAG_VIEW_NAME_MAX];
+  CagShownCounts counts;
+  int status = run_script(f);
+  fflush(stdout);
+  if (status == CAG_STATUS_OK) status = cag_session_scene(f->session, &counts);
+  const char *unknown = NULL;
+  for (const char *at = t->views; status == CAG_STATUS_OK && !unknown && cag_views_next(&at, name);)
+    if (!has_camera(f->session, name)) unknown = name;
+  for (const char *at = unknown ? unknown : t->views;
+       status == CAG_STATUS_OK && cag_views_next(&at, name);)
+    status = render_view(f, name);
+  return cag_tool_finish(f->tool, f->session, status);
+}
+
 static int render_frame(Film *f, long frame) {
   const CagTool *t = f->tool;
   char path[PATH_MAX];
@@ -192,6 +280,7 @@ static int render_film(Film *f) {
   const CagTool *t = f->tool;
   if (!strcmp(f->script.path, "-") && t->last_frame > t->first_frame && !read_input(&f->script))
     return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read standard input");
+  if (t->views) return render_views(f);
   int status = CAG_STATUS_OK;
   for (long frame = t->first_frame; status == CAG_STATUS_OK && frame <= t->last_frame; frame++) {
     status = render_frame(f, frame);
@@ -200,15 +289,20 @@ static int render_film(Film *f) {
   return status;
 }
 
+static int render_script(CagTool *t, CagSession *s, void *film) {
+  Film *f = film;
+  f->session = s;
+  cag_session_set_loop(s, t->loop);
+  cag_progress_begin(&f->progress, t);
+  return render_film(f);
+}
+
 int cag_tool_render(CagTool *t, int argc, char **argv) {
   (void)argc;
   Film f = {.tool = t, .script = {.path = argv[0]}};
   int status = check(t, &f.frames);
   if (status != CAG_STATUS_OK) return status;
   if (!strcmp(t->output, "-")) t->session.out = stderr;
-  f.session = cag_tool_session(t);
-  if (!f.session) return CAG_STATUS_LIMIT;
-  cag_progress_begin(&f.progress, t);
   cag_render_options_init(&f.options);
   f.options.width = t->width;
   f.options.height = t->height;
@@ -217,15 +311,13 @@ int cag_tool_render(CagTool *t, int argc, char **argv) {
   f.options.engine = t->engine;
   f.options.passes = t->passes;
   f.options.keep_partial = t->keep_partial;
-  cag_session_set_loop(f.session, t->loop);
   f.options.exposure = t->exposure;
   f.options.progress = cag_progress_show;
   f.options.progress_context = &f.progress;
   if (t->quality) f.options.quality = t->quality;
   f.options.region = t->region;
   f.options.threads = t->threads;
-  status = render_film(&f);
-  cag_session_free(f.session);
+  status = cag_tool_rounds(t, argv[0], render_script, &f);
   free(f.script.text);
   return status;
 }

@@ -34,6 +34,7 @@ CagSession *cag_tool_session(CagTool *t) {
   }
   for (size_t i = 0; i < t->define_count; i++)
     cag_session_define(s, t->defines[i].name, t->defines[i].value);
+  if (t->has_section) cag_session_set_section(s, t->section);
   return s;
 }
 

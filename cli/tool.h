@@ -89,6 +89,11 @@ struct CagTool {
   int port;               // --port; 0: any free one
   bool no_open;           // --no-open
   bool read_only;         // --read-only
+  const char *views;      // --views
+  bool has_section;       // --section
+  double section[4];      // as for cag_session_set_section
+  bool watch;             // --watch
+  bool json;              // --json
 
   // Receives the error of an invalid option value; NULL: it is written to standard error.
   struct CagToolRefusal *refusal;
@@ -96,7 +101,7 @@ struct CagTool {
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
     cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
-    cag_tool_repl, cag_tool_batch, cag_tool_view;
+    cag_tool_repl, cag_tool_batch, cag_tool_measure, cag_tool_mcp, cag_tool_view;
 
 // Makes a session with the options and the -D of the command line. Returns NULL, after a message,
 // if memory ran out.

@@ -1,35 +1,20 @@
-// Writing JSON.
-//
-//     CagString s = {0};
-//     CagJson j = {.to = &s};
-//     cag_json_open(&j, '{');
-//     cag_json_text(&j, "name", part.name);
-//     cag_json_numbers(&j, "at", part.at, 3);
-//     cag_json_close(&j, '}');
-//
-// Commas are added where they are needed. The key is NULL within an array. Numbers that are not
-// finite become null. If memory runs out, s.failed is set.
+// Helpers for JSON by cJSON.
 
 #ifndef CAG_LIVE_JSON_H
 #define CAG_LIVE_JSON_H
 
-#include <stdbool.h>
+#include <cJSON.h>
 #include <stddef.h>
 
-#include "base/string.h"
+#include "cag.h"
 
-typedef struct CagJson {
-  CagString *to;
-  bool follows; // something is before the next item
-} CagJson;
+// Adds a number with the shortest text that reads back as the same number, which has at most 17
+// digits; null if it is not finite. (cJSON's own text can differ in the last digit.)
+void cag_json_add_number(cJSON *object, const char *name, double x);
+// Adds a list of such numbers.
+void cag_json_add_numbers(cJSON *object, const char *name, const double *x, size_t n);
 
-void cag_json_open(CagJson *j, char bracket);
-void cag_json_open_in(CagJson *j, const char *key, char bracket);
-void cag_json_close(CagJson *j, char bracket);
-void cag_json_text(CagJson *j, const char *key, const char *text); // text NULL: null
-void cag_json_number(CagJson *j, const char *key, double x);
-void cag_json_bool(CagJson *j, const char *key, bool b);
-void cag_json_numbers(CagJson *j, const char *key, const double *x, size_t n);
-void cag_json_null(CagJson *j, const char *key);
+// The diagnostics of the session's last call, as a list of the objects of CAG_STYLE_JSON.
+cJSON *cag_json_diagnostics(const CagSession *s);
 
 #endif

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "live/json.h"
+#include "live/json_write.h"
 #include "live/model_files.h"
 
 enum { JOBS = 8, SIDE_MOST = 8192 };

@@ -4,7 +4,7 @@
 #define CAG_LIVE_SCENE_JSON_H
 
 #include "cag.h"
-#include "live/json.h"
+#include "live/json_write.h"
 
 // A mesh for the page as bytes: eight numbers of 32 bits (a mark, version 1, counts of vertices,
 // triangles, and edges, and flags), positions and normals as 32-bit floats, and the indices of

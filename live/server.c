@@ -10,7 +10,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include "live/json.h"
+#include "live/json_write.h"
 #include "live/microhttpd.h"
 
 enum { KINDS_MAX = 8, IDLE_SECONDS = 30 };

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "live/json.h"
+#include "live/json_write.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
 #include "live/render_jobs.h"
