@@ -1,6 +1,6 @@
 #include "live/render_jobs.h"
 
-#include <cjson/cJSON.h>
+#include <cJSON.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>

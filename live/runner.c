@@ -255,14 +255,16 @@ int cag_runner_run(CagRunner *r, CagLiveRequest *request) {
   return number;
 }
 
-void cag_runner_again(CagRunner *r) {
+void cag_runner_again(CagRunner *r, bool keep_text) {
   CagLiveRequest again = {.coarse = 1};
   pthread_mutex_lock(&r->mutex);
   if (!r->is_pending && r->has_last && !copy_request(&r->last, &again))
     again = (CagLiveRequest){.coarse = 1};
   if (!r->is_pending) {
-    free(again.text); // the file has changed
-    again.text = NULL;
+    if (!keep_text) {
+      free(again.text);
+      again.text = NULL;
+    }
     again.coarse = 1;
     start_pending(r, &again);
   }

@@ -45,8 +45,9 @@ CagRunner *cag_runner_start(const CagRunnerOptions *options);
 void cag_runner_stop(CagRunner *r);
 // Takes over the contents of the request. Returns the number of the run.
 int cag_runner_run(CagRunner *r, CagLiveRequest *request);
-// Runs the last request again, with the file as it is now.
-void cag_runner_again(CagRunner *r);
+// Runs the last request again, with the files as they are now. `keep_text`: but with the text of the
+// script that it had.
+void cag_runner_again(CagRunner *r, bool keep_text);
 // Does something with the last session as soon as the runner is free. Returns false if memory ran
 // out.
 bool cag_runner_do(CagRunner *r, CagLiveTask *task, void *context);

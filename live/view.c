@@ -1,23 +1,24 @@
 #include "live/view.h"
 
-#include <cjson/cJSON.h>
+#include <cJSON.h>
 #include <limits.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "live/json_write.h"
+#include "live/measures.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
 #include "live/render_jobs.h"
 #include "live/runner.h"
+#include "live/watch_files.h"
 
-// Milliseconds between looks at the files, and at the flag that ends the server.
-enum { LOOK_EVERY = 200, STOP_EVERY = 50 };
+// Milliseconds between looks at the flag that ends the server, and at files that cannot be watched.
+enum { STOP_EVERY = 50 };
 #define MESH_MEMORY ((size_t)512 << 20)
 // Meshes are coarser by this factor while something is dragged.
 #define COARSE 8.0
@@ -33,7 +34,12 @@ typedef struct View {
   pthread_mutex_t gate; // held while a request is routed
   bool closing;
   char version[CAG_VERSION_SIZE]; // of the script's file, as last seen
-  struct timespec changed;
+  CagFileWatch *watch;
+  // The files that the last run read, as absolute paths. Behind the gate.
+  char **read;
+  size_t read_count;
+  bool read_changed; // since the watch was told
+  double began;      // when that run began, by the clock of files
 } View;
 
 // --- Answers ---
@@ -220,14 +226,34 @@ static void save_file(View *v, CagExchange *x, const char *path) {
   answer_version(x, 200, version);
 }
 
+static void write_file_entry(const View *v, CagJson *j, const char *path) {
+  char *text, version[CAG_VERSION_SIZE];
+  size_t size;
+  const char *why;
+  if (!cag_model_read(v->folder, path, &text, &size, &why)) return;
+  cag_model_version(text, size, version);
+  free(text);
+  cag_json_open(j, '{');
+  cag_json_text(j, "path", path);
+  cag_json_text(j, "version", version);
+  cag_json_close(j, '}');
+}
+
+// The path below the folder, or NULL if it is elsewhere.
+static const char *path_below(const View *v, const char *path) {
+  const size_t n = strlen(v->folder);
+  return !strncmp(path, v->folder, n) && path[n] == '/' ? path + n + 1 : NULL;
+}
+
 static void answer_files(View *v, CagExchange *x) {
   CagString s = {0};
   CagJson j = {.to = &s};
   cag_json_open(&j, '[');
-  cag_json_open(&j, '{');
-  cag_json_text(&j, "path", v->name);
-  cag_json_text(&j, "version", v->version);
-  cag_json_close(&j, '}');
+  write_file_entry(v, &j, v->name);
+  for (size_t i = 0; i < v->read_count; i++) {
+    const char *below = path_below(v, v->read[i]);
+    if (below && strcmp(below, v->name) != 0) write_file_entry(v, &j, below);
+  }
   cag_json_close(&j, ']');
   answer_text(x, 200, &s);
   cag_string_free(&s);
@@ -359,6 +385,38 @@ static void do_image(CagSession *s, void *context) {
   free_errand(e);
 }
 
+static void do_measure(CagSession *s, void *context) {
+  Errand *e = context;
+  CagMeasuring m = {NULL, CAG_STATUS_SCRIPT};
+  if (s) m = cag_measure(s, e->view->name, NULL);
+  const cJSON *part, *parts = cJSON_GetObjectItemCaseSensitive(m.whole, "parts");
+  char *printed = NULL;
+  cJSON_ArrayForEach(part, parts) {
+    const cJSON *name = cJSON_GetObjectItemCaseSensitive(part, "name");
+    if (cJSON_IsString(name) && !strcmp(name->valuestring, e->word))
+      printed = cJSON_PrintUnformatted(part);
+    if (printed) break;
+  }
+  if (printed)
+    cag_exchange_answer(e->x,
+                        &(CagAnswer){.status = 200, .bytes = printed, .size = strlen(printed)});
+  else if (s && m.status != CAG_STATUS_OK) fail_with_session(e->x, s);
+  else cag_exchange_fail(e->x, 404, "there is no such part", NULL);
+  free(printed);
+  cJSON_Delete(m.whole);
+  free_errand(e);
+}
+
+static void answer_measure(View *v, CagExchange *x) {
+  size_t size;
+  const char *body = cag_exchange_body(x, &size);
+  cJSON *json = cJSON_ParseWithLength(body, size);
+  const cJSON *part = cJSON_GetObjectItemCaseSensitive(json, "part");
+  if (cJSON_IsString(part)) send_on_errand(v, x, part->valuestring, do_measure);
+  else cag_exchange_fail(x, 400, "expected the name of a part", NULL);
+  cJSON_Delete(json);
+}
+
 // --- Pictures ---
 
 static void answer_render(View *v, CagExchange *x) {
@@ -444,6 +502,7 @@ static void route_open(View *v, CagExchange *x) {
   else if (is_request(x, "PUT", "/api/params")) answer_params(v, x, true);
   else if (is_request(x, "POST", "/api/export")) answer_export(v, x);
   else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
+  else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);
@@ -459,34 +518,83 @@ static void route(void *context, CagExchange *x) {
 
 // --- Files on disk ---
 
-// Notes the version of the script's file. Returns whether it was changed by somebody else.
-static bool look_at_file(View *v) {
-  struct stat st;
+static void free_list(char **list, size_t n) {
+  for (size_t i = 0; i < n; i++) free(list[i]);
+  free(list);
+}
+
+// Notes which files a run has read. Called by the runner's thread.
+static void note_files(void *context, CagSession *s) {
+  View *v = context;
+  size_t n = 0, kept = 0;
+  while (cag_session_read_file(s, n)) n++;
+  char **list = calloc(n + 1, sizeof *list);
+  for (size_t i = 0; list && i < n; i++)
+    if ((list[kept] = strdup(cag_session_read_file(s, i)))) kept++;
+  pthread_mutex_lock(&v->gate);
+  free_list(v->read, v->read_count);
+  v->read = list;
+  v->read_count = kept;
+  v->read_changed = true;
+  pthread_mutex_unlock(&v->gate);
+}
+
+// Watches the script and what it has read. Text that was given instead of a file is not among these.
+static void watch_what_was_read(View *v) {
+  char script[2 * PATH_MAX];
+  pthread_mutex_lock(&v->gate);
+  if (v->read_changed && v->options->file) {
+    const char **paths = calloc(v->read_count + 1, sizeof *paths);
+    snprintf(script, sizeof script, "%s/%s", v->folder, v->name);
+    if (paths) {
+      paths[0] = script;
+      for (size_t i = 0; i < v->read_count; i++) paths[i + 1] = v->read[i];
+      cag_file_watch_set(v->watch, paths, v->read_count + 1, v->began);
+      v->began = cag_file_watch_now();
+    }
+    free(paths);
+    v->read_changed = false;
+  }
+  pthread_mutex_unlock(&v->gate);
+}
+
+// Notes the version of the script's file. Returns whether it has changed.
+static bool is_new_version(View *v) {
   char *text, version[CAG_VERSION_SIZE];
   size_t size;
   const char *why;
-  if (!v->options->file || stat(v->options->file, &st) != 0) return false;
-  if (st.st_mtim.tv_sec == v->changed.tv_sec && st.st_mtim.tv_nsec == v->changed.tv_nsec)
-    return false;
   if (!cag_model_read(v->folder, v->name, &text, &size, &why)) return false;
-  v->changed = st.st_mtim;
   cag_model_version(text, size, version);
   free(text);
+  pthread_mutex_lock(&v->gate);
   const bool same = !strcmp(version, v->version);
   memcpy(v->version, version, sizeof version);
+  pthread_mutex_unlock(&v->gate);
   return !same;
 }
 
-static void tell_change(View *v) {
+static void tell_change(View *v, const char *path) {
   CagString s = {0};
   CagJson j = {.to = &s};
+  const char *below = path_below(v, path);
   cag_json_open(&j, '{');
-  cag_json_text(&j, "path", v->name);
+  cag_json_text(&j, "path", below ? below : path);
   cag_json_text(&j, "version", v->version);
   cag_json_close(&j, '}');
   if (s.bytes) cag_server_publish(v->server, "file", s.bytes, false);
   cag_string_free(&s);
-  cag_runner_again(v->runner);
+}
+
+// Runs the script again if a file was changed by somebody else.
+static void look_at_files(View *v) {
+  const char *path;
+  watch_what_was_read(v);
+  if (!cag_file_watch_look(v->watch, &path)) return;
+  const char *below = path_below(v, path);
+  // If the page itself has saved the script, another file may have changed at the same time.
+  const bool own = below && !strcmp(below, v->name), saved = own && !is_new_version(v);
+  if (!saved) tell_change(v, path);
+  cag_runner_again(v->runner, !own || saved);
 }
 
 // --- The whole ---
@@ -517,10 +625,13 @@ static bool start_parts(View *v) {
                                    .folder = v->folder,
                                    .name = v->name,
                                    .server = &v->server,
-                                   .meshes = v->meshes = cag_meshes_new(MESH_MEMORY)};
+                                   .meshes = v->meshes = cag_meshes_new(MESH_MEMORY),
+                                   .ran = note_files,
+                                   .context = v};
   v->runner = v->meshes ? cag_runner_start(&runner) : NULL;
   v->jobs = v->runner ? cag_render_jobs_new(v->runner, &v->server) : NULL;
-  return v->jobs != NULL;
+  v->watch = cag_file_watch_new(false);
+  return v->jobs && v->watch;
 }
 
 // From the moment that the gate is closed, requests do not use the other parts.
@@ -532,6 +643,8 @@ static void stop_parts(View *v) {
   if (v->runner) cag_runner_stop(v->runner);
   if (v->server) cag_server_stop(v->server);
   cag_meshes_free(v->meshes);
+  cag_file_watch_free(v->watch);
+  free_list(v->read, v->read_count);
 }
 
 static void tell_address(const View *v) {
@@ -555,16 +668,17 @@ static void start_first_run(View *v) {
 }
 
 static void serve(View *v) {
-  const struct timespec pause = {0, STOP_EVERY * 1000000L};
   pthread_mutex_lock(&v->gate);
   v->closing = false;
   pthread_mutex_unlock(&v->gate);
-  look_at_file(v);
+  is_new_version(v);
+  v->began = cag_file_watch_now();
   start_first_run(v);
   tell_address(v);
-  for (int at = 0; !(v->options->session.interrupt && *v->options->session.interrupt); at++) {
-    nanosleep(&pause, NULL);
-    if (at % (LOOK_EVERY / STOP_EVERY) == 0 && look_at_file(v)) tell_change(v);
+  struct pollfd files = {.fd = cag_file_watch_descriptor(v->watch), .events = POLLIN};
+  while (!(v->options->session.interrupt && *v->options->session.interrupt)) {
+    poll(&files, files.fd >= 0, STOP_EVERY);
+    look_at_files(v);
   }
 }
 

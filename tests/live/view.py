@@ -17,7 +17,7 @@ import threading
 import time
 
 CAG = os.path.abspath(sys.argv[1])
-WAIT = 60  # seconds, on a busy machine
+WAIT = int(os.environ.get("WAIT", "60"))  # seconds, on a busy machine
 VASE = """param height = 40 in 10..90 "height, mm"
 show revolve(polyline([[0, 0], [20, 0], [24, height], [0, height]])) |> named("vase")
 show box([5, 5, 5]) |> translate([60, 0, 0]) |> named("box")
@@ -172,6 +172,32 @@ def test_a_save_by_another_editor_runs_the_script():
     os.rename(other, v.path)
     assert v.wait("file")["path"] == "model.cag"
     v.wait("scene", lambda e: e["parts"][0]["name"] == "cylinder")
+    v.close()
+
+
+def test_imported_files_are_watched():
+    v = View("import parts: knob\nshow knob\n")
+    run = v.wait("messages")["run"]
+    with open(os.path.join(v.folder, "parts.cag"), "w") as f:
+        f.write("knob = sphere(4)\n")
+    v.wait("scene", lambda e: e["parts"][0]["name"] == "knob")
+    files = json.loads(v.ask("GET", "/api/files")[1])
+    assert sorted(f["path"] for f in files) == ["model.cag", "parts.cag"], files
+    with open(os.path.join(v.folder, "parts.cag"), "w") as f:
+        f.write("knob = box([4, 5, 6])\n")
+    scene = v.wait("scene", lambda e: e["parts"][0]["bounds"][1] == [4, 5, 6])
+    assert scene["run"] > run and scene["parts"][0]["origin"][-1]["file"] == "parts.cag"
+    v.close()
+
+
+def test_measures():
+    v = View(VASE)
+    v.scene(1)
+    status, body, _ = v.ask("POST", "/api/measure", '{"part": "box"}')
+    m = json.loads(body)
+    assert status == 200 and abs(m["volume"] - 125) < 1e-9 and abs(m["area"] - 150) < 1e-9 and m["watertight"]
+    assert v.ask("POST", "/api/measure", '{"part": "none"}')[0] == 404
+    assert v.ask("POST", "/api/measure", "[]")[0] == 400
     v.close()
 
 
