@@ -102,6 +102,7 @@ if [ -n "${SANITIZED:-}" ]; then
   # Three scripts take 12 s each without sanitizers, and four times as long with them.
   language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
   suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
+  suite counted "sanitized tests/fuzz/pictures" "python3 tests/fuzz/pictures.py '$SANITIZED/cag' 1000 3"
   suite counted "sanitized tests/fuzz/memory limits" "'$SANITIZED/tests/fuzz/memory' -l -n 3"
   unit_suites "$SANITIZED" "sanitized "
   vector_suites "$SANITIZED" "sanitized "
@@ -110,6 +111,7 @@ language_suites "$BUILD" "" ""
 suite counted "tests/scenes" "'$BUILD/cag' test tests/scenes"
 suite counted "cag test examples" "'$BUILD/cag' test --no-pictures examples stdlib"
 suite counted "tests/fuzz" "'$BUILD/tests/fuzz/fuzz' 8"
+suite counted "tests/fuzz/pictures" "python3 tests/fuzz/pictures.py '$BUILD/cag' 2000"
 suite counted "tests/fuzz/memory" "'$BUILD/tests/fuzz/memory' -n $points"
 suite counted "tests/fuzz/memory scripts" "'$BUILD/tests/fuzz/memory' -n $points -x tests/fuzz/scripts/*.cag"
 suite counted "tests/fuzz/memory language" \
