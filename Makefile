@@ -6,6 +6,7 @@
 #   make silhouettes    compares the outlines that the preview and POV-Ray draw
 #   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
 #   make format      clang-format everything        make check-format / check-layers / analyze / tidy
+#   make web         bundles the page of `cag view` make check-web       shows that web/dist is what the sources give
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
 BUILD   ?= build
@@ -69,7 +70,7 @@ CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -307,6 +308,18 @@ deb: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 # The names of the built-in functions in the files for editors.
 editors: $(BUILD)/tools/tables
 	$(BUILD)/tools/tables | sh tools/editors.sh editors
+
+# The page's sources are checked and bundled into web/dist, which is committed: only this needs node and esbuild.
+web/node_modules: web/package-lock.json
+	cd web && npm ci --ignore-scripts --no-audit --no-fund
+	@touch $@
+web: web/node_modules
+	cd web && node_modules/.bin/tsc -p .
+	sh web/build.sh web/dist
+check-web: web/node_modules
+	cd web && node_modules/.bin/tsc -p .
+	@rm -rf $(BUILD)/web && sh web/build.sh $(BUILD)/web
+	diff -r $(BUILD)/web web/dist
 
 clean:
 	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-threads $(BUILD)-coverage $(BUILD)-mutate
