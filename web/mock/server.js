@@ -94,7 +94,7 @@ function params(text, values) {
     if (list) Object.assign(p, { kind: "choice", choices: list[1].split(",").map((x) => x.trim()) });
     else if (number) {
       const r = range ? /(-?[\d.]+)\w*\.\.(-?[\d.]+)/.exec(range) : null;
-      Object.assign(p, { kind: "number", unit: number[2] ?? "", low: r ? Number(r[1]) : null, high: r ? Number(r[2]) : null });
+      Object.assign(p, { kind: number[2] === "deg" ? "angle" : "number", unit: number[2] ?? "", low: r ? Number(r[1]) : null, high: r ? Number(r[2]) : null });
     } else if (/^(true|false)$/.test(initial)) p.kind = "bool";
     else if (/^"#/.test(initial)) p.kind = "color";
     else if (/^"/.test(initial)) p.kind = "text";

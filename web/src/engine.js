@@ -13,19 +13,19 @@
  * @property {number} endColumn
  *
  * @typedef {object} OriginFields
- * @property {string} what  "show", "moved", "colored", "made", ...
+ * @property {string} what  "show", "changed" (moved or given attributes), or "made"
  * @property {boolean} [library]  in the standard library
  * @typedef {Place & OriginFields} Origin
  *
  * @typedef {object} Param
  * @property {string} name
- * @property {string} [description]
- * @property {"number" | "choice" | "bool" | "color" | "text" | "other"} kind
+ * @property {string | null} [description]
+ * @property {"number" | "angle" | "choice" | "bool" | "color" | "text" | "other"} kind
  * @property {string} value  an expression of the language
  * @property {string} initial
- * @property {number | null} [low]
+ * @property {number | null} [low]  mm or degrees
  * @property {number | null} [high]
- * @property {string} [unit]
+ * @property {string} [unit]  "deg" of angles
  * @property {string[]} [choices]  expressions
  * @property {Place} [place]
  *
@@ -79,13 +79,13 @@
  * @typedef {object} SceneLabel
  * @property {string} text
  * @property {Triple} at
- * @property {Triple | null} along
+ * @property {Triple | null} along  null or zero: none
  * @property {string} place
  * @property {string} mark
  * @property {number} size  mm; 0: of the page
  * @property {number} material
  *
- * @typedef {{ name: string, width: number, height: number }} SceneImage
+ * @typedef {{ name: string, width?: number, height?: number }} SceneImage
  *
  * @typedef {object} SceneMessage
  * @property {number} run
@@ -118,7 +118,7 @@
  * @property {number} run
  * @property {boolean} ok
  * @property {number} seconds
- * @property {number} memory  bytes
+ * @property {number} [memory]  bytes
  * @property {string[]} prints
  * @property {Diagnostic[]} diagnostics
  *

@@ -1,23 +1,9 @@
-// The grid and axes in the plane z = 0, and the length of the scale.
+// The grid and axes in the plane z = 0.
 
 import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial } from "three";
+import { roundUp } from "./scale.js";
 
-const STEPS = [1, 2, 5];
 const LEAST_PIXELS = 12; // between the lines of the grid
-const SCALE_PIXELS = 130; // the longest that the scale can be
-
-/** The least number of the form 1, 2, or 5 times a power of ten that is not below x. @param {number} x */
-export function roundUp(x) {
-  const power = 10 ** Math.floor(Math.log10(x));
-  for (const step of STEPS) if (step * power >= x * (1 - 1e-9)) return step * power;
-  return 10 * power;
-}
-
-/** The length that the scale shows, mm. @param {number} pixel  its size, mm */
-export function scaleLength(pixel) {
-  const most = SCALE_PIXELS * pixel, power = 10 ** Math.floor(Math.log10(most));
-  return (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1) * power;
-}
 
 export class Grid {
   constructor() {
@@ -46,7 +32,7 @@ export class Grid {
         }
         void main() {
           float fade = 1.0 - smoothstep( 0.35, 1.0, length( around ) );
-          float alpha = max( 0.16 * lines( step ), 0.3 * lines( 10.0 * step ) ) * strength;
+          float alpha = max( 0.12 * lines( step ), 0.26 * lines( 10.0 * step ) ) * strength;
           vec2 width = fwidth( at );
           vec2 axis = 1.0 - min( abs( at ) / width / 1.2, 1.0 );
           vec3 color = ink;

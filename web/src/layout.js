@@ -41,7 +41,7 @@ export class Layout {
       });
     this.split = byId("split", HTMLDivElement);
     this.width = 0; // of the editor, percent of the page
-    this.setWidth(Number(recall("width") ?? 36));
+    this.setWidth(Number(recall("width") ?? 34));
     this.split.addEventListener("pointerdown", (e) => this.split.setPointerCapture(e.pointerId));
     this.split.addEventListener("pointermove", (e) => {
       if (this.split.hasPointerCapture(e.pointerId)) this.setWidth((100 * e.clientX) / innerWidth);
@@ -62,7 +62,7 @@ export class Layout {
 
   /** @param {number} percent */
   setWidth(percent) {
-    this.width = Math.min(WIDEST, Math.max(NARROWEST, percent || 36));
+    this.width = Math.min(WIDEST, Math.max(NARROWEST, percent || 34));
     document.documentElement.style.setProperty("--left", `${this.width}%`);
     this.split.setAttribute("aria-valuenow", String(Math.round(this.width)));
     remember("width", String(this.width));

@@ -24,7 +24,7 @@ export class MessagesPanel {
   show(m) {
     const errors = m.diagnostics.filter((d) => d.severity === "error").length, warnings = m.diagnostics.length - errors;
     const counts = [errors ? count(errors, "error") : "", warnings ? count(warnings, "warning") : ""].filter(Boolean);
-    this.status.textContent = [...counts, formatSeconds(m.seconds), formatMemory(m.memory)].join(" · ");
+    this.status.textContent = [...counts, formatSeconds(m.seconds), m.memory ? formatMemory(m.memory) : ""].filter(Boolean).join(" · ");
     this.status.classList.toggle("bad", !m.ok);
     const prints = m.prints.slice(-MOST_PRINTS);
     this.host.replaceChildren(

@@ -9,7 +9,7 @@ export const STANDARD_VIEWS = /** @type {const} */ (["front", "back", "left", "r
 /** @typedef {typeof STANDARD_VIEWS[number]} StandardView */
 
 /** Azimuth and elevation in degrees. Azimuth 0 is seen from the front, from -Y. @type {Record<StandardView, [number, number]>} */
-const DIRECTIONS = { front: [0, 0], back: [180, 0], left: [-90, 0], right: [90, 0], top: [0, 90], bottom: [0, -90], iso: [-45, 35.264] };
+const DIRECTIONS = { front: [0, 0], back: [180, 0], left: [-90, 0], right: [90, 0], top: [0, 90], bottom: [0, -90], iso: [45, 35.264] };
 
 const RADIANS = Math.PI / 180;
 const FOV = 30 * RADIANS; // vertical, where no camera sets it
@@ -20,7 +20,7 @@ export class Orbit {
   constructor() {
     this.target = new Vector3();
     this.distance = 100;
-    this.azimuth = -45 * RADIANS;
+    this.azimuth = 45 * RADIANS;
     this.elevation = 35 * RADIANS;
     this.roll = 0;
     this.fov = FOV; // vertical

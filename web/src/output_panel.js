@@ -58,7 +58,7 @@ export class OutputPanel {
     this.images.replaceChildren(h("h3", {}, "Images of the script"));
     for (const image of images) {
       const canvas = h("canvas", { class: "picture", role: "img", "aria-label": `Image ${image.name}` });
-      this.images.append(h("figure", {}, canvas, h("figcaption", { class: "faint" }, `${image.name}, ${image.width} × ${image.height}`)));
+      this.images.append(h("figure", {}, canvas, h("figcaption", { class: "faint" }, image.width ? `${image.name}, ${image.width} × ${image.height}` : image.name)));
       this.engine.image(image.name).then((blob) => drawPicture(blob, canvas), this.report);
     }
   }

@@ -4,7 +4,7 @@
 import { Color, Vector3 } from "three";
 import { h, svg } from "./dom.js";
 import { formatNumber } from "./format.js";
-import { scaleLength } from "./grid.js";
+import { scaleLength } from "./scale.js";
 
 /** The texts' steps to the right and down, in halves of their size, by place. @type {Record<string, [number, number]>} */
 const PLACES = {
@@ -85,7 +85,7 @@ export class Overlay {
     const text = /** @type {HTMLElement} */ (element.lastElementChild);
     const size = label.size > 0 ? label.size / this.pixelAt(at) : TEXT_SIZE;
     let angle = 0;
-    if (label.along) {
+    if (label.along?.some((x) => x !== 0)) {
       const q = view.project(at.clone().addScaledVector(new Vector3(...label.along), size * this.pixelAt(at)));
       if (q) angle = Math.atan2(q.y - p.y, q.x - p.x);
     }

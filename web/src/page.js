@@ -153,6 +153,7 @@ async function start(engine) {
     selection.show(part, part ? expressionOf(part) : "");
     partsPanel.refresh();
     view.invalidate();
+    return part;
   }
   /** After a run, what was selected is measured again. */
   function keepSelection() {
@@ -160,8 +161,10 @@ async function start(engine) {
     if (names.length || view.selected.length) select(names);
   }
   /** @param {string} name @param {boolean} more */
-  const selectOne = (name, more) =>
+  function selectOne(name, more) {
     select(!more ? [name] : view.selected.includes(name) ? view.selected.filter((n) => n !== name) : [...view.selected, name]);
+    openPanel("selection");
+  }
   /** @param {string[]} names */
   const point = (names) => {
     if (names.join() === view.pointed.join()) return;
@@ -247,8 +250,8 @@ async function start(engine) {
     grid: { is: () => stage.grid, set: (on) => (stage.grid = on) },
     backdrop: { is: () => stage.backdrop, set: (on) => (stage.backdrop = on) },
     shadows: { is: () => stage.shadows, set: (on) => (stage.shadows = on) },
-    section: { is: () => view.section.on, set: (on) => (openPanel("section"), sectionPanel.toggle(on)) },
-    measure: { is: () => measure.active, set: (on) => (openPanel("measure"), measure.toggle(on)) },
+    section: { is: () => view.section.on, set: (on) => (sectionPanel.toggle(on), on && openPanel("section")) },
+    measure: { is: () => measure.active, set: (on) => (measure.toggle(on), on && openPanel("measure")) },
   };
   /** @param {string} name */
   function flip(name) {
@@ -278,7 +281,9 @@ async function start(engine) {
   /** @param {string} id */
   function openPanel(id) {
     const details = byId(id, HTMLDivElement).closest("details");
-    if (details) details.open = true;
+    if (!details) return;
+    details.open = true;
+    details.scrollIntoView({ block: "nearest" });
   }
 
   // --- Keys ---

@@ -1,7 +1,7 @@
 // The params of the script: a control for each, sets with names, and writing values into the script.
 
 import { h, iconButton } from "./dom.js";
-import { roundUp } from "./grid.js";
+import { roundUp } from "./scale.js";
 import { Topic } from "./topic.js";
 
 /**
@@ -12,10 +12,16 @@ import { Topic } from "./topic.js";
 
 const STEPS = 250; // of a slider
 
-/** @param {string} value @returns {{ number: number, unit: string } | null} */
+// Sizes of the units, in millimeters and degrees. An angle without a unit does not exist.
+/** @type {Record<string, number>} */
+const UNITS = { "": 1, mm: 1, cm: 10, m: 1000, um: 0.001, in: 25.4, ft: 304.8, deg: 1, rad: 180 / Math.PI, turn: 360 };
+
+/** The millimeters or degrees of a number with or without unit; null: it is another expression. @param {string} value @returns {number | null} */
 export function parseNumber(value) {
-  const found = /^\s*([-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*([a-z]*)\s*$/.exec(value);
-  return found ? { number: Number(found[1].replaceAll("_", "")), unit: found[2] } : null;
+  const found = /^\s*([-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?)([a-z]*)\s*$/.exec(value);
+  if (!found || !(found[2] in UNITS)) return null;
+  const number = Number(found[1].replaceAll("_", ""));
+  return UNITS[found[2]] === 1 ? number : Number((number * UNITS[found[2]]).toPrecision(12));
 }
 
 /** The step of a slider: a whole number where the bounds are whole and far apart. @param {number} low @param {number} high */
@@ -42,22 +48,21 @@ export function expressionOf(param, value) {
 /** A value as a set in a file has it. @param {Param} param @param {string} value @returns {any} */
 export function settingOf(param, value) {
   const number = parseNumber(value);
-  if (param.kind === "number" && number && number.unit === "") return number.number;
+  if (param.kind === "number" && number !== null) return number;
   if (param.kind === "bool") return value === "true";
   return param.kind === "text" || param.kind === "color" ? unquote(value) : value;
 }
 
 /** @param {Param} param @param {Give} give @returns {Control} */
 function numberControl(param, give) {
-  const parsed = parseNumber(param.value);
-  if (!parsed) return textControl(param, give);
-  const unit = param.unit || parsed.unit, { low, high } = param;
+  if (parseNumber(param.value) === null) return textControl(param, give);
+  const unit = param.kind === "angle" ? "deg" : "", { low, high } = param;
   const field = h("input", { type: "number", step: "any", "aria-label": param.name, class: "number" });
   const value = (/** @type {string} */ n) => n + unit;
   field.addEventListener("change", () => field.value !== "" && give(value(field.value), false));
   const unitText = unit ? h("span", { class: "unit" }, unit) : null;
   if (low === null || low === undefined || high === null || high === undefined) {
-    const set = (/** @type {string} */ v) => (field.value = String(parseNumber(v)?.number ?? ""));
+    const set = (/** @type {string} */ v) => (field.value = String(parseNumber(v) ?? ""));
     return { element: h("div", { class: "row" }, field, unitText), set, busy: () => document.activeElement === field };
   }
   const step = stepOf(low, high);
@@ -75,7 +80,7 @@ function numberControl(param, give) {
   field.min = String(low);
   field.max = String(high);
   const set = (/** @type {string} */ v) => {
-    const number = parseNumber(v)?.number ?? 0;
+    const number = parseNumber(v) ?? 0;
     slider.value = String(number);
     field.value = String(number);
   };
@@ -132,7 +137,7 @@ function textControl(param, give) {
 }
 
 /** @type {Record<Param["kind"], (param: Param, give: Give) => Control>} */
-const CONTROLS = { number: numberControl, choice: choiceControl, bool: boolControl, color: colorControl, text: textControl, other: textControl };
+const CONTROLS = { number: numberControl, angle: numberControl, choice: choiceControl, bool: boolControl, color: colorControl, text: textControl, other: textControl };
 
 export class ParamsPanel {
   /**
@@ -189,7 +194,7 @@ export class ParamsPanel {
 
   /** The row of a param, which is made again if something but the value changed. @param {Param} param */
   rowOf(param) {
-    const key = JSON.stringify([param.kind, param.description, param.low, param.high, param.unit, param.choices, param.kind === "number" && !parseNumber(param.value)]);
+    const key = JSON.stringify([param.kind, param.description, param.low, param.high, param.unit, param.choices, parseNumber(param.value) === null]);
     const before = this.rows.get(param.name);
     if (before?.key === key) return before.row;
     const control = CONTROLS[param.kind](param, (value, dragging) => this.give(param.name, value, dragging));

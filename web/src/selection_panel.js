@@ -5,7 +5,7 @@ import { formatNumber, formatPoint, formatSize } from "./format.js";
 import { Topic } from "./topic.js";
 
 /** How the chain of places names its links. @type {Record<string, string>} */
-const LINKS = { show: "shown", moved: "moved", colored: "colored", made: "made", named: "named", operand: "operand" };
+const LINKS = { show: "shown", changed: "changed", made: "made" };
 
 /** @param {string} text */
 export const copyText = (text) => navigator.clipboard.writeText(text);
@@ -56,8 +56,8 @@ export class SelectionPanel {
     return h("ol", { class: "chain", "aria-label": "Places in the script" }, ...part.origin.map((place) => {
       const text = this.excerpt(place).replace(/\s+/g, " ").trim();
       return h("li", {}, h("button", { type: "button", class: "quiet place", onclick: () => this.placeWanted.emit(place) },
-        h("span", { class: "what" }, LINKS[place.what] ?? place.what), h("code", {}, text || "…"),
-        h("span", { class: "faint" }, `${place.file}:${place.line}`)));
+        h("span", { class: "what" }, LINKS[place.what] ?? place.what), h("span", { class: "faint" }, `${place.file}:${place.line}`),
+        text ? h("code", {}, text) : null));
     }));
   }
 

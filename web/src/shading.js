@@ -117,7 +117,8 @@ export function makeLights(scene, sphere) {
 function castShadow(light, pixel) {
   light.castShadow = true;
   light.shadow.mapSize.set(SHADOW_SIZE, SHADOW_SIZE);
-  light.shadow.normalBias = 1.5 * pixel;
+  light.shadow.normalBias = 3 * pixel;
+  light.shadow.bias = -2e-4;
   light.shadow.radius = 3;
   return light;
 }

@@ -1,0 +1,264 @@
+// Tests of the page's modules that need no browser. Expected values are from formulas, written by hand.
+//   node tests/web/units.mjs
+import { Bvh } from "../../web/src/bvh.js";
+import { formatNumber, formatPoint } from "../../web/src/format.js";
+import { MeshCache, readMesh } from "../../web/src/mesh.js";
+import { marks } from "../../web/src/messages.js";
+import { expressionOf, parseNumber, quote, settingOf, stepOf, unquote } from "../../web/src/params.js";
+import { diffLines, offsetOf, paramValueRange, rangeOf } from "../../web/src/places.js";
+import { chainLength, circleOf, edgeChain, findingsOfTwo, flatFace, isStraight } from "../../web/src/recognize.js";
+import { Runs } from "../../web/src/runs.js";
+import { roundUp, scaleLength } from "../../web/src/scale.js";
+
+let passed = 0, failed = 0;
+async function test(name, body) {
+  try {
+    await body();
+    passed++;
+  } catch (error) {
+    failed++;
+    console.log(`FAILED: ${name}\n  ${error.stack}`);
+  }
+}
+function equal(found, expected) {
+  const a = JSON.stringify(found), b = JSON.stringify(expected);
+  if (a !== b) throw new Error(`expected ${b}, found ${a}`);
+}
+function near(found, expected, tolerance = 1e-9) {
+  if (!(Math.abs(found - expected) <= tolerance)) throw new Error(`expected ${expected}, found ${found}`);
+}
+
+// The bytes of a mesh, as the protocol describes them.
+function encode({ positions, normals = null, triangles, labels = null, edges = [] }) {
+  const words = [0x6d676163, 1, positions.length / 3, triangles.length / 3, edges.length / 2, (normals ? 1 : 0) | (labels ? 2 : 0), 0, 0];
+  const floats = [...positions, ...(normals ?? [])], rest = [...triangles, ...(labels ?? []), ...edges];
+  const buffer = new ArrayBuffer(4 * (words.length + floats.length + rest.length)), view = new DataView(buffer);
+  words.forEach((w, i) => view.setUint32(4 * i, w, true));
+  floats.forEach((f, i) => view.setFloat32(32 + 4 * i, f, true));
+  rest.forEach((w, i) => view.setUint32(32 + 4 * (floats.length + i), w, true));
+  return buffer;
+}
+
+// A box with 4 vertices for each side, as meshes with creases have them.
+function box([w, d, h]) {
+  const positions = [], triangles = [], edges = [], size = [w, d, h];
+  for (let axis = 0; axis < 3; axis++)
+    for (const side of [0, 1]) {
+      const base = positions.length / 3, [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+      for (const [a, b] of [[0, 0], [1, 0], [1, 1], [0, 1]]) {
+        const p = [0, 0, 0];
+        p[axis] = side * size[axis];
+        p[u] = a * size[u];
+        p[v] = b * size[v];
+        positions.push(...p);
+      }
+      const quad = side ? [0, 1, 2, 0, 2, 3] : [0, 2, 1, 0, 3, 2];
+      triangles.push(...quad.map((i) => base + i));
+      for (let i = 0; i < 4; i++) edges.push(base + i, base + ((i + 1) % 4));
+    }
+  return readMesh(encode({ positions, triangles, edges }));
+}
+
+const circle = (n, center, radius, part = 1) =>
+  Array.from({ length: n + 1 }, (_, i) => {
+    const angle = (2 * Math.PI * part * i) / n;
+    return [center[0] + radius * Math.cos(angle), center[1] + radius * Math.sin(angle), center[2]];
+  });
+
+await test("a mesh is read as it was written", () => {
+  const mesh = readMesh(encode({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], normals: [0, 0, 1, 0, 0, 1, 0, 0, 1], triangles: [0, 1, 2], edges: [0, 1] }));
+  equal([...mesh.positions], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
+  equal([...mesh.triangles], [0, 1, 2]);
+  equal([...mesh.edges], [0, 1]);
+});
+await test("triangles of a label become adjacent", () => {
+  const mesh = readMesh(encode({ positions: Array(18).fill(0), triangles: [0, 1, 2, 3, 4, 5, 1, 2, 3], labels: [7, 2, 7] }));
+  equal(mesh.groups, [{ label: 2, start: 0, count: 1 }, { label: 7, start: 1, count: 2 }]);
+  equal([...mesh.triangles], [3, 4, 5, 0, 1, 2, 1, 2, 3]);
+});
+await test("a truncated mesh is refused", () => {
+  const whole = encode({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], triangles: [0, 1, 2] });
+  for (const size of [0, 31, whole.byteLength - 4]) {
+    let refused = false;
+    try {
+      readMesh(whole.slice(0, size));
+    } catch {
+      refused = true;
+    }
+    equal(refused, true);
+  }
+});
+await test("the cache releases the oldest meshes that are not shown", async () => {
+  const released = [], cache = new MeshCache(async (id) => ({ id, bytes: 10 }), (m) => m.bytes, (m) => released.push(m.id), 20);
+  for (const id of ["a", "b", "c", "d", "a"]) await cache.get(id);
+  cache.trim(new Set(["d"]));
+  equal(released, ["b"]); // a was used again
+});
+await test("a ray meets the near side of a box", () => {
+  const mesh = box([4, 6, 8]), bvh = new Bvh(mesh.positions, mesh.triangles);
+  near(bvh.cast([2, 3, 20], [0, 0, -1]).t, 12);
+  near(bvh.cast([-10, 1, 1], [2, 0, 0]).t, 5); // in units of the direction
+  equal(bvh.cast([5, 3, 20], [0, 0, -1]), null);
+  near(bvh.cast([2, 3, 20], [0, 0, -1], (t) => t > 12.5).t, 20); // beyond a section plane
+});
+await test("rays meet a sphere of many triangles where the formula says", () => {
+  const positions = [], triangles = [], n = 96;
+  for (let i = 0; i <= n; i++)
+    for (let j = 0; j <= n; j++) {
+      const a = (Math.PI * i) / n, b = (2 * Math.PI * j) / n;
+      positions.push(Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a));
+      if (i < n && j < n) {
+        const k = i * (n + 1) + j;
+        triangles.push(k, k + n + 1, k + 1, k + 1, k + n + 1, k + n + 2);
+      }
+    }
+  const bvh = new Bvh(Float32Array.from(positions), Uint32Array.from(triangles));
+  for (let i = 0; i < 200; i++) {
+    const x = 0.9 * Math.sin(12.9898 * i), y = 0.4 * Math.cos(78.233 * i);
+    // The mesh is inside the sphere by at most the sagitta of a step, divided by the cosine of the slope.
+    const height = Math.sqrt(1 - x * x - y * y), hit = bvh.cast([x, y, 5], [0, 0, -1]);
+    near(hit.t, 5 - height, 2 * (1 - Math.cos(Math.PI / n)) / height);
+  }
+});
+await test("a flat face has the area of all its triangles", () => {
+  const mesh = box([4, 6, 8]), top = mesh.triangles.length / 3 - 1; // axis z, far side
+  near(flatFace(mesh, top).area, 24, 1e-5);
+  equal(flatFace(mesh, top).normal, [0, 0, 1]);
+  near(flatFace(mesh, 0).area, 48, 1e-5);
+});
+await test("an edge of a box ends at its corners", () => {
+  const { points, closed } = edgeChain(box([4, 6, 8]), 0);
+  equal(closed, false);
+  equal(points.length, 2);
+});
+await test("a circle is recognized, and its radius and center are right", () => {
+  const found = circleOf(circle(24, [3, -2, 7], 12.5));
+  near(found.radius, 12.5);
+  near(Math.hypot(found.center[0] - 3, found.center[1] + 2, found.center[2] - 7), 0);
+  near(Math.abs(found.axis[2]), 1);
+});
+await test("a quarter of a circle is an arc, an ellipse is none", () => {
+  near(circleOf(circle(8, [0, 0, 0], 5, 0.25)).radius, 5);
+  equal(circleOf(circle(24, [0, 0, 0], 5).map(([x, y, z]) => [x, 1.05 * y, z])), null);
+  equal(circleOf([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]), null);
+});
+await test("the rim of a disk is one closed chain", () => {
+  const rim = circle(16, [0, 0, 0], 2).slice(0, 16).flat();
+  const mesh = readMesh(encode({ positions: rim, triangles: [], edges: Array.from({ length: 16 }, (_, i) => [i, (i + 1) % 16]).flat() }));
+  const { points, closed } = edgeChain(mesh, 3);
+  equal([closed, points.length], [true, 17]);
+  near(chainLength(points), 32 * 2 * Math.sin(Math.PI / 16), 1e-5); // of the inscribed polygon
+  equal(isStraight(points), false);
+});
+await test("parallel faces have a perpendicular distance, and no angle", () => {
+  const a = { kind: "face", at: [0, 0, 0], normal: [0, 0, 1], area: 1 }, b = { kind: "face", at: [3, 4, 12], normal: [0, 0, -1], area: 1 };
+  const f = Object.fromEntries(findingsOfTwo(a, b).map((x) => [x.name, x.value]));
+  near(f.distance, 13);
+  near(f["perpendicular distance"], 12);
+  near(f.angle, 0);
+});
+await test("an edge and a face meet at the angle to the plane", () => {
+  const face = { kind: "face", at: [0, 0, 0], normal: [0, 0, 1], area: 1 }, edge = { kind: "edge", at: [0, 0, 0], from: [0, 0, 0], to: [1, 0, 1], length: Math.SQRT2 };
+  near(findingsOfTwo(face, edge).find((f) => f.name === "angle").value, 45);
+});
+await test("columns count code points", () => {
+  const text = "a = 1\n𝛼𝛽 = 2\n";
+  equal(offsetOf(text, 2, 1), 6);
+  equal(offsetOf(text, 2, 3), 10); // each letter has two UTF-16 units
+  equal(rangeOf(text, { line: 2, column: 6, endLine: 2, endColumn: 7 }), [13, 14]);
+  equal(offsetOf(text, 9, 1), text.length);
+});
+await test("the value of a param is found up to its range, description, or comment", () => {
+  const value = (line, name) => {
+    const text = `x = 1\n${line}\nparam other = 3`, r = paramValueRange(text, name);
+    return r && text.slice(...r);
+  };
+  equal(value('param height = 140 in 80..220  "height, mm"', "height"), "140");
+  equal(value('param glaze = "#0b7d85"        "color"', "glaze"), '"#0b7d85"');
+  equal(value("param n = 2 * (3 + 1) // turns", "n"), "2 * (3 + 1)");
+  equal(value('param t = "a {b("c")} // d"', "t"), '"a {b("c")} // d"');
+  equal(value('param p = [1, 2] in [[1, 2], [3, 4]] "x"', "p"), "[1, 2]");
+  equal(value("param inner = 5", "inner"), "5");
+  equal(value("param x1 = 5", "x"), null);
+});
+await test("numbers with units are millimeters and degrees", () => {
+  equal(parseNumber("2cm"), 20);
+  equal(parseNumber("1in"), 25.4);
+  equal(parseNumber("0.5turn"), 180);
+  equal(parseNumber("-1_000.5e-1"), -100.05);
+  equal(parseNumber("h / 2"), null);
+});
+await test("quotes are put around a text, and taken away", () => {
+  const text = 'a "b" {c} \\ d';
+  equal(quote(text), '"a \\"b\\" \\{c\\} \\\\ d"');
+  equal(unquote(quote(text)), text);
+});
+await test("sets keep numbers and texts as JSON, and give expressions back", () => {
+  const height = { kind: "number" }, title = { kind: "text" }, on = { kind: "bool" }, at = { kind: "other" };
+  equal([settingOf(height, "2cm"), settingOf(title, '"abc"'), settingOf(on, "true"), settingOf(at, "[1, 2]")], [20, "abc", true, "[1, 2]"]);
+  equal([expressionOf(height, 20), expressionOf(title, "abc"), expressionOf(on, true), expressionOf(at, "[1, 2]")], ["20", '"abc"', "true", "[1, 2]"]);
+});
+await test("sliders have round steps", () => {
+  equal([stepOf(80, 220), stepOf(1.5, 8), stepOf(0, 1), stepOf(0, 100000)], [1, 0.05, 0.005, 500]);
+});
+await test("lengths are rounded to 1, 2, or 5", () => {
+  equal([roundUp(0.11), roundUp(3), roundUp(5), roundUp(60)].map((x) => Number(x.toPrecision(3))), [0.2, 5, 5, 100]);
+  equal([scaleLength(1), scaleLength(0.5), scaleLength(10)], [100, 50, 1000]); // at most 130 pixels
+});
+await test("numbers are written short", () => {
+  equal([formatNumber(12.500001), formatNumber(1 / 3), formatNumber(1.2e-7), formatNumber(122000)], ["12.5", "0.33333", "1.2e-7", "122000"]);
+  equal(formatPoint([1, -1e-9, 2.5]), "[1, 0, 2.5]");
+});
+await test("the mark under a line is as wide as its place", () => {
+  equal(marks("show sphere(raduis)", { line: 2, column: 13, endLine: 2, endColumn: 19 }), "            ^^^^^^");
+});
+await test("the difference of two texts is the shortest", () => {
+  const lines = diffLines("a\nb\nc\nd", "a\nx\nc\nd\ne");
+  equal(lines.map((l) => l.kind + l.text), [" a", "-b", "+x", " c", " d", "+e"]);
+  // Taking one side gives each text back.
+  equal(lines.filter((l) => l.kind !== "+").map((l) => l.text).join("\n"), "a\nb\nc\nd");
+  equal(lines.filter((l) => l.kind !== "-").map((l) => l.text).join("\n"), "a\nx\nc\nd\ne");
+});
+
+// An engine that runs one script at a time, when the test says so.
+function runner() {
+  const started = [];
+  let number = 0;
+  const runs = new Runs(async (coarse) => {
+    started.push(coarse ? "coarse" : "fine");
+    return ++number;
+  }, (error) => {
+    throw error;
+  });
+  const settle = () => new Promise((done) => setTimeout(done));
+  return { runs, started, settle, end: async () => (runs.state({ run: number, running: false }), settle()) };
+}
+await test("a drag has one run under way, the latest state wins, and the end is fine", async () => {
+  const { runs, started, settle, end } = runner();
+  runs.drag();
+  await settle();
+  for (let i = 0; i < 10; i++) runs.drag();
+  equal(started, ["coarse"]);
+  await end();
+  equal(started, ["coarse", "coarse"]);
+  runs.drag();
+  runs.drop();
+  await end();
+  equal(started, ["coarse", "coarse", "fine"]);
+  await end();
+  equal(started.length, 3);
+});
+await test("typing runs at once, and what was waiting is forgotten", async () => {
+  const { runs, started, settle, end } = runner();
+  runs.drag();
+  await settle();
+  runs.drag();
+  runs.now();
+  await settle();
+  equal(started, ["coarse", "fine"]);
+  await end();
+  equal(started.length, 2);
+});
+
+console.log(`${passed} passed, ${failed} failed, 0 skipped`);
+process.exit(failed ? 1 : 0);
