@@ -141,7 +141,9 @@ static void run(CagRunner *r, const CagLiveRequest *request, int number) {
                       : NULL;
   cag_meshes_begin_scene(r->options.meshes);
   if (s && told.status == CAG_STATUS_OK)
-    told.status = cag_live_scene(s, number, r->options.name, request->coarse, &meshes, &scene);
+    told.status = cag_live_scene(
+        s, &(CagLiveModel){number, r->options.name, r->options.folder, request->coarse}, &meshes,
+        &scene);
   told.seconds = cag_clock_seconds() - begin;
   if (s) {
     fflush(prints->file);

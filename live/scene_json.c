@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MESH_MARK = 0x6d676163, MESH_VERSION = 1, MESH_NORMALS = 1, MESH_LABELS = 2 };
 
@@ -267,20 +268,35 @@ static bool has_scene(CagSession *s, int *status) {
   return *status == CAG_STATUS_OK;
 }
 
-int cag_live_scene(CagSession *s, int run, const char *script, double coarse,
-                   const CagLiveMeshes *meshes, CagString *out) {
+// The script and what it read below its folder.
+static void write_files(CagJson *j, CagSession *s, const CagLiveModel *model) {
+  const size_t n = strlen(model->folder);
+  const char *path;
+  cag_json_open_in(j, "files", '[');
+  cag_json_text(j, NULL, model->script);
+  for (size_t i = 0; (path = cag_session_read_file(s, i)); i++) {
+    const bool below = !strncmp(path, model->folder, n) && path[n] == '/';
+    if (below && strcmp(path + n + 1, model->script) != 0 && access(path, R_OK) == 0)
+      cag_json_text(j, NULL, path + n + 1);
+  }
+  cag_json_close(j, ']');
+}
+
+int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
+                   CagString *out) {
   CagJson j = {.to = out};
   int status;
   const bool scene = has_scene(s, &status);
   if (status != CAG_STATUS_OK) return status;
   cag_json_open(&j, '{');
-  cag_json_number(&j, "run", run);
-  cag_json_text(&j, "script", script);
+  cag_json_number(&j, "run", model->run);
+  cag_json_text(&j, "script", model->script);
+  write_files(&j, s, model);
   cag_json_bool(&j, "timed", cag_session_is_timed(s));
   write_params(&j, s);
   write_images(&j, s);
   write_materials(&j, s);
-  if (scene) status = write_parts(&j, s, coarse, meshes);
+  if (scene) status = write_parts(&j, s, model->coarse, meshes);
   else {
     cag_json_open_in(&j, "parts", '[');
     cag_json_close(&j, ']');

@@ -18,10 +18,17 @@ typedef struct CagLiveMeshes {
   void *context;
 } CagLiveMeshes;
 
-// Adds the scene of the last run to a JSON text, and makes its meshes, with a tolerance that is
-// `coarse` times as large. Returns a status; the text is only complete if it is CAG_STATUS_OK.
-int cag_live_scene(CagSession *s, int run, const char *script, double coarse,
-                   const CagLiveMeshes *meshes, CagString *out);
+typedef struct CagLiveModel {
+  int run;            // its number
+  const char *script; // path of the script below the folder
+  const char *folder; // an absolute path
+  double coarse;      // the tolerance of meshes is so many times larger
+} CagLiveModel;
+
+// Adds the scene of the last run to a JSON text, and makes its meshes. Returns a status; the text is
+// only complete if it is CAG_STATUS_OK.
+int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
+                   CagString *out);
 
 // What a run printed and complained about.
 typedef struct CagLiveRun {
