@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 _Thread_local CagAccount *cag_account;
 
@@ -116,6 +118,21 @@ int cag_asprintf(char **out, const char *format, ...) {
 char *cag_realpath(const char *path) {
   char real[PATH_MAX];
   return realpath(path, real) ? cag_strdup(real) : NULL;
+}
+
+// Smaller blocks do not contain a large page.
+#define SCATTERED_MIN ((size_t)4 << 20)
+
+void cag_memory_scattered(void *block, size_t size) {
+#ifdef MADV_HUGEPAGE
+  const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+  const uintptr_t from = ((uintptr_t)block + page - 1) / page * page;
+  const uintptr_t to = ((uintptr_t)block + size) / page * page;
+  if (block && size >= SCATTERED_MIN) madvise((void *)from, to - from, MADV_HUGEPAGE);
+#else
+  (void)block;
+  (void)size;
+#endif
 }
 
 void cag_adopt(void *block) { charged(block); }

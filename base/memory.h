@@ -50,6 +50,10 @@ int cag_vasprintf(char **out, const char *format, va_list args)
     __attribute__((format(printf, 2, 0)));
 char *cag_realpath(const char *path);
 
+// Advises the system that a new block will be read here and there, so that it uses large pages if it
+// has them. Finding the address of a small page takes longer than reading it.
+void cag_memory_scattered(void *block, size_t size);
+
 // Charges a block that the system has allocated, such as the text of open_memstream. The block may
 // exceed the limit; later allocations then fail.
 void cag_adopt(void *block);

@@ -37,6 +37,7 @@ CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv,
     cag_mesh_release(m);
     return cag_fail_memory(err);
   }
+  cag_memory_scattered(m->positions, (vertices + 1) * sizeof *m->positions);
   *out = m;
   return CAG_OK;
 }
