@@ -6,15 +6,19 @@
 #include "base/parallel.h"
 #include "base/stop.h"
 
-// Boxes are enlarged by this fraction of the size of everything: a few times the rounding of the
-// box, of the ray's origin, and of the products of the slab test.
-#define BOX_PAD 4e-7
+// Boxes are enlarged by this fraction of half the diagonal of everything, R, which exceeds the
+// rounding of the slab test. With e = 2^-24, of lengths up to 2 R: the ray's origin is off by e R.
+// The difference of base and origin is rounded to 2 e R, its product with the inverse adds 4 e R, as
+// that of the step with it, and their sum 2 e R: 13 e R = 7.7e-7 R.
+#define BOX_PAD 1e-6
 // Planes that are compared along each axis.
 enum { BINS = 16 };
-// Items of a leaf, unless they cannot be told apart.
-enum { LEAF_ITEMS = 4 };
-// A deeper hierarchy is split into halves, which adds at most 14 levels to it.
-enum { DEPTH_BEFORE_HALVES = 44 };
+// The largest byte of a plane.
+enum { PLANES = 255 };
+// Of the exponents of floats.
+enum { EXPONENT_BIAS = 127 };
+// A deeper hierarchy is split into eighths, which adds at most 10 levels to it.
+enum { DEPTH_BEFORE_EIGHTHS = 44 };
 // Ranges of items that threads work on, for each thread; the smallest range that is worth one.
 enum { RANGES_PER_THREAD = 8, RANGES_MAX = RANGES_PER_THREAD * CAG_THREADS_MAX, RANGE_MIN = 2048 };
 
@@ -38,6 +42,7 @@ typedef struct Range {
 } Range;
 
 typedef struct Build {
+  size_t leaf_items;
   Ref *refs;
   CagBvhNode *nodes;
   size_t top; // number of nodes above the ranges
@@ -171,7 +176,7 @@ static size_t move_below(Ref *refs, size_t n, const Bins *b, int axis, int plane
 static size_t split_range(Ref *refs, size_t n, int depth) {
   Bins b;
   int axis, plane = 0;
-  if (depth >= DEPTH_BEFORE_HALVES || !fill_bins(refs, n, &b)) return n / 2;
+  if (depth >= DEPTH_BEFORE_EIGHTHS || !fill_bins(refs, n, &b)) return n / 2;
   cheapest_plane(&b, &axis, &plane);
   const size_t below = axis >= 0 ? move_below(refs, n, &b, axis, plane) : 0;
   return below > 0 && below < n ? below : n / 2;
@@ -183,14 +188,52 @@ static uint32_t leaf_of(size_t first, size_t n) {
   return CAG_BVH_LEAF | (uint32_t)(n - 1) << CAG_BVH_COUNT_SHIFT | (uint32_t)first;
 }
 
-static void set_child_box(CagBvhNode *node, int i, const Box *b) {
+// The exponent of the least power of two with which 255 steps are at least the extent.
+static uint8_t exponent_of(double extent) {
+  int e = 1;
+  if (extent > 0 && isfinite(extent)) (void)frexp(extent / PLANES, &e);
+  e = e + EXPONENT_BIAS - 1 < 1 ? 1 : e + EXPONENT_BIAS - 1;
+  while (e < 254 && (double)cag_bvh_step((uint8_t)e) * PLANES < extent) e++;
+  return (uint8_t)e;
+}
+
+static uint8_t plane_of(double plane) {
+  return (uint8_t)(plane < PLANES ? plane > 0 ? plane : 0 : PLANES);
+}
+
+// Stores the boxes of the children in bytes, rounded outward.
+static void set_child_boxes(CagBvhNode *node, const Box *box, int n) {
+  Box all = empty_box();
+  for (int i = 0; i < n; i++) box_join(&all, box[i].low, box[i].high);
   for (int k = 0; k < 3; k++) {
-    node->low[k][i] = b->low[k];
-    node->high[k][i] = b->high[k];
+    const double base = all.low[k];
+    node->base[k] = all.low[k];
+    node->exponent[k] = exponent_of(all.high[k] - base);
+    const double step = cag_bvh_step(node->exponent[k]);
+    for (int i = 0; i < n; i++) {
+      node->planes[0][k][i] = plane_of(floor((box[i].low[k] - base) / step));
+      node->planes[1][k][i] = plane_of(ceil((box[i].high[k] - base) / step));
+    }
   }
 }
 
-// Divides a range in four, always the part with the largest surface times number of items.
+// The largest part of a range that may be divided: by its surface times its number of items, or,
+// where the hierarchy is too deep, by its number of items. Returns -1 if there is none.
+static int largest_part(const size_t first[], const Box box[], int parts, int depth,
+                        size_t leaf_items) {
+  int largest = -1;
+  float most = -1;
+  for (int i = 0; i < parts; i++) {
+    const size_t n = first[i + 1] - first[i];
+    const float cost = (depth < DEPTH_BEFORE_EIGHTHS ? box_area(&box[i]) : 1) * (float)n;
+    if (n <= leaf_items || !(cost > most)) continue;
+    most = cost;
+    largest = i;
+  }
+  return largest;
+}
+
+// Divides a range in up to eight parts, always the largest one.
 static int divide_range(const Build *build, const Range *r, size_t first[CAG_BVH_WIDTH + 1],
                         Box box[CAG_BVH_WIDTH]) {
   int parts = 1;
@@ -198,15 +241,7 @@ static int divide_range(const Build *build, const Range *r, size_t first[CAG_BVH
   first[1] = r->first + r->n;
   box[0] = range_box(build->refs + r->first, r->n);
   while (parts < CAG_BVH_WIDTH) {
-    int largest = -1;
-    float most = -1;
-    for (int i = 0; i < parts; i++) {
-      const size_t n = first[i + 1] - first[i];
-      const float cost = box_area(&box[i]) * (float)n;
-      if (n < 2 || !(cost > most)) continue;
-      most = cost;
-      largest = i;
-    }
+    const int largest = largest_part(first, box, parts, r->depth, build->leaf_items);
     if (largest < 0) break;
     const size_t from = first[largest], n = first[largest + 1] - from;
     const size_t below = split_range(build->refs + from, n, r->depth);
@@ -226,24 +261,24 @@ static void make_node(const Build *build, const Range *r, CagBvhNode *node, Rang
                       int *part_count) {
   size_t first[CAG_BVH_WIDTH + 1];
   Box box[CAG_BVH_WIDTH];
-  const Box none = empty_box();
   *part_count = divide_range(build, r, first, box);
-  for (int i = 0; i < CAG_BVH_WIDTH; i++) {
-    set_child_box(node, i, i < *part_count ? &box[i] : &none);
-    node->child[i] = CAG_BVH_LEAF;
-    node->unused[i] = 0;
-    if (i < *part_count)
-      parts[i] = (Range){.first = first[i],
-                         .n = first[i + 1] - first[i],
-                         .parent = &node->child[i],
-                         .depth = r->depth + 1};
-  }
+  memset(node, 0, sizeof *node);
+  node->count = (uint8_t)*part_count;
+  set_child_boxes(node, box, *part_count);
+  for (int i = 0; i < *part_count; i++)
+    parts[i] = (Range){.first = first[i],
+                       .n = first[i + 1] - first[i],
+                       .parent = &node->child[i],
+                       .depth = r->depth + 1};
 }
 
-// Stores the nodes of a range from r->node on. Each has four children, so a range of n items has
-// fewer than n / 3.
+// Room for the nodes of n items. Only a node of leaves has fewer than eight children, and it has
+// more items than a leaf. For leaves of up to k items, there are thus at most 8/7 n / (k + 1) nodes.
+static size_t room_for(const Build *build, size_t n) { return n / build->leaf_items + 1; }
+
+// Stores the nodes of a range from r->node on.
 static void build_range(Build *build, Range *r) {
-  if (r->n <= LEAF_ITEMS || cag_stopped()) {
+  if (r->n <= build->leaf_items || cag_stopped()) {
     *r->parent = leaf_of(r->first, r->n <= CAG_BVH_LEAF_MAX ? r->n : 1);
     return;
   }
@@ -284,20 +319,29 @@ static void divide_work(Build *build) {
   }
 }
 
-// Moves the nodes of all ranges next to each other. Returns their number.
-static size_t close_gaps(Build *build) {
-  size_t used = build->top;
+// Copies the nodes, those of all ranges next to each other, to memory of their own.
+static bool close_gaps(Build *build, CagBvh *b) {
+  b->node_count = build->top;
+  for (size_t i = 0; i < build->range_count; i++) b->node_count += build->ranges[i].used;
+  const size_t size = b->node_count * sizeof *b->nodes + CAG_BVH_NODE_ALIGN;
+  b->memory = cag_malloc(size);
+  if (!b->memory) return false;
+  cag_memory_scattered(b->memory, size);
+  b->nodes = (CagBvhNode *)(((uintptr_t)b->memory + CAG_BVH_NODE_ALIGN - 1) / CAG_BVH_NODE_ALIGN *
+                            CAG_BVH_NODE_ALIGN);
+  size_t at = build->top;
   for (size_t i = 0; i < build->range_count; i++) {
     const Range *r = &build->ranges[i];
-    const uint32_t shift = (uint32_t)(r->node - used);
+    const uint32_t shift = (uint32_t)(r->node - at);
     if (!(*r->parent & CAG_BVH_LEAF)) *r->parent -= shift;
-    memmove(build->nodes + used, build->nodes + r->node, r->used * sizeof *build->nodes);
-    for (size_t k = used; k < used + r->used; k++)
-      for (int c = 0; c < CAG_BVH_WIDTH; c++)
-        if (!(build->nodes[k].child[c] & CAG_BVH_LEAF)) build->nodes[k].child[c] -= shift;
-    used += r->used;
+    memcpy(b->nodes + at, build->nodes + r->node, r->used * sizeof *b->nodes);
+    for (size_t k = at; k < at + r->used; k++)
+      for (int c = 0; c < b->nodes[k].count; c++)
+        if (!(b->nodes[k].child[c] & CAG_BVH_LEAF)) b->nodes[k].child[c] -= shift;
+    at += r->used;
   }
-  return used;
+  memcpy(b->nodes, build->nodes, build->top * sizeof *b->nodes);
+  return true;
 }
 
 // --- Hierarchies ---
@@ -323,9 +367,9 @@ static void make_refs(const CagBounds *boxes, size_t n, const CagBvh *b, Ref *re
   }
 }
 
-// Builds the nodes of all items. Room: those above the ranges, and a third of the items.
+// Builds the nodes of all items. Room: those above the ranges, and those of each range.
 static CagStatus build_nodes(Build *build, CagBvh *b, CagError *err) {
-  const size_t n = b->item_count, room = RANGES_MAX + n / 3 + RANGES_MAX;
+  const size_t n = b->item_count, room = RANGES_MAX + room_for(build, n) + RANGES_MAX;
   build->nodes = cag_malloc(room * sizeof *build->nodes);
   if (!build->nodes) return cag_fail_memory(err);
   build->ranges[0] = (Range){.n = n, .parent = &b->root};
@@ -334,16 +378,15 @@ static CagStatus build_nodes(Build *build, CagBvh *b, CagError *err) {
   size_t at = build->top;
   for (size_t i = 0; i < build->range_count; i++) {
     build->ranges[i].node = at;
-    at += build->ranges[i].n / 3 + 1;
+    at += room_for(build, build->ranges[i].n);
   }
   cag_parallel(build->range_count, build_numbered_range, build);
-  b->node_count = close_gaps(build);
-  CagBvhNode *fitted = cag_realloc(build->nodes, (b->node_count + 1) * sizeof *fitted);
-  b->nodes = fitted ? fitted : build->nodes;
+  if (!close_gaps(build, b)) return cag_fail_memory(err);
   return cag_stop_check(err);
 }
 
-CagStatus cag_bvh_build(const CagBounds *boxes, size_t n, CagBvh *out, CagError *err) {
+CagStatus cag_bvh_build(const CagBounds *boxes, size_t n, size_t leaf_items, CagBvh *out,
+                        CagError *err) {
   *out = (CagBvh){.bounds = CAG_BOUNDS_EMPTY};
   if (n > CAG_BVH_ITEMS_MAX)
     return cag_fail(err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, "", -1,
@@ -357,7 +400,10 @@ CagStatus cag_bvh_build(const CagBounds *boxes, size_t n, CagBvh *out, CagError 
   out->radius = cag_norm(cag_sub(out->bounds.max, out->bounds.min)) / 2;
   out->item_count = n;
   Build *build = cag_calloc(1, sizeof *build);
-  if (build) build->refs = cag_malloc(n * sizeof *build->refs);
+  if (build) {
+    build->leaf_items = leaf_items;
+    build->refs = cag_malloc(n * sizeof *build->refs);
+  }
   out->order = cag_malloc(n * sizeof *out->order);
   CagStatus status = build && build->refs && out->order ? CAG_OK : cag_fail_memory(err);
   if (!status) {
@@ -365,58 +411,68 @@ CagStatus cag_bvh_build(const CagBounds *boxes, size_t n, CagBvh *out, CagError 
     status = build_nodes(build, out, err);
     for (size_t i = 0; i < n; i++) out->order[i] = build->refs[i].item;
   }
-  if (build) cag_free(build->refs);
+  if (build) {
+    cag_free(build->refs);
+    cag_free(build->nodes);
+  }
   cag_free(build);
   if (status) cag_bvh_free(out);
   return status;
 }
 
 void cag_bvh_free(CagBvh *b) {
-  cag_free(b->nodes);
+  cag_free(b->memory);
   cag_free(b->order);
   *b = (CagBvh){.bounds = CAG_BOUNDS_EMPTY};
 }
 
 // --- Rays ---
 
-// Stands for the inverse of a direction's component that is 0, or nearly: products stay finite.
+// Stands for the inverse of a direction's component that is 0, or nearly.
 #define INVERSE_MAX 1e30
 
 // Reduces the range of parameters to the part within the bounds along one axis.
-static bool clip_axis(double origin, double direction, double low, double high, double pad,
-                      double *least, double *most) {
-  if (fabs(direction) * INVERSE_MAX < 1) return origin >= low - pad && origin <= high + pad;
-  double in = (low - pad - origin) / direction, out = (high + pad - origin) / direction;
-  if (in > out) {
-    const double swap = in;
-    in = out;
-    out = swap;
-  }
+static bool clip_axis(double origin, double inverse, double low, double high, double *least,
+                      double *most) {
+  if (fabs(inverse) == INVERSE_MAX) return origin >= low && origin <= high;
+  const double a = (low - origin) * inverse, b = (high - origin) * inverse;
+  const double in = a < b ? a : b, out = a < b ? b : a;
   *least = in > *least ? in : *least;
   *most = out < *most ? out : *most;
   return *least <= *most;
 }
 
+static double inverse_of(double direction) {
+  return fabs(direction) * INVERSE_MAX > 1 ? 1 / direction : copysign(INVERSE_MAX, direction);
+}
+
+// The inverses of the traversal are at most this. Within the bounds, a ray with a larger one is almost
+// parallel to the planes: it leaves the ray in the padding of a box over a thousand radii.
+#define FLOAT_INVERSE_MAX 1e9
+
+static float float_inverse(double inverse) {
+  return (float)fmin(fmax(inverse, -FLOAT_INVERSE_MAX), FLOAT_INVERSE_MAX);
+}
+
 bool cag_bvh_ray(const CagBvh *b, CagVec3 origin, CagVec3 direction, double least, double most,
                  CagBvhRay *out) {
   const double pad = BOX_PAD * b->radius;
-  const double d[3] = {direction.x, direction.y, direction.z};
-  const double o[3] = {origin.x, origin.y, origin.z};
-  const double low[3] = {b->bounds.min.x, b->bounds.min.y, b->bounds.min.z};
-  const double high[3] = {b->bounds.max.x, b->bounds.max.y, b->bounds.max.z};
+  const double inverse[3] = {inverse_of(direction.x), inverse_of(direction.y),
+                             inverse_of(direction.z)};
+  const CagVec3 low = b->bounds.min, high = b->bounds.max;
   double from = least, to = most;
-  if (b->item_count == 0) return false;
-  for (int k = 0; k < 3; k++)
-    if (!clip_axis(o[k], d[k], low[k], high[k], pad, &from, &to)) return false;
+  if (b->item_count == 0 ||
+      !clip_axis(origin.x, inverse[0], low.x - pad, high.x + pad, &from, &to) ||
+      !clip_axis(origin.y, inverse[1], low.y - pad, high.y + pad, &from, &to) ||
+      !clip_axis(origin.z, inverse[2], low.z - pad, high.z + pad, &from, &to))
+    return false;
   const CagVec3 start = cag_sub(cag_madd(origin, from, direction), b->origin);
-  out->start = from;
-  out->origin[0] = (float)start.x;
-  out->origin[1] = (float)start.y;
-  out->origin[2] = (float)start.z;
-  for (int k = 0; k < 3; k++)
-    out->inverse[k] =
-        (float)(fabs(d[k]) * INVERSE_MAX < 1 ? copysign(INVERSE_MAX, d[k]) : 1 / d[k]);
-  out->least = (float)(-pad);
-  out->most = (float)(to - from + pad);
+  *out = (CagBvhRay){
+      .origin = {(float)start.x, (float)start.y, (float)start.z},
+      .inverse = {float_inverse(inverse[0]), float_inverse(inverse[1]), float_inverse(inverse[2])},
+      .start = from,
+      .least = (float)(-pad),
+      .most = (float)(to - from + pad),
+      .down = {inverse[0] < 0, inverse[1] < 0, inverse[2] < 0}};
   return true;
 }

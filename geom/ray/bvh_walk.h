@@ -5,116 +5,26 @@
 
 #include <stdint.h>
 
-#include "geom/basis/wide.h"
 #include "geom/ray/bvh.h"
+#include "geom/ray/bvh_lanes.h"
 
-// The children that are still to be visited, and the parameters at which the ray enters them, or
-// the squares of their distances. A node leaves at most three of its children here, and the
-// hierarchy is at most 60 nodes deep.
-#define CAG_BVH_STACK 192
+// A child that is still to be visited, and the parameter at which the ray enters it, or the square
+// of its distance.
+typedef struct CagBvhEntry {
+  float key;
+  uint32_t child;
+} CagBvhEntry;
+
+// A node leaves at most seven of its children here, and the hierarchy is at most 56 nodes deep.
+#define CAG_BVH_STACK 400
 typedef struct CagBvhWalk {
-  uint32_t child[CAG_BVH_STACK];
-  float key[CAG_BVH_STACK];
+  CagBvhEntry entry[CAG_BVH_STACK];
   int n;
 } CagBvhWalk;
 
 INLINE void cag_bvh_start(const CagBvh *b, CagBvhWalk *w) {
   w->n = b->item_count > 0;
-  w->child[0] = b->root;
-  w->key[0] = -INFINITY;
-}
-
-// Four floats, in one register where the compiler has vectors.
-#if defined(__GNUC__)
-typedef float CagFloat4 __attribute__((vector_size(16)));
-typedef int32_t CagMask4 __attribute__((vector_size(16)));
-typedef union CagLanes {
-  CagFloat4 v;
-  float f[CAG_BVH_WIDTH];
-} CagLanes;
-INLINE CagFloat4 cag_load4(const float *p) { return *(const CagFloat4 *)p; }
-INLINE CagFloat4 cag_all4(float x) { return (CagFloat4){x, x, x, x}; }
-INLINE CagFloat4 cag_select4(CagMask4 mask, CagFloat4 a, CagFloat4 b) {
-  return (CagFloat4)(((CagMask4)a & mask) | ((CagMask4)b & ~mask));
-}
-INLINE CagFloat4 cag_larger4(CagFloat4 a, CagFloat4 b) { return cag_select4(a > b, a, b); }
-INLINE CagFloat4 cag_smaller4(CagFloat4 a, CagFloat4 b) { return cag_select4(a < b, a, b); }
-#define CAG_PLUS4(a, b) ((a) + (b))
-#define CAG_MINUS4(a, b) ((a) - (b))
-#define CAG_TIMES4(a, b) ((a) * (b))
-#else
-typedef struct CagFloat4 {
-  float f[CAG_BVH_WIDTH];
-} CagFloat4;
-typedef union CagLanes {
-  CagFloat4 v;
-  float f[CAG_BVH_WIDTH];
-} CagLanes;
-INLINE CagFloat4 cag_load4(const float *p) { return (CagFloat4){{p[0], p[1], p[2], p[3]}}; }
-INLINE CagFloat4 cag_all4(float x) { return (CagFloat4){{x, x, x, x}}; }
-#define CAG_LANEWISE(name, expression)                                                             \
-  INLINE CagFloat4 name(CagFloat4 a, CagFloat4 b) {                                                \
-    CagFloat4 r;                                                                                   \
-    for (int i = 0; i < CAG_BVH_WIDTH; i++) r.f[i] = (expression);                                 \
-    return r;                                                                                      \
-  }
-CAG_LANEWISE(cag_larger4, a.f[i] > b.f[i] ? a.f[i] : b.f[i])
-CAG_LANEWISE(cag_smaller4, a.f[i] < b.f[i] ? a.f[i] : b.f[i])
-CAG_LANEWISE(CAG_PLUS4, a.f[i] + b.f[i])
-CAG_LANEWISE(CAG_MINUS4, a.f[i] - b.f[i])
-CAG_LANEWISE(CAG_TIMES4, a.f[i] * b.f[i])
-#endif
-
-// The lanes in which a <= b, as bits.
-INLINE unsigned cag_no_larger4(CagFloat4 a, CagFloat4 b) {
-#if defined(__SSE__) && defined(__GNUC__)
-  return (unsigned)__builtin_ia32_movmskps((CagFloat4)(a <= b));
-#else
-  const CagLanes x = {.v = a}, y = {.v = b};
-  unsigned bits = 0;
-  for (int i = 0; i < CAG_BVH_WIDTH; i++) bits |= (unsigned)(x.f[i] <= y.f[i]) << i;
-  return bits;
-#endif
-}
-
-INLINE int cag_lowest_bit(unsigned bits) {
-#if defined(__GNUC__)
-  return __builtin_ctz(bits);
-#else
-  int i = 0;
-  while (!(bits >> i & 1)) i++;
-  return i;
-#endif
-}
-
-// Starts to bring a child into the cache.
-INLINE void cag_bvh_fetch(const CagBvh *b, uint32_t child) {
-#if defined(__GNUC__)
-  if (child & CAG_BVH_LEAF && !b->items) return;
-  const char *at = child & CAG_BVH_LEAF
-                       ? (const char *)b->items + (child & CAG_BVH_FIRST_MASK) * b->item_size
-                       : (const char *)&b->nodes[child];
-  __builtin_prefetch(at);
-  __builtin_prefetch(at + 64);
-#endif
-}
-
-// Pushes the children whose key is at most `most`, so that the one with the least key is on top.
-INLINE void cag_bvh_push(const CagBvh *b, const CagBvhNode *node, const CagLanes *key,
-                         const CagLanes *most, CagBvhWalk *w) {
-  const int from = w->n;
-  for (unsigned lanes = cag_no_larger4(key->v, most->v); lanes; lanes &= lanes - 1) {
-    const int i = cag_lowest_bit(lanes);
-    const float k = key->f[i];
-    int at = w->n++;
-    for (; at > from && w->key[at - 1] < k; at--) {
-      w->key[at] = w->key[at - 1];
-      w->child[at] = w->child[at - 1];
-    }
-    w->key[at] = k;
-    w->child[at] = node->child[i];
-    cag_bvh_fetch(b, node->child[i]);
-  }
+  w->entry[0] = (CagBvhEntry){-INFINITY, b->root};
 }
 
 INLINE void cag_bvh_leaf(uint32_t child, size_t *first, size_t *count) {
@@ -122,36 +32,110 @@ INLINE void cag_bvh_leaf(uint32_t child, size_t *first, size_t *count) {
   *count = ((child & ~CAG_BVH_LEAF) >> CAG_BVH_COUNT_SHIFT) + 1;
 }
 
+// Starts to bring a child into the cache.
+INLINE void cag_bvh_fetch(const CagBvh *b, uint32_t child) {
+  size_t first, count;
+  if (!(child & CAG_BVH_LEAF)) {
+    cag_fetch(&b->nodes[child], sizeof *b->nodes);
+    return;
+  }
+  cag_bvh_leaf(child, &first, &count);
+  if (b->items) cag_fetch((const char *)b->items + first * b->item_size, count * b->item_size);
+}
+
+// Adds the child of a lane to the entries from `from` on, which are in descending order of keys.
+INLINE void cag_bvh_insert(const CagBvhNode *node, const float *key, int lane, CagBvhEntry *from,
+                           int n) {
+  const CagBvhEntry added = {key[lane], node->child[lane]};
+  int at = n;
+  for (; at > 0 && from[at - 1].key < added.key; at--) from[at] = from[at - 1];
+  from[at] = added;
+}
+
+// Pushes the children of these lanes, of which there is at least one, except for the one with the
+// least key, which it returns.
+INLINE uint32_t cag_bvh_push(const CagBvh *b, const CagBvhNode *node, const float *key,
+                             unsigned lanes, CagBvhWalk *w) {
+  const int first = cag_lowest_bit(lanes);
+  cag_bvh_fetch(b, node->child[first]);
+  lanes &= lanes - 1;
+  if (!lanes) return node->child[first];
+  CagBvhEntry *from = w->entry + w->n;
+  from[0] = (CagBvhEntry){key[first], node->child[first]};
+  int n = 1;
+  for (; lanes; lanes &= lanes - 1) {
+    const int lane = cag_lowest_bit(lanes);
+    cag_bvh_fetch(b, node->child[lane]);
+    cag_bvh_insert(node, key, lane, from, n++);
+  }
+  w->n += n - 1;
+  return from[n - 1].child;
+}
+
+// Takes the next child whose key is at most `most`. Returns false at the end.
+INLINE bool cag_bvh_pop(CagBvhWalk *w, float most, uint32_t *child) {
+  while (w->n > 0) {
+    const CagBvhEntry top = w->entry[--w->n];
+    *child = top.child;
+    if (top.key <= most) return true;
+  }
+  return false;
+}
+
+// The lanes of a node's children.
+INLINE unsigned cag_bvh_lanes(const CagBvhNode *node) { return (1u << node->count) - 1; }
+
+// The children that the ray meets, as bits, and the parameters at which it enters them.
+INLINE unsigned cag_bvh_meet(const CagBvhNode *node, const CagBvhRay *ray, float *enter) {
+  CagFloat8 in = cag_all8(ray->least), out = cag_all8(ray->most);
+  for (int k = 0; k < 3; k++) {
+    // The parameter of the plane with byte q is scale q + offset. Where that is not a number, since
+    // the hierarchy is extremely large, the box is not ruled out by it.
+    const CagFloat8 scale = cag_all8(cag_bvh_step(node->exponent[k]) * ray->inverse[k]);
+    const CagFloat8 offset = cag_all8((node->base[k] - ray->origin[k]) * ray->inverse[k]);
+    const CagFloat8 near = cag_bytes8(node->planes[ray->down[k]][k]);
+    const CagFloat8 far = cag_bytes8(node->planes[!ray->down[k]][k]);
+    in = cag_larger8(cag_add_product8(near, scale, offset), in);
+    out = cag_smaller8(cag_add_product8(far, scale, offset), out);
+  }
+  cag_store8(enter, in);
+  return cag_no_larger8(in, out) & cag_bvh_lanes(node);
+}
+
 // Finds the next leaf along the ray, near ones first, as a range of `order`. Returns false at the
 // end. `ray->most` may be reduced between calls.
 INLINE bool cag_bvh_next(const CagBvh *b, const CagBvhRay *ray, CagBvhWalk *w, size_t *first,
                          size_t *count) {
-  while (w->n > 0) {
-    w->n--;
-    const uint32_t child = w->child[w->n];
-    if (w->key[w->n] > ray->most) continue;
-    if (child & CAG_BVH_LEAF) {
-      cag_bvh_leaf(child, first, count);
-      return true;
-    }
+  float enter[CAG_BVH_WIDTH];
+  uint32_t child;
+  if (!cag_bvh_pop(w, ray->most, &child)) return false;
+  while (!(child & CAG_BVH_LEAF)) {
     const CagBvhNode *node = &b->nodes[child];
-    CagLanes enter = {.v = cag_all4(ray->least)}, leave = {.v = cag_all4(ray->most)};
-    for (int k = 0; k < 3; k++) {
-      const CagFloat4 o = cag_all4(ray->origin[k]), inverse = cag_all4(ray->inverse[k]);
-      const bool up = ray->inverse[k] >= 0;
-      const CagFloat4 near = cag_load4(up ? node->low[k] : node->high[k]);
-      const CagFloat4 far = cag_load4(up ? node->high[k] : node->low[k]);
-      enter.v = cag_larger4(CAG_TIMES4(CAG_MINUS4(near, o), inverse), enter.v);
-      leave.v = cag_smaller4(CAG_TIMES4(CAG_MINUS4(far, o), inverse), leave.v);
-    }
-    cag_bvh_push(b, node, &enter, &leave, w);
+    const unsigned met = cag_bvh_meet(node, ray, enter);
+    if (met) child = cag_bvh_push(b, node, enter, met, w);
+    else if (!cag_bvh_pop(w, ray->most, &child)) return false;
   }
-  return false;
+  cag_bvh_leaf(child, first, count);
+  return true;
 }
 
 // The rounding of distances from boxes in floats, as a fraction of the distance of the point from
 // the origin plus the radius of the hierarchy.
 #define CAG_BVH_SLACK 1e-6
+
+// The squares of the distances of a point from the boxes of a node's children.
+INLINE void cag_bvh_squares(const CagBvhNode *node, const float p[3], CagFloat8 *out) {
+  *out = cag_all8(0);
+  for (int k = 0; k < 3; k++) {
+    const CagFloat8 step = cag_all8(cag_bvh_step(node->exponent[k]));
+    const CagFloat8 base = cag_all8(node->base[k]), at = cag_all8(p[k]);
+    const CagFloat8 low = cag_add_product8(cag_bytes8(node->planes[0][k]), step, base);
+    const CagFloat8 high = cag_add_product8(cag_bytes8(node->planes[1][k]), step, base);
+    const CagFloat8 off =
+        cag_larger8(cag_larger8(cag_minus8(low, at), cag_minus8(at, high)), cag_all8(0));
+    *out = cag_add_product8(off, off, *out);
+  }
+}
 
 // Finds the next leaf whose box is at most the square root of most2 away from the point, near ones
 // first. The point is relative to the origin of the hierarchy.
@@ -159,27 +143,20 @@ INLINE bool cag_bvh_near(const CagBvh *b, const float p[3], double most2, CagBvh
                          size_t *first, size_t *count) {
   // The largest float that is not less.
   const float limit = most2 < 3e38 ? nextafterf((float)most2, INFINITY) : INFINITY;
-  const CagLanes most = {.v = cag_all4(limit)};
-  while (w->n > 0) {
-    w->n--;
-    const uint32_t child = w->child[w->n];
-    if (w->key[w->n] > limit) continue;
-    if (child & CAG_BVH_LEAF) {
-      cag_bvh_leaf(child, first, count);
-      return true;
-    }
+  float key[CAG_BVH_WIDTH];
+  uint32_t child;
+  if (!cag_bvh_pop(w, limit, &child)) return false;
+  while (!(child & CAG_BVH_LEAF)) {
     const CagBvhNode *node = &b->nodes[child];
-    CagLanes square = {.v = cag_all4(0)};
-    for (int k = 0; k < 3; k++) {
-      const CagFloat4 at = cag_all4(p[k]);
-      const CagFloat4 below = CAG_MINUS4(cag_load4(node->low[k]), at);
-      const CagFloat4 above = CAG_MINUS4(at, cag_load4(node->high[k]));
-      const CagFloat4 off = cag_larger4(cag_larger4(below, above), cag_all4(0));
-      square.v = CAG_PLUS4(square.v, CAG_TIMES4(off, off));
-    }
-    cag_bvh_push(b, node, &square, &most, w);
+    CagFloat8 squares;
+    cag_bvh_squares(node, p, &squares);
+    cag_store8(key, squares);
+    const unsigned close = cag_no_larger8(squares, cag_all8(limit)) & cag_bvh_lanes(node);
+    if (close) child = cag_bvh_push(b, node, key, close, w);
+    else if (!cag_bvh_pop(w, limit, &child)) return false;
   }
-  return false;
+  cag_bvh_leaf(child, first, count);
+  return true;
 }
 
 #endif

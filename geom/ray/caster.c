@@ -131,7 +131,7 @@ static CagStatus find_operand_boxes(CagCaster *c, CagError *err) {
                                   boxes[i].min.y + boxes[i].max.z - boxes[i].min.z);
   }
   CagStatus status = CAG_OK;
-  if (bounded) status = cag_bvh_build(boxes, c->operand_count, &c->boxes, err);
+  if (bounded) status = cag_bvh_build(boxes, c->operand_count, 1, &c->boxes, err);
   cag_free(boxes);
   return status;
 }

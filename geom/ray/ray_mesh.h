@@ -7,15 +7,20 @@
 #include "geom/ray/bvh.h"
 #include "geom/ray/ray.h"
 
-// The corners of a triangle, in the order of the hierarchy's leaves.
+// The coordinates of the corners of a triangle, relative to the origin of the hierarchy and rounded.
+// Most triangles are ruled out by these. The others are met exactly, at the positions of the mesh.
 typedef struct CagRayTriangle {
-  CagVec3 p[3];
+  float x[3], y[3], z[3];
+  uint32_t corner[3], face; // in the mesh
 } CagRayTriangle;
+
+typedef struct CagRayMeshCasts CagRayMeshCasts;
 
 typedef struct CagRayMesh {
   CagMesh *mesh; // retained
   CagBvh bvh;
-  CagRayTriangle *triangles;
+  CagRayTriangle *triangles; // in the order of the hierarchy's leaves
+  const CagRayMeshCasts *casts;
 } CagRayMesh;
 
 CagStatus cag_ray_mesh_new(const CagMesh *m, CagRayMesh **out, CagError *err);
@@ -32,9 +37,23 @@ CagStatus cag_ray_mesh_all(const CagRayMesh *m, const CagRay *ray, CagCrossings 
                            CagError *err);
 // Whether the point is inside of the closed mesh, or on it to within `slack`.
 bool cag_ray_mesh_contains(const CagRayMesh *m, CagVec3 p, double slack);
-// The point of the mesh closest to p, if it is closer than `most`: *face is its triangle. Returns
-// false otherwise.
+// The point of the mesh closest to p, if it is at most `most` away: *face is its triangle, of several the
+// one with the lowest number. Returns false otherwise.
 bool cag_ray_mesh_closest(const CagRayMesh *m, CagVec3 p, double most, CagVec3 *point,
                           uint32_t *face);
+
+// The functions above, compiled for several processors. The results of all copies are the same.
+struct CagRayMeshCasts {
+  bool (*first)(const CagRayMesh *m, const CagRay *ray, CagCrossing *out);
+  bool (*blocks)(const CagRayMesh *m, const CagRay *ray);
+  CagStatus (*all)(const CagRayMesh *m, const CagRay *ray, CagCrossings *out, CagError *err);
+  int (*winding)(const CagRayMesh *m, const CagRay *ray); // the sum of the signs of the crossings
+};
+
+extern const CagRayMeshCasts cag_ray_mesh_casts; // for any processor
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(CAG_ONE_COPY)
+#define CAG_RAY_MESH_AVX2
+extern const CagRayMeshCasts cag_ray_mesh_casts_avx2; // for processors with AVX2 and FMA
+#endif
 
 #endif

@@ -155,7 +155,7 @@ static CagStatus divide_surface(CagRayPatch *p, CagError *err) {
     }
   cag_free(us);
   cag_free(vs);
-  if (!status) status = cag_bvh_build(list.boxes, list.n, &p->bvh, err);
+  if (!status) status = cag_bvh_build(list.boxes, list.n, 1, &p->bvh, err);
   cag_free(list.boxes);
   p->cells = list.items;
   p->cell_count = list.n;

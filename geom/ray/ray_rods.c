@@ -32,7 +32,7 @@ CagStatus cag_ray_rods_new(const CagRod *rods, size_t n, double radius, CagRayRo
   CagBounds *boxes = cag_malloc((n + 1) * sizeof *boxes);
   CagStatus status = made && boxes ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) boxes[i] = rod_bounds(&rods[i], radius);
-  if (!status) status = cag_bvh_build(boxes, n, &made->bvh, err);
+  if (!status) status = cag_bvh_build(boxes, n, 1, &made->bvh, err);
   cag_free(boxes);
   if (!status) {
     made->radius = radius;

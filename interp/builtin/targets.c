@@ -154,7 +154,7 @@ static CagStatus find_boxes(CagTarget *t, CagError *err) {
   CagBounds *boxes = cag_malloc((t->bounded + 1) * sizeof *boxes);
   if (!boxes) return cag_fail_memory(err);
   for (size_t i = 0; i < t->bounded; i++) boxes[i] = cag_caster_bounds(t->parts[i].caster);
-  CagStatus status = cag_bvh_build(boxes, t->bounded, &t->boxes, err);
+  CagStatus status = cag_bvh_build(boxes, t->bounded, 1, &t->boxes, err);
   cag_free(boxes);
   t->bounds = t->boxes.bounds;
   t->size = t->bounded ? cag_norm(cag_sub(t->bounds.max, t->bounds.min)) : 0;

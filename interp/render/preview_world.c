@@ -211,7 +211,7 @@ static CagStatus make_parts(CagPreviewWorld *w, CagError *err) {
   CagBounds *boxes = cag_malloc((w->count + 1) * sizeof *boxes);
   if (!boxes) return cag_fail_memory(err);
   for (size_t i = 0; i < w->count; i++) boxes[i] = w->parts[i].bounds;
-  status = cag_bvh_build(boxes, w->count, &w->boxes, err);
+  status = cag_bvh_build(boxes, w->count, 1, &w->boxes, err);
   cag_free(boxes);
   return status;
 }

@@ -17,8 +17,9 @@
 #include "geom/ray/ray_mesh.h"
 #include "geom/solid/csg.h"
 
-// Points along each direction of the bumpy torus, and rays.
-enum { SIDE = 708, RAYS = 1000000 };
+// Points along each direction of the bumpy torus, and rays. Casts are repeated in turn with those of
+// Embree, and the least time counts.
+enum { SIDE = 708, RAYS = 1000000, REPEATS = 5 };
 
 static double now(void) {
   struct timespec t;
@@ -114,7 +115,7 @@ static double embree_cast_all(RTCScene scene, const CagRay *rays, size_t *hits) 
 
 static void print_line(const char *name, double ours, double theirs, const char *aim) {
   printf("%s|%.6f|", name, ours);
-  if (theirs > 0) printf("%.6f", theirs);
+  if (theirs > 0 && theirs < INFINITY) printf("%.6f", theirs);
   else printf("-");
   printf("|%s\n", aim);
 }
@@ -137,15 +138,18 @@ int main(void) {
 #endif
   for (int k = 0; k < 2; k++) {
     make_rays(rays, k);
-    ours[k] = cast_all(m, rays, &hits[k]);
+    ours[k] = embree[k] = INFINITY;
+    for (int i = 0; i < REPEATS; i++) {
+      ours[k] = fmin(ours[k], cast_all(m, rays, &hits[k]));
 #ifdef CAG_EMBREE
-    embree[k] = embree_cast_all(scene, rays, &theirs[k]);
+      embree[k] = fmin(embree[k], embree_cast_all(scene, rays, &theirs[k]));
 #endif
+    }
   }
   print_line("hierarchy of 10^6 triangles", build, embree[2], "< 0.5 s");
   print_line("10^6 rays of any direction at it", ours[0], embree[0], "< 1 s, 1.5x");
   print_line("10^6 rays close together at it", ours[1], embree[1], "< 1 s, 1.5x");
-  if (embree[0] > 0)
+  if (theirs[0] > 0)
     fprintf(stderr, "hits: %zu and %zu, Embree: %zu and %zu\n", hits[0], hits[1], theirs[0],
             theirs[1]);
   return 0;
