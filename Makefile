@@ -7,6 +7,7 @@
 #   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
 #   make format      clang-format everything        make check-format / check-layers / analyze / tidy
 #   make web         bundles the page of `cag view` make check-web       shows that web/dist is what the sources give
+#   make EMBREE=1    with Embree for rays at large meshes; `make test-embree` runs the tests of rays with it for all meshes
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
 BUILD   ?= build
@@ -32,6 +33,10 @@ NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcj
 MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
 ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
 MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))
+# Embree has no pkg-config file.
+EMBREE ?=
+EMBREE_H := $(wildcard /usr/include/embree3/rtcore.h)
+MISSING += $(if $(EMBREE),$(if $(EMBREE_H),,libembree-dev))
 ifneq ($(strip $(MISSING)),)
 $(error cag needs packages that are not here: apt-get install $(strip $(MISSING)))
 endif
@@ -40,6 +45,10 @@ PKG_CFLAGS := $(shell pkg-config --cflags $(MODULES) 2>/dev/null)
 # The tables of Markdown come in a library that has no pkg-config file (libcmark-gfm-extensions-dev).
 # The program loads libmicrohttpd when a server starts.
 PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(filter-out libmicrohttpd,$(MODULES)) 2>/dev/null)
+ifneq ($(EMBREE),)
+PKG_CFLAGS += -DCAG_EMBREE
+PKG_LIBS   += -lembree3
+endif
 
 CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trapping-math -ffp-contract=off \
               -fPIC -fvisibility=hidden -MMD -MP -I. -Iinclude -I$(BUILD)/gen \
@@ -70,7 +79,7 @@ CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -209,6 +218,12 @@ test-threads: test-programs-threads
 	@for t in $(THREAD_TESTS); do $(abspath $(BUILD)-threads)/tests/$$t || exit 1; done
 	$(BUILD)-threads/cag test --jobs 4 $(THREAD_SCRIPTS)
 
+# Runs the tests of rays with Embree for all meshes, however small. Needs libembree-dev.
+EMBREE_TESTS := ray ray_mesh caster_nearest nearest nearest_planar nearest_swept
+test-embree:
+	$(MAKE) BUILD=$(BUILD)-embree EMBREE=1 CFLAGS=-DCAG_EMBREE_TRIANGLES=1 $(patsubst %,$(BUILD)-embree/tests/geom/%_test,$(EMBREE_TESTS))
+	@for t in $(EMBREE_TESTS); do $(abspath $(BUILD)-embree)/tests/geom/$${t}_test || exit 1; done
+
 # A failing test, such as a timing test, does not stop the report. More allocations fail than in `make test`.
 COVERAGE_EXIT := $(BUILD)-coverage/exit.o
 coverage:
@@ -244,10 +259,9 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
 # Embree, too.
-EMBREE_H := $(wildcard /usr/include/embree3/rtcore.h)
 $(BUILD)/tests/bench/rays: tests/bench/rays.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
-	$Q$(CC) $(CFLAGS_ALL) $(if $(EMBREE_H),-DCAG_EMBREE) $< $(BUILD)/libcag.a -o $@ $(if $(EMBREE_H),-lembree3) $(LDLIBS_ALL)
+	$Q$(CC) $(CFLAGS_ALL) $(if $(EMBREE_H),-DCAG_PEER_EMBREE) $< $(BUILD)/libcag.a -o $@ $(if $(EMBREE_H),-lembree3) $(LDLIBS_ALL)
 # Completion with Tab is part of the program, not of the library.
 $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
@@ -322,6 +336,6 @@ check-web: web/node_modules
 	diff -r $(BUILD)/web web/dist
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-threads $(BUILD)-coverage $(BUILD)-mutate
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-threads $(BUILD)-embree $(BUILD)-coverage $(BUILD)-mutate
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -66,6 +66,9 @@ CagStatus cag_ray_mesh_new(const CagMesh *m, CagRayMesh **out, CagError *err) {
   if (!status) status = cag_bvh_build(boxes, m->triangle_count, LEAF_TRIANGLES, &made->bvh, err);
   cag_free(boxes);
   if (!status) status = round_triangles(made, err);
+#ifdef CAG_EMBREE
+  if (!status && m->triangle_count >= CAG_EMBREE_TRIANGLES) cag_ray_mesh_use_embree(made);
+#endif
   if (status) cag_ray_mesh_free(made);
   else *out = made;
   return status;
@@ -73,6 +76,9 @@ CagStatus cag_ray_mesh_new(const CagMesh *m, CagRayMesh **out, CagError *err) {
 
 void cag_ray_mesh_free(CagRayMesh *m) {
   if (!m) return;
+#ifdef CAG_EMBREE
+  cag_ray_mesh_release_embree(m);
+#endif
   cag_mesh_release(m->mesh);
   cag_bvh_free(&m->bvh);
   cag_free(m->triangles);

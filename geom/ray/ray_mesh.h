@@ -21,6 +21,7 @@ typedef struct CagRayMesh {
   CagBvh bvh;
   CagRayTriangle *triangles; // in the order of the hierarchy's leaves
   const CagRayMeshCasts *casts;
+  struct CagRayMeshEmbree *embree; // NULL unless Embree finds the triangles of rays
 } CagRayMesh;
 
 CagStatus cag_ray_mesh_new(const CagMesh *m, CagRayMesh **out, CagError *err);
@@ -54,6 +55,17 @@ extern const CagRayMeshCasts cag_ray_mesh_casts; // for any processor
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(CAG_ONE_COPY)
 #define CAG_RAY_MESH_AVX2
 extern const CagRayMeshCasts cag_ray_mesh_casts_avx2; // for processors with AVX2 and FMA
+#endif
+
+#ifdef CAG_EMBREE
+// The least number of triangles of a mesh for which Embree is used.
+#ifndef CAG_EMBREE_TRIANGLES
+#define CAG_EMBREE_TRIANGLES 1000000
+#endif
+// Uses Embree for the rays of a mesh. If it fails, or the mesh is extremely large or small, the mesh
+// stays as it is.
+void cag_ray_mesh_use_embree(CagRayMesh *m);
+void cag_ray_mesh_release_embree(CagRayMesh *m);
 #endif
 
 #endif

@@ -173,6 +173,7 @@ INLINE unsigned sieve_pair(const Sieve *s, const CagRayTriangle *one, const CagR
 
 // The ray's parameter from the prepared origin on, which is near the mesh.
 typedef struct Approach {
+  const CagRay *whole;
   CagBvhRay ray;
   Shear shear;
   Sieve sieve;
@@ -183,13 +184,18 @@ static bool approach_mesh(const CagRayMesh *m, const CagRay *ray, Approach *a) {
   if (!cag_bvh_ray(&m->bvh, ray->origin, ray->direction, ray->least, ray->most, &a->ray))
     return false;
   a->shear = shear_of(cag_madd(ray->origin, a->ray.start, ray->direction), ray->direction);
+  a->whole = ray;
   sieve_of(&m->bvh, &a->ray, &a->shear, &a->sieve);
   cag_bvh_start(&m->bvh, &a->walk);
   return true;
 }
 
-// Calls visit(context, face, met) for the triangles that the ray meets until it returns false.
+// Calls visit(context, t, met) for the triangles that the ray meets until it returns false. Calls may
+// reduce `a->ray.most`.
 typedef bool VisitMet(void *context, const CagRayTriangle *t, const Met *met);
+#ifdef CAG_VISIT_BY_EMBREE
+static void visit_met(const CagRayMesh *m, Approach *a, VisitMet *visit, void *context);
+#else
 INLINE void visit_met(const CagRayMesh *m, Approach *a, VisitMet *visit, void *context) {
   size_t first, count;
   Met met;
@@ -207,6 +213,7 @@ INLINE void visit_met(const CagRayMesh *m, Approach *a, VisitMet *visit, void *c
       }
     }
 }
+#endif
 
 static CagVec3 corner_mix(const double *uv, const uint32_t *t, const Met *met) {
   const double w0 = 1 - met->weight[0] - met->weight[1];

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#ifdef CAG_EMBREE
+#ifdef CAG_PEER_EMBREE
 #include <embree3/rtcore.h>
 #endif
 
@@ -70,7 +70,7 @@ static double cast_all(const CagRayMesh *m, const CagRay *rays, size_t *hits) {
   return now() - start;
 }
 
-#ifdef CAG_EMBREE
+#ifdef CAG_PEER_EMBREE
 static RTCScene embree_scene(RTCDevice device, const CagMesh *m) {
   RTCScene scene = rtcNewScene(device);
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -130,7 +130,7 @@ int main(void) {
   const double build = now() - start;
   double ours[2];
   size_t hits[2], theirs[2] = {0, 0};
-#ifdef CAG_EMBREE
+#ifdef CAG_PEER_EMBREE
   RTCDevice device = rtcNewDevice(NULL);
   start = now();
   RTCScene scene = embree_scene(device, mesh);
@@ -141,7 +141,7 @@ int main(void) {
     ours[k] = embree[k] = INFINITY;
     for (int i = 0; i < REPEATS; i++) {
       ours[k] = fmin(ours[k], cast_all(m, rays, &hits[k]));
-#ifdef CAG_EMBREE
+#ifdef CAG_PEER_EMBREE
       embree[k] = fmin(embree[k], embree_cast_all(scene, rays, &theirs[k]));
 #endif
     }
