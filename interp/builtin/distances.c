@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "geom/distance/separation.h"
+#include "geom/solid/convex_list.h"
 #include "geom/solid/csg.h"
 #include "geom/surface/curve_on.h"
 #include "interp/builtin/hulls.h"
@@ -16,12 +17,17 @@
 
 // --- Bodies ---
 
-// Shapes split into parts. It also owns the curves created for it.
+// Shapes as convex bodies, and as parts: those that are unions of convex bodies, and all others. It
+// also owns the curves created for it.
 typedef struct Body {
-  CagParts parts;
+  CagConvexList convex;
+  CagParts convex_parts; // of the same shapes, made when they are needed
+  CagParts parts;        // of the other shapes
+  CagParts *into;        // the ones that are being filled
   CagCurveList curves;
   const CagList *shapes; // NULL: a point
-  size_t *first;         // of each shape: its first part; the number of parts: it has none
+  bool *is_convex;       // of each shape
+  size_t *first;         // of each other shape: its first part, or SIZE_MAX if it has none
   CagBounds bounds;
   double tolerance; // of meshes
 } Body;
@@ -29,14 +35,17 @@ typedef struct Body {
 static void body_free(void *body) {
   Body *b = body;
   cag_curve_list_free(&b->curves);
+  cag_convex_list_free(&b->convex);
+  cag_parts_free(&b->convex_parts);
   cag_parts_free(&b->parts);
+  cag_free(b->is_convex);
   cag_free(b->first);
   cag_free(b);
 }
 
 static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
   CagStatus status = cag_curve_list_add(&b->curves, cag_curve_retain(c), err);
-  return status ? status : cag_parts_add_curve(&b->parts, c, tolerance, err);
+  return status ? status : cag_parts_add_curve(b->into, c, tolerance, err);
 }
 
 static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
@@ -45,7 +54,7 @@ static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s,
   const bool flat = cag_surface_planar_view(s, NULL, NULL);
   CagMesh *m = NULL;
   CagStatus status = cag_surface_tessellate(s, &how, &m, err);
-  if (!status) status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
+  if (!status) status = cag_parts_add_mesh(b->into, m, flat ? NULL : s, tolerance, err);
   cag_mesh_release(m);
   return status;
 }
@@ -83,7 +92,7 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   const CagTessellation how = cag_shape_tessellation(vm, tolerance);
   CagMesh *m = NULL;
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
-  if (!status) status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
+  if (!status) status = cag_parts_add_mesh(b->into, m, NULL, 0, err);
   cag_mesh_release(m);
   return status;
 }
@@ -103,7 +112,7 @@ static CagStatus body_add_box(Body *b, const CagSolid *s, CagError *err) {
   for (int k = 0; !status && k < 12; k++) {
     const int *face = faces[k / 2];
     const CagVec3 triangle[3] = {corner[face[0]], corner[face[1 + k % 2]], corner[face[2 + k % 2]]};
-    status = cag_parts_add_triangle(&b->parts, triangle, err);
+    status = cag_parts_add_triangle(b->into, triangle, err);
   }
   return status;
 }
@@ -119,8 +128,8 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   case CAG_REGION:
     return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
   case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
-  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, 0, err);
-  case CAG_LABEL: return cag_parts_add_point(&b->parts, shape->as.label->at, err);
+  case CAG_MESH: return cag_parts_add_mesh(b->into, shape->as.mesh, NULL, 0, err);
+  case CAG_LABEL: return cag_parts_add_point(b->into, shape->as.label->at, err);
   default:
     if (shape->as.solid->kind == CAG_SOLID_BOX &&
         cag_transform_is_affine(&shape->as.solid->placement))
@@ -135,13 +144,32 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
 
 static CagStatus fill_body(CagVm *vm, Body *b, CagError *err) {
   CagStatus status = CAG_OK;
-  b->first = cag_malloc((b->shapes->length + 1) * sizeof *b->first);
-  if (!b->first) return cag_fail_memory(err);
-  for (size_t i = 0; !status && i < b->shapes->length; i++) {
+  const size_t n = b->shapes->length;
+  b->first = cag_malloc((n + 1) * sizeof *b->first);
+  b->is_convex = cag_calloc(n + 1, sizeof *b->is_convex);
+  if (!b->first || !b->is_convex) return cag_fail_memory(err);
+  b->into = &b->parts;
+  for (size_t i = 0; !status && i < n; i++) {
+    const CagValue v = cag_list_get(vm, b->shapes, i);
     const size_t known = b->parts.n;
-    status = body_add_shape(vm, b, cag_list_get(vm, b->shapes, i), b->tolerance, err);
-    b->first[i] = b->parts.n > known ? known : SIZE_MAX;
+    b->first[i] = SIZE_MAX;
+    if (v.type == CAG_SOLID)
+      status = cag_solid_add_convex(CAG_AS_SHAPE(v)->as.solid, &b->convex, &b->is_convex[i], err);
+    if (status || b->is_convex[i]) continue;
+    status = body_add_shape(vm, b, v, b->tolerance, err);
+    if (b->parts.n > known) b->first[i] = known;
   }
+  return status;
+}
+
+// Makes the parts of the shapes that are unions of convex bodies.
+static CagStatus need_convex_parts(CagVm *vm, Body *b, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (b->convex_parts.n > 0) return CAG_OK;
+  b->into = &b->convex_parts;
+  for (size_t i = 0; !status && b->shapes && i < b->shapes->length; i++)
+    if (b->is_convex[i])
+      status = body_add_shape(vm, b, cag_list_get(vm, b->shapes, i), b->tolerance, err);
   return status;
 }
 
@@ -196,32 +224,71 @@ static bool is_in_bounds(const CagBounds *b, CagVec3 p) {
          p.z >= b->min.z && p.z <= b->max.z;
 }
 
-// Whether a body of `outer` contains a shape of `inner`. The surfaces do not meet, so one point of
-// each shape decides.
-static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool *yes) {
+static bool shape_encloses(CagCall *call, CagValue v, const Body *outer, CagVec3 p, bool *yes) {
+  bool body;
+  return !is_in_bounds(&outer->bounds, p) || cag_shape_holds(call, v, p, yes, &body);
+}
+
+// Whether a shape of `outer` contains one of `inner`. The surfaces do not meet, so one point of
+// each decides. If the distance of convex bodies is certain, it is 0 already for those that contain
+// each other.
+static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool certain, bool *yes) {
   const size_t inner_count = inner->shapes ? inner->shapes->length : 1;
   for (size_t i = 0; !*yes && outer->shapes && i < outer->shapes->length; i++) {
     const CagValue v = cag_list_get(call->vm, outer->shapes, i);
     if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
     for (size_t k = 0; !*yes && k < inner_count; k++) {
       const size_t first = inner->first ? inner->first[k] : 0;
-      if (first >= inner->parts.n) continue;
-      bool body;
-      const CagVec3 p = inner->parts.items[first].p[0];
-      if (is_in_bounds(&outer->bounds, p) && !cag_shape_holds(call, v, p, yes, &body)) return false;
+      if (first < inner->parts.n &&
+          !shape_encloses(call, v, outer, inner->parts.items[first].p[0], yes))
+        return false;
     }
+    for (size_t k = 0; !*yes && !(certain && outer->is_convex[i]) && k < inner->convex.n; k++)
+      if (!shape_encloses(call, v, outer, cag_convex_point(&inner->convex.items[k]), yes))
+        return false;
   }
   return true;
 }
 
+// Lowers the distance to that of the parts, if both have some.
+static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, double *distance,
+                                CagError *err) {
+  double found;
+  if (a->n == 0 || b->n == 0 || *distance == 0) return CAG_OK;
+  CagStatus status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found, NULL, cag_vm_stop(vm), err);
+  if (!status) *distance = fmin(*distance, found);
+  return status;
+}
+
+// The distance of the surfaces, and of convex bodies, unless *certain is false: then it is that of
+// their surfaces too. Fails if a body has no shapes.
+static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, double *out, bool *certain,
+                                  CagError *err) {
+  CagStatus status = CAG_OK;
+  *out = INFINITY;
+  *certain = true;
+  if (a->convex.n > 0 && b->convex.n > 0)
+    status = cag_convex_list_distance(&a->convex, &b->convex, out, certain, err);
+  if (!status && a->convex.n > 0 && (b->parts.n > 0 || !*certain))
+    status = need_convex_parts(vm, a, err);
+  if (!status && b->convex.n > 0 && (a->parts.n > 0 || !*certain))
+    status = need_convex_parts(vm, b, err);
+  if (!status) status = parts_distance(vm, &a->parts, &b->parts, out, err);
+  if (!status) status = parts_distance(vm, &a->convex_parts, &b->parts, out, err);
+  if (!status) status = parts_distance(vm, &a->parts, &b->convex_parts, out, err);
+  if (!status && !*certain)
+    status = parts_distance(vm, &a->convex_parts, &b->convex_parts, out, err);
+  if (status || isfinite(*out)) return status;
+  return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, out, NULL, cag_vm_stop(vm), err);
+}
+
 static bool body_distance(CagCall *call, Body *a, Body *b, double *out) {
-  const CagStatus status = cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, out, NULL,
-                                              cag_vm_stop(call->vm), call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  bool within = false;
-  if (*out == 0) return true;
-  if (!encloses(call, a, b, &within)) return false;
-  if (!within && !encloses(call, b, a, &within)) return false;
+  bool certain, within = false;
+  if (!cag_geometry_ok(call, surface_distance(call->vm, a, b, out, &certain, call->err)))
+    return false;
+  if (*out == 0 || (certain && a->parts.n == 0 && b->parts.n == 0)) return true;
+  if (!encloses(call, a, b, certain, &within)) return false;
+  if (!within && !encloses(call, b, a, certain, &within)) return false;
   if (within) *out = 0;
   return true;
 }
