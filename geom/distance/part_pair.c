@@ -149,7 +149,7 @@ static void advance(const CagPartPair *pair, const double *d, double *x) {
   }
 }
 
-CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, CagError *err) {
+CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 points[2], CagError *err) {
   Slope here, there;
   double damping = 1e-6;
   CagStatus status = slope(pair, pair->x, &here, err);
@@ -169,6 +169,9 @@ CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, C
       damping = fmax(damping * 10, 1e-3);
       continue;
     }
+    double gain = 0; // to first order
+    for (int i = 0; i < pair->n; i++) gain -= here.g[i] * d[i];
+    if (gain <= DBL_EPSILON / 4 * here.value) break;
     advance(pair, d, x);
     status = slope(pair, x, &there, err);
     if (status) break;
@@ -181,10 +184,12 @@ CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, C
     damping /= 10;
   }
   if (status) return status;
-  Place place;
   *out = sqrt(2 * here.value);
-  status = part_point(pair->part[1], pair->x + pair->free[0], &place, err);
-  *point = place.p;
+  for (int side = 0; !status && side < 2; side++) {
+    Place place;
+    status = part_point(pair->part[side], pair->x + (side ? pair->free[0] : 0), &place, err);
+    points[side] = place.p;
+  }
   return status;
 }
 

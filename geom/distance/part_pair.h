@@ -13,9 +13,8 @@ typedef struct CagPartPair {
 
 // The pair, starting at the parameters of its parts.
 CagPartPair cag_part_pair(const CagPart *a, const CagPart *b);
-// Converges from the pair to a local minimum of the distance; returns it and its point on the
-// second shape.
-CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 *point, CagError *err);
+// Converges from the pair to a local minimum of the distance; returns it and its points.
+CagStatus cag_part_pair_refine(CagPartPair *pair, double *out, CagVec3 points[2], CagError *err);
 // Moves the point of a flat triangle to the one nearest to the other point. Newton's method can get
 // stuck at the corner at which the parameters of the triangle are not unique. Returns false if the
 // distance does not decrease.

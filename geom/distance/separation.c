@@ -19,9 +19,11 @@
 
 // Pairs from which the exact search starts. Neighbors lead to the same closest point, so several
 // are needed for each location.
-#define CANDIDATES 24
+#define CANDIDATES 8
 // The search for them ends after this many pairs; the second traversal finds what it missed.
-#define MOST_LOOKED 50000
+#define MOST_LOOKED 500
+// The second traversal adapts its bounds to closer pairs after this many pairs of nodes.
+#define ADAPTED 200
 #define LEAF 4
 // Maximum number of restarts of Newton's method from the corner of a flat triangle.
 #define CORNER_ROUNDS 8
@@ -222,19 +224,19 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
   return nearest;
 }
 
-// Keeps the point q of the second shape if it is the closest so far to the point p of the first.
-typedef struct Foot {
+// Keeps points of the first and the second shape if they are the closest so far.
+typedef struct Feet {
   double distance;
-  CagVec3 p;
-} Foot;
-static void offer_foot(Foot *foot, CagVec3 p, CagVec3 q) {
+  CagVec3 p[2];
+} Feet;
+static void offer_foot(Feet *feet, CagVec3 p, CagVec3 q) {
   const double d = cag_norm(cag_sub(p, q));
-  if (d < foot->distance) *foot = (Foot){d, q};
+  if (d < feet->distance) *feet = (Feet){d, {p, q}};
 }
 
-// The point of b closest to a, for triangles that do not intersect.
-static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
-  Foot nearest = {INFINITY, b->p[0]};
+// The closest points of triangles that do not intersect.
+static Feet chord_feet(const CagPart *a, const CagPart *b) {
+  Feet nearest = {INFINITY, {a->p[0], b->p[0]}};
   CagVec3 foot;
   for (int i = 0; i < 3; i++) {
     const CagVec3 p = a->p[i], q = a->p[(i + 1) % 3];
@@ -253,7 +255,7 @@ static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
         offer_foot(&nearest, cag_madd(p, x, u), cag_madd(r, y, v));
     }
   }
-  return nearest.p;
+  return nearest;
 }
 
 // --- Bounds by cores ---
@@ -480,10 +482,15 @@ typedef struct Task {
 typedef struct Search {
   const Tree *a, *b;
   double size, best;
-  double farthest; // largest distance found for a pair
-  CagVec3 point;   // on the second shape
+  double farthest;  // largest distance found for a pair
+  CagVec3 point[2]; // the closest ones so far
   size_t pairs, most;
-  Task *tasks; // a heap with the lowest bound first
+  // The unit vector from the one to the other. Along it, the nodes of the first tree reach up to
+  // `reach[0]`, those of the second one down to `reach[1]`. NULL: not computed yet.
+  CagVec3 way;
+  double *reach[2];
+  double reach_best; // the best distance at that time
+  Task *tasks;       // a heap with the lowest bound first
   size_t count, room;
   const volatile int *interrupt;
   CagStatus status;
@@ -501,17 +508,17 @@ static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core
 
 // Restarts from the ends of curves if the search from the middle led to a worse minimum; keeps the
 // best.
-static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 *p) {
+static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 p[2]) {
   for (int side = 0, at = 0; side < 2; at += start->free[side++])
     for (int last = 0; last < 2 && start->part[side]->curve && !s->status; last++) {
       CagPartPair pair = *start;
       double there;
-      CagVec3 foot;
+      CagVec3 feet[2];
       pair.x[at] = last ? pair.part[side]->high[0] : pair.part[side]->low[0];
-      s->status = cag_part_pair_refine(&pair, &there, &foot, s->err);
+      s->status = cag_part_pair_refine(&pair, &there, feet, s->err);
       if (s->status || there >= *d) continue;
       *d = there;
-      *p = foot;
+      memcpy(p, feet, sizeof feet);
     }
 }
 
@@ -521,22 +528,24 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
   const CagPartPair start = cag_part_pair(a, b);
   CagPartPair pair = start;
   double d = chords;
-  CagVec3 p;
+  CagVec3 p[2];
   const bool exact = is_exact(a) && is_exact(b);
-  if (exact) p = chord_foot(a, b);
-  else s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
+  if (exact) {
+    const Feet feet = chord_feet(a, b);
+    memcpy(p, feet.p, sizeof p);
+  } else s->status = cag_part_pair_refine(&pair, &d, p, s->err);
   for (int round = 0; !exact && round < CORNER_ROUNDS && d > touching(s); round++) {
     if (s->status || !cag_part_pair_leave_corner(&pair, d, &s->status, s->err)) break;
-    s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
+    s->status = cag_part_pair_refine(&pair, &d, p, s->err);
   }
   if (s->status) return;
-  if (!exact && d > chords + equally_near(s)) try_ends(s, &start, &d, &p);
+  if (!exact && d > chords + equally_near(s)) try_ends(s, &start, &d, p);
   if (s->status) return;
   s->pairs++;
   s->farthest = fmax(s->farthest, d);
   if (d >= s->best) return;
   s->best = d;
-  s->point = p;
+  memcpy(s->point, p, sizeof s->point);
 }
 
 // True if the search can stop: it failed, or the shapes touch or run along each other at a constant
@@ -544,6 +553,44 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
 static bool is_over(const Search *s) {
   return s->status || s->best <= touching(s) || (s->interrupt && *s->interrupt) ||
          (s->pairs >= SAME_PAIRS && s->farthest - s->best <= equally_near(s));
+}
+
+// --- Bounds along the shortest way ---
+
+// How far the corners of a part reach along the way: to the farthest (0) or nearest (1).
+static double part_reach(const Search *s, const CagPart *part, int side) {
+  const double x = cag_dot(part->p[0], s->way), y = cag_dot(part->p[1], s->way);
+  const double z = cag_dot(part->p[2], s->way);
+  return side ? (x < y ? (x < z ? x : z) : (y < z ? y : z))
+              : (x > y ? (x > z ? x : z) : (y > z ? y : z));
+}
+
+// The planes perpendicular to the way between the closest points found so far separate most other
+// parts better than their boxes do: all of them, if the shapes are convex.
+static void find_reach(Search *s) {
+  const CagVec3 way = cag_sub(s->point[1], s->point[0]);
+  if (s->status || !(s->best > touching(s)) || !isfinite(s->best)) return;
+  s->way = cag_unit(way);
+  s->reach_best = s->best;
+  for (int side = 0; side < 2; side++) {
+    const Tree *t = side ? s->b : s->a;
+    if (!s->reach[side]) s->reach[side] = cag_malloc(t->n * sizeof **s->reach);
+    double *reach = s->reach[side];
+    if (!reach) {
+      s->status = cag_fail_memory(s->err);
+      return;
+    }
+    for (size_t i = t->n; i-- > 0;) { // children follow their parents
+      const Node *node = &t->nodes[i];
+      reach[i] = side ? INFINITY : -INFINITY;
+      for (size_t k = 0; k < (node->left ? 2 : node->count); k++) {
+        const double x = node->left
+                             ? reach[node->left + k]
+                             : part_reach(s, &t->parts->items[t->order[node->first + k]], side);
+        if (side ? x < reach[i] : x > reach[i]) reach[i] = x;
+      }
+    }
+  }
 }
 
 static void push_task(Search *s, Task task) {
@@ -573,7 +620,10 @@ static Task pop_task(Search *s) {
 
 static void push_nodes(Search *s, size_t i, size_t k) {
   const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
-  double bound = gap(&x->box, &y->box) - x->sag - y->sag;
+  double bound = -INFINITY;
+  if (s->reach[1]) bound = s->reach[1][k] - s->reach[0][i] - x->sag - y->sag;
+  if (bound >= s->best - equally_near(s)) return;
+  bound = fmax(bound, gap(&x->box, &y->box) - x->sag - y->sag);
   if (x->core && y->core && bound < s->best - equally_near(s)) {
     const Hull p = hull_of_core(&s->a->parts->cores[x->core - 1]);
     const Hull q = hull_of_core(&s->b->parts->cores[y->core - 1]);
@@ -591,11 +641,13 @@ static void fail_uncertain(Search *s, double bound) {
 }
 
 static void try_parts(Search *s, const Node *x, const Node *y) {
-  for (size_t m = 0; m < x->count; m++)
+  for (size_t m = 0; m < x->count; m++) {
+    const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
+    const double from = s->reach[1] ? part_reach(s, p, 0) : INFINITY;
     for (size_t n = 0; n < y->count && !is_over(s); n++) {
-      const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
       const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
       const double least = s->best - equally_near(s) + p->sag + q->sag;
+      if (s->reach[1] && part_reach(s, q, 1) - from >= least) continue;
       if (part_gap(p, q) >= least) continue;
       const double chords = chord_distance(p, q);
       if (chords >= least) continue;
@@ -606,6 +658,7 @@ static void try_parts(Search *s, const Node *x, const Node *y) {
       if (s->pairs < s->most) try_pair(s, p, q, chords);
       else fail_uncertain(s, chords - p->sag - q->sag);
     }
+  }
 }
 
 static void go_on(Search *s, const Task *task) {
@@ -622,11 +675,14 @@ static void go_on(Search *s, const Task *task) {
 
 // Tests all pairs that may be closer than the best one, in the order of the bounds of their nodes.
 static void certify(Search *s) {
+  size_t visited = 0;
+  find_reach(s);
   push_nodes(s, 0, 0);
   while (s->count > 0 && !is_over(s)) {
     const Task task = pop_task(s);
     if (task.bound >= s->best - equally_near(s)) break;
     go_on(s, &task);
+    if (++visited % ADAPTED == 0 && s->best < s->reach_best - equally_near(s)) find_reach(s);
   }
 }
 
@@ -655,9 +711,10 @@ CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out,
     status =
         cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the search was interrupted");
   cag_free(s.tasks);
+  for (int side = 0; side < 2; side++) cag_free(s.reach[side]);
   if (status) return status;
   *out = s.best <= touching(&s) ? 0 : s.best;
-  if (point) *point = s.point;
+  if (point) *point = s.point[1];
   return CAG_OK;
 }
 

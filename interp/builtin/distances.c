@@ -14,6 +14,9 @@
 
 // Shapes closer than this fraction of their size meet (see separation.c).
 #define TOUCHING 1e-10
+// The tolerance of the meshes of curved surfaces, as a fraction of their size. They are only where
+// the search on the surface starts.
+#define CURVED_TOLERANCE 1e-3
 
 // --- Bodies ---
 
@@ -50,10 +53,15 @@ static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, Ca
 
 static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
                                   CagError *err) {
-  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
   const bool flat = cag_surface_planar_view(s, NULL, NULL);
   CagMesh *m = NULL;
-  CagStatus status = cag_surface_tessellate(s, &how, &m, err);
+  CagBounds box;
+  CagStatus status = CAG_OK;
+  if (!flat) status = cag_surface_bounds(s, &box, err);
+  if (status) return status;
+  if (!flat) tolerance = CURVED_TOLERANCE * cag_norm(cag_sub(box.max, box.min));
+  const CagTessellation how = cag_shape_tessellation(vm, tolerance);
+  status = cag_surface_tessellate(s, &how, &m, err);
   if (!status) status = cag_parts_add_mesh(b->into, m, flat ? NULL : s, tolerance, err);
   cag_mesh_release(m);
   return status;
