@@ -696,7 +696,7 @@ static void find_nearest(Search *s) {
   certify(s);
 }
 
-CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 *point,
+CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
                              const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "", -1,
@@ -714,7 +714,7 @@ CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out,
   for (int side = 0; side < 2; side++) cag_free(s.reach[side]);
   if (status) return status;
   *out = s.best <= touching(&s) ? 0 : s.best;
-  if (point) *point = s.point[1];
+  if (points) memcpy(points, s.point, sizeof s.point);
   return CAG_OK;
 }
 

@@ -47,14 +47,14 @@ void cag_parts_free(CagParts *parts);
 // and no others.
 //
 //   most       maximum number of pairs to compare on the exact shapes
-//   point      closest point on b if the shapes do not meet; may be NULL
+//   points     the closest points of a and b if the shapes do not meet; may be NULL
 //   interrupt  may be NULL; a value other than 0 stops with CAG_E_CALLBACK
 //
 // Fails with "zero-area" if a set is empty, such as the set of a surface that is a single point,
 // and with "convergence" if more than `most` pairs may be the closest and lead to different
 // distances.
 #define CAG_PARTS_PAIRS 100000
-CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 *point,
+CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
                              const volatile int *interrupt, CagError *err);
 
 // The winding number of a closed mesh about p: 1 inside, 0 outside, fractions only on the boundary.

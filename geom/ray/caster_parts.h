@@ -38,8 +38,8 @@ struct CagCaster {
   CagBvh boxes; // of the bounded operands, if they are many
 };
 
-// Whether the boundary of a set operation passes through a point of an operand's boundary that is
-// close to p: the closest one of all, or on the normal through p.
+// Whether the boundary of a set operation passes through a point of an operand's boundary whose
+// normal passes through p.
 CagStatus cag_operation_ends_at(const CagCaster *c, CagVec3 p, const CagNearest *found,
                                 CagCrossings *work, bool *on, CagError *err);
 

@@ -131,14 +131,6 @@ CagStatus cag_operation_ends_at(const CagCaster *c, CagVec3 p, const CagNearest 
   int side[2] = {0, 0};
   CagStatus status;
   *on = false;
-  if (c->operation == CAG_SOLID_UNION) {
-    // From outside, no operand is closer.
-    status = cag_caster_side(c, p, ON_BOUNDARY * scale, work, &side[0], err);
-    if (status || side[0] > 0) {
-      *on = true;
-      return status;
-    }
-  }
   if (found->distance <= ON_BOUNDARY * scale)
     return is_on_one_operand(c, found->point, ON_BOUNDARY * scale, work, on, err);
   const CagVec3 way = cag_scaled(cag_sub(p, found->point), 1 / found->distance);
@@ -150,13 +142,26 @@ CagStatus cag_operation_ends_at(const CagCaster *c, CagVec3 p, const CagNearest 
   return status;
 }
 
+// Whether the point of the operands' boundaries that is closest to p is on that of the result.
+static CagStatus is_closest_on_boundary(const CagCaster *c, CagVec3 p, const CagNearest *found,
+                                        CagCrossings *work, bool *on, CagError *err) {
+  const double scale = c->size > 0 ? c->size : cag_norm(p) + found->distance;
+  int side = 0;
+  if (c->operation == CAG_SOLID_UNION) {
+    CagStatus status = cag_caster_side(c, p, ON_BOUNDARY * scale, work, &side, err);
+    *on = true;
+    if (status || side > 0) return status; // from outside, no operand is closer
+  }
+  return cag_operation_ends_at(c, p, found, work, on, err);
+}
+
 static CagStatus closest_of_operation(const CagCaster *c, CagVec3 p, CagCrossings *work,
                                       CagNearest *best, CagError *err) {
   CagNearest found = {.distance = best->distance};
   CagStatus status = closest_of_operands(c, p, work, &found, err);
   if (status || !found.found) return status;
   bool on = found.certain;
-  if (on) status = cag_operation_ends_at(c, p, &found, work, &on, err);
+  if (on) status = is_closest_on_boundary(c, p, &found, work, &on, err);
   found.certain = on;
   *best = found;
   return status;

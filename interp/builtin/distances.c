@@ -1,5 +1,6 @@
 // Distances of shapes.
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "geom/distance/separation.h"
 #include "geom/solid/convex_list.h"
@@ -21,23 +22,28 @@
 // --- Bodies ---
 
 // Shapes as convex bodies, and as parts: those that are unions of convex bodies, and all others. It
-// also owns the curves created for it.
+// also owns the curves and solids created for it.
 typedef struct Body {
   CagConvexList convex;
   CagParts convex_parts; // of the same shapes, made when they are needed
   CagParts parts;        // of the other shapes
   CagParts *into;        // the ones that are being filled
   CagCurveList curves;
+  CagSolid **solids; // operands of unions
+  size_t solid_count;
   const CagList *shapes; // NULL: a point
   bool *is_convex;       // of each shape
   size_t *first;         // of each other shape: its first part, or SIZE_MAX if it has none
   CagBounds bounds;
   double tolerance; // of meshes
+  bool is_rough;    // some parts are only a mesh of the shape
 } Body;
 
 static void body_free(void *body) {
   Body *b = body;
   cag_curve_list_free(&b->curves);
+  for (size_t i = 0; i < b->solid_count; i++) cag_solid_release(b->solids[i]);
+  cag_free(b->solids);
   cag_convex_list_free(&b->convex);
   cag_parts_free(&b->convex_parts);
   cag_parts_free(&b->parts);
@@ -94,12 +100,14 @@ static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face,
              : body_add_surface(vm, b, face, tolerance, err);
 }
 
-// The distance from set operations and bodies bounded by meshes is that from their triangles.
+// The distance from bodies bounded by meshes is that from their triangles. That from set operations
+// starts from theirs.
 static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                    CagError *err) {
   const CagTessellation how = cag_shape_tessellation(vm, tolerance);
   CagMesh *m = NULL;
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
+  b->is_rough = b->is_rough || s->kind != CAG_SOLID_MESH;
   if (!status) status = cag_parts_add_mesh(b->into, m, NULL, 0, err);
   cag_mesh_release(m);
   return status;
@@ -125,11 +133,41 @@ static CagStatus body_add_box(Body *b, const CagSolid *s, CagError *err) {
   return status;
 }
 
+static CagStatus body_add_solid(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
+                                CagError *err);
+
+// The points of the operands' surfaces that are inside of the union are no closer to anything
+// outside.
+static CagStatus body_add_union(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
+                                CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < s->core->count; i++) {
+    CagSolid *moved;
+    if (!CAG_RESIZE(b->solids, b->solid_count + 1)) return cag_fail_memory(err);
+    status = cag_solid_transform(s->core->operands[i], &s->placement, &moved, err);
+    if (status) return status;
+    b->solids[b->solid_count++] = moved;
+    status = body_add_solid(vm, b, moved, tolerance, err);
+  }
+  return status;
+}
+
+static CagStatus body_add_solid(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
+                                CagError *err) {
+  CagStatus status = CAG_OK;
+  if (s->kind == CAG_SOLID_BOX && cag_transform_is_affine(&s->placement))
+    return body_add_box(b, s, err);
+  if (s->kind == CAG_SOLID_UNION) return body_add_union(vm, b, s, tolerance, err);
+  if (cag_solid_is_compound(s)) return body_add_compound(vm, b, s, tolerance, err);
+  for (size_t i = 0; !status && i < s->face_count; i++)
+    status = body_add_face(vm, b, s->faces[i], tolerance, err);
+  return status;
+}
+
 // An empty shape adds nothing.
 static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
                                 CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagStatus status = CAG_OK;
   if (v.type == CAG_REGION && cag_region_is_empty(shape->as.region)) return CAG_OK;
   switch (v.type) {
   case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
@@ -138,15 +176,7 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
   case CAG_MESH: return cag_parts_add_mesh(b->into, shape->as.mesh, NULL, 0, err);
   case CAG_LABEL: return cag_parts_add_point(b->into, shape->as.label->at, err);
-  default:
-    if (shape->as.solid->kind == CAG_SOLID_BOX &&
-        cag_transform_is_affine(&shape->as.solid->placement))
-      return body_add_box(b, shape->as.solid, err);
-    if (cag_solid_is_compound(shape->as.solid))
-      return body_add_compound(vm, b, shape->as.solid, tolerance, err);
-    for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
-      status = body_add_face(vm, b, shape->as.solid->faces[i], tolerance, err);
-    return status;
+  default: return body_add_solid(vm, b, shape->as.solid, tolerance, err);
   }
 }
 
@@ -258,25 +288,32 @@ static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool c
   return true;
 }
 
+// A distance, and its points if it is that of parts.
+typedef struct Nearest {
+  double distance;
+  bool of_parts;
+  CagVec3 points[2];
+} Nearest;
+
 // Lowers the distance to that of the parts, if both have some.
-static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, double *distance,
-                                CagError *err) {
-  double found;
-  if (a->n == 0 || b->n == 0 || *distance == 0) return CAG_OK;
-  CagStatus status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found, NULL, cag_vm_stop(vm), err);
-  if (!status) *distance = fmin(*distance, found);
+static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, Nearest *best, CagError *err) {
+  Nearest found = {.of_parts = true};
+  if (a->n == 0 || b->n == 0 || best->distance == 0) return CAG_OK;
+  CagStatus status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found.distance, found.points,
+                                        cag_vm_stop(vm), err);
+  if (!status && found.distance < best->distance) *best = found;
   return status;
 }
 
 // The distance of the surfaces, and of convex bodies, unless *certain is false: then it is that of
 // their surfaces too. Fails if a body has no shapes.
-static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, double *out, bool *certain,
+static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, Nearest *out, bool *certain,
                                   CagError *err) {
   CagStatus status = CAG_OK;
-  *out = INFINITY;
+  *out = (Nearest){.distance = INFINITY};
   *certain = true;
   if (a->convex.n > 0 && b->convex.n > 0)
-    status = cag_convex_list_distance(&a->convex, &b->convex, out, certain, err);
+    status = cag_convex_list_distance(&a->convex, &b->convex, &out->distance, certain, err);
   if (!status && a->convex.n > 0 && (b->parts.n > 0 || !*certain))
     status = need_convex_parts(vm, a, err);
   if (!status && b->convex.n > 0 && (a->parts.n > 0 || !*certain))
@@ -286,14 +323,81 @@ static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, double *out, bool
   if (!status) status = parts_distance(vm, &a->parts, &b->convex_parts, out, err);
   if (!status && !*certain)
     status = parts_distance(vm, &a->convex_parts, &b->convex_parts, out, err);
-  if (status || isfinite(*out)) return status;
-  return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, out, NULL, cag_vm_stop(vm), err);
+  if (status || isfinite(out->distance)) return status;
+  return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out->distance, NULL,
+                            cag_vm_stop(vm), err);
+}
+
+// --- Set operations ---
+
+// The search for the closest points of set operations ends after this many steps, or if they move
+// by less than this fraction of the size of both.
+enum { POLISH_STEPS = 60 };
+#define POLISHED 1e-10
+
+// Two points on the exact shapes, each the closest one to the point of the other shape before it.
+typedef struct Polish {
+  const CagTarget *targets[2];
+  double distance;
+  CagVec3 points[2];
+} Polish;
+
+// The points that are reached by going from a point of the first shape to the second one and back.
+// The distance is 0 if a point is inside of the other shape.
+static bool polish_from(CagCall *call, const Polish *p, CagVec3 start, Polish *out) {
+  CagTargetNearest there, back;
+  *out = *p;
+  if (!cag_target_closest(call, p->targets[1], start, INFINITY, &there) ||
+      !cag_target_closest(call, p->targets[0], there.point, INFINITY, &back))
+    return false;
+  out->points[1] = there.point;
+  out->points[0] = back.point;
+  out->distance = there.found && back.found ? back.distance : 0;
+  return true;
+}
+
+// Where steps end that all shrink in the same ratio (Anderson 1965, with the last two steps).
+static CagVec3 limit_of_steps(CagVec3 before, CagVec3 at, CagVec3 next) {
+  const CagVec3 first = cag_sub(at, before), second = cag_sub(next, at);
+  const CagVec3 change = cag_sub(second, first);
+  const double square = cag_dot(change, change);
+  return square > 0 ? cag_madd(next, -cag_dot(second, change) / square, second) : next;
+}
+
+// Moves the closest points of the meshes to those of the exact shapes. Going from each shape to the
+// other in turn, the distance only decreases. Since this is slow where the shapes are almost
+// parallel, every other step starts from where the steps seem to end.
+static bool polish_distance(CagCall *call, const Body *a, const Body *b, Nearest *best) {
+  const double size = cag_norm(cag_sub(a->bounds.max, a->bounds.min)) +
+                      cag_norm(cag_sub(b->bounds.max, b->bounds.min));
+  Polish now = {.distance = best->distance};
+  if (!cag_arg_near_target(call, 0, &now.targets[0]) ||
+      !cag_arg_near_target(call, 1, &now.targets[1]) ||
+      !polish_from(call, &now, best->points[0], &now))
+    return false;
+  for (int step = 0; step < POLISH_STEPS && now.distance > 0; step++) {
+    Polish next, ahead;
+    const CagVec3 before = now.points[0];
+    if (!cag_keep_going(call->vm) || !polish_from(call, &now, before, &now)) return false;
+    if (cag_norm(cag_sub(now.points[0], before)) <= POLISHED * size) break;
+    if (!polish_from(call, &now, now.points[0], &next)) return false;
+    const CagVec3 end = limit_of_steps(before, now.points[0], next.points[0]);
+    if (!polish_from(call, &now, end, &ahead)) return false;
+    now = ahead.distance < next.distance ? ahead : next;
+  }
+  best->distance = now.distance <= TOUCHING * size ? 0 : now.distance;
+  return true;
 }
 
 static bool body_distance(CagCall *call, Body *a, Body *b, double *out) {
   bool certain, within = false;
-  if (!cag_geometry_ok(call, surface_distance(call->vm, a, b, out, &certain, call->err)))
+  Nearest nearest;
+  if (!cag_geometry_ok(call, surface_distance(call->vm, a, b, &nearest, &certain, call->err)))
     return false;
+  if (nearest.of_parts && nearest.distance > 0 && (a->is_rough || b->is_rough) && a->shapes &&
+      b->shapes && !polish_distance(call, a, b, &nearest))
+    return false;
+  *out = nearest.distance;
   if (*out == 0 || (certain && a->parts.n == 0 && b->parts.n == 0)) return true;
   if (!encloses(call, a, b, certain, &within)) return false;
   if (!within && !encloses(call, b, a, certain, &within)) return false;

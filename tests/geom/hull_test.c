@@ -216,7 +216,7 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   CagMesh *m;
   CagParts a = {0}, b = {0};
   double distance;
-  CagVec3 foot;
+  CagVec3 feet[2];
   const CagTransform lift = cag_translate(cag_vec3(0, 0, 7));
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = 0.01;
@@ -229,11 +229,11 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_mesh_release(m);
   OK(cag_surface_tessellate(moved, &how, &m, &err));
   OK(cag_parts_add_mesh(&b, m, moved, how.tolerance, &err));
-  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, &foot, NULL, &err));
+  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, feet, NULL, &err));
   // The circles of both tori are at a constant distance.
   NEAR(distance, 5, 1e-12);
-  NEAR(foot.z, 6, 1e-9);
-  NEAR(hypot(foot.x, foot.y), 5, 1e-7);
+  NEAR(feet[1].z, 6, 1e-9);
+  NEAR(hypot(feet[1].x, feet[1].y), 5, 1e-7);
   // The distance is the same all around, which few pairs cannot prove.
   FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err), "convergence");
   const volatile int stop = 1, go = 0;
@@ -586,7 +586,7 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
     }
     double least = INFINITY, out;
     bool meet = false;
-    CagVec3 foot = {0, 0, 0};
+    CagVec3 feet[2] = {{0, 0, 0}, {0, 0, 0}};
     // Each side of an outline becomes a triangle without area.
     CagVec3 sides[3 * MOST][3];
     const CagVec3(*shape[2])[3] = {(const CagVec3(*)[3])t[0], (const CagVec3(*)[3])t[1]};
@@ -608,14 +608,14 @@ static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
             for (int step = 0; step <= STEPS; step++)
               least = fmin(least, from_triangle(cag_lerp(a, b, (double)step / STEPS), other));
           }
-    OK(cag_parts_distance(&parts[0], &parts[1], CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    OK(cag_parts_distance(&parts[0], &parts[1], CAG_PARTS_PAIRS, &out, feet, NULL, &err));
     if (meet) {
       assert_true(out == 0);
       meetings++;
     } else {
       double on = INFINITY, back = INFINITY;
-      for (size_t i = 0; i < n[1]; i++) on = fmin(on, from_triangle(foot, shape[1][i]));
-      for (size_t i = 0; i < n[0]; i++) back = fmin(back, from_triangle(foot, shape[0][i]));
+      for (size_t i = 0; i < n[1]; i++) on = fmin(on, from_triangle(feet[1], shape[1][i]));
+      for (size_t i = 0; i < n[0]; i++) back = fmin(back, from_triangle(feet[1], shape[0][i]));
       assert_true(out <= least + 1e-12);
       assert_true(out >= least - 0.4); // the points of an edge are at most 0.25 apart
       NEAR(on, 0, 1e-7);
@@ -649,7 +649,7 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
     CagSurface *sphere = NULL;
     CagTransform frame = cag_transform_identity();
     double least = INFINITY, out;
-    CagVec3 foot;
+    CagVec3 feet[2];
     OK(cag_mesh_new(3 * n, n, false, false, false, &m, &err));
     for (uint32_t i = 0; i < n; i++) {
       const CagVec3 middle = random_location(&seed, 3);
@@ -680,16 +680,16 @@ static void flat_shapes_are_measured_from_round_ones(void **state) {
         for (size_t j = 0; j < n; j++) least = fmin(least, from_triangle(p, t[j]));
       }
     }
-    OK(cag_parts_distance(&round, &flat, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    OK(cag_parts_distance(&round, &flat, CAG_PARTS_PAIRS, &out, feet, NULL, &err));
     if (k % 2) NEAR(out, least, 1e-8);
     else {
       assert_true(out <= least + 1e-9);
       assert_true(out >= least - r * M_PI / POINTS - 1e-9);
     }
     double on = INFINITY;
-    for (size_t i = 0; i < n && out > 0; i++) on = fmin(on, from_triangle(foot, t[i]));
+    for (size_t i = 0; i < n && out > 0; i++) on = fmin(on, from_triangle(feet[1], t[i]));
     if (out > 0) NEAR(on, 0, 1e-7);
-    OK(cag_parts_distance(&flat, &round, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    OK(cag_parts_distance(&flat, &round, CAG_PARTS_PAIRS, &out, feet, NULL, &err));
     if (k % 2) NEAR(out, least, 1e-8);
     else assert_true(out <= least + 1e-9);
     cag_parts_free(&flat);

@@ -135,11 +135,11 @@ static void sets_of_round_shapes_have_the_distances_of_their_centers_and_axes(vo
     met += expected == 0;
     Set *from = round % 2 ? &b : &a, *to = round % 2 ? &a : &b;
     double out, least, most, nearest = INFINITY;
-    CagVec3 foot;
-    OK(cag_parts_distance(&from->parts, &to->parts, 500, &out, &foot, NULL, &err));
+    CagVec3 feet[2];
+    OK(cag_parts_distance(&from->parts, &to->parts, 500, &out, feet, NULL, &err));
     NEAR(out, expected, 1e-11);
     for (int i = 0; out > 0 && i < to->n; i++) {
-      reach_from(foot, &to->shapes[i], &least, &most);
+      reach_from(feet[1], &to->shapes[i], &least, &most);
       nearest = fmin(nearest, least);
     }
     if (out > 0) NEAR(nearest, 0, 1e-11);

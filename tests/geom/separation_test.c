@@ -45,7 +45,7 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
     CagCurve *curves[MOST];
     size_t n = 0;
     double least = INFINITY, out;
-    CagVec3 nearest = {0, 0, 0}, foot;
+    CagVec3 nearest = {0, 0, 0}, feet[2];
     const int points = k % 3 == 0 ? 60 : k % 7;
     const int arcs = 1 + k % 4, at = (int)uniform(0, 80);
     for (int i = 0; i < 80; i++) {
@@ -83,12 +83,12 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
       }
     }
     OK(cag_parts_add_point(&origin, cag_vec3(0, 0, 0), &err));
-    OK(cag_parts_distance(&origin, &parts, 2000, &out, &foot, NULL, &err));
+    OK(cag_parts_distance(&origin, &parts, 2000, &out, feet, NULL, &err));
     NEAR(out, least, 1e-12);
-    near_vec(foot, nearest, 1e-6);
-    OK(cag_parts_distance(&parts, &origin, 2000, &out, &foot, NULL, &err));
+    near_vec(feet[1], nearest, 1e-6);
+    OK(cag_parts_distance(&parts, &origin, 2000, &out, feet, NULL, &err));
     NEAR(out, least, 1e-12);
-    near_vec(foot, cag_vec3(0, 0, 0), 0);
+    near_vec(feet[1], cag_vec3(0, 0, 0), 0);
     cag_parts_free(&parts);
     cag_parts_free(&origin);
     for (size_t i = 0; i < n; i++) cag_curve_release(curves[i]);
@@ -240,14 +240,14 @@ static void curves_and_surfaces_are_as_far_apart_as_on_grids(void **state) {
     for (int turn = 0; turn < 2; turn++) {
       Shape *a = &s[turn], *b = &s[1 - turn];
       double out;
-      CagVec3 foot;
-      OK(cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+      CagVec3 feet[2];
+      OK(cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out, feet, NULL, &err));
       assert_true(out <= least + 1e-9);
       assert_true(out >= least - 1e-4); // grids may lead to another minimum
       if (out == 0) continue;
       apart++;
-      NEAR(distance_to_point(b, foot), 0, 1e-4);
-      NEAR(distance_to_point(a, foot), out, 1e-4);
+      NEAR(distance_to_point(b, feet[1]), 0, 1e-4);
+      NEAR(distance_to_point(a, feet[1]), out, 1e-4);
     }
     for (int side = 0; side < 2; side++) let_go(&s[side]);
   }
