@@ -30,6 +30,8 @@
 // After this many pairs at the same distance, the shapes count as running along each other: the
 // number of such pairs is unlimited.
 #define SAME_PAIRS 4000
+// Locations that are only nearly as close are no longer searched after this many pairs.
+#define NEAR_PAIRS 3000
 // Pairs are equally close if their distances differ by less than this fraction of the size.
 #define EQUALLY_NEAR 1e-11
 // Shapes closer than this fraction of their size meet.
@@ -489,8 +491,9 @@ typedef struct Search {
   // `reach[0]`, those of the second one down to `reach[1]`. NULL: not computed yet.
   CagVec3 way;
   double *reach[2];
-  double reach_best; // the best distance at that time
-  Task *tasks;       // a heap with the lowest bound first
+  double reach_best;  // the best distance at that time
+  CagPartsNear *near; // locations to be found; NULL: none
+  Task *tasks;        // a heap with the lowest bound first
   size_t count, room;
   const volatile int *interrupt;
   CagStatus status;
@@ -502,6 +505,12 @@ typedef struct Search {
 static double touching(const Search *s) { return TOUCHING * s->size; }
 
 static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
+
+// Pairs whose bound is at least this are of no interest.
+static double wanted(const Search *s) {
+  const double margin = s->near && s->pairs < NEAR_PAIRS ? s->near->margin : 0;
+  return s->best + margin - equally_near(s);
+}
 
 // A point, a straight piece of a curve, or a flat triangle, whose chord is exact.
 static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core; }
@@ -520,6 +529,33 @@ static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 p[2
       *d = there;
       memcpy(p, feet, sizeof feet);
     }
+}
+
+static void remove_near(CagPartsNear *near, size_t at) {
+  for (size_t i = at + 1; i < near->n; i++) {
+    near->distance[i - 1] = near->distance[i];
+    memcpy(near->points[i - 1], near->points[i], sizeof near->points[i]);
+  }
+  near->n--;
+}
+
+// Keeps a location unless a closer one is beside it.
+static void offer_near(CagPartsNear *near, double distance, const CagVec3 points[2]) {
+  for (size_t i = 0; i < near->n; i++) {
+    if (cag_norm(cag_sub(points[0], near->points[i][0])) > near->apart ||
+        cag_norm(cag_sub(points[1], near->points[i][1])) > near->apart)
+      continue;
+    if (near->distance[i] <= distance) return;
+    remove_near(near, i--);
+  }
+  if (near->n == CAG_PARTS_NEAR && near->distance[near->n - 1] <= distance) return;
+  size_t at = near->n < CAG_PARTS_NEAR ? near->n++ : near->n - 1;
+  for (; at > 0 && near->distance[at - 1] > distance; at--) {
+    near->distance[at] = near->distance[at - 1];
+    memcpy(near->points[at], near->points[at - 1], sizeof near->points[at]);
+  }
+  near->distance[at] = distance;
+  memcpy(near->points[at], points, sizeof near->points[at]);
 }
 
 // Lowers the best distance by the minimum that the pair leads to; `chords` is the distance of their
@@ -543,6 +579,7 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
   if (s->status) return;
   s->pairs++;
   s->farthest = fmax(s->farthest, d);
+  if (s->near && d <= s->best + s->near->margin) offer_near(s->near, d, p);
   if (d >= s->best) return;
   s->best = d;
   memcpy(s->point, p, sizeof s->point);
@@ -594,7 +631,7 @@ static void find_reach(Search *s) {
 }
 
 static void push_task(Search *s, Task task) {
-  if (s->status || task.bound >= s->best - equally_near(s)) return;
+  if (s->status || task.bound >= wanted(s)) return;
   if (!CAG_RESERVE(s->tasks, s->room, s->count + 1)) {
     s->status = cag_fail_memory(s->err);
     return;
@@ -622,9 +659,9 @@ static void push_nodes(Search *s, size_t i, size_t k) {
   const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
   double bound = -INFINITY;
   if (s->reach[1]) bound = s->reach[1][k] - s->reach[0][i] - x->sag - y->sag;
-  if (bound >= s->best - equally_near(s)) return;
+  if (bound >= wanted(s)) return;
   bound = fmax(bound, gap(&x->box, &y->box) - x->sag - y->sag);
-  if (x->core && y->core && bound < s->best - equally_near(s)) {
+  if (x->core && y->core && bound < wanted(s)) {
     const Hull p = hull_of_core(&s->a->parts->cores[x->core - 1]);
     const Hull q = hull_of_core(&s->b->parts->cores[y->core - 1]);
     bound = fmax(bound, hull_bound(&p, &q));
@@ -646,14 +683,14 @@ static void try_parts(Search *s, const Node *x, const Node *y) {
     const double from = s->reach[1] ? part_reach(s, p, 0) : INFINITY;
     for (size_t n = 0; n < y->count && !is_over(s); n++) {
       const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
-      const double least = s->best - equally_near(s) + p->sag + q->sag;
+      const double least = wanted(s) + p->sag + q->sag;
       if (s->reach[1] && part_reach(s, q, 1) - from >= least) continue;
       if (part_gap(p, q) >= least) continue;
       const double chords = chord_distance(p, q);
       if (chords >= least) continue;
       Hull a, b;
       if (hull_of_part(s->a->parts, p, &a) && hull_of_part(s->b->parts, q, &b) &&
-          hull_bound(&a, &b) >= s->best - equally_near(s))
+          hull_bound(&a, &b) >= wanted(s))
         continue;
       if (s->pairs < s->most) try_pair(s, p, q, chords);
       else fail_uncertain(s, chords - p->sag - q->sag);
@@ -680,7 +717,7 @@ static void certify(Search *s) {
   push_nodes(s, 0, 0);
   while (s->count > 0 && !is_over(s)) {
     const Task task = pop_task(s);
-    if (task.bound >= s->best - equally_near(s)) break;
+    if (task.bound >= wanted(s)) break;
     go_on(s, &task);
     if (++visited % ADAPTED == 0 && s->best < s->reach_best - equally_near(s)) find_reach(s);
   }
@@ -696,15 +733,17 @@ static void find_nearest(Search *s) {
   certify(s);
 }
 
-CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
-                             const volatile int *interrupt, CagError *err) {
+static CagStatus search_parts(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
+                              CagPartsNear *near, const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "", -1,
                     "a surface without area has no triangles to measure from");
   CagStatus status = find_tree(a, err);
   if (!status) status = find_tree(b, err);
   if (status) return status;
-  Search s = {a->tree, b->tree, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
+  Search s = {a->tree,      b->tree,      .best = INFINITY,
+              .most = most, .near = near, .interrupt = interrupt,
+              .err = err};
   find_nearest(&s);
   status = s.status;
   if (!status && interrupt && *interrupt)
@@ -716,6 +755,19 @@ CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out,
   *out = s.best <= touching(&s) ? 0 : s.best;
   if (points) memcpy(points, s.point, sizeof s.point);
   return CAG_OK;
+}
+
+CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
+                             const volatile int *interrupt, CagError *err) {
+  return search_parts(a, b, most, out, points, NULL, interrupt, err);
+}
+
+CagStatus cag_parts_near(CagParts *a, CagParts *b, size_t most, double *out, CagPartsNear *near,
+                         const volatile int *interrupt, CagError *err) {
+  near->n = 0;
+  CagStatus status = search_parts(a, b, most, out, NULL, near, interrupt, err);
+  while (near->n > 0 && near->distance[near->n - 1] > *out + near->margin) near->n--;
+  return status;
 }
 
 // --- Inside ---

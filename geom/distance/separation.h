@@ -57,6 +57,22 @@ void cag_parts_free(CagParts *parts);
 CagStatus cag_parts_distance(CagParts *a, CagParts *b, size_t most, double *out, CagVec3 points[2],
                              const volatile int *interrupt, CagError *err);
 
+// Locations at which two sets of parts are nearly as close as at the closest pair of points.
+#define CAG_PARTS_NEAR 4
+typedef struct CagPartsNear {
+  double margin; // given: distances up to this above the least one are wanted
+  double apart;  // given: locations closer than this on both sets are one
+  size_t n;
+  double distance[CAG_PARTS_NEAR]; // ascending
+  CagVec3 points[CAG_PARTS_NEAR][2];
+} CagPartsNear;
+
+// Like cag_parts_distance, and finds up to CAG_PARTS_NEAR such locations, those with the least
+// distances. If thousands of pairs are within the margin, some may be missing. If the sets meet, one
+// location where they do is found.
+CagStatus cag_parts_near(CagParts *a, CagParts *b, size_t most, double *out, CagPartsNear *near,
+                         const volatile int *interrupt, CagError *err);
+
 // The winding number of a closed mesh about p: 1 inside, 0 outside, fractions only on the boundary.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p);
 

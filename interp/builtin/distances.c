@@ -15,6 +15,9 @@
 
 // Shapes closer than this fraction of their size meet (see separation.c).
 #define TOUCHING 1e-10
+// Locations on meshes are one if they are closer than this multiple of the geometric mean of the
+// margin and the size. Over that distance, round shapes become farther apart by the margin.
+#define APART 4.0
 // The tolerance of the meshes of curved surfaces, as a fraction of their size. They are only where
 // the search on the surface starts.
 #define CURVED_TOLERANCE 1e-3
@@ -51,6 +54,8 @@ static void body_free(void *body) {
   cag_free(b->first);
   cag_free(b);
 }
+
+static double body_size(const Body *b) { return cag_norm(cag_sub(b->bounds.max, b->bounds.min)); }
 
 static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
   CagStatus status = cag_curve_list_add(&b->curves, cag_curve_retain(c), err);
@@ -288,21 +293,33 @@ static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool c
   return true;
 }
 
-// A distance, and its points if it is that of parts.
+// A distance, and locations on the meshes of set operations at which the exact shapes may be closer.
 typedef struct Nearest {
-  double distance;
-  bool of_parts;
-  CagVec3 points[2];
+  double distance;      // without these
+  double margin, apart; // of the locations (see separation.h); 0 if there are no such meshes
+  double rough;         // the least distance of the meshes
+  size_t n;
+  CagPartsNear near[4]; // of the pairs of parts
 } Nearest;
 
 // Lowers the distance to that of the parts, if both have some.
 static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, Nearest *best, CagError *err) {
-  Nearest found = {.of_parts = true};
+  const volatile int *stop = cag_vm_stop(vm);
+  double found;
+  CagStatus status = CAG_OK;
   if (a->n == 0 || b->n == 0 || best->distance == 0) return CAG_OK;
-  CagStatus status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found.distance, found.points,
-                                        cag_vm_stop(vm), err);
-  if (!status && found.distance < best->distance) *best = found;
-  return status;
+  if (best->margin == 0) {
+    status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found, NULL, stop, err);
+    if (!status) best->distance = fmin(best->distance, found);
+    return status;
+  }
+  CagPartsNear *near = &best->near[best->n];
+  *near = (CagPartsNear){.margin = best->margin, .apart = best->apart};
+  status = cag_parts_near(a, b, CAG_PARTS_PAIRS, &found, near, stop, err);
+  if (status) return status;
+  best->rough = fmin(best->rough, found);
+  best->n++;
+  return CAG_OK;
 }
 
 // The distance of the surfaces, and of convex bodies, unless *certain is false: then it is that of
@@ -310,7 +327,11 @@ static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, Nearest *be
 static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, Nearest *out, bool *certain,
                                   CagError *err) {
   CagStatus status = CAG_OK;
-  *out = (Nearest){.distance = INFINITY};
+  *out = (Nearest){.distance = INFINITY, .rough = INFINITY};
+  if ((a->is_rough || b->is_rough) && a->shapes && b->shapes) {
+    out->margin = 2 * (a->tolerance + b->tolerance);
+    out->apart = APART * sqrt(out->margin * (body_size(a) + body_size(b)));
+  }
   *certain = true;
   if (a->convex.n > 0 && b->convex.n > 0)
     status = cag_convex_list_distance(&a->convex, &b->convex, &out->distance, certain, err);
@@ -323,12 +344,12 @@ static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, Nearest *out, boo
   if (!status) status = parts_distance(vm, &a->parts, &b->convex_parts, out, err);
   if (!status && !*certain)
     status = parts_distance(vm, &a->convex_parts, &b->convex_parts, out, err);
-  if (status || isfinite(out->distance)) return status;
+  if (status || isfinite(out->distance) || out->n > 0) return status;
   return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out->distance, NULL,
                             cag_vm_stop(vm), err);
 }
 
-// --- Set operations ---
+// --- Exact set operations ---
 
 // The search for the closest points of set operations ends after this many steps, or if they move
 // by less than this fraction of the size of both.
@@ -364,17 +385,13 @@ static CagVec3 limit_of_steps(CagVec3 before, CagVec3 at, CagVec3 next) {
   return square > 0 ? cag_madd(next, -cag_dot(second, change) / square, second) : next;
 }
 
-// Moves the closest points of the meshes to those of the exact shapes. Going from each shape to the
-// other in turn, the distance only decreases. Since this is slow where the shapes are almost
-// parallel, every other step starts from where the steps seem to end.
-static bool polish_distance(CagCall *call, const Body *a, const Body *b, Nearest *best) {
-  const double size = cag_norm(cag_sub(a->bounds.max, a->bounds.min)) +
-                      cag_norm(cag_sub(b->bounds.max, b->bounds.min));
-  Polish now = {.distance = best->distance};
-  if (!cag_arg_near_target(call, 0, &now.targets[0]) ||
-      !cag_arg_near_target(call, 1, &now.targets[1]) ||
-      !polish_from(call, &now, best->points[0], &now))
-    return false;
+// Lowers the distance to that of the exact shapes close to a location on their meshes. Going from
+// each shape to the other in turn, the distance only decreases. Since this is slow where the shapes
+// are almost parallel, every other step starts from where the steps seem to end.
+static bool polish_location(CagCall *call, const CagTarget *const targets[2], CagVec3 start,
+                            double size, double *distance) {
+  Polish now = {.targets = {targets[0], targets[1]}};
+  if (!polish_from(call, &now, start, &now)) return false;
   for (int step = 0; step < POLISH_STEPS && now.distance > 0; step++) {
     Polish next, ahead;
     const CagVec3 before = now.points[0];
@@ -385,7 +402,22 @@ static bool polish_distance(CagCall *call, const Body *a, const Body *b, Nearest
     if (!polish_from(call, &now, end, &ahead)) return false;
     now = ahead.distance < next.distance ? ahead : next;
   }
-  best->distance = now.distance <= TOUCHING * size ? 0 : now.distance;
+  *distance = fmin(*distance, now.distance <= TOUCHING * size ? 0 : now.distance);
+  return true;
+}
+
+// Meshes are off by at most their tolerance, so the closest points are near one of the locations.
+static bool polish_distance(CagCall *call, const Body *a, const Body *b, Nearest *best) {
+  const CagTarget *targets[2];
+  if (!cag_arg_near_target(call, 0, &targets[0]) || !cag_arg_near_target(call, 1, &targets[1]))
+    return false;
+  const double limit = fmin(best->distance, best->rough) + best->margin;
+  for (size_t i = 0; i < best->n; i++)
+    for (size_t k = 0; k < best->near[i].n && best->distance > 0; k++)
+      if (best->near[i].distance[k] <= limit &&
+          !polish_location(call, targets, best->near[i].points[k][0], body_size(a) + body_size(b),
+                           &best->distance))
+        return false;
   return true;
 }
 
@@ -394,9 +426,7 @@ static bool body_distance(CagCall *call, Body *a, Body *b, double *out) {
   Nearest nearest;
   if (!cag_geometry_ok(call, surface_distance(call->vm, a, b, &nearest, &certain, call->err)))
     return false;
-  if (nearest.of_parts && nearest.distance > 0 && (a->is_rough || b->is_rough) && a->shapes &&
-      b->shapes && !polish_distance(call, a, b, &nearest))
-    return false;
+  if (nearest.n > 0 && !polish_distance(call, a, b, &nearest)) return false;
   *out = nearest.distance;
   if (*out == 0 || (certain && a->parts.n == 0 && b->parts.n == 0)) return true;
   if (!encloses(call, a, b, certain, &within)) return false;

@@ -305,11 +305,33 @@ static void few_evaluations_find_the_distance(void **state) {
   assert_true(most <= 130 && all <= 2600);
 }
 
+static void locations_that_are_nearly_as_close_are_found_in_order(void **state) {
+  (void)state;
+  const CagVec3 p[] = {{0, 1.01, 0}, {1, 0, 0}, {0.99, 0.2, 0}, {0, 0, 1.2}, {0, -1.05, 0}};
+  CagParts origin = {0}, others = {0};
+  CagPartsNear near = {.margin = 0.1, .apart = 0.5};
+  double out;
+  OK(cag_parts_add_point(&origin, cag_vec3(0, 0, 0), &err));
+  for (int i = 0; i < 5; i++) OK(cag_parts_add_point(&others, p[i], &err));
+  OK(cag_parts_near(&origin, &others, 100, &out, &near, NULL, &err));
+  NEAR(out, 1, 0);
+  assert_int_equal(near.n, 3); // not the one beside the closest, nor the one beyond the margin
+  const int expected[] = {1, 0, 4};
+  for (int i = 0; i < 3; i++) {
+    NEAR(near.distance[i], cag_norm(p[expected[i]]), 0);
+    near_vec(near.points[i][0], cag_vec3(0, 0, 0), 0);
+    near_vec(near.points[i][1], p[expected[i]], 0);
+  }
+  cag_parts_free(&origin);
+  cag_parts_free(&others);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_nearest_of_many_parts_may_have_a_far_chord),
       cmocka_unit_test(curves_and_surfaces_are_as_far_apart_as_on_grids),
       cmocka_unit_test(few_evaluations_find_the_distance),
+      cmocka_unit_test(locations_that_are_nearly_as_close_are_found_in_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
