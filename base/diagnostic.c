@@ -28,8 +28,12 @@ static void release(CagDiagnostic *d) {
 }
 
 void cag_diagnostics_truncate(CagDiagnostics *d, size_t n) {
-  while (d->count > n) release(&d->items[--d->count]);
+  while (d->count > n) release(cag_diagnostics_at(d, --d->count));
   d->dropped = 0;
+  if (d->count > CAG_DIAGNOSTICS_MAX) return;
+  free(d->more);
+  d->more = NULL;
+  d->more_capacity = 0;
 }
 
 void cag_diagnostics_clear(CagDiagnostics *d) { cag_diagnostics_truncate(d, 0); }
@@ -40,9 +44,23 @@ static CagDiagnostic *thrown_away(CagDiagnostics *d) {
   return &scratch;
 }
 
+// Makes room for another item. Returns NULL if the list is full, or memory ran out.
+static CagDiagnostic *new_item(CagDiagnostics *d) {
+  if (cag_diagnostics_full(d)) return NULL;
+  if (d->count >= CAG_DIAGNOSTICS_MAX + d->more_capacity) {
+    const size_t capacity = d->more_capacity ? 2 * d->more_capacity : CAG_DIAGNOSTICS_MAX;
+    CagDiagnostic *more = realloc(d->more, capacity * sizeof *more);
+    if (!more) return NULL;
+    d->more = more;
+    d->more_capacity = capacity;
+  }
+  return cag_diagnostics_at(d, d->count++);
+}
+
 CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
                                    CagSpan span, const char *format, ...) {
-  if (d->count >= CAG_DIAGNOSTICS_MAX) return thrown_away(d);
+  CagDiagnostic *fresh = new_item(d);
+  if (!fresh) return thrown_away(d);
   va_list args;
   va_start(args, format);
   char *message;
@@ -52,7 +70,6 @@ CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSo
     message = no_memory;
     id = CAG_ERR_limit_memory;
   }
-  CagDiagnostic *fresh = &d->items[d->count++];
   *fresh = (CagDiagnostic){
       .severity = CAG_SEVERITY_ERROR, .id = id, .message = message, .source = source, .span = span};
   return fresh;
@@ -98,31 +115,65 @@ void cag_diagnostic_add_note(CagDiagnostic *d, int kind, const CagSource *source
 
 void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from) {
   for (size_t i = 0; i < from->count; i++) {
-    if (to->count < CAG_DIAGNOSTICS_MAX) {
-      to->items[to->count++] = from->items[i];
+    CagDiagnostic *moved = cag_diagnostics_at(from, i), *item = new_item(to);
+    if (item) {
+      *item = *moved;
     } else {
-      release(&from->items[i]);
+      release(moved);
       to->dropped++;
     }
   }
   to->dropped += from->dropped;
   from->count = 0;
-  from->dropped = 0;
+  cag_diagnostics_clear(from);
+}
+
+static uint32_t start_of(const CagDiagnostics *d, size_t i) {
+  return cag_diagnostics_at(d, i)->span.start;
+}
+
+// Merges the sorted halves [from, middle) and [middle, to) of the list, by way of `buffer`.
+static void merge(CagDiagnostics *d, size_t from, size_t middle, size_t to, CagDiagnostic *buffer) {
+  size_t a = from, b = middle;
+  for (size_t i = 0; i < to - from; i++) {
+    const bool left = b >= to || (a < middle && start_of(d, a) <= start_of(d, b));
+    buffer[i] = *cag_diagnostics_at(d, left ? a++ : b++);
+  }
+  for (size_t i = 0; i < to - from; i++) *cag_diagnostics_at(d, from + i) = buffer[i];
+}
+
+// Sorts a few items by insertion, which needs no memory and keeps the order of equal ones.
+static void sort_few(CagDiagnostics *d, size_t from, size_t to) {
+  for (size_t i = from + 1; i < to; i++) {
+    CagDiagnostic moved = *cag_diagnostics_at(d, i);
+    size_t k = i;
+    for (; k > from && start_of(d, k - 1) > moved.span.start; k--)
+      *cag_diagnostics_at(d, k) = *cag_diagnostics_at(d, k - 1);
+    *cag_diagnostics_at(d, k) = moved;
+  }
 }
 
 void cag_diagnostics_sort(CagDiagnostics *d, size_t from) {
-  for (size_t i = from + 1; i < d->count; i++) {
-    CagDiagnostic moved = d->items[i];
-    size_t k = i;
-    for (; k > from && d->items[k - 1].span.start > moved.span.start; k--)
-      d->items[k] = d->items[k - 1];
-    d->items[k] = moved;
+  const size_t n = d->count - from;
+  if (d->count < from || n < 2) return;
+  CagDiagnostic *buffer = n > CAG_DIAGNOSTICS_MAX ? malloc(n * sizeof *buffer) : NULL;
+  if (!buffer) {
+    sort_few(d, from, d->count);
+    return;
   }
+  for (size_t i = from; i < d->count; i += CAG_DIAGNOSTICS_MAX)
+    sort_few(d, i, d->count - i < CAG_DIAGNOSTICS_MAX ? d->count : i + CAG_DIAGNOSTICS_MAX);
+  for (size_t width = CAG_DIAGNOSTICS_MAX; width < n; width *= 2)
+    for (size_t i = from; i + width < d->count; i += 2 * width)
+      merge(d, i, i + width, i + 2 * width < d->count ? i + 2 * width : d->count, buffer);
+  free(buffer);
 }
 
 void cag_diagnostics_sort_last(CagDiagnostics *d) {
   size_t from = d->count;
-  while (from > 0 && d->items[from - 1].source == d->items[d->count - 1].source) from--;
+  while (from > 0 &&
+         cag_diagnostics_at(d, from - 1)->source == cag_diagnostics_at(d, d->count - 1)->source)
+    from--;
   cag_diagnostics_sort(d, from);
 }
 

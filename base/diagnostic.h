@@ -7,6 +7,7 @@
 #ifndef CAG_BASE_DIAGNOSTIC_H
 #define CAG_BASE_DIAGNOSTIC_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "base/error.h"
@@ -38,14 +39,26 @@ typedef struct CagDiagnostic {
   size_t note_count, note_capacity;
 } CagDiagnostic;
 
-// The diagnostics of a parse or a run. At most CAG_DIAGNOSTICS_MAX errors are kept; `dropped`
-// counts the others. The list itself allocates nothing, so exhausted memory can always be reported.
+// The diagnostics of a parse or a run. At most `most` are kept (0: CAG_DIAGNOSTICS_MAX); `dropped`
+// counts the others. The first ones need no allocation, so exhausted memory can always be reported.
 #define CAG_DIAGNOSTICS_MAX 20
 typedef struct CagDiagnostics {
   CagDiagnostic items[CAG_DIAGNOSTICS_MAX];
   size_t count;
   size_t dropped;
+  size_t most;
+  CagDiagnostic *more; // those after CAG_DIAGNOSTICS_MAX
+  size_t more_capacity;
 } CagDiagnostics;
+
+// Returns item i, which must be less than `count`.
+static inline CagDiagnostic *cag_diagnostics_at(const CagDiagnostics *d, size_t i) {
+  return i < CAG_DIAGNOSTICS_MAX ? (CagDiagnostic *)&d->items[i]
+                                 : &d->more[i - CAG_DIAGNOSTICS_MAX];
+}
+static inline bool cag_diagnostics_full(const CagDiagnostics *d) {
+  return d->count >= (d->most ? d->most : CAG_DIAGNOSTICS_MAX);
+}
 
 void cag_diagnostics_clear(CagDiagnostics *d);
 // Releases all but the first n diagnostics.

@@ -264,7 +264,7 @@ void cag_diagnostic_render(const CagDiagnostic *d, CagDiagnosticStyle style, FIL
 void cag_diagnostics_render(const CagDiagnostics *d, CagDiagnosticStyle style, FILE *out) {
   for (size_t i = 0; i < d->count; i++) {
     if (i && style != CAG_DIAGNOSTIC_JSON) fputc('\n', out);
-    cag_diagnostic_render(&d->items[i], style, out);
+    cag_diagnostic_render(cag_diagnostics_at(d, i), style, out);
   }
   if (d->dropped && style != CAG_DIAGNOSTIC_JSON)
     fprintf(out, "\n%zu more not shown\n", d->dropped);

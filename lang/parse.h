@@ -164,6 +164,17 @@ CagExpr *cag_parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan o
 bool cag_parse_deeper(Parser *p);
 // Consumes the name of a definition. If there is none, enters panic mode and returns NULL.
 const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *what);
+// Where a block starts, for recovery within it.
+typedef struct BlockStart {
+  size_t brackets;    // that are open in it
+  unsigned depth;     // of recursion
+  uint32_t indent;    // of its first line; UINT32_MAX: it is on the line of its brace
+  uint32_t statement; // start of the statement that is being read
+} BlockStart;
+BlockStart cag_parse_block_start(Parser *p); // at the first token of the block
+// Ends panic mode, if the block has another line or its closing brace, and skips what is before it.
+// Returns false if no line follows: the brace was skipped as well, or the block has no end.
+bool cag_parse_recover_in_block(Parser *p, const BlockStart *b);
 // Tests whether a definition starts where the value of the previous line is expected.
 bool cag_parse_at_next_definition(Parser *p);
 // Reports that an expression is missing before the current token.

@@ -478,10 +478,11 @@ static void pass_wrong_closer(Parser *p, CagErrorId told) {
 static void recover(Parser *p, uint32_t start) {
   CagDiagnostics *errors = p->lexer.errors;
   size_t told = p->errors->count;
-  bool unclosed_told = told && p->errors->items[told - 1].id == CAG_ERR_bracket_not_closed;
+  bool unclosed_told =
+      told && cag_diagnostics_at(p->errors, told - 1)->id == CAG_ERR_bracket_not_closed;
   p->lexer.errors = NULL; // no errors are reported in the skipped text
   p->panic = false;
-  pass_wrong_closer(p, told ? p->errors->items[told - 1].id : CAG_ERR_COUNT);
+  pass_wrong_closer(p, told ? cag_diagnostics_at(p->errors, told - 1)->id : CAG_ERR_COUNT);
   while (parse_kind(p) != CAG_TOKEN_END) {
     if (parse_current(p)->span.start > start && (cag_parse_at_statement(p) || at_new_line(p)))
       break;
@@ -510,6 +511,77 @@ static void add_damaged_name(void *context, const char *name) {
   if (!CAG_RESERVE(p->damaged_names, p->damaged_name_capacity, p->damaged_name_count + 1))
     cag_memory_leave();
   p->damaged_names[p->damaged_name_count++] = name;
+}
+
+static uint32_t indent_of(Parser *p) {
+  const char *text = p->module->source->text;
+  const uint32_t start = parse_current(p)->span.start;
+  uint32_t at = start;
+  while (at > 0 && (text[at - 1] == ' ' || text[at - 1] == '\t')) at--;
+  return at == 0 || text[at - 1] == '\n' ? start - at : UINT32_MAX;
+}
+
+BlockStart cag_parse_block_start(Parser *p) {
+  return (BlockStart){p->bracket_count, p->depth, indent_of(p), parse_current(p)->span.start};
+}
+
+// Tests whether the current token is the brace that closes the block. Other brackets may be open.
+static bool at_end_of_block(Parser *p, const BlockStart *b) {
+  if (parse_current(p)->kind != CAG_TOKEN_RIGHT_BRACE) return false;
+  for (size_t i = b->brackets; i < p->bracket_count; i++)
+    if (p->brackets[i].closer == CAG_TOKEN_RIGHT_BRACE) return false;
+  return true;
+}
+
+// Tests whether the current token starts a line of the block, as its indentation shows.
+static bool at_line_of_block(Parser *p, const BlockStart *b) {
+  const CagToken *t = parse_current(p);
+  return t->newline_before && b->indent != UINT32_MAX && t->span.start > b->statement &&
+         (cag_parse_is_word(t->kind) || cag_parse_begins_expression(t->kind)) &&
+         indent_of(p) == b->indent;
+}
+
+// Closes the brackets that are still open in a line of the block.
+static void drop_brackets(Parser *p, size_t count) {
+  while (p->bracket_count > count) p->open[p->brackets[--p->bracket_count].closer]--;
+}
+
+// The names that the text from `start` to the current token may define. A name at its start may
+// lack its `=`, unless it is called.
+static void add_names_of_line(Parser *p, uint32_t start) {
+  const CagSpan passed = {start, parse_current(p)->span.start};
+  CagToken name, next;
+  cag_lexer_probe(&p->probe, &p->lexer, start);
+  cag_lexer_next(&p->probe, &name);
+  cag_lexer_next(&p->probe, &next);
+  cag_parse_probe_end(p);
+  if (name.kind == CAG_TOKEN_NAME && next.kind != CAG_TOKEN_LEFT_PAREN)
+    add_damaged_name(p, name.as.name);
+  cag_damaged_names(&p->lexer, passed, add_damaged_name, p);
+}
+
+bool cag_parse_recover_in_block(Parser *p, const BlockStart *b) {
+  if (p->excess || cag_diagnostics_full(p->errors)) return false;
+  CagDiagnostics *errors = p->lexer.errors;
+  p->lexer.errors = NULL; // no errors are reported in the skipped text
+  bool line = false, end = false;
+  while (p->bracket_count >= b->brackets && parse_current(p)->kind != CAG_TOKEN_END) {
+    p->panic = false;
+    if (cag_parse_at_statement(p) || (end = at_end_of_block(p, b)) ||
+        (line = at_line_of_block(p, b)))
+      break;
+    p->panic = true;
+    cag_parse_skip(p);
+  }
+  p->lexer.errors = errors;
+  p->panic = !line && !end;
+  if (p->panic) return false;
+  if (!p->each) add_names_of_line(p, b->statement);
+  drop_brackets(p, b->brackets);
+  p->depth = b->depth;
+  p->newlines = true;
+  if (end) cag_parse_skip(p);
+  return line;
 }
 
 // Skips an unreadable statement. `s` is the part that was read, or NULL.
@@ -547,7 +619,7 @@ static void statements(Parser *p) {
     CagStatement *s = statement(p);
     end_of_statement(p, s);
     if (p->panic) pass_damaged(p, s, start);
-    if (p->errors->count >= CAG_DIAGNOSTICS_MAX) break;
+    if (cag_diagnostics_full(p->errors)) break;
     if (!s) continue;
     if (p->each) {
       if (p->errors->count + p->errors->dropped == p->first_error) hand_over(p, s);
@@ -597,13 +669,13 @@ static void copy_results(Parser *p) {
 
 // Marks the statements that contain errors numbered `from` or higher.
 static void mark_mended(CagModuleAst *m, const CagDiagnostics *errors, size_t from) {
-  for (size_t i = from; i < errors->count; i++)
-    for (size_t k = 0; k < m->count; k++) {
-      CagStatement *s = m->statements[k];
-      const CagSpan at = errors->items[i].span;
-      if (s->damage == CAG_SOUND && s->span.start <= at.start && at.start < s->span.end)
-        s->damage = CAG_MENDED;
-    }
+  size_t k = 0; // both are sorted
+  for (size_t i = from; i < errors->count; i++) {
+    const uint32_t at = cag_diagnostics_at(errors, i)->span.start;
+    while (k < m->count && m->statements[k]->span.end <= at) k++;
+    if (k < m->count && m->statements[k]->damage == CAG_SOUND && m->statements[k]->span.start <= at)
+      m->statements[k]->damage = CAG_MENDED;
+  }
 }
 
 // Parses into a module. The arena of names may differ from the module's.

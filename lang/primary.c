@@ -218,38 +218,47 @@ static void close_block(Parser *p, Opened o, const CagExpr *value) {
   cag_parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, value, "`}`");
 }
 
+// definition | assert | expr. An expression is the value of the block.
+static CagStatement *block_statement(Parser *p, Opened o, CagExpr *block, CagExpr **value) {
+  CagStatement *s = NULL;
+  if (parse_kind(p) == CAG_TOKEN_ASSERT) {
+    s = cag_parse_assert(p);
+    cag_parse_stack_on(p, block, s->as.assertion.condition);
+    cag_parse_stack_on(p, block, s->as.assertion.message);
+  } else if (at_definition(p)) {
+    s = cag_parse_definition(p, false);
+    cag_parse_stack_on(p, block, s->as.definition.value);
+  } else if (parse_kind(p) == CAG_TOKEN_RIGHT_BRACE) {
+    cag_parse_help(cag_parse_error(p, CAG_ERR_block_without_value, cag_parse_here(p),
+                                   "this block has no value"),
+                   "it ends with an expression");
+  } else {
+    *value = cag_parse_expression(p);
+    cag_parse_stack_on(p, block, *value);
+    close_block(p, o, *value);
+  }
+  if (s) end_in_block(p);
+  return s;
+}
+
 // block = "{" { ( definition | assert ) end } expr [ ";" ] "}"
+//
+// After an error, the block continues at its next line.
 static CagExpr *block(Parser *p) {
   Opened o = cag_parse_open(p, true);
   CagExpr *e = cag_parse_new(p, CAG_EXPR_BLOCK, o.span.start), *value = NULL;
+  BlockStart start = cag_parse_block_start(p);
   size_t list = cag_parse_list_begin(p);
-  while (!p->panic && !value) {
-    CagStatement *s = NULL;
+  for (bool closed = false; !closed;) {
     while (cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
-    if (cag_parse_habit(p, true)) break;
-    if (parse_kind(p) == CAG_TOKEN_ASSERT) {
-      s = cag_parse_assert(p);
-      cag_parse_stack_on(p, e, s->as.assertion.condition);
-      cag_parse_stack_on(p, e, s->as.assertion.message);
-    } else if (at_definition(p)) {
-      s = cag_parse_definition(p, false);
-      cag_parse_stack_on(p, e, s->as.definition.value);
-    } else if (parse_kind(p) == CAG_TOKEN_RIGHT_BRACE) {
-      cag_parse_help(cag_parse_error(p, CAG_ERR_block_without_value, cag_parse_here(p),
-                                     "this block has no value"),
-                     "it ends with an expression");
-    } else {
-      value = cag_parse_expression(p);
-    }
-    if (s) {
-      cag_parse_list_push(p, &s, sizeof s);
-      end_in_block(p);
-    }
+    start.statement = parse_current(p)->span.start;
+    CagStatement *s = cag_parse_habit(p, true) ? NULL : block_statement(p, o, e, &value);
+    if (s) cag_parse_list_push(p, &s, sizeof s);
+    closed = p->panic ? !cag_parse_recover_in_block(p, &start) : !s;
   }
+  p->newlines = o.newlines;
   if (!value) value = cag_parse_error_node(p);
-  close_block(p, o, value);
   e->as.block.value = value;
-  cag_parse_stack_on(p, e, value);
   e->as.block.statements = cag_parse_list_end(p, list, sizeof(CagStatement *), &e->as.block.count);
   return cag_parse_finish(p, e);
 }

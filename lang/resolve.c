@@ -4,7 +4,6 @@
 // is the innermost visible declaration. Opening a scope marks a position in the stack of
 // declarations. Closing it restores what each of them hid. So a lookup takes constant time,
 // regardless of the number of names in a scope.
-// step, however many names a scope has.
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -50,6 +49,7 @@ typedef struct Resolver {
   const CagFunctionAst *defaults; // the function whose defaults are being resolved; NULL: none
   size_t default_index;
   size_t templates; // number of enclosing texts with { }
+  size_t searches;  // for the nearest names
   CagArena scratch; // holds lists that live as long as the resolver
 } Resolver;
 
@@ -74,12 +74,17 @@ static CagDiagnostic *report(Resolver *r, CagErrorId id, CagSpan span, const cha
   return cag_diagnostics_add(r->errors, id, r->module->source, span, "%s", message);
 }
 
-static bool full(const Resolver *r) { return r->errors->count >= CAG_DIAGNOSTICS_MAX; }
+static bool full(const Resolver *r) { return cag_diagnostics_full(r->errors); }
+
+// The number of unknown names for which the nearest name is searched. In a file with more, the
+// reason is a single missing line rather than misspellings.
+#define SEARCHES_MAX 100
 
 // Returns the known name nearest to `name`, from the enclosing scopes, the module, earlier inputs,
 // and the built-ins.
 static const char *nearest(Resolver *r, const char *name) {
   const CagResolveEnv *env = r->env;
+  if (r->searches++ >= SEARCHES_MAX) return NULL;
   size_t count = 0, most = r->count + env->outer_count + env->builtin_count;
   const char **names = cag_arena_alloc(&r->scratch, (most + 1) * sizeof *names);
   for (size_t i = r->count; i-- > 0;)
@@ -488,7 +493,6 @@ static void declare_tops(Resolver *r) {
 }
 
 static void walk_statement(Resolver *r, CagStatement *s) {
-  if (s->damage == CAG_DAMAGED) return;
   switch (s->kind) {
   case CAG_STATEMENT_IMPORT: break;
   case CAG_STATEMENT_PARAM:
@@ -506,6 +510,21 @@ static void walk_statement(Resolver *r, CagStatement *s) {
     break;
   case CAG_STATEMENT_EXPRESSION: walk(r, s->as.expression); break;
   }
+}
+
+static void clear_errors(void *errors) { cag_diagnostics_clear(errors); }
+
+// Binds the names in the readable part of a damaged statement, for editors. Nothing is reported,
+// because a name may be defined in the part that could not be read.
+static void walk_damaged(Resolver *r, CagStatement *s) {
+  CagDiagnostics *const errors = r->errors;
+  CagDiagnostics unseen = {.most = 1};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, clear_errors, &unseen);
+  r->errors = &unseen;
+  walk_statement(r, s);
+  r->errors = errors;
+  cag_cleanup_run(&cleanup);
 }
 
 // Returns the name at the start of an expression, or NULL.
@@ -545,7 +564,9 @@ static void resolve(void *context) {
   r->current = cag_checked(cag_calloc(m->name_count + 1, sizeof *r->current));
   mark_damaged(r);
   declare_tops(r);
-  for (size_t i = 0; i < m->count; i++) walk_statement(r, m->statements[i]);
+  for (size_t i = 0; i < m->count; i++)
+    if (m->statements[i]->damage == CAG_DAMAGED) walk_damaged(r, m->statements[i]);
+    else walk_statement(r, m->statements[i]);
 }
 
 bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors) {

@@ -140,7 +140,8 @@ static void mark_bad(Check *c, size_t from) {
     c->top_bad[k] = c->ast->tops[k]->statement->damage != CAG_SOUND;
   for (size_t i = from; i < c->vm->errors.count; i++)
     for (size_t k = 0; k < c->ast->top_count; k++) {
-      const CagSpan s = c->ast->tops[k]->statement->span, at = c->vm->errors.items[i].span;
+      const CagSpan s = c->ast->tops[k]->statement->span,
+                    at = cag_diagnostics_at(&c->vm->errors, i)->span;
       if (s.start <= at.start && at.end <= s.end) c->top_bad[k] = true;
     }
 }
@@ -172,6 +173,6 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   cag_diagnostics_sort_last(&vm->errors);
   cag_cleanup_run(&cleanup);
   for (size_t i = known; i < vm->errors.count; i++)
-    if (vm->errors.items[i].severity == CAG_SEVERITY_ERROR) return false;
+    if (cag_diagnostics_at(&vm->errors, i)->severity == CAG_SEVERITY_ERROR) return false;
   return true;
 }

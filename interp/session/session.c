@@ -279,8 +279,8 @@ int cag_session_fail_memory(CagSession *s) {
 // Warnings may precede the error.
 static const CagDiagnostic *first_error(const CagDiagnostics *d, size_t from) {
   for (size_t i = from; i < d->count; i++)
-    if (d->items[i].severity == CAG_SEVERITY_ERROR) return &d->items[i];
-  return &d->items[from];
+    if (cag_diagnostics_at(d, i)->severity == CAG_SEVERITY_ERROR) return cag_diagnostics_at(d, i);
+  return cag_diagnostics_at(d, from);
 }
 
 int cag_session_status(const CagSession *s) {
@@ -420,7 +420,7 @@ size_t cag_session_error_count(const CagSession *s) { return s->diagnostics.coun
 void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
   *out = (CagErrorView){0};
   if (i >= s->diagnostics.count) return;
-  const CagDiagnostic *d = &s->diagnostics.items[i];
+  const CagDiagnostic *d = cag_diagnostics_at(&s->diagnostics, i);
   const CagErrorInfo *info = cag_error_info(d->id);
   *out = (CagErrorView){.code = info->code,
                         .reason = info->reason,

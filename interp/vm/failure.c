@@ -174,14 +174,15 @@ bool(cag_fail_help)(CagVm *vm, const char *format, ...) {
   va_start(args, format);
   if (cag_vasprintf(&text, format, args) < 0) text = NULL;
   va_end(args);
-  if (text) cag_diagnostic_set_help(&vm->errors.items[vm->errors.count - 1], "%s", text);
+  if (text)
+    cag_diagnostic_set_help(cag_diagnostics_at(&vm->errors, vm->errors.count - 1), "%s", text);
   cag_free(text);
   return false;
 }
 
 bool cag_fail_hidden(CagVm *vm) {
   if (!vm->failed || vm->errors.count == 0) return false;
-  const CagDiagnostic *d = &vm->errors.items[vm->errors.count - 1];
+  const CagDiagnostic *d = cag_diagnostics_at(&vm->errors, vm->errors.count - 1);
   char name[64];
   const size_t length = d->span.end - d->span.start;
   if (!d->source || d->help || length >= sizeof name) return false;

@@ -193,6 +193,30 @@ static void the_list_keeps_twenty_and_counts_the_rest(void **state) {
   cag_diagnostics_clear(&b);
 }
 
+static void a_longer_list_is_sorted_and_keeps_the_order_of_equals(void **state) {
+  (void)state;
+  CagDiagnostics list = {.most = 1000}, other = {.most = 1000};
+  for (uint32_t i = 0; i < 997; i++) { // 61 * i mod 100 has each start about ten times
+    const CagSpan span = {61 * i % 100, 100};
+    cag_diagnostics_add(i % 2 ? &list : &other, CAG_ERR_unknown_name, NULL, span, "%u", i);
+  }
+  cag_diagnostics_move(&list, &other);
+  assert_int_equal(list.count, 997);
+  for (int i = 0; i < 5; i++)
+    cag_diagnostics_add(&list, CAG_ERR_unknown_name, NULL, (CagSpan){0, 0}, "last");
+  assert_int_equal(list.count, 1000);
+  assert_int_equal(list.dropped, 2);
+  cag_diagnostics_sort(&list, 0);
+  for (size_t i = 1; i < list.count; i++) {
+    const CagDiagnostic *a = cag_diagnostics_at(&list, i - 1), *b = cag_diagnostics_at(&list, i);
+    assert_true(a->span.start <= b->span.start);
+    if (a->span.start < b->span.start || !strcmp(b->message, "last")) continue;
+    const int first = atoi(a->message), second = atoi(b->message); // odd ones were added first
+    assert_true(first % 2 == second % 2 ? first < second : first % 2 == 1);
+  }
+  cag_diagnostics_clear(&list);
+}
+
 static void the_nearest_name_is_within_a_third(void **state) {
   (void)state;
   const char *const names[] = {"height", "width", "material", "sin", "is_watertight"};
@@ -230,6 +254,7 @@ int main(void) {
       cmocka_unit_test(colour_marks_the_same_text),
       cmocka_unit_test(notes_say_calls_tail_calls_and_what_is_left_out),
       cmocka_unit_test(the_list_keeps_twenty_and_counts_the_rest),
+      cmocka_unit_test(a_longer_list_is_sorted_and_keeps_the_order_of_equals),
       cmocka_unit_test(the_nearest_name_is_within_a_third),
       cmocka_unit_test(lines_and_columns_count_code_points),
   };

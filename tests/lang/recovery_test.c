@@ -291,6 +291,47 @@ static void syntax_errors_mark_what_is_wrong(void **state) {
   assert_int_equal(bad, 0);
 }
 
+// Resolves names after syntax errors as well.
+static Parsed resolve_damaged(const char *text) {
+  Parsed p = parse_text(text);
+  CagResolveEnv env = test_env();
+  cag_resolve(p.module, &env, &p.errors);
+  cag_diagnostics_sort(&p.errors, 0);
+  return p;
+}
+
+static void expect_all_errors(const char *text, const char *errors) {
+  Parsed p = resolve_damaged(text);
+  assert_string_equal(errors_of(&p), errors);
+  release(&p);
+}
+
+static void a_block_is_read_on_after_a_broken_line(void **state) {
+  (void)state;
+  // Each broken line has its error, and so has an unknown name in another line. Names that broken
+  // lines may define are known.
+  expect_all_errors("f(a) = {\n  x = a +* 2\n  y = x + b\n  y\n}\n", "E0120 2:10, E0201 3:11");
+  expect_all_errors("f(a) = {\n  x 2 = a\n  y = x + b\n  y +\n}\nz = c\n",
+                    "E0126 2:5, E0201 3:11, E0120 5:1, E0201 6:5");
+  // A bracket that stays open ends with the line before the next line of the block.
+  expect_all_errors("f(a) = {\n  x = max([a, 2\n  y = x + b\n  y\n}\n", "E0126 3:3, E0201 3:11");
+  expect_all_errors("f(a) = { x = max([1, }\nz = c\n", "E0120 1:22, E0201 2:5");
+  // An inner block ends before the outer one goes on.
+  expect_all_errors("f(a) = {\n  x = {\n    y = a +* 1\n    y + b\n  }\n  x + c\n}\n",
+                    "E0120 3:12, E0201 4:9, E0201 6:7");
+}
+
+static void names_of_a_damaged_statement_are_bound_without_errors(void **state) {
+  (void)state;
+  Parsed p = resolve_damaged("r = 2\nshow r * q, r +* 2\n");
+  assert_int_equal(p.errors.count, 1);
+  const CagExpr *product = p.module->statements[1]->as.list.items[0];
+  assert_int_equal(product->as.binary.left->as.name.binding, CAG_BIND_DECL);
+  assert_ptr_equal(product->as.binary.left->as.name.decl, p.module->tops[0]);
+  assert_int_equal(product->as.binary.right->as.name.binding, CAG_BIND_NONE);
+  release(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(syntax_errors_mark_what_is_wrong),
@@ -306,6 +347,8 @@ int main(void) {
       cmocka_unit_test(a_long_line_is_no_burden),
       cmocka_unit_test(a_text_that_is_open_is_no_open_bracket),
       cmocka_unit_test(damaged_texts_neither_crash_nor_hang),
+      cmocka_unit_test(a_block_is_read_on_after_a_broken_line),
+      cmocka_unit_test(names_of_a_damaged_statement_are_bound_without_errors),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
