@@ -288,7 +288,7 @@ $(BUILD)/analyzed/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "analyze $<"
 	$Qgcc $(CFLAGS_ALL) $(ANALYZE) -c $< -o $@
-$(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-file-leak
+$(BUILD)/analyzed/live/%.o $(BUILD)/analyzed/cli/%.o: ANALYZE += -Wno-analyzer-malloc-leak -Wno-analyzer-file-leak
 $(patsubst %.c,$(BUILD)/analyzed/%.o,$(INTERP_SRC)): | $(BUILD)/gen/builtin_functions.h
 analyze: $(patsubst %.c,$(BUILD)/analyzed/%.o,$(shell find $(ANALYZED) -name '*.c'))
 

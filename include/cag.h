@@ -143,6 +143,14 @@ typedef struct CagErrorView {
   bool warning;
 } CagErrorView;
 CAG_API void cag_session_error(const CagSession *s, size_t i, CagErrorView *out);
+// A further location of a diagnostic.
+typedef struct CagNoteView {
+  const char *text; // "first defined here", "called from f"
+  const char *file; // NULL: it has no location
+  size_t line, column, end_line, end_column; // from 1
+} CagNoteView;
+// Returns note k of diagnostic i. Returns false if there is none.
+CAG_API bool cag_session_error_note(const CagSession *s, size_t i, size_t k, CagNoteView *out);
 CAG_API void cag_session_write_diagnostics(const CagSession *s, CagStyle style, FILE *out);
 // Writes the error of a run that exceeded max_time, for the callback `overdue`. Can be called on
 // any thread at any time.
@@ -449,6 +457,261 @@ typedef struct CagSiteOptions {
 // exist are kept. Fails if an example does not print the expected output.
 CAG_API int cag_session_write_site(CagSession *s, const char *folder,
                                    const CagSiteOptions *options);
+
+// --- Documents ---
+// A workspace holds the texts that are being edited, for editors and language servers. A document is
+// a script, open or in a file, or a module of the library. All questions are answered from the
+// text; no script is run. Definitions that are constant (literals and calls of fast built-ins) are
+// evaluated, as by cag_session_check_text.
+//
+// A document is named by its path, which should be absolute ("/home/me/vase.cag"), by the name of a
+// module of the library ("std.robots"), or by another name without `/` if it is in no file
+// ("untitled-1"). An open document replaces its file, also for documents that import it. Files are
+// read when they are needed.
+//
+// Locations in a text are offsets in bytes. Answers are given to a callback, whose texts are valid
+// until it returns. The callback must not change the workspace. A question about a document that
+// is neither open nor readable has no answers. A workspace may be used by one thread at a time.
+
+typedef struct CagWorkspace CagWorkspace;
+
+// Makes an empty workspace. Of the options, those for modules, memory, time, depth, and interruption
+// are used, for each check or question. Returns NULL if memory ran out.
+CAG_API CagWorkspace *cag_workspace_new(const CagSessionOptions *options);
+CAG_API void cag_workspace_free(CagWorkspace *w);
+// Opens a document, or replaces its text. Returns false if memory ran out.
+CAG_API bool cag_workspace_open(CagWorkspace *w, const char *file, const char *text, size_t length);
+// Replaces the bytes [start, end) of an open document. Returns false, without a change, if there is
+// no such document or range, or memory ran out.
+CAG_API bool cag_workspace_change(CagWorkspace *w, const char *file, size_t start, size_t end,
+                                  const char *text, size_t length);
+// Closes a document. From then on, its file counts.
+CAG_API void cag_workspace_close(CagWorkspace *w, const char *file);
+// Adds a file to those that references, renaming, symbols, and imports consider, in addition to the
+// open documents, or removes it.
+CAG_API void cag_workspace_add_file(CagWorkspace *w, const char *file);
+CAG_API void cag_workspace_remove_file(CagWorkspace *w, const char *file);
+// Tells that a file has changed on disk. Documents that import it are then read again.
+CAG_API void cag_workspace_file_changed(CagWorkspace *w, const char *file);
+// Returns whether the answers for an open document may have changed since its last
+// cag_document_check.
+CAG_API bool cag_document_is_stale(CagWorkspace *w, const char *file);
+// Returns the text of a document, which is zero-terminated and valid until the workspace is next
+// used, or NULL.
+CAG_API const char *cag_document_text(CagWorkspace *w, const char *file, size_t *length);
+
+// How columns are counted.
+typedef enum CagColumns { CAG_COLUMNS_UTF8, CAG_COLUMNS_UTF16, CAG_COLUMNS_UTF32 } CagColumns;
+// Converts an offset to a line and column, both from 0. Offsets beyond the end become the end.
+CAG_API void cag_document_position(CagWorkspace *w, const char *file, size_t offset,
+                                   CagColumns columns, size_t *line, size_t *column);
+// Converts a line and column to an offset. Positions beyond the end of a line become its end.
+CAG_API size_t cag_document_offset(CagWorkspace *w, const char *file, size_t line, size_t column,
+                                   CagColumns columns);
+
+// The bytes [start, end) of a document.
+typedef struct CagPlace {
+  const char *file;
+  size_t start, end;
+} CagPlace;
+// Replaces a part of a document by a zero-terminated text.
+typedef struct CagEdit {
+  CagPlace place;
+  const char *text;
+} CagEdit;
+typedef void CagGivePlace(void *context, const CagPlace *place);
+typedef void CagGiveEdit(void *context, const CagEdit *edit);
+
+// What a name stands for.
+typedef enum CagNameKind {
+  CAG_NAME_VALUE,     // a definition of the module
+  CAG_NAME_FUNCTION,  // a definition with parameters, or of a function
+  CAG_NAME_PARAM,     // a param
+  CAG_NAME_MODULE,    // an imported module
+  CAG_NAME_PARAMETER, // of a function
+  CAG_NAME_LOCAL,     // a definition in a block, or a name of a comprehension
+  CAG_NAME_FIELD,     // of a record or another value
+  CAG_NAME_BUILTIN,   // a built-in function
+  CAG_NAME_CONSTANT,  // a built-in constant
+  CAG_NAME_WORD,      // a reserved word
+  CAG_NAME_FILE,      // a file or folder
+  CAG_NAME_CHOICE,    // a text that a parameter accepts
+  CAG_NAME_SNIPPET,   // a statement or form with gaps
+  CAG_NAME_UNKNOWN
+} CagNameKind;
+
+// An error or a warning. `code` and `reason` are as in CagErrorView.
+typedef struct CagProblem {
+  CagPlace place; // file NULL: it has no location
+  const char *code, *reason, *message, *help;
+  bool warning, unused, deprecated;
+  size_t note_count;
+  const struct CagProblemNote {
+    CagPlace place; // file NULL: it has no location
+    const char *text;
+  } * notes;
+} CagProblem;
+// Checks a document, and gives all problems of it and of the files that it imports. There may be
+// more than 20. Returns a status; CAG_STATUS_INTERRUPTED and CAG_STATUS_LIMIT mean that the check
+// is incomplete.
+CAG_API int cag_document_check(CagWorkspace *w, const char *file,
+                               void (*give)(void *context, const CagProblem *p), void *context);
+
+typedef struct CagSymbolView {
+  const char *name;
+  const char *detail; // "(height, width = 2)", or "" if there is none
+  CagNameKind kind;
+  CagPlace whole, place; // of the statement, and of the name
+  size_t depth;          // 0 at the top level; definitions in blocks and fields of records are below
+} CagSymbolView;
+typedef void CagGiveSymbol(void *context, const CagSymbolView *s);
+// Gives the definitions of a document, in order.
+CAG_API void cag_document_symbols(CagWorkspace *w, const char *file, CagGiveSymbol *give,
+                                  void *context);
+// Gives the top-level definitions of all documents whose name contains the letters of `query` in
+// order, ignoring case.
+CAG_API void cag_workspace_symbols(CagWorkspace *w, const char *query, CagGiveSymbol *give,
+                                   void *context);
+
+typedef struct CagCompletion {
+  const char *label, *detail; // detail: a signature or type; may be NULL
+  const char *documentation;  // Markdown; NULL: none
+  CagNameKind kind;
+  CagPlace place;   // what is replaced
+  const char *text; // what is inserted
+  bool is_snippet;  // `text` has gaps, as in ${1:radius} and $0
+  int rank;         // 0: the most likely ones
+  bool deprecated;
+  const CagEdit *import; // an import that the name needs; NULL: none
+} CagCompletion;
+// Gives what can be written at an offset, given the text before it: names in scope, members,
+// arguments, modules, files, and texts that a parameter accepts.
+CAG_API void cag_document_complete(CagWorkspace *w, const char *file, size_t offset,
+                                   void (*give)(void *context, const CagCompletion *c),
+                                   void *context);
+
+// Calls `give` with a description in Markdown of what is at an offset, and its place. Returns false
+// if there is nothing to describe.
+CAG_API bool cag_document_hover(CagWorkspace *w, const char *file, size_t offset,
+                                void (*give)(void *context, const CagPlace *place,
+                                             const char *markdown),
+                                void *context);
+
+typedef struct CagSignatureView {
+  const char *label, *documentation; // documentation: Markdown; NULL: none
+  size_t parameter_count;
+  const struct CagSignatureParameter {
+    size_t start, end;         // in the label
+    const char *documentation; // NULL: none
+  } * parameters;
+  size_t active;  // the parameter that is being written; parameter_count: none
+  bool is_chosen; // of several signatures, the one that the arguments fit
+} CagSignatureView;
+// Gives the signatures of the function whose arguments enclose an offset.
+CAG_API void cag_document_signatures(CagWorkspace *w, const char *file, size_t offset,
+                                     void (*give)(void *context, const CagSignatureView *s),
+                                     void *context);
+
+// Gives the place of the definition of the name at an offset; of a module, its start.
+CAG_API void cag_document_definition(CagWorkspace *w, const char *file, size_t offset,
+                                     CagGivePlace *give, void *context);
+// Gives all places of the name at an offset, in all documents, with or without its definition.
+CAG_API void cag_document_references(CagWorkspace *w, const char *file, size_t offset,
+                                     bool definition, CagGivePlace *give, void *context);
+// Gives those in the same document.
+CAG_API void cag_document_highlights(CagWorkspace *w, const char *file, size_t offset,
+                                     CagGivePlace *give, void *context);
+// Tests whether the name at an offset can be changed, and gives its place.
+CAG_API bool cag_document_can_rename(CagWorkspace *w, const char *file, size_t offset,
+                                     CagGivePlace *give, void *context);
+// Gives the edits that change the name at an offset everywhere. If the change is impossible, or
+// would change the meaning of a script, writes the reason to `why`, of `size` bytes, and returns
+// false.
+CAG_API bool cag_document_rename(CagWorkspace *w, const char *file, size_t offset, const char *name,
+                                 CagGiveEdit *give, void *context, char *why, size_t size);
+
+typedef enum CagFoldKind { CAG_FOLD_CODE, CAG_FOLD_COMMENT, CAG_FOLD_IMPORTS } CagFoldKind;
+// Gives the parts of several lines that can be folded.
+CAG_API void cag_document_folds(CagWorkspace *w, const char *file,
+                                void (*give)(void *context, const CagPlace *place,
+                                             CagFoldKind kind),
+                                void *context);
+// Gives the expressions and statements that enclose an offset, from the innermost to the whole.
+CAG_API void cag_document_selection(CagWorkspace *w, const char *file, size_t offset,
+                                    CagGivePlace *give, void *context);
+
+// Kinds of words of a text, from general to specific.
+typedef enum CagWordKind {
+  CAG_WORD_KEYWORD,
+  CAG_WORD_OPERATOR,
+  CAG_WORD_NUMBER,
+  CAG_WORD_TEXT,
+  CAG_WORD_COMMENT,
+  CAG_WORD_VALUE,
+  CAG_WORD_FUNCTION,
+  CAG_WORD_PARAMETER,
+  CAG_WORD_MODULE,
+  CAG_WORD_FIELD,
+  CAG_WORD_KIND_COUNT
+} CagWordKind;
+enum {
+  CAG_WORD_IS_DEFINITION = 1,
+  CAG_WORD_IS_LIBRARY = 2, // built in, or of the standard library
+  CAG_WORD_IS_CONSTANT = 4,
+  CAG_WORD_IS_DOCUMENTATION = 8,
+  CAG_WORD_IS_DEPRECATED = 16
+};
+// Gives the words between two offsets with their meaning, in order. None contains a line break.
+CAG_API void cag_document_words(CagWorkspace *w, const char *file, size_t start, size_t end,
+                                void (*give)(void *context, const CagPlace *place, CagWordKind kind,
+                                             unsigned flags),
+                                void *context);
+// Gives the names of the parameters of positional arguments between two offsets: "height: ".
+CAG_API void cag_document_hints(CagWorkspace *w, const char *file, size_t start, size_t end,
+                                void (*give)(void *context, const CagPlace *place,
+                                             const char *label),
+                                void *context);
+// Gives the imports and the files that texts name, with the document that each leads to.
+CAG_API void cag_document_links(CagWorkspace *w, const char *file,
+                                void (*give)(void *context, const CagPlace *place,
+                                             const char *target),
+                                void *context);
+// Gives the texts that are colors, with sRGB components in 0..1.
+CAG_API void cag_document_colors(CagWorkspace *w, const char *file,
+                                 void (*give)(void *context, const CagPlace *place,
+                                              const double rgb[3]),
+                                 void *context);
+// Writes a color (sRGB, 0..1) as a text of a script, such as "\"#0a8\"", to `out`, of `size` bytes.
+CAG_API void cag_color_text(const double rgb[3], char *out, size_t size);
+
+// Gives the edits that format the statements between two offsets (all: 0 and SIZE_MAX). Statements
+// with syntax errors stay as they are; with a range of the whole text, none is changed then.
+// Returns false if it cannot be formatted.
+CAG_API bool cag_document_format(CagWorkspace *w, const char *file, size_t start, size_t end,
+                                 CagGiveEdit *give, void *context);
+
+typedef enum CagActionKind { CAG_ACTION_FIX, CAG_ACTION_EXTRACT, CAG_ACTION_REWRITE } CagActionKind;
+typedef struct CagActionView {
+  const char *title;
+  CagActionKind kind;
+  const char *code;         // of the problem that it fixes; NULL: none
+  CagPlace problem;         // the place of that problem
+  bool is_preferred;        // the obvious fix
+  const CagEdit *edits;
+  size_t edit_count;
+} CagActionView;
+// Gives the changes that are useful for the part [start, end) of a document: fixes of its problems,
+// and extraction of the selected expression to a definition or a param.
+CAG_API void cag_document_actions(CagWorkspace *w, const char *file, size_t start, size_t end,
+                                  void (*give)(void *context, const CagActionView *a),
+                                  void *context);
+
+// What can be done with a document: its first `show`, and whether it has expectations of a test.
+typedef struct CagDocumentUse {
+  bool shows, tests;
+  CagPlace show, test; // of the first show, and of the first expectation or example
+} CagDocumentUse;
+CAG_API bool cag_document_use(CagWorkspace *w, const char *file, CagDocumentUse *out);
 
 // --- Error codes ---
 // Writes the long explanation of an error, given its code ("E0201") or its short name. Returns

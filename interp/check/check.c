@@ -152,7 +152,9 @@ static void free_check(void *context) {
   cag_diagnostics_clear(&c->ignored);
 }
 
-bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
+bool cag_check_module(CagVm *vm, CagModuleUnit *m) { return cag_check_module_types(vm, m, NULL); }
+
+bool cag_check_module_types(CagVm *vm, CagModuleUnit *m, CagTypes *types) {
   const size_t n = m->ast->top_count, known = vm->errors.count;
   Check c = {.vm = vm, .unit = m, .ast = m->ast, .top = n};
   CagCleanup cleanup;
@@ -171,6 +173,8 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   // unknown name or unread text may be a use.
   if (m->sound && known == m->first_error) warn_unused(&c);
   cag_diagnostics_sort_last(&vm->errors);
+  for (size_t i = 0; types && i < n; i++)
+    types[i] = c.top_done[i] ? c.top_types[i] : CAG_TYPES_ANY;
   cag_cleanup_run(&cleanup);
   for (size_t i = known; i < vm->errors.count; i++)
     if (cag_diagnostics_at(&vm->errors, i)->severity == CAG_SEVERITY_ERROR) return false;

@@ -5,6 +5,7 @@
 
 #include "interp/check/constant.h"
 #include "interp/vm/builtin.h"
+#include "base/memory.h"
 
 // Larger expressions are data, which take long and are rarely wrong.
 #define NODES_MAX 400
@@ -136,4 +137,38 @@ void cag_check_constant(CagConstants *c, const CagExpr *e) {
   if (vm->stop) c->evaluated = CALLS_MAX; // interrupted: report this only once
   cag_diagnostics_move(&vm->errors, &found);
   cag_diagnostics_clear(&found);
+}
+
+typedef struct Printing {
+  Evaluation work;
+  CagString *out;
+} Printing;
+
+static bool evaluate_to_text(CagVm *vm, void *context) {
+  const Printing *p = context;
+  CagValue value;
+  const CagProto *proto = cag_compile_expression(vm, p->work.unit, p->work.e, NULL);
+  if (!proto || !cag_vm_run(vm, proto, &value)) return false;
+  cag_print_value(vm, p->out, value, false);
+  return true;
+}
+
+bool cag_constant_print(CagVm *vm, CagModuleUnit *unit, const CagExpr *e, CagString *out) {
+  size_t nodes = 0;
+  CagConstants c = {.vm = vm, .unit = unit};
+  bool *bad = cag_calloc(unit->ast->top_count + 1, sizeof *bad);
+  if (!bad) return false;
+  for (size_t i = 0; i < unit->ast->top_count; i++)
+    bad[i] = unit->ast->tops[i]->statement->damage != CAG_SOUND;
+  c.is_bad = bad;
+  bool ok = is_constant(&c, e, &nodes);
+  cag_free(bad);
+  if (!ok) return false;
+  CagDiagnostics known = vm->errors;
+  vm->errors = (CagDiagnostics){0};
+  ok = cag_vm_protect(vm, evaluate_to_text, &(Printing){{unit, e}, out});
+  cag_diagnostics_clear(&vm->errors);
+  vm->errors = known;
+  vm->failed = false;
+  return ok && !out->failed;
 }

@@ -16,6 +16,9 @@ typedef struct CagConstants {
   size_t evaluated;
 } CagConstants;
 
+// Evaluates an expression if it is constant, and prints its value. Returns false if it is not, or
+// if it has an error. Errors are discarded.
+bool cag_constant_print(CagVm *vm, CagModuleUnit *unit, const CagExpr *e, CagString *out);
 // Evaluates a call or a pipe if it is constant. Adds its error to vm->errors.
 void cag_check_constant(CagConstants *c, const CagExpr *e);
 

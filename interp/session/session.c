@@ -437,6 +437,24 @@ void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
   out->end_column = to.column;
 }
 
+bool cag_session_error_note(const CagSession *s, size_t i, size_t k, CagNoteView *out) {
+  *out = (CagNoteView){0};
+  if (i >= s->diagnostics.count) return false;
+  const CagDiagnostic *d = cag_diagnostics_at(&s->diagnostics, i);
+  if (k >= d->note_count) return false;
+  const CagNote *note = &d->notes[k];
+  out->text = note->text;
+  if (!note->source) return true;
+  const CagPosition from = cag_source_position(note->source, note->span.start),
+                    to = cag_source_position(note->source, note->span.end);
+  out->file = note->source->name;
+  out->line = from.line;
+  out->column = from.column;
+  out->end_line = to.line;
+  out->end_column = to.column;
+  return true;
+}
+
 void cag_session_write_diagnostics(const CagSession *s, CagStyle style, FILE *out) {
   cag_diagnostics_render(&s->diagnostics, (CagDiagnosticStyle)style, out);
 }

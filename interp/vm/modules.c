@@ -105,6 +105,8 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
   }
   size_t length;
   const char *why;
+  const char *given = vm->find_text ? vm->find_text(vm->find_text_context, real, &length) : NULL;
+  if (given) return load_unit(vm, new_unit(vm, shown, real, given, length), CAG_PARSE_FILE);
   char *text = cag_read_whole_file(real, &length, &why);
   if (!text) {
     cag_diagnostics_add(&vm->errors, CAG_ERR_module_unreadable, from->source,
@@ -370,6 +372,14 @@ size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t lengt
   size_t k = load_unit(vm, new_unit(vm, name, NULL, text, length), mode);
   vm->failed = k == CAG_NO_MODULE;
   return k;
+}
+
+CagModuleUnit *cag_load_document(CagVm *vm, const char *name, const char *path, const char *text,
+                                 size_t length) {
+  if (path) set_root(vm, path);
+  const size_t k = vm->module_count; // imports have higher indices
+  load_unit(vm, new_unit(vm, name, path, text, length), CAG_PARSE_FILE);
+  return vm->modules[k];
 }
 
 const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, size_t length) {

@@ -256,6 +256,10 @@ struct CagVm {
   bool loop; // time is frame/frames
   double tolerance;
   char *root;     // real path of the folder of the main script; NULL: none, so no file may be read
+  // Returns the text that replaces a file, given its real path, or NULL. It must live until the
+  // call that loads the module ends. NULL: files are read.
+  const char *(*find_text)(void *context, const char *path, size_t *length);
+  void *find_text_context;
   char **include; // real paths of the module path
   size_t include_count;
 
@@ -361,6 +365,10 @@ bool cag_vm_fail_memory(CagVm *vm);
 size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
 size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
                      CagParseMode mode);
+// The same for a text that stands for the file `path`, a real path (NULL: it is in no file). Gives
+// the module even if it has errors; its AST is NULL if it could not be read.
+CagModuleUnit *cag_load_document(CagVm *vm, const char *name, const char *path, const char *text,
+                                 size_t length);
 // Returns the source of a script that is not to be run, which lives as long as the machine, or NULL
 // if it is not text.
 const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, size_t length);
