@@ -236,17 +236,22 @@ static bool has_same(const cJSON *list, const cJSON *diagnostic) {
   return false;
 }
 
+// Adds the diagnostics of `more` that are not in `out`, in which one document has them once.
+static void add_new(cJSON *out, const cJSON *more) {
+  const bool first = !out->child;
+  const cJSON *item;
+  cJSON_ArrayForEach(item, more) {
+    if (first || !has_same(out, item)) cJSON_AddItemToArray(out, cJSON_Duplicate(item, true));
+  }
+}
+
 // Adds what documents have found in a file. An open document counts for itself.
 static void collect(CagLsp *l, const char *file, cJSON *out) {
   const LspDocument *own = lsp_find_file(l, file);
   for (size_t i = 0; i < l->document_count; i++) {
     const LspDocument *d = &l->documents[i];
-    const cJSON *item;
-    if (!own || own == d)
-      cJSON_ArrayForEach(item, lsp_get(d->published, file)) if (!has_same(out, item))
-          cJSON_AddItemToArray(out, cJSON_Duplicate(item, true));
-    cJSON_ArrayForEach(item, lsp_get(d->ran, file)) if (!has_same(out, item))
-        cJSON_AddItemToArray(out, cJSON_Duplicate(item, true));
+    if (!own || own == d) add_new(out, lsp_get(d->published, file));
+    add_new(out, lsp_get(d->ran, file));
   }
 }
 

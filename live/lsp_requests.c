@@ -336,12 +336,20 @@ static cJSON *workspace_symbols(CagLsp *l, const cJSON *params) {
   return p.out;
 }
 
+// Editors fold one part per line. The outer ones are given first.
+static bool has_fold(const cJSON *list, size_t line) {
+  const cJSON *last = list->child ? list->child->prev : NULL;
+  for (int i = 0; last && i < 16; i++, last = last == list->child ? NULL : last->prev)
+    if (lsp_get(last, "startLine")->valuedouble == (double)line) return true;
+  return false;
+}
+
 static void add_fold(void *context, const CagPlace *place, CagFoldKind kind) {
   Place *p = context;
   size_t first, last, column;
   cag_document_position(p->l->workspace, place->file, place->start, p->l->columns, &first, &column);
   cag_document_position(p->l->workspace, place->file, place->end, p->l->columns, &last, &column);
-  if (last <= first) return;
+  if (last <= first || has_fold(p->out, first)) return;
   cJSON *o = cJSON_CreateObject();
   cJSON_AddNumberToObject(o, "startLine", (double)first);
   // The line of the closing bracket stays visible.

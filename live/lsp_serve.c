@@ -71,13 +71,13 @@ static void skip(FILE *in, size_t length) {
   }
 }
 
-// Reads a line of a header without its end. Returns false at the end of the file.
+// Reads a line of a header without its end. Returns false if there is none.
 static bool read_line(FILE *in, char *line, size_t size) {
   size_t n = 0;
   int c;
   while ((c = getc(in)) != EOF && c != '\n')
     if (n + 1 < size) line[n++] = (char)c;
-  if (c == EOF) return false;
+  if (c == EOF && n == 0) return false;
   if (n && line[n - 1] == '\r') n--;
   line[n] = 0;
   return true;

@@ -30,7 +30,10 @@ static CagTypes infer_binary(Check *c, const CagExpr *e) {
            cag_types_text(b, right, sizeof right));
   CagDiagnostic *d = cag_check_report(c, CAG_ERR_operand, e->span, text);
   const bool mixed = (a | b) == (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE));
-  if (mixed) cag_diagnostic_set_help(d, "write the number with a unit: 30deg");
+  const CagExpr *number = a == CAG_TYPES(NUMBER) ? e->as.binary.left : e->as.binary.right;
+  if (mixed)
+    cag_diagnostic_set_help(d, "write the number with a unit: %.15gdeg",
+                            number->kind == CAG_EXPR_NUMBER ? number->as.number : 30);
   return CAG_TYPES_ANY;
 }
 

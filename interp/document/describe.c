@@ -54,7 +54,9 @@ void cag_describe_head(const Entity *e, CagString *out) {
 
 void cag_describe_doc(const char *doc, bool brief, CagString *out) {
   if (brief) {
-    const size_t end = cag_doc_sentence(doc);
+    const char *paragraph = strstr(doc, "\n\n");
+    size_t end = cag_doc_sentence(doc);
+    if (paragraph && (size_t)(paragraph - doc) < end) end = (size_t)(paragraph - doc);
     cag_string_printf(out, "%.*s\n", (int)end, doc);
     return;
   }
@@ -66,6 +68,17 @@ void cag_describe_doc(const char *doc, bool brief, CagString *out) {
     else cag_string_printf(out, "%s\n", part);
     free(part);
     doc += n;
+  }
+}
+
+// Adds the parameters of a row with their types and meanings.
+static void describe_parameters(size_t index, size_t row, CagString *out) {
+  const CagSignature *s = cag_builtin_signature(index, row);
+  if (s && s->count) add_text(out, "\n");
+  for (size_t i = 0; s && i < s->count; i++) {
+    const char *meaning = cag_doc_meaning(s->name, s->parameters[i]);
+    cag_string_printf(out, "- `%s`: %s%s%s\n", s->parameters[i], s->words[i], *meaning ? ": " : "",
+                      meaning);
   }
 }
 
@@ -88,6 +101,7 @@ void cag_describe_builtin(size_t index, bool brief, CagString *out) {
     }
     cag_string_printf(out, "%.*s\n", brief ? (int)sentence : (int)strlen(row[i].summary),
                       row[i].summary);
+    if (!brief) describe_parameters(index, i, out);
     if (brief || !row[i].example) continue;
     add_text(out, "\n");
     add_code(out, row[i].example, strlen(row[i].example));
@@ -175,7 +189,6 @@ static void describe_param(const Entity *e, CagString *out) {
   const CagStatement *s = e->decl->statement;
   const CagSource *source = e->unit->source;
   add_code(out, source->text + s->span.start, s->span.end - s->span.start);
-  if (s->as.param.label) cag_string_printf(out, "\n%s\n", s->as.param.label);
 }
 
 static void describe_parameter(const Entity *e, CagString *out) {

@@ -81,6 +81,7 @@ struct CagWorkspace {
   CagSessionOptions options;
   Document **documents;
   size_t count, capacity;
+  Document *last; // found last; NULL: none
   FILE *sink; // receives what `trace` would write in constant definitions
 };
 

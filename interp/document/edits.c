@@ -344,7 +344,8 @@ static void fix_by_words(Actions *a, CagSpan span, const char *form) {
     give_fix(a, text_of(a, "Write %s", form), span.start, span.end, form);
   } else if (a->problem->id == CAG_ERR_print_parentheses && n > 6) {
     give_fix(a, "Remove the parentheses", span.start, span.end,
-             text_of(a, "%.*s", (int)(span.end - span.start - 2), a->d->text + span.start + 1));
+             text_of(a, "%s%.*s", span.start && a->d->text[span.start - 1] != ' ' ? " " : "",
+                     (int)(span.end - span.start - 2), a->d->text + span.start + 1));
   } else if (a->problem->id == CAG_ERR_needs_parentheses && n > 2 &&
              strncmp(a->d->text + span.start, form + 1, n - 2) == 0) {
     give_fix(a, "Add parentheses", span.start, span.start + n - 2, form);

@@ -147,6 +147,15 @@ static size_t active_of(const CursorCall *call, const char *const *names, size_t
   return count;
 }
 
+static const char *builtin_meaning(Signatures *s, const CagSignature *sig, size_t k) {
+  CagString text = {0};
+  const char *meaning = cag_doc_meaning(sig->name, sig->parameters[k]);
+  cag_string_printf(&text, "%s%s%s", sig->words[k], *meaning ? ": " : "", meaning);
+  const char *copy = text.bytes ? cag_arena_copy(&s->memory, text.bytes, text.length) : NULL;
+  cag_string_free(&text);
+  return copy;
+}
+
 static void give_builtin(Signatures *s, const CursorCall *call) {
   size_t rows;
   if (call->callee.index >= cag_builtin_count()) return;
@@ -164,7 +173,7 @@ static void give_builtin(Signatures *s, const CursorCall *call) {
     cag_string_printf(&doc, "%.*s", (int)cag_doc_sentence(row[i].summary), row[i].summary);
     for (size_t k = 0; label.bytes && k < sig->count; k++) {
       p[k] = parameter_at(label.bytes, sig->parameters[k]);
-      p[k].documentation = cag_doc_meaning(sig->name, sig->parameters[k]);
+      p[k].documentation = builtin_meaning(s, sig, k);
     }
     const size_t active = active_of(call, sig->parameters, sig->count, sig->variadic);
     const bool fits = !chosen && (active < sig->count || sig->count == 0);

@@ -92,7 +92,7 @@ void cag_document_definition(CagWorkspace *w, const char *file, size_t offset, C
 // An import without an alias names the module by the last word of its path.
 static bool names_import(const Occurrence *o, const Entity *e) {
   return e->kind == ENTITY_DECL && e->decl->kind == CAG_DECL_IMPORT && o->decl == e->decl &&
-         o->entity.kind == ENTITY_MODULE;
+         o->entity.kind == ENTITY_MODULE && !e->decl->statement->as.import.alias;
 }
 
 static bool refers(const Occurrence *o, const Entity *e) {
@@ -121,8 +121,10 @@ static const char *word_of(const Entity *e) {
   }
 }
 
-// Tests whether other documents can refer to it.
+// Tests whether other documents cannot refer to it. Fields of the same name in other documents are
+// usually others.
 static bool is_local(const Entity *e) {
+  if (e->kind == ENTITY_FIELD) return true;
   return e->kind == ENTITY_DECL &&
          (e->decl->kind == CAG_DECL_IMPORT || e->decl->kind == CAG_DECL_IMPORTED ||
           e->decl->kind == CAG_DECL_BLOCK || e->decl->kind == CAG_DECL_CLAUSE ||
@@ -236,9 +238,7 @@ static bool rename_in(void *context, Document *d) {
   const Entity *e = &r->n.entity;
   for (size_t i = 0; i < d->occurrence_count; i++) {
     const Occurrence *o = &d->occurrences[i];
-    const bool import = d == r->n.d && names_import(o, e);
-    if (import && e->decl->statement->as.import.alias) continue; // the alias is another occurrence
-    if (import) add_edit(r, d, (CagSpan){o->span.end, o->span.end}, r->alias);
+    if (d == r->n.d && names_import(o, e)) add_edit(r, d, (CagSpan){o->span.end, o->span.end}, r->alias);
     else if (cag_entity_equal(&o->entity, e)) add_edit(r, d, o->span, r->name);
   }
   return true;
@@ -322,9 +322,7 @@ typedef struct Recount {
 static bool recount(void *context, Document *d) {
   Recount *c = context;
   for (size_t i = 0; i < d->occurrence_count; i++) {
-    const Occurrence *o = &d->occurrences[i];
-    const bool import = names_import(o, c->entity) && !o->decl->statement->as.import.alias;
-    c->count += import || cag_entity_equal(&o->entity, c->entity);
+    c->count += refers(&d->occurrences[i], c->entity);
   }
   return true;
 }

@@ -13,6 +13,7 @@
 
 typedef struct Scope {
   size_t offset;
+  const char *text;
   size_t unfinished; // what ends here or later may go on to the offset, because of an error
   const CagDecl **decls; // outermost first
   size_t count, capacity;
@@ -30,8 +31,16 @@ static void add_decl(Scope *s, const CagDecl *decl) {
   s->decls[s->count++] = decl;
 }
 
+// Tests whether only blanks are between the end of an expression and the offset, and no bracket
+// closes the expression. It may then go on there.
+static bool continues(const Scope *s, CagSpan span) {
+  if (span.end == 0 || strchr(")]}\"`", s->text[span.end - 1])) return false;
+  return strspn(s->text + span.end, " \t") >= s->offset - span.end;
+}
+
 static bool encloses(const Scope *s, CagSpan span) {
-  return span.start <= s->offset && (s->offset <= span.end || span.end >= s->unfinished);
+  if (span.start > s->offset) return false;
+  return s->offset <= span.end || span.end >= s->unfinished || continues(s, span);
 }
 
 static void enter_expression(void *context, const CagExpr *e);
@@ -95,7 +104,7 @@ void cag_document_scope(const Document *d, size_t offset,
   CagArena memory = {0};
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, free_arena, &memory);
-  Scope inner = {.offset = offset, .memory = &memory}, outer = inner;
+  Scope inner = {.offset = offset, .text = d->text, .memory = &memory}, outer = inner;
   gather(&inner, d);
   gather_module(&outer, d);
   for (size_t i = inner.count; i-- > 0;) give(context, inner.decls[i]);

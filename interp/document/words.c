@@ -192,7 +192,7 @@ static void hint_call(const Hints *h, const CagExpr *call, bool piped) {
     const char *name = NULL;
     if (f && k < f->parameter_count) name = f->parameters[k].decl->name;
     if (s && k < s->count && !s->positional_only[k]) name = s->parameters[k];
-    if (!name || !is_literal(a->value) || positional < 2) continue;
+    if (!name || !is_literal(a->value) || call->as.call.count + piped < 2) continue;
     const CagSpan span = a->value->span;
     const CagPlace place = {h->d->file, span.start, span.start};
     char label[128];

@@ -114,9 +114,11 @@ void cag_workspace_free(CagWorkspace *w) {
   cag_free(w);
 }
 
-static Document *find(const CagWorkspace *w, const char *file) {
+// Most calls ask about the same document as the one before.
+static Document *find(CagWorkspace *w, const char *file) {
+  if (w->last && strcmp(w->last->file, file) == 0) return w->last;
   for (size_t i = 0; i < w->count; i++)
-    if (strcmp(w->documents[i]->file, file) == 0) return w->documents[i];
+    if (strcmp(w->documents[i]->file, file) == 0) return w->last = w->documents[i];
   return NULL;
 }
 

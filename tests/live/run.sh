@@ -1,0 +1,57 @@
+#!/bin/sh
+# Tests of the language server with clients. The last line is `N passed, N failed, N skipped`. Tests that need a missing tool are skipped.
+#
+#   BUILD=build sh tests/live/run.sh           with 300 random edits
+#   EDITS=10000 sh tests/live/run.sh           the long run
+set -u
+cd "$(dirname "$0")/../.."
+build=${BUILD:-build}
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0 failed=0 skipped=0
+
+# result NAME STATUS TEXT: counts a test, and shows the text if it failed.
+result() {
+  if [ "$2" = 0 ]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED $1"
+    [ -z "${3-}" ] || printf '%s\n' "$3" | head -n 20 | sed 's/^/  /'
+  fi
+}
+
+# counted COMMAND: runs tests that print counts.
+counted() {
+  "$@" > "$work/out" 2>&1
+  status=$?
+  grep -v ' passed, ' "$work/out"
+  counts=$(tail -n 1 "$work/out" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) skipped$/\1 \2 \3/p')
+  set -- ${counts:-0 1 0}
+  [ "$status" -eq 0 ] || [ "$2" -gt 0 ] || set -- "$1" 1 "$3"
+  passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+}
+
+counted python3 tests/live/requests.py "$build/cag"
+counted python3 tests/live/hostile.py "$build/cag"
+found=$(python3 tests/live/random_edits.py "$build/cag" "${EDITS:-300}" "${SEED:-1}" 2>&1)
+result 'random edits' $? "$found"
+
+if command -v nvim > /dev/null; then
+  mkdir "$work/files"
+  printf 'import std.materials as mat\nimport b\nring(outer, inner) = outer + inner\nprint raduis, mat.brass.color, b.x, ring(2, 1)\nradius = 3\nshow []\n' > "$work/files/a.cag"
+  echo 'x = 2' > "$work/files/b.cag"
+  editors=$PWD/editors tests=$PWD/tests/live
+  (cd "$work/files" && OUT=$work/neovim EDITORS=$editors CAG=$build/cag XDG_CACHE_HOME=$work/cache XDG_STATE_HOME=$work/state HOME=$work \
+    timeout 120 nvim --headless -u NONE -i NONE -n -S "$tests/neovim.lua" a.cag < /dev/null > "$work/nvim" 2>&1)
+  result 'Neovim ends' $? "$(cat "$work/nvim")"
+  sed -n 's/^FAILED /FAILED Neovim: /p' "$work/neovim"
+  passed=$((passed + $(grep -c '^ok ' "$work/neovim"))) failed=$((failed + $(grep -c '^FAILED ' "$work/neovim")))
+else
+  count=$(grep -c '^ *check("' tests/live/neovim.lua)
+  echo "skipped: $count tests with Neovim: nvim is missing"
+  skipped=$((skipped + count))
+fi
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ]
