@@ -53,5 +53,21 @@ else
   echo "skipped: $count tests with Neovim: nvim is missing"
   skipped=$((skipped + count))
 fi
+
+# The extension of Visual Studio Code, from its package.
+if command -v node > /dev/null && command -v unzip > /dev/null; then
+  make -s BUILD="$build" "$build/cag.vsix" > "$work/make" 2>&1
+  result 'make vsix' $? "$(cat "$work/make")"
+  mkdir "$work/model"
+  unzip -q "$build/cag.vsix" -d "$work/vsix" && xmllint --noout "$work/vsix/extension.vsixmanifest" "$work/vsix/[Content_Types].xml"
+  result 'the package is a zip file with a manifest' $?
+  XDG_CACHE_HOME=$work/cache timeout 120 node tests/live/vscode.js "$work/vsix/extension" "$build/cag" "$work/model" > "$work/vscode" 2>&1
+  result 'the extension ends' $? "$(grep -v '^ok ' "$work/vscode")"
+  passed=$((passed + $(grep -c '^ok ' "$work/vscode")))
+else
+  count=$(grep -c '^ *await check("' tests/live/vscode.js)
+  echo "skipped: $count tests of the extension of Visual Studio Code: node or unzip is missing"
+  skipped=$((skipped + count))
+fi
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]
