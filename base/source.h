@@ -23,7 +23,7 @@ typedef struct CagSource {
   size_t length;   // at most CAG_SOURCE_MAX
   uint32_t *lines; // offset of each line's first byte
   size_t line_count;
-  bool library;              // of the standard library
+  bool library;             // of the standard library
   const volatile int *stop; // becomes nonzero if work on the text is to end; NULL: never
 } CagSource;
 

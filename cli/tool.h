@@ -101,8 +101,7 @@ struct CagTool {
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
     cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
-    cag_tool_repl, cag_tool_batch, cag_tool_measure, cag_tool_mcp, cag_tool_view,
-    cag_tool_lsp;
+    cag_tool_repl, cag_tool_batch, cag_tool_measure, cag_tool_mcp, cag_tool_view, cag_tool_lsp;
 
 // Makes a session with the options and the -D of the command line. Returns NULL, after a message,
 // if memory ran out.

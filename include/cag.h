@@ -145,8 +145,8 @@ typedef struct CagErrorView {
 CAG_API void cag_session_error(const CagSession *s, size_t i, CagErrorView *out);
 // A further location of a diagnostic.
 typedef struct CagNoteView {
-  const char *text; // "first defined here", "called from f"
-  const char *file; // NULL: it has no location
+  const char *text;                          // "first defined here", "called from f"
+  const char *file;                          // NULL: it has no location
   size_t line, column, end_line, end_column; // from 1
 } CagNoteView;
 // Returns note k of diagnostic i. Returns false if there is none.
@@ -562,7 +562,7 @@ typedef struct CagSymbolView {
   const char *detail; // "(height, width = 2)", or "" if there is none
   CagNameKind kind;
   CagPlace whole, place; // of the statement, and of the name
-  size_t depth;          // 0 at the top level; definitions in blocks and fields of records are below
+  size_t depth; // 0 at the top level; definitions in blocks and fields of records are below
 } CagSymbolView;
 typedef void CagGiveSymbol(void *context, const CagSymbolView *s);
 // Gives the definitions of a document, in order.
@@ -694,9 +694,9 @@ typedef enum CagActionKind { CAG_ACTION_FIX, CAG_ACTION_EXTRACT, CAG_ACTION_REWR
 typedef struct CagActionView {
   const char *title;
   CagActionKind kind;
-  const char *code;         // of the problem that it fixes; NULL: none
-  CagPlace problem;         // the place of that problem
-  bool is_preferred;        // the obvious fix
+  const char *code;  // of the problem that it fixes; NULL: none
+  CagPlace problem;  // the place of that problem
+  bool is_preferred; // the obvious fix
   const CagEdit *edits;
   size_t edit_count;
 } CagActionView;

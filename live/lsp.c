@@ -128,8 +128,7 @@ static void did_open(CagLsp *l, const cJSON *params) {
   if (!uri || !text) return;
   LspDocument *d = lsp_find(l, uri);
   if (!d) {
-    LspDocument *documents =
-        realloc(l->documents, (l->document_count + 1) * sizeof *l->documents);
+    LspDocument *documents = realloc(l->documents, (l->document_count + 1) * sizeof *l->documents);
     if (!documents) return;
     l->documents = documents;
     d = &l->documents[l->document_count];
@@ -210,8 +209,8 @@ static void add_problem(void *context, const CagProblem *p) {
   const CagPlace start = {pub->d->file, 0, 0}, *place = p->place.file ? &p->place : &start;
   cJSON *o = cJSON_CreateObject();
   char message[2048];
-  snprintf(message, sizeof message, "%s%s%s", p->message ? p->message : "", p->help ? "\nhelp: " : "",
-           p->help ? p->help : "");
+  snprintf(message, sizeof message, "%s%s%s", p->message ? p->message : "",
+           p->help ? "\nhelp: " : "", p->help ? p->help : "");
   cJSON_AddItemToObject(o, "range", lsp_range_json(l, place));
   cJSON_AddNumberToObject(o, "severity", p->unused ? 4 : p->warning ? 2 : 1);
   cJSON_AddStringToObject(o, "code", p->code);
@@ -275,8 +274,7 @@ static void publish_files(CagLsp *l, const LspDocument *d, const cJSON *before, 
   cJSON_ArrayForEach(item, now) if (strcmp(item->string, d->file) != 0)
       publish_file(l, item->string);
   cJSON_ArrayForEach(item, before) if (strcmp(item->string, d->file) != 0 &&
-                                       !lsp_get(now, item->string))
-      publish_file(l, item->string);
+                                       !lsp_get(now, item->string)) publish_file(l, item->string);
 }
 
 void lsp_publish(CagLsp *l, LspDocument *d) {
@@ -350,11 +348,11 @@ static void read_client(CagLsp *l, const cJSON *params) {
   l->client.changes = lsp_is_true(lsp_get(workspace, "workspaceEdit"), "documentChanges");
   l->client.watched_files =
       lsp_is_true(lsp_get(workspace, "didChangeWatchedFiles"), "dynamicRegistration");
-  l->client.show_document =
-      lsp_is_true(lsp_get(lsp_get(all, "window"), "showDocument"), "support");
+  l->client.show_document = lsp_is_true(lsp_get(lsp_get(all, "window"), "showDocument"), "support");
   const cJSON *formats = lsp_get(lsp_get(text, "hover"), "contentFormat");
   l->client.markdown = !formats;
-  cJSON_ArrayForEach(item, formats) if (cJSON_IsString(item) && !strcmp(item->valuestring, "markdown"))
+  cJSON_ArrayForEach(item,
+                     formats) if (cJSON_IsString(item) && !strcmp(item->valuestring, "markdown"))
       l->client.markdown = true;
   l->columns = CAG_COLUMNS_UTF16;
   cJSON_ArrayForEach(item, lsp_get(lsp_get(all, "general"), "positionEncodings")) {
@@ -381,8 +379,8 @@ static void read_module_path(CagLsp *l, const cJSON *options) {
   if (!l->module_path) return;
   size_t n = 0;
   for (; n < given; n++) l->module_path[n] = strdup(o->module_path[n]);
-  cJSON_ArrayForEach(item, list) if (cJSON_IsString(item))
-      l->module_path[n++] = strdup(item->valuestring);
+  cJSON_ArrayForEach(item, list) if (cJSON_IsString(item)) l->module_path[n++] =
+      strdup(item->valuestring);
   o->module_path = (const char *const *)l->module_path;
   o->module_path_count = n;
 }
@@ -451,8 +449,10 @@ static void did_change_files(CagLsp *l, const cJSON *params) {
     char *file = uri ? lsp_file_of_uri(l, uri) : NULL;
     const cJSON *type = lsp_get(item, "type");
     if (file && strchr(file, '/')) {
-      if (cJSON_IsNumber(type) && type->valueint == 3) cag_workspace_remove_file(l->workspace, file);
-      else if (cJSON_IsNumber(type) && type->valueint == 1) cag_workspace_add_file(l->workspace, file);
+      if (cJSON_IsNumber(type) && type->valueint == 3)
+        cag_workspace_remove_file(l->workspace, file);
+      else if (cJSON_IsNumber(type) && type->valueint == 1)
+        cag_workspace_add_file(l->workspace, file);
       cag_workspace_file_changed(l->workspace, file);
     }
     free(file);
@@ -477,7 +477,8 @@ static void handle_notification(CagLsp *l, const char *method, const cJSON *para
   else if (strcmp(method, "textDocument/didSave") == 0) did_save(l, params);
   else if (strcmp(method, "textDocument/didClose") == 0) did_close(l, params);
   else if (strcmp(method, "workspace/didChangeWatchedFiles") == 0) did_change_files(l, params);
-  else if (strcmp(method, "workspace/didChangeWorkspaceFolders") == 0) did_change_folders(l, params);
+  else if (strcmp(method, "workspace/didChangeWorkspaceFolders") == 0)
+    did_change_folders(l, params);
   else if (strcmp(method, "workspace/didChangeConfiguration") == 0)
     read_settings(l, lsp_get(params, "settings"));
 }
@@ -519,10 +520,11 @@ static char *without_zeros(const char *json, size_t length) {
 static bool is_utf8(const char *text, size_t length) {
   const unsigned char *s = (const unsigned char *)text;
   for (size_t i = 0; i < length;) {
-    const size_t n = s[i] < 0x80 ? 1 : s[i] >= 0xC2 && s[i] < 0xE0 ? 2
-                                   : s[i] >= 0xE0 && s[i] < 0xF0   ? 3
-                                   : s[i] >= 0xF0 && s[i] < 0xF5   ? 4
-                                                                   : 0;
+    const size_t n = s[i] < 0x80                   ? 1
+                     : s[i] >= 0xC2 && s[i] < 0xE0 ? 2
+                     : s[i] >= 0xE0 && s[i] < 0xF0 ? 3
+                     : s[i] >= 0xF0 && s[i] < 0xF5 ? 4
+                                                   : 0;
     if (n == 0 || s[i] == 0 || i + n > length) return false;
     for (size_t k = 1; k < n; k++)
       if ((s[i + k] & 0xC0) != 0x80) return false;

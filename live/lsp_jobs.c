@@ -246,8 +246,8 @@ static void read_output(LspJob *j, int fd) {
   for (;;) {
     char scrap[4096];
     const bool room = j->output && length < OUTPUT_MAX;
-    const ssize_t n = read(fd, room ? j->output + length : scrap,
-                           room ? OUTPUT_MAX - length : sizeof scrap);
+    const ssize_t n =
+        read(fd, room ? j->output + length : scrap, room ? OUTPUT_MAX - length : sizeof scrap);
     if (n <= 0) break;
     if (room) length += (size_t)n;
   }

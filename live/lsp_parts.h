@@ -25,8 +25,8 @@ typedef struct LspDocument {
   char *uri;  // as the client writes it
   char *file; // name in the workspace
   double version;
-  bool is_library; // read-only; its text is that of the library
-  cJSON *ran;      // diagnostics of the last run, by file; NULL: none, or the text has changed
+  bool is_library;  // read-only; its text is that of the library
+  cJSON *ran;       // diagnostics of the last run, by file; NULL: none, or the text has changed
   cJSON *published; // files for which this document has reported problems: { file: [...] }
 } LspDocument;
 
@@ -73,7 +73,7 @@ struct CagLsp {
     unsigned *data;
     size_t count, id;
   } words;
-  size_t next_id; // of requests of the server
+  size_t next_id;       // of requests of the server
   pthread_mutex_t lock; // of the jobs, and of sending
   LspJob *jobs;
   char **module_path; // with that of the client's options
@@ -88,7 +88,7 @@ void lsp_notify(CagLsp *l, const char *method, cJSON *params);
 void lsp_request(CagLsp *l, const char *method, cJSON *params);
 LspDocument *lsp_find(CagLsp *l, const char *uri);
 LspDocument *lsp_find_file(CagLsp *l, const char *file);
-void lsp_publish(CagLsp *l, LspDocument *d); // checks and publishes
+void lsp_publish(CagLsp *l, LspDocument *d);                           // checks and publishes
 void lsp_publish_run(CagLsp *l, const char *file, cJSON *diagnostics); // takes them
 
 // --- lsp_files.c ---

@@ -63,8 +63,8 @@ static void add_to_workspace_edit(CagLsp *l, cJSON *whole, const CagEdit *edit) 
   }
   cJSON *changes = cJSON_GetObjectItemCaseSensitive(whole, "documentChanges"), *item, *found = NULL;
   if (!changes) changes = cJSON_AddArrayToObject(whole, "documentChanges");
-  cJSON_ArrayForEach(item, changes) if (!strcmp(lsp_text(lsp_get(item, "textDocument"), "uri"), uri))
-      found = item;
+  cJSON_ArrayForEach(
+      item, changes) if (!strcmp(lsp_text(lsp_get(item, "textDocument"), "uri"), uri)) found = item;
   if (!found) {
     found = cJSON_CreateObject();
     cJSON *document = cJSON_AddObjectToObject(found, "textDocument");
@@ -92,11 +92,11 @@ static cJSON *markup_json(CagLsp *l, const char *markdown) {
 static const struct {
   int completion, symbol;
 } kinds[] = {
-    [CAG_NAME_VALUE] = {21, 14},    [CAG_NAME_FUNCTION] = {3, 12}, [CAG_NAME_PARAM] = {6, 13},
-    [CAG_NAME_MODULE] = {9, 2},     [CAG_NAME_PARAMETER] = {5, 13}, [CAG_NAME_LOCAL] = {6, 13},
-    [CAG_NAME_FIELD] = {5, 8},      [CAG_NAME_BUILTIN] = {3, 12},  [CAG_NAME_CONSTANT] = {21, 14},
-    [CAG_NAME_WORD] = {14, 14},     [CAG_NAME_FILE] = {17, 1},     [CAG_NAME_CHOICE] = {12, 15},
-    [CAG_NAME_SNIPPET] = {15, 14},  [CAG_NAME_UNKNOWN] = {1, 13}};
+    [CAG_NAME_VALUE] = {21, 14},   [CAG_NAME_FUNCTION] = {3, 12},  [CAG_NAME_PARAM] = {6, 13},
+    [CAG_NAME_MODULE] = {9, 2},    [CAG_NAME_PARAMETER] = {5, 13}, [CAG_NAME_LOCAL] = {6, 13},
+    [CAG_NAME_FIELD] = {5, 8},     [CAG_NAME_BUILTIN] = {3, 12},   [CAG_NAME_CONSTANT] = {21, 14},
+    [CAG_NAME_WORD] = {14, 14},    [CAG_NAME_FILE] = {17, 1},      [CAG_NAME_CHOICE] = {12, 15},
+    [CAG_NAME_SNIPPET] = {15, 14}, [CAG_NAME_UNKNOWN] = {1, 13}};
 
 static void add_completion(void *context, const CagCompletion *c) {
   Place *p = context;
@@ -480,8 +480,8 @@ static void answer_words(CagLsp *l, const cJSON *id, const char *file, Words *w,
   char *text = NULL, last[32];
   size_t size = 0, head = 0, tail = 0;
   snprintf(last, sizeof last, "%zu", l->words.id);
-  const bool delta = before && l->words.file && strcmp(before, last) == 0 &&
-                     strcmp(l->words.file, file) == 0;
+  const bool delta =
+      before && l->words.file && strcmp(before, last) == 0 && strcmp(l->words.file, file) == 0;
   FILE *f = open_memstream(&text, &size);
   if (!f) {
     free(w->data);
@@ -615,8 +615,7 @@ static void add_edit(void *context, const CagEdit *edit) {
 static cJSON *formatting(CagLsp *l, const cJSON *params) {
   const LspDocument *d = document_of(l, params);
   Place p = {.l = l, .out = cJSON_CreateArray()};
-  if (d && !d->is_library)
-    cag_document_format(l->workspace, d->file, 0, SIZE_MAX, add_edit, &p);
+  if (d && !d->is_library) cag_document_format(l->workspace, d->file, 0, SIZE_MAX, add_edit, &p);
   return p.out;
 }
 
@@ -826,8 +825,9 @@ cJSON *lsp_capabilities(CagLsp *l) {
                           l->columns == CAG_COLUMNS_UTF8 ? "utf-8" : "utf-16");
   if (l->options.program) {
     cJSON_AddItemToObject(o, "codeLensProvider", cJSON_CreateObject());
-    cJSON_AddItemToObject(o, "executeCommandProvider",
-                          cJSON_Parse("{\"commands\":[\"cag.preview\",\"cag.render\",\"cag.runTest\"]}"));
+    cJSON_AddItemToObject(
+        o, "executeCommandProvider",
+        cJSON_Parse("{\"commands\":[\"cag.preview\",\"cag.render\",\"cag.runTest\"]}"));
   }
   return o;
 }

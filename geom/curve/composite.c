@@ -438,8 +438,8 @@ static void digest(const CagCurve *curve, CagDigest *d) {
   cag_digest_numbers(d, c->cuts, c->n + 1);
 }
 
-static const CagCurveKind composite_kind = {"composite", eval, NULL,   to_nurbs, transform,
-                                            part,        hull, breaks, describe, destroy, digest};
+static const CagCurveKind composite_kind = {
+    "composite", eval, NULL, to_nurbs, transform, part, hull, breaks, describe, destroy, digest};
 
 void cag_curve_lay_flat(CagCurve *c) {
   c->dimension = 2;

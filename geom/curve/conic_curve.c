@@ -127,5 +127,5 @@ static void digest(const CagCurve *curve, CagDigest *d) {
   if (c->branch) cag_curve_digest(c->branch, d);
 }
 
-static const CagCurveKind conic_kind = {"conic", eval, NULL,   to_nurbs, transform,
-                                        part,    hull, breaks, describe, destroy, digest};
+static const CagCurveKind conic_kind = {"conic", eval,   NULL,     to_nurbs, transform, part,
+                                        hull,    breaks, describe, destroy,  digest};

@@ -203,5 +203,5 @@ static void digest(const CagCurve *curve, CagDigest *d) {
   cag_digest_number(d, c->rate);
 }
 
-static const CagCurveKind helix_kind = {"helix", eval, eval_many, NULL,     transform,
-                                        part,    hull, NULL,      describe, NULL, digest};
+static const CagCurveKind helix_kind = {"helix", eval, eval_many, NULL, transform, part,
+                                        hull,    NULL, describe,  NULL, digest};

@@ -173,8 +173,7 @@ bool cag_check_module_types(CagVm *vm, CagModuleUnit *m, CagTypes *types) {
   // unknown name or unread text may be a use.
   if (m->sound && known == m->first_error) warn_unused(&c);
   cag_diagnostics_sort_last(&vm->errors);
-  for (size_t i = 0; types && i < n; i++)
-    types[i] = c.top_done[i] ? c.top_types[i] : CAG_TYPES_ANY;
+  for (size_t i = 0; types && i < n; i++) types[i] = c.top_done[i] ? c.top_types[i] : CAG_TYPES_ANY;
   cag_cleanup_run(&cleanup);
   for (size_t i = known; i < vm->errors.count; i++)
     if (cag_diagnostics_at(&vm->errors, i)->severity == CAG_SEVERITY_ERROR) return false;

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/check/constant.h"
 #include "interp/vm/builtin.h"
-#include "base/memory.h"
 
 // Larger expressions are data, which take long and are rarely wrong.
 #define NODES_MAX 400

@@ -22,7 +22,7 @@ typedef struct Completion {
   void *context;
   CagArena memory;
   Cursor cursor;
-  CagPlace place; // what is replaced
+  CagPlace place;     // what is replaced
   const char **given; // names that were given, in a hash table
   size_t given_count, given_size;
 } Completion;
@@ -105,21 +105,21 @@ static void propose_builtins(Completion *c) {
   static const char *const frames[] = {"time", "frame", "frames"};
   for (size_t i = 0; i < 3; i++)
     if (!is_again(c, frames[i]))
-      propose(c, (CagCompletion){
-                     .label = frames[i], .kind = CAG_NAME_PARAM, .rank = RANK_BUILTIN});
+      propose(c, (CagCompletion){.label = frames[i], .kind = CAG_NAME_PARAM, .rank = RANK_BUILTIN});
 }
 
 static void propose_word(Completion *c, const char *word) {
   CagString doc = {0};
   cag_describe_word(word, &doc);
-  propose(c, (CagCompletion){
-                 .label = word, .documentation = doc.bytes, .kind = CAG_NAME_WORD, .rank = RANK_WORD});
+  propose(c,
+          (CagCompletion){
+              .label = word, .documentation = doc.bytes, .kind = CAG_NAME_WORD, .rank = RANK_WORD});
   cag_string_free(&doc);
 }
 
 static void propose_words(Completion *c, bool statement) {
-  static const char *const in_expression[] = {"and",  "by",   "else", "false", "for", "if", "in",
-                                              "none", "not", "or",   "then",  "true"};
+  static const char *const in_expression[] = {"and", "by",   "else", "false", "for",  "if",
+                                              "in",  "none", "not",  "or",    "then", "true"};
   static const char *const at_start[] = {"assert", "import", "param", "print", "show"};
   for (size_t i = 0; !statement && i < sizeof in_expression / sizeof *in_expression; i++)
     propose_word(c, in_expression[i]);
@@ -141,12 +141,15 @@ static void propose_statements(Completion *c) {
   propose_snippet(c, "param ...", "a value that can be set from outside",
                   "param ${1:name} = ${2:10} in ${3:1..100}  \"${4:what it is, mm}\"");
   propose_snippet(c, "f(x) = ...", "a function", "${1:f}(${2:x}) = $0");
-  propose_snippet(c, "import std...", "a module of the library", "import std.${1:materials} as ${2:mat}");
-  propose_snippet(c, "assert ...", "a condition that must hold", "assert ${1:true}, \"${2:message}\"");
+  propose_snippet(c, "import std...", "a module of the library",
+                  "import std.${1:materials} as ${2:mat}");
+  propose_snippet(c, "assert ...", "a condition that must hold",
+                  "assert ${1:true}, \"${2:message}\"");
 }
 
 static void propose_forms(Completion *c) {
-  propose_snippet(c, "if ... then ... else", "selects a value", "if ${1:true} then ${2:a} else ${3:b}");
+  propose_snippet(c, "if ... then ... else", "selects a value",
+                  "if ${1:true} then ${2:a} else ${3:b}");
   propose_snippet(c, "[for ...]", "a list", "[for ${1:i} in ${2:0..<10}: ${0:i}]");
 }
 
@@ -168,7 +171,9 @@ static size_t import_place(const Document *d) {
       end = ast->statements[i]->span.end;
       any = true;
     }
-  if (any) return end + strcspn(d->text + end, "\n") + (d->text[end + strcspn(d->text + end, "\n")] == '\n');
+  if (any)
+    return end + strcspn(d->text + end, "\n") +
+           (d->text[end + strcspn(d->text + end, "\n")] == '\n');
   while (strncmp(d->text + end, "//", 2) == 0 && d->text[end + 2] != '/') {
     end += strcspn(d->text + end, "\n");
     end += d->text[end] == '\n';
@@ -241,8 +246,9 @@ static void propose_module_names(Completion *c, const CagModuleUnit *m) {
 
 // Members of values whose type is all that is known: coordinates, and ends of a range.
 static void propose_members_of_type(Completion *c, CagTypes types) {
-  static const char *const coordinates[] = {"x", "y", "z"}, *const ends[] = {"start", "end", "step"},
-                                *const axes[] = {"x", "y", "z", "origin"};
+  static const char *const coordinates[] = {"x", "y", "z"},
+                           *const ends[] = {"start", "end", "step"},
+                           *const axes[] = {"x", "y", "z", "origin"};
   const char *const *names = types == CAG_TYPES(RANGE)       ? ends
                              : types == CAG_TYPES(TRANSFORM) ? axes
                              : types & CAG_TYPES(LIST)       ? coordinates
@@ -287,8 +293,8 @@ static void complete_member(Completion *c, size_t end) {
     propose_members_of_type(c, CAG_TYPES(LIST));
     return;
   }
-  Entity e = cag_document_lookup(c->d, t[first].span.start, t[first].as.name,
-                                 strlen(t[first].as.name));
+  Entity e =
+      cag_document_lookup(c->d, t[first].span.start, t[first].as.name, strlen(t[first].as.name));
   if (first + 2 == end && e.kind == ENTITY_DECL && e.decl->kind == CAG_DECL_IMPORT) {
     const size_t k = e.decl->statement->as.import.module;
     if (k < vm->module_count) propose_module_names(c, vm->modules[k]);
@@ -374,7 +380,8 @@ static void propose_choices(Completion *c, const CursorCall *call, bool quoted) 
         const size_t n = strcspn(at + 1, "\"");
         snprintf(text, sizeof text, quoted ? "\"%.*s\"" : "%.*s", (int)n, at + 1);
         if (!is_again(c, text))
-          propose(c, (CagCompletion){.label = text, .kind = CAG_NAME_CHOICE, .rank = RANK_ARGUMENT});
+          propose(c,
+                  (CagCompletion){.label = text, .kind = CAG_NAME_CHOICE, .rank = RANK_ARGUMENT});
         at += n + 1 + (at[n + 1] == '"');
       }
     }
@@ -422,7 +429,8 @@ static void propose_colors(Completion *c) {
 static bool expects_color(const CursorCall *call, const Completion *c) {
   const CagToken *t = c->cursor.tokens.items;
   const size_t n = c->cursor.before;
-  if (call->name && (strcmp(call->name, "color") == 0 || strcmp(call->name, "sky") == 0)) return true;
+  if (call->name && (strcmp(call->name, "color") == 0 || strcmp(call->name, "sky") == 0))
+    return true;
   // After `color: `, in a call or a record.
   return n >= 2 && t[n - 1].kind == CAG_TOKEN_COLON && t[n - 2].kind == CAG_TOKEN_NAME &&
          strstr(t[n - 2].as.name, "color");
@@ -433,8 +441,7 @@ static bool is_color_parameter(const CursorCall *call) {
   const CagFunctionAst *f = cag_entity_function(&call->callee);
   if (!f) return false;
   const char *name = call->label;
-  if (!name && call->position < f->parameter_count)
-    name = f->parameters[call->position].decl->name;
+  if (!name && call->position < f->parameter_count) name = f->parameters[call->position].decl->name;
   return name && strstr(name, "color");
 }
 
@@ -446,8 +453,8 @@ static void complete_text(Completion *c) {
   const CagToken *t = c->cursor.tokens.items;
   CursorCall call = {0};
   const bool called = cag_document_call(c->d, &c->cursor, &c->memory, &call);
-  const bool import = c->cursor.statement < c->cursor.before &&
-                      t[c->cursor.statement].kind == CAG_TOKEN_IMPORT;
+  const bool import =
+      c->cursor.statement < c->cursor.before && t[c->cursor.statement].kind == CAG_TOKEN_IMPORT;
   c->place.start = start;
   if (import || (called && strncmp(call.name, "read_", 5) == 0)) {
     if (slash) c->place.start = start + (size_t)(slash - written) + 1;
@@ -466,7 +473,8 @@ static void propose_library(Completion *c) {
     const char *end = strchr(f->text, '\n');
     if (strncmp(f->text, "// ", 3) == 0 && end)
       cag_string_printf(&doc, "%.*s", (int)(end - f->text - 3), f->text + 3);
-    propose(c, (CagCompletion){.label = f->module, .documentation = doc.bytes, .kind = CAG_NAME_MODULE});
+    propose(c, (CagCompletion){
+                   .label = f->module, .documentation = doc.bytes, .kind = CAG_NAME_MODULE});
     cag_string_free(&doc);
   }
 }
@@ -484,8 +492,8 @@ static void propose_siblings(Completion *c, const char *written) {
   for (size_t count = 0; dir && count < 1000 && (entry = readdir(dir)); count++) {
     const size_t n = strlen(entry->d_name);
     if (n < 5 || n > 200 || strcmp(entry->d_name + n - 4, ".cag") != 0) continue;
-    snprintf(name, sizeof name, "%.*s%.*s", dot ? (int)(dot - written + 1) : 0, written,
-             (int)n - 4, entry->d_name);
+    snprintf(name, sizeof name, "%.*s%.*s", dot ? (int)(dot - written + 1) : 0, written, (int)n - 4,
+             entry->d_name);
     if (name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.")])
       continue;
     propose(c, (CagCompletion){.label = name, .kind = CAG_NAME_MODULE});
@@ -583,8 +591,8 @@ static void complete(void *context) {
 
 void cag_document_complete(CagWorkspace *w, const char *file, size_t offset,
                            void (*give)(void *context, const CagCompletion *c), void *context) {
-  Completion c = {.w = w, .d = cag_document_get(w, file), .offset = offset, .give = give,
-                  .context = context};
+  Completion c = {
+      .w = w, .d = cag_document_get(w, file), .offset = offset, .give = give, .context = context};
   if (c.d && offset <= c.d->length) cag_document_guard(complete, &c);
   cag_arena_free(&c.memory);
 }

@@ -63,9 +63,7 @@ static bool is_closer(CagTokenKind k) {
          k == CAG_TOKEN_TEXT_TAIL;
 }
 
-static bool is_word(CagTokenKind k) {
-  return k == CAG_TOKEN_NAME || k >= CAG_TOKEN_FIRST_WORD;
-}
+static bool is_word(CagTokenKind k) { return k == CAG_TOKEN_NAME || k >= CAG_TOKEN_FIRST_WORD; }
 
 static bool in_first_column(const Document *d, const CagToken *t) {
   return t->span.start == 0 || d->text[t->span.start - 1] == '\n';
@@ -79,7 +77,8 @@ static bool starts_statement(const Document *d, const Tokens *ts, size_t i) {
       t->kind == CAG_TOKEN_PRINT || t->kind == CAG_TOKEN_ASSERT)
     return true;
   return t->kind == CAG_TOKEN_NAME && i + 1 < ts->count &&
-         (ts->items[i + 1].kind == CAG_TOKEN_EQUALS || ts->items[i + 1].kind == CAG_TOKEN_LEFT_PAREN);
+         (ts->items[i + 1].kind == CAG_TOKEN_EQUALS ||
+          ts->items[i + 1].kind == CAG_TOKEN_LEFT_PAREN);
 }
 
 // Finds the brackets that are open before token number `end`, and the statement.
@@ -140,8 +139,8 @@ void cag_document_cursor(const Document *d, size_t offset, CagArena *arena, Curs
   const CagToken *next = end < ts->count ? &ts->items[end] : NULL;
   if (next && starts_statement(d, ts, end)) out->open_count = 0;
   if (next && next->newline_before && out->open_count == 0) out->statement = end;
-  if (!next && out->open_count == 0 && memchr(d->text + (last ? last->span.end : 0), '\n',
-                                              offset - (last ? last->span.end : 0)))
+  if (!next && out->open_count == 0 &&
+      memchr(d->text + (last ? last->span.end : 0), '\n', offset - (last ? last->span.end : 0)))
     out->statement = end;
 }
 

@@ -85,7 +85,8 @@ static void describe_parameters(size_t index, size_t row, CagString *out) {
 void cag_describe_builtin(size_t index, bool brief, CagString *out) {
   size_t rows;
   if (index >= cag_builtin_count()) {
-    add_text(out, "Set by `cag render --frames`: `frame` counts from 0, and `time` runs from 0 to 1.\n");
+    add_text(out,
+             "Set by `cag render --frames`: `frame` counts from 0, and `time` runs from 0 to 1.\n");
     return;
   }
   const CagBuiltin *row = cag_builtin_rows(index, &rows);
@@ -169,8 +170,9 @@ static void describe_value(Document *d, const Entity *e, CagString *out) {
   cag_diagnostics_clear(&d->session->diagnostics);
   d->session->diagnostics = kept;
   if (text.bytes && text.length) {
-    cag_string_printf(out, "\nValue: `%.*s%s`\n", text.length > VALUE_MAX ? VALUE_MAX : (int)text.length,
-                      text.bytes, text.length > VALUE_MAX ? "..." : "");
+    cag_string_printf(out, "\nValue: `%.*s%s`\n",
+                      text.length > VALUE_MAX ? VALUE_MAX : (int)text.length, text.bytes,
+                      text.length > VALUE_MAX ? "..." : "");
   }
   cag_string_free(&text);
 }

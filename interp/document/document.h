@@ -23,12 +23,12 @@
 // What a name stands for.
 typedef struct Entity {
   enum EntityKind {
-    ENTITY_NONE,     // it is unknown
-    ENTITY_DECL,     // a declaration: decl, in unit
-    ENTITY_BUILTIN,  // a built-in: index
-    ENTITY_MODULE,   // a module: unit
-    ENTITY_FIELD,    // a field of a record or another value: name
-    ENTITY_ARGUMENT  // a parameter of a built-in: index of the built-in, name of the parameter
+    ENTITY_NONE,    // it is unknown
+    ENTITY_DECL,    // a declaration: decl, in unit
+    ENTITY_BUILTIN, // a built-in: index
+    ENTITY_MODULE,  // a module: unit
+    ENTITY_FIELD,   // a field of a record or another value: name
+    ENTITY_ARGUMENT // a parameter of a built-in: index of the built-in, name of the parameter
   } kind;
   const CagModuleUnit *unit;
   const CagDecl *decl;
@@ -57,12 +57,12 @@ typedef struct FileState {
 } FileState;
 
 typedef struct Document {
-  char *file;     // as the host names it
-  char *path;     // real path; NULL: a module of the library, or a text that is in no file
-  bool open;      // the host has given the text
-  bool listed;    // by cag_workspace_add_file
-  bool stale;     // it may have changed since the last check
-  char *text;     // NULL: it is not read yet
+  char *file;  // as the host names it
+  char *path;  // real path; NULL: a module of the library, or a text that is in no file
+  bool open;   // the host has given the text
+  bool listed; // by cag_workspace_add_file
+  bool stale;  // it may have changed since the last check
+  char *text;  // NULL: it is not read yet
   size_t length, capacity;
   size_t *lines; // start of each line; NULL: not known
   size_t line_count;
@@ -70,7 +70,7 @@ typedef struct Document {
   CagSession *session; // holds the machine; NULL: the text has not been parsed
   CagModuleUnit *unit;
   bool checked;
-  CagTypes *types; // of the top-level definitions; after a check
+  CagTypes *types;         // of the top-level definitions; after a check
   Occurrence *occurrences; // sorted by their start
   size_t occurrence_count;
   FileState *imports;
@@ -82,7 +82,7 @@ struct CagWorkspace {
   Document **documents;
   size_t count, capacity;
   Document *last; // found last; NULL: none
-  FILE *sink; // receives what `trace` would write in constant definitions
+  FILE *sink;     // receives what `trace` would write in constant definitions
 };
 
 // --- workspace.c ---
@@ -150,8 +150,8 @@ Entity cag_document_lookup(const Document *d, size_t offset, const char *name, s
 // Gives the fields of a value, as far as they are known without running it.
 typedef void GiveField(void *context, const char *name, const CagExpr *value,
                        const CagModuleUnit *unit);
-void cag_fields_of(const CagVm *vm, const CagModuleUnit *unit, const CagExpr *value, GiveField *give,
-                   void *context);
+void cag_fields_of(const CagVm *vm, const CagModuleUnit *unit, const CagExpr *value,
+                   GiveField *give, void *context);
 
 // --- words.c: the tokens before a cursor ---
 
@@ -174,8 +174,8 @@ typedef struct OpenBracket {
 typedef struct Cursor {
   Tokens tokens;
   size_t offset;
-  CagSpan word;    // the name at the cursor, up to the cursor; empty: none
-  size_t before;   // number of tokens before the word
+  CagSpan word;  // the name at the cursor, up to the cursor; empty: none
+  size_t before; // number of tokens before the word
   bool in_comment;
   const CagToken *text; // the text that contains the cursor; NULL: none
   OpenBracket *open;    // innermost last
@@ -187,8 +187,8 @@ void cag_document_cursor(const Document *d, size_t offset, CagArena *arena, Curs
 // The call that encloses a cursor.
 typedef struct CursorCall {
   Entity callee;
-  const char *name; // in the arena
-  size_t position;  // index of the current argument, with one from a pipe
+  const char *name;  // in the arena
+  size_t position;   // index of the current argument, with one from a pipe
   const char *label; // name of the current argument; NULL: by position
   bool piped;
   size_t *labels; // tokens of the labels of other arguments

@@ -28,7 +28,8 @@ static void give_difference(const Formatting *f, CagSpan part, const char *text,
   for (size_t i = 0; i < n && i < length && old[i] == text[i]; i++)
     if (old[i] == '\n') head = i + 1;
   if (n == length && memcmp(old, text, n) == 0) return;
-  for (size_t i = 0; i < n - head && i < length - head && old[n - 1 - i] == text[length - 1 - i]; i++)
+  for (size_t i = 0; i < n - head && i < length - head && old[n - 1 - i] == text[length - 1 - i];
+       i++)
     if (old[n - 1 - i] == '\n') tail = i;
   char *new = cag_checked(cag_strndup(text + head, length - head - tail));
   const CagEdit edit = {{f->d->file, part.start + head, part.end - tail}, new};
@@ -100,11 +101,8 @@ static CagEdit edit_of(const Actions *a, size_t start, size_t end, const char *t
 
 static void give_action(const Actions *a, const char *title, CagActionKind kind, bool preferred,
                         const CagEdit *edits, size_t count) {
-  CagActionView view = {.title = title,
-                        .kind = kind,
-                        .is_preferred = preferred,
-                        .edits = edits,
-                        .edit_count = count};
+  CagActionView view = {
+      .title = title, .kind = kind, .is_preferred = preferred, .edits = edits, .edit_count = count};
   if (a->problem) {
     view.code = cag_error_info(a->problem->id)->code;
     view.problem = (CagPlace){a->d->file, a->problem->span.start, a->problem->span.end};
@@ -328,9 +326,7 @@ static void fix_unit(Actions *a, CagSpan span, const char *form) {
   if (other && strstr(other, "rad")) fix_unit(a, span, other + 4);
 }
 
-static bool is_sign(const char *text) {
-  return *text && !text[strspn(text, "!&|=<>*/+-:~^%?")];
-}
+static bool is_sign(const char *text) { return *text && !text[strspn(text, "!&|=<>*/+-:~^%?")]; }
 
 static void fix_by_words(Actions *a, CagSpan span, const char *form) {
   const char *text = source_text(a, span);
@@ -392,12 +388,10 @@ static void fix_problem(Actions *a, const CagDiagnostic *p) {
     fix_unit(a, span, form);
   else if (form) fix_by_words(a, span, form);
   else if ((form = after(help, "remove `")))
-    give_fix(a, "Remove the word", span.start,
-             span.end + strspn(a->d->text + span.end, " "), "");
+    give_fix(a, "Remove the word", span.start, span.end + strspn(a->d->text + span.end, " "), "");
   else if (after(help, "remove the +") || after(help, "remove one comma"))
     give_fix(a, "Remove it", span.start, span.end, "");
-  else if (after(help, "to compare, write =="))
-    give_fix(a, "Write ==", span.start, span.end, "==");
+  else if (after(help, "to compare, write ==")) give_fix(a, "Write ==", span.start, span.end, "==");
   switch (p->id) {
   case CAG_ERR_unknown_name: fix_unknown_name(a, span); break;
   case CAG_ERR_unused: fix_unused(a, span); break;
@@ -490,9 +484,8 @@ typedef struct LocalUse {
 
 static void find_local(void *context, const CagExpr *e) {
   LocalUse *u = context;
-  const CagDecl *d = e->kind == CAG_EXPR_NAME && e->as.name.binding == CAG_BIND_DECL
-                         ? e->as.name.decl
-                         : NULL;
+  const CagDecl *d =
+      e->kind == CAG_EXPR_NAME && e->as.name.binding == CAG_BIND_DECL ? e->as.name.decl : NULL;
   u->found |= d && (d->kind == CAG_DECL_PARAMETER || d->kind == CAG_DECL_BLOCK ||
                     d->kind == CAG_DECL_CLAUSE);
   cag_tree_below(e, find_local, u);

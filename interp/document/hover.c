@@ -163,8 +163,7 @@ static void give_builtin(Signatures *s, const CursorCall *call) {
   bool chosen = false;
   for (size_t i = 0; row->function && i < rows; i++) {
     const CagSignature *sig = cag_builtin_signature(call->callee.index, i);
-    struct CagSignatureParameter *p =
-        cag_arena_alloc(&s->memory, (sig->count + 1) * sizeof *p);
+    struct CagSignatureParameter *p = cag_arena_alloc(&s->memory, (sig->count + 1) * sizeof *p);
     CagString label = {0}, doc = {0};
     cag_string_printf(&label, "%s%s%s", row[i].signature, row[i].result ? " -> " : "",
                       row[i].result ? row[i].result : "");
@@ -178,8 +177,8 @@ static void give_builtin(Signatures *s, const CursorCall *call) {
     const size_t active = active_of(call, sig->parameters, sig->count, sig->variadic);
     const bool fits = !chosen && (active < sig->count || sig->count == 0);
     chosen |= fits;
-    const CagSignatureView view = {label.bytes ? label.bytes : "", doc.bytes, sig->count, p,
-                                   active, fits};
+    const CagSignatureView view = {
+        label.bytes ? label.bytes : "", doc.bytes, sig->count, p, active, fits};
     s->give(s->context, &view);
     cag_string_free(&label);
     cag_string_free(&doc);

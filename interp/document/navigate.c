@@ -238,7 +238,8 @@ static bool rename_in(void *context, Document *d) {
   const Entity *e = &r->n.entity;
   for (size_t i = 0; i < d->occurrence_count; i++) {
     const Occurrence *o = &d->occurrences[i];
-    if (d == r->n.d && names_import(o, e)) add_edit(r, d, (CagSpan){o->span.end, o->span.end}, r->alias);
+    if (d == r->n.d && names_import(o, e))
+      add_edit(r, d, (CagSpan){o->span.end, o->span.end}, r->alias);
     else if (cag_entity_equal(&o->entity, e)) add_edit(r, d, o->span, r->name);
   }
   return true;
@@ -263,8 +264,8 @@ static bool is_name(const char *name) {
   cag_lexer_init(&lexer, source, &memory, &names, NULL);
   cag_lexer_next(&lexer, &t);
   cag_lexer_next(&lexer, &end);
-  const bool good = t.kind == CAG_TOKEN_NAME && t.span.start == 0 &&
-                    t.span.end == strlen(name) && end.kind == CAG_TOKEN_END && strcmp(name, "_");
+  const bool good = t.kind == CAG_TOKEN_NAME && t.span.start == 0 && t.span.end == strlen(name) &&
+                    end.kind == CAG_TOKEN_END && strcmp(name, "_");
   cag_lexer_release(&lexer);
   cag_names_release(&names);
   cag_arena_free(&memory);
@@ -380,12 +381,12 @@ static void rename_all(void *context) {
   Navigation *n = &r->n;
   const Occurrence *o = cag_document_occurrence(n->d, n->offset);
   if (!can_rename(n, o)) {
-    snprintf(r->why, r->size, n->entity.kind == ENTITY_BUILTIN || n->entity.kind == ENTITY_ARGUMENT
-                                  ? "%s is built in"
-                              : n->entity.kind == ENTITY_DECL ? "%s belongs to the library"
-                              : n->entity.kind == ENTITY_FIELD
-                                  ? "the field %s cannot be renamed"
-                                  : "there is no name here%s",
+    snprintf(r->why, r->size,
+             n->entity.kind == ENTITY_BUILTIN || n->entity.kind == ENTITY_ARGUMENT
+                 ? "%s is built in"
+             : n->entity.kind == ENTITY_DECL  ? "%s belongs to the library"
+             : n->entity.kind == ENTITY_FIELD ? "the field %s cannot be renamed"
+                                              : "there is no name here%s",
              word_of(&n->entity));
     return;
   }

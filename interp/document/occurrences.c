@@ -126,8 +126,8 @@ static Entity public_entity(const CagModuleUnit *m, const char *name) {
     if (strcmp(m->publics[i].name, name) != 0) continue;
     return (Entity){.kind = ENTITY_DECL,
                     .unit = m,
-                    .decl = s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl
-                                                           : s->as.definition.decl};
+                    .decl =
+                        s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl : s->as.definition.decl};
   }
   return (Entity){.kind = ENTITY_NONE};
 }

@@ -37,8 +37,7 @@ static void report(Report *r, const CagDiagnostic *d) {
                   .warning = d->severity != CAG_SEVERITY_ERROR,
                   .unused = d->id == CAG_ERR_unused || d->id == CAG_ERR_never_reached,
                   .deprecated = d->id == CAG_ERR_deprecated};
-  struct CagProblemNote *notes =
-      cag_arena_alloc(&r->memory, (d->note_count + 1) * sizeof *notes);
+  struct CagProblemNote *notes = cag_arena_alloc(&r->memory, (d->note_count + 1) * sizeof *notes);
   for (size_t i = 0; i < d->note_count; i++) {
     const CagNote *n = &d->notes[i];
     if (n->kind != CAG_NOTE_RELATED || !n->source) continue;

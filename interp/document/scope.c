@@ -14,7 +14,7 @@
 typedef struct Scope {
   size_t offset;
   const char *text;
-  size_t unfinished; // what ends here or later may go on to the offset, because of an error
+  size_t unfinished;     // what ends here or later may go on to the offset, because of an error
   const CagDecl **decls; // outermost first
   size_t count, capacity;
   CagArena *memory;
@@ -92,8 +92,7 @@ static void gather_module(Scope *s, const Document *d) {
     if (st->kind == CAG_STATEMENT_DEFINITION) add_decl(s, st->as.definition.decl);
     if (st->kind != CAG_STATEMENT_IMPORT) continue;
     add_decl(s, st->as.import.decl);
-    for (size_t k = 0; k < st->as.import.name_count; k++)
-      add_decl(s, st->as.import.names[k].decl);
+    for (size_t k = 0; k < st->as.import.name_count; k++) add_decl(s, st->as.import.names[k].decl);
   }
 }
 

@@ -31,8 +31,8 @@ static void give_symbol(Symbols *s, const CagDecl *decl, CagSpan whole, const ch
 static void symbols_below(void *context, const CagExpr *e);
 
 static void give_definition(Symbols *s, const CagStatement *st) {
-  const CagDecl *decl = st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl
-                                                        : st->as.definition.decl;
+  const CagDecl *decl =
+      st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl : st->as.definition.decl;
   const Entity e = {.kind = ENTITY_DECL, .unit = s->d->unit, .decl = decl};
   CagString head = {0};
   cag_describe_head(&e, &head);
@@ -86,8 +86,8 @@ static void give_symbols(void *context) {
   for (size_t i = 0; ast && i < ast->count; i++) {
     const CagStatement *st = ast->statements[i];
     if (st->kind != CAG_STATEMENT_DEFINITION && st->kind != CAG_STATEMENT_PARAM) continue;
-    const CagDecl *decl = st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl
-                                                          : st->as.definition.decl;
+    const CagDecl *decl =
+        st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl : st->as.definition.decl;
     if (!s->query || matches(decl->name, s->query)) give_definition(s, st);
   }
 }
@@ -276,8 +276,7 @@ static void give_links(void *context) {
     cag_tree_of_statement(s, link_expression, l);
     if (s->kind != CAG_STATEMENT_IMPORT || s->as.import.module >= vm->module_count) continue;
     const CagPlace place = cag_document_place(l->w, l->d, l->d->unit, s->as.import.path_span);
-    l->give(l->context, &place,
-            cag_document_file_of(l->w, l->d, vm->modules[s->as.import.module]));
+    l->give(l->context, &place, cag_document_file_of(l->w, l->d, vm->modules[s->as.import.module]));
   }
 }
 
@@ -304,8 +303,8 @@ static void find_test(const Use *u) {
     const char *text = u->d->text + span.start;
     const size_t n = span.end - span.start;
     const bool example = ast->comments[i].doc && n > 7 && memcmp(text + 3, "     ", 5) == 0;
-    if (!example && !memmem(text, n, "// expect:", 10) && !memmem(text, n, "// expect error:", 16) &&
-        !memmem(text, n, "// expect image", 15))
+    if (!example && !memmem(text, n, "// expect:", 10) &&
+        !memmem(text, n, "// expect error:", 16) && !memmem(text, n, "// expect image", 15))
       continue;
     u->out->tests = true;
     u->out->test = cag_document_place(u->w, u->d, u->d->unit, span);

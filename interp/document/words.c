@@ -131,7 +131,11 @@ void cag_document_words(CagWorkspace *w, const char *file, size_t start, size_t 
                         void (*give)(void *context, const CagPlace *place, CagWordKind kind,
                                      unsigned flags),
                         void *context) {
-  Words words = {.w = w, .d = cag_document_get(w, file), .start = start, .end = end, .give = give,
+  Words words = {.w = w,
+                 .d = cag_document_get(w, file),
+                 .start = start,
+                 .end = end,
+                 .give = give,
                  .context = context};
   if (words.d) cag_document_guard(give_words, &words);
   cag_arena_free(&words.memory);
@@ -182,9 +186,8 @@ static void hint_call(const Hints *h, const CagExpr *call, bool piped) {
   const CagFunctionAst *f = cag_entity_function(&callee);
   size_t position = piped, positional = piped;
   for (size_t i = 0; i < call->as.call.count; i++) positional += !call->as.call.arguments[i].name;
-  const CagSignature *s = callee.kind == ENTITY_BUILTIN && !piped
-                              ? signature_of(callee.index, call, positional)
-                              : NULL;
+  const CagSignature *s =
+      callee.kind == ENTITY_BUILTIN && !piped ? signature_of(callee.index, call, positional) : NULL;
   for (size_t i = 0; i < call->as.call.count; i++) {
     const CagArgument *a = &call->as.call.arguments[i];
     if (a->name) break;

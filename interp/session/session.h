@@ -39,7 +39,7 @@ struct CagSession {
   CagItemSources sources;          // of the scene's items
   struct CagSessionParams *params; // of the main script; NULL: not listed yet
   struct CagSessionMesh *mesh;     // the one that was made last; may be NULL
-  CagSceneForm form; // of the scene
+  CagSceneForm form;               // of the scene
   bool has_section;
   CagPlane section; // what lies on its positive side is cut off
   size_t main;      // the module of the script; CAG_NO_MODULE: it was not loaded

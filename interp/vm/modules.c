@@ -62,8 +62,7 @@ static size_t find_standard(CagVm *vm, const char *name) {
         strcmp(vm->modules[i]->name, name) == 0)
       return i;
   for (const CagStdlibFile *f = cag_stdlib; f->module; f++)
-    if (strcmp(f->module, name) == 0)
-{
+    if (strcmp(f->module, name) == 0) {
       CagModuleUnit *m = new_unit(vm, name, NULL, f->text, f->length);
       m->source->library = true;
       return load_unit(vm, m, CAG_PARSE_FILE);

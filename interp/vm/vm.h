@@ -253,9 +253,9 @@ struct CagVm {
   struct timespec started;
   size_t max_triangles;
   bool uses_time; // code was compiled that reads `time`, `frame`, or `frames`
-  bool loop; // time is frame/frames
+  bool loop;      // time is frame/frames
   double tolerance;
-  char *root;     // real path of the folder of the main script; NULL: none, so no file may be read
+  char *root; // real path of the folder of the main script; NULL: none, so no file may be read
   // Returns the text that replaces a file, given its real path, or NULL. It must live until the
   // call that loads the module ends. NULL: files are read.
   const char *(*find_text)(void *context, const char *path, size_t *length);
