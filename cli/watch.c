@@ -5,6 +5,7 @@
 
 #include <fnmatch.h>
 #include <limits.h>
+#include <math.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -170,7 +171,7 @@ static void begin_again(const Rounds *s) {
 
 static int watch(Rounds *s) {
   const CagTool *t = s->round.tool;
-  bool newer = false, ok = watch_files(s->files, t, NULL, s->script, cag_file_watch_now());
+  bool newer = false, ok = watch_files(s->files, t, NULL, s->script, INFINITY);
   for (size_t rounds = 0; ok; rounds++) {
     if (rounds > 0 && !await_save(s, newer)) break;
     if (rounds > 0) begin_again(s);

@@ -11,10 +11,8 @@
 #include "cag.h"
 
 typedef struct CagMcpOptions {
-  CagSessionOptions session; // limits, tolerance, and module path; the rest is ignored
-  const char *folder;        // scripts are read below it, and below the module path
-  const char *const *names, *const *values; // params of all scripts, as by -D
-  size_t define_count;
+  CagSessionOptions session;     // limits, tolerance, and module path; the rest is ignored
+  const char *folder;            // scripts are read below it, and below the module path
   const volatile int *interrupt; // nonzero ends the server; may be NULL
 } CagMcpOptions;
 

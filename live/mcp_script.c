@@ -69,10 +69,7 @@ static bool find_script(CagMcpScript *s) {
 }
 
 static void set_params(CagMcpScript *s) {
-  const CagMcpOptions *o = s->call->options;
   const cJSON *v;
-  for (size_t i = 0; i < o->define_count; i++)
-    cag_session_define(s->session, o->names[i], o->values[i]);
   cJSON_ArrayForEach(v, cJSON_GetObjectItemCaseSensitive(s->call->arguments, "params")) {
     char number[32];
     const char *text = cJSON_IsString(v)   ? v->valuestring
