@@ -11,9 +11,9 @@ says_nothing
 it 'help lists all commands'
 try --help
 status 0
-for command in run eval export render compare test fmt check explain info repl; do prints "  $command "; done
+for command in run eval export render measure mcp compare test fmt check explain info repl; do prints "  $command "; done
 
-for command in run eval export render compare test fmt check explain info repl; do
+for command in run eval export render measure mcp compare test fmt check explain info repl; do
   it "cag $command --help shows examples"
   try $command --help
   status 0
