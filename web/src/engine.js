@@ -104,7 +104,7 @@
  * @property {SceneImage[]} images
  * @property {[Triple, Triple]} bounds
  * @property {boolean} drawing  all parts are plane, in one plane of constant z
- * @property {string[]} files
+ * @property {string[]} [files]  that the run read, below the folder
  *
  * @typedef {object} DiagnosticFields
  * @property {"error" | "warning"} severity
@@ -137,6 +137,7 @@
  * @property {string} file  relative to the folder; "" for a new script
  * @property {string} folder
  * @property {boolean} readOnly
+ * @property {boolean} [untitled]  a new script, which cannot be saved
  * @property {[string, string][]} formats  names and descriptions
  * @property {boolean} povray
  *

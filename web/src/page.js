@@ -83,7 +83,7 @@ async function start(engine) {
   /** What else shows a scene. @type {((scene: SceneMessage) => void)[]} */
   const panels = [];
 
-  const file = hello.file || NEW_SCRIPT;
+  const file = hello.file || NEW_SCRIPT, canSave = !hello.readOnly && !hello.untitled;
   document.title = `${file} - cag`;
   byId("title", HTMLSpanElement).textContent = file;
   if (hello.readOnly) layout.readOnly();
@@ -136,8 +136,8 @@ async function start(engine) {
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
   panels.push(
-    (m) => params.show(m.params), (m) => timeBar.show(m.timed), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
-    (m) => files?.list(m.files), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection());
+    (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
+    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
   function expressionOf(part) {
@@ -351,9 +351,9 @@ async function start(engine) {
   const opened = new Editor(byId("editor", HTMLDivElement), hello.readOnly);
   editor = opened;
   const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report));
-  if (hello.file) await documents.show(file).catch(report);
+  if (hello.file && !hello.untitled) await documents.show(file).catch(report);
   else documents.begin(file);
-  if (newest.scene) documents.list(newest.scene.files);
+  if (newest.scene) documents.list(newest.scene.files ?? []);
   let typing = 0;
   opened.changed.on(() => {
     clearTimeout(typing);
@@ -370,7 +370,7 @@ async function start(engine) {
   });
   opened.cursorMoved.on(({ path, line }) => showMade(path, line));
   byId("save", HTMLButtonElement).addEventListener("click", () => documents.save());
-  byId("save", HTMLButtonElement).hidden = hello.readOnly;
+  byId("save", HTMLButtonElement).hidden = !canSave;
   if (newest.messages) {
     messages.show(newest.messages);
     opened.setProblems(newest.messages.diagnostics);

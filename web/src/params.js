@@ -173,9 +173,11 @@ export class ParamsPanel {
     host.append(this.empty, this.list, this.tools);
   }
 
-  /** @param {Param[]} params */
-  show(params) {
+  /** @param {Param[]} params @param {boolean} settled  nothing that was set here is still to be run */
+  show(params, settled) {
     this.params = params;
+    // Another page may have set values, and so may the command line.
+    if (settled) this.values = Object.fromEntries(params.filter((p) => p.value !== p.initial).map((p) => [p.name, p.value]));
     this.empty.hidden = params.length > 0;
     this.tools.hidden = params.length === 0;
     const names = new Set(params.map((p) => p.name));

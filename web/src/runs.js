@@ -24,6 +24,11 @@ export class Runs {
     this.busy = new Topic();
   }
 
+  /** Something that was asked for has not run yet, or only coarsely. */
+  get pending() {
+    return this.underWay || this.sending > 0 || this.waiting !== null || this.coarse;
+  }
+
   /** Runs with coarse meshes, as soon as the run before is done. */
   drag() {
     if (this.underWay) this.waiting ??= "coarse";
