@@ -127,16 +127,17 @@ done
 suite counted "tests/repl" "sh tests/repl/run.sh"
 suite counted "tests/editors" "sh tests/editors/run.sh"
 suite counted "tests/live view" "python3 tests/live/view.py '$BUILD/cag'"
+suite counted "tests/live" "sh tests/live/run.sh"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
 for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance" \
   "geom/tessellate geom/boolean geom/solid" "interp/scene interp/render interp/formats" interp/vm "interp/doc interp/check" \
-  interp/builtin "interp/session live cli"; do
+  interp/builtin "interp/session interp/document live cli"; do
   suite check "analyzer $part" "make -s analyze ANALYZED='$part'"
 done
 # The geometry core takes as long as all other folders together; `make tidy` covers it as well.
-for part in base lang cli live interp/vm interp/builtin interp/formats interp/session "interp/check interp/doc interp/render interp/scene"; do
+for part in base lang cli live interp/document interp/vm interp/builtin interp/formats interp/session "interp/check interp/doc interp/render interp/scene"; do
   if command -v clang-tidy > /dev/null; then
     suite check "tidy $part" "make -s tidy TIDIED='$part'"
   else

@@ -28,4 +28,4 @@ editors=$(mktemp -d)
 trap 'rm -rf "$editors"' EXIT
 sh tools/editors.sh "$editors" < "$tables"
 for kind in syntax ftdetect ftplugin; do put "vim/vimfiles/$kind" "$editors/vim/$kind/cag.vim"; done
-(cd "$editors" && find vscode -type f) | while read -r file; do put "cag/editors/$(dirname "$file")" "$editors/$file"; done
+(cd "$editors" && find emacs helix kate neovim vim-ale vscode -type f) | while read -r file; do put "cag/editors/$(dirname "$file")" "$editors/$file"; done

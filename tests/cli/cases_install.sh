@@ -10,7 +10,8 @@ for file in bin/cag lib/libcag.a lib/libcag.so lib/libcag.so.0 lib/pkgconfig/lib
   share/man/man1/cag-render.1 share/man/man7/cag-language.7 share/bash-completion/completions/cag \
   share/zsh/site-functions/_cag share/doc/cag/README.md share/doc/cag/examples/vase.cag share/doc/cag/examples/vase.png \
   share/doc/cag/docs/architecture.md share/vim/vimfiles/syntax/cag.vim share/vim/vimfiles/ftdetect/cag.vim \
-  share/cag/editors/vscode/package.json share/cag/editors/vscode/syntaxes/cag.tmLanguage.json; do
+  share/cag/editors/vscode/package.json share/cag/editors/vscode/syntaxes/cag.tmLanguage.json share/cag/editors/vscode/extension.js \
+  share/cag/editors/neovim/plugin/cag_lsp.lua share/cag/editors/emacs/cag-mode.el; do
   exists "$prefix/$file"
 done
 

@@ -11,9 +11,9 @@ says_nothing
 it 'help lists all commands'
 try --help
 status 0
-for command in run eval export render measure mcp compare test fmt check explain info repl; do prints "  $command "; done
+for command in run eval export render measure mcp compare test fmt check explain info repl view lsp; do prints "  $command "; done
 
-for command in run eval export render measure mcp compare test fmt check explain info repl; do
+for command in run eval export render measure mcp compare test fmt check explain info repl view lsp; do
   it "cag $command --help shows examples"
   try $command --help
   status 0
@@ -37,9 +37,9 @@ status 2
 says 'did you mean `cag render`?'
 
 it 'a command that this version does not have is unknown'
-try lsp
+try serve
 status 2
-says 'unknown command `lsp`'
+says 'unknown command `serve`'
 
 it 'a script in the place of a command gets its mend'
 try ball.cag
