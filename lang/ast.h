@@ -168,6 +168,7 @@ struct CagExpr {
       CagStatement **statements;
       size_t count;
       CagExpr *value;
+      bool damaged; // a part of the value could not be read
     } block;
     CagFunctionAst *function;
     struct {
@@ -223,7 +224,7 @@ typedef enum CagDamage {
 
 struct CagStatement {
   CagStatementKind kind;
-  CagDamage damage; // for statements at the top level of the module
+  CagDamage damage; // in a block: SOUND or DAMAGED
   CagSpan span;
   const char *doc;
   union {

@@ -547,7 +547,7 @@ static void drop_brackets(Parser *p, size_t count) {
 }
 
 // The names that the text from `start` to the current token may define. A name at its start may
-// lack its `=`, unless it is called.
+// lack its `=`, unless the parenthesis of a call follows directly.
 static void add_names_of_line(Parser *p, uint32_t start) {
   const CagSpan passed = {start, parse_current(p)->span.start};
   CagToken name, next;
@@ -555,8 +555,8 @@ static void add_names_of_line(Parser *p, uint32_t start) {
   cag_lexer_next(&p->probe, &name);
   cag_lexer_next(&p->probe, &next);
   cag_parse_probe_end(p);
-  if (name.kind == CAG_TOKEN_NAME && next.kind != CAG_TOKEN_LEFT_PAREN)
-    add_damaged_name(p, name.as.name);
+  const bool called = next.kind == CAG_TOKEN_LEFT_PAREN && next.span.start == name.span.end;
+  if (name.kind == CAG_TOKEN_NAME && !called) add_damaged_name(p, name.as.name);
   cag_damaged_names(&p->lexer, passed, add_damaged_name, p);
 }
 

@@ -253,7 +253,9 @@ static CagExpr *block(Parser *p) {
     while (cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
     start.statement = parse_current(p)->span.start;
     CagStatement *s = cag_parse_habit(p, true) ? NULL : block_statement(p, o, e, &value);
+    if (s && p->panic) s->damage = CAG_DAMAGED;
     if (s) cag_parse_list_push(p, &s, sizeof s);
+    else e->as.block.damaged = p->panic;
     closed = p->panic ? !cag_parse_recover_in_block(p, &start) : !s;
   }
   p->newlines = o.newlines;

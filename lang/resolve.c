@@ -329,6 +329,38 @@ static void walk_comprehension(Resolver *r, CagExpr *e) {
   r->scope = scope;
 }
 
+static void clear_errors(void *errors) { cag_diagnostics_clear(errors); }
+
+// Binds the names in the readable part of damaged text, for editors. Nothing is reported, because a
+// name may be defined in the part that could not be read.
+static void walk_damaged(Resolver *r, void (*work)(void *context, void *what), void *what) {
+  CagDiagnostics *const errors = r->errors;
+  CagDiagnostics unseen = {.most = 1};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, clear_errors, &unseen);
+  r->errors = &unseen;
+  work(r, what);
+  r->errors = errors;
+  cag_cleanup_run(&cleanup);
+}
+
+static void walk_damaged_expression(void *context, void *e) { walk(context, e); }
+
+static void walk_block_statement(void *context, void *statement) {
+  Resolver *r = context;
+  CagStatement *s = statement;
+  if (s->kind == CAG_STATEMENT_ASSERT) {
+    walk(r, s->as.assertion.condition);
+    if (s->as.assertion.message) walk(r, s->as.assertion.message);
+    return;
+  }
+  CagExpr *value = s->as.definition.value;
+  bool function = value->kind == CAG_EXPR_LAMBDA && value->as.function->self;
+  if (function) declare(r, s->as.definition.decl);
+  walk(r, value);
+  if (!function) declare(r, s->as.definition.decl);
+}
+
 // A function in a block is visible in its own body, so it is declared first. Other definitions are
 // declared after their value.
 static void walk_block(Resolver *r, CagExpr *e) {
@@ -337,18 +369,11 @@ static void walk_block(Resolver *r, CagExpr *e) {
   size_t mark = open_scope(r);
   for (size_t i = 0; i < e->as.block.count; i++) {
     CagStatement *s = e->as.block.statements[i];
-    if (s->kind == CAG_STATEMENT_ASSERT) {
-      walk(r, s->as.assertion.condition);
-      if (s->as.assertion.message) walk(r, s->as.assertion.message);
-      continue;
-    }
-    CagExpr *value = s->as.definition.value;
-    bool function = value->kind == CAG_EXPR_LAMBDA && value->as.function->self;
-    if (function) declare(r, s->as.definition.decl);
-    walk(r, value);
-    if (!function) declare(r, s->as.definition.decl);
+    if (s->damage == CAG_DAMAGED) walk_damaged(r, walk_block_statement, s);
+    else walk_block_statement(r, s);
   }
-  walk(r, e->as.block.value);
+  if (e->as.block.damaged) walk_damaged(r, walk_damaged_expression, e->as.block.value);
+  else walk(r, e->as.block.value);
   close_scope(r, mark);
   r->block = open.outer;
 }
@@ -512,19 +537,8 @@ static void walk_statement(Resolver *r, CagStatement *s) {
   }
 }
 
-static void clear_errors(void *errors) { cag_diagnostics_clear(errors); }
-
-// Binds the names in the readable part of a damaged statement, for editors. Nothing is reported,
-// because a name may be defined in the part that could not be read.
-static void walk_damaged(Resolver *r, CagStatement *s) {
-  CagDiagnostics *const errors = r->errors;
-  CagDiagnostics unseen = {.most = 1};
-  CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, clear_errors, &unseen);
-  r->errors = &unseen;
-  walk_statement(r, s);
-  r->errors = errors;
-  cag_cleanup_run(&cleanup);
+static void walk_damaged_statement(void *context, void *statement) {
+  walk_statement(context, statement);
 }
 
 // Returns the name at the start of an expression, or NULL.
@@ -565,7 +579,8 @@ static void resolve(void *context) {
   mark_damaged(r);
   declare_tops(r);
   for (size_t i = 0; i < m->count; i++)
-    if (m->statements[i]->damage == CAG_DAMAGED) walk_damaged(r, m->statements[i]);
+    if (m->statements[i]->damage == CAG_DAMAGED)
+      walk_damaged(r, walk_damaged_statement, m->statements[i]);
     else walk_statement(r, m->statements[i]);
 }
 
