@@ -29,7 +29,8 @@ static const CagDocChapter chapters[] = {
     {"docs/scenes-and-files.md", "scenes-and-files", "Scenes and files",
      "cameras, lights, materials, and exported files"},
     {"docs/batch.md", "batch", "Rendering and batches", "pictures, films, and many jobs at once"},
-    {"docs/live.md", "live", "Live work", "the language server for editors"},
+    {"docs/live.md", "live", "Live work",
+     "the page, watching files, the language server, measures, and language models"},
     {"docs/embedding.md", "embedding", "Embedding libcag", "scripts in programs written in C"},
 };
 

@@ -27,7 +27,7 @@ awk '/^```/ { if (block ~ /^\/\/ cup.cag/) printf "%s", block; block = ""; next 
 "$CAG" render film.cag -o after.exr --size 32x24 --quality draft --passes color,object
 
 shortened() {
-  sed 's/  *#.*//; s/--size [0-9x]*//; s/--quality [a-z]*//; s/0\.\.47 *$/0..1/; s/24\.\.47/24..25/
+  sed 's/  *#.*//; s/ --watch//; s/--size [0-9x]*//; s/--quality [a-z]*//; s/0\.\.47 *$/0..1/; s/24\.\.47/24..25/
     /^cag render/s/$/ --size 32x24 --quality draft/'
 }
 

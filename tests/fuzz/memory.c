@@ -47,6 +47,7 @@ typedef struct Job {
   const char *name; // of the file or built-in
   const char *text; // of an example; NULL: read the file
   const char *format;
+  bool cut; // by PLANE; without a format, what is left is measured
 } Job;
 
 typedef struct Shared {
@@ -70,6 +71,13 @@ static size_t draw(uint64_t *state, size_t n) {
   return (size_t)((z ^ (z >> 31)) % n);
 }
 
+// A section in general position through most scripts, which are near the origin.
+static const double PLANE[4] = {0.1, 0.2, 1, 0.3};
+
+static void print_measures(void *out, const CagMeasures *m) {
+  fprintf(out, "%s %s %.9g %.9g %.9g\n", m->name, m->type, m->length, m->area, m->volume);
+}
+
 // Runs a job with failing allocations as given by -a. Returns the status and the output, which the
 // caller frees.
 static int run_job(const Job *j, long point, char **output, size_t *allocations) {
@@ -91,9 +99,13 @@ static int run_job(const Job *j, long point, char **output, size_t *allocations)
   if (s && j->text)
     status = cag_session_run_text(s, "tests/language/example.cag", j->text, strlen(j->text));
   else if (s) status = cag_session_run_file(s, j->name);
+  if (status == CAG_STATUS_OK && j->cut && !cag_session_set_section(s, PLANE))
+    status = CAG_STATUS_LIMIT;
   if (status == CAG_STATUS_OK && j->format) {
     snprintf(path, sizeof path, "%s/out.%s", folder, j->format);
     status = cag_session_export(s, path, NULL);
+  } else if (status == CAG_STATUS_OK && j->cut) {
+    status = cag_session_measure(s, print_measures, options.out);
   }
   *allocations = made;
   if (status != CAG_STATUS_OK && s)
@@ -109,7 +121,7 @@ static int run_job(const Job *j, long point, char **output, size_t *allocations)
 static void complain(const char *what) {
   const Job *j = &jobs[shared->job];
   shared->failed++;
-  printf("--- %s, with -a %ld%s%s: %s\n%s\n", what, shared->failing,
+  printf("--- %s, with -a %ld%s%s%s: %s\n%s\n", what, shared->failing, j->cut ? ", cut" : "",
          j->format ? ", exported as " : "", j->format ? j->format : "", j->name,
          j->text ? j->text : "");
   fflush(stdout);
@@ -179,7 +191,7 @@ static void try_job(size_t points, uint64_t seed, long single) {
 // Fails each allocation of the start of a session in turn, each in a new process, because the
 // tables of built-ins are created once per process.
 static void try_start(void) {
-  static const Job start = {"the start of a session", "", NULL};
+  static const Job start = {"the start of a session", "", NULL, false};
   jobs = (Job *)&start;
   for (long point = 1, more = 1; more; point++) {
     shared->failing = point;
@@ -228,17 +240,23 @@ static void add_examples(const char *only) {
   for (size_t i = 0; cag_builtin_row(i, &signature, NULL, &example, NULL); i++) {
     const size_t n = strcspn(signature, "(");
     if (example && (!only || (strlen(only) == n && strncmp(only, signature, n) == 0)))
-      add_job((Job){signature, example, NULL});
+      add_job((Job){signature, example, NULL, false});
   }
 }
 
 static void add_file(const char *name, bool exports) {
   char *output;
   size_t ignored;
-  const Job plain = {name, NULL, NULL};
+  const Job plain = {name, NULL, NULL, false};
   add_job(plain);
   for (const char *const *f = cag_export_formats(); exports && *f; f++) {
-    const Job j = {name, NULL, *f};
+    const Job j = {name, NULL, *f, false};
+    if (run_job(&j, 0, &output, &ignored) == CAG_STATUS_OK) add_job(j);
+    free(output);
+  }
+  for (int k = 0; exports && k < 3; k++) { // what is left as a mesh, the outlines, and the measures
+    static const char *const formats[] = {"stl", "svg", NULL};
+    const Job j = {name, NULL, formats[k], true};
     if (run_job(&j, 0, &output, &ignored) == CAG_STATUS_OK) add_job(j);
     free(output);
   }

@@ -31,6 +31,13 @@ static void no_name(void *context, const char *name) {
   r->names++;
 }
 
+static void no_measures(void *context, const CagMeasures *part) { no_name(context, part->name); }
+
+static void no_definition(void *context, const char *text, const char *type, bool shown) {
+  (void)type, (void)shown;
+  no_name(context, text);
+}
+
 // Calls everything that needs the machine, from within another call.
 static void call_everything(Reentry *r) {
   CagSession *s = r->session;
@@ -54,7 +61,9 @@ static void call_everything(Reentry *r) {
                           cag_session_export(s, "/dev/null", "stl"),
                           cag_session_render(s, &render, "none.png"),
                           cag_session_document_text(s, "inner", "x = 1", 5, false, null),
-                          cag_session_write_site(s, "/dev/null/site", &site)};
+                          cag_session_write_site(s, "/dev/null/site", &site),
+                          cag_session_measure(s, no_measures, r),
+                          cag_session_definition(s, "a", no_definition, r)};
   r->calls += sizeof statuses / sizeof *statuses;
   for (size_t i = 0; i < sizeof statuses / sizeof *statuses; i++)
     r->refused += statuses[i] == CAG_STATUS_USAGE;
@@ -65,6 +74,8 @@ static void call_everything(Reentry *r) {
   cag_session_document_names(s, no_name, r);
   cag_session_members(s, "a", no_name, r);
   cag_session_describe_scene(s, null);
+  assert_false(cag_session_set_section(s, (double[]){0, 0, 1, 0}));
+  assert_false(cag_session_show_only(s, "a"));
   cag_session_clear(s);
   fclose(null);
 }
