@@ -142,6 +142,10 @@ await test("a quarter of a circle is an arc, an ellipse is none", () => {
   equal(circleOf(circle(24, [0, 0, 0], 5).map(([x, y, z]) => [x, 1.05 * y, z])), null);
   equal(circleOf([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]), null);
 });
+await test("points that a set operation adds on chords do not change the circle", () => {
+  const rim = circle(24, [0, 0, 0], 5), points = rim.flatMap((p, i) => (i ? [p.map((x, k) => (x + rim[i - 1][k]) / 2), p] : [p]));
+  near(circleOf(points).radius, 5);
+});
 await test("the rim of a disk is one closed chain", () => {
   const rim = circle(16, [0, 0, 0], 2).slice(0, 16).flat();
   const mesh = readMesh(encode({ positions: rim, triangles: [], edges: Array.from({ length: 16 }, (_, i) => [i, (i + 1) % 16]).flat() }));

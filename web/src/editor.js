@@ -61,7 +61,7 @@ export class Editor {
     this.readOnly = readOnly;
     /** The path of the file whose text changed. @type {Topic<string>} */
     this.changed = new Topic();
-    /** @type {Topic<{ path: string, line: number }>} */
+    /** @type {Topic<void>} */
     this.cursorMoved = new Topic();
     /** @type {Topic<void>} */
     this.saveWanted = new Topic();
@@ -91,7 +91,7 @@ export class Editor {
         EditorView.contentAttributes.of({ "aria-label": "Script", spellcheck: "false", ...(this.readOnly ? { tabindex: "0" } : {}) }),
         EditorView.updateListener.of((update) => {
           if (update.docChanged) this.changed.emit(this.path);
-          if (update.selectionSet || update.docChanged) this.cursorMoved.emit({ path: this.path, line: this.line() });
+          if (update.selectionSet || update.docChanged) this.cursorMoved.emit(undefined);
         }),
       ],
     });

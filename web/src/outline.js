@@ -105,6 +105,8 @@ function ungrouped(geometry) {
     one.boundingBox = geometry.boundingBox;
     one.boundingSphere = geometry.boundingSphere;
     whole.set(geometry, one);
+    const copy = one;
+    geometry.addEventListener("dispose", () => copy.dispose());
   }
   return one;
 }

@@ -34,6 +34,11 @@ export class OutputPanel {
     /** @type {Blob | null} */
     this.picture = null;
     this.images = h("div", { class: "stack" });
+    /** @type {import("./engine.js").SceneMessage | null} */
+    this.scene = null;
+    this.imagesOf = 0; // the run whose images are shown
+    this.box = host.closest("details");
+    this.box?.addEventListener("toggle", () => this.showImages());
     host.append(
       h("h3", {}, "Picture as shown"),
       h("div", { class: "row" }, h("button", { type: "button", onclick: () => this.snapshot(1) }, "Save PNG"), h("button", { type: "button", onclick: () => this.snapshot(2) }, "Save PNG, twice as large")),
@@ -49,11 +54,15 @@ export class OutputPanel {
     const chosen = this.camera.value;
     this.camera.replaceChildren(h("option", { value: "" }, "as shown"), ...scene.cameras.map((c) => h("option", { value: c.name }, c.name)));
     this.camera.value = scene.cameras.some((c) => c.name === chosen) ? chosen : "";
-    this.showImages(scene);
+    this.scene = scene;
+    this.showImages();
   }
 
-  /** @param {import("./engine.js").SceneMessage} scene */
-  showImages({ images }) {
+  /** Images are asked for while they can be seen. */
+  showImages() {
+    if (!this.scene || !this.box?.open || this.imagesOf === this.scene.run) return;
+    this.imagesOf = this.scene.run;
+    const { images } = this.scene;
     if (images.length === 0) return this.images.replaceChildren();
     this.images.replaceChildren(h("h3", {}, "Images of the script"));
     for (const image of images) {

@@ -137,7 +137,7 @@ async function start(engine) {
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
   panels.push(
     (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
-    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection());
+    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection(), () => showMade());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
   function expressionOf(part) {
@@ -150,7 +150,7 @@ async function start(engine) {
   function select(names) {
     view.selected = names;
     const part = view.parts.views.get(names[names.length - 1])?.part ?? null;
-    selection.show(part, part ? expressionOf(part) : "");
+    selection.show(part, part ? expressionOf(part) : "", !runs.coarse);
     partsPanel.refresh();
     view.invalidate();
     return part;
@@ -208,9 +208,9 @@ async function start(engine) {
 
   /** What the line of the cursor made. @type {string[]} */
   let made = [];
-  /** @param {string} path @param {number} line */
-  function showMade(path, line) {
-    const parts = newest.scene?.parts ?? [];
+  function showMade() {
+    if (!editor) return;
+    const parts = newest.scene?.parts ?? [], path = editor.path, line = editor.line();
     made = parts.filter((p) => p.origin.some((o) => o.file === path && o.line <= line && line <= o.endLine)).map((p) => p.name);
     // A line that made everything tells nothing.
     if (made.length === parts.length && parts.length > 1) made = [];
@@ -368,7 +368,7 @@ async function start(engine) {
     timeBar.forget();
     runs.now();
   });
-  opened.cursorMoved.on(({ path, line }) => showMade(path, line));
+  opened.cursorMoved.on(() => showMade());
   byId("save", HTMLButtonElement).addEventListener("click", () => documents.save());
   byId("save", HTMLButtonElement).hidden = !canSave;
   if (newest.messages) {
@@ -377,6 +377,8 @@ async function start(engine) {
   }
   keepSelection();
   root.dataset.ready = "true";
+  // For tests, and for those who look into the page.
+  Object.assign(globalThis, { cagPage: { view, editor: opened } });
 }
 
 /** @param {View} view */

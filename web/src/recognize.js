@@ -13,9 +13,12 @@
 
 // Meshes have single precision: directions of faces and edges in line differ by less than this.
 const ALIGNED = 1e-4;
-// A circle fits if its points are this close, in radii. Vertices of a mesh are on the true curve.
+// A circle fits if points are this close, in radii.
 const ROUND = 2e-4;
+// Vertices of a mesh are on the true circle, but those that a set operation adds are on its chords. They are inside by at most this, in radii.
+const CHORD = 0.03;
 const LEAST_POINTS = 5; // three fit any circle
+const MOST_TRIALS = 64;
 
 /** @param {Triple} a @param {Triple} b @returns {Triple} */
 export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -137,25 +140,46 @@ function sameEnds(p, edges, e, a, b) {
   return (x === u && y === v) || (x === v && y === u);
 }
 
+/** @typedef {{ center: Triple, axis: Triple, radius: number }} Circle */
+
 /**
  * The circle through the points of an edge, if they are on one.
  *
  * @param {Triple[]} points
- * @returns {{ center: Triple, axis: Triple, radius: number } | null}
+ * @returns {Circle | null}
  */
 export function circleOf(points) {
   if (points.length < LEAST_POINTS) return null;
-  const n = points.length, a = points[0], b = points[Math.floor(n / 3)], c = points[Math.floor((2 * n) / 3)];
+  // The last point of a closed edge is its first.
+  const n = norm(sub(points[points.length - 1], points[0])) === 0 ? points.length - 1 : points.length;
+  /** @type {Circle | null} */
+  let best = null;
+  let most = Math.max(LEAST_POINTS, n / 4) - 1;
+  for (let trial = 0; trial < Math.min(n, MOST_TRIALS); trial++) {
+    const [a, b, c] = [0, Math.floor(n / 3), Math.floor((2 * n) / 3)].map((k) => points[(trial + k) % n]);
+    const circle = circleThrough(a, b, c), count = circle ? pointsOn(circle, points) : 0;
+    if (count > most) [best, most] = [circle, count];
+  }
+  return best;
+}
+
+/** @param {Triple} a @param {Triple} b @param {Triple} c @returns {Circle | null} */
+function circleThrough(a, b, c) {
   const ab = sub(b, a), ac = sub(c, a), across = cross(ab, ac), square = dot(across, across);
   if (square <= (ALIGNED * norm(ab) * norm(ac)) ** 2) return null;
-  // The center of the circle through three points.
   const center = madd(a, 1 / (2 * square), madd(scaled(cross(across, ab), dot(ac, ac)), dot(ab, ab), cross(ac, across)));
-  const axis = unit(across), radius = norm(sub(a, center));
-  const round = points.every((p) => {
-    const d = sub(p, center);
-    return Math.abs(norm(d) - radius) <= ROUND * radius && Math.abs(dot(d, axis)) <= ROUND * radius;
-  });
-  return round ? { center, axis, radius } : null;
+  return { center, axis: unit(across), radius: norm(sub(a, center)) };
+}
+
+/** The number of points on the circle; 0 if one is elsewhere than on it or on its chords. @param {Circle} circle @param {Triple[]} points */
+function pointsOn({ center, axis, radius }, points) {
+  let count = 0;
+  for (const p of points) {
+    const d = sub(p, center), beyond = (norm(d) - radius) / radius;
+    if (Math.abs(dot(d, axis)) > ROUND * radius || beyond > ROUND || beyond < -CHORD) return 0;
+    if (beyond > -ROUND) count++;
+  }
+  return count;
 }
 
 /** @param {Triple} a @param {number} k @returns {Triple} */

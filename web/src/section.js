@@ -39,6 +39,8 @@ export class Section {
     this.square = new PlaneGeometry(1, 1);
     /** @type {Map<string, ShaderMaterial>} */
     this.caps = new Map();
+    /** @type {Set<string>} */
+    this.used = new Set();
   }
 
   /** @param {Plane[]} planes  the array that materials share */
@@ -60,7 +62,17 @@ export class Section {
     this.plane.setFromNormalAndCoplanarPoint(this.normal, NORMALS[this.axis].clone().multiplyScalar(this.offset));
     this.planes.length = 0;
     this.group.clear();
-    if (!this.on) return;
+    this.used.clear();
+    if (this.on) this.build(parts);
+    for (const [key, material] of this.caps)
+      if (!this.used.has(key)) {
+        material.dispose();
+        this.caps.delete(key);
+      }
+  }
+
+  /** @param {import("./parts.js").Parts} parts */
+  build(parts) {
     this.planes.push(this.plane);
     let order = 1;
     for (const view of parts.visible()) {
@@ -97,6 +109,7 @@ export class Section {
   /** Hatched in the color of the material. @param {import("./engine.js").Triple} color */
   capMaterial(color) {
     const key = color.join();
+    this.used.add(key);
     let material = this.caps.get(key);
     if (!material) {
       material = new ShaderMaterial({

@@ -30,8 +30,9 @@ export class SelectionPanel {
   /**
    * @param {import("./engine.js").Part | null} part
    * @param {string} expression  of the part in the script
+   * @param {boolean} [measured]  false: something is being dragged, and measures would be late
    */
-  async show(part, expression) {
+  async show(part, expression, measured = true) {
     const asked = ++this.asked;
     if (!part) {
       this.body.replaceChildren(h("p", { class: "faint" }, "Click a part to see where it comes from and how large it is."));
@@ -42,6 +43,7 @@ export class SelectionPanel {
     this.body.replaceChildren(
       h("div", { class: "row" }, h("strong", {}, part.name), h("span", { class: "faint" }, part.type)),
       h("p", { class: "faint" }, part.story), this.chain(part), table);
+    if (!measured) return;
     try {
       const m = await this.engine.measure(part.name);
       if (asked !== this.asked) return;
@@ -55,7 +57,7 @@ export class SelectionPanel {
   chain(part) {
     return h("ol", { class: "chain", "aria-label": "Places in the script" }, ...part.origin.map((place) => {
       const text = this.excerpt(place).replace(/\s+/g, " ").trim();
-      return h("li", {}, h("button", { type: "button", class: "quiet place", onclick: () => this.placeWanted.emit(place) },
+      return h("li", {}, h("button", { type: "button", class: "quiet place", disabled: place.library, onclick: () => this.placeWanted.emit(place) },
         h("span", { class: "what" }, LINKS[place.what] ?? place.what), h("span", { class: "faint" }, `${place.file}:${place.line}`),
         text ? h("code", {}, text) : null));
     }));

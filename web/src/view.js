@@ -17,6 +17,25 @@ import { Topic } from "./topic.js";
 const MOST_PIXEL_RATIO = 2;
 const GROUND_SIZES = 60; // side of an unbounded ground, in radii of the scene
 
+// The names of renderers that have no graphics processor.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** Where there is no graphics processor, pictures have no shadows and no smooth edges. @param {HTMLCanvasElement} canvas */
+function makeContext(canvas) {
+  const probe = new OffscreenCanvas(1, 1).getContext("webgl2");
+  const fast = probe !== null && !SOFTWARE.test(rendererName(probe));
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  const context = canvas.getContext("webgl2", { alpha: false, depth: true, stencil: true, antialias: fast });
+  if (!context) throw new Error("This browser has no WebGL 2, which the scene needs.");
+  return { context, fast };
+}
+
+/** @param {WebGL2RenderingContext} context @returns {string} */
+function rendererName(context) {
+  const info = context.getExtension("WEBGL_debug_renderer_info");
+  return String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+}
+
 /** The color of a CSS variable. @param {string} name */
 function themeColor(name) {
   return new Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
@@ -26,7 +45,8 @@ export class View {
   /** @param {HTMLCanvasElement} canvas @param {(id: string) => Promise<ArrayBuffer>} loadMesh */
   constructor(canvas, loadMesh) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true });
+    const { context, fast } = makeContext(canvas);
+    this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.toneMapping = CustomToneMapping;
     this.renderer.localClippingEnabled = true;
     this.renderer.autoClear = false;
@@ -42,14 +62,14 @@ export class View {
     this.outline = new Outline();
     this.backdrop = new Backdrop();
     this.lights = new Group();
-    /** @type {import("three").Object3D[]} */
+    /** @type {Mesh<PlaneGeometry, import("three").Material>[]} */
     this.grounds = [];
     this.scene.add(this.grid.mesh, this.backdrop.mesh, this.parts.group, this.section.group, this.lights);
-    this.stage = { grid: true, backdrop: true, shadows: true };
+    this.stage = { grid: true, backdrop: true, shadows: fast };
     /** @type {SceneMessage | null} */
     this.message = null;
     this.hasBackdrop = false;
-    this.staged = ""; // what lights and sky are made of
+    this.skyKey = this.stageKey = ""; // what sky, lights, and grounds are made of
     /** @type {string[]} */
     this.selected = [];
     /** @type {string[]} */
@@ -171,18 +191,25 @@ export class View {
 
   /** Lights, sky, and grounds. They are kept if they did not change. @param {SceneMessage} scene */
   setStage(scene) {
-    const { lights, sky, background, grounds, studio, materials } = scene;
-    const { low, high } = this.orbit;
-    const key = JSON.stringify([lights, sky, background, grounds, studio, grounds.map((g) => materials[g.material]), low, high]);
-    if (key === this.staged) return;
-    this.staged = key;
+    const { lights, sky, background, grounds, studio, materials } = scene, { low, high } = this.orbit;
+    const skyKey = JSON.stringify([sky, background, studio]);
+    if (skyKey !== this.skyKey) {
+      this.skyKey = skyKey;
+      this.scene.environment?.dispose();
+      this.scene.environment = makeEnvironment(scene);
+      // The sky and the floor of the studio are for pictures; the page has its own background.
+      this.hasBackdrop = this.backdrop.show(scene) && !studio;
+    }
+    const key = JSON.stringify([lights, grounds, studio, grounds.map((g) => materials[g.material]), low, high]);
+    if (key === this.stageKey) return;
+    this.stageKey = key;
     this.scene.remove(this.lights, ...this.grounds);
     for (const light of this.lights.children) if (light instanceof SpotLight || light instanceof DirectionalLight) light.dispose();
-    this.lights = makeLights(scene, new Sphere().setFromPoints([this.orbit.low, this.orbit.high]));
-    this.scene.environment?.dispose();
-    this.scene.environment = makeEnvironment(scene);
-    // The sky and the floor of the studio are for pictures; the page has its own background.
-    this.hasBackdrop = this.backdrop.show(scene) && !studio;
+    for (const ground of this.grounds) {
+      ground.geometry.dispose();
+      ground.material.dispose();
+    }
+    this.lights = makeLights(scene, new Sphere().setFromPoints([low, high]));
     this.grounds = studio ? [] : grounds.map((g) => this.makeGround(scene, g));
     this.orbit.reach = this.grounds.length ? GROUND_SIZES * this.orbit.radius : 0;
     this.scene.add(this.lights, ...this.grounds);
