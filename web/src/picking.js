@@ -60,27 +60,35 @@ function hitSurface({ section }, view, ray) {
   return { view, point: ray.at(found.t, new Vector3()), t: found.t, triangle: found.triangle, segment: -1 };
 }
 
-/** Maps points of a part to pixels. @param {Sight} sight @param {import("./parts.js").PartView} view */
+/** Maps points of a part to pixels and depths. @param {Sight} sight @param {import("./parts.js").PartView} view */
 function projector({ camera, width, height }, view) {
   const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(view.group.matrix);
   const p = new Vector4();
   return (/** @type {Float32Array} */ positions, /** @type {number} */ v) => {
     p.set(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2], 1).applyMatrix4(matrix);
-    return p.w > 0 ? [((p.x / p.w + 1) / 2) * width, ((1 - p.y / p.w) / 2) * height] : null;
+    return p.w > 0 ? [((p.x / p.w + 1) / 2) * width, ((1 - p.y / p.w) / 2) * height, p.z / p.w] : null;
   };
 }
+
+const TIE = 2; // pixels: of things that are about as near to the pointer, the one in front counts
+
+/** Whether a thing is nearer to a pixel than another. @param {[number, number]} a  pixels away, and depth @param {[number, number]} b */
+const isNearer = (a, b) => a[0] < b[0] - TIE || (a[0] < b[0] + TIE && a[1] < b[1]);
 
 /** The segment that is nearest to a pixel. @param {Sight} sight @param {import("./parts.js").PartView} view @param {number} x @param {number} y @param {number} reach */
 function nearestSegment(sight, view, x, y, reach) {
   const { positions, edges } = view.shape.data, project = projector(sight, view);
-  let segment = -1, part = 0, least = reach;
+  let segment = -1, part = 0;
+  /** @type {[number, number]} */
+  let least = [reach, Infinity];
   for (let e = 0; e < edges.length / 2; e++) {
     const a = project(positions, edges[2 * e]), b = project(positions, edges[2 * e + 1]);
     if (!a || !b) continue;
     const dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
     const s = square > 0 ? Math.min(1, Math.max(0, ((x - a[0]) * dx + (y - a[1]) * dy) / square)) : 0;
-    const away = Math.hypot(a[0] + s * dx - x, a[1] + s * dy - y);
-    if (away < least) [least, segment, part] = [away, e, s];
+    /** @type {[number, number]} */
+    const away = [Math.hypot(a[0] + s * dx - x, a[1] + s * dy - y), a[2] + s * (b[2] - a[2])];
+    if (away[0] < reach && isNearer(away, least)) [least, segment, part] = [away, e, s];
   }
   if (segment < 0) return null;
   const a = new Vector3(...vertex(positions, edges[2 * segment])), b = new Vector3(...vertex(positions, edges[2 * segment + 1]));
@@ -138,11 +146,15 @@ const triple = (p) => [p.x, p.y, p.z];
 /** @param {Sight} sight @param {import("./parts.js").PartView} view @param {number} x @param {number} y @returns {Vector3 | null} */
 function cornerNear(sight, view, x, y) {
   const { positions } = view.shape.data, project = projector(sight, view);
-  let nearest = -1, least = SNAP;
+  let nearest = -1;
+  /** @type {[number, number]} */
+  let least = [SNAP, Infinity];
   for (const v of cornersOf(view.shape)) {
     const p = project(positions, v);
-    const away = p ? Math.hypot(p[0] - x, p[1] - y) : Infinity;
-    if (away < least) [least, nearest] = [away, v];
+    if (!p) continue;
+    /** @type {[number, number]} */
+    const away = [Math.hypot(p[0] - x, p[1] - y), p[2]];
+    if (away[0] < SNAP && isNearer(away, least)) [least, nearest] = [away, v];
   }
   return nearest < 0 ? null : new Vector3(...vertex(positions, nearest)).applyMatrix4(view.group.matrix);
 }
