@@ -123,7 +123,7 @@ static inline CagCurve *random_curve(Kind kind) {
     break;
   }
   default: {
-    const CagCurveFunction f = {wave, forget, NULL};
+    const CagCurveFunction f = {.eval = wave, .release = forget, .context = NULL};
     OK(cag_curve_function(&f, 3, from, from + way, false, &c, &err));
     return moved(c);
   }

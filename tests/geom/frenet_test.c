@@ -215,7 +215,7 @@ static void waves_are_straight_at_their_zeros_and_flat_where_they_twist_back(voi
   CagSpecialPoints s;
   int dimension = 2;
   double t[64];
-  const CagCurveFunction function = {wave, forget, &dimension};
+  const CagCurveFunction function = {.eval = wave, .release = forget, .context = &dimension};
   OK(cag_curve_function(&function, 2, 0.01, 4, false, &c, &err));
   OK(cag_curve_special_points(c, &s, &err));
   for (int i = 0; i < 50; i++) t[i] = (i + 1) * M_PI / 40;

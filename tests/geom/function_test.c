@@ -25,7 +25,7 @@ static void circle_release(void *context) { ((Circle *)context)->released++; }
 
 static CagCurve *make_circle(Circle *c) {
   CagCurve *curve;
-  const CagCurveFunction f = {circle_eval, circle_release, c};
+  const CagCurveFunction f = {.eval = circle_eval, .release = circle_release, .context = c};
   OK(cag_curve_function(&f, 3, 0, 2 * M_PI, true, &curve, &err));
   return curve;
 }
@@ -51,7 +51,7 @@ static void a_function_that_fails_stays_with_its_caller(void **state) {
   (void)state;
   Circle c = {3, 0};
   CagCurve *curve;
-  const CagCurveFunction f = {circle_eval, circle_release, &c};
+  const CagCurveFunction f = {.eval = circle_eval, .release = circle_release, .context = &c};
   assert_int_equal(cag_curve_function(&f, 3, 0, 2 * M_PI, true, &curve, &err), CAG_E_CALLBACK);
   FAILS(cag_curve_function(&f, 3, 1, 1, false, &curve, &err), "empty-range");
   FAILS(cag_curve_function(&f, 3, 0, INFINITY, false, &curve, &err), "not-finite");
@@ -114,7 +114,8 @@ static void points_that_are_not_finite_are_found(void **state) {
   (void)state;
   bool broken = true;
   CagSurface *s;
-  const CagSurfaceFunction f = {saddle_eval, saddle_row, NULL, &broken};
+  const CagSurfaceFunction f = {
+      .eval = saddle_eval, .eval_row = saddle_row, .release = NULL, .context = &broken};
   FAILS(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err), "not-finite");
   assert_non_null(strstr(err.message, "u = 1, v = 0"));
   broken = false;
@@ -231,7 +232,7 @@ static void bounds_of_random_waves_are_those_of_their_summits(void **state) {
       }
     CagCurve *c;
     CagBounds box;
-    const CagCurveFunction function = {fourier_eval, NULL, &f};
+    const CagCurveFunction function = {.eval = fourier_eval, .release = NULL, .context = &f};
     OK(cag_curve_function(&function, 3, 0, 2 * M_PI, true, &c, &err));
     OK(cag_curve_bounds(c, &box, &err));
     assert_true(f.calls < 1000);
@@ -259,7 +260,7 @@ static void bounds_do_without_derivatives(void **state) {
   (void)state;
   CagCurve *c;
   CagBounds box;
-  const CagCurveFunction function = {rough_eval, NULL, NULL};
+  const CagCurveFunction function = {.eval = rough_eval, .release = NULL, .context = NULL};
   OK(cag_curve_function(&function, 3, 0, 1, false, &c, &err));
   OK(cag_curve_bounds(c, &box, &err));
   near_vec(box.min, cag_vec3(-0.7, -sqrt(0.7), 0), 1e-9);
@@ -289,7 +290,7 @@ static void a_solid_of_a_function_asks_for_few_points(void **state) {
   CagCurve *c;
   CagRegion *r;
   CagSolid *solid, *moved;
-  const CagCurveFunction function = {star_eval, NULL, &calls};
+  const CagCurveFunction function = {.eval = star_eval, .release = NULL, .context = &calls};
   OK(cag_curve_function(&function, 2, 0, 2 * M_PI, true, &c, &err));
   OK(cag_region_new(c, NULL, 0, &r, &err));
   OK(cag_solid_extrude(r, cag_vec3(0, 0, 5), 0, 1, &solid, &err));

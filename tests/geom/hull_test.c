@@ -297,7 +297,7 @@ static CagStatus fail_once(void *context, double t, int order, CagVec3 *out, Cag
 static void a_function_that_fails_once_fails_the_search(void **state) {
   (void)state;
   Calls calls = {0};
-  const CagCurveFunction f = {fail_once, NULL, &calls};
+  const CagCurveFunction f = {.eval = fail_once, .release = NULL, .context = &calls};
   CagCurve *coil;
   CagParts a = {0}, b = {0};
   double distance;

@@ -784,7 +784,7 @@ static CagStatus graph_eval(void *context, double t, int order, CagVec3 *out, Ca
 }
 
 static CagCurve *graph_of(Graph *g) {
-  const CagCurveFunction f = {graph_eval, NULL, g};
+  const CagCurveFunction f = {.eval = graph_eval, .release = NULL, .context = g};
   CagCurve *c;
   OK(cag_curve_function(&f, 2, 0, 1, false, &c, &err));
   return c;

@@ -104,7 +104,8 @@ static CagStatus waves_row(void *context, double u, const double *vs, size_t nv,
 }
 
 static CagSurface *formula(double u0, double u1, double v0, double v1) {
-  const CagSurfaceFunction f = {waves, waves_row, NULL, NULL};
+  const CagSurfaceFunction f = {
+      .eval = waves, .eval_row = waves_row, .release = NULL, .context = NULL};
   CagSurface *s;
   OK(cag_surface_function(&f, u0, u1, false, v0, v1, false, &s, &err));
   return s;

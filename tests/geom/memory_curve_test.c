@@ -49,7 +49,7 @@ static CagStatus spiral_eval(void *context, double s, int order, double *curvatu
 static void release_nothing(void *context) { (void)context; }
 
 static CagStatus make_wave(CagCurve **out, CagError *e) {
-  const CagCurveFunction f = {wave_eval, release_nothing, NULL};
+  const CagCurveFunction f = {.eval = wave_eval, .release = release_nothing, .context = NULL};
   return cag_curve_function(&f, 2, 0, 5, false, out, e);
 }
 

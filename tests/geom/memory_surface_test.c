@@ -58,7 +58,7 @@ static CagStatus wave_eval(void *context, double t, int order, CagVec3 *out, Cag
 static void release_nothing(void *context) { (void)context; }
 
 static CagStatus wave(CagCurve **out, CagError *e) {
-  const CagCurveFunction f = {wave_eval, release_nothing, NULL};
+  const CagCurveFunction f = {.eval = wave_eval, .release = release_nothing, .context = NULL};
   return cag_curve_function(&f, 2, 0, 2, false, out, e);
 }
 static CagStatus cubic(double z, CagCurve **out, CagError *e) {
@@ -208,7 +208,8 @@ MAKER(loft) { return of_two(lofted, false, out, e); }
 MAKER(loft_of_function) { return of_two(lofted, true, out, e); }
 MAKER(developable) { return of_two(cag_surface_developable, false, out, e); }
 MAKER(function) {
-  const CagSurfaceFunction f = {waves_eval, waves_row, release_nothing, NULL};
+  const CagSurfaceFunction f = {
+      .eval = waves_eval, .eval_row = waves_row, .release = release_nothing, .context = NULL};
   return cag_surface_function(&f, 0, 3, false, 0, 3, false, out, e);
 }
 MAKER(planar) {

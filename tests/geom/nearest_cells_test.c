@@ -246,7 +246,8 @@ static CagSurface *surface_of(int kind, const char **name, int *most) {
   CagTransform map;
   *name = OF[kind].name;
   *most = OF[kind].most;
-  const CagSurfaceFunction f = {bump, bump_row, NULL, NULL};
+  const CagSurfaceFunction f = {
+      .eval = bump, .eval_row = bump_row, .release = NULL, .context = NULL};
   switch (kind) {
   case 0: return patch(3, 3, false);
   case 1: return patch(2, 3, true);

@@ -394,7 +394,8 @@ static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
     r.wave[k % 2] = uniform(10, 60);
     r.wave[1 - k % 2] = k % 3 ? 0 : slow;
     r.fade[k / 2 % 2] = uniform(0, 0.9);
-    const CagSurfaceFunction f = {ripple_eval, ripple_row, release_nothing, &r};
+    const CagSurfaceFunction f = {
+        .eval = ripple_eval, .eval_row = ripple_row, .release = release_nothing, .context = &r};
     OK(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err));
     sum += check_plan(s, &how);
     cag_surface_release(s);

@@ -279,7 +279,7 @@ static void few_evaluations_find_the_distance(void **state) {
     static double radius_and_climb[2];
     radius_and_climb[0] = uniform(1, 3);
     radius_and_climb[1] = uniform(0.5, 2);
-    const CagCurveFunction f = {coil, NULL, radius_and_climb};
+    const CagCurveFunction f = {.eval = coil, .release = NULL, .context = radius_and_climb};
     CagParts a = {0}, b = {0};
     CagCurve *c;
     double out, least = INFINITY;

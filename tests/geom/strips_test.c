@@ -49,7 +49,8 @@ static CagStatus twist_row(void *context, double u, const double *vs, size_t nv,
 }
 
 static CagSurface *twisted(Twist *t) {
-  const CagSurfaceFunction f = {twist_eval, twist_row, NULL, t};
+  const CagSurfaceFunction f = {
+      .eval = twist_eval, .eval_row = twist_row, .release = NULL, .context = t};
   const double to[2] = {t->from[0] + t->size[0], t->from[1] + t->size[1]};
   CagSurface *s;
   OK(cag_surface_function(&f, t->from[t->swap], to[t->swap], false, t->from[!t->swap], to[!t->swap],

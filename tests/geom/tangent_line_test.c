@@ -40,7 +40,7 @@ static CagStatus eval_wave(void *context, double t, int order, CagVec3 *out, Cag
 static CagCurve *wave_curve(double from, double way, double rate) {
   Wave *w = malloc(sizeof *w);
   assert_non_null(w);
-  const CagCurveFunction f = {eval_wave, free, w};
+  const CagCurveFunction f = {.eval = eval_wave, .release = free, .context = w};
   CagCurve *c;
   w->slope[0] = uniform(-1, 1);
   w->slope[1] = uniform(-1, 1);

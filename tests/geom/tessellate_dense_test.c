@@ -288,7 +288,8 @@ static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *formula(Formula **f, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  CagSurfaceFunction function = {formula_eval, formula_row, release_nothing, f};
+  CagSurfaceFunction function = {
+      .eval = formula_eval, .eval_row = formula_row, .release = release_nothing, .context = f};
   OK(cag_surface_function(&function, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }

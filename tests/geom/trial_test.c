@@ -328,7 +328,8 @@ static void release_nothing(void *context) { (void)context; }
 
 static CagSurface *surface_of(Sheet *sheet, double u0, double u1, double v0, double v1) {
   CagSurface *s;
-  const CagSurfaceFunction f = {sheet_eval, sheet_row, release_nothing, sheet};
+  const CagSurfaceFunction f = {
+      .eval = sheet_eval, .eval_row = sheet_row, .release = release_nothing, .context = sheet};
   OK(cag_surface_function(&f, u0, u1, false, v0, v1, false, &s, &err));
   return s;
 }

@@ -53,7 +53,8 @@ static double value_of_hills(CagSurfaceValue kind, double x, double y) {
 
 static void values_of_a_graph_have_closed_forms(void **state) {
   (void)state;
-  const CagSurfaceFunction f = {hills, hills_row, NULL, NULL};
+  const CagSurfaceFunction f = {
+      .eval = hills, .eval_row = hills_row, .release = NULL, .context = NULL};
   CagSurface *s, *flipped;
   OK(cag_surface_function(&f, -1.5, 2, false, -1, 1.5, false, &s, &err));
   OK(cag_surface_flip(s, &flipped, &err));
@@ -122,7 +123,8 @@ static double coarse_part(CagMesh *m, CagSurfaceValue kind) {
 // too many would be needed.
 static void meshes_are_made_finer_as_needed(void **state) {
   (void)state;
-  const CagSurfaceFunction f = {hills, hills_row, NULL, NULL};
+  const CagSurfaceFunction f = {
+      .eval = hills, .eval_row = hills_row, .release = NULL, .context = NULL};
   static const size_t LIMITS[] = {1000000, 34000, 60000, 100000};
   int of[3] = {0, 0, 0};
   for (int round = 0; round < 12; round++) {

@@ -41,7 +41,8 @@ static CagStatus wave_row(void *context, double u, const double *vs, size_t nv, 
 static void a_formula_that_fails_at_any_call_is_an_error_with_the_name(void **state) {
   (void)state;
   Failing f = {0, SIZE_MAX};
-  const CagSurfaceFunction wave = {wave_eval, wave_row, NULL, &f};
+  const CagSurfaceFunction wave = {
+      .eval = wave_eval, .eval_row = wave_row, .release = NULL, .context = &f};
   Fixture scene;
   fixture_begin(&scene);
   scene.scene.tolerance = 0.01;
