@@ -64,20 +64,25 @@ void lsp_request(CagLsp *l, const char *method, cJSON *params) {
 
 // --- Places ---
 
-cJSON *lsp_position_json(CagLsp *l, const char *file, size_t offset) {
+// Positions are written as text: lists have thousands, and cJSON is slow with numbers.
+static int write_position(CagLsp *l, const char *file, size_t offset, char *out, size_t size) {
   size_t line, column;
   cag_document_position(l->workspace, file, offset, l->columns, &line, &column);
-  cJSON *o = cJSON_CreateObject();
-  cJSON_AddNumberToObject(o, "line", (double)line);
-  cJSON_AddNumberToObject(o, "character", (double)column);
-  return o;
+  return snprintf(out, size, "{\"line\":%zu,\"character\":%zu}", line, column);
+}
+
+cJSON *lsp_position_json(CagLsp *l, const char *file, size_t offset) {
+  char text[80];
+  write_position(l, file, offset, text, sizeof text);
+  return cJSON_CreateRaw(text);
 }
 
 cJSON *lsp_range_json(CagLsp *l, const CagPlace *place) {
-  cJSON *o = cJSON_CreateObject();
-  cJSON_AddItemToObject(o, "start", lsp_position_json(l, place->file, place->start));
-  cJSON_AddItemToObject(o, "end", lsp_position_json(l, place->file, place->end));
-  return o;
+  char start[80], end[80], text[200];
+  write_position(l, place->file, place->start, start, sizeof start);
+  write_position(l, place->file, place->end, end, sizeof end);
+  snprintf(text, sizeof text, "{\"start\":%s,\"end\":%s}", start, end);
+  return cJSON_CreateRaw(text);
 }
 
 // Reads a number of a position. Numbers beyond the range of a protocol integer are its largest.
@@ -163,7 +168,7 @@ static void did_change(CagLsp *l, const cJSON *params) {
   const cJSON *version = lsp_get(document, "version");
   if (!d || d->is_library) return;
   if (cJSON_IsNumber(version)) d->version = version->valuedouble;
-  cJSON_ArrayForEach(item, lsp_get(params, "contentChanges")) change(l, d, item);
+  cJSON_ArrayForEach(item, lsp_get(params, "contentChanges")) { change(l, d, item); }
   lsp_stop_run(l, d->file);
   cJSON_Delete(d->ran);
   d->ran = NULL;
@@ -271,10 +276,13 @@ static void publish_file(CagLsp *l, const char *file) {
 static void publish_files(CagLsp *l, const LspDocument *d, const cJSON *before, const cJSON *now) {
   const cJSON *item;
   publish_file(l, d->file);
-  cJSON_ArrayForEach(item, now) if (strcmp(item->string, d->file) != 0)
+  cJSON_ArrayForEach(item, now) {
+    if (strcmp(item->string, d->file) != 0) publish_file(l, item->string);
+  }
+  cJSON_ArrayForEach(item, before) {
+    if (strcmp(item->string, d->file) != 0 && !lsp_get(now, item->string))
       publish_file(l, item->string);
-  cJSON_ArrayForEach(item, before) if (strcmp(item->string, d->file) != 0 &&
-                                       !lsp_get(now, item->string)) publish_file(l, item->string);
+  }
 }
 
 void lsp_publish(CagLsp *l, LspDocument *d) {
@@ -319,8 +327,8 @@ static void did_close(CagLsp *l, const cJSON *params) {
   // Its problems are shown only if another document has found them.
   cJSON *own = cJSON_CreateObject();
   cJSON_AddArrayToObject(own, old.file);
-  cJSON_ArrayForEach(item, old.published) list_for(own, item->string);
-  cJSON_ArrayForEach(item, old.ran) list_for(own, item->string);
+  cJSON_ArrayForEach(item, old.published) { list_for(own, item->string); }
+  cJSON_ArrayForEach(item, old.ran) { list_for(own, item->string); }
   cJSON_ArrayForEach(item, own) {
     cJSON *cleared = cJSON_CreateObject(), *list = cJSON_CreateArray();
     char *uri = strcmp(item->string, old.file) ? lsp_uri_of_file(l, item->string) : strdup(old.uri);
@@ -341,6 +349,12 @@ static void read_client(CagLsp *l, const cJSON *params) {
   const cJSON *all = lsp_get(params, "capabilities"), *text = lsp_get(all, "textDocument"),
               *workspace = lsp_get(all, "workspace"), *item;
   const cJSON *completion = lsp_get(lsp_get(text, "completion"), "completionItem");
+  const cJSON *defaults =
+      lsp_get(lsp_get(lsp_get(text, "completion"), "completionList"), "itemDefaults");
+  cJSON_ArrayForEach(item, defaults) {
+    if (cJSON_IsString(item) && strcmp(item->valuestring, "editRange") == 0)
+      l->client.edit_range = true;
+  }
   l->client.snippets = lsp_is_true(completion, "snippetSupport");
   l->client.hierarchy =
       lsp_is_true(lsp_get(text, "documentSymbol"), "hierarchicalDocumentSymbolSupport");
@@ -351,9 +365,9 @@ static void read_client(CagLsp *l, const cJSON *params) {
   l->client.show_document = lsp_is_true(lsp_get(lsp_get(all, "window"), "showDocument"), "support");
   const cJSON *formats = lsp_get(lsp_get(text, "hover"), "contentFormat");
   l->client.markdown = !formats;
-  cJSON_ArrayForEach(item,
-                     formats) if (cJSON_IsString(item) && !strcmp(item->valuestring, "markdown"))
-      l->client.markdown = true;
+  cJSON_ArrayForEach(item, formats) {
+    if (cJSON_IsString(item) && !strcmp(item->valuestring, "markdown")) l->client.markdown = true;
+  }
   l->columns = CAG_COLUMNS_UTF16;
   cJSON_ArrayForEach(item, lsp_get(lsp_get(all, "general"), "positionEncodings")) {
     if (cJSON_IsString(item) && strcmp(item->valuestring, "utf-8") == 0)
@@ -379,8 +393,9 @@ static void read_module_path(CagLsp *l, const cJSON *options) {
   if (!l->module_path) return;
   size_t n = 0;
   for (; n < given; n++) l->module_path[n] = strdup(o->module_path[n]);
-  cJSON_ArrayForEach(item, list) if (cJSON_IsString(item)) l->module_path[n++] =
-      strdup(item->valuestring);
+  cJSON_ArrayForEach(item, list) {
+    if (cJSON_IsString(item)) l->module_path[n++] = strdup(item->valuestring);
+  }
   o->module_path = (const char *const *)l->module_path;
   o->module_path_count = n;
 }
@@ -388,8 +403,9 @@ static void read_module_path(CagLsp *l, const cJSON *options) {
 static void read_folders(CagLsp *l, const cJSON *params) {
   const cJSON *folders = lsp_get(params, "workspaceFolders"), *item;
   if (cJSON_IsArray(folders)) {
-    cJSON_ArrayForEach(item, folders) if (lsp_text(item, "uri"))
-        lsp_add_folder(l, lsp_text(item, "uri"));
+    cJSON_ArrayForEach(item, folders) {
+      if (lsp_text(item, "uri")) lsp_add_folder(l, lsp_text(item, "uri"));
+    }
   } else if (lsp_text(params, "rootUri")) {
     lsp_add_folder(l, lsp_text(params, "rootUri"));
   } else if (lsp_text(params, "rootPath")) {
@@ -461,10 +477,12 @@ static void did_change_files(CagLsp *l, const cJSON *params) {
 
 static void did_change_folders(CagLsp *l, const cJSON *params) {
   const cJSON *event = lsp_get(params, "event"), *item;
-  cJSON_ArrayForEach(item, lsp_get(event, "removed")) if (lsp_text(item, "uri"))
-      lsp_remove_folder(l, lsp_text(item, "uri"));
-  cJSON_ArrayForEach(item, lsp_get(event, "added")) if (lsp_text(item, "uri"))
-      lsp_add_folder(l, lsp_text(item, "uri"));
+  cJSON_ArrayForEach(item, lsp_get(event, "removed")) {
+    if (lsp_text(item, "uri")) lsp_remove_folder(l, lsp_text(item, "uri"));
+  }
+  cJSON_ArrayForEach(item, lsp_get(event, "added")) {
+    if (lsp_text(item, "uri")) lsp_add_folder(l, lsp_text(item, "uri"));
+  }
   lsp_scan_folders(l);
 }
 

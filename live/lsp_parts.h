@@ -57,7 +57,8 @@ struct CagLsp {
   bool initialized, shut_down, done;
   CagColumns columns;
   struct { // what the client supports
-    bool snippets, markdown, links, changes, watched_files, show_document, tags, hierarchy;
+    bool snippets, edit_range, markdown, links, changes, watched_files, show_document, tags,
+        hierarchy;
   } client;
   struct { // settings
     bool run_on_save, hints;

@@ -12,6 +12,8 @@ typedef struct Place {
   LspDocument *document;
   size_t offset;
   cJSON *out;
+  CagPlace replaced; // by completions
+  cJSON *range;      // of that place; NULL: none
 } Place;
 
 static LspDocument *document_of(CagLsp *l, const cJSON *params) {
@@ -63,8 +65,10 @@ static void add_to_workspace_edit(CagLsp *l, cJSON *whole, const CagEdit *edit) 
   }
   cJSON *changes = cJSON_GetObjectItemCaseSensitive(whole, "documentChanges"), *item, *found = NULL;
   if (!changes) changes = cJSON_AddArrayToObject(whole, "documentChanges");
-  cJSON_ArrayForEach(
-      item, changes) if (!strcmp(lsp_text(lsp_get(item, "textDocument"), "uri"), uri)) found = item;
+  cJSON_ArrayForEach(item, changes) {
+    const char *other = lsp_text(lsp_get(item, "textDocument"), "uri");
+    if (other && strcmp(other, uri) == 0) found = item;
+  }
   if (!found) {
     found = cJSON_CreateObject();
     cJSON *document = cJSON_AddObjectToObject(found, "textDocument");
@@ -101,24 +105,29 @@ static const struct {
 static void add_completion(void *context, const CagCompletion *c) {
   Place *p = context;
   if (c->is_snippet && !p->l->client.snippets) return;
-  cJSON *o = cJSON_CreateObject(), *edit = cJSON_CreateObject();
-  char rank[16];
+  cJSON *o = cJSON_CreateObject();
+  char sort[160];
   cJSON_AddStringToObject(o, "label", c->label);
   cJSON_AddNumberToObject(o, "kind", kinds[c->kind].completion);
   if (c->detail) cJSON_AddStringToObject(o, "detail", c->detail);
   if (c->documentation)
     cJSON_AddItemToObject(o, "documentation", markup_json(p->l, c->documentation));
-  snprintf(rank, sizeof rank, "%d", c->rank);
-  char sort[160];
-  snprintf(sort, sizeof sort, "%s%s", rank, c->label);
+  snprintf(sort, sizeof sort, "%d%s", c->rank, c->label);
   cJSON_AddStringToObject(o, "sortText", sort);
   if (c->deprecated) {
     const int tag = 1;
     cJSON_AddItemToObject(o, "tags", cJSON_CreateIntArray(&tag, 1));
   }
-  cJSON_AddItemToObject(edit, "range", lsp_range_json(p->l, &c->place));
-  cJSON_AddStringToObject(edit, "newText", c->text);
-  cJSON_AddItemToObject(o, "textEdit", edit);
+  if (!p->l->client.edit_range) {
+    cJSON *edit = cJSON_AddObjectToObject(o, "textEdit");
+    // All replace the same.
+    if (!p->range) p->range = lsp_range_json(p->l, &c->place);
+    cJSON_AddItemToObject(edit, "range", cJSON_Duplicate(p->range, false));
+    cJSON_AddStringToObject(edit, "newText", c->text);
+  } else if (strcmp(c->text, c->label) != 0) {
+    cJSON_AddStringToObject(o, "textEditText", c->text);
+  }
+  p->replaced = c->place;
   if (c->is_snippet) cJSON_AddNumberToObject(o, "insertTextFormat", 2);
   if (c->import) {
     cJSON *list = cJSON_AddArrayToObject(o, "additionalTextEdits");
@@ -133,9 +142,14 @@ static cJSON *completion(CagLsp *l, const cJSON *params) {
   p.out = cJSON_CreateArray();
   cag_document_complete(l->workspace, p.file, p.offset, add_completion, &p);
   cJSON *list = cJSON_CreateObject();
-  // Names of modules that are not imported depend on the letters so far.
+  // The names depend on the letters so far.
   cJSON_AddBoolToObject(list, "isIncomplete", true);
+  if (l->client.edit_range && p.replaced.file) { // the same for all
+    cJSON *defaults = cJSON_AddObjectToObject(list, "itemDefaults");
+    cJSON_AddItemToObject(defaults, "editRange", lsp_range_json(l, &p.replaced));
+  }
   cJSON_AddItemToObject(list, "items", p.out);
+  cJSON_Delete(p.range);
   return list;
 }
 
@@ -461,7 +475,14 @@ static void add_word(void *context, const CagPlace *place, CagWordKind kind, uns
 // Writes numbers as JSON, which for a long file is faster than a tree.
 static void write_numbers(FILE *f, const unsigned *data, size_t count) {
   fputc('[', f);
-  for (size_t i = 0; i < count; i++) fprintf(f, "%s%u", i ? "," : "", data[i]);
+  for (size_t i = 0; i < count; i++) {
+    char digits[16], *at = digits + sizeof digits;
+    unsigned x = data[i];
+    do *--at = (char)('0' + x % 10);
+    while (x /= 10);
+    if (i) *--at = ',';
+    fwrite(at, 1, (size_t)(digits + sizeof digits - at), f);
+  }
   fputc(']', f);
 }
 
@@ -675,16 +696,17 @@ static bool is_wanted(const cJSON *context, const char *kind) {
 static void add_fixed(CagLsp *l, cJSON *o, const cJSON *context, const CagActionView *a) {
   const cJSON *item;
   if (!a->code) return;
-  cJSON *range = lsp_range_json(l, &a->problem);
   cJSON_ArrayForEach(item, lsp_get(context, "diagnostics")) {
     const char *code = lsp_text(item, "code");
-    if (!code || strcmp(code, a->code) != 0 || !cJSON_Compare(lsp_get(item, "range"), range, true))
+    size_t start, end;
+    if (!code || strcmp(code, a->code) != 0 ||
+        !lsp_range(l, a->problem.file, lsp_get(item, "range"), &start, &end) ||
+        start != a->problem.start || end != a->problem.end)
       continue;
     cJSON *list = cJSON_AddArrayToObject(o, "diagnostics");
     cJSON_AddItemToArray(list, cJSON_Duplicate(item, true));
-    break;
+    return;
   }
-  cJSON_Delete(range);
 }
 
 static void add_action(void *context, const CagActionView *a) {

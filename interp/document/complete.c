@@ -1,5 +1,6 @@
 // Completion: what can be written at a cursor.
 
+#include <ctype.h>
 #include <dirent.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -54,7 +55,18 @@ static bool is_again(Completion *c, const char *name) {
   return false;
 }
 
+// Tests whether a label has the letters before the cursor in order, ignoring case.
+static bool matches(const Completion *c, const char *label) {
+  const char *letter = c->d->text + c->place.start, *end = c->d->text + c->offset;
+  for (; letter < end; label++) {
+    if (!*label) return false;
+    if (tolower((unsigned char)*label) == tolower((unsigned char)*letter)) letter++;
+  }
+  return true;
+}
+
 static void propose(Completion *c, CagCompletion item) {
+  if (!matches(c, item.label)) return;
   item.place = c->place;
   if (!item.text) item.text = item.label;
   c->give(c->context, &item);
@@ -65,6 +77,7 @@ static void propose_entity(Completion *c, const char *label, const Entity *e, in
   const CagNameKind kind = cag_entity_kind(e);
   size_t rows;
   bool deprecated = false;
+  if (!matches(c, label)) return;
   if (e->kind == ENTITY_DECL) {
     if (cag_entity_function(e)) cag_describe_head(e, &head);
     if (e->decl->doc) cag_describe_doc(e->decl->doc, true, &doc);
@@ -110,6 +123,7 @@ static void propose_builtins(Completion *c) {
 
 static void propose_word(Completion *c, const char *word) {
   CagString doc = {0};
+  if (!matches(c, word)) return;
   cag_describe_word(word, &doc);
   propose(c,
           (CagCompletion){

@@ -171,10 +171,8 @@ static size_t import_place(const Document *d) {
 
 static void give_import(Actions *a, const char *module, const char *name) {
   const size_t at = import_place(a->d);
-  const bool first = at == 0 || strncmp(a->d->text + at, "import", 6) == 0 || at >= a->d->length ||
-                     a->d->text[at] == '\n';
   give_fix(a, text_of(a, "Import %s from %s", name, module), at, at,
-           text_of(a, first ? "import %s: %s\n" : "import %s: %s\n", module, name));
+           text_of(a, "import %s: %s\n", module, name));
 }
 
 static bool defines(const CagModuleUnit *m, const char *name) {
@@ -383,11 +381,12 @@ static void fix_problem(Actions *a, const CagDiagnostic *p) {
   a->problem = p;
   if (after(help, "did you mean ") && (form = quoted(a, help)))
     give_fix(a, text_of(a, "Change to `%s`", form), span.start, span.end, form);
-  if ((form = after(help, "write the number with a unit: ")) ||
-      ((form = after(help, "write ")) && p->id == CAG_ERR_type && strstr(form, "deg")))
-    fix_unit(a, span, form);
+  const char *unit = after(help, "write the number with a unit: ");
+  form = after(help, "write ");
+  if (!unit && form && p->id == CAG_ERR_type && strstr(form, "deg")) unit = form;
+  if (unit) fix_unit(a, span, unit);
   else if (form) fix_by_words(a, span, form);
-  else if ((form = after(help, "remove `")))
+  else if (after(help, "remove `"))
     give_fix(a, "Remove the word", span.start, span.end + strspn(a->d->text + span.end, " "), "");
   else if (after(help, "remove the +") || after(help, "remove one comma"))
     give_fix(a, "Remove it", span.start, span.end, "");

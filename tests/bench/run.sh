@@ -221,3 +221,5 @@ report "vase, draft, 960x540" "$ours" "POV-Ray" "$theirs" ""
 ours=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --engine preview)
 if peer povray; then theirs=$(best "$CAG" render examples/vase.cag -o "$tmp/v.exr" --size 960x540 --engine povray); fi
 report "vase, 16 samples of light, 960x540" "$ours" "POV-Ray" "$theirs" "<= 0.25"
+echo "--- language server, 5,000 lines"
+if peer python3; then python3 tests/bench/lsp.py "$CAG"; fi
