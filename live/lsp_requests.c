@@ -104,7 +104,9 @@ static const struct {
 
 static void add_completion(void *context, const CagCompletion *c) {
   Place *p = context;
-  if (c->is_snippet && !p->l->client.snippets) return;
+  const bool snippet = c->is_snippet && p->l->client.snippets;
+  if (c->kind == CAG_NAME_SNIPPET && !snippet) return;
+  const char *text = c->is_snippet && !snippet ? c->label : c->text;
   cJSON *o = cJSON_CreateObject();
   char sort[160];
   cJSON_AddStringToObject(o, "label", c->label);
@@ -123,12 +125,12 @@ static void add_completion(void *context, const CagCompletion *c) {
     // All replace the same.
     if (!p->range) p->range = lsp_range_json(p->l, &c->place);
     cJSON_AddItemToObject(edit, "range", cJSON_Duplicate(p->range, false));
-    cJSON_AddStringToObject(edit, "newText", c->text);
-  } else if (strcmp(c->text, c->label) != 0) {
-    cJSON_AddStringToObject(o, "textEditText", c->text);
+    cJSON_AddStringToObject(edit, "newText", text);
+  } else if (strcmp(text, c->label) != 0) {
+    cJSON_AddStringToObject(o, "textEditText", text);
   }
   p->replaced = c->place;
-  if (c->is_snippet) cJSON_AddNumberToObject(o, "insertTextFormat", 2);
+  if (snippet) cJSON_AddNumberToObject(o, "insertTextFormat", 2);
   if (c->import) {
     cJSON *list = cJSON_AddArrayToObject(o, "additionalTextEdits");
     cJSON_AddItemToArray(list, edit_json(p->l, c->import));

@@ -72,12 +72,56 @@ static void propose(Completion *c, CagCompletion item) {
   c->give(c->context, &item);
 }
 
+// Tests whether a call can be inserted: no parenthesis follows, and the name is not imported.
+static bool may_call(const Completion *c) {
+  const Cursor *cursor = &c->cursor;
+  const size_t first = cursor->statement;
+  return c->d->text[c->offset] != '(' &&
+         !(first < cursor->before && cursor->tokens.items[first].kind == CAG_TOKEN_IMPORT);
+}
+
+// Tests whether the name comes after `|>`, which gives the first argument.
+static bool is_piped(const Completion *c) {
+  const CagToken *t = c->cursor.tokens.items;
+  size_t i = c->cursor.before;
+  while (i >= 2 && t[i - 1].kind == CAG_TOKEN_DOT && t[i - 2].kind == CAG_TOKEN_NAME) i -= 2;
+  return i > 0 && t[i - 1].kind == CAG_TOKEN_PIPE;
+}
+
+// Returns the first signature of a built-in that needs more than `given` arguments, or the first.
+static const CagSignature *signature_for(const Entity *e, size_t given) {
+  size_t rows;
+  if (e->kind != ENTITY_BUILTIN || e->index >= cag_builtin_count()) return NULL;
+  cag_builtin_rows(e->index, &rows);
+  for (size_t i = 0; i < rows; i++) {
+    const CagSignature *s = cag_builtin_signature(e->index, i);
+    if (s && s->required > given) return s;
+  }
+  return cag_builtin_signature(e->index, 0);
+}
+
+// Writes a call with a gap for each argument that is needed: "cone(${1:height}, ${2:radius})".
+static void write_call(const Completion *c, const char *name, const Entity *e, CagString *out) {
+  const CagFunctionAst *f = cag_entity_function(e);
+  const size_t first = is_piped(c);
+  const CagSignature *s = signature_for(e, first);
+  const size_t required = f ? f->required_count : s ? s->required : 0;
+  const size_t count = f ? f->parameter_count : s ? s->count : 0;
+  if (!f && !s) return;
+  cag_string_printf(out, "%s(", name);
+  for (size_t i = first; i < required; i++)
+    cag_string_printf(out, "%s${%zu:%s}", i > first ? ", " : "", i - first + 1,
+                      f ? f->parameters[i].decl->name : s->parameters[i]);
+  cag_string_printf(out, required > first || count <= first ? ")" : "$0)");
+}
+
 static void propose_entity(Completion *c, const char *label, const Entity *e, int rank) {
-  CagString head = {0}, doc = {0};
+  CagString head = {0}, doc = {0}, call = {0};
   const CagNameKind kind = cag_entity_kind(e);
   size_t rows;
   bool deprecated = false;
   if (!matches(c, label)) return;
+  if (may_call(c)) write_call(c, label, e, &call);
   if (e->kind == ENTITY_DECL) {
     if (cag_entity_function(e)) cag_describe_head(e, &head);
     if (e->decl->doc) cag_describe_doc(e->decl->doc, true, &doc);
@@ -92,10 +136,13 @@ static void propose_entity(Completion *c, const char *label, const Entity *e, in
                              .detail = head.bytes,
                              .documentation = doc.bytes,
                              .kind = kind,
+                             .text = call.bytes,
+                             .is_snippet = call.bytes,
                              .rank = rank,
                              .deprecated = deprecated});
   cag_string_free(&head);
   cag_string_free(&doc);
+  cag_string_free(&call);
 }
 
 // --- Names ---
@@ -210,15 +257,19 @@ static void propose_import(Completion *c, const char *module, const CagModuleUni
     snprintf(text, sizeof text, "import %s: %s\n", module, name);
     snprintf(detail, sizeof detail, "import %s", module);
     const CagEdit import = {{c->d->file, n->at, n->at}, text};
-    CagString doc = {0};
+    CagString doc = {0}, call = {0};
     if (e.decl->doc) cag_describe_doc(e.decl->doc, true, &doc);
+    if (may_call(c)) write_call(c, name, &e, &call);
     propose(c, (CagCompletion){.label = name,
                                .detail = detail,
                                .documentation = doc.bytes,
                                .kind = cag_entity_kind(&e),
+                               .text = call.bytes,
+                               .is_snippet = call.bytes,
                                .rank = RANK_IMPORT,
                                .import = &import});
     cag_string_free(&doc);
+    cag_string_free(&call);
   }
 }
 

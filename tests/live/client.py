@@ -44,7 +44,7 @@ class Client:
             return
         self.capabilities = self.ask("initialize", {
             "processId": os.getpid(), "rootUri": uri_of(folder) if folder else None,
-            "capabilities": capabilities or FULL, "initializationOptions": options or {}})["capabilities"]
+            "capabilities": FULL if capabilities is None else capabilities, "initializationOptions": options or {}})["capabilities"]
         self.utf8 = self.capabilities.get("positionEncoding") == "utf-8"
         self.tell("initialized", {})
 

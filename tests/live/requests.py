@@ -272,7 +272,7 @@ def completion_proposes_members():
         c.wait_for(uri)
         found = list(labels(c, uri, "print mat.gl"))
         assert "glazed" in found and "matte" not in found, found
-        equal(completed(c, uri, "print mat.gl", "glazed").split("\n")[2], "print mat.glazed")
+        equal(completed(c, uri, "print mat.gl", "glazed").split("\n")[2], "print mat.glazed($0)")
         equal(list(labels(c, uri, "print r.")), ["size", "inner"])
         equal(list(labels(c, uri, "print r.inner.")), ["depth"])
         equal(list(labels(c, uri, "print x.")), ["x", "y", "z"])
@@ -292,6 +292,19 @@ def completion_proposes_arguments_and_their_texts():
         equal(completed(c, uri, "orient: \"", "frenet").split("\n")[3], "print sweep(c, c, orient: \"frenet\")")
         found = list(labels(c, uri, "print bolt("))
         equal(found[:2], ["length: ", "head: "])
+
+
+@test
+def completion_writes_calls_with_gaps():
+    text = "bolt(length, head = 3) = length\nshow con\nshow cone(1, 2) |> translat\nprint bol\nprint spher(2)\nprint p\n"
+    with Workspace({"a.cag": text}) as (_, c, uri):
+        equal(labels(c, uri, "show con")["cone"]["textEdit"]["newText"], "cone(${1:height}, ${2:radius})")
+        equal(labels(c, uri, "|> translat")["translate"]["textEdit"]["newText"], "translate(${1:V})")
+        equal(labels(c, uri, "print bol")["bolt"]["textEdit"]["newText"], "bolt(${1:length})")
+        equal(labels(c, uri, "print spher")["sphere"]["textEdit"]["newText"], "sphere")
+        equal(labels(c, uri, "print p")["pi"]["textEdit"]["newText"], "pi")
+    with Workspace({"a.cag": "show con\n"}, capabilities={}) as (_, c, uri):
+        equal(labels(c, uri, "show con")["cone"]["textEdit"]["newText"], "cone")
 
 
 @test
@@ -320,7 +333,7 @@ def completion_proposes_files_colors_and_statements():
 @test
 def completion_imports_the_module_that_has_a_name():
     with Workspace({"a.cag": "// A note.\n\nprint glaz\n"}) as (_, c, uri):
-        equal(completed(c, uri, "print glaz", "glazed"), "// A note.\n\nimport std.materials: glazed\nprint glazed\n")
+        equal(completed(c, uri, "print glaz", "glazed"), "// A note.\n\nimport std.materials: glazed\nprint glazed($0)\n")
 
 
 # --- Hover and signatures ---
