@@ -10,6 +10,8 @@ exec awk -F '\t' -v shell="$shell" '
     if (operands == "-") return "nothing"
     if (operands ~ /CODE/) return "codes"
     if (operands ~ /EXPR/) return "names"
+    if (operands ~ /FOLDER/) return "folders"
+    if (operands ~ /^FILE/) return "cag"
     if (operands ~ /NAME/) return operands ~ /PATH|FILE/ ? "names cag" : "names"
     if (operands ~ /\.csv/) return "csv json"
     if (operands == "A B") return "exr png"
