@@ -41,6 +41,15 @@ static int check_image_options(const CagTool *t, const char *format) {
                        "%s does not apply to a .%s file", option, format);
 }
 
+// A robot and an image have no section.
+static int check_section(const CagTool *t, const char *format) {
+  if (!t->has_section || (strcasecmp(format, "urdf") != 0 && strcasecmp(format, "png") != 0 &&
+                          strcasecmp(format, "exr") != 0))
+    return CAG_STATUS_OK;
+  return cag_tool_fail(t, CAG_STATUS_USAGE, "`cag render` renders pictures of sections",
+                       "--section does not apply to a .%s file", format);
+}
+
 // Checks the command line before anything runs. Returns 0, or the status after a message.
 static int check(const CagTool *t) {
   if (!t->output)
@@ -51,7 +60,8 @@ static int check(const CagTool *t) {
     return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",
                          "the output '%s' has no extension that determines its format", t->output);
   if (!is_format(format)) return reject_format(t, format);
-  const int status = check_image_options(t, format);
+  int status = check_image_options(t, format);
+  if (status == CAG_STATUS_OK) status = check_section(t, format);
   return status != CAG_STATUS_OK ? status : cag_tool_check_place(t, t->output);
 }
 

@@ -99,3 +99,23 @@ for plane in '' z 'z=' w=1 'z=1=2' z=nan '--z=1' 'z=1cm' zz=1; do
   status 2
   says '--section'
 done
+
+it 'a section in each format'
+script all.cag 'show (box([9, 9, 9]) |> color("gold")) | (sphere(5) |> color("navy")), torus_surface(20, 3), circle(30)
+show region(circle(40)) |> translate([0, 0, -2]), tessellate(sphere(2)) |> translate([60, 0, 0])'
+for format in obj stl ply glb gltf 3mf pov svg json; do
+  try export all.cag -o all.$format --section z=1
+  status 0
+  exists all.$format
+done
+# A cut solid is a set operation.
+for format in igs step; do
+  try export all.cag -o all.$format --section z=1
+  status 1
+  says 'union, difference, or intersection'
+done
+for format in urdf png exr; do
+  try export all.cag -o all.$format --section z=1
+  status 2
+  says '--section does not apply'
+done
