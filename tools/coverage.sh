@@ -11,7 +11,7 @@ fi
 # gcovr runs in a single process because with -j it can deadlock.
 csv=$(mktemp)
 trap 'rm -f "$csv"' EXIT
-gcovr --root . --object-directory "$BUILD" --filter '(base|cli|geom|interp|lang)/' --csv -o "$csv" "$BUILD"
+gcovr --root . --object-directory "$BUILD" --filter '(base|cli|geom|interp|lang|live)/' --csv -o "$csv" "$BUILD"
 
 # The columns of gcovr's table: filename, line_total, line_covered, line_percent, branch_total, branch_covered, branch_percent ...
 awk -F, -v files="${FILES:-}" '

@@ -9,7 +9,7 @@ per processor).
 
 Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches. The counts are
 kept in build-mutate/reach/ until the suite or a tenth of the sources change. Each change then replaces one operator or constant on one
-line of base, cli, geom, interp, or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
+line of base, cli, geom, interp, lang, or live, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
 object file is replaced with another one, and so are those in tools/equivalent_mutations.txt, after which the program computes the same,
 for the reasons given there, and those that only allocate room for more elements than needed.
 
@@ -48,7 +48,7 @@ def option(name, default):
 N = option("N", 100)
 SEED = option("SEED", 1)
 SKIP = option("SKIP", 0)
-FOLDERS = option("FOLDERS", "base cli geom interp lang").split()
+FOLDERS = option("FOLDERS", "base cli geom interp lang live").split()
 LONGEST = option("LONGEST", 1800)
 JOBS = option("JOBS", os.cpu_count())
 
