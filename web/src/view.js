@@ -168,7 +168,8 @@ export class View {
     this.setBounds();
     this.setStage(scene);
     this.changed();
-    if (first) this.stage.grid = this.grounds.length === 0;
+    // A scene that was set up as a picture is shown as one.
+    if (first) this.stage.grid = scene.studio || scene.drawing;
     if (first) this.open(scene);
     else if (this.following !== null) this.follow();
     this.invalidate();
