@@ -1,6 +1,7 @@
 // Tests of the page's modules that need no browser. Expected values are from formulas, written by hand.
 //   node tests/web/units.mjs
 import { Bvh } from "../../web/src/bvh.js";
+import { isClosed } from "../../web/src/closed.js";
 import { formatNumber, formatPoint } from "../../web/src/format.js";
 import { MeshCache, readMesh } from "../../web/src/mesh.js";
 import { marks } from "../../web/src/messages.js";
@@ -130,6 +131,14 @@ await test("an edge of a box ends at its corners", () => {
   const { points, closed } = edgeChain(box([4, 6, 8]), 0);
   equal(closed, false);
   equal(points.length, 2);
+});
+await test("a box is closed, a box without a triangle or with one turned around is not", () => {
+  const { positions, triangles } = box([4, 6, 8]), turned = triangles.slice();
+  equal(isClosed(positions, triangles), true);
+  equal(isClosed(positions, triangles.subarray(3)), false);
+  [turned[0], turned[1]] = [turned[1], turned[0]];
+  equal(isClosed(positions, turned), false);
+  equal(isClosed(positions, new Uint32Array(0)), false);
 });
 await test("a circle is recognized, and its radius and center are right", () => {
   const found = circleOf(circle(24, [3, -2, 7], 12.5));

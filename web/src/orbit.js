@@ -112,14 +112,21 @@ export class Orbit {
     this.distance = distance;
   }
 
-  /** Moves the camera, without turning it, so that a box fills the picture. @param {Vector3} low @param {Vector3} high @param {number} aspect */
-  fit(low, high, aspect) {
+  /**
+   * Moves the camera, without turning it, so that a box fills the picture.
+   *
+   * @param {Vector3} low
+   * @param {Vector3} high
+   * @param {number} aspect
+   * @param {number} free  the part of the height that nothing covers
+   */
+  fit(low, high, aspect, free) {
     const { right, up, back } = this.axes(), center = low.clone().add(high).multiplyScalar(0.5);
     const slope = Math.tan(this.fov / 2) / MARGIN;
     let distance = 0, half = 0;
     for (let i = 0; i < 8; i++) {
       const corner = new Vector3(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z).sub(center);
-      const size = Math.max(Math.abs(corner.dot(up)), Math.abs(corner.dot(right)) / aspect);
+      const size = Math.max(Math.abs(corner.dot(up)) / free, Math.abs(corner.dot(right)) / aspect);
       half = Math.max(half, size);
       distance = Math.max(distance, size / slope + corner.dot(back));
     }

@@ -16,6 +16,20 @@ const GAP = 8; // pixels between a location and its text
 const AXES = /** @type {const} */ ([["X", 1, 0, 0], ["Y", 0, 1, 0], ["Z", 0, 0, 1]]);
 const ARM = 24; // pixels
 
+/** In a name, such as P_1, what follows `_` is lower, as in cag's pictures (interp/formats/svg_label.c). @param {string} text */
+function subscripts(text) {
+  const isName = /^\p{L}(?!\p{L})/u.test(text);
+  return isName ? text.split(/_([\p{L}\p{N}\u0080-\u{10ffff}]+)/u).map((part, i) => (i % 2 ? h("sub", {}, part) : part)) : [text];
+}
+
+/** @param {string} kind */
+function makeMark(kind) {
+  if (kind === "none") return null;
+  if (kind !== "arrow") return h("span", { class: `mark mark-${kind}` });
+  // It points to the right, and is turned when it is placed.
+  return svg("svg", { class: "arrow", viewBox: "-9 -5 10 10" }, svg("path", { d: "M0 0L-9 2.75V-2.75Z", fill: "currentColor" }));
+}
+
 export class Overlay {
   /** @param {HTMLElement} host @param {import("./view.js").View} view */
   constructor(host, view) {
@@ -42,8 +56,7 @@ export class Overlay {
   show(scene) {
     this.labels.replaceChildren();
     this.shown = scene.labels.map((label) => {
-      const mark = label.mark === "none" || label.mark === "arrow" ? null : h("span", { class: `mark mark-${label.mark}` });
-      const element = h("div", { class: "label" }, mark, h("span", { class: "text" }, label.text));
+      const element = h("div", { class: "label" }, makeMark(label.mark), h("span", { class: "text" }, ...subscripts(label.text)));
       const color = scene.materials[label.material]?.color;
       if (color) element.style.color = new Color().setRGB(...color).getStyle();
       this.labels.append(element);
@@ -86,13 +99,20 @@ export class Overlay {
     const size = label.size > 0 ? label.size / this.pixelAt(at) : TEXT_SIZE;
     let angle = 0;
     if (label.along?.some((x) => x !== 0)) {
-      const q = view.project(at.clone().addScaledVector(new Vector3(...label.along), size * this.pixelAt(at)));
+      const q = view.project(at.clone().addScaledVector(new Vector3(...label.along), 10 * this.pixelAt(at)));
       if (q) angle = Math.atan2(q.y - p.y, q.x - p.x);
     }
-    element.style.transform = `translate(${p.x.toFixed(1)}px, ${p.y.toFixed(1)}px) rotate(${angle.toFixed(4)}rad)`;
+    const arrow = label.mark === "arrow" ? /** @type {SVGElement} */ (element.firstElementChild) : null;
+    if (arrow) {
+      arrow.style.transform = `rotate(${angle.toFixed(4)}rad)`;
+      angle = 0;
+    }
+    // A text that runs down or to the left would be upside down.
+    if (Math.cos(angle) < -1e-6) angle += Math.PI;
+    element.style.transform = `translate(${p.x.toFixed(1)}px, ${p.y.toFixed(1)}px)`;
     text.style.fontSize = `${size.toFixed(1)}px`;
     const [x, y] = PLACES[label.place] ?? PLACES.right, gap = label.mark === "none" && label.place === "center" ? 0 : GAP;
-    text.style.transform = `translate(calc(-50% + ${x * 50}% + ${x * gap}px), calc(-50% + ${y * 50}% + ${y * gap}px))`;
+    text.style.transform = `rotate(${angle.toFixed(4)}rad) translate(calc(-50% + ${x * 50}% + ${x * gap}px), calc(-50% + ${y * 50}% + ${y * gap}px))`;
   }
 
   /** The size of a pixel at a point, mm. @param {Vector3} at */

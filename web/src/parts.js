@@ -6,7 +6,9 @@ import {
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+import { Batches } from "./batches.js";
 import { Bvh } from "./bvh.js";
+import { isClosed } from "./closed.js";
 import { MeshCache, readMesh } from "./mesh.js";
 import { makeMaterial } from "./shading.js";
 
@@ -41,6 +43,13 @@ export class Shape {
     this.hierarchy = null;
     /** @type {LineSegmentsGeometry | null} */
     this.thick = null;
+    /** @type {boolean | null} */
+    this.shut = null;
+  }
+
+  /** Whether it encloses a volume. */
+  get closed() {
+    return (this.shut ??= isClosed(this.data.positions, this.data.triangles));
   }
 
   bvh() {
@@ -131,6 +140,8 @@ export class Parts {
     this.palette = [];
     this.edgeMaterial = new LineBasicMaterial({ color: 0x101418, transparent: true, opacity: 0.55, toneMapped: false });
     this.edgeMaterial.clippingPlanes = this.clipping;
+    this.batches = new Batches(this.edgeMaterial);
+    this.group.add(this.batches.group);
   }
 
   /**
@@ -171,6 +182,7 @@ export class Parts {
       view.group.visible = this.isVisible(view.part.name);
       this.dress(view, used);
     }
+    this.batches.build(this.visible());
     for (const [key, material] of this.materials)
       if (!used.has(key)) {
         material.dispose();

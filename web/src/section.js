@@ -76,9 +76,9 @@ export class Section {
     this.planes.push(this.plane);
     let order = 1;
     for (const view of parts.visible()) {
-      if (view.part.type !== "solid" || parts.glass.has(view.part.name)) continue;
+      if (view.isCurve || parts.glass.has(view.part.name)) continue;
       const box = view.box();
-      if (!this.plane.intersectsBox(box)) continue;
+      if (!this.plane.intersectsBox(box) || !view.shape.closed) continue;
       for (const material of [this.backs, this.fronts]) this.addCounter(view, material, order);
       this.addCap(box, parts.palette[view.part.material].color, order + 0.5);
       order++;

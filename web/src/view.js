@@ -15,6 +15,7 @@ import { Topic } from "./topic.js";
 /** @typedef {import("./engine.js").SceneMessage} SceneMessage */
 
 const MOST_PIXEL_RATIO = 2;
+const TOOLBAR = 40; // pixels
 const GROUND_SIZES = 60; // side of an unbounded ground, in radii of the scene
 
 // The names of renderers that have no graphics processor.
@@ -251,7 +252,9 @@ export class View {
     }
     if (box.isEmpty()) box.set(this.orbit.low.clone(), this.orbit.high.clone());
     this.following = null;
-    this.orbit.fit(box.min, box.max, this.aspect);
+    for (const label of names.length ? [] : (this.message?.labels ?? [])) box.expandByPoint(new Vector3(...label.at));
+    // What is fitted is in the middle, below the toolbar.
+    this.orbit.fit(box.min, box.max, this.aspect, Math.max(0.5, 1 - (2 * TOOLBAR) / this.height));
     this.invalidate();
   }
 
