@@ -37,7 +37,8 @@ static CagCurve *spiral(double from, double to, double r_from, double r_to) {
   s->b = (r_to - r_from) / (to - from);
   s->a = r_from - s->b * from;
   CagCurve *c;
-  OK(cag_curve_function(&(CagCurveFunction){.eval = spiral_eval, .release = free, .context = s}, 2, from, to, false, &c, &err));
+  OK(cag_curve_function(&(CagCurveFunction){.eval = spiral_eval, .release = free, .context = s}, 2,
+                        from, to, false, &c, &err));
   return c;
 }
 
