@@ -306,8 +306,8 @@ typedef struct CagPartView {
 } CagPartView;
 CAG_API bool cag_session_part(CagSession *s, size_t i, CagPartView *out);
 // Location k in the origin of a part: the `show` it came through, then calls that moved it or gave
-// it attributes, the latest first, and finally the call that made it. For a call in the library, the
-// location in the user's script comes before it. *what receives "show", "changed", or "made".
+// it attributes, the latest first, and finally the call that made it. For calls in the library, the
+// location in the user's script comes once before them. *what receives "show", "changed", or "made".
 CAG_API bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **what,
                                     CagPlaceView *out);
 // The material of triangles with a label, of a part with several materials. Returns false after the

@@ -94,6 +94,14 @@ bool cag_session_part(CagSession *s, size_t i, CagPartView *out) {
   return found;
 }
 
+// Whether a call in the library has a caller that the call after it does not have.
+static bool is_other_caller(const CagOriginStep *step, const CagOriginStep *later) {
+  if (!step->caller) return false;
+  return !later || later->caller != step->caller ||
+         later->caller_span.start != step->caller_span.start ||
+         later->caller_span.end != step->caller_span.end;
+}
+
 bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **what,
                             CagPlaceView *out) {
   *out = (CagPlaceView){0};
@@ -104,12 +112,14 @@ bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **w
   const CagShown *shown = &s->vm->shown[source->shown];
   *out = cag_session_place(shown->source, shown->span);
   if (k == 0) return true;
+  const CagOriginStep *later = NULL;
   for (const CagOriginStep *step = source->shape->origin.last; step; step = step->before) {
     *what = step->before ? "changed" : "made";
-    if (step->caller && --k == 0) {
+    if (is_other_caller(step, later) && --k == 0) {
       *out = cag_session_place(step->caller, step->caller_span);
       return true;
     }
+    later = step;
     if (--k > 0) continue;
     *out = cag_session_place(step->source, step->span);
     return true;
