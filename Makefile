@@ -80,7 +80,7 @@ CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web vsix
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web screenshots vsix
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -331,6 +331,9 @@ web/node_modules: web/package-lock.json
 web: web/node_modules
 	cd web && node_modules/.bin/tsc -p .
 	sh web/build.sh web/dist
+# The picture of the page in the README; needs node and Chromium.
+screenshots: all
+	node tools/screenshots.js $(BUILD)/cag docs/pictures
 check-web: web/node_modules
 	cd web && node_modules/.bin/tsc -p .
 	@rm -rf $(BUILD)/web && sh web/build.sh $(BUILD)/web
