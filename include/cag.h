@@ -145,8 +145,9 @@ typedef struct CagErrorView {
 CAG_API void cag_session_error(const CagSession *s, size_t i, CagErrorView *out);
 // A further location of a diagnostic.
 typedef struct CagNoteView {
-  const char *text;                          // "first defined here", "called from f"
-  const char *file;                          // NULL: it has no location
+  const char *text; // "first defined here"
+  bool is_call;     // the place called what failed; the text is the name of its function, or ""
+  const char *file; // NULL: it has no location
   size_t line, column, end_line, end_column; // from 1
 } CagNoteView;
 // Returns note k of diagnostic i. Returns false if there is none.

@@ -139,8 +139,11 @@ static cJSON *errors_of(CagSession *s) {
     for (size_t k = 0; cag_session_error_note(s, i, k, &n); k++) {
       if (!n.file) continue;
       cJSON *note = cJSON_CreateObject();
+      char text[256];
+      snprintf(text, sizeof text, "%s%s%s", n.is_call ? "called from here" : "",
+               n.is_call && *n.text ? " in " : "", n.text);
       add_place(note, n.file, n.line, n.column, n.end_line, n.end_column);
-      cJSON_AddStringToObject(note, "message", n.text);
+      cJSON_AddStringToObject(note, "message", text);
       cJSON_AddItemToArray(notes, note);
     }
     cJSON_AddItemToObject(o, "notes", notes);

@@ -443,7 +443,8 @@ bool cag_session_error_note(const CagSession *s, size_t i, size_t k, CagNoteView
   const CagDiagnostic *d = cag_diagnostics_at(&s->diagnostics, i);
   if (k >= d->note_count) return false;
   const CagNote *note = &d->notes[k];
-  out->text = note->text;
+  out->text = note->text ? note->text : "";
+  out->is_call = note->kind == CAG_NOTE_CALL || note->kind == CAG_NOTE_TAIL_CALL;
   if (!note->source) return true;
   const CagPosition from = cag_source_position(note->source, note->span.start),
                     to = cag_source_position(note->source, note->span.end);

@@ -216,6 +216,18 @@ def a_save_runs_the_script():
         found = c.wait_for(uri)
         equal([(d["source"], c.part(uri, d["range"])) for d in found], [("cag run", "1 > 2")])
         has(found[0]["message"], "one is more")
+        # An error in a function names its callers.
+        c.change(uri, [(0, len(c.texts[uri]), "g(x) = sqrt(x) + 1\nf(x) = g(x - len(\"ab\")) + 1\nprint f(1)\n")])
+        with open(uri[7:], "w") as out:
+            out.write(c.texts[uri])
+        equal(c.wait_for(uri), [])
+        c.diagnostics.pop(uri)
+        c.tell("textDocument/didSave", {"textDocument": {"uri": uri}})
+        found = c.wait_for(uri)
+        equal([(r["message"], c.part(uri, r["location"]["range"])) for r in found[0]["relatedInformation"]],
+              [("called from here in f", "g(x - len(\"ab\"))"), ("called from here", "f(1)")])
+        c.change(uri, [(0, len(c.texts[uri]), text.replace("x = sqrt(0 - 1)", "x = len(text(1))"))])
+        c.wait_for(uri)
         # The next change makes the result obsolete.
         c.replace(uri, "1 > 2", "1 < 2")
         equal(c.wait_for(uri), [])

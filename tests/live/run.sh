@@ -5,6 +5,7 @@
 #   EDITS=10000 sh tests/live/run.sh           the long run
 set -u
 cd "$(dirname "$0")/../.."
+here=$PWD
 build=${BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 work=$(mktemp -d) || exit 1
@@ -38,19 +39,48 @@ counted python3 tests/live/hostile.py "$build/cag"
 found=$(python3 tests/live/random_edits.py "$build/cag" "${EDITS:-300}" "${SEED:-1}" 2>&1)
 result 'random edits' $? "$found"
 
+# write_files FOLDER: the files of the tests with editors. a.cag has one error.
+write_files() {
+  mkdir -p "$1"
+  printf 'import std.materials as mat\nimport b\nring(outer, inner) = outer + inner\nprint raduis, mat.brass.color, b.x, ring(2, 1)\nradius = 3\nshow []\n' > "$1/a.cag"
+  echo 'x = 2' > "$1/b.cag"
+}
+
 if command -v nvim > /dev/null; then
-  mkdir "$work/files"
-  printf 'import std.materials as mat\nimport b\nring(outer, inner) = outer + inner\nprint raduis, mat.brass.color, b.x, ring(2, 1)\nradius = 3\nshow []\n' > "$work/files/a.cag"
-  echo 'x = 2' > "$work/files/b.cag"
-  editors=$PWD/editors tests=$PWD/tests/live
-  (cd "$work/files" && OUT=$work/neovim EDITORS=$editors CAG=$build/cag XDG_CACHE_HOME=$work/cache XDG_STATE_HOME=$work/state HOME=$work \
-    timeout 120 nvim --headless -u NONE -i NONE -n -S "$tests/neovim.lua" a.cag < /dev/null > "$work/nvim" 2>&1)
+  write_files "$work/files"
+  (cd "$work/files" && OUT=$work/neovim EDITORS=$here/editors CAG=$build/cag XDG_CACHE_HOME=$work/cache XDG_STATE_HOME=$work/state HOME=$work \
+    timeout 120 nvim --headless -u NONE -i NONE -n -S "$here/tests/live/neovim.lua" a.cag < /dev/null > "$work/nvim" 2>&1)
   result 'Neovim ends' $? "$(cat "$work/nvim")"
   sed -n 's/^FAILED /FAILED Neovim: /p' "$work/neovim"
   passed=$((passed + $(grep -c '^ok ' "$work/neovim"))) failed=$((failed + $(grep -c '^FAILED ' "$work/neovim")))
 else
   count=$(grep -c '^ *check("' tests/live/neovim.lua)
   echo "skipped: $count tests with Neovim: nvim is missing"
+  skipped=$((skipped + count))
+fi
+
+if command -v script > /dev/null && vim -N -es -u NONE -i NONE -c 'packadd ale' -c 'if exists(":ALELint") | qall! | endif' -c 'cquit!' < /dev/null > /dev/null 2>&1; then
+  write_files "$work/vim"
+  (cd "$work/vim" && OUT=$work/ale EDITORS=$here/editors CAG=$build/cag XDG_CACHE_HOME=$work/cache HOME=$work \
+    timeout 60 script -qec "vim -u '$here/tests/live/ale.vim' -i NONE -n -c 'call Start()'" /dev/null < /dev/null > "$work/out" 2>&1)
+  [ "$(cat "$work/ale" 2> /dev/null)" = "cag
+4:7 E0201: unknown name \`raduis\` help: did you mean \`radius\`?" ]
+  result 'Vim with ALE shows the error' $? "$(cat "$work/ale" 2>&1)"
+else
+  echo 'skipped: 1 test with Vim: its plugin ALE, or script, is missing'
+  skipped=$((skipped + 1))
+fi
+
+if command -v emacs > /dev/null && HOME=$work emacs --batch --eval '(progn (package-initialize) (require (quote eglot)))' > /dev/null 2>&1; then
+  write_files "$work/emacs"
+  (cd "$work/emacs" && EDITORS=$here/editors CAG=$build/cag XDG_CACHE_HOME=$work/cache HOME=$work \
+    timeout 120 emacs --batch -l "$here/tests/live/emacs.el" < /dev/null > "$work/out" 2> "$work/err")
+  result 'Emacs ends' $? "$(tail -n 5 "$work/err")"
+  sed -n 's/^FAILED /FAILED Emacs: /p' "$work/out"
+  passed=$((passed + $(grep -c '^ok ' "$work/out"))) failed=$((failed + $(grep -c '^FAILED ' "$work/out")))
+else
+  count=$(grep -c '(check "' tests/live/emacs.el)
+  echo "skipped: $count tests with Emacs: emacs, or its package eglot, is missing"
   skipped=$((skipped + count))
 fi
 
