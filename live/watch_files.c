@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/hash.h"
 
 // Milliseconds between looks where events are missing.
 #define INTERVAL 250
@@ -47,6 +48,7 @@ struct CagFileWatch {
   int events; // of inotify; -1: none
   File *files;
   size_t file_count;
+  CagHashIndex by_path; // of files
   Folder *folders;
   size_t folder_count;
   bool unwatched; // a folder has no watch
@@ -74,6 +76,7 @@ void cag_file_watch_free(CagFileWatch *w) {
   if (!w) return;
   if (w->events >= 0) close(w->events);
   free_files(w->files, w->file_count);
+  cag_hash_free(&w->by_path);
   free_folders(w->folders, w->folder_count);
   free(w);
 }
@@ -114,8 +117,10 @@ double cag_file_watch_now(void) {
 
 // --- The list ---
 
-static File *find_file(File *files, size_t n, const char *path) {
-  for (size_t i = 0; i < n; i++)
+static File *find_file(const CagHashIndex *by_path, File *files, const char *path) {
+  size_t i;
+  CagHashWalk w = cag_hash_walk(by_path, cag_hash_text(CAG_HASH_START, path));
+  while (cag_hash_next(&w, &i))
     if (!strcmp(files[i].path, path)) return &files[i];
   return NULL;
 }
@@ -178,30 +183,36 @@ static bool set_folders(CagFileWatch *w) {
 
 bool cag_file_watch_set(CagFileWatch *w, const char *const *paths, size_t count, double since) {
   File *before = w->files, *files = calloc(count + 1, sizeof *files);
+  CagHashIndex known_paths = w->by_path, by_path = {0};
   const size_t before_count = w->file_count;
   if (!files) return false;
   size_t n = 0;
   bool complete = true;
   for (size_t i = 0; i < count; i++) {
-    if (find_file(files, n, paths[i])) continue;
-    const File *known = find_file(before, before_count, paths[i]);
+    if (find_file(&by_path, files, paths[i])) continue;
+    const File *known = find_file(&known_paths, before, paths[i]);
     File f = {.path = strdup(paths[i])};
-    complete = complete && f.path;
-    if (!f.path) continue;
+    if (!f.path || !cag_hash_add(&by_path, cag_hash_text(CAG_HASH_START, f.path), n)) {
+      free(f.path);
+      complete = false;
+      continue;
+    }
     if (known) f.state = known->state, f.changed = known->changed;
     files[n++] = f;
   }
   w->files = files;
   w->file_count = n;
+  w->by_path = by_path;
   complete = set_folders(w) && complete;
   // The states are taken once the folders are watched, so that no change is missed between.
   for (size_t i = 0; i < n; i++) {
     File *f = &files[i];
-    if (find_file(before, before_count, f->path)) continue;
+    if (find_file(&known_paths, before, f->path)) continue;
     f->state = state_of(f->path);
     f->changed = f->state.exists && (seconds(f->state.changed) >= since);
   }
   free_files(before, before_count);
+  cag_hash_free(&known_paths);
   return complete;
 }
 

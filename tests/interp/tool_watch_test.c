@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "base/clock.h"
 #include "live/watch_files.h"
 #include "tests/fuzz/failing.h"
 
@@ -166,6 +167,31 @@ static void several_steps_of_a_save_are_one_change(void **state) {
   end(&p);
 }
 
+// A script may read thousands of files. The list is replaced after each run, so that must not take
+// quadratic time.
+static void many_files_are_watched(void **state) {
+  (void)state;
+  enum { MANY = 50000 };
+  Place p = begin(false);
+  char **paths = calloc(MANY + 1, sizeof *paths);
+  assert_non_null(paths);
+  for (int i = 0; i < MANY; i++) {
+    paths[i] = malloc(128);
+    assert_non_null(paths[i]);
+    snprintf(paths[i], 128, "%s/missing-%d", p.folder, i);
+  }
+  paths[MANY] = p.a;
+  const double begun = cag_clock_seconds();
+  for (int i = 0; i < 3; i++)
+    assert_true(cag_file_watch_set(p.watch, (const char *const *)paths, MANY + 1, 1e300));
+  assert_true(cag_clock_seconds() - begun < 10); // 0.2 s on an idle machine
+  write_text(p.a, "longer");
+  expect_change(&p, p.a);
+  for (int i = 0; i < MANY; i++) free(paths[i]);
+  free(paths);
+  end(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(saves_are_noticed_by_events),
@@ -174,6 +200,7 @@ int main(void) {
       cmocka_unit_test(a_file_that_changed_since_the_run_counts),
       cmocka_unit_test(a_file_is_no_longer_watched_once_it_is_dropped),
       cmocka_unit_test(several_steps_of_a_save_are_one_change),
+      cmocka_unit_test(many_files_are_watched),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
