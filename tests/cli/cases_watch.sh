@@ -107,6 +107,32 @@ shows err 'done' 2
 finish
 no_temporaries .
 
+# size_is FILE BYTES: waits until a file has this size.
+size_is() {
+  waited=0
+  until [ -e "$1" ] && [ "$(wc -c < "$1")" -eq "$2" ]; do
+    sleep 0.05
+    waited=$((waited + 1))
+    [ $waited -lt 600 ] || {
+      wrong "waited for $2 bytes of $1"
+      return 1
+    }
+  done
+}
+
+it 'on a terminal, the messages of a run replace those before' python3
+echo 'show box(1)' > w.cag
+python3 "$here/on_terminal.py" sh -c 'echo $$ > pid; exec "$0" export w.cag -o t.stl --watch' "$CAG" > shown &
+size_is t.stl 684
+echo 'show tessellate(box(1)), box(1)' > w.cag
+size_is t.stl 1284
+kill -TERM "$(cat pid)"
+wait $!
+code=$?
+status 130
+[ "$(grep -c "$(printf '\033')\[H$(printf '\033')\[2J" shown)" -eq 1 ] || wrong 'the screen is not cleared once'
+grep -q 'w.cag changed' shown || wrong 'the file that changed is not named'
+
 it 'pictures are rendered again'
 echo 'show sphere(10)' > w.cag
 start render w.cag -o 'p.%s.png' --views top,iso --size 32x24 --quality draft --watch
