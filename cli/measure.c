@@ -19,15 +19,15 @@ static void print_line(const char *name, const char *format, ...) {
   va_end(args);
 }
 
-// Numbers are written as in the JSON, which has their shortest text.
+// Numbers are written as in the JSON, which has their shortest text. Empty: there is none.
 static const char *text_of(const cJSON *object, const char *name) {
   const cJSON *item = cJSON_GetObjectItem(object, name);
-  return item && item->valuestring ? item->valuestring : NULL;
+  return item && item->valuestring ? item->valuestring : "";
 }
 
 static void print_number(const cJSON *part, const char *name, const char *unit) {
   const char *text = text_of(part, name);
-  if (text) print_line(name, "%s %s", text, unit);
+  if (*text) print_line(name, "%s %s", text, unit);
 }
 
 static void print_point(const cJSON *part, const char *name) {
@@ -69,7 +69,7 @@ static void print_part(const cJSON *part) {
 
 static void print_all(const cJSON *whole) {
   const cJSON *part, *parts = cJSON_GetObjectItem(whole, "parts");
-  if (text_of(whole, "value"))
+  if (*text_of(whole, "value"))
     printf("%s: %s\n  %s\n", text_of(whole, "name"), text_of(whole, "type"),
            text_of(whole, "value"));
   cJSON_ArrayForEach(part, parts) print_part(part);

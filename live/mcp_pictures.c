@@ -156,15 +156,15 @@ static const char *view_of(const char *plane) {
 
 static int add_outlines(CagMcpScript *s, const char *folder) {
   char path[PATH_MAX + 16];
-  unsigned char *bytes;
+  unsigned char *bytes = NULL;
   size_t n;
   snprintf(path, sizeof path, "%s/cut.svg", folder);
   const int status = cag_session_export(s->session, path, NULL);
   if (status == CAG_STATUS_OK && read_file(path, &bytes, &n)) {
     cag_mcp_add_text(s->call, (const char *)bytes);
     cJSON_AddStringToObject(cag_mcp_structured(s->call), "outlines", (const char *)bytes);
-    free(bytes);
   }
+  free(bytes);
   unlink(path);
   return status;
 }

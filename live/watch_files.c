@@ -121,7 +121,7 @@ static File *find_file(const CagHashIndex *by_path, File *files, const char *pat
   size_t i;
   CagHashWalk w = cag_hash_walk(by_path, cag_hash_text(CAG_HASH_START, path));
   while (cag_hash_next(&w, &i))
-    if (!strcmp(files[i].path, path)) return &files[i];
+    if (files[i].path && !strcmp(files[i].path, path)) return &files[i];
   return NULL;
 }
 
