@@ -73,7 +73,10 @@ async function start(engine) {
       overlay.show(message);
       canvas.classList.remove("stale");
       say(message.parts.length === 0 && message.images.length === 0 ? "The script shows nothing." : "");
-      if (first) view.draw();
+      if (first) {
+        view.draw();
+        performance.mark("cag-first-picture");
+      }
       root.dataset.run = String(message.run);
       for (const panel of panels) panel(message);
     } catch (error) {
