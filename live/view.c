@@ -40,6 +40,9 @@ typedef struct View {
   size_t read_count;
   bool read_changed; // since the watch was told
   double began;      // when that run began, by the clock of files
+  // POV-Ray is looked for while the page loads, because it must be started for that.
+  pthread_t finder;
+  bool finding, povray;
 } View;
 
 // --- Answers ---
@@ -452,10 +455,22 @@ static void answer_job(View *v, CagExchange *x, const char *number) {
 
 // --- Routes ---
 
+static void *look_for_povray(void *context) {
+  View *v = context;
+  char version[256];
+  v->povray = cag_find_povray(version, sizeof version) != NULL;
+  return NULL;
+}
+
+static bool has_povray(View *v) {
+  if (v->finding) pthread_join(v->finder, NULL);
+  v->finding = false;
+  return v->povray;
+}
+
 static void answer_hello(View *v, CagExchange *x) {
   CagString s = {0};
   CagJson j = {.to = &s};
-  char povray[256];
   const char *const *formats = cag_export_formats();
   cag_json_open(&j, '{');
   cag_json_text(&j, "version", cag_version());
@@ -464,7 +479,7 @@ static void answer_hello(View *v, CagExchange *x) {
   cag_json_bool(&j, "readOnly", v->options->read_only);
   cag_json_bool(&j, "untitled", !v->options->file);
   cag_json_text(&j, "engine", "server");
-  cag_json_bool(&j, "povray", cag_find_povray(povray, sizeof povray) != NULL);
+  cag_json_bool(&j, "povray", has_povray(v));
   cag_json_open_in(&j, "formats", '[');
   for (size_t i = 0; formats[i]; i++) {
     cag_json_open(&j, '[');
@@ -631,6 +646,8 @@ static bool start_parts(View *v) {
   v->runner = v->meshes ? cag_runner_start(&runner) : NULL;
   v->jobs = v->runner ? cag_render_jobs_new(v->runner, &v->server) : NULL;
   v->watch = cag_file_watch_new(false);
+  v->finding = pthread_create(&v->finder, NULL, look_for_povray, v) == 0;
+  if (!v->finding) look_for_povray(v);
   return v->jobs && v->watch;
 }
 
@@ -638,6 +655,7 @@ static bool start_parts(View *v) {
 static void stop_parts(View *v) {
   pthread_mutex_lock(&v->gate);
   v->closing = true;
+  has_povray(v);
   pthread_mutex_unlock(&v->gate);
   if (v->jobs) cag_render_jobs_free(v->jobs);
   if (v->runner) cag_runner_stop(v->runner);

@@ -79,6 +79,9 @@ export function serverEngine() {
     writeSets: async (sets) => {
       await ask("/api/params", json("PUT", sets));
     },
-    measure: async (part) => (await ask("/api/measure", json("POST", { part }))).json(),
+    measure: async (part) => {
+      const m = await (await ask("/api/measure", json("POST", { part }))).json();
+      return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };
+    },
   };
 }

@@ -61,13 +61,13 @@ async function start(engine) {
   // --- Scenes that arrive ---
 
   let showing = 0; // to forget scenes that newer ones overtook while their meshes were loaded
-  /** @type {(scene: SceneMessage) => Promise<void>} */
+  /** Resolves with false if a mesh is missing. @type {(scene: SceneMessage) => Promise<boolean>} */
   const showScene = async (message) => {
     const turn = ++showing;
     newest.scene = message;
     try {
       const shapes = await view.parts.load(message);
-      if (turn !== showing) return;
+      if (turn !== showing) return true;
       const first = view.message === null;
       view.show(message, shapes);
       overlay.show(message);
@@ -79,8 +79,10 @@ async function start(engine) {
       }
       root.dataset.run = String(message.run);
       for (const panel of panels) panel(message);
+      return true;
     } catch (error) {
       if (turn === showing) report(/** @type {Error} */ (error));
+      return false;
     }
   };
   /** What else shows a scene. @type {((scene: SceneMessage) => void)[]} */
@@ -108,10 +110,11 @@ async function start(engine) {
     else runs.drop();
   });
   timeBar.changed.on(({ dragging }) => {
+    const run = () => (dragging ? runs.drag() : runs.drop());
     const known = timeBar.known;
-    if (known) showScene(known).then(() => timeBar.arrived(known));
-    else if (dragging) runs.drag();
-    else runs.drop();
+    if (!known) return run();
+    // The engine may have forgotten the meshes of long ago.
+    showScene(known).then((shown) => shown || (timeBar.forget(), run()));
   });
   params.writeWanted.on(() => writeParams());
   params.loadSets();
