@@ -261,6 +261,46 @@ async function block(browser) {
     await press(page, "Render");
     await page.until('(() => { const c = document.querySelector("#output canvas.picture"); return !c.hidden && c.width === 640 && c.height === 360; })()');
   });
+  await test("a set of values is saved under a name, and chosen", async () => {
+    const field = "document.querySelector('[data-param=width] input[type=number]')";
+    const width = await page.value(`${field}.value`);
+    await page.value(`(() => { ${field}.value = "64"; ${field}.dispatchEvent(new Event("change")); })()`);
+    await page.value('document.querySelector("#params form input").focus()');
+    await page.type("wide");
+    await page.key("Enter");
+    await page.until('document.querySelector("#params select[aria-label^=Named]").value === "wide"');
+    const sets = JSON.parse(fs.readFileSync(`${file}.params.json`, "utf8"));
+    equal([sets.wide.width, sets.wide.finish], [64, "red"]);
+    await page.value('document.querySelector("[data-param=width] [aria-label^=Reset]").click()');
+    await page.until(`${field}.value === "${width}"`);
+    await page.value('(() => { const s = document.querySelector("#params select[aria-label^=Named]"); s.value = "wide"; s.dispatchEvent(new Event("change")); })()');
+    await page.until(volume(64));
+  });
+  await test("the scene is exported, and the picture is saved", async () => {
+    const downloads = path.join(folder, "downloads");
+    fs.mkdirSync(downloads);
+    await browser.say("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
+    const saved = async (name) => {
+      for (let i = 0; i < 600 && !fs.existsSync(path.join(downloads, name)); i++) await pause(50);
+      return fs.readFileSync(path.join(downloads, name));
+    };
+    await page.value('document.querySelector("#output select[aria-label=Format]").value = "stl"');
+    await press(page, "Export");
+    const stl = await saved("block.stl");
+    equal(stl.length, 84 + 50 * stl.readUInt32LE(80)); // a header, the number of triangles, and each triangle
+    await press(page, "Save PNG");
+    const png = readPng(await saved("block.png"));
+    equal([png.width, png.height], await page.value('[document.querySelector("#scene").clientWidth, document.querySelector("#scene").clientHeight]'));
+    check(colorCount(png, { x: 0, y: 0, width: png.width, height: png.height }) > 20, "the picture is blank");
+  });
+  await test("another page sees the same", async () => {
+    const other = await browser.open(new URL("/", url).href, { width: 500, height: 400 });
+    await other.until(READY);
+    equal(await other.value("document.querySelector('[data-param=width] input[type=number]').value"), "64");
+    await page.value('document.querySelector("[data-param=width] [aria-label^=Reset]").click()');
+    await other.until("document.querySelector('[data-param=width] input[type=number]').value !== '64'");
+    await other.close();
+  });
   await test("the page has no errors, and breaks no rule of its Content-Security-Policy", async () => {
     // The conflict of the file was made on purpose.
     equal(page.problems.filter((p) => !p.includes("412")), []);
