@@ -76,13 +76,14 @@ export class Orbit {
     if (camera instanceof OrthographicCamera) {
       const half = this.halfHeight;
       Object.assign(camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
-      camera.near = 0;
-      camera.far = middle + radius + Math.max(this.reach, 20 * half);
+      // The grid reaches behind the camera.
+      camera.near = -Math.max(this.reach, 20 * half);
+      camera.far = middle + radius - camera.near;
     } else {
       camera.fov = this.fov / RADIANS;
       camera.aspect = aspect;
-      // What is near matters only if a ground reaches up to the camera.
-      camera.near = Math.max(this.reach > 0 ? 0 : middle - radius, this.distance * 0.02);
+      // Grid and ground reach up to the camera. With 24 bits, depths at the target differ from 3e-6 of the distance on.
+      camera.near = this.distance * 0.02;
       camera.far = Math.max(middle + radius, camera.near * 2) + Math.max(this.reach, 40 * this.distance);
     }
     camera.updateProjectionMatrix();

@@ -42,6 +42,12 @@ function themeColor(name) {
   return new Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 }
 
+/** A color that is seen on another. @param {Color} paper */
+function inkOn(paper) {
+  const light = 0.2126 * paper.r + 0.7152 * paper.g + 0.0722 * paper.b;
+  return new Color().setScalar(light > 0.2 ? 0.08 : 0.6);
+}
+
 export class View {
   /** @param {HTMLCanvasElement} canvas @param {(id: string) => Promise<ArrayBuffer>} loadMesh */
   constructor(canvas, loadMesh) {
@@ -130,8 +136,11 @@ export class View {
     this.backdrop.mesh.visible = this.hasBackdrop && this.stage.backdrop;
     for (const ground of this.grounds) ground.visible = this.stage.backdrop && this.message?.drawing !== true;
     grid.mesh.visible = this.stage.grid;
-    if (grid.mesh.visible) grid.update(orbit, this.pixel, themeColor("--ink"));
-    renderer.setClearColor(themeColor("--canvas"), 1);
+    // The colors of a drawing are made for its paper.
+    const paper = this.message?.drawing && this.stage.backdrop ? (this.message.background ?? [1, 1, 1]) : null;
+    const ground = paper ? new Color().setRGB(...paper) : themeColor("--canvas");
+    if (grid.mesh.visible) grid.update(orbit, this.pixel, paper ? inkOn(ground) : themeColor("--ink"));
+    renderer.setClearColor(ground, 1);
     renderer.clear();
     renderer.render(this.scene, this.camera);
     const views = (/** @type {string[]} */ names) => names.flatMap((n) => this.parts.views.get(n) ?? []);
