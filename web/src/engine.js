@@ -193,6 +193,33 @@
  * @property {(part: string) => Promise<Measures>} measure
  */
 
+/**
+ * Listens at once, and keeps what the engine tells until the page is ready for it.
+ *
+ * @param {Engine} engine
+ * @returns {(listener: EngineListener) => void}  to be called once
+ */
+export function listenEarly(engine) {
+  /** @type {((listener: EngineListener) => void)[]} */
+  let kept = [];
+  /** @type {EngineListener | null} */
+  let ready = null;
+  const pass = (/** @type {(listener: EngineListener) => void} */ tell) => (ready ? tell(ready) : kept.push(tell));
+  engine.listen({
+    state: (x) => pass((l) => l.state(x)),
+    scene: (x) => pass((l) => l.scene(x)),
+    messages: (x) => pass((l) => l.messages(x)),
+    file: (x) => pass((l) => l.file(x)),
+    progress: (x) => pass((l) => l.progress(x)),
+    connection: (on, problem) => pass((l) => l.connection(on, problem)),
+  });
+  return (listener) => {
+    ready = listener;
+    for (const tell of kept) tell(listener);
+    kept = [];
+  };
+}
+
 /** An error that the engine reports. */
 export class EngineError extends Error {
   /** @param {string} message @param {string} [help] */

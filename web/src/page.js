@@ -2,6 +2,7 @@
 
 import { Controls, viewOfKey } from "./controls.js";
 import { byId, h } from "./dom.js";
+import { listenEarly } from "./engine.js";
 import { serverEngine } from "./engine_server.js";
 import { Files } from "./files.js";
 import { formatSize } from "./format.js";
@@ -30,11 +31,12 @@ const NEW_SCRIPT = "untitled.cag";
 
 /** @param {import("./engine.js").Engine} engine */
 async function start(engine) {
-  const hello = await engine.hello();
+  const helloLater = engine.hello(), listen = listenEarly(engine);
   const root = document.documentElement;
   const scene = byId("scene", HTMLDivElement), notice = byId("notice", HTMLParagraphElement), status = byId("status", HTMLSpanElement);
   const canvas = byId("canvas", HTMLCanvasElement), over = byId("over", HTMLDivElement);
   const view = new View(canvas, (id) => engine.mesh(id));
+  const hello = await helloLater;
   const overlay = new Overlay(over, view), handles = new Handles(over, view), controls = new Controls(scene, view);
   const layout = new Layout(() => view.invalidate());
   /** @type {Files | null} */
@@ -332,7 +334,7 @@ async function start(engine) {
   // --- Events ---
 
   let connected = false;
-  engine.listen({
+  listen({
     state: (state) => runs.state(state),
     scene: (message) => showScene(message),
     messages: (m) => {

@@ -54,6 +54,8 @@ export class View {
     this.canvas = canvas;
     const { context, fast } = makeContext(canvas);
     this.renderer = new WebGLRenderer({ canvas, context });
+    // To check shaders, the page would wait until they are compiled.
+    this.renderer.debug.checkShaderErrors = false;
     this.renderer.toneMapping = CustomToneMapping;
     this.renderer.localClippingEnabled = true;
     this.renderer.autoClear = false;
