@@ -10,15 +10,16 @@ static void add(CagJson *j, const char *text) { cag_string_add(j->to, text, strl
 
 static void add_quoted(CagJson *j, const char *text) {
   char buffer[8];
+  const char *from = text;
   add(j, "\"");
-  for (const char *at = text, *from = text;; at++) {
-    const char *escape = *at ? cag_json_escape(*at, buffer) : NULL;
-    if (*at && !escape) continue;
+  for (const char *at = text; *at; at++) {
+    const char *escape = cag_json_escape(*at, buffer);
+    if (!escape) continue;
     cag_string_add(j->to, from, (size_t)(at - from));
-    if (!*at) break;
     add(j, escape);
     from = at + 1;
   }
+  add(j, from);
   add(j, "\"");
 }
 
