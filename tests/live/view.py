@@ -25,6 +25,11 @@ print "height {height}"
 """
 
 
+def accept_interrupts():
+    """A shell starts jobs in the background with SIGINT ignored, and they pass that on."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class View:
     """A server with its folder, and a listener of its events."""
 
@@ -33,7 +38,7 @@ class View:
         self.path = os.path.join(self.folder, name)
         with open(self.path, "w") as f:
             f.write(text)
-        self.process = subprocess.Popen([CAG, "view", self.path, "--no-open", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([CAG, "view", self.path, "--no-open", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=accept_interrupts)
         self.address = self.process.stdout.readline().strip()
         self.port = int(self.address.split(":")[2].split("/")[0])
         self.token = self.address.split("t=")[1]
