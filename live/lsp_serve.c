@@ -83,7 +83,7 @@ static bool read_line(FILE *in, char *line, size_t size) {
   return true;
 }
 
-// Reads the length of a header. Returns false if it is no number.
+// Reads the length of a header. Returns false if it is not a number.
 static bool read_length(const char *text, size_t *out) {
   text += strspn(text, " \t");
   char *end;

@@ -367,15 +367,23 @@ static void do_export(CagSession *s, void *context) {
   free_errand(e);
 }
 
-static void answer_export(View *v, CagExchange *x) {
+// The text of a field in the body, malloc'd, or NULL.
+static char *body_text(const CagExchange *x, const char *field) {
   size_t size;
   const char *body = cag_exchange_body(x, &size);
   cJSON *json = cJSON_ParseWithLength(body, size);
-  const cJSON *format = cJSON_GetObjectItemCaseSensitive(json, "format");
-  if (!cJSON_IsString(format) || !cag_export_format_story(format->valuestring))
-    cag_exchange_fail(x, 400, "expected a format of cag export", NULL);
-  else send_on_errand(v, x, format->valuestring, do_export);
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, field);
+  char *text = cJSON_IsString(item) ? strdup(item->valuestring) : NULL;
   cJSON_Delete(json);
+  return text;
+}
+
+static void answer_export(View *v, CagExchange *x) {
+  char *format = body_text(x, "format");
+  if (!format || !cag_export_format_story(format))
+    cag_exchange_fail(x, 400, "expected a format of cag export", NULL);
+  else send_on_errand(v, x, format, do_export);
+  free(format);
 }
 
 static int write_image(CagSession *s, const char *path, void *context) {
@@ -411,13 +419,10 @@ static void do_measure(CagSession *s, void *context) {
 }
 
 static void answer_measure(View *v, CagExchange *x) {
-  size_t size;
-  const char *body = cag_exchange_body(x, &size);
-  cJSON *json = cJSON_ParseWithLength(body, size);
-  const cJSON *part = cJSON_GetObjectItemCaseSensitive(json, "part");
-  if (cJSON_IsString(part)) send_on_errand(v, x, part->valuestring, do_measure);
+  char *part = body_text(x, "part");
+  if (part) send_on_errand(v, x, part, do_measure);
   else cag_exchange_fail(x, 400, "expected the name of a part", NULL);
-  cJSON_Delete(json);
+  free(part);
 }
 
 // --- Pictures ---

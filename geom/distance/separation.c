@@ -30,7 +30,7 @@
 // After this many pairs at the same distance, the shapes count as running along each other: the
 // number of such pairs is unlimited.
 #define SAME_PAIRS 4000
-// Locations that are only nearly as close are no longer searched after this many pairs.
+// After this many pairs, the search skips locations that are only nearly as close.
 #define NEAR_PAIRS 3000
 // Pairs are equally close if their distances differ by less than this fraction of the size.
 #define EQUALLY_NEAR 1e-11

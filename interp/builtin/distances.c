@@ -141,7 +141,7 @@ static CagStatus body_add_box(Body *b, const CagSolid *s, CagError *err) {
 static CagStatus body_add_solid(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                 CagError *err);
 
-// The points of the operands' surfaces that are inside of the union are no closer to anything
+// The points of the operands' surfaces that are inside of the union are not closer to anything
 // outside.
 static CagStatus body_add_union(const CagVm *vm, Body *b, const CagSolid *s, double tolerance,
                                 CagError *err) {
@@ -296,7 +296,7 @@ static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool c
 // A distance, and locations on the meshes of set operations at which the exact shapes may be closer.
 typedef struct Nearest {
   double distance;      // without these
-  double margin, apart; // of the locations (see separation.h); 0 if there are no such meshes
+  double margin, apart; // of the locations (see separation.h); 0 without such meshes
   double rough;         // the least distance of the meshes
   size_t n;
   CagPartsNear near[4]; // of the pairs of parts

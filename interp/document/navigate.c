@@ -386,7 +386,7 @@ static void rename_all(void *context) {
                  ? "%s is built in"
              : n->entity.kind == ENTITY_DECL  ? "%s belongs to the library"
              : n->entity.kind == ENTITY_FIELD ? "the field %s cannot be renamed"
-                                              : "there is no name here%s",
+                                              : "no name at this position%s",
              word_of(&n->entity));
     return;
   }

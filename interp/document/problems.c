@@ -20,7 +20,7 @@ static const CagModuleUnit *unit_of(const Document *d, const CagSource *source) 
   return NULL;
 }
 
-// A location in a text that is no document, such as a formula, is that of nothing.
+// A location outside of documents, such as in a formula given as a text, is left empty.
 static CagPlace place_of(const Report *r, const CagSource *source, CagSpan span) {
   const CagModuleUnit *m = unit_of(r->d, source);
   if (!m || m->name[0] == '<') return (CagPlace){NULL, 0, 0};

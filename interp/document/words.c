@@ -253,7 +253,7 @@ static void color_expression(void *context, const CagExpr *e) {
     const CagPlace place = {c->d->file, e->span.start, e->span.end};
     c->give(c->context, &place, rgb);
   }
-  // Parts of a text with { } are no colors.
+  // A text with { } is not a color.
   if (e->kind != CAG_EXPR_TEMPLATE) cag_tree_below(e, color_expression, context);
 }
 

@@ -17,7 +17,7 @@ typedef struct CagPreviewSky {
 CagStatus cag_preview_sky_load(const CagScene *s, CagPreviewSky *out, CagError *err);
 void cag_preview_sky_free(CagPreviewSky *sky); // also of a zeroed one
 
-// The light of the sky in a direction, or the background where there is no sky.
+// The light of the sky in a direction, or the background if the scene has no sky.
 //
 // A panorama shows +X at its left and right edges, +Y at a quarter of its width, and Z upward, as
 // the map of POV-Ray's source does (interp/formats/pov_stage.c). Between the centers of its pixels,
