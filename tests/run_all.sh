@@ -11,7 +11,7 @@ set -u
 cd "$(dirname "$0")/.."
 tab=$(printf '\t')
 
-# add NAME PASSED FAILED SKIPPED STATUS: reports the result of a suite, and shows its output if it failed.
+# add NAME PASSED FAILED SKIPPED STATUS: reports the result of a suite and its time, and shows its output if it failed.
 add() {
   suite_failed=$3
   [ "$5" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
@@ -19,7 +19,7 @@ add() {
   {
     [ "$suite_failed" -eq 0 ] || tail -n 200 "$log"
     [ "$4" -eq 0 ] || [ "$suite_failed" -gt 0 ] || grep -e '^skipped: ' -e ' is skipped: ' -e '^\[  SKIPPED \] [a-z_0-9]*$' "$log" | sort -u
-    echo "$1: $2 passed, $suite_failed failed, $4 skipped"
+    echo "$1: $2 passed, $suite_failed failed, $4 skipped ($(($(date +%s) - begin)) s)"
   } > "$log.shown"
   cat "$log.shown" # in one piece, because other suites write as well
   echo "$2 $suite_failed $4" > "$counts"
@@ -32,6 +32,7 @@ in_all() { sed -n "s/$1/\1/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
 # run_suite KIND NAME COMMAND. The kinds: unit, a program of C tests; counted, a command whose last line is `N passed, N failed, N skipped`;
 # check, a command that passes or fails as a whole.
 run_suite() {
+  begin=$(date +%s)
   sh -c "$3" > "$log" 2>&1 < /dev/null
   status=$?
   case $1 in
