@@ -74,6 +74,11 @@ typedef struct CagSessionOptions {
   // A script can read files and modules below its own folder, and below those of module_path. For a
   // script run from text, this is its folder (NULL: the working folder).
   const char *folder;
+  // Returns the text that replaces a file that the script imports, given its real path, or NULL: the
+  // file counts. For editors with unsaved texts. The text must stay the same during a run. May be
+  // NULL.
+  const char *(*find_text)(void *context, const char *path, size_t *length);
+  void *find_text_context;
   FILE *out;      // where `print` writes (stdout)
   FILE *messages; // where `trace` writes (stderr)
   // Work stops soon after this integer becomes nonzero, for example in a signal handler. The
@@ -295,6 +300,17 @@ CAG_API const char *cag_session_param_choice(CagSession *s, size_t param, size_t
 // Whether the script uses `time`, `frame`, or `frames`.
 CAG_API bool cag_session_is_timed(CagSession *s);
 
+typedef struct CagValueView {
+  const char *name;
+  const char *text;   // "box, 10 x 20 x 30", at most about 80 characters
+  CagPlaceView place; // of the whole definition
+} CagValueView;
+// Gives the values of definitions at the top level of the main script and of the modules that it
+// imported, except the library: of those that the run has evaluated, unless they are functions, or
+// their text is the value.
+CAG_API void cag_session_values(CagSession *s,
+                                void (*give)(void *context, const CagValueView *v), void *context);
+
 // The following need a scene, as cag_session_scene makes it.
 
 typedef struct CagPartView {
@@ -418,6 +434,8 @@ CAG_API void cag_session_write_script(CagSession *s, FILE *out);
 CAG_API void cag_session_clear(CagSession *s);
 // Returns module i of the standard library as import names it ("std.robots"), or NULL.
 CAG_API const char *cag_library_module(size_t i);
+// Returns the text of a module of the standard library, or NULL if there is no such module.
+CAG_API const char *cag_library_text(const char *module, size_t *length);
 // Returns the names of all built-ins, ending with NULL.
 CAG_API const char *const *cag_builtin_name_list(void);
 // Writes the documentation of a built-in as text. Returns false if there is no such built-in.

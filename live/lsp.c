@@ -388,7 +388,7 @@ static void read_module_path(CagLsp *l, const cJSON *options) {
   const cJSON *list = lsp_get(options, "modulePath"), *item;
   CagSessionOptions *o = &l->options.session;
   const size_t given = o->module_path_count, more = (size_t)cJSON_GetArraySize(list);
-  if (!cJSON_IsArray(list) || l->module_path) return;
+  if (!cJSON_IsArray(list) || l->module_path || l->options.folder) return;
   l->module_path = calloc(given + more + 1, sizeof *l->module_path);
   if (!l->module_path) return;
   size_t n = 0;

@@ -20,6 +20,9 @@ typedef struct CagLsp CagLsp;
 typedef struct CagLspOptions {
   CagSessionOptions session; // of checks, and of runs after a save: module path, memory, and time
   const char *program;       // path of the program for the commands; NULL: they are not offered
+  // An absolute path: documents are below it, and modules of the library are "cag:std.robots" instead
+  // of files in the cache folder of the user. NULL: documents are anywhere.
+  const char *folder;
   // Receives each message of the server. It may be called on another thread, but not by two at once.
   void (*send)(void *context, const char *json, size_t length);
   // Called on another thread when cag_lsp_work has something to do.

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "live/lsp_parts.h"
+#include "live/model_files.h"
 
 // Larger folders are read in part.
 #define FILES_MAX 5000
@@ -99,6 +100,13 @@ static char *library_file(CagLsp *l, const char *module) {
   return good ? strdup(path) : NULL;
 }
 
+static bool is_module(const char *name) {
+  const char *module;
+  for (size_t i = 0; (module = cag_library_module(i)); i++)
+    if (strcmp(module, name) == 0) return true;
+  return false;
+}
+
 // Returns the module whose file this is, as "std.robots" (malloc), or NULL.
 static char *module_of_path(CagLsp *l, const char *path) {
   const char *folder = library_folder(l);
@@ -108,14 +116,25 @@ static char *module_of_path(CagLsp *l, const char *path) {
     return NULL;
   char name[PATH_MAX];
   snprintf(name, sizeof name, "std.%.*s", (int)(length - n - 5), path + n + 1);
-  const char *module;
-  for (size_t i = 0; (module = cag_library_module(i)); i++)
-    if (strcmp(module, name) == 0) return strdup(name);
-  return NULL;
+  return is_module(name) ? strdup(name) : NULL;
+}
+
+// Returns the name of a document of a server that is limited to a folder.
+static char *file_in_folder(CagLsp *l, const char *uri) {
+  const char *const folder = l->options.folder;
+  const size_t n = strlen(folder);
+  if (strncmp(uri, "cag:", 4) == 0) return is_module(uri + 4) ? strdup(uri + 4) : NULL;
+  char *path = strncmp(uri, "file:///", 8) == 0 ? decoded(uri + 7) : NULL, *real = NULL;
+  if (path && strcmp(path, folder) == 0) real = strdup(folder);
+  else if (path && strncmp(path, folder, n) == 0 && path[n] == '/')
+    real = cag_model_path(folder, path + n + 1);
+  free(path);
+  return real;
 }
 
 char *lsp_file_of_uri(CagLsp *l, const char *uri) {
   const char *path = NULL;
+  if (l->options.folder) return file_in_folder(l, uri);
   if (strncmp(uri, "file:///", 8) == 0) path = uri + 7;
   else if (strncmp(uri, "file://localhost/", 17) == 0) path = uri + 16;
   if (path) {
@@ -135,6 +154,7 @@ char *lsp_uri_of_file(CagLsp *l, const char *file) {
   const LspDocument *d = lsp_find_file(l, file);
   if (d) return strdup(d->uri);
   if (strchr(file, '/')) return encoded("file://", file);
+  if (l->options.folder) return is_module(file) ? encoded("cag:", file) : NULL;
   char *path = library_file(l, file);
   char *uri = path ? encoded("file://", path) : NULL;
   free(path);

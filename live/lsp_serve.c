@@ -258,7 +258,8 @@ static int serve(Serving *s) {
 
 int cag_lsp_serve(const CagSessionOptions *session, const char *program, FILE *in, FILE *out) {
   Serving s = {.in = in, .out = out};
-  const CagLspOptions options = {*session, program, send, wake, &s};
+  const CagLspOptions options = {
+      .session = *session, .program = program, .send = send, .wake = wake, .context = &s};
   pthread_t reader;
   pthread_mutex_init(&s.lock, NULL);
   pthread_mutex_init(&s.out_lock, NULL);

@@ -37,6 +37,12 @@ static bool resolve(const char *folder, const char *path, char out[PATH_MAX], co
   return snprintf(out, PATH_MAX, "%s/%s", above, name) < PATH_MAX;
 }
 
+char *cag_model_path(const char *folder, const char *path) {
+  char real[PATH_MAX];
+  const char *why;
+  return resolve(folder, path, real, &why) ? strdup(real) : NULL;
+}
+
 bool cag_model_read(const char *folder, const char *path, char **text, size_t *size,
                     const char **why) {
   char real[PATH_MAX];

@@ -45,21 +45,31 @@ void cag_live_request_free(CagLiveRequest *r) {
     free(r->defines[i].value);
   }
   free(r->defines);
-  free(r->text);
+  for (size_t i = 0; i < r->text_count; i++) {
+    free(r->texts[i].path);
+    free(r->texts[i].text);
+  }
+  free(r->texts);
   *r = (CagLiveRequest){0};
 }
 
 static bool copy_request(const CagLiveRequest *from, CagLiveRequest *to) {
   *to = *from;
-  to->text = from->text ? strdup(from->text) : NULL;
   to->defines = calloc(from->define_count + 1, sizeof *to->defines);
-  bool ok = to->defines && (to->text || !from->text);
+  to->texts = calloc(from->text_count + 1, sizeof *to->texts);
+  bool ok = to->defines && to->texts;
   for (size_t i = 0; ok && i < from->define_count; i++) {
     to->defines[i].name = strdup(from->defines[i].name);
     to->defines[i].value = strdup(from->defines[i].value);
     ok = to->defines[i].name && to->defines[i].value;
   }
+  for (size_t i = 0; ok && i < from->text_count; i++) {
+    to->texts[i].path = strdup(from->texts[i].path);
+    to->texts[i].text = strdup(from->texts[i].text);
+    ok = to->texts[i].path && to->texts[i].text;
+  }
   if (!to->defines) to->define_count = 0;
+  if (!to->texts) to->text_count = 0;
   if (!ok) cag_live_request_free(to);
   return ok;
 }
@@ -78,20 +88,45 @@ static void define_all(CagSession *s, const CagLiveRequest *q) {
   cag_session_define(s, "time", time);
 }
 
+static const char *find_text(const CagLiveRequest *q, const char *path) {
+  for (size_t i = 0; i < q->text_count; i++)
+    if (!strcmp(q->texts[i].path, path)) return q->texts[i].text;
+  return NULL;
+}
+
+// What a session needs to find the texts of a request.
+typedef struct Overlay {
+  const CagLiveRequest *request;
+  const char *folder;
+} Overlay;
+
+static const char *find_import(void *context, const char *path, size_t *length) {
+  const Overlay *o = context;
+  const size_t n = strlen(o->folder);
+  const bool below = !strncmp(path, o->folder, n) && path[n] == '/';
+  const char *text = below ? find_text(o->request, path + n + 1) : NULL;
+  if (text) *length = strlen(text);
+  return text;
+}
+
 CagSession *cag_runner_session(const CagRunner *r, const CagLiveRequest *request,
                                const volatile int *interrupt, FILE *out, int *status) {
   CagSessionOptions o = r->options.session;
   o.interrupt = interrupt;
   o.out = o.messages = out;
   o.folder = r->options.folder;
+  // Modules are loaded by the run below alone.
+  Overlay overlay = {request, r->options.folder};
+  o.find_text = find_import;
+  o.find_text_context = &overlay;
   CagSession *s = cag_session_new(&o);
   if (!s) return NULL;
   define_all(s, request);
   char *read = NULL;
-  const char *text = request->text ? request->text : "", *why;
+  const char *unsaved = find_text(request, r->options.name), *text = unsaved ? unsaved : "", *why;
   size_t size = strlen(text);
   // The script is run as a text, so that locations have paths below the folder.
-  if (!request->text && r->options.has_file &&
+  if (!unsaved && r->options.has_file &&
       cag_model_read(r->options.folder, r->options.name, &read, &size, &why))
     text = read;
   *status = cag_session_run_text(s, r->options.name, text, size);
@@ -120,7 +155,7 @@ static void drop_session(CagSession *s, Prints *p) {
   free(p);
 }
 
-static void publish_messages(const CagRunner *r, const CagSession *s, const CagLiveRun *told) {
+static void publish_messages(const CagRunner *r, CagSession *s, const CagLiveRun *told) {
   CagString messages = {0};
   cag_live_messages(s, told, &messages);
   if (messages.bytes && !messages.failed)
@@ -257,16 +292,23 @@ int cag_runner_run(CagRunner *r, CagLiveRequest *request) {
   return number;
 }
 
-void cag_runner_again(CagRunner *r, bool keep_text) {
+static void drop_text(CagLiveRequest *q, const char *path) {
+  for (size_t i = 0; i < q->text_count; i++) {
+    if (strcmp(q->texts[i].path, path) != 0) continue;
+    free(q->texts[i].path);
+    free(q->texts[i].text);
+    q->texts[i] = q->texts[--q->text_count];
+    return;
+  }
+}
+
+void cag_runner_again(CagRunner *r, const char *saved) {
   CagLiveRequest again = {.coarse = 1};
   pthread_mutex_lock(&r->mutex);
   if (!r->is_pending && r->has_last && !copy_request(&r->last, &again))
     again = (CagLiveRequest){.coarse = 1};
   if (!r->is_pending) {
-    if (!keep_text) {
-      free(again.text);
-      again.text = NULL;
-    }
+    if (saved) drop_text(&again, saved);
     again.coarse = 1;
     start_pending(r, &again);
   }

@@ -14,9 +14,16 @@ typedef struct CagLiveDefine {
   char *name, *value;
 } CagLiveDefine;
 
+// The unsaved text of a file, which replaces that on the disk.
+typedef struct CagLiveText {
+  char *path; // below the folder
+  char *text;
+} CagLiveText;
+
 // What is run. Everything is malloc'd.
 typedef struct CagLiveRequest {
-  char *text; // of the main script; NULL: that of the file
+  CagLiveText *texts;
+  size_t text_count;
   CagLiveDefine *defines;
   size_t define_count;
   bool has_time, loop;
@@ -45,9 +52,9 @@ CagRunner *cag_runner_start(const CagRunnerOptions *options);
 void cag_runner_stop(CagRunner *r);
 // Takes over the contents of the request. Returns the number of the run.
 int cag_runner_run(CagRunner *r, CagLiveRequest *request);
-// Runs the last request again, with the files as they are now. `keep_text`: but with the text of the
-// script that it had.
-void cag_runner_again(CagRunner *r, bool keep_text);
+// Runs the last request again, with the files as they are now. `saved`: the path below the folder of
+// a file whose unsaved text does not count any more; NULL: all unsaved texts count.
+void cag_runner_again(CagRunner *r, const char *saved);
 // Does something with the last session as soon as the runner is free. Returns false if memory ran
 // out.
 bool cag_runner_do(CagRunner *r, CagLiveTask *task, void *context);

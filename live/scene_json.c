@@ -268,6 +268,14 @@ static bool has_scene(CagSession *s, int *status) {
   return *status == CAG_STATUS_OK;
 }
 
+// A file is listed as it was asked for, and by its real path.
+static bool is_real_path(const char *path) {
+  char *real = realpath(path, NULL);
+  const bool same = real && !strcmp(real, path);
+  free(real);
+  return same;
+}
+
 // The script and what it read below its folder.
 static void write_files(CagJson *j, CagSession *s, const CagLiveModel *model) {
   const size_t n = strlen(model->folder);
@@ -276,7 +284,7 @@ static void write_files(CagJson *j, CagSession *s, const CagLiveModel *model) {
   cag_json_text(j, NULL, model->script);
   for (size_t i = 0; (path = cag_session_read_file(s, i)); i++) {
     const bool below = !strncmp(path, model->folder, n) && path[n] == '/';
-    if (below && strcmp(path + n + 1, model->script) != 0 && access(path, R_OK) == 0)
+    if (below && strcmp(path + n + 1, model->script) != 0 && is_real_path(path))
       cag_json_text(j, NULL, path + n + 1);
   }
   cag_json_close(j, ']');
@@ -328,7 +336,31 @@ static void write_prints(CagJson *j, const char *prints) {
   cag_json_close(j, ']');
 }
 
-void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *out) {
+static void write_notes(CagJson *j, const CagSession *s, size_t error) {
+  CagNoteView n;
+  cag_json_open_in(j, "related", '[');
+  for (size_t k = 0; cag_session_error_note(s, error, k, &n); k++) {
+    char call[256];
+    if (!n.file) continue;
+    snprintf(call, sizeof call, *n.text ? "in %s, called here" : "called here", n.text);
+    cag_json_open(j, '{');
+    cag_json_text(j, "message", n.is_call ? call : n.text);
+    write_place(j, &(CagPlaceView){n.file, n.line, n.column, n.end_line, n.end_column, false});
+    cag_json_close(j, '}');
+  }
+  cag_json_close(j, ']');
+}
+
+static void write_value(void *context, const CagValueView *v) {
+  CagJson *j = context;
+  cag_json_open(j, '{');
+  cag_json_text(j, "name", v->name);
+  cag_json_text(j, "text", v->text);
+  write_place(j, &v->place);
+  cag_json_close(j, '}');
+}
+
+void cag_live_messages(CagSession *s, const CagLiveRun *run, CagString *out) {
   CagJson j = {.to = out};
   cag_json_open(&j, '{');
   cag_json_number(&j, "run", run->run);
@@ -345,10 +377,12 @@ void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *ou
     cag_json_text(&j, "message", e.message);
     cag_json_text(&j, "help", e.help);
     write_place(&j, &(CagPlaceView){e.file, e.line, e.column, e.end_line, e.end_column, false});
-    cag_json_open_in(&j, "related", '[');
-    cag_json_close(&j, ']');
+    write_notes(&j, s, i);
     cag_json_close(&j, '}');
   }
+  cag_json_close(&j, ']');
+  cag_json_open_in(&j, "values", '[');
+  cag_session_values(s, write_value, &j);
   cag_json_close(&j, ']');
   cag_json_close(&j, '}');
 }

@@ -30,12 +30,12 @@ typedef struct CagLiveModel {
 int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
                    CagString *out);
 
-// What a run printed and complained about.
+// What a run printed and complained about, and the values of definitions.
 typedef struct CagLiveRun {
   int run, status;
   double seconds;
   const char *prints;
 } CagLiveRun;
-void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *out);
+void cag_live_messages(CagSession *s, const CagLiveRun *run, CagString *out);
 
 #endif

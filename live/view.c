@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "live/json_write.h"
+#include "live/lsp_pages.h"
 #include "live/measures.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
@@ -31,6 +32,7 @@ typedef struct View {
   CagMeshes *meshes;
   CagRunner *runner;
   CagRenderJobs *jobs;
+  CagLspPages *editors;
   pthread_mutex_t gate; // held while a request is routed
   bool closing;
   char version[CAG_VERSION_SIZE]; // of the script's file, as last seen
@@ -113,15 +115,22 @@ static bool read_defines(const cJSON *params, CagLiveRequest *q) {
   return true;
 }
 
-// The unsaved text of the script, if it is among the given files.
-static bool read_text(const View *v, const cJSON *files, CagLiveRequest *q) {
-  const cJSON *text = cJSON_GetObjectItemCaseSensitive(files, v->name);
-  if (!cJSON_IsString(text)) return true;
-  q->text = strdup(text->valuestring);
-  return q->text != NULL;
+static bool read_texts(const cJSON *files, CagLiveRequest *q) {
+  const int n = cJSON_GetArraySize(files);
+  q->texts = calloc((size_t)n + 1, sizeof *q->texts);
+  if (!q->texts) return false;
+  const cJSON *item;
+  cJSON_ArrayForEach(item, files) {
+    if (!cJSON_IsString(item)) continue;
+    CagLiveText *t = &q->texts[q->text_count++];
+    t->path = strdup(item->string);
+    t->text = strdup(item->valuestring);
+    if (!t->path || !t->text) return false;
+  }
+  return true;
 }
 
-static bool read_request(const View *v, const char *body, size_t size, CagLiveRequest *out) {
+static bool read_request(const char *body, size_t size, CagLiveRequest *out) {
   cJSON *json = cJSON_ParseWithLength(body, size);
   if (!cJSON_IsObject(json)) {
     cJSON_Delete(json);
@@ -136,7 +145,7 @@ static bool read_request(const View *v, const char *body, size_t size, CagLiveRe
       .time = cJSON_IsNumber(time) ? time->valuedouble : 0,
       .frames = cJSON_IsNumber(frames) ? frames->valuedouble : 1};
   const bool ok = read_defines(cJSON_GetObjectItemCaseSensitive(json, "params"), out) &&
-                  read_text(v, cJSON_GetObjectItemCaseSensitive(json, "files"), out);
+                  read_texts(cJSON_GetObjectItemCaseSensitive(json, "files"), out);
   cJSON_Delete(json);
   if (!ok) cag_live_request_free(out);
   return ok;
@@ -146,7 +155,7 @@ static void answer_run(View *v, CagExchange *x) {
   size_t size;
   CagLiveRequest q;
   const char *body = cag_exchange_body(x, &size);
-  if (read_request(v, body, size, &q)) answer_number(x, 202, "run", cag_runner_run(v->runner, &q));
+  if (read_request(body, size, &q)) answer_number(x, 202, "run", cag_runner_run(v->runner, &q));
   else cag_exchange_fail(x, 400, "expected a JSON object", NULL);
 }
 
@@ -167,25 +176,34 @@ static void answer_mesh(View *v, CagExchange *x, const char *id) {
 
 // --- Files ---
 
-static void answer_file(View *v, CagExchange *x, const char *path) {
-  char *text, version[CAG_VERSION_SIZE];
-  size_t size;
-  const char *why;
-  if (!v->options->file && !strcmp(path, v->name)) { // an empty script
-    cag_model_version("", 0, version);
-    cag_exchange_answer(x, &(CagAnswer){.status = 200, .type = "text/plain", .etag = version});
-    return;
-  }
-  if (!cag_model_read(v->folder, path, &text, &size, &why)) {
-    cag_exchange_fail(x, 404, why, NULL);
-    return;
-  }
+static void answer_text_file(CagExchange *x, const char *text, size_t size) {
+  char version[CAG_VERSION_SIZE];
   cag_model_version(text, size, version);
   cag_exchange_answer(x, &(CagAnswer){.status = 200,
                                       .type = "text/plain; charset=utf-8",
                                       .bytes = text,
                                       .size = size,
                                       .etag = version});
+}
+
+// A file below the folder, or a module of the library ("std.robots").
+static void answer_file(View *v, CagExchange *x, const char *path) {
+  char *text;
+  size_t size;
+  const char *why, *library = cag_library_text(path, &size);
+  if (library) {
+    answer_text_file(x, library, size);
+    return;
+  }
+  if (!v->options->file && !strcmp(path, v->name)) { // an empty script
+    answer_text_file(x, "", 0);
+    return;
+  }
+  if (!cag_model_read(v->folder, path, &text, &size, &why)) {
+    cag_exchange_fail(x, 404, why, NULL);
+    return;
+  }
+  answer_text_file(x, text, size);
   free(text);
 }
 
@@ -523,6 +541,7 @@ static void route_open(View *v, CagExchange *x) {
   else if (is_request(x, "POST", "/api/export")) answer_export(v, x);
   else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
   else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
+  else if (is_request(x, "POST", "/api/lsp")) cag_lsp_pages_ask(v->editors, x);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);
@@ -608,13 +627,16 @@ static void tell_change(View *v, const char *path) {
 // Runs the script again if a file was changed by somebody else.
 static void look_at_files(View *v) {
   const char *path;
+  char real[PATH_MAX];
   watch_what_was_read(v);
   if (!cag_file_watch_look(v->watch, &path)) return;
+  // Imports are watched by the path that the script asked for as well, such as /a/./b.cag.
+  if (realpath(path, real)) path = real;
   const char *below = path_below(v, path);
   // If the page itself has saved the script, another file may have changed at the same time.
   const bool own = below && !strcmp(below, v->name), saved = own && !is_new_version(v);
   if (!saved) tell_change(v, path);
-  cag_runner_again(v->runner, !own || saved);
+  cag_runner_again(v->runner, saved ? NULL : below);
 }
 
 // --- The whole ---
@@ -650,10 +672,13 @@ static bool start_parts(View *v) {
                                    .context = v};
   v->runner = v->meshes ? cag_runner_start(&runner) : NULL;
   v->jobs = v->runner ? cag_render_jobs_new(v->runner, &v->server) : NULL;
+  CagSessionOptions checks = v->options->session;
+  checks.folder = v->folder;
+  v->editors = cag_lsp_pages_new(&checks, v->folder);
   v->watch = cag_file_watch_new(false);
   v->finding = pthread_create(&v->finder, NULL, look_for_povray, v) == 0;
   if (!v->finding) look_for_povray(v);
-  return v->jobs && v->watch;
+  return v->jobs && v->editors && v->watch;
 }
 
 // From the moment that the gate is closed, requests do not use the other parts.
@@ -663,6 +688,7 @@ static void stop_parts(View *v) {
   has_povray(v);
   pthread_mutex_unlock(&v->gate);
   if (v->jobs) cag_render_jobs_free(v->jobs);
+  cag_lsp_pages_free(v->editors);
   if (v->runner) cag_runner_stop(v->runner);
   if (v->server) cag_server_stop(v->server);
   cag_meshes_free(v->meshes);

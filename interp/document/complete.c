@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <dirent.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -460,6 +461,15 @@ static const char *folder_of(Completion *c) {
   return slash ? cag_arena_copy(&c->memory, path, (size_t)(slash - path)) : NULL;
 }
 
+static bool is_inside(const char *path, const char *folder) {
+  char *real = realpath(path, NULL);
+  const size_t n = strlen(folder);
+  const bool inside =
+      real && strncmp(real, folder, n) == 0 && (real[n] == '/' || real[n] == 0 || n == 1);
+  free(real);
+  return inside;
+}
+
 // Proposes files and folders. `written`: the path so far; `extension`: of the files, NULL: all.
 static void propose_files(Completion *c, const char *folder, const char *written,
                           const char *extension) {
@@ -467,6 +477,7 @@ static void propose_files(Completion *c, const char *folder, const char *written
   const char *slash = strrchr(written, '/');
   const int head = slash ? (int)(slash - written + 1) : 0;
   snprintf(path, sizeof path, "%s/%.*s", written[0] == '/' ? "" : folder, head, written);
+  if (c->w->options.folder && !is_inside(path, c->w->options.folder)) return;
   DIR *dir = opendir(path);
   const struct dirent *entry;
   for (size_t count = 0; dir && count < 1000 && (entry = readdir(dir)); count++) {

@@ -95,6 +95,18 @@ static void free_document(Document *d) {
   cag_free(d);
 }
 
+// Texts of open documents replace files.
+static const char *find_open_text(void *context, const char *path, size_t *length) {
+  const CagWorkspace *w = context;
+  for (size_t i = 0; i < w->count; i++) {
+    const Document *d = w->documents[i];
+    if (!d->open || !d->path || strcmp(d->path, path) != 0) continue;
+    *length = d->length;
+    return d->text;
+  }
+  return NULL;
+}
+
 CagWorkspace *cag_workspace_new(const CagSessionOptions *options) {
   CagWorkspace *w = cag_calloc(1, sizeof *w);
   if (!w) return NULL;
@@ -103,6 +115,8 @@ CagWorkspace *cag_workspace_new(const CagSessionOptions *options) {
   w->sink = fopen("/dev/null", "w");
   w->options.out = w->options.messages = w->sink ? w->sink : stderr;
   w->options.overdue = NULL;
+  w->options.find_text = find_open_text;
+  w->options.find_text_context = w;
   return w;
 }
 
@@ -251,18 +265,6 @@ bool cag_document_has_text(CagWorkspace *w, Document *d) {
   return d->text || (d->path ? read_file(d) : read_library(d));
 }
 
-// Texts of open documents replace files.
-static const char *find_open_text(void *context, const char *path, size_t *length) {
-  const CagWorkspace *w = context;
-  for (size_t i = 0; i < w->count; i++) {
-    const Document *d = w->documents[i];
-    if (!d->open || !d->path || strcmp(d->path, path) != 0) continue;
-    *length = d->length;
-    return d->text;
-  }
-  return NULL;
-}
-
 static bool load(CagVm *vm, void *context) {
   Document *d = context;
   d->unit = cag_load_document(vm, d->file, d->path, d->text, d->length);
@@ -286,8 +288,6 @@ static bool make_tree(CagWorkspace *w, Document *d) {
   d->session = cag_session_new(&w->options);
   CagVm *vm = d->session ? cag_session_vm(d->session) : NULL;
   if (!vm) return false;
-  vm->find_text = find_open_text;
-  vm->find_text_context = w;
   vm->errors.most = d->session->diagnostics.most = PROBLEMS_MAX;
   cag_session_renew_time(d->session);
   const int status = cag_session_work(d->session, load, d);

@@ -154,6 +154,8 @@ CagVm *cag_session_vm(CagSession *s) {
                      &s->diagnostics);
   if (!s->vm) return NULL;
   s->vm->tolerance = o->tolerance;
+  s->vm->find_text = o->find_text;
+  s->vm->find_text_context = o->find_text_context;
   CagAccount *before = cag_account_lend(&s->vm->account);
   bool found = true;
   for (size_t i = 0; found && i < o->module_path_count; i++)

@@ -13,6 +13,15 @@ const char *cag_library_module(size_t i) {
   return cag_stdlib[i].module;
 }
 
+const char *cag_library_text(const char *module, size_t *length) {
+  for (const CagStdlibFile *f = cag_stdlib; f->module; f++) {
+    if (strcmp(f->module, module) != 0) continue;
+    *length = f->length;
+    return f->text;
+  }
+  return NULL;
+}
+
 bool cag_cookbook(size_t i, const char **name, const char **text) {
   static const char FOLDER[] = "docs/cookbook/";
   const size_t n = sizeof FOLDER - 1;

@@ -33,8 +33,12 @@ def accept_interrupts():
 class View:
     """A server with its folder, and a listener of its events."""
 
-    def __init__(self, text, *options, name="model.cag"):
+    def __init__(self, text, *options, name="model.cag", others={}):
         self.folder = tempfile.mkdtemp()
+        for other, content in others.items():
+            with open(os.path.join(self.folder, other), "w") as f:
+                f.write(content)
+        time.sleep(0.05 if others else 0)  # a file of the last moment counts as changed during the first run
         self.path = os.path.join(self.folder, name)
         with open(self.path, "w") as f:
             f.write(text)
@@ -372,6 +376,117 @@ def test_a_port_in_use():
 
 
 ONLY = sys.argv[2:]
+
+
+# --- The language server ---
+
+LANGUAGE = """import "./parts.cag" as parts
+size = parts.width * 2
+show box([size, 1, 1])
+show cilinder(4, 1)
+"""
+
+
+def lsp(v, *messages, page="a page", check=False, method="POST"):
+    body = json.dumps({"page": page, "check": check, "messages": [dict(m, jsonrpc="2.0") for m in messages]})
+    status, answer, _ = v.ask(method, "/api/lsp", body)
+    assert status == 200, (status, answer)
+    return json.loads(answer)
+
+
+INITIALIZE = {"id": 1, "method": "initialize", "params": {"capabilities": {}, "initializationOptions": {"modulePath": ["/etc"]}}}
+
+
+def opening(uri, text):
+    return {"method": "textDocument/didOpen", "params": {"textDocument": {"uri": uri, "languageId": "cag", "version": 1, "text": text}}}
+
+
+def at(method, uri, line, character):
+    return {"id": 7, "method": "textDocument/" + method, "params": {"textDocument": {"uri": uri}, "position": {"line": line, "character": character}}}
+
+
+def with_parts():
+    v = View(LANGUAGE, others={"parts.cag": "width = 3\n"})
+    return v, "file://" + v.path
+
+
+def test_language_server():
+    v, uri = with_parts()
+    lsp(v, INITIALIZE, {"method": "initialized", "params": {}}, opening(uri, LANGUAGE))
+    found = next(m for m in lsp(v, check=True) if m.get("method") == "textDocument/publishDiagnostics")["params"]
+    assert found["uri"] == uri and [d["code"] for d in found["diagnostics"]] == ["E0201"], found
+    answer = lsp(v, at("completion", uri, 1, 13))[0]["result"]
+    assert [i["label"] for i in answer["items"]] == ["width"], answer
+    place = lsp(v, at("definition", uri, 1, 15))[0]["result"][0]
+    assert place["uri"] == "file://" + os.path.join(v.folder, "parts.cag") and place["range"]["start"] == {"line": 0, "character": 0}
+    assert not os.path.exists(os.path.join(v.folder, ".cache"))
+    # Another page has its own texts.
+    other = "show sphere(3)\n"
+    lsp(v, INITIALIZE, opening(uri, other), page="another")
+    assert lsp(v, check=True, page="another")[0]["params"]["diagnostics"] == []
+    assert lsp(v, at("hover", uri, 2, 6))[0]["result"] is not None
+    # Pages that are silent longest are forgotten, and told so.
+    for i in range(8):
+        lsp(v, INITIALIZE, page=f"page {i}")
+    assert lsp(v, at("hover", uri, 2, 6))[0]["error"]["code"] == -32002
+    assert v.close() == 130
+
+
+def test_language_server_refuses():
+    v, uri = with_parts()
+    lsp(v, INITIALIZE)
+    for outside in ("file:///etc/passwd", "file://" + v.folder + "/../x.cag", "file://" + v.folder + "%2f..%2fx.cag", "untitled:x", "cag:std.nothing", "", "file://"):
+        answer = lsp(v, opening(outside, "x = 1\n"), at("hover", outside, 0, 0))
+        assert answer == [{"id": 7, "result": None, "jsonrpc": "2.0"}], (outside, answer)
+    os.symlink("/etc", os.path.join(v.folder, "out"))
+    assert lsp(v, opening("file://" + v.folder + "/out/x.cag", "x = 1\n"), at("hover", "file://" + v.folder + "/out/x.cag", 0, 0))[-1]["result"] is None
+    text = 'import "/etc/'
+    lsp(v, opening(uri, text))
+    assert lsp(v, at("completion", uri, 0, len(text)))[0]["result"]["items"] == []
+    for body in ("", "[]", "{}", '{"page": "x"}', '{"page": "", "messages": []}', '{"page": 3, "messages": []}', json.dumps({"page": "x" * 64, "messages": []}), '{"page": "x", "messages": {}}'):
+        assert v.ask("POST", "/api/lsp", body)[0] == 400, body
+    assert v.ask("GET", "/api/lsp")[0] == 404
+    assert [m["error"]["code"] for m in json.loads(v.ask("POST", "/api/lsp", '{"page": "x", "messages": [1, null, {"id": 2, "method": "a"}]}')[1])] == [-32600, -32600, -32002]
+    assert v.ask("POST", "/api/lsp", "{}", cookie=False)[0] in (401, 403)
+    # Many pages at once.
+    threads = [threading.Thread(target=lambda i=i: [v.ask("POST", "/api/lsp", json.dumps({"page": str(i % 3), "check": True, "messages": []})) for _ in range(10)]) for i in range(12)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert v.close() == 130
+
+
+def test_unsaved_imports_and_values():
+    v, _ = with_parts()
+    text = LANGUAGE.replace("cilinder", "cylinder")
+    run = v.run(files={"model.cag": text}, params={})
+    messages = v.wait("messages", lambda m: m["run"] >= run)
+    assert [(x["name"], x["text"], x["file"], x["line"]) for x in messages["values"]] == [("size", "6", "model.cag", 2)], messages["values"]
+    run = v.run(files={"model.cag": text, "parts.cag": "width = 5\n", "../other.cag": "", "": "x"}, params={})
+    messages = v.wait("messages", lambda m: m["run"] >= run)
+    assert messages["ok"] and messages["values"][0]["text"] == "10"
+    scene = v.scene(run)
+    assert scene["files"] == ["model.cag", "parts.cag"], scene["files"]
+    assert scene["parts"][0]["bounds"][1][0] == 10
+    # The file on the disk counts again once it is saved.
+    assert v.ask("PUT", "/api/file?path=parts.cag", "width = 7\n")[0] == 200
+    scene = v.wait("scene", lambda s: s["parts"][0]["bounds"][1][0] == 14)
+    # A failing call tells the places of its callers.
+    run = v.run(files={"model.cag": "f(x) = sqrt(x)\nshow box([f(-1), 1, 1])\n"}, params={})
+    messages = v.wait("messages", lambda m: m["run"] >= run)
+    assert [(r["line"], r["message"]) for r in messages["diagnostics"][0]["related"]] == [(2, "called here")], messages["diagnostics"]
+    assert v.close() == 130
+
+
+def test_library_texts():
+    v = View(VASE)
+    status, body, _ = v.ask("GET", "/api/file?path=std.materials")
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../stdlib/materials.cag"), "rb") as f:
+        assert status == 200 and body == f.read()
+    assert v.ask("GET", "/api/file?path=std.nothing")[0] == 404
+    assert v.ask("PUT", "/api/file?path=std.materials", "x")[0] == 403
+    assert v.close() == 130
 
 
 def main():

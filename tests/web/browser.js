@@ -134,7 +134,7 @@ class Page {
 
   async key(key, more = {}) {
     const text = key === "Enter" ? "\r" : key.length === 1 && !more.modifiers ? key : undefined;
-    const code = key.length === 1 ? key.toUpperCase().charCodeAt(0) : { Enter: 13, Escape: 27, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, End: 35, Home: 36, Backspace: 8 }[key];
+    const code = /^[a-z0-9]$/i.test(key) ? key.toUpperCase().charCodeAt(0) : { Enter: 13, Escape: 27, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, End: 35, Home: 36, Backspace: 8, Tab: 9, F2: 113, F12: 123, ".": 190 }[key];
     await this.say("Input.dispatchKeyEvent", { type: text ? "keyDown" : "rawKeyDown", key, text, windowsVirtualKeyCode: code, ...more });
     await this.say("Input.dispatchKeyEvent", { type: "keyUp", key, windowsVirtualKeyCode: code, ...more });
   }

@@ -7,6 +7,7 @@ const fs = require("fs");
 const os = require("os");
 const path = require("path");
 const { Browser, pause } = require("./browser.js");
+const { language } = require("./page_language.js");
 const { readPng, colorCount, difference } = require("./png.js");
 
 const [chromium, ...command] = process.argv.slice(2);
@@ -343,6 +344,7 @@ async function main() {
   const browser = new Browser(chromium);
   try {
     await block(browser);
+    await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE });
     await film(browser);
     await small(browser);
   } finally {

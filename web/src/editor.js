@@ -3,14 +3,17 @@
 // The editor is in a shadow root. There, CodeMirror adds its styles as constructed style sheets, which need no exception in the
 // Content-Security-Policy.
 
-import { acceptCompletion, completeAnyWord } from "@codemirror/autocomplete";
+import { acceptCompletion } from "@codemirror/autocomplete";
 import { indentWithTab } from "@codemirror/commands";
 import { setDiagnostics } from "@codemirror/lint";
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, keymap } from "@codemirror/view";
 import { basicSetup } from "codemirror";
+import { assistance, changesOf, completeBy, offsetIn } from "./assist.js";
 import { cag, cagLanguage } from "./cag_language.js";
-import { rangeOf } from "./places.js";
+import { Language } from "./language.js";
+import { lineValues, showLineValues } from "./line_values.js";
+import { isModule, rangeOf } from "./places.js";
 import { Topic } from "./topic.js";
 
 /** @typedef {import("./engine.js").Diagnostic} Diagnostic */
@@ -32,6 +35,13 @@ const theme = EditorView.theme({
   ".cm-tooltip-autocomplete ul li[aria-selected]": { backgroundColor: "var(--accent)", color: "var(--on-accent)" },
   ".cm-panels": { backgroundColor: "var(--raised)", color: "var(--text)", borderColor: "var(--border)" },
   ".cm-panels input, .cm-panels button": { color: "var(--text)", backgroundColor: "var(--field)", backgroundImage: "none", border: "1px solid var(--border)" },
+  ".cm-value": { color: "var(--faint)", paddingLeft: "2em", fontStyle: "italic", pointerEvents: "none" },
+  ".cm-signature, .cm-described, .cm-completionInfo": { padding: "4px 8px", maxWidth: "36em", maxHeight: "20em", overflow: "auto" },
+  ".cm-signature strong": { color: "var(--accent)" },
+  ".markdown p, .markdown pre, .markdown ul": { margin: "4px 0" },
+  ".markdown pre, .markdown code, .cm-signature code": { fontFamily: "var(--mono)", fontSize: "12px", whiteSpace: "pre-wrap" },
+  ".markdown hr": { border: "none", borderTop: "1px solid var(--border)" },
+  ".cm-diagnosticAction": { backgroundColor: "var(--accent)", color: "var(--on-accent)", borderRadius: "3px", padding: "1px 8px", cursor: "pointer" },
   ".cm-diagnostic-error": { borderLeftColor: "var(--error)" },
   ".cm-diagnostic-warning": { borderLeftColor: "var(--warning)" },
   // The images of CodeMirror are data, which the Content-Security-Policy forbids.
@@ -54,11 +64,44 @@ const marked = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
+const CHECK_PAUSE = 30; // milliseconds from the last change
+
+/** @typedef {import("./language.js").Problem} Problem */
+/** @typedef {{ name: string, problem: Problem, apply: () => void }} Fix */
+
 export class Editor {
-  /** @param {HTMLElement} host @param {boolean} readOnly */
-  constructor(host, readOnly) {
+  /**
+   * @param {HTMLElement} host
+   * @param {object} options
+   * @param {boolean} options.readOnly
+   * @param {string} options.folder  of the scripts
+   * @param {import("./engine.js").Engine["lsp"]} options.lsp
+   * @param {(path: string) => Promise<void>} options.load  opens a file without showing it
+   * @param {(place: import("./engine.js").Place) => void} options.go
+   * @param {(text: string) => void} options.say
+   */
+  constructor(host, { readOnly, folder, lsp, load, go, say }) {
     this.host = host;
     this.readOnly = readOnly;
+    this.load = load;
+    this.language = new Language(lsp, folder, () => this.texts());
+    /** What the language server found, by path. @type {Map<string, Problem[]>} */
+    this.found = new Map();
+    /** @type {Map<string, Fix[]>} */
+    this.fixes = new Map();
+    /** Other fixes are known. @type {Topic<void>} */
+    this.fixesChanged = new Topic();
+    this.stale = false; // a text has changed since the last run
+    this.checkTimer = 0;
+    /** @type {import("./engine.js").RunMessages["values"]} */
+    this.values = [];
+    this.showsValues = true;
+    this.language.published.on(({ path, problems }) => this.takeProblems(path, problems));
+    this.assistance = assistance({
+      language: this.language, path: () => this.path, apply: (edit) => this.apply(edit), say,
+      go: (path, range) => go({ file: path, line: range.start.line + 1, column: range.start.character + 1, endLine: range.end.line + 1, endColumn: range.end.character + 1 }),
+      problems: () => this.found.get(this.path) ?? [],
+    });
     /** The path of the file whose text changed. @type {Topic<string>} */
     this.changed = new Topic();
     /** @type {Topic<void>} */
@@ -74,8 +117,14 @@ export class Editor {
     this.view = new EditorView({ root, parent: root });
   }
 
-  /** @param {string} text */
-  state(text) {
+  /** The texts of the open files. @returns {[string, string][]} */
+  texts() {
+    return [...this.states.keys()].map((path) => [path, this.text(path) ?? ""]);
+  }
+
+  /** @param {string} path @param {string} text */
+  state(path, text) {
+    const readOnly = this.readOnly || isModule(path);
     return EditorState.create({
       doc: text,
       extensions: [
@@ -85,12 +134,12 @@ export class Editor {
           // Tab leaves the editor after Escape, so that the page can be used without a pointer.
           indentWithTab,
         ]),
-        basicSetup, cag(), theme, marked,
-        cagLanguage.data.of({ autocomplete: completeAnyWord }),
-        EditorState.readOnly.of(this.readOnly), EditorView.editable.of(!this.readOnly),
-        EditorView.contentAttributes.of({ "aria-label": "Script", spellcheck: "false", ...(this.readOnly ? { tabindex: "0" } : {}) }),
+        this.assistance, basicSetup, cag(), theme, marked, lineValues,
+        cagLanguage.data.of({ autocomplete: completeBy(this.language, () => this.path) }),
+        EditorState.readOnly.of(readOnly), EditorView.editable.of(!readOnly),
+        EditorView.contentAttributes.of({ "aria-label": "Script", spellcheck: "false", ...(readOnly ? { tabindex: "0" } : {}) }),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged) this.changed.emit(this.path);
+          if (update.docChanged) this.noteChange(this.path);
           if (update.selectionSet || update.docChanged) this.cursorMoved.emit(undefined);
         }),
       ],
@@ -107,8 +156,10 @@ export class Editor {
   open(path, text) {
     const current = this.text(path);
     if (current === text) return;
-    if (current === null) this.states.set(path, this.state(text));
-    else {
+    if (current === null) {
+      this.states.set(path, this.state(path, text));
+      this.checkSoon();
+    } else {
       // Only what differs is replaced, so that the cursor stays where it is.
       const most = Math.min(current.length, text.length);
       let head = 0, tail = 0;
@@ -129,7 +180,30 @@ export class Editor {
     else {
       const state = this.states.get(path);
       if (state) this.states.set(path, state.update({ changes: { from, to, insert } }).state);
-      this.changed.emit(path);
+      this.noteChange(path);
+    }
+  }
+
+  /** @param {string} path */
+  noteChange(path) {
+    this.stale = true;
+    this.checkSoon();
+    this.changed.emit(path);
+  }
+
+  /** Applies a change of several files. @param {import("./language.js").WorkspaceEdit} edit */
+  async apply(edit) {
+    const all = Object.entries(edit.changes ?? {}).map(([uri, edits]) => ({ path: this.language.path(uri), edits }));
+    for (const { path } of all) if (this.text(path) === null) await this.load(path);
+    for (const { path, edits } of all) {
+      const state = path === this.path ? this.view.state : this.states.get(path);
+      if (!state) continue;
+      const changes = changesOf(state.doc, edits);
+      if (path === this.path) this.view.dispatch({ changes });
+      else {
+        this.states.set(path, state.update({ changes }).state);
+        this.noteChange(path);
+      }
     }
   }
 
@@ -147,6 +221,7 @@ export class Editor {
     this.path = path;
     this.view.setState(state);
     this.markProblems();
+    this.markValues();
   }
 
   /** Selects a place in the file that is shown. @param {import("./engine.js").Place} place @param {boolean} [focus] */
@@ -162,21 +237,72 @@ export class Editor {
   /** @param {Diagnostic[]} problems */
   setProblems(problems) {
     this.problems = problems;
+    this.stale = false;
     this.markProblems();
   }
 
+  /** Looks for problems when nothing has changed for a moment. */
+  checkSoon() {
+    clearTimeout(this.checkTimer);
+    // Without a connection, the page says so elsewhere.
+    this.checkTimer = window.setTimeout(() => this.language.check().catch(() => {}), CHECK_PAUSE);
+  }
+
+  /** Takes what the language server found in a file, and asks for the fixes. @param {string} path @param {Problem[]} problems */
+  async takeProblems(path, problems) {
+    this.found.set(path, problems);
+    this.fixes.delete(path);
+    this.markProblems();
+    const text = this.text(path);
+    if (problems.length === 0 || text === null || isModule(path)) return this.fixesChanged.emit(undefined);
+    const whole = { start: { line: 0, character: 0 }, end: { line: text.split("\n").length, character: 0 } };
+    const actions = await this.language.actions(path, whole, problems, ["quickfix"]).catch(() => []);
+    if (this.found.get(path) !== problems) return;
+    this.fixes.set(path, actions.flatMap((a) => (a.diagnostics ?? []).map((problem) => ({ name: a.title, problem, apply: () => a.edit && this.apply(a.edit) }))));
+    this.markProblems();
+    this.fixesChanged.emit(undefined);
+  }
+
+  /** The fixes of a problem that a run reported. @param {Diagnostic} d */
+  fixesOf(d) {
+    return (this.fixes.get(d.file) ?? []).filter(({ problem }) => problem.code === d.code && problem.range.start.line + 1 === d.line);
+  }
+
   markProblems() {
-    const { state } = this.view, text = state.doc.toString();
-    const marks = this.problems.filter((p) => p.file === this.path).map((p) => {
-      const [from, end] = rangeOf(text, p);
-      // A range of no length is seen as one character.
-      const to = Math.min(text.length, Math.max(end, from + 1));
-      return { from: Math.min(from, to), to, severity: p.severity, source: p.code, message: p.help ? `${p.message}\nhelp: ${p.help}` : p.message };
+    const { state } = this.view, found = this.found.get(this.path) ?? [], fixes = this.fixes.get(this.path) ?? [];
+    const isKnown = (/** @type {Diagnostic} */ d) => found.some((p) => p.code === d.code && p.range.start.line + 1 === d.line);
+    const marks = found.map((p) => {
+      const actions = fixes.filter((f) => f.problem.code === p.code && JSON.stringify(f.problem.range) === JSON.stringify(p.range));
+      const severity = /** @type {"error" | "warning"} */ (p.severity === 1 ? "error" : "warning");
+      return { ...span(state.doc, offsetIn(state.doc, p.range.start), offsetIn(state.doc, p.range.end)), severity, source: p.code, message: p.message, actions };
     });
+    // A run finds more, but what it found before the last change may not be true any more.
+    for (const p of this.stale ? [] : this.problems) {
+      if (p.file !== this.path || isKnown(p)) continue;
+      const [from, end] = rangeOf(state.doc.toString(), p);
+      marks.push({ ...span(state.doc, from, end), severity: p.severity, source: p.code, message: p.help ? `${p.message}\nhelp: ${p.help}` : p.message, actions: [] });
+    }
     this.view.dispatch(setDiagnostics(state, marks));
+  }
+
+  /** @param {import("./engine.js").RunMessages["values"]} values */
+  setValues(values) {
+    this.values = values;
+    this.markValues();
+  }
+
+  markValues() {
+    const own = this.showsValues ? this.values.filter((v) => v.file === this.path) : [];
+    showLineValues(this.view, own.map((v) => ({ line: v.endLine, text: v.text })));
   }
 
   hasFocus() {
     return document.activeElement === this.host;
   }
+}
+
+/** A range of no length is seen as one character. @param {import("@codemirror/state").Text} doc @param {number} from @param {number} end */
+function span(doc, from, end) {
+  const to = Math.min(doc.length, Math.max(end, from + 1));
+  return { from: Math.min(from, to), to };
 }

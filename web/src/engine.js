@@ -111,7 +111,7 @@
  * @property {string} code
  * @property {string} message
  * @property {string | null} help
- * @property {{ message: string, file: string, line: number, column: number }[]} related
+ * @property {(Place & { message: string })[]} related
  * @typedef {Place & DiagnosticFields} Diagnostic
  *
  * @typedef {object} RunMessages
@@ -120,6 +120,7 @@
  * @property {number} seconds
  * @property {number} [memory]  bytes
  * @property {string[]} prints
+ * @property {(Place & { name: string, text: string })[]} values  of definitions at the top level
  * @property {Diagnostic[]} diagnostics
  *
  * @typedef {{ run: number, running: boolean }} RunState
@@ -180,7 +181,7 @@
  * @property {(request: RunRequest) => Promise<number>} run  resolves with the number of the run once it is accepted
  * @property {(id: string) => Promise<ArrayBuffer>} mesh
  * @property {() => Promise<FileVersion[]>} files
- * @property {(path: string) => Promise<{ text: string, version: string }>} read
+ * @property {(path: string) => Promise<{ text: string, version: string }>} read  a file, or a module of the library ("std.robots")
  * @property {(path: string, text: string, version: string) => Promise<{ saved: boolean, version: string }>} write
  *   saves unless the file has another version by now, which is then returned
  * @property {(request: RenderRequest) => Promise<number>} render  resolves with the number of the job
@@ -191,6 +192,8 @@
  * @property {() => Promise<ParamSets>} sets
  * @property {(sets: ParamSets) => Promise<void>} writeSets
  * @property {(part: string) => Promise<Measures>} measure
+ * @property {(messages: object[], check: boolean) => Promise<import("./language.js").Message[]>} lsp  messages of the language server (JSON-RPC); check:
+ *   look for problems in what changed. Resolves with what the server has to say
  */
 
 /**

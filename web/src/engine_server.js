@@ -45,6 +45,7 @@ function connect(listener) {
 
 /** @returns {import("./engine.js").Engine} */
 export function serverEngine() {
+  const page = crypto.randomUUID?.() ?? Math.random().toString(36).slice(2);
   return {
     hello: async () => (await ask("/api/hello")).json(),
     listen: connect,
@@ -79,6 +80,7 @@ export function serverEngine() {
     writeSets: async (sets) => {
       await ask("/api/params", json("PUT", sets));
     },
+    lsp: async (messages, check) => (await ask("/api/lsp", json("POST", { page, messages, check }))).json(),
     measure: async (part) => {
       const m = await (await ask("/api/measure", json("POST", { part }))).json();
       return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };

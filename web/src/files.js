@@ -1,7 +1,7 @@
 // The files of the model: their texts, what is unsaved, tabs, and what to do when a file changed on the disk meanwhile.
 
 import { h } from "./dom.js";
-import { diffLines } from "./places.js";
+import { diffLines, isModule } from "./places.js";
 import { Topic } from "./topic.js";
 
 /** @typedef {{ version: string, saved: string }} OpenFile  the version and text on the disk */
@@ -101,7 +101,7 @@ export class Files {
   /** Saves the file that is shown. */
   async save() {
     const path = this.editor.path, file = this.open.get(path), text = this.editor.text(path);
-    if (!file || text === null || this.editor.readOnly) return;
+    if (!file || text === null || this.editor.readOnly || isModule(path)) return;
     try {
       const { saved, version } = await this.engine.write(path, text, file.version);
       if (!saved) return await this.ask(path);

@@ -11,17 +11,22 @@ export class MessagesPanel {
    * @param {HTMLElement} host
    * @param {HTMLElement} status  a short text about the last run
    * @param {(file: string, line: number) => string} lineOf  the text of a line, "" if its file is not open
+   * @param {(d: import("./engine.js").Diagnostic) => { name: string, apply: () => void }[]} fixesOf
    */
-  constructor(host, status, lineOf) {
+  constructor(host, status, lineOf, fixesOf) {
     this.host = host;
     this.status = status;
     this.lineOf = lineOf;
+    this.fixesOf = fixesOf;
+    /** @type {import("./engine.js").RunMessages | null} */
+    this.shown = null;
     /** @type {Topic<import("./engine.js").Place>} */
     this.placeWanted = new Topic();
   }
 
   /** @param {import("./engine.js").RunMessages} m */
   show(m) {
+    this.shown = m;
     const errors = m.diagnostics.filter((d) => d.severity === "error").length, warnings = m.diagnostics.length - errors;
     const counts = [errors ? count(errors, "error") : "", warnings ? count(warnings, "warning") : ""].filter(Boolean);
     this.status.textContent = [...counts, formatSeconds(m.seconds), m.memory ? formatMemory(m.memory) : ""].filter(Boolean).join(" · ");
@@ -43,9 +48,14 @@ export class MessagesPanel {
         h("span", { class: "what" }, d.severity), h("span", { class: "text" }, d.message), h("span", { class: "faint" }, `${d.code} ${d.file}:${d.line}`)),
       excerpt ? h("pre", {}, `${excerpt}\n${underline}`) : null,
       d.help ? h("p", {}, h("span", { class: "what" }, "help"), ` ${d.help}`) : null,
-      ...d.related.map((r) => h("button", { type: "button", class: "quiet place",
-        onclick: () => this.placeWanted.emit({ ...r, endLine: r.line, endColumn: r.column + 1 }) },
+      ...this.fixesOf(d).map(({ name, apply }) => h("button", { type: "button", class: "fix", onclick: apply }, name)),
+      ...d.related.map((r) => h("button", { type: "button", class: "quiet place", onclick: () => this.placeWanted.emit(r) },
         h("span", { class: "text" }, r.message), h("span", { class: "faint" }, `${r.file}:${r.line}`))));
+  }
+
+  /** Shows what was shown with the fixes that are known now. */
+  refresh() {
+    if (this.shown?.diagnostics.length) this.show(this.shown);
   }
 
   /** @param {string} text */

@@ -24,6 +24,7 @@ import { View } from "./view.js";
 
 const TYPING_PAUSE = 200; // milliseconds from the last key to the run
 const EDITOR_AFTER = 400; // milliseconds to wait for the first picture, at most
+const TOLD_FOR = 4000; // milliseconds that a remark stays
 const NEW_SCRIPT = "untitled.cag";
 
 /** @typedef {import("./engine.js").SceneMessage} SceneMessage */
@@ -51,6 +52,10 @@ async function start(engine) {
     notice.textContent = text;
     notice.hidden = text === "";
   };
+  const tell = (/** @type {string} */ text) => {
+    say(text);
+    setTimeout(() => notice.textContent === text && say(""), TOLD_FOR);
+  };
   const textOf = (/** @type {string} */ path) => editor?.text(path) ?? "";
   const excerpt = (/** @type {Place} */ place) => textOf(place.file).slice(...rangeOf(textOf(place.file), place));
   const lineOf = (/** @type {string} */ path, /** @type {number} */ line) => {
@@ -58,7 +63,7 @@ async function start(engine) {
     return text.slice(from, end < 0 ? undefined : end);
   };
 
-  const messages = new MessagesPanel(byId("messages", HTMLDivElement), status, lineOf);
+  const messages = new MessagesPanel(byId("messages", HTMLDivElement), status, lineOf, (d) => editor?.fixesOf(d) ?? []);
 
   // --- Scenes that arrive ---
 
@@ -260,6 +265,14 @@ async function start(engine) {
     shadows: { is: () => stage.shadows, set: (on) => (stage.shadows = on) },
     section: { is: () => view.section.on, set: (on) => (sectionPanel.toggle(on), on && openPanel("section")) },
     measure: { is: () => measure.active, set: (on) => (measure.toggle(on), on && openPanel("measure")) },
+    values: {
+      is: () => editor?.showsValues ?? true,
+      set: (on) => {
+        if (!editor) return;
+        editor.showsValues = on;
+        editor.markValues();
+      },
+    },
   };
   /** @param {string} name */
   function flip(name) {
@@ -299,7 +312,7 @@ async function start(engine) {
 
   /** @type {Record<string, () => void>} */
   const keys = {
-    f: () => flip("fit"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
+    f: () => flip("fit"), v: () => flip("values"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
     g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"),
     e: () => hello.readOnly || layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
@@ -340,6 +353,7 @@ async function start(engine) {
     messages: (m) => {
       messages.show(m);
       editor?.setProblems(m.diagnostics);
+      editor?.setValues(m.values);
       canvas.classList.toggle("stale", !m.ok);
       root.dataset.ok = String(m.ok);
       if (!m.ok) timeBar.stop();
@@ -357,9 +371,13 @@ async function start(engine) {
 
   await Promise.race([firstPicture(view), new Promise((done) => setTimeout(done, EDITOR_AFTER))]);
   const { Editor } = /** @type {typeof import("./editor.js")} */ (await import(/** @type {any} */ ("./editor.bundle.js")));
-  const opened = new Editor(byId("editor", HTMLDivElement), hello.readOnly);
+  /** @type {import("./editor.js").Editor} */
+  const opened = new Editor(byId("editor", HTMLDivElement), {
+    readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
+  });
   editor = opened;
   const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report));
+  opened.fixesChanged.on(() => messages.refresh());
   if (hello.file && !hello.untitled) await documents.show(file).catch(report);
   else documents.begin(file);
   if (newest.scene) documents.list(newest.scene.files ?? []);
@@ -383,6 +401,7 @@ async function start(engine) {
   if (newest.messages) {
     messages.show(newest.messages);
     opened.setProblems(newest.messages.diagnostics);
+    opened.setValues(newest.messages.values);
   }
   keepSelection();
   root.dataset.ready = "true";

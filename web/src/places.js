@@ -25,6 +25,9 @@ export function rangeOf(text, place) {
   return [from, Math.max(from, offsetOf(text, place.endLine, place.endColumn))];
 }
 
+/** Whether this is the name of a module of the library, which can be read only. @param {string} path */
+export const isModule = (path) => /^std\.\w+$/.test(path);
+
 const CLOSING = { "(": ")", "[": "]", "{": "}" };
 
 /** The end of a text in quotes that begins at `i`; expressions in braces can contain quotes. @param {string} text @param {number} i */

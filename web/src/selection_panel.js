@@ -57,7 +57,7 @@ export class SelectionPanel {
   chain(part) {
     return h("ol", { class: "chain", "aria-label": "Places in the script" }, ...part.origin.map((place) => {
       const text = this.excerpt(place).replace(/\s+/g, " ").trim();
-      return h("li", {}, h("button", { type: "button", class: "quiet place", disabled: place.library, onclick: () => this.placeWanted.emit(place) },
+      return h("li", {}, h("button", { type: "button", class: "quiet place", onclick: () => this.placeWanted.emit(place) },
         h("span", { class: "what" }, LINKS[place.what] ?? place.what), h("span", { class: "faint" }, `${place.file}:${place.line}`),
         text ? h("code", {}, text) : null));
     }));
