@@ -223,3 +223,6 @@ if peer povray; then theirs=$(best "$CAG" render examples/vase.cag -o "$tmp/v.ex
 report "vase, 16 samples of light, 960x540" "$ours" "POV-Ray" "$theirs" "<= 0.25"
 echo "--- language server, 5,000 lines"
 if peer python3; then python3 tests/bench/lsp.py "$CAG"; fi
+
+echo "--- the page of cag view"
+if peer node && peer chromium; then node tests/bench/live.js "$CAG" "$(command -v chromium)"; fi
