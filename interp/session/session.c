@@ -3,6 +3,7 @@
 #include "interp/session/session.h"
 
 #include <errno.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -16,10 +17,13 @@
 #include "interp/session/scene_build.h"
 #include "interp/session/watch.h"
 
+// Of a run. Less where all addresses together are not more.
+#define MEMORY_MOST ((size_t)(SIZE_MAX > UINT32_MAX ? (uint64_t)4 << 30 : (uint64_t)1 << 30))
+
 const char *cag_version(void) { return CAG_VERSION; }
 
 void cag_session_options_init(CagSessionOptions *o) {
-  *o = (CagSessionOptions){.max_memory = (size_t)4 << 30,
+  *o = (CagSessionOptions){.max_memory = MEMORY_MOST,
                            .max_depth = 10000,
                            .max_triangles = 100000000,
                            .out = stdout,
