@@ -7,6 +7,7 @@
 #   make coverage    lines and branches by folder   make mutate N=100    mutation score: random changes that the tests detect
 #   make format      clang-format everything        make check-format / check-layers / analyze / tidy
 #   make web         bundles the page of `cag view` make check-web       shows that web/dist is what the sources give
+#   make playground  cag as WebAssembly with its page and documentation, as static files in build/playground (wasm/build.mk)
 #   make EMBREE=1    with Embree for rays at large meshes; `make test-embree` runs the tests of rays with it for all meshes
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 #   make vsix        the extension of Visual Studio Code
@@ -80,7 +81,7 @@ CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web screenshots vsix
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web playground screenshots vsix
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -346,6 +347,8 @@ vsix: $(BUILD)/cag.vsix
 $(BUILD)/cag.vsix: $(BUILD)/tools/tables tools/vsix.py tools/editors.sh $(shell find editors/vscode -type f)
 	$(BUILD)/tools/tables | sh tools/editors.sh $(BUILD)/editors
 	python3 tools/vsix.py $(BUILD)/editors/vscode $@
+
+include wasm/build.mk
 
 clean:
 	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-threads $(BUILD)-embree $(BUILD)-coverage $(BUILD)-mutate

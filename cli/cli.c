@@ -441,6 +441,11 @@ static bool set_html(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_playground(CagTool *t, const char *value) {
+  t->playground = value;
+  return true;
+}
+
 static bool set_check(CagTool *t, const char *value) {
   (void)value;
   return t->check = true;

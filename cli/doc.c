@@ -109,6 +109,7 @@ static int make_site(CagTool *t, CagSession *s, int argc, char **argv) {
   if (status == CAG_STATUS_OK) status = scripts.status;
   CagSiteOptions options = {.session = t->session,
                             .no_pictures = t->no_pictures,
+                            .playground = t->playground,
                             .jobs = t->jobs,
                             .scripts = (const char *const *)paths.items,
                             .script_count = paths.count,

@@ -86,6 +86,7 @@ struct CagTool {
   const char *tiles;      // --tiles
   const char *element;    // --element
   const char *html;       // --html
+  const char *playground; // --playground
   int port;               // --port; 0: any free one
   bool no_open;           // --no-open
   bool read_only;         // --read-only

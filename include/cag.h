@@ -469,6 +469,9 @@ typedef struct CagSiteOptions {
   size_t jobs;                // examples that run at once; 0: one per processor
   const char *const *scripts; // files to document in addition to the library
   size_t script_count;
+  // Examples get links that open them in the playground at this address, which is relative to the
+  // site or absolute ("../playground/"). NULL: no links.
+  const char *playground;
   void (*say)(void *context, const char *message); // remarks about progress; may be NULL
   void *context;
 } CagSiteOptions;

@@ -1,17 +1,15 @@
 #include "live/render_jobs.h"
 
-#include <cJSON.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "live/json_write.h"
-#include "live/model_files.h"
+#include "live/model_answers.h"
 
-enum { JOBS = 8, SIDE_MOST = 8192 };
+enum { JOBS = 8 };
 
 typedef struct Job {
   CagRenderJobs *jobs;
@@ -21,10 +19,7 @@ typedef struct Job {
   atomic_bool done;
   volatile int stop;
   CagLiveRequest request;
-  char engine[16], quality[16], camera[128];
-  int width, height;
-  bool has_view;
-  CagCameraView view;
+  CagPictureRequest picture_request;
   char *picture;
   size_t size;
 } Job;
@@ -36,57 +31,6 @@ struct CagRenderJobs {
   Job items[JOBS];
   int last;
 };
-
-// --- Requests ---
-
-static void read_word(const cJSON *json, const char *name, char *out, size_t size) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
-  snprintf(out, size, "%s", cJSON_IsString(item) ? item->valuestring : "");
-}
-
-static int read_side(const cJSON *json, const char *name, int usual) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
-  const double x = cJSON_IsNumber(item) ? item->valuedouble : usual;
-  return x >= 1 && x <= SIDE_MOST ? (int)x : usual;
-}
-
-static bool read_point(const cJSON *json, const char *name, double out[3]) {
-  const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, name);
-  if (cJSON_GetArraySize(list) != 3) return false;
-  for (int i = 0; i < 3; i++) {
-    const cJSON *x = cJSON_GetArrayItem(list, i);
-    if (!cJSON_IsNumber(x)) return false;
-    out[i] = x->valuedouble;
-  }
-  return true;
-}
-
-static void read_view(const cJSON *json, Job *j) {
-  const cJSON *fov = cJSON_GetObjectItemCaseSensitive(json, "fov"),
-              *width = cJSON_GetObjectItemCaseSensitive(json, "width");
-  CagCameraView *v = &j->view;
-  *v = (CagCameraView){.name = "page",
-                       .orthographic = !cJSON_IsNumber(fov),
-                       .fov = cJSON_IsNumber(fov) ? fov->valuedouble : 0,
-                       .width = cJSON_IsNumber(width) ? width->valuedouble : 100,
-                       .size = {j->width, j->height}};
-  j->has_view = read_point(json, "eye", v->eye) && read_point(json, "target", v->target) &&
-                read_point(json, "up", v->up);
-}
-
-static bool read_job(const char *body, size_t size, Job *j) {
-  cJSON *json = cJSON_ParseWithLength(body, size);
-  const cJSON *camera = cJSON_GetObjectItemCaseSensitive(json, "camera");
-  const bool ok = cJSON_IsObject(json);
-  read_word(json, "engine", j->engine, sizeof j->engine);
-  read_word(json, "quality", j->quality, sizeof j->quality);
-  j->width = read_side(json, "width", 960);
-  j->height = read_side(json, "height", 540);
-  if (cJSON_IsObject(camera)) read_view(camera, j);
-  else read_word(json, "camera", j->camera, sizeof j->camera);
-  cJSON_Delete(json);
-  return ok;
-}
 
 // --- Rendering ---
 
@@ -108,49 +52,24 @@ static void note_progress(void *context, double percent, const char *phase) {
   publish_progress(context, percent, phase, NULL);
 }
 
-static int render_to(Job *j, CagSession *s, const char *path) {
-  CagRenderOptions o;
-  cag_render_options_init(&o);
-  if (*j->engine) o.engine = j->engine;
-  if (*j->quality) o.quality = j->quality;
-  if (*j->camera) o.camera = j->camera;
-  if (j->has_view) o.view = &j->view;
-  o.width = j->width;
-  o.height = j->height;
-  o.progress = note_progress;
-  o.progress_context = j;
-  return cag_session_render(s, &o, path);
-}
-
-static void tell_failure(Job *j, CagSession *s) {
-  CagErrorView e = {0};
-  if (cag_session_error_count(s) > 0) cag_session_error(s, cag_session_error_count(s) - 1, &e);
-  j->done = true;
-  publish_progress(j, 100, "rendering", e.message ? e.message : "the picture failed");
-}
-
 static void render(Job *j, FILE *out) {
-  char folder[] = "/tmp/cag-view-XXXXXX", path[64], *bytes;
-  size_t size;
-  const char *why;
   int status = CAG_STATUS_LIMIT;
   CagSession *s = cag_runner_session(j->jobs->runner, &j->request, &j->stop, out, &status);
   if (!s) return;
-  if (status == CAG_STATUS_OK && mkdtemp(folder)) {
-    snprintf(path, sizeof path, "%s/picture.png", folder);
-    status = render_to(j, s, path);
-    if (status == CAG_STATUS_OK && cag_model_read(folder, "picture.png", &bytes, &size, &why)) {
-      pthread_mutex_lock(&j->jobs->mutex);
-      j->picture = bytes;
-      j->size = size;
-      j->done = true;
-      pthread_mutex_unlock(&j->jobs->mutex);
-      publish_progress(j, 100, "rendering", NULL);
-    }
-    unlink(path);
-    rmdir(folder);
+  CagModelAnswer answer = {.error = "the script failed"};
+  CagErrorView e = {0};
+  if (status == CAG_STATUS_OK)
+    answer = cag_answer_picture(s, &j->picture_request, note_progress, j);
+  else if (cag_session_error_count(s) > 0) {
+    cag_session_error(s, cag_session_error_count(s) - 1, &e);
+    answer.error = e.message;
   }
-  if (!j->done) tell_failure(j, s);
+  pthread_mutex_lock(&j->jobs->mutex);
+  j->picture = answer.bytes;
+  j->size = answer.size;
+  j->done = true;
+  pthread_mutex_unlock(&j->jobs->mutex);
+  publish_progress(j, 100, "rendering", answer.bytes ? NULL : answer.error);
   cag_session_free(s);
 }
 
@@ -212,7 +131,7 @@ int cag_render_jobs_add(CagRenderJobs *jobs, const char *body, size_t size,
                         CagLiveRequest *request) {
   Job *j = free_slot(jobs);
   if (j) *j = (Job){.jobs = jobs};
-  if (!j || !read_job(body, size, j)) {
+  if (!j || !cag_picture_request_read(body, size, &j->picture_request)) {
     cag_live_request_free(request);
     return j ? -1 : 0;
   }

@@ -5,22 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
-#include "live/model_files.h"
-#include "live/scene_json.h"
+#include "live/model_run.h"
 
 typedef struct Task {
   CagLiveTask *work;
   void *context;
   struct Task *next;
 } Task;
-
-// What a session prints, which lives as long as the session.
-typedef struct Prints {
-  FILE *file;
-  char *text;
-  size_t length;
-} Prints;
 
 struct CagRunner {
   CagRunnerOptions options;
@@ -33,106 +24,10 @@ struct CagRunner {
   volatile int interrupt; // of the run under way
   Task *tasks, **tasks_end;
   // Of the last good run; used by the runner's thread alone.
-  CagSession *session;
-  Prints *prints;
+  CagModelRun good;
 };
 
-// --- Requests ---
-
-void cag_live_request_free(CagLiveRequest *r) {
-  for (size_t i = 0; i < r->define_count; i++) {
-    free(r->defines[i].name);
-    free(r->defines[i].value);
-  }
-  free(r->defines);
-  for (size_t i = 0; i < r->text_count; i++) {
-    free(r->texts[i].path);
-    free(r->texts[i].text);
-  }
-  free(r->texts);
-  *r = (CagLiveRequest){0};
-}
-
-static bool copy_request(const CagLiveRequest *from, CagLiveRequest *to) {
-  *to = *from;
-  to->defines = calloc(from->define_count + 1, sizeof *to->defines);
-  to->texts = calloc(from->text_count + 1, sizeof *to->texts);
-  bool ok = to->defines && to->texts;
-  for (size_t i = 0; ok && i < from->define_count; i++) {
-    to->defines[i].name = strdup(from->defines[i].name);
-    to->defines[i].value = strdup(from->defines[i].value);
-    ok = to->defines[i].name && to->defines[i].value;
-  }
-  for (size_t i = 0; ok && i < from->text_count; i++) {
-    to->texts[i].path = strdup(from->texts[i].path);
-    to->texts[i].text = strdup(from->texts[i].text);
-    ok = to->texts[i].path && to->texts[i].text;
-  }
-  if (!to->defines) to->define_count = 0;
-  if (!to->texts) to->text_count = 0;
-  if (!ok) cag_live_request_free(to);
-  return ok;
-}
-
-// --- Runs ---
-
-static void define_all(CagSession *s, const CagLiveRequest *q) {
-  char time[40];
-  for (size_t i = 0; i < q->define_count; i++)
-    cag_session_define(s, q->defines[i].name, q->defines[i].value);
-  cag_session_set_loop(s, q->loop);
-  if (!q->has_time) return;
-  const double steps = q->frames > 1 ? q->frames - (q->loop ? 0 : 1) : 0;
-  cag_session_set_frame(s, q->time * steps, q->frames > 1 ? q->frames : 1);
-  snprintf(time, sizeof time, "%.17g", q->time);
-  cag_session_define(s, "time", time);
-}
-
-static const char *find_text(const CagLiveRequest *q, const char *path) {
-  for (size_t i = 0; i < q->text_count; i++)
-    if (!strcmp(q->texts[i].path, path)) return q->texts[i].text;
-  return NULL;
-}
-
-// What a session needs to find the texts of a request.
-typedef struct Overlay {
-  const CagLiveRequest *request;
-  const char *folder;
-} Overlay;
-
-static const char *find_import(void *context, const char *path, size_t *length) {
-  const Overlay *o = context;
-  const size_t n = strlen(o->folder);
-  const bool below = !strncmp(path, o->folder, n) && path[n] == '/';
-  const char *text = below ? find_text(o->request, path + n + 1) : NULL;
-  if (text) *length = strlen(text);
-  return text;
-}
-
-CagSession *cag_runner_session(const CagRunner *r, const CagLiveRequest *request,
-                               const volatile int *interrupt, FILE *out, int *status) {
-  CagSessionOptions o = r->options.session;
-  o.interrupt = interrupt;
-  o.out = o.messages = out;
-  o.folder = r->options.folder;
-  // Modules are loaded by the run below alone.
-  Overlay overlay = {request, r->options.folder};
-  o.find_text = find_import;
-  o.find_text_context = &overlay;
-  CagSession *s = cag_session_new(&o);
-  if (!s) return NULL;
-  define_all(s, request);
-  char *read = NULL;
-  const char *unsaved = find_text(request, r->options.name), *text = unsaved ? unsaved : "", *why;
-  size_t size = strlen(text);
-  // The script is run as a text, so that locations have paths below the folder.
-  if (!unsaved && r->options.has_file &&
-      cag_model_read(r->options.folder, r->options.name, &read, &size, &why))
-    text = read;
-  *status = cag_session_run_text(s, r->options.name, text, size);
-  free(read);
-  return s;
-}
+// --- What a run needs and publishes ---
 
 static bool has_mesh(void *context, const char *id) { return cag_meshes_has(context, id); }
 
@@ -142,66 +37,44 @@ static bool keep_mesh(void *context, const CagMeshView *m) {
   return cag_live_mesh_bytes(m, &bytes, &size) && cag_meshes_keep(context, m->id, bytes, size);
 }
 
-static void publish_state(const CagRunner *r, int run, bool running) {
-  char text[64];
-  snprintf(text, sizeof text, "{\"run\":%d,\"running\":%s}", run, running ? "true" : "false");
-  cag_server_publish(*r->options.server, "state", text, true);
+static void publish(void *context, const char *event, const char *json) {
+  const CagRunner *r = context;
+  cag_server_publish(*r->options.server, event, json, true);
 }
 
-static void drop_session(CagSession *s, Prints *p) {
-  cag_session_free(s);
-  if (p && p->file) fclose(p->file);
-  if (p) free(p->text);
-  free(p);
-}
-
-static void publish_messages(const CagRunner *r, CagSession *s, const CagLiveRun *told) {
-  CagString messages = {0};
-  cag_live_messages(s, told, &messages);
-  if (messages.bytes && !messages.failed)
-    cag_server_publish(*r->options.server, "messages", messages.bytes, true);
-  cag_string_free(&messages);
-}
-
-static void run(CagRunner *r, const CagLiveRequest *request, int number) {
-  Prints *prints = calloc(1, sizeof *prints); // its addresses are in use until it is closed
-  CagString scene = {0};
-  CagLiveRun told = {.run = number, .status = CAG_STATUS_LIMIT};
-  const CagLiveMeshes meshes = {has_mesh, keep_mesh, r->options.meshes};
-  const double begin = cag_clock_seconds();
-  publish_state(r, number, true);
-  if (prints) prints->file = open_memstream(&prints->text, &prints->length);
-  CagSession *s = prints && prints->file
-                      ? cag_runner_session(r, request, &r->interrupt, prints->file, &told.status)
-                      : NULL;
+static void begin_scene(void *context) {
+  const CagRunner *r = context;
   cag_meshes_begin_scene(r->options.meshes);
-  if (s && told.status == CAG_STATUS_OK)
-    told.status = cag_live_scene(
-        s, &(CagLiveModel){number, r->options.name, r->options.folder, request->coarse}, &meshes,
-        &scene);
-  told.seconds = cag_clock_seconds() - begin;
-  if (s) {
-    fflush(prints->file);
-    told.prints = prints->text;
-    if (r->options.ran) r->options.ran(r->options.context, s);
-    if (told.status != CAG_STATUS_INTERRUPTED) publish_messages(r, s, &told);
-  }
-  const bool good = s && told.status == CAG_STATUS_OK && scene.bytes;
-  if (good) cag_server_publish(*r->options.server, "scene", scene.bytes, true);
-  publish_state(r, number, false);
-  cag_string_free(&scene);
-  if (good) {
-    drop_session(r->session, r->prints);
-    r->session = s;
-    r->prints = prints;
-  } else {
-    drop_session(s, prints);
-  }
+}
+
+static void note_run(void *context, CagSession *s) {
+  const CagRunner *r = context;
+  if (r->options.ran) r->options.ran(r->options.context, s);
+}
+
+static CagModel runner_model(const CagRunner *r) {
+  const CagRunnerOptions *o = &r->options;
+  return (CagModel){.session = o->session,
+                    .has_file = o->has_file,
+                    .folder = o->folder,
+                    .name = o->name,
+                    .meshes = {has_mesh, keep_mesh, o->meshes},
+                    .publish = publish,
+                    .begin_scene = begin_scene,
+                    .ran = note_run,
+                    .context = (void *)r};
+}
+
+CagSession *cag_runner_session(const CagRunner *r, const CagLiveRequest *request,
+                               const volatile int *interrupt, FILE *out, int *status) {
+  const CagModel model = runner_model(r);
+  return cag_model_session(&model, request, interrupt, out, status);
 }
 
 // --- The thread ---
 
 static void work_on_run(CagRunner *r) {
+  const CagModel model = runner_model(r);
   CagLiveRequest request = r->pending;
   const int number = r->number;
   r->pending = (CagLiveRequest){0};
@@ -209,13 +82,13 @@ static void work_on_run(CagRunner *r) {
   r->running = true;
   r->interrupt = 0;
   CagLiveRequest kept;
-  if (copy_request(&request, &kept)) {
+  if (cag_live_request_copy(&request, &kept)) {
     cag_live_request_free(&r->last);
     r->last = kept;
     r->has_last = true;
   }
   pthread_mutex_unlock(&r->mutex);
-  run(r, &request, number);
+  cag_model_run(&model, &request, number, &r->interrupt, &r->good);
   cag_live_request_free(&request);
   pthread_mutex_lock(&r->mutex);
   r->running = false;
@@ -227,7 +100,7 @@ static void work_on_task(CagRunner *r) {
   if (!r->tasks) r->tasks_end = &r->tasks;
   r->interrupt = 0;
   pthread_mutex_unlock(&r->mutex);
-  t->work(r->session, t->context);
+  t->work(r->good.session, t->context);
   free(t);
   pthread_mutex_lock(&r->mutex);
 }
@@ -269,7 +142,7 @@ void cag_runner_stop(CagRunner *r) {
   pthread_join(r->thread, NULL);
   cag_live_request_free(&r->pending);
   cag_live_request_free(&r->last);
-  drop_session(r->session, r->prints);
+  cag_model_run_free(&r->good);
   pthread_cond_destroy(&r->woken);
   pthread_mutex_destroy(&r->mutex);
   free(r);
@@ -292,23 +165,13 @@ int cag_runner_run(CagRunner *r, CagLiveRequest *request) {
   return number;
 }
 
-static void drop_text(CagLiveRequest *q, const char *path) {
-  for (size_t i = 0; i < q->text_count; i++) {
-    if (strcmp(q->texts[i].path, path) != 0) continue;
-    free(q->texts[i].path);
-    free(q->texts[i].text);
-    q->texts[i] = q->texts[--q->text_count];
-    return;
-  }
-}
-
 void cag_runner_again(CagRunner *r, const char *saved) {
   CagLiveRequest again = {.coarse = 1};
   pthread_mutex_lock(&r->mutex);
-  if (!r->is_pending && r->has_last && !copy_request(&r->last, &again))
+  if (!r->is_pending && r->has_last && !cag_live_request_copy(&r->last, &again))
     again = (CagLiveRequest){.coarse = 1};
   if (!r->is_pending) {
-    if (saved) drop_text(&again, saved);
+    if (saved) cag_live_request_drop_text(&again, saved);
     again.coarse = 1;
     start_pending(r, &again);
   }
@@ -330,7 +193,7 @@ bool cag_runner_do(CagRunner *r, CagLiveTask *task, void *context) {
 bool cag_runner_last(CagRunner *r, CagLiveRequest *out) {
   pthread_mutex_lock(&r->mutex);
   const CagLiveRequest none = {.coarse = 1};
-  const bool ok = copy_request(r->has_last ? &r->last : &none, out);
+  const bool ok = cag_live_request_copy(r->has_last ? &r->last : &none, out);
   pthread_mutex_unlock(&r->mutex);
   return ok;
 }

@@ -8,29 +8,8 @@
 
 #include "cag.h"
 #include "live/meshes.h"
+#include "live/request.h"
 #include "live/server.h"
-
-typedef struct CagLiveDefine {
-  char *name, *value;
-} CagLiveDefine;
-
-// The unsaved text of a file, which replaces that on the disk.
-typedef struct CagLiveText {
-  char *path; // below the folder
-  char *text;
-} CagLiveText;
-
-// What is run. Everything is malloc'd.
-typedef struct CagLiveRequest {
-  CagLiveText *texts;
-  size_t text_count;
-  CagLiveDefine *defines;
-  size_t define_count;
-  bool has_time, loop;
-  double time, frames;
-  double coarse; // factor of the tolerance
-} CagLiveRequest;
-void cag_live_request_free(CagLiveRequest *r);
 
 // Called on the runner's thread with the session of the last run; NULL: there is none.
 typedef void CagLiveTask(CagSession *s, void *context);

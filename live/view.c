@@ -11,7 +11,7 @@
 
 #include "live/json_write.h"
 #include "live/lsp_pages.h"
-#include "live/measures.h"
+#include "live/model_answers.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
 #include "live/render_jobs.h"
@@ -21,8 +21,6 @@
 // Milliseconds between looks at the flag that ends the server, and at files that cannot be watched.
 enum { STOP_EVERY = 50 };
 #define MESH_MEMORY ((size_t)512 << 20)
-// Meshes are coarser by this factor while something is dragged.
-#define COARSE 8.0
 #define UNTITLED "untitled.cag"
 
 typedef struct View {
@@ -100,62 +98,12 @@ static bool answer_page_file(CagExchange *x) {
 
 // --- Runs ---
 
-static bool read_defines(const cJSON *params, CagLiveRequest *q) {
-  const int n = cJSON_GetArraySize(params);
-  q->defines = calloc((size_t)n + 1, sizeof *q->defines);
-  if (!q->defines) return false;
-  const cJSON *item;
-  cJSON_ArrayForEach(item, params) {
-    if (!cJSON_IsString(item)) continue;
-    CagLiveDefine *d = &q->defines[q->define_count++];
-    d->name = strdup(item->string);
-    d->value = strdup(item->valuestring);
-    if (!d->name || !d->value) return false;
-  }
-  return true;
-}
-
-static bool read_texts(const cJSON *files, CagLiveRequest *q) {
-  const int n = cJSON_GetArraySize(files);
-  q->texts = calloc((size_t)n + 1, sizeof *q->texts);
-  if (!q->texts) return false;
-  const cJSON *item;
-  cJSON_ArrayForEach(item, files) {
-    if (!cJSON_IsString(item)) continue;
-    CagLiveText *t = &q->texts[q->text_count++];
-    t->path = strdup(item->string);
-    t->text = strdup(item->valuestring);
-    if (!t->path || !t->text) return false;
-  }
-  return true;
-}
-
-static bool read_request(const char *body, size_t size, CagLiveRequest *out) {
-  cJSON *json = cJSON_ParseWithLength(body, size);
-  if (!cJSON_IsObject(json)) {
-    cJSON_Delete(json);
-    return false;
-  }
-  const cJSON *time = cJSON_GetObjectItemCaseSensitive(json, "time"),
-              *frames = cJSON_GetObjectItemCaseSensitive(json, "frames");
-  *out = (CagLiveRequest){
-      .coarse = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(json, "coarse")) ? COARSE : 1,
-      .loop = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(json, "loop")),
-      .has_time = cJSON_IsNumber(time),
-      .time = cJSON_IsNumber(time) ? time->valuedouble : 0,
-      .frames = cJSON_IsNumber(frames) ? frames->valuedouble : 1};
-  const bool ok = read_defines(cJSON_GetObjectItemCaseSensitive(json, "params"), out) &&
-                  read_texts(cJSON_GetObjectItemCaseSensitive(json, "files"), out);
-  cJSON_Delete(json);
-  if (!ok) cag_live_request_free(out);
-  return ok;
-}
-
 static void answer_run(View *v, CagExchange *x) {
   size_t size;
   CagLiveRequest q;
   const char *body = cag_exchange_body(x, &size);
-  if (read_request(body, size, &q)) answer_number(x, 202, "run", cag_runner_run(v->runner, &q));
+  if (cag_live_request_read(body, size, &q))
+    answer_number(x, 202, "run", cag_runner_run(v->runner, &q));
   else cag_exchange_fail(x, 400, "expected a JSON object", NULL);
 }
 
@@ -331,57 +279,22 @@ static void send_on_errand(View *v, CagExchange *x, const char *word, CagLiveTas
   answer_out_of_memory(x);
 }
 
-static void fail_with_session(CagExchange *x, const CagSession *s) {
-  CagErrorView e = {0};
-  if (cag_session_error_count(s) > 0) cag_session_error(s, cag_session_error_count(s) - 1, &e);
-  cag_exchange_fail(x, 422, e.message ? e.message : "it failed", e.help);
-}
-
-// Answers with a file that `write` makes in a folder of its own.
-static void answer_written(CagExchange *x, CagSession *s, const char *name, const char *type,
-                           bool attached,
-                           int (*write)(CagSession *s, const char *path, void *context),
-                           void *context) {
-  char folder[] = "/tmp/cag-view-XXXXXX", path[PATH_MAX], *text;
-  size_t size;
-  const char *why;
-  if (!s) {
-    cag_exchange_fail(x, 409, "the script has not run without errors yet", NULL);
-    return;
-  }
-  if (!mkdtemp(folder)) {
-    cag_exchange_fail(x, 500, "cannot create a folder in /tmp", NULL);
-    return;
-  }
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  if (write(s, path, context) != CAG_STATUS_OK) fail_with_session(x, s);
-  else if (!cag_model_read(folder, name, &text, &size, &why)) cag_exchange_fail(x, 500, why, NULL);
-  else {
+// Sends what was made, and frees it.
+static void send_answer(CagExchange *x, CagModelAnswer *a) {
+  if (a->status != 200) cag_exchange_fail(x, a->status, a->error, a->help);
+  else
     cag_exchange_answer(x, &(CagAnswer){.status = 200,
-                                        .type = type,
-                                        .bytes = text,
-                                        .size = size,
-                                        .file = attached ? name : NULL});
-    free(text);
-  }
-  unlink(path);
-  rmdir(folder);
-}
-
-static int write_export(CagSession *s, const char *path, void *context) {
-  return cag_session_export(s, path, context);
+                                        .type = a->type,
+                                        .bytes = a->bytes,
+                                        .size = a->size,
+                                        .file = *a->name ? a->name : NULL});
+  free(a->bytes);
 }
 
 static void do_export(CagSession *s, void *context) {
   Errand *e = context;
-  char name[PATH_MAX];
-  const char *slash = strrchr(e->view->name, '/');
-  snprintf(name, sizeof name, "%s", slash ? slash + 1 : e->view->name);
-  char *dot = strrchr(name, '.');
-  if (dot) *dot = 0;
-  const size_t n = strlen(name);
-  snprintf(name + n, sizeof name - n, ".%s", e->word);
-  answer_written(e->x, s, name, "application/octet-stream", true, write_export, e->word);
+  CagModelAnswer a = cag_answer_export(s, e->view->name, e->word);
+  send_answer(e->x, &a);
   free_errand(e);
 }
 
@@ -404,35 +317,17 @@ static void answer_export(View *v, CagExchange *x) {
   free(format);
 }
 
-static int write_image(CagSession *s, const char *path, void *context) {
-  return cag_session_export_image(s, path, "png", &(CagImageOptions){.image = context});
-}
-
 static void do_image(CagSession *s, void *context) {
   Errand *e = context;
-  answer_written(e->x, s, "image.png", "image/png", false, write_image, e->word);
+  CagModelAnswer a = cag_answer_image(s, e->word);
+  send_answer(e->x, &a);
   free_errand(e);
 }
 
 static void do_measure(CagSession *s, void *context) {
   Errand *e = context;
-  CagMeasuring m = {NULL, CAG_STATUS_SCRIPT};
-  if (s) m = cag_measure(s, e->view->name, NULL);
-  const cJSON *part, *parts = cJSON_GetObjectItemCaseSensitive(m.whole, "parts");
-  char *printed = NULL;
-  cJSON_ArrayForEach(part, parts) {
-    const cJSON *name = cJSON_GetObjectItemCaseSensitive(part, "name");
-    if (cJSON_IsString(name) && !strcmp(name->valuestring, e->word))
-      printed = cJSON_PrintUnformatted(part);
-    if (printed) break;
-  }
-  if (printed)
-    cag_exchange_answer(e->x,
-                        &(CagAnswer){.status = 200, .bytes = printed, .size = strlen(printed)});
-  else if (s && m.status != CAG_STATUS_OK) fail_with_session(e->x, s);
-  else cag_exchange_fail(e->x, 404, "there is no such part", NULL);
-  free(printed);
-  cJSON_Delete(m.whole);
+  CagModelAnswer a = cag_answer_measure(s, e->view->name, e->word);
+  send_answer(e->x, &a);
   free_errand(e);
 }
 
@@ -493,25 +388,13 @@ static bool has_povray(View *v) {
 
 static void answer_hello(View *v, CagExchange *x) {
   CagString s = {0};
-  CagJson j = {.to = &s};
-  const char *const *formats = cag_export_formats();
-  cag_json_open(&j, '{');
-  cag_json_text(&j, "version", cag_version());
-  cag_json_text(&j, "file", v->name);
-  cag_json_text(&j, "folder", v->folder);
-  cag_json_bool(&j, "readOnly", v->options->read_only);
-  cag_json_bool(&j, "untitled", !v->options->file);
-  cag_json_text(&j, "engine", "server");
-  cag_json_bool(&j, "povray", has_povray(v));
-  cag_json_open_in(&j, "formats", '[');
-  for (size_t i = 0; formats[i]; i++) {
-    cag_json_open(&j, '[');
-    cag_json_text(&j, NULL, formats[i]);
-    cag_json_text(&j, NULL, cag_export_format_story(formats[i]));
-    cag_json_close(&j, ']');
-  }
-  cag_json_close(&j, ']');
-  cag_json_close(&j, '}');
+  const CagHello hello = {.file = v->name,
+                          .folder = v->folder,
+                          .engine = "server",
+                          .read_only = v->options->read_only,
+                          .untitled = !v->options->file,
+                          .povray = has_povray(v)};
+  cag_hello_write(&hello, &s);
   answer_text(x, 200, &s);
   cag_string_free(&s);
 }

@@ -7,7 +7,7 @@ case $1 in /*) out=$1 ;; *) out=$OLDPWD/$1 ;; esac
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 bundle() { esbuild "$1" --bundle --minify --charset=utf8 --legal-comments=none --log-level=warning "--outfile=$made/$2" --target=es2022 --format=esm '--external:./editor.bundle.js'; }
-bundle src/page.js page.js
+bundle src/main.js page.js
 # The editor is loaded after the first picture.
 bundle src/editor.js editor.bundle.js
 esbuild src/page.css --minify --log-level=warning "--outfile=$made/page.css"

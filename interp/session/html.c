@@ -133,6 +133,28 @@ static char *without_expectations(const char *text, size_t length) {
   return out;
 }
 
+// Writes a text such that it can stand in an address.
+static void write_percent(FILE *out, const char *text) {
+  for (; *text; text++) {
+    const unsigned char c = (unsigned char)*text;
+    if (is_digit(*text) || is_letter(*text) || strchr("-_.", c)) fputc(c, out);
+    else fprintf(out, "%%%02X", c);
+  }
+}
+
+// Examples of the user's scripts may read files, which the playground does not have.
+static void write_edit_link(const CagSite *s, const CagSiteSpot *spot, const char *text) {
+  const char *address = s->options->playground;
+  if (!address || spot->folder) return;
+  const bool absolute = strstr(address, "://") || *address == '/';
+  fputs("<a class=\"edit\" href=\"", spot->out);
+  if (!absolute) fputs(spot->root, spot->out);
+  cag_html_text(spot->out, address, strlen(address));
+  fputs("#text=", spot->out);
+  write_percent(spot->out, text);
+  fputs("\">Edit</a>\n", spot->out);
+}
+
 void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, size_t length) {
   const CagSiteExample *e = cag_site_example(s, spot, text, length);
   FILE *out = spot->out;
@@ -141,13 +163,14 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
   char *shown = without_expectations(text, length);
   fputs("<div class=\"example\"><div class=\"code\"><pre><code>", out);
   cag_html_script(out, root, shown, strlen(shown));
-  cag_free(shown);
   fputs("</code></pre>\n", out);
   if (e && e->output && *e->output) {
     fputs("<pre class=\"output\"><samp>", out);
     cag_html_text(out, e->output, strlen(e->output));
     fputs("</samp></pre>\n", out);
   }
+  write_edit_link(s, spot, shown);
+  cag_free(shown);
   fputs("</div>\n", out);
   if (e && e->picture)
     fprintf(out,

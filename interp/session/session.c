@@ -3,10 +3,11 @@
 #include "interp/session/session.h"
 
 #include <errno.h>
-#include <pthread.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "base/large_stack.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
@@ -16,14 +17,13 @@
 #include "interp/session/scene_build.h"
 #include "interp/session/watch.h"
 
-// The C stack of an evaluation: reserved address space. Deep recursion through built-ins needs
-// about 1 KiB per call (more with sanitizers).
-#define C_STACK_BYTES ((size_t)512 << 20)
+// Of a run. Less where all addresses together are not more.
+#define MEMORY_MOST ((size_t)(SIZE_MAX > UINT32_MAX ? (uint64_t)4 << 30 : (uint64_t)1 << 30))
 
 const char *cag_version(void) { return CAG_VERSION; }
 
 void cag_session_options_init(CagSessionOptions *o) {
-  *o = (CagSessionOptions){.max_memory = (size_t)4 << 30,
+  *o = (CagSessionOptions){.max_memory = MEMORY_MOST,
                            .max_depth = 10000,
                            .max_triangles = 100000000,
                            .out = stdout,
@@ -174,24 +174,23 @@ typedef struct Task {
   CagVm *vm;
   bool (*work)(CagVm *vm, void *context);
   void *context;
-  size_t stack;
   bool ok;
 } Task;
 
-static void *perform(void *context) {
+static void perform(void *context, char *low) {
   Task *t = context;
   char here;
-  t->vm->stack_low = &here - t->stack + 65536; // for the guard page, and what the system stores
-                                               // there
+  const volatile int *stop = cag_stop_lend(&t->vm->stop);
+  CagAccount *account = cag_account_lend(&t->vm->account);
+  t->vm->stack_low = low;
   t->vm->stack_paid = &here;
-  cag_stop_lend(&t->vm->stop);
-  cag_account_lend(&t->vm->account);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
   // Work that was interrupted may not have set an error. If it failed without an error of the
   // machine, it has added its own diagnostic.
   if (t->vm->stop && (t->ok || t->vm->failed)) t->ok = cag_stop_answer(t->vm);
   cag_account_drop((size_t)(&here - t->vm->stack_paid));
-  return NULL;
+  cag_account_lend(account);
+  cag_stop_lend(stop);
 }
 
 static void tell_overdue(void *context) {
@@ -206,7 +205,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   CagVm *vm = cag_session_vm(s);
   if (!vm) return CAG_STATUS_LIMIT;
   cag_vm_clear_error(vm);
-  Task task = {.vm = vm, .work = work, .context = context, .stack = C_STACK_BYTES};
+  Task task = {.vm = vm, .work = work, .context = context};
   // If the limit has already been exceeded, the work ends at its first check.
   const double least = 1e-6;
   CagWatch w = {.stop = &vm->stop,
@@ -217,18 +216,8 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
                 .overdue = s->options.overdue && !s->interactive ? tell_overdue : NULL,
                 .context = s};
   cag_watch_begin(&w);
-  pthread_t thread;
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  bool started = false;
-  for (; task.stack >= 1 << 20; task.stack /= 2) { // less if the system does not provide as much
-    started = pthread_attr_setstacksize(&attributes, task.stack) == 0 &&
-              pthread_create(&thread, &attributes, perform, &task) == 0;
-    if (started) break;
-  }
-  pthread_attr_destroy(&attributes);
-  if (started) pthread_join(thread, NULL);
-  else cag_vm_fail(vm, CAG_ERR_limit_memory, "cannot create a thread for the evaluation");
+  const bool started = cag_large_stack_run(perform, &task);
+  if (!started) cag_vm_fail(vm, CAG_ERR_limit_memory, "cannot create a thread for the evaluation");
   s->time_left -= cag_watch_end(&w);
   fflush(s->options.out);
   cag_diagnostics_move(&s->diagnostics, &vm->errors);

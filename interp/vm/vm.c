@@ -4,27 +4,20 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "base/reserve.h"
 
-// The number of values for which the stack reserves address space. Only the used part takes memory.
-// It is large enough for frame_limit frames of ordinary size.
-#define STACK_VALUES_MIN ((size_t)16 << 20)
+// The values of a frame of ordinary size. The stack of values has room for frame_limit such frames.
 #define STACK_VALUES_PER_FRAME 64
 
 static const volatile int never = 0;
 
-static void *reserve_memory(size_t bytes) {
-  void *p =
-      mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return p == MAP_FAILED ? NULL : p;
-}
-
 static size_t stack_values(const CagVm *vm) {
-  size_t n = vm->frame_limit * STACK_VALUES_PER_FRAME;
-  return n > STACK_VALUES_MIN ? n : STACK_VALUES_MIN;
+  const size_t n = vm->frame_limit * STACK_VALUES_PER_FRAME;
+  const size_t ample = cag_reserve_ample / sizeof *vm->stack;
+  return n > ample ? n : ample;
 }
 
 static size_t tail_bytes(const CagVm *vm) {
@@ -74,9 +67,9 @@ static void set_up(CagVm *vm, const CagVmOptions *options) {
 }
 
 static bool reserve_stacks(CagVm *vm) {
-  vm->stack = reserve_memory(stack_values(vm) * sizeof *vm->stack);
-  vm->frames = reserve_memory(vm->frame_limit * sizeof *vm->frames);
-  vm->tails = reserve_memory(tail_bytes(vm));
+  vm->stack = cag_reserve(stack_values(vm) * sizeof *vm->stack);
+  vm->frames = cag_reserve(vm->frame_limit * sizeof *vm->frames);
+  vm->tails = cag_reserve(tail_bytes(vm));
   if (!vm->stack || !vm->frames || !vm->tails) return false;
   vm->top = vm->high_water = vm->paid_end = vm->stack;
   vm->stack_end = vm->stack + stack_values(vm);
@@ -126,9 +119,9 @@ void cag_vm_free(CagVm *vm) {
   CagAccount *before = cag_account_lend(&vm->account);
   cag_memo_clear(vm);
   cag_heap_free(vm);
-  if (vm->stack) munmap(vm->stack, stack_values(vm) * sizeof *vm->stack);
-  if (vm->tails) munmap(vm->tails, tail_bytes(vm));
-  if (vm->frames) munmap(vm->frames, vm->frame_limit * sizeof *vm->frames);
+  cag_unreserve(vm->stack, stack_values(vm) * sizeof *vm->stack);
+  cag_unreserve(vm->tails, tail_bytes(vm));
+  cag_unreserve(vm->frames, vm->frame_limit * sizeof *vm->frames);
   for (CagProto *p = vm->protos, *next; p; p = next) {
     next = p->next;
     cag_proto_free(p);

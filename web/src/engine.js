@@ -1,4 +1,5 @@
-// What the page asks of the engine that runs scripts. engine_server.js implements it with a server.
+// What the page asks of the engine that runs scripts. engine_server.js implements it with a server, and engine_worker.js with workers of the
+// page that run cag as WebAssembly.
 //
 // Lengths are in millimeters, Z is up, colors are linear light. Lines and columns count from 1, columns in Unicode code points.
 
@@ -139,6 +140,7 @@
  * @property {string} folder
  * @property {boolean} readOnly
  * @property {boolean} [untitled]  a new script, which cannot be saved
+ * @property {boolean} [keepsEdits]  unsaved texts are kept when the page is left
  * @property {[string, string][]} formats  names and descriptions
  * @property {boolean} povray
  *

@@ -12,8 +12,9 @@ export class Files {
    * @param {import("./engine.js").Engine} engine
    * @param {import("./editor.js").Editor} editor
    * @param {(error: Error) => void} report
+   * @param {boolean} [kept]  unsaved texts are kept when the page is left
    */
-  constructor(tabs, engine, editor, report) {
+  constructor(tabs, engine, editor, report, kept = false) {
     this.tabs = tabs;
     this.engine = engine;
     this.editor = editor;
@@ -30,7 +31,7 @@ export class Files {
     editor.saveWanted.on(() => this.save());
     // Leaving the page asks if something is unsaved.
     addEventListener("beforeunload", (e) => {
-      if (this.unsaved) e.preventDefault();
+      if (this.unsaved && !kept) e.preventDefault();
     });
   }
 

@@ -1,9 +1,8 @@
-// The page of cag view: makes its parts and connects them.
+// The page: makes its parts and connects them.
 
 import { Controls, viewOfKey } from "./controls.js";
 import { byId, h } from "./dom.js";
 import { listenEarly } from "./engine.js";
-import { serverEngine } from "./engine_server.js";
 import { Files } from "./files.js";
 import { formatSize } from "./format.js";
 import { Handles } from "./handles.js";
@@ -31,7 +30,7 @@ const NEW_SCRIPT = "untitled.cag";
 /** @typedef {import("./engine.js").Place} Place */
 
 /** @param {import("./engine.js").Engine} engine */
-async function start(engine) {
+export async function start(engine) {
   const helloLater = engine.hello(), listen = listenEarly(engine);
   const root = document.documentElement;
   const scene = byId("scene", HTMLDivElement), notice = byId("notice", HTMLParagraphElement), status = byId("status", HTMLSpanElement);
@@ -376,7 +375,7 @@ async function start(engine) {
     readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
   });
   editor = opened;
-  const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report));
+  const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report, hello.keepsEdits));
   opened.fixesChanged.on(() => messages.refresh());
   if (hello.file && !hello.untitled) await documents.show(file).catch(report);
   else documents.begin(file);
@@ -414,8 +413,9 @@ function firstPicture(view) {
   return view.message ? Promise.resolve() : new Promise((done) => view.drawn.on(() => view.message && done(undefined)));
 }
 
-start(serverEngine()).catch((error) => {
+/** Shows why the page cannot start. @param {Error} error */
+export function showFailure(error) {
   const notice = byId("notice", HTMLParagraphElement);
   notice.textContent = error.message;
   notice.hidden = false;
-});
+}
