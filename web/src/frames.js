@@ -8,7 +8,7 @@ import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js
 const AXIS_COLORS = [0xd14b3d, 0x3c9a48, 0x3f7fd6].map((c) => new Color(c).toArray());
 const LINE_COLOR = new Color(0x8a94a0).toArray();
 const WIDTH = 2.5; // pixels
-const LENGTH = 0.07; // of an axis, in sizes of the robot
+const LENGTH = 0.05; // of an axis, in sizes of the robot
 const TOOL_LENGTH = 1.7; // of the axes of the tool, relative to those of the joints
 
 /** @param {number[]} frame @returns {[number, number, number]} */
