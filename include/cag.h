@@ -412,8 +412,9 @@ typedef struct CagRobotView {
 } CagRobotView;
 // Returns whether there is a robot i in the scene.
 CAG_API bool cag_session_robot(CagSession *s, size_t i, CagRobotView *out);
-// Returns the index of part k of a robot, as for cag_session_part; (size_t)-1: there is none.
-CAG_API size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k);
+// Returns the index of part k of a robot, as for cag_session_part; (size_t)-1: there is none. `name`
+// receives the name of the part, or NULL; it may be NULL.
+CAG_API size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k, const char **name);
 
 typedef struct CagJointView {
   char name[32];    // "joint 1"

@@ -36,9 +36,9 @@ static void write_joint(CagJson *j, CagSession *s, size_t robot, size_t joint,
 static void write_part_names(CagJson *j, CagSession *s, size_t robot, const CagRobotView *r) {
   cag_json_open_in(j, "parts", '[');
   for (size_t k = 0; k < r->part_count; k++) {
-    CagPartView part;
-    if (cag_session_part(s, cag_session_robot_part(s, robot, k), &part))
-      cag_json_text(j, NULL, part.name);
+    const char *name;
+    cag_session_robot_part(s, robot, k, &name);
+    cag_json_text(j, NULL, name);
   }
   cag_json_close(j, ']');
 }

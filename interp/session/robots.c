@@ -32,6 +32,7 @@ void cag_session_drop_robots(CagSession *s) {
   cag_free(all->items);
   cag_free(all->parts);
   cag_free(all->numbers);
+  cag_hash_free(&all->names);
   cag_free(all);
   s->robots = NULL;
 }
@@ -49,19 +50,24 @@ static bool continues(const CagLimb *last, const CagLimb *limb) {
          same_transform(&last->motion, &limb->motion);
 }
 
-static bool name_is_taken(const CagSessionRobots *all, const char *name) {
-  for (size_t i = 0; i < all->count; i++)
-    if (!strcmp(all->items[i].name, name)) return true;
+static bool find_name(const CagSessionRobots *all, const char *name, size_t *out) {
+  const uint64_t hash = cag_hash_text(CAG_HASH_START, name);
+  for (CagHashWalk w = cag_hash_walk(&all->names, hash); cag_hash_next(&w, out);)
+    if (!strcmp(all->items[*out].name, name)) return true;
   return false;
 }
 
-// Returns "arm", "arm 2", "arm 3" ..., or NULL if memory ran out.
-static char *robot_name(const CagSessionRobots *all, const char *wanted) {
+// Returns "arm", "arm 2", "arm 3" ..., or NULL if memory ran out. The search goes on from the last
+// number of the name, so that naming many robots alike takes linear time.
+static char *robot_name(CagSessionRobots *all, const char *wanted) {
   const size_t size = strlen(wanted) + 24;
+  size_t first, taken;
   char *name = cag_malloc(size);
   if (!name) return NULL;
   snprintf(name, size, "%s", wanted);
-  for (size_t k = 2; name_is_taken(all, name); k++) snprintf(name, size, "%s %zu", wanted, k);
+  if (!find_name(all, name, &first)) return name;
+  do snprintf(name, size, "%s %zu", wanted, ++all->items[first].last_number);
+  while (find_name(all, name, &taken));
   return name;
 }
 
@@ -71,6 +77,7 @@ static bool begin_robot(CagSessionRobots *all, const CagItem *item, const CagLim
   if (!CAG_RESERVE(all->items, all->capacity, all->count + 1)) return false;
   CagSessionRobot *r = &all->items[all->count];
   *r = (CagSessionRobot){.name = robot_name(all, own->length ? own->bytes : item->name),
+                         .last_number = 1,
                          .chain = limb->posture->robot->robot,
                          .posture = limb->posture,
                          .base = limb->motion,
@@ -78,7 +85,7 @@ static bool begin_robot(CagSessionRobots *all, const CagItem *item, const CagLim
   r->flat = cag_transform_inverse(&r->base, &r->back, &ignored) != CAG_OK;
   if (!r->name) return false;
   all->count++;
-  return true;
+  return cag_hash_add(&all->names, cag_hash_text(CAG_HASH_START, r->name), all->count - 1);
 }
 
 // The shape that an item was made of; NULL: none.
@@ -129,10 +136,11 @@ bool cag_session_robot(CagSession *s, size_t i, CagRobotView *out) {
   return r != NULL;
 }
 
-size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k) {
+size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k, const char **name) {
   if (!cag_session_begin(s)) return (size_t)-1;
   const CagSessionRobot *r = cag_session_robot_at(s, robot);
   const size_t part = r && k < r->count ? s->robots->parts[r->first + k].item : (size_t)-1;
+  if (name) *name = part == (size_t)-1 ? NULL : s->scene.items[part].name;
   cag_session_end(s, CAG_STATUS_OK);
   return part;
 }
@@ -255,7 +263,7 @@ static void copy_rows(const CagTransform *t, double out[3][4]) {
   for (int i = 0; i < 3; i++) memcpy(out[i], t->m[i], sizeof out[i]);
 }
 
-// Fills the numbers of the pose, for which there is room.
+// Fills the numbers of the pose, for which there is room. The robot is not flat.
 static void fill_pose(const CagSessionRobots *all, const CagSessionRobot *robot, const Posed *from,
                       const Posed *to, CagRobotPose *out) {
   const CagRobot *r = robot->chain;
@@ -266,10 +274,8 @@ static void fill_pose(const CagSessionRobots *all, const CagSessionRobot *robot,
   out->frames = (const double(*)[3][4])(numbers + robot->count);
   for (size_t k = 0; k < robot->count; k++) {
     CagTransform m = limb_motion(r, all->parts[robot->first + k].shape->limb, from, to);
-    if (!robot->flat) {
-      m = cag_transform_multiply(&robot->base, &m);
-      m = cag_transform_multiply(&m, &robot->back);
-    }
+    m = cag_transform_multiply(&robot->base, &m);
+    m = cag_transform_multiply(&m, &robot->back);
     copy_rows(&m, numbers[k]);
   }
   for (size_t k = 0; k <= r->link_count; k++) {

@@ -3,10 +3,12 @@
 #ifndef CAG_INTERP_SESSION_ROBOTS_H
 #define CAG_INTERP_SESSION_ROBOTS_H
 
+#include "base/hash.h"
 #include "interp/session/session.h"
 
 typedef struct CagSessionRobot {
   char *name;
+  size_t last_number; // that was added to its name for other robots
   const CagRobot *chain;
   const CagPosture *posture;
   CagTransform base, back; // from the robot's world to the scene, and back
@@ -22,6 +24,7 @@ typedef struct CagSessionPart {
 typedef struct CagSessionRobots {
   CagSessionRobot *items;
   size_t count, capacity;
+  CagHashIndex names;
   CagSessionPart *parts; // of all robots
   size_t part_count, part_capacity;
   double (*numbers)[3][4]; // of the last pose: motions, then frames

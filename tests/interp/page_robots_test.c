@@ -77,8 +77,8 @@ static void check_pose(const char *before, const char *q, const char *other, con
   const CagRobotPose pose = pose_of(a, 0, values, n);
   for (size_t k = 0; k < r.part_count; k++) {
     double low[2][3], high[2][3];
-    box_of(a, cag_session_robot_part(a, 0, k), pose.motions[k], low[0], high[0]);
-    box_of(b, cag_session_robot_part(b, 0, k), still, low[1], high[1]);
+    box_of(a, cag_session_robot_part(a, 0, k, NULL), pose.motions[k], low[0], high[0]);
+    box_of(b, cag_session_robot_part(b, 0, k, NULL), still, low[1], high[1]);
     for (int i = 0; i < 3; i++)
       if (!(fabs(low[0][i] - low[1][i]) < tolerance && fabs(high[0][i] - high[1][i]) < tolerance))
         fail_msg("part %zu of %s%s%s: %g..%g, expected %g..%g", k, before, other, after, low[0][i],
@@ -266,9 +266,12 @@ static void robots_are_found_wherever_they_are_shown(void **state) {
   assert_string_equal(robot_view(s, 0).name, "arm");
   assert_string_equal(robot_view(s, 2).name, "arm 3");
   assert_int_equal(robot_view(s, 2).part_count, 2);
+  const char *name;
+  assert_int_equal(cag_session_robot_part(s, 2, 1, &name), 5);
+  assert_string_equal(name, "arm.6");
   assert_int_equal(count_robots(s, "show sphere(1)\nshow ground()\n"), 0);
   assert_int_equal(count_robots(s, "show union(posed(arm, q).items)\n"), 0);
-  assert_int_equal(cag_session_robot_part(s, 0, 0), (size_t)-1);
+  assert_int_equal(cag_session_robot_part(s, 0, 0, NULL), (size_t)-1);
   cag_session_free(s);
 }
 

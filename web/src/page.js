@@ -150,6 +150,7 @@ async function start(engine) {
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const robots = new RobotsPanel(byId("robots", HTMLDivElement), over, view, engine, {
     readOnly: hello.readOnly, textOf: (path) => editor?.text(path) ?? null, entered: () => controls.hoverAt(null),
+    openFile: async (path) => files?.show(path),
   });
   robots.writeWanted.on(({ path, from, to, text }) => {
     editor?.replace(path, from, to, text);

@@ -44,12 +44,14 @@ export class RobotsPanel {
    * @param {HTMLElement} over
    * @param {import("./view.js").View} view
    * @param {import("./engine.js").Engine} engine
-   * @param {{ readOnly: boolean, textOf: (path: string) => string | null, entered: () => void }} options  entered: the pointer is on the handle
+   * @param {{ readOnly: boolean, textOf: (path: string) => string | null, openFile: (path: string) => Promise<void>, entered: () => void }} options
+   *   entered: the pointer is on the handle
    */
-  constructor(host, over, view, engine, { readOnly, textOf, entered }) {
+  constructor(host, over, view, engine, { readOnly, textOf, openFile, entered }) {
     this.view = view;
     this.engine = engine;
     this.textOf = textOf;
+    this.openFile = openFile;
     this.box = host.closest("details");
     /** @type {Map<string, Posed>} by name */
     this.robots = new Map();
@@ -283,6 +285,7 @@ export class RobotsPanel {
   /** The frame at which the handle is. */
   toolFrame() {
     if (!this.dragging.checked || !this.box?.open || !this.chosen) return null;
+    if (!this.chosen.robot.parts.some((name) => this.view.parts.isVisible(name))) return null;
     return this.chosen.pose?.tool ?? this.chosen.robot.tool;
   }
 
@@ -344,10 +347,17 @@ export class RobotsPanel {
   }
 
   /** Changes the numbers in the script as one step: from the first of them to the last. */
-  writeJoints() {
-    const edit = this.chosen && this.editOf(this.chosen);
-    if (edit) this.writeWanted.emit(edit);
-    else this.state.textContent = "The joint values in the script have changed. Try again after its next run.";
+  async writeJoints() {
+    const { chosen } = this, path = chosen?.robot.joints[0]?.place?.file;
+    if (!chosen || path === undefined) return;
+    try {
+      if (this.textOf(path) === null) await this.openFile(path);
+      const edit = this.editOf(chosen);
+      if (edit) this.writeWanted.emit(edit);
+      else this.state.textContent = "The joint values in the script have changed. Try again after its next run.";
+    } catch (error) {
+      this.fail(chosen, /** @type {Error} */ (error));
+    }
   }
 
   /** @param {Posed} posed @returns {Edit | null} */
