@@ -61,8 +61,10 @@ export class RobotsPanel {
     this.rows = [];
     this.asking = false;
     this.dropped = false; // the drag ends with the last answer
-    /** @type {(() => Promise<void>) | null} */
+    /** @type {(() => Promise<() => void>) | null} */
     this.waiting = null;
+    /** The picture with the last answer. @type {Promise<unknown>} */
+    this.drawn = Promise.resolve();
     this.refreshing = 0; // a timer
     this.applied = 0; // answers, for those who measure
     /** Joint values when a drag of the tool began. @type {number[] | null} */
@@ -227,7 +229,10 @@ export class RobotsPanel {
     chosen.q = q;
     this.missed(null, null);
     this.refreshLater();
-    this.ask(chosen, async () => this.apply(chosen, await this.engine.pose(chosen.robot.name, chosen.q)));
+    this.ask(chosen, async () => {
+      const pose = await this.engine.pose(chosen.robot.name, chosen.q);
+      return () => this.apply(chosen, pose);
+    });
   }
 
   reset() {
@@ -265,16 +270,24 @@ export class RobotsPanel {
     if (this.chosen === posed) this.state.textContent = error.message;
   }
 
-  /** Asks the engine at most once per picture, unless a later question comes first. @param {Posed} posed @param {() => Promise<void>} question */
+  /**
+   * Asks the engine, unless a later question comes first. Of the answers, at most one is shown per picture, and the next question is asked
+   * while that is drawn.
+   *
+   * @param {Posed} posed
+   * @param {() => Promise<() => void>} question  resolves with what shows the answer
+   */
   async ask(posed, question) {
-    this.waiting = () => question().catch((error) => this.fail(posed, error));
+    this.waiting = () => question().catch((error) => () => this.fail(posed, error));
     if (this.asking) return;
     this.asking = true;
     while (this.waiting) {
       const next = this.waiting;
       this.waiting = null;
-      await next();
-      await new Promise(requestAnimationFrame);
+      const show = await next();
+      await this.drawn;
+      show();
+      this.drawn = new Promise(requestAnimationFrame);
     }
     this.asking = false;
     if (this.dropped) this.settle();
@@ -299,10 +312,12 @@ export class RobotsPanel {
     this.dropped = false;
     this.ask(chosen, async () => {
       const found = await this.engine.reach({ robot: chosen.robot.name, target, q: chosen.q, orientation });
-      if (this.robots.get(chosen.robot.name) !== chosen || this.chosen !== chosen) return;
-      chosen.q = found.q;
-      this.missed(target, found);
-      this.apply(chosen, found);
+      return () => {
+        if (this.robots.get(chosen.robot.name) !== chosen || this.chosen !== chosen) return;
+        chosen.q = found.q;
+        this.missed(target, found);
+        this.apply(chosen, found);
+      };
     });
   }
 
