@@ -396,6 +396,83 @@ typedef struct CagStageView {
 CAG_API bool cag_session_stage(CagSession *s, CagStageView *out);
 CAG_API bool cag_session_sky_color(CagSession *s, size_t i, double out[3]);
 
+// --- Robots that a scene shows ---
+// A robot that is shown (by `posed`, or by itself) can be brought to other joint values without
+// another run: its parts are not made again, but get motions. Robots are found where they were moved,
+// colored, or grouped. Shapes that were changed otherwise (by a set operation, for example) are not
+// parts of a robot.
+//
+// Joint values are in the units of the script: degrees for revolute joints, millimeters for prismatic
+// ones. Frames and motions have 3 rows of 4 numbers. They are in the coordinates of the scene, so a
+// robot that was scaled has frames with axes that are not unit vectors.
+
+typedef struct CagRobotView {
+  const char *name; // unique among the robots of the scene
+  size_t joint_count, part_count, frame_count;
+} CagRobotView;
+// Returns whether there is a robot i in the scene.
+CAG_API bool cag_session_robot(CagSession *s, size_t i, CagRobotView *out);
+// Returns the index of part k of a robot, as for cag_session_part; (size_t)-1: there is none. `name`
+// receives the name of the part, or NULL; it may be NULL.
+CAG_API size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k, const char **name);
+
+typedef struct CagJointView {
+  char name[32];    // "joint 1"
+  const char *kind; // "revolute" or "prismatic"
+  const char *unit; // "deg" or "mm"
+  double low, high; // limits
+  double home;      // within the limits
+  double value;     // as shown; may be outside of the limits (`limits: false`)
+} CagJointView;
+CAG_API bool cag_session_robot_joint(CagSession *s, size_t robot, size_t joint, CagJointView *out);
+
+// Finds where the script says the value of a joint, as a number in a list that is the argument `q`
+// of `posed`, or the definition or param that the argument names. The location includes a sign and
+// the unit. Returns NULL, or the reason why there is no such number, for all joints of the robot
+// alike.
+CAG_API const char *cag_session_robot_joint_place(CagSession *s, size_t robot, size_t joint,
+                                                  CagPlaceView *out);
+
+typedef struct CagRobotPose {
+  size_t part_count, frame_count;
+  // By part of the robot: the motion from where it is in the scene to where it is in this pose. The
+  // rods that a robot without shapes is drawn with change their lengths at prismatic joints.
+  const double (*motions)[3][4];
+  const double (*frames)[3][4]; // the base, then the frame after each link
+  double tool[3][4];
+} CagRobotPose;
+// Forward kinematics: moves the parts of a robot to joint values, which may be outside of the
+// limits. `out` is valid until the next call about robots. Fails with "joint-count" (`count` is not
+// the number of joints), "not-finite".
+CAG_API int cag_session_robot_pose(CagSession *s, size_t robot, const double *q, size_t count,
+                                   CagRobotPose *out);
+
+// What becomes of the orientation of the tool.
+typedef enum CagReach {
+  CAG_REACH_KEEP,  // it is reached if the robot can; fewer than 6 joints may give it up
+  CAG_REACH_EXACT, // it is reached, or else the closest pose is found
+  CAG_REACH_FREE   // only the position matters
+} CagReach;
+
+typedef struct CagReachView {
+  const double *q; // within the limits
+  size_t joint_count;
+  bool reached;
+  double distance; // mm, from the target to the tool
+  double angle;    // degrees, between the target's orientation and that of the tool
+} CagReachView;
+// Inverse kinematics: joint values that bring the tool to a target, near the joint values `near`. If
+// the target can be reached without a jump from there, they are found by damped least squares from
+// `near`. Otherwise, they are found as by `ik`. If the target is out of reach, they are those of the
+// closest pose; among poses that are equally close to within a few percent, the nearest to `near` is
+// chosen, so that a target that moves steadily gives a steady motion. `target` is a frame like
+// those of CagRobotPose: of a robot that was scaled, its axes are as long as those of the tool.
+// `out` is valid until the next call about robots. Fails with "joint-count", "not-finite",
+// "not-rigid" (the axes of the target are dependent, or the robot was flattened by its placement).
+CAG_API int cag_session_robot_reach(CagSession *s, size_t robot, const double target[3][4],
+                                    CagReach orientation, const double *near, size_t count,
+                                    CagReachView *out);
+
 // --- Interactive use ---
 // Definitions remain until the next run, check, format, document, or clear call. A name can be
 // defined again; everything that depends on it is then updated.

@@ -5,6 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "live/place_json.h"
+#include "live/robot_json.h"
+
 enum { MESH_MARK = 0x6d676163, MESH_VERSION = 1, MESH_NORMALS = 1, MESH_LABELS = 2 };
 
 // --- Meshes ---
@@ -33,15 +36,6 @@ bool cag_live_mesh_bytes(const CagMeshView *m, unsigned char **out, size_t *size
 
 // --- Parts of the scene ---
 
-static void write_place(CagJson *j, const CagPlaceView *p) {
-  cag_json_text(j, "file", p->file);
-  cag_json_number(j, "line", (double)p->line);
-  cag_json_number(j, "column", (double)p->column);
-  cag_json_number(j, "endLine", (double)p->end_line);
-  cag_json_number(j, "endColumn", (double)p->end_column);
-  cag_json_bool(j, "library", p->library);
-}
-
 static void write_param(CagJson *j, CagSession *s, size_t i, const CagParamView *p) {
   const char *choice;
   cag_json_open(j, '{');
@@ -60,7 +54,7 @@ static void write_param(CagJson *j, CagSession *s, size_t i, const CagParamView 
     cag_json_text(j, NULL, choice);
   cag_json_close(j, ']');
   cag_json_open_in(j, "place", '{');
-  write_place(j, &p->place);
+  cag_live_place(j, &p->place);
   cag_json_close(j, '}');
   cag_json_close(j, '}');
 }
@@ -108,7 +102,7 @@ static void write_origin(CagJson *j, CagSession *s, size_t part) {
     if (!place.file) continue;
     cag_json_open(j, '{');
     cag_json_text(j, "what", what);
-    write_place(j, &place);
+    cag_live_place(j, &place);
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');
@@ -315,8 +309,7 @@ int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes
   write_lights(&j, s);
   write_labels(&j, s);
   write_stage(&j, s);
-  cag_json_open_in(&j, "robots", '[');
-  cag_json_close(&j, ']');
+  cag_live_robots(&j, s);
   cag_json_close(&j, '}');
   return out->failed ? CAG_STATUS_LIMIT : CAG_STATUS_OK;
 }
@@ -345,7 +338,7 @@ static void write_notes(CagJson *j, const CagSession *s, size_t error) {
     snprintf(call, sizeof call, *n.text ? "in %s, called here" : "called here", n.text);
     cag_json_open(j, '{');
     cag_json_text(j, "message", n.is_call ? call : n.text);
-    write_place(j, &(CagPlaceView){n.file, n.line, n.column, n.end_line, n.end_column, false});
+    cag_live_place(j, &(CagPlaceView){n.file, n.line, n.column, n.end_line, n.end_column, false});
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');
@@ -356,7 +349,7 @@ static void write_value(void *context, const CagValueView *v) {
   cag_json_open(j, '{');
   cag_json_text(j, "name", v->name);
   cag_json_text(j, "text", v->text);
-  write_place(j, &v->place);
+  cag_live_place(j, &v->place);
   cag_json_close(j, '}');
 }
 
@@ -376,7 +369,7 @@ void cag_live_messages(CagSession *s, const CagLiveRun *run, CagString *out) {
     cag_json_text(&j, "code", e.code);
     cag_json_text(&j, "message", e.message);
     cag_json_text(&j, "help", e.help);
-    write_place(&j, &(CagPlaceView){e.file, e.line, e.column, e.end_line, e.end_column, false});
+    cag_live_place(&j, &(CagPlaceView){e.file, e.line, e.column, e.end_line, e.end_column, false});
     write_notes(&j, s, i);
     cag_json_close(&j, '}');
   }

@@ -15,6 +15,7 @@
 #include "live/model_files.h"
 #include "live/page_files.h"
 #include "live/render_jobs.h"
+#include "live/robot_json.h"
 #include "live/runner.h"
 #include "live/watch_files.h"
 
@@ -263,7 +264,7 @@ static void answer_params(View *v, CagExchange *x, bool put) {
 typedef struct Errand {
   View *view;
   CagExchange *x;
-  char *word; // format, or the name of an image or part
+  char *word; // format, the name of an image or part, or a whole request
 } Errand;
 
 static void free_errand(Errand *e) {
@@ -336,6 +337,28 @@ static void answer_measure(View *v, CagExchange *x) {
   if (part) send_on_errand(v, x, part, do_measure);
   else cag_exchange_fail(x, 400, "expected the name of a part", NULL);
   free(part);
+}
+
+// --- Robots ---
+
+static void answer_about_robot(Errand *e, CagSession *s,
+                               int (*answer)(CagSession *s, const char *request, size_t size,
+                                             CagString *out)) {
+  CagString text = {0};
+  answer_text(e->x, answer(s, e->word, strlen(e->word), &text), &text);
+  cag_string_free(&text);
+  free_errand(e);
+}
+
+static void do_pose(CagSession *s, void *context) { answer_about_robot(context, s, cag_live_pose); }
+
+static void do_reach(CagSession *s, void *context) {
+  answer_about_robot(context, s, cag_live_reach);
+}
+
+static void send_body_on_errand(View *v, CagExchange *x, CagLiveTask *task) {
+  size_t size;
+  send_on_errand(v, x, cag_exchange_body(x, &size), task);
 }
 
 // --- Pictures ---
@@ -425,6 +448,8 @@ static void route_open(View *v, CagExchange *x) {
   else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
   else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
   else if (is_request(x, "POST", "/api/lsp")) cag_lsp_pages_ask(v->editors, x);
+  else if (is_request(x, "POST", "/api/pose")) send_body_on_errand(v, x, do_pose);
+  else if (is_request(x, "POST", "/api/reach")) send_body_on_errand(v, x, do_reach);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);

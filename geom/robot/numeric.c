@@ -475,11 +475,11 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
     found = found || solved;
     if ((found && left == 0) || p.n == 0) break;
   }
-  if (!found && search->starts != 1) {
+  if (!found && (search->starts != 1 || search->closest)) {
     descend(&p, &best, DAMPING * best.square + DAMPING_LEAST, DESCENT_STEPS);
     rest_nearest(&p, &best);
   }
-  if (found || search->starts == 1) polish(&p, &best);
+  if (found || (search->starts == 1 && !search->closest)) polish(&p, &best);
   if (found && search->stay_near && p.n > p.rows) approach_near(&p, &best, near);
   memcpy(q, best.q, p.n * sizeof *q);
   return (CagRobotFound){content(&p, &best), best.position, best.rotation, steps};

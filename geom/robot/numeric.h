@@ -18,6 +18,7 @@ typedef struct CagRobotSearch {
   size_t steps;              // maximum number of iterations in total; 0: 8000
   size_t alternatives; // after a solution, the number of further starts that look for ones closer
                        // to `near`
+  bool closest;        // without a solution, converges to the closest pose also from a single start
   bool stay_near;      // redundant chains are moved towards `near` without moving the tool
 } CagRobotSearch;
 

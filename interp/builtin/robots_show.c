@@ -11,7 +11,21 @@ typedef struct Drawing {
   CagCall *call;
   CagBuilder *items;
   double size;
+  CagLimb limb; // of the next shape
 } Drawing;
+
+// What the following shapes move with: see CagLimb.
+static void go_on_with(Drawing *d, size_t frame, size_t section) {
+  d->limb.frame = frame;
+  d->limb.section = section;
+}
+
+// Adds a shape that nothing else refers to.
+static bool add_limb(Drawing *d, CagValue shape) {
+  CAG_AS_SHAPE(shape)->limb = cag_limb_new(d->call->vm, &d->limb);
+  d->limb.number++;
+  return cag_builder_add(d->call->vm, d->items, shape);
+}
 
 // Adds a body in one of the default colors, and takes over its reference.
 static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const double color[3]) {
@@ -20,7 +34,7 @@ static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const double
   CagVm *vm = d->call->vm;
   CagValue shape = cag_solid_value(vm, *body), value = cag_vector(vm, color, 3);
   CAG_AS_SHAPE(shape)->material = CAG_AS_RECORD(cag_record_new(vm, names, &value, 1));
-  return cag_builder_add(vm, d->items, shape);
+  return add_limb(d, shape);
 }
 
 static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const double color[3]) {
@@ -54,6 +68,22 @@ static double length_of(const CagVec3 *points, size_t n) {
   return sum > 0 ? sum : 1;
 }
 
+// Adds the rods between the points of the skeleton. The directions of both rods of a link are fixed in
+// a frame: that from the frame before the link to the foot of the common normal in that frame, and that
+// from there to the frame after the link in this one.
+static bool add_rods(Drawing *d, const CagRobot *r, const CagVec3 *points, size_t n) {
+  size_t at = 1;
+  for (size_t i = 0; i <= r->link_count; i++) {
+    const bool joint = i < r->link_count && r->links[i].kind != CAG_JOINT_FIXED;
+    for (size_t k = 0; k < (joint ? 2 : 1) && at < n; k++, at++) {
+      go_on_with(d, i + k, at);
+      if (!add_rod(d, points[at - 1], points[at], CAG_PLAIN_ROD_RADIUS * d->size, rod_color))
+        return false;
+    }
+  }
+  return true;
+}
+
 // Draws a robot that has no shapes.
 static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const CagTransform *frames,
                        CagVec3 *points) {
@@ -66,10 +96,9 @@ static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const Cag
   if (!add_rod(d, cag_transform_point(&frames[0], foot), cag_transform_point(&frames[0], top),
                CAG_PLAIN_FOOT_RADIUS * d->size, foot_color))
     return false;
-  for (size_t i = 1; i < n; i++)
-    if (!add_rod(d, points[i - 1], points[i], CAG_PLAIN_ROD_RADIUS * d->size, rod_color))
-      return false;
+  if (!add_rods(d, r, points, n)) return false;
   for (size_t i = 0; i < r->joint_count; i++) {
+    go_on_with(d, r->joint_link[i], 0); // the axis of a joint is fixed in the frame before its link
     CagTransform frame;
     CagVec3 z = directions[i];
     CagVec3 side = fabs(z.x) < 0.9 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
@@ -81,11 +110,19 @@ static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const Cag
   return true;
 }
 
-static bool add_moved(Drawing *d, const CagTransform *t, CagValue shape) {
+// Adds the shapes that move with a frame of the chain.
+static bool add_moved(Drawing *d, const CagTransform *t, size_t frame, CagValue shape) {
+  CagVm *vm = d->call->vm;
+  CagBuilder *all = cag_builder_new(vm);
   CagValue moved;
   if (shape.type == CAG_NONE) return true;
-  return cag_transform_apply(d->call->vm, t, shape, &moved) &&
-         cag_shapes_collect(d->call, moved, d->items);
+  if (!cag_transform_apply(vm, t, shape, &moved) || !cag_shapes_collect(d->call, moved, all))
+    return false;
+  go_on_with(d, frame, 0);
+  const CagList *list = CAG_AS_LIST(cag_builder_finish(vm, all));
+  for (size_t i = 0; i < list->length; i++)
+    if (!add_limb(d, cag_shape_copy(vm, cag_list_get(vm, list, i)))) return false;
+  return true;
 }
 
 static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue holding) {
@@ -97,16 +134,20 @@ static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue h
   for (size_t i = 0; i < r->link_count; i++) {
     CagValue shape = CAG_AS_LINK(v->links->as.items[i])->shape;
     shaped = shaped || shape.type != CAG_NONE;
-    if (!add_moved(d, &frames[i + 1], shape)) return false;
+    if (!add_moved(d, &frames[i + 1], i + 1, shape)) return false;
   }
   if (!shaped && !draw_plain(d, r, q, frames, points)) return false;
   cag_robot_forward(r, q, &tool);
-  return add_moved(d, &tool, holding);
+  return add_moved(d, &tool, r->link_count + 1, holding);
 }
 
 static bool drawing_result(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
                            CagValue *result) {
-  Drawing d = {call, cag_builder_new(call->vm), 1};
+  Drawing d = {.call = call,
+               .items = cag_builder_new(call->vm),
+               .size = 1,
+               .limb = {.posture = cag_posture_new(call->vm, (CagRobotValue *)v, q),
+                        .motion = cag_transform_identity()}};
   if (!draw(&d, v, q, holding)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
   // Formats that describe robots need the robot of a drawing.

@@ -101,6 +101,8 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   if (type->transform) {
     if (!type->transform(call, t, v, result)) return false;
     if (keeps_mesh(v) && cag_transform_is_rigid(t)) cag_shape_moved(call->vm, *result, v, t);
+    if (cag_is_shape(v) && CAG_AS_SHAPE(v)->limb && cag_transform_is_affine(t))
+      cag_limb_moved(call->vm, *result, v, t);
     return true;
   }
   if (cag_holds_jet(v)) return cag_fail_differentiate(call, 0);

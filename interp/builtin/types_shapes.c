@@ -152,6 +152,7 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   if (s->name) cag_mark_object(h, &s->name->head);
   if (s->origin.last) cag_mark_object(h, &s->origin.last->head);
   if (s->still) cag_mark_object(h, &s->still->head);
+  if (s->limb) cag_mark_object(h, &s->limb->head);
 }
 
 static void add_count(CagString *s, size_t n, const char *one, const char *many) {

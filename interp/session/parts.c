@@ -21,7 +21,9 @@
 
 // --- Descriptions ---
 
+// A ground has none. Grounds that were added by default have no number of their own.
 static const CagItemSource *source_of(const CagSession *s, const CagItem *item) {
+  if (item->kind == CAG_ITEM_GROUND) return NULL;
   const bool known = item->number < s->sources.count && s->sources.items[item->number].shape;
   return known ? &s->sources.items[item->number] : NULL;
 }

@@ -42,6 +42,7 @@ CagSession *cag_session_new(const CagSessionOptions *options) {
 
 static void drop_scene(CagSession *s) {
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
+  cag_session_drop_robots(s);
   if (s->has_scene) cag_scene_free(&s->scene);
   s->has_scene = false;
   cag_account_lend(before);

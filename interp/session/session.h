@@ -39,6 +39,7 @@ struct CagSession {
   CagItemSources sources;          // of the scene's items
   struct CagSessionParams *params; // of the main script; NULL: not listed yet
   struct CagSessionMesh *mesh;     // the one that was made last; may be NULL
+  struct CagSessionRobots *robots; // of the scene; NULL: not looked for yet
   CagSceneForm form;               // of the scene
   bool has_section;
   CagPlane section; // what lies on its positive side is cut off
@@ -96,6 +97,7 @@ void cag_session_drop_params(CagSession *s);
 // A location for the host. No source: none.
 CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
 void cag_session_drop_mesh(CagSession *s);
+void cag_session_drop_robots(CagSession *s);
 // Returns the value of a definition of the script, for work of the session. Fails with
 // "unknown-name".
 bool cag_session_find_definition(CagSession *s, const char *name, CagValue *out);

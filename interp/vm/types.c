@@ -415,6 +415,8 @@ static void scan_internal(CagHeap *h, CagObject *o) {
   const CagOriginStep *step = (CagOriginStep *)o;
   if (o->flags == CAG_INTERNAL_STEP && step->before) cag_mark_object(h, &step->before->head);
   if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
+  if (o->flags == CAG_INTERNAL_POSTURE) cag_mark_object(h, &((CagPosture *)o)->robot->head);
+  if (o->flags == CAG_INTERNAL_LIMB) cag_mark_object(h, &((CagLimb *)o)->posture->head);
 }
 
 static void destroy_internal(CagObject *o) {

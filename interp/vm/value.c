@@ -364,6 +364,31 @@ void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransfor
   to->still = still;
 }
 
+CagPosture *cag_posture_new(CagVm *vm, CagRobotValue *robot, const double *q) {
+  const size_t size = robot->robot->joint_count * sizeof *q;
+  CagPosture *p = cag_alloc(vm, CAG_INTERNAL, sizeof *p + size);
+  p->head.flags = CAG_INTERNAL_POSTURE;
+  p->robot = robot;
+  if (size) memcpy(p->q, q, size);
+  return p;
+}
+
+CagLimb *cag_limb_new(CagVm *vm, const CagLimb *like) {
+  CagLimb *limb = cag_alloc(vm, CAG_INTERNAL, sizeof *limb);
+  const CagObject head = limb->head;
+  *limb = *like;
+  limb->head = head;
+  limb->head.flags = CAG_INTERNAL_LIMB;
+  return limb;
+}
+
+void cag_limb_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
+  const CagLimb *before = CAG_AS_SHAPE(from)->limb;
+  CagLimb *after = cag_limb_new(vm, before);
+  after->motion = cag_transform_multiply(motion, &before->motion);
+  CAG_AS_SHAPE(moved)->limb = after;
+}
+
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record) {
   CagSceneValue *s = cag_alloc(vm, type, sizeof *s);
   s->kind = kind;

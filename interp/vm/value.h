@@ -219,6 +219,23 @@ typedef struct CagStill {
   CagTransform motion;
 } CagStill;
 
+// The joint values with which a robot was drawn.
+typedef struct CagPosture {
+  CagObject head; // CAG_INTERNAL
+  struct CagRobotValue *robot;
+  double q[]; // one per joint, in radians and millimeters
+} CagPosture;
+
+// A shape of a drawing of a robot, and what it moves with if the joint values change.
+typedef struct CagLimb {
+  CagObject head; // CAG_INTERNAL
+  CagPosture *posture;
+  size_t number;       // of the shape in the drawing
+  size_t frame;        // of the chain, as cag_robot_frames counts them; the one after: the tool
+  size_t section;      // the rod that ends at this point of the skeleton; 0: not a rod
+  CagTransform motion; // affine, from the drawing to where the shape is
+} CagLimb;
+
 typedef struct CagShape {
   CagObject head;
   union {
@@ -236,6 +253,7 @@ typedef struct CagShape {
   CagText *name;          // NULL: not set
   CagOrigin origin;
   CagStill *still;             // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
+  CagLimb *limb;               // NULL: not of a robot, or changed since it was drawn
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
@@ -379,6 +397,10 @@ CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
 void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
 // Notes that a shape is another one after a rigid motion.
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
+// Notes that `moved` is the image of the limb `from` by an affine map.
+void cag_limb_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
+CagPosture *cag_posture_new(CagVm *vm, struct CagRobotValue *robot, const double *q);
+CagLimb *cag_limb_new(CagVm *vm, const CagLimb *like); // everything but the head is copied
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the
                                                     // caller may change the copy
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);

@@ -211,6 +211,20 @@ static void the_users_call_comes_before_that_in_the_library(void **state) {
   cag_session_free(s);
 }
 
+static void a_ground_has_no_story(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  const char *what;
+  CagPartView part;
+  CagPlaceView p;
+  build_scene(s, "show sphere(4)\n"); // in the studio, which has a floor
+  assert_true(cag_session_part(s, 1, &part));
+  assert_string_equal(part.type, "ground");
+  assert_null(part.story);
+  assert_false(cag_session_part_place(s, 1, 0, &what, &p));
+  cag_session_free(s);
+}
+
 // --- Params ---
 
 static void params_are_described(void **state) {
@@ -273,6 +287,7 @@ int main(void) {
       cmocka_unit_test(a_curve_is_a_line),
       cmocka_unit_test(parts_know_the_calls_they_went_through),
       cmocka_unit_test(the_users_call_comes_before_that_in_the_library),
+      cmocka_unit_test(a_ground_has_no_story),
       cmocka_unit_test(params_are_described),
       cmocka_unit_test(params_of_a_script_that_fails_are_known),
   };

@@ -6,6 +6,7 @@
 
 import http.client
 import json
+import math
 import os
 import shutil
 import signal
@@ -207,6 +208,78 @@ def test_measures():
     assert status == 200 and abs(m["volume"] - 125) < 1e-9 and abs(m["area"] - 150) < 1e-9 and m["watertight"]
     assert v.ask("POST", "/api/measure", '{"part": "none"}')[0] == 404
     assert v.ask("POST", "/api/measure", "[]")[0] == 400
+    v.close()
+
+
+ARM = """arm = robot([revolute(d: 100, a: 300), revolute(a: 250), prismatic(limits: 0..150), revolute()], name: "arm")
+show posed(arm, [10deg, -20deg, 50, 0.5rad]) |> translate([0, 0, 40])
+show [for i in 1..2: posed(arm) |> translate([900 * i, 0, 0])]
+"""
+
+
+def about_robot(v, path, **request):
+    status, body, _ = v.ask("POST", path, json.dumps(request))
+    return status, json.loads(body)
+
+
+def test_robots():
+    v = View(ARM)
+    scene = v.scene(1)
+    assert [r["name"] for r in scene["robots"]] == ["arm", "arm 2", "arm 3"]
+    arm = scene["robots"][0]
+    names = [p["name"] for p in scene["parts"]]
+    assert arm["parts"] == names[: len(arm["parts"])] and arm["fixed"] is None
+    assert scene["robots"][1]["fixed"] == "the script gives posed no q" and scene["robots"][1]["joints"][0]["place"] is None
+    slide = arm["joints"][2]
+    assert slide == {"name": "joint 3", "kind": "prismatic", "low": 0, "high": 150, "home": 0, "value": 50, "unit": "mm",
+                     "place": {"file": "model.cag", "line": 2, "column": 33, "endLine": 2, "endColumn": 35, "library": False}}
+    # 300 mm to (10 deg), 250 mm to (-10 deg), at the height 100 + 50 + 40.
+    x, y = 550 * math.cos(math.radians(10)), 50 * math.sin(math.radians(10))
+    assert max(abs(a - b) for a, b in zip(arm["tool"][3::4], [x, y, 190])) < 1e-9
+    q = [joint["value"] for joint in arm["joints"]]
+    status, pose = about_robot(v, "/api/pose", robot="arm", q=q)
+    still = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
+    assert status == 200 and pose["q"] == q and pose["tool"] == arm["tool"] and pose["frames"] == arm["frames"]
+    assert len(pose["motions"]) == len(arm["parts"]) and max(abs(a - b) for m in pose["motions"] for a, b in zip(m, still)) < 1e-9
+    status, pose = about_robot(v, "/api/pose", robot="arm", q=[40, -60, 120, 10])
+    assert status == 200
+    status, found = about_robot(v, "/api/reach", robot="arm", q=q, target=pose["tool"])
+    assert status == 200 and found["reached"] and found["distance"] < 1e-6 and found["angle"] < 1e-6
+    assert max(abs(a - b) for a, b in zip(found["tool"], pose["tool"])) < 1e-6
+    # The prismatic joint ends at 150 mm; the slide is the only joint that lifts the tool.
+    target = pose["tool"][:11] + [400]
+    status, found = about_robot(v, "/api/reach", robot="arm", q=q, target=target, orientation="free")
+    assert status == 200 and not found["reached"] and abs(found["distance"] - 110) < 1e-3 and abs(found["q"][2] - 150) < 1e-6
+    # No run took place.
+    assert not any(k == "state" and e["run"] > 1 for k, e in v.events)
+    v.close()
+
+
+def test_wrong_questions_about_robots():
+    v = View(ARM)
+    arm = v.scene(1)["robots"][0]
+    for path in ["/api/pose", "/api/reach"]:
+        for body in ["", "[", "[]", "3", '{"robot": "arm", "q": [1, 2, NaN, 3]}', "{" * 5000]:
+            assert v.ask("POST", path, body)[0] == 400, body
+        for body in ["{}", '{"robot": 3}', '{"robot": "arms", "q": []}']:
+            assert v.ask("POST", path, body)[0] == 404, body
+        target = json.dumps(arm["tool"])
+        for q in ["3", "[]", "[1, 2, 3]", "[1, 2, 3, 4, 5]", '[1, 2, 3, "4"]', "[1, 2, 3, null]", "[1, 2, 3, 1e999]", str([0] * 5000)]:
+            status, body, _ = v.ask("POST", path, f'{{"robot": "arm", "q": {q}, "target": {target}}}')
+            assert status == 400 and "q" in json.loads(body)["error"], (q, status, body)
+        assert v.ask("GET", path)[0] == 404
+    for target in ["3", "[]", str([0] * 12), str([1] * 12), str([1e999] * 12).replace("inf", "1e999"), str(arm["tool"][:11]), str([1e300] * 12), str([-x for x in arm["tool"]])]:
+        status, body, _ = v.ask("POST", "/api/reach", f'{{"robot": "arm", "q": [1, 2, 3, 4], "target": {target}}}')
+        assert status == 400 and "target" in json.loads(body)["error"], (target, status, body)
+    status, answer = about_robot(v, "/api/reach", robot="arm", q=[1, 2, 3, 4], target=arm["tool"], orientation="all")
+    assert status == 400 and "orientation" in answer["error"]
+    v.close()
+    # A script without robots, and one that has not run.
+    v = View("show sphere(raduis)\n")
+    v.wait("messages")
+    assert v.ask("POST", "/api/pose", '{"robot": "arm", "q": []}')[0] == 409
+    assert v.scene(v.run(files={"model.cag": "show sphere(1)\n"}))["robots"] == []
+    assert v.ask("POST", "/api/pose", '{"robot": "arm", "q": []}')[0] == 404
     v.close()
 
 

@@ -32,6 +32,19 @@ show box([10, 10, 10])
 const DRAWING = `show polyline([[0, 0], [60, 0], [60, 30], [0, 30]], closed: true)
 `;
 
+const ARM = `arm = robot([
+  revolute(alpha: -90deg), revolute(d: 149.5, a: 432), revolute(alpha: 90deg),
+  revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), revolute(d: 56.5)
+], name: "arm")
+show arm |> posed([
+  35deg, -60deg, 100deg,  // shoulder and elbow
+  0.5rad, -40deg, 110deg
+])
+`;
+const TEN = `show robot([for i in 0..9: revolute(a: 100, alpha: if i % 2 == 0 then 90deg else -90deg, shape: box([90, 20, 20]))], name: "ten")
+  |> posed([for i in 0..9: if i % 4 < 2 then 25deg else -25deg])
+`;
+
 // Starts a server for a script, and returns its address.
 const servers = [];
 function serve(name, text) {
@@ -340,12 +353,179 @@ async function small(browser) {
   await page.close();
 }
 
+const centerOf = async (page, selector) => {
+  await drawn(page);
+  const r = await page.box(selector);
+  return [r.x + r.width / 2, r.y + r.height / 2];
+};
+const chosen = "cagPage.robots.chosen";
+const idle = "!cagPage.robots.asking && cagPage.robots.before === null";
+const toolFrame = `JSON.stringify(cagPage.robots.toolFrame())`;
+const axesOf = (f) => [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => f[i]);
+const apart = (a, b) => Math.max(...a.map((x, i) => Math.abs(x - b[i])));
+
+async function robots(browser) {
+  const { url } = await serve("arm.cag", ARM);
+  await browser.say("Browser.grantPermissions", { permissions: ["clipboardReadWrite", "clipboardSanitizedWrite"] });
+  const page = await browser.open(url, SIZE);
+  const tool = async () => JSON.parse(await page.value(toolFrame));
+  const values = () => page.value(`${chosen}.q`);
+  await test("a slider moves a joint of a robot, and nothing runs", async () => {
+    await page.until(READY);
+    await page.until('!document.querySelector("#robots").closest("details").hidden');
+    equal(await page.value('document.querySelectorAll("#robots [data-joint]").length'), 6);
+    const place = "cagPage.view.parts.views.get('arm.3')", before = await page.value(`${place}.group.matrix.toArray()`);
+    const picture1 = await picture(page, "robot"), run = await page.value("document.documentElement.dataset.run");
+    await page.value('document.querySelector("[data-joint=\\"1\\"] input[type=range]").focus()');
+    await page.key("End");
+    await page.until(`${chosen}.q[0] === 180 && ${chosen}.pose`);
+    // The arm turns about Z, from 35 to 180 degrees.
+    const after = await page.value(`${place}.group.matrix.toArray()`), c = Math.cos((145 / 180) * Math.PI), s = Math.sin((145 / 180) * Math.PI);
+    const turned = [0, 4, 8, 12].flatMap((i) => [c * before[i] - s * before[i + 1], s * before[i] + c * before[i + 1], before[i + 2]]);
+    check(apart(turned, [0, 4, 8, 12].flatMap((i) => after.slice(i, i + 3))) < 1e-3, "the part is elsewhere");
+    check(difference(picture1, await picture(page, "robot-turned"), await sceneOf(page)) > 0.01, "nothing has moved");
+    equal(await page.value("document.documentElement.dataset.run"), run);
+    await page.value('document.querySelector("[data-joint=\\"1\\"] [aria-label^=Reset]").click()');
+    await page.until(`${chosen}.q[0] === 35 && !${chosen}.pose`);
+    check(apart(await page.value(`${place}.group.matrix.toArray()`), before) === 0, "the part has not returned");
+  });
+  await test("a value beyond the limits becomes the limit", async () => {
+    const field = 'document.querySelector("[data-joint=\\"2\\"] input[type=number]")';
+    await page.value(`(() => { ${field}.value = "500"; ${field}.dispatchEvent(new Event("change")); })()`);
+    await page.until(`${chosen}.q[1] === 180`);
+    await press(page, "Home");
+    await page.until(`${chosen}.q.every((x) => x === 0) && ${idle}`);
+    await press(page, "Reset");
+    await page.until(`${chosen}.q[1] === -60 && ${field}.value === "-60"`);
+  });
+  await test("the arm follows its tool, which keeps its orientation", async () => {
+    const at = await centerOf(page, ".tool-handle"), before = await tool(), to = [at[0] - 50, at[1] + 30];
+    await page.drag(at, to, 12);
+    await page.until(`${idle} && ${chosen}.pose`);
+    await drawn(page);
+    const now = await centerOf(page, ".tool-handle"), after = await tool();
+    check(apart(now, to) < 1.5, `the tool is at ${now}, not at ${to}`);
+    check(apart(axesOf(before), axesOf(after)) < 1e-6, "the tool has turned");
+    await picture(page, "robot-dragged");
+  });
+  await test("the joint values are copied as q", async () => {
+    await press(page, "Copy q");
+    await page.until('document.querySelector("#robots [role=status]").textContent.startsWith("Copied [")');
+    const copied = await page.value("navigator.clipboard.readText()"), q = await values();
+    check(/^\[(-?[\d.]+deg, ){5}-?[\d.]+deg\]$/.test(copied), `copied ${copied}`);
+    check(apart(copied.slice(1, -1).split(", ").map(parseFloat), q) < 1e-4, `copied ${copied} of ${q}`);
+  });
+  await test("the ring turns the tool about the line of sight, and Shift about the others", async () => {
+    const at = await centerOf(page, ".tool-handle"), before = await tool(), radius = 27;
+    await page.drag([at[0] + radius, at[1]], [at[0], at[1] - radius], 8);
+    await page.until(idle);
+    const turned = await tool(), trace = (a, b) => axesOf(a).reduce((sum, x, i) => sum + x * axesOf(b)[i], 0);
+    const angle = (a, b) => (Math.acos((trace(a, b) - 1) / 2) * 180) / Math.PI;
+    check(Math.abs(angle(before, turned) - 90) < 1, `the tool has turned by ${angle(before, turned)} degrees`);
+    check(apart([3, 7, 11].map((i) => before[i]), [3, 7, 11].map((i) => turned[i])) < 1e-4, "the tool has moved");
+    const now = await centerOf(page, ".tool-handle");
+    await page.drag(now, [now[0] + 40, now[1]], 6, { modifiers: 8 });
+    await page.until(idle);
+    const again = await tool();
+    check(Math.abs(angle(turned, again) - 20) < 1, `the tool has turned by ${angle(turned, again)} degrees`);
+  });
+  await test("keys move the tool", async () => {
+    const before = await centerOf(page, ".tool-handle");
+    await page.value('document.querySelector(".tool-handle").focus()');
+    for (let i = 0; i < 3; i++) await page.key("ArrowRight");
+    await page.until(idle);
+    await drawn(page);
+    const after = await centerOf(page, ".tool-handle");
+    check(after[0] - before[0] > 5 && Math.abs(after[1] - before[1]) < 2, `the tool went from ${before} to ${after}`);
+  });
+  await test("a target out of reach is shown, and Escape gives it up", async () => {
+    const at = await centerOf(page, ".tool-handle"), before = await values();
+    await page.mouse("mouseMoved", ...at, { button: "none" });
+    await page.mouse("mousePressed", ...at);
+    for (let i = 1; i <= 8; i++) await page.mouse("mouseMoved", at[0] + 25 * i, at[1] - 10 * i, { buttons: 1 });
+    await page.until('document.querySelector(".tool-handle").classList.contains("missed")');
+    await page.until('document.querySelector("#robots [role=status]").textContent.startsWith("Out of reach")');
+    await picture(page, "robot-missed");
+    await page.key("Escape");
+    await page.until(`${idle} && !document.querySelector(".tool-handle").classList.contains("missed")`);
+    await page.mouse("mouseReleased", at[0] + 200, at[1] - 80);
+    check(apart(await values(), before) < 1e-9, "the arm has not returned");
+  });
+  await test("a pose stays over a run that does not change q", async () => {
+    const before = await values();
+    await page.value(`${EDITOR}.focus()`);
+    await page.key("End", { modifiers: 2 });
+    await page.type("show box([50, 50, 50])");
+    await page.until('cagPage.view.parts.views.has("box")');
+    equal(await values(), before);
+    check(await page.value("cagPage.view.parts.views.get('arm.3').motion !== null"), "the pose is gone");
+  });
+  await test("the pose is written into the script as one step", async () => {
+    const before = await page.value(text), q = await values();
+    await press(page, "Write q into script");
+    const wanted = (await page.value(text)).match(/posed\(\[\n  (.*)deg, (.*)deg, (.*)deg,  \/\/ shoulder and elbow\n  (.*)rad, (.*)deg, (.*)deg\n\]\)/);
+    check(wanted, "the layout has changed");
+    const written = wanted.slice(1).map(Number);
+    written[3] *= 180 / Math.PI;
+    check(apart(written, q) < 1e-4, `${written} was written for ${q}`);
+    await page.until(`!${chosen}.pose && Math.abs(${chosen}.robot.joints[0].value - ${q[0]}) < 1e-3`);
+    check(apart(await values(), q) < 1e-4, "the arm is elsewhere");
+    await page.value(`${EDITOR}.focus()`);
+    await page.key("z", { modifiers: 2 });
+    equal(await page.value(text), before);
+    await page.until(`${chosen}.robot.joints[0].value === 35 && ${chosen}.q[0] === 35`);
+  });
+  await test("the page of a robot has no errors", async () => equal(page.problems, []));
+  await page.close();
+}
+
+async function tenLinks(browser) {
+  const { url } = await serve("ten.cag", TEN);
+  const page = await browser.open(url, SIZE);
+  await test("a robot of ten links follows its tool more than 30 times per second, if the machine draws that many pictures", async () => {
+    await page.until(READY);
+    await page.until("cagPage.robots.toolFrame()");
+    equal(await page.value('document.querySelector("#robots .params").nextSibling && [...document.querySelectorAll("#robots button")].find((b) => b.textContent === "Write q into script").title'), "Not possible: the script computes q. Copy q instead.");
+    const at = await centerOf(page, ".tool-handle");
+    const rates = await page.value(`(async () => {
+      const { robots, view } = cagPage, { engine } = robots, seconds = 2;
+      const during = async (step) => {
+        const begin = performance.now();
+        let n = 0, t = 0;
+        for (; t < seconds; n++, t = (performance.now() - begin) / 1000) await step(t);
+        return n / t;
+      };
+      const next = () => new Promise(requestAnimationFrame);
+      const { robot, q } = robots.chosen;
+      const moved = (t) => robot.tool.map((x, i) => (i === 3 ? x - 30 * Math.sin(3 * t) : i === 11 ? x + 30 * Math.cos(2 * t) - 30 : x));
+      const answers = await during((t) => engine.reach({ robot: robot.name, target: moved(t), q, orientation: "keep" }));
+      // The most pictures that this machine draws.
+      const turns = await during((t) => (view.orbit.turn(t < 1 ? 0.01 : -0.01, 0), view.invalidate(), next()));
+      const handle = document.querySelector(".tool-handle"), first = robots.applied;
+      handle.setPointerCapture = () => {};
+      const send = (kind, dx, dy) => handle.dispatchEvent(new PointerEvent(kind, { bubbles: true, button: 0, buttons: 1, pointerId: 1, clientX: ${at[0]} + dx, clientY: ${at[1]} + dy }));
+      send("pointerdown", 0, 0);
+      await during((t) => (send("pointermove", 40 * Math.sin(3 * t) - 40, 30 * Math.cos(2 * t) - 30), next()));
+      send("pointerup", 0, 0);
+      return { answers, turns, updates: (robots.applied - first) / seconds };
+    })()`);
+    const { answers, turns, updates } = rates;
+    console.log(`  ${answers.toFixed(0)} answers per second; ${updates.toFixed(0)} updates of the picture, where turning the view makes ${turns.toFixed(0)}`);
+    check(answers > 30, `${answers} answers per second`);
+    check(updates > Math.min(30, turns / 3), `${updates} updates per second`);
+    equal(page.problems, []);
+  });
+  await page.close();
+}
+
 async function main() {
   const browser = new Browser(chromium);
   try {
     await block(browser);
     await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE });
     await film(browser);
+    await robots(browser);
+    await tenLinks(browser);
     await small(browser);
   } finally {
     await browser.close();

@@ -3,6 +3,7 @@
 import { Bvh } from "../../web/src/bvh.js";
 import { isClosed } from "../../web/src/closed.js";
 import { formatNumber, formatPoint } from "../../web/src/format.js";
+import { clampJoint, jointsExpression, rewriteJoint, roundJoint, sameJoints } from "../../web/src/joints.js";
 import { MeshCache, readMesh } from "../../web/src/mesh.js";
 import { marks } from "../../web/src/messages.js";
 import { expressionOf, parseNumber, quote, settingOf, stepOf, unquote } from "../../web/src/params.js";
@@ -271,6 +272,41 @@ await test("typing runs at once, and what was waiting is forgotten", async () =>
   equal(started, ["coarse", "fine"]);
   await end();
   equal(started.length, 2);
+});
+
+// --- Joint values of robots ---
+
+const turning = { name: "joint 1", kind: "revolute", unit: "deg", low: -114.59155902616465, high: 90, home: 0, value: 30, place: null };
+const sliding = { name: "joint 2", kind: "prismatic", unit: "mm", low: 0, high: 150, home: 0, value: 12.5, place: null };
+await test("joint values are rounded within their limits", () => {
+  equal(roundJoint(turning, 12.34567), 12.3457);
+  equal(roundJoint(turning, -114.59155902616465), -114.5915);
+  equal(roundJoint(turning, 89.99999), 90);
+  equal(roundJoint(turning, -200.00001), -200);
+  equal(Object.is(roundJoint(turning, -0.00001), 0), true);
+  equal([clampJoint(sliding, -3), clampJoint(sliding, 999), clampJoint(sliding, 7)], [0, 150, 7]);
+});
+await test("joint values are an expression of the language", () => {
+  equal(jointsExpression([turning, sliding], [-45.00004, 1e-9]), "[-45deg, 0]");
+  equal(jointsExpression([turning, sliding], [1 / 3, 149.99999]), "[0.3333deg, 150]");
+  equal(jointsExpression([], []), "[]");
+});
+await test("numbers of the script keep their units", () => {
+  equal(rewriteJoint("30deg", turning, -12.5), "-12.5deg");
+  equal(rewriteJoint("- 30deg", { ...turning, value: -30 }, 45), "45deg");
+  equal(rewriteJoint("0.25turn", { ...turning, value: 90 }, 45), "0.125turn");
+  near(parseFloat(rewriteJoint("0.5235987756rad", turning, 60)), Math.PI / 3, 1e-6);
+  equal(rewriteJoint("12.5", sliding, 20.1), "20.1");
+  equal(rewriteJoint("1.25cm", sliding, 20), "2cm");
+  equal(rewriteJoint("31deg", turning, 45), null);
+  equal(rewriteJoint("angle", turning, 45), null);
+  equal(rewriteJoint("", turning, 45), null);
+});
+await test("a robot is the same if its joints and their values in the script are", () => {
+  equal(sameJoints([turning, sliding], [{ ...turning }, { ...sliding }]), true);
+  equal(sameJoints([turning], [turning, sliding]), false);
+  equal(sameJoints([turning], [{ ...turning, value: 31 }]), false);
+  equal(sameJoints([turning], [{ ...turning, high: 80 }]), false);
 });
 
 console.log(`${passed} passed, ${failed} failed, 0 skipped`);

@@ -56,6 +56,38 @@
  * @property {[Triple, Triple]} bounds
  * @property {Origin[]} origin
  *
+ * @typedef {object} Joint  values are in degrees or mm
+ * @property {string} name
+ * @property {"revolute" | "prismatic"} kind
+ * @property {number} low
+ * @property {number} high
+ * @property {number} home
+ * @property {number} value  of the script, which may be outside of the limits
+ * @property {"deg" | "mm"} unit
+ * @property {Place | null} place  of the number in the script
+ *
+ * @typedef {object} Robot
+ * @property {string} name  unique in the scene
+ * @property {string[]} parts  names
+ * @property {Joint[]} joints
+ * @property {string | null} fixed  why the script has no numbers for the joints
+ * @property {number[][]} frames  the base, and the frame after each link: 3 rows of 4
+ * @property {number[] | null} tool  null: it was flattened, and cannot be moved
+ *
+ * @typedef {object} RobotPose
+ * @property {number[]} q  degrees and mm
+ * @property {number[][]} motions  of the parts, from where the scene has them: 3 rows of 4
+ * @property {number[][]} frames
+ * @property {number[]} tool
+ *
+ * @typedef {object} ReachRequest
+ * @property {string} robot
+ * @property {number[]} target  a frame like that of the tool
+ * @property {number[]} q  where the robot is
+ * @property {"keep" | "exact" | "free"} orientation  free: only the position matters; keep: arms with fewer than 6 joints may give it up
+ *
+ * @typedef {{ reached: boolean, distance: number, angle: number }} Reached  mm and degrees, from the target to the tool
+ *
  * @typedef {{ name: string, z: number, size: number | null, material: number }} Ground
  *
  * @typedef {object} SceneCamera
@@ -103,6 +135,7 @@
  * @property {Triple | null} background
  * @property {SceneLabel[]} labels
  * @property {SceneImage[]} images
+ * @property {Robot[]} [robots]
  * @property {[Triple, Triple]} bounds
  * @property {boolean} drawing  all parts are plane, in one plane of constant z
  * @property {string[]} [files]  that the run read, below the folder
@@ -194,6 +227,8 @@
  * @property {() => Promise<ParamSets>} sets
  * @property {(sets: ParamSets) => Promise<void>} writeSets
  * @property {(part: string) => Promise<Measures>} measure
+ * @property {(robot: string, q: number[]) => Promise<RobotPose>} pose  where the parts of a robot are at other joint values
+ * @property {(request: ReachRequest) => Promise<RobotPose & Reached>} reach  joint values that bring the tool to a target
  * @property {(messages: object[], check: boolean) => Promise<import("./language.js").Message[]>} lsp  messages of the language server (JSON-RPC); check:
  *   look for problems in what changed. Resolves with what the server has to say
  */

@@ -85,5 +85,7 @@ export function serverEngine() {
       const m = await (await ask("/api/measure", json("POST", { part }))).json();
       return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };
     },
+    pose: async (robot, q) => (await ask("/api/pose", json("POST", { robot, q }))).json(),
+    reach: async (request) => (await ask("/api/reach", json("POST", request))).json(),
   };
 }

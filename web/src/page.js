@@ -15,6 +15,7 @@ import { Overlay } from "./overlay.js";
 import { ParamsPanel } from "./params.js";
 import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
+import { RobotsPanel } from "./robots.js";
 import { Runs } from "./runs.js";
 import { SectionPanel } from "./section_panel.js";
 import { SelectionPanel } from "./selection_panel.js";
@@ -146,9 +147,17 @@ export async function start(engine) {
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
+  const robots = new RobotsPanel(byId("robots", HTMLDivElement), over, view, engine, {
+    readOnly: hello.readOnly, textOf: (path) => editor?.text(path) ?? null, entered: () => controls.hoverAt(null),
+    openFile: async (path) => files?.show(path),
+  });
+  robots.writeWanted.on(({ path, from, to, text }) => {
+    editor?.replace(path, from, to, text);
+    runs.now();
+  });
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
   panels.push(
-    (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
+    (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), (m) => robots.show(m), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
     (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection(), () => showMade());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
@@ -174,6 +183,7 @@ export async function start(engine) {
   }
   /** @param {string} name @param {boolean} more */
   function selectOne(name, more) {
+    robots.chooseByPart(name);
     select(!more ? [name] : view.selected.includes(name) ? view.selected.filter((n) => n !== name) : [...view.selected, name]);
     openPanel("selection");
   }
@@ -317,7 +327,7 @@ export async function start(engine) {
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
     " ": () => byId("time", HTMLDivElement).hidden || timeBar.toggle(), "?": () => keyDialog.showModal(),
-    Escape: () => (measure.active ? measure.toggle(false) : select([])),
+    Escape: () => robots.handle.cancel() || (measure.active ? measure.toggle(false) : select([])),
   };
   /** @param {(name: string) => void} choose */
   function chooseSelected(choose) {
@@ -405,7 +415,7 @@ export async function start(engine) {
   keepSelection();
   root.dataset.ready = "true";
   // For tests, and for those who look into the page.
-  Object.assign(globalThis, { cagPage: { view, editor: opened } });
+  Object.assign(globalThis, { cagPage: { view, editor: opened, robots } });
 }
 
 /** @param {View} view */

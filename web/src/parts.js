@@ -88,6 +88,8 @@ export class PartView {
     /** @type {LineSegments2 | null} */
     this.curve = null;
     this.inverse = new Matrix4();
+    /** From where the scene has the part to where it is. @type {Matrix4 | null} */
+    this.motion = null;
     this.key = "";
   }
 
@@ -104,6 +106,7 @@ export class PartView {
     const p = this.part.placement;
     if (p) this.group.matrix.set(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11], 0, 0, 0, 1);
     else this.group.matrix.identity();
+    if (this.motion) this.group.matrix.premultiply(this.motion);
     this.group.matrixWorldNeedsUpdate = true;
     this.inverse.copy(this.group.matrix).invert();
   }
@@ -167,12 +170,32 @@ export class Parts {
         this.group.add(view.group);
       }
       view.part = part;
+      view.motion = null;
       view.place();
       this.views.set(part.name, view);
     });
     for (const view of old.values()) this.group.remove(view.group);
     this.refresh();
     this.cache.trim(new Set(scene.parts.map((part) => part.mesh)));
+  }
+
+  /**
+   * Moves parts away from where the scene has them.
+   *
+   * @param {string[]} names
+   * @param {number[][] | null} motions  3 rows of 4 for each; null: they return
+   */
+  move(names, motions) {
+    let batched = false;
+    names.forEach((name, i) => {
+      const view = this.views.get(name), m = motions?.[i];
+      if (!view) return;
+      view.motion = m ? new Matrix4().set(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11], 0, 0, 0, 1) : null;
+      view.place();
+      batched ||= view.surface?.visible === false;
+    });
+    // Copies that are drawn together have their places in one buffer.
+    if (batched) this.refresh();
   }
 
   /** Brings what is drawn up to date after a change of a choice. */
