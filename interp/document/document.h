@@ -16,6 +16,7 @@
 #include "interp/check/types.h"
 #include "interp/session/session.h"
 #include "lang/lexer.h"
+#include "lang/tree.h"
 
 // A check reports at most this many problems. Editors show fewer.
 #define PROBLEMS_MAX 10000
@@ -129,15 +130,6 @@ const CagFunctionAst *cag_entity_function(const Entity *e);
 // Returns the value of a definition or param, or NULL.
 const CagExpr *cag_entity_value(const Entity *e);
 CagNameKind cag_entity_kind(const Entity *e);
-
-// Calls `each` for the expressions directly below e, in order.
-void cag_tree_below(const CagExpr *e, void (*each)(void *context, const CagExpr *e), void *context);
-// The same for a statement of a module or block.
-void cag_tree_of_statement(const CagStatement *s, void (*each)(void *context, const CagExpr *e),
-                           void *context);
-// Returns the statement at the top level that contains the offset, or the last one before it; NULL:
-// none.
-const CagStatement *cag_tree_statement(const CagModuleAst *ast, size_t offset);
 
 // --- scope.c ---
 
