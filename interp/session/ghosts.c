@@ -14,7 +14,6 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "geom/solid/csg.h"
-#include "interp/session/sources.h"
 
 enum { MOST_STATES = 20000, MOST_GHOSTS = 64 };
 // Smaller turns are rounding errors, in radians.

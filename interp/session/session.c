@@ -14,7 +14,6 @@
 #include "interp/scene/section.h"
 #include "interp/session/lead.h"
 #include "interp/session/scene_build.h"
-#include "interp/session/sources.h"
 #include "interp/session/watch.h"
 
 // The C stack of an evaluation: reserved address space. Deep recursion through built-ins needs

@@ -97,6 +97,7 @@ void cag_session_drop_params(CagSession *s);
 // A location for the host. No source: none.
 CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
 void cag_session_drop_mesh(CagSession *s);
+void cag_session_drop_sources(CagSession *s);
 // Whether a call in the library has a caller that the call after it does not have.
 bool cag_origin_other_caller(const CagOriginStep *step, const CagOriginStep *later);
 // Returns the value of a definition of the script, for work of the session. Fails with

@@ -7,7 +7,6 @@
 #include "geom/ray/mesh_surface.h"
 #include "geom/solid/csg.h"
 #include "interp/session/part_mesh.h"
-#include "interp/session/sources.h"
 
 // A solid of more operands has no sources: only a script that unites a shape with itself again and
 // again has so many.

@@ -207,8 +207,7 @@ static Seen ghosts_of(CagSession *s, const char *script) {
   text[n] = 0;
   build_scene(s, text);
   Seen seen = {0};
-  const int status =
-      cag_session_ghosts(s, "page.cag", found_line, found_column, NULL, see, &seen);
+  const int status = cag_session_ghosts(s, "page.cag", found_line, found_column, NULL, see, &seen);
   if (status != CAG_STATUS_OK) {
     cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);
     fail_msg("status %d of %s", status, script);
