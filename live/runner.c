@@ -7,7 +7,6 @@
 
 #include "base/clock.h"
 #include "live/model_files.h"
-#include "live/scene_json.h"
 
 typedef struct Task {
   CagLiveTask *work;
@@ -107,6 +106,10 @@ static bool keep_mesh(void *context, const CagMeshView *m) {
   return cag_live_mesh_bytes(m, &bytes, &size) && cag_meshes_keep(context, m->id, bytes, size);
 }
 
+CagLiveMeshes cag_runner_meshes(const CagRunner *r) {
+  return (CagLiveMeshes){has_mesh, keep_mesh, r->options.meshes};
+}
+
 static void publish_state(const CagRunner *r, int run, bool running) {
   char text[64];
   snprintf(text, sizeof text, "{\"run\":%d,\"running\":%s}", run, running ? "true" : "false");
@@ -132,7 +135,7 @@ static void run(CagRunner *r, const CagLiveRequest *request, int number) {
   Prints *prints = calloc(1, sizeof *prints); // its addresses are in use until it is closed
   CagString scene = {0};
   CagLiveRun told = {.run = number, .status = CAG_STATUS_LIMIT};
-  const CagLiveMeshes meshes = {has_mesh, keep_mesh, r->options.meshes};
+  const CagLiveMeshes meshes = cag_runner_meshes(r);
   const double begin = cag_clock_seconds();
   publish_state(r, number, true);
   if (prints) prints->file = open_memstream(&prints->text, &prints->length);

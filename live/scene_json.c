@@ -33,7 +33,7 @@ bool cag_live_mesh_bytes(const CagMeshView *m, unsigned char **out, size_t *size
 
 // --- Parts of the scene ---
 
-static void write_place(CagJson *j, const CagPlaceView *p) {
+void cag_live_place(CagJson *j, const CagPlaceView *p) {
   cag_json_text(j, "file", p->file);
   cag_json_number(j, "line", (double)p->line);
   cag_json_number(j, "column", (double)p->column);
@@ -60,7 +60,7 @@ static void write_param(CagJson *j, CagSession *s, size_t i, const CagParamView 
     cag_json_text(j, NULL, choice);
   cag_json_close(j, ']');
   cag_json_open_in(j, "place", '{');
-  write_place(j, &p->place);
+  cag_live_place(j, &p->place);
   cag_json_close(j, '}');
   cag_json_close(j, '}');
 }
@@ -108,7 +108,27 @@ static void write_origin(CagJson *j, CagSession *s, size_t part) {
     if (!place.file) continue;
     cag_json_open(j, '{');
     cag_json_text(j, "what", what);
-    write_place(j, &place);
+    cag_live_place(j, &place);
+    cag_json_close(j, '}');
+  }
+  cag_json_close(j, ']');
+}
+
+static void write_sources(CagJson *j, CagSession *s, size_t part) {
+  const char *name, *what;
+  CagPlaceView place;
+  cag_json_open_in(j, "sources", '[');
+  for (size_t i = 0; (name = cag_session_part_source(s, part, i)); i++) {
+    cag_json_open(j, '{');
+    cag_json_text(j, "name", name);
+    cag_json_open_in(j, "origin", '[');
+    for (size_t k = 0; cag_session_source_place(s, part, i, k, &what, &place); k++) {
+      cag_json_open(j, '{');
+      cag_json_text(j, "what", what);
+      cag_live_place(j, &place);
+      cag_json_close(j, '}');
+    }
+    cag_json_close(j, ']');
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');
@@ -138,6 +158,7 @@ static void write_part(CagJson *j, CagSession *s, size_t i, const CagPartView *p
   cag_json_number(j, "radius", m->radius);
   write_bounds(j, p->low, p->high);
   write_origin(j, s, i);
+  write_sources(j, s, i);
   cag_json_close(j, '}');
 }
 
@@ -246,10 +267,14 @@ static void write_stage(CagJson *j, CagSession *s) {
 
 static void write_images(CagJson *j, CagSession *s) {
   const char *name;
+  size_t width, height;
   cag_json_open_in(j, "images", '[');
   for (size_t i = 0; (name = cag_session_image(s, i)); i++) {
     cag_json_open(j, '{');
     cag_json_text(j, "name", name);
+    cag_session_image_size(s, i, &width, &height);
+    cag_json_number(j, "width", (double)width);
+    cag_json_number(j, "height", (double)height);
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');
@@ -334,6 +359,7 @@ void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *ou
   cag_json_number(&j, "run", run->run);
   cag_json_bool(&j, "ok", run->status == CAG_STATUS_OK);
   cag_json_number(&j, "seconds", run->seconds);
+  cag_json_number(&j, "memory", (double)cag_session_memory(s));
   write_prints(&j, run->prints);
   cag_json_open_in(&j, "diagnostics", '[');
   for (size_t i = 0; i < cag_session_error_count(s); i++) {
@@ -344,7 +370,7 @@ void cag_live_messages(const CagSession *s, const CagLiveRun *run, CagString *ou
     cag_json_text(&j, "code", e.code);
     cag_json_text(&j, "message", e.message);
     cag_json_text(&j, "help", e.help);
-    write_place(&j, &(CagPlaceView){e.file, e.line, e.column, e.end_line, e.end_column, false});
+    cag_live_place(&j, &(CagPlaceView){e.file, e.line, e.column, e.end_line, e.end_column, false});
     cag_json_open_in(&j, "related", '[');
     cag_json_close(&j, ']');
     cag_json_close(&j, '}');

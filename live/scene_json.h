@@ -30,6 +30,9 @@ typedef struct CagLiveModel {
 int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
                    CagString *out);
 
+// Adds the fields of a location to an object.
+void cag_live_place(CagJson *j, const CagPlaceView *p);
+
 // What a run printed and complained about.
 typedef struct CagLiveRun {
   int run, status;

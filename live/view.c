@@ -13,6 +13,7 @@
 #include "live/measures.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
+#include "live/questions.h"
 #include "live/render_jobs.h"
 #include "live/runner.h"
 #include "live/watch_files.h"
@@ -425,6 +426,20 @@ static void answer_measure(View *v, CagExchange *x) {
   free(part);
 }
 
+// --- Questions about the last scene ---
+
+static void do_ask(CagSession *s, void *context) {
+  Errand *e = context;
+  CagString answer = {0};
+  size_t size;
+  const char *request = cag_exchange_body(e->x, &size);
+  const CagLiveMeshes meshes = cag_runner_meshes(e->view->runner);
+  const int status = cag_live_ask(e->word, s, request, size, &meshes, &answer);
+  answer_text(e->x, status, &answer);
+  cag_string_free(&answer);
+  free_errand(e);
+}
+
 // --- Pictures ---
 
 static void answer_render(View *v, CagExchange *x) {
@@ -525,6 +540,9 @@ static void route_open(View *v, CagExchange *x) {
   else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
+  else if (!strcmp(cag_exchange_method(x), "POST") && (rest = rest_after(path, "/api/")) &&
+           cag_live_is_question(rest))
+    send_on_errand(v, x, rest, do_ask);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);
 }
 

@@ -113,6 +113,7 @@ static bool add_state(const Walk *w, const CagTransform *place, const CagOriginS
   g->context = w->context;
   g->step = step;
   g->next = next;
+  g->last = w->origin->last;
   g->shown = shown;
   return true;
 }
@@ -128,10 +129,11 @@ static void walk_shape(const Walk *w) {
     if (next && next->kind == CAG_STEP_MOVED) {
       shown = false;
       // A state that a projection has flattened is lost.
-      if (!next->motion || cag_transform_inverse(&next->motion->t, &back, &ignored)) return;
+      const CagTransform motion = cag_motion_transform(next->motion);
+      if (cag_transform_inverse(&motion, &back, &ignored)) return;
       undo = cag_transform_multiply(&back, &undo);
       place = cag_transform_multiply(&w->context, &undo);
-      moves = cag_transform_multiply(&moves, &next->motion->t);
+      moves = cag_transform_multiply(&moves, &motion);
     }
     if (!add_state(w, &place, step, next, shown)) return;
     if (step->kind != CAG_STEP_SHAPED) continue;
@@ -191,19 +193,19 @@ static CagVec3 direction_at(const CagTransform *t, CagVec3 at, CagVec3 v) {
 }
 
 static void describe_motion(const CagGhost *g, CagGhostView *out) {
-  const CagTransform *t = &g->next->motion->t;
-  const CagVec3 step = {t->m[0][3], t->m[1][3], t->m[2][3]}, origin = {0, 0, 0};
-  const CagTransform frame = cag_transform_multiply(&g->context, t);
+  const CagTransform t = cag_motion_transform(g->next->motion);
+  const CagVec3 step = {t.m[0][3], t.m[1][3], t.m[2][3]}, origin = {0, 0, 0};
+  const CagTransform frame = cag_transform_multiply(&g->context, &t);
   CagTransformClass c;
   CagError ignored;
   copy_rows(&frame, out->frame);
   out->motion = "transform";
-  if (!cag_transform_is_rigid(t) || cag_transform_classify(t, &c, &ignored)) return;
+  if (!cag_transform_is_rigid(&t) || cag_transform_classify(&t, &c, &ignored)) return;
   // A translation is a turn by 0.
   if (!c.has_rotation || fabs(c.angle) < SMALL_TURN) {
     out->motion = "translate";
     copy_vec(direction_at(&g->context, origin, step), out->direction);
-  } else if (!strcmp(c.fixed, "line") || (t->planar && !strcmp(c.fixed, "point"))) {
+  } else if (!strcmp(c.fixed, "line") || (t.planar && !strcmp(c.fixed, "point"))) {
     out->motion = "rotate";
     copy_vec(cag_transform_point(&g->context, c.fixed_point), out->point);
     copy_vec(direction_at(&g->context, c.fixed_point, c.axis), out->direction);
@@ -212,10 +214,10 @@ static void describe_motion(const CagGhost *g, CagGhostView *out) {
 }
 
 // Attributes do nothing to a shape, so the next move counts.
-static void describe_next(const CagGhost *g, const CagOriginStep *last, CagGhostView *out) {
+static void describe_next(const CagGhost *g, CagGhostView *out) {
   CagGhost moved = *g;
-  for (const CagOriginStep *step = last; step && step != g->step; step = step->before)
-    if (step->kind == CAG_STEP_MOVED && step->motion) moved.next = step; // ends with the first one
+  for (const CagOriginStep *step = g->last; step && step != g->step; step = step->before)
+    if (step->kind == CAG_STEP_MOVED) moved.next = step; // ends with the first one
   if (moved.next && moved.next->kind == CAG_STEP_MOVED) describe_motion(&moved, out);
   else if (g->has_axis) {
     out->motion = "revolve";
@@ -267,7 +269,7 @@ static int give_ghost(CagSession *s, const CagGhost *g, bool (*has)(void *contex
   CagGhostView view = {.type = cag_session_item_type(&g->item),
                        .part = g->part < s->scene.item_count ? s->scene.items[g->part].name : NULL};
   if (g->step) view.place = cag_session_place(g->step->source, g->step->span);
-  describe_next(g, g->next, &view);
+  describe_next(g, &view);
   const int status = cag_session_item_mesh(s, &g->item, g->shape, 1, has, context, &mesh);
   if (status != CAG_STATUS_OK) return status;
   place_mesh(g, &mesh);

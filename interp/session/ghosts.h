@@ -12,6 +12,7 @@ typedef struct CagGhost {
   CagTransform place;    // from the geometry to the state, in the scene
   const CagOriginStep *step;
   const CagOriginStep *next; // the call that changed the state; NULL: it is the last one
+  const CagOriginStep *last; // the last call that the shape went through
   CagTransform context;      // from the coordinates of the states to the scene
   // The call that made another shape of the last state, and which of its arguments or operands the
   // shape is; NULL: none.

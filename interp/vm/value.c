@@ -371,11 +371,35 @@ void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
   o->last = step;
 }
 
+static bool is_translation(const CagTransform *t) {
+  const double *m = t->m[0];
+  for (int i = 0; i < 16; i++)
+    if (i % 4 != 3 && m[i] != (i % 5 == 0)) return false;
+  return t->m[3][3] == 1 && !t->in_front;
+}
+
+CagTransform cag_motion_transform(const CagMotionNote *note) {
+  if (!note->translates) return note->t[0];
+  CagTransform t = cag_translate(note->step);
+  t.planar = note->planar;
+  return t;
+}
+
 void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
   const CagMotionNote *before = CAG_AS_SHAPE(from)->fresh ? CAG_AS_SHAPE(from)->motion : NULL;
-  CagMotionNote *note = cag_alloc(vm, CAG_INTERNAL, sizeof *note);
+  CagTransform t = *motion;
+  if (before) {
+    const CagTransform first = cag_motion_transform(before);
+    t = cag_transform_multiply(motion, &first);
+  }
+  const bool translates = is_translation(&t);
+  CagMotionNote *note =
+      cag_alloc(vm, CAG_INTERNAL, sizeof *note + (translates ? 0 : sizeof *note->t));
   note->head.flags = CAG_INTERNAL_MOTION;
-  note->t = before ? cag_transform_multiply(motion, &before->t) : *motion;
+  note->translates = translates;
+  note->planar = t.planar;
+  note->step = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
+  if (!translates) note->t[0] = t;
   CAG_AS_SHAPE(moved)->motion = note;
 }
 

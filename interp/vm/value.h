@@ -190,10 +190,12 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
-// The transform by which a call moved a shape.
+// The transform by which a call moved a shape. Most are translations, for which the vector is enough.
 typedef struct CagMotionNote {
   CagObject head; // CAG_INTERNAL
-  CagTransform t;
+  CagVec3 step;   // if it is a translation
+  bool translates, planar;
+  CagTransform t[]; // else: one
 } CagMotionNote;
 
 // The curves, regions, and surfaces that a call made a shape of, such as the profile of a
@@ -420,6 +422,7 @@ CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
 void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
 // Notes that the call under way made a shape by moving another one, for its origin.
 void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
+CagTransform cag_motion_transform(const CagMotionNote *note);
 // Where n operands come from; all are unknown.
 CagOperands *cag_operands_new(CagVm *vm, size_t n);
 // Notes that a shape is another one after a rigid motion.

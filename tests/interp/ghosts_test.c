@@ -250,8 +250,9 @@ static void a_shape_is_shown_before_it_was_moved(void **state) {
   (void)state;
   CagSession *s = new_session();
   Seen seen =
-      ghosts_of(s, "show box([1, 2, 3]) |> translate([10, 0, 0]) |> material({color: \"red\"})\n");
-  assert_int_equal(seen.count, 0);
+      ghosts_of(s, "show ^box([1, 2, 3]) |> material({color: \"red\"}) |> translate([10, 0, 0])\n");
+  assert_int_equal(seen.count, 1);
+  assert_string_equal(seen.motion, "translate");
   seen = ghosts_of(s, "show ^box([1, 2, 3]) |> translate([10, 0, 0]) |> rotate(Z, 90deg)\n");
   assert_int_equal(seen.count, 1);
   expect_box(&seen, (double[]){0, 0, 0}, (double[]){1, 2, 3});
