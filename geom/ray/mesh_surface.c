@@ -36,44 +36,22 @@ static Triangle triangle_at(const CagMesh *m, size_t t) {
   return out;
 }
 
+static bool has_normal(const Triangle *t) { return cag_norm(t->normal) > 0; }
+
 static double mesh_reach(const CagMesh *m) {
   const CagBounds b = cag_mesh_bounds(m);
   return b.min.x <= b.max.x ? REACH * cag_norm(cag_sub(b.max, b.min)) : 0;
-}
-
-// A line through a point near the surface, and the crossing that counts.
-typedef struct Probe {
-  CagVec3 at, along; // along: unit
-  CagVec3 facing;    // the normal of the triangle
-  double reach;
-  int side; // of the surface's normal: 1 as `facing`, -1 against it, 0 either
-} Probe;
-
-// Finds the crossing next to the point whose normal fits that of the triangle.
-static CagStatus probe_surface(const CagCaster *c, const Probe *p, CagCrossings *work,
-                               CagCrossing *out, bool *found, CagError *err) {
-  const CagRay ray = {p->at, p->along, -p->reach, p->reach};
-  *found = false;
-  const CagStatus status = cag_caster_all(c, &ray, work, NULL, err);
-  if (status) return status;
-  for (size_t i = 0; i < work->n; i++) {
-    const CagCrossing *x = &work->items[i];
-    const double along = cag_dot(x->normal, p->facing);
-    const double alike = p->side == 0 ? fabs(along) : p->side * along;
-    if (!(alike >= ALIKE) || (*found && fabs(x->t) >= fabs(out->t))) continue;
-    *out = *x;
-    *found = true;
-  }
-  return CAG_OK;
 }
 
 // --- Leaves ---
 
 typedef struct Leaf {
   const CagCaster *caster;
-  int side; // -1: it is subtracted, so its normals are against those of the result
+  int side; // of its normals: 1 as those of the result, -1 against them (subtracted), 0 either
 } Leaf;
 
+// The surfaces that the triangles of a mesh approximate: those of the operands of a set operation,
+// beyond their intersections too, since a triangle may reach over an edge by the tolerance.
 typedef struct Leaves {
   Leaf *items;
   size_t count;
@@ -93,6 +71,12 @@ size_t cag_solid_leaf_count(const CagSolid *s) {
   return n;
 }
 
+static size_t caster_leaf_count(const CagCaster *c) {
+  size_t n = c->kind == CAG_CASTER_OPERATION ? 0 : 1;
+  for (size_t i = 0; i < c->operand_count; i++) n += caster_leaf_count(c->operands[i]);
+  return n;
+}
+
 // Casters have the operands of their solids in the same order.
 static void collect_leaves(const CagCaster *c, int side, Leaves *out) {
   if (c->kind != CAG_CASTER_OPERATION) {
@@ -104,27 +88,59 @@ static void collect_leaves(const CagCaster *c, int side, Leaves *out) {
                    out);
 }
 
+static CagStatus leaves_of(const CagCaster *c, const CagMesh *m, Leaves *out, CagError *err) {
+  *out = (Leaves){.reach = mesh_reach(m),
+                  .items = cag_calloc(caster_leaf_count(c) + 1, sizeof *out->items)};
+  if (!out->items) return cag_fail_memory(err);
+  collect_leaves(c, cag_caster_is_closed(c) ? 1 : 0, out);
+  return CAG_OK;
+}
+
+static void free_leaves(Leaves *l) {
+  cag_crossings_free(&l->work);
+  cag_free(l->items);
+}
+
 static bool is_near(const CagBounds *b, CagVec3 p, double reach) {
   return p.x >= b->min.x - reach && p.x <= b->max.x + reach && p.y >= b->min.y - reach &&
          p.y <= b->max.y + reach && p.z >= b->min.z - reach && p.z <= b->max.z + reach;
 }
 
-static CagStatus find_leaf(Leaves *l, const Triangle *t, uint32_t *out, CagError *err) {
-  double nearest = INFINITY;
-  *out = UINT32_MAX;
-  if (!(cag_norm(t->normal) > 0)) return CAG_OK;
+// A line through a point near the surface.
+typedef struct Probe {
+  CagVec3 at, along; // along: unit
+  CagVec3 facing;    // the normal of the triangle
+} Probe;
+
+// Finds the crossing of a leaf next to the point whose normal fits that of the triangle, if it is
+// nearer than *nearest.
+static CagStatus probe_leaf(Leaves *l, size_t leaf, const Probe *p, double *nearest,
+                            CagCrossing *out, CagError *err) {
+  const CagRay ray = {p->at, p->along, -l->reach, l->reach};
+  const int side = l->items[leaf].side;
+  const CagStatus status = cag_caster_all(l->items[leaf].caster, &ray, &l->work, NULL, err);
+  for (size_t i = 0; !status && i < l->work.n; i++) {
+    const CagCrossing *x = &l->work.items[i];
+    const double along = cag_dot(x->normal, p->facing);
+    const double alike = side == 0 ? fabs(along) : side * along;
+    if (!(alike >= ALIKE) || fabs(x->t) >= *nearest) continue;
+    *nearest = fabs(x->t);
+    *out = *x;
+  }
+  return status;
+}
+
+// Finds the nearest such crossing of all leaves. *leaf is UINT32_MAX if there is none.
+static CagStatus probe_leaves(Leaves *l, const Probe *p, uint32_t *leaf, CagCrossing *out,
+                              CagError *err) {
+  double nearest = l->reach;
+  *leaf = UINT32_MAX;
   for (size_t i = 0; i < l->count; i++) {
-    const CagCaster *c = l->items[i].caster;
-    const double reach = fmin(l->reach, nearest);
-    if (!is_near(&c->bounds, t->center, reach)) continue;
-    const Probe probe = {t->center, t->normal, t->normal, l->reach, l->items[i].side};
-    CagCrossing x;
-    bool found;
-    const CagStatus status = probe_surface(c, &probe, &l->work, &x, &found, err);
+    const double before = nearest;
+    if (!is_near(&l->items[i].caster->bounds, p->at, nearest)) continue;
+    const CagStatus status = probe_leaf(l, i, p, &nearest, out, err);
     if (status) return status;
-    if (!found || fabs(x.t) >= nearest) continue;
-    nearest = fabs(x.t);
-    *out = (uint32_t)i;
+    if (nearest < before) *leaf = (uint32_t)i;
   }
   return CAG_OK;
 }
@@ -148,25 +164,27 @@ static CagStatus fill_gaps(const CagMesh *m, uint32_t *leaves, CagError *err) {
 }
 
 CagStatus cag_mesh_leaves(const CagSolid *s, const CagMesh *m, uint32_t *out, CagError *err) {
-  Leaves l = {.reach = mesh_reach(m)};
+  Leaves l = {0};
   CagCaster *caster = NULL;
   CagStatus status = cag_caster_of_solid(s, &caster, err);
-  if (!status) l.items = cag_calloc(cag_solid_leaf_count(s) + 1, sizeof *l.items);
-  if (!status && !l.items) status = cag_fail_memory(err);
-  if (!status) collect_leaves(caster, 1, &l);
+  if (!status) status = leaves_of(caster, m, &l, err);
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
     const Triangle triangle = triangle_at(m, t);
+    const Probe p = {triangle.center, triangle.normal, triangle.normal};
+    CagCrossing unused;
+    out[t] = UINT32_MAX;
     status = t % LOOK_UP == 0 ? cag_stop_check(err) : CAG_OK;
-    if (!status) status = find_leaf(&l, &triangle, &out[t], err);
+    if (!status && has_normal(&triangle)) status = probe_leaves(&l, &p, &out[t], &unused, err);
   }
   if (!status) status = fill_gaps(m, out, err);
-  cag_crossings_free(&l.work);
-  cag_free(l.items);
+  free_leaves(&l);
   cag_caster_free(caster);
   return status;
 }
 
 // --- Curvature ---
+
+static const CagBend UNKNOWN = {NAN, NAN};
 
 static CagVec3 corner_normal(const CagMesh *m, size_t t, size_t k, const Triangle *triangle) {
   const CagVec3 n = m->normals ? m->normals[m->triangles[3 * t + k]] : triangle->normal;
@@ -174,78 +192,85 @@ static CagVec3 corner_normal(const CagMesh *m, size_t t, size_t k, const Triangl
 }
 
 // The curvature next to corner k.
-static CagStatus corner_bend(const CagCaster *c, const Triangle *t, size_t k, CagVec3 along,
-                             double reach, CagCrossings *work, CagBend *out, CagError *err) {
-  const Probe p = {cag_lerp(t->corners[k], t->center, INWARD), along, t->normal, reach,
-                   cag_caster_is_closed(c) ? 1 : 0};
+static CagStatus corner_bend(Leaves *l, const Triangle *t, size_t k, CagVec3 along, CagBend *out,
+                             CagError *err) {
+  const Probe p = {cag_lerp(t->corners[k], t->center, INWARD), along, t->normal};
   CagCrossing x;
+  uint32_t leaf;
   bool known;
-  *out = (CagBend){NAN, NAN};
-  CagStatus status = probe_surface(c, &p, work, &x, &known, err);
-  if (status || !known) return status;
+  *out = UNKNOWN;
+  CagStatus status = probe_leaves(l, &p, &leaf, &x, err);
+  if (status || leaf == UINT32_MAX) return status;
   status = cag_crossing_bend(&x, cag_madd(p.at, x.t, p.along), out, &known, err);
-  if (status || !known) *out = (CagBend){NAN, NAN};
-  // A surface may have been turned for its mesh.
+  if (status || !known) *out = UNKNOWN;
+  // The triangle faces the other side of a surface that is subtracted, or was turned for its mesh.
   else if (cag_dot(x.normal, t->normal) < 0) out->mean = -out->mean;
   return status;
 }
 
+// A corner where the surface was not found, at a pole or beyond an edge, gets the numbers of another
+// one of its triangle.
+static void fill_corners(CagBend *bends) {
+  for (int k = 0; k < 3; k++)
+    for (int i = 0; isnan(bends[k].mean) && i < 3; i++) bends[k] = bends[i];
+}
+
 CagStatus cag_mesh_curvature(const CagCaster *c, const CagMesh *m, float *mean, float *gaussian,
                              CagError *err) {
-  const double reach = mesh_reach(m);
-  CagCrossings work = {0};
-  CagStatus status = CAG_OK;
+  Leaves l = {0};
+  CagStatus status = leaves_of(c, m, &l, err);
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
     const Triangle triangle = triangle_at(m, t);
+    CagBend bends[3] = {UNKNOWN, UNKNOWN, UNKNOWN};
     if (t % LOOK_UP == 0) status = cag_stop_check(err);
-    for (size_t k = 0; !status && k < 3; k++) {
-      CagBend bend = {NAN, NAN};
-      if (cag_norm(triangle.normal) > 0)
-        status = corner_bend(c, &triangle, k, corner_normal(m, t, k, &triangle), reach, &work,
-                             &bend, err);
-      mean[3 * t + k] = (float)bend.mean;
-      gaussian[3 * t + k] = (float)bend.gaussian;
+    for (size_t k = 0; !status && has_normal(&triangle) && k < 3; k++)
+      status = corner_bend(&l, &triangle, k, corner_normal(m, t, k, &triangle), &bends[k], err);
+    fill_corners(bends);
+    for (size_t k = 0; k < 3; k++) {
+      mean[3 * t + k] = (float)bends[k].mean;
+      gaussian[3 * t + k] = (float)bends[k].gaussian;
     }
   }
-  cag_crossings_free(&work);
+  free_leaves(&l);
   return status;
 }
 
 // --- Deviation ---
 
 // Raises *most to the distance of a point of the triangle.
-static CagStatus point_distance(const CagCaster *c, const Triangle *t, CagVec3 at, double reach,
-                                CagCrossings *work, double *most, CagError *err) {
-  const Probe p = {at, t->normal, t->normal, reach, cag_caster_is_closed(c) ? 1 : 0};
+static CagStatus point_distance(Leaves *l, const Triangle *t, CagVec3 at, double *most,
+                                CagError *err) {
+  const Probe p = {at, t->normal, t->normal};
   CagCrossing x;
-  bool found;
-  const CagStatus status = probe_surface(c, &p, work, &x, &found, err);
-  if (!status && found) *most = fmax(*most, fabs(x.t * cag_dot(x.normal, t->normal)));
+  uint32_t leaf;
+  const CagStatus status = probe_leaves(l, &p, &leaf, &x, err);
+  if (!status && leaf != UINT32_MAX) *most = fmax(*most, fabs(x.t * cag_dot(x.normal, t->normal)));
+  return status;
+}
+
+static CagStatus triangle_distance(Leaves *l, const Triangle *t, double *most, CagError *err) {
+  CagStatus status = point_distance(l, t, t->center, most, err);
+  for (size_t k = 0; !status && k < 3; k++) {
+    // The middle of a side may be outside of the face by rounding.
+    const CagVec3 middle = cag_lerp(t->corners[k], t->corners[(k + 1) % 3], 0.5);
+    status = point_distance(l, t, cag_lerp(middle, t->center, INWARD), most, err);
+  }
   return status;
 }
 
 CagStatus cag_mesh_deviation(const CagCaster *c, const CagMesh *m, float *distance,
                              double *farthest, CagError *err) {
-  const double reach = mesh_reach(m);
-  CagCrossings work = {0};
-  CagStatus status = CAG_OK;
+  Leaves l = {0};
+  CagStatus status = leaves_of(c, m, &l, err);
   *farthest = 0;
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
     const Triangle triangle = triangle_at(m, t);
     double most = -1;
     if (t % LOOK_UP == 0) status = cag_stop_check(err);
-    const bool flat = !(cag_norm(triangle.normal) > 0);
-    if (!status && !flat)
-      status = point_distance(c, &triangle, triangle.center, reach, &work, &most, err);
-    for (size_t k = 0; !status && !flat && k < 3; k++) {
-      // The middle of a side may be outside of the face by rounding.
-      const CagVec3 middle = cag_lerp(triangle.corners[k], triangle.corners[(k + 1) % 3], 0.5);
-      status = point_distance(c, &triangle, cag_lerp(middle, triangle.center, INWARD), reach, &work,
-                              &most, err);
-    }
+    if (!status && has_normal(&triangle)) status = triangle_distance(&l, &triangle, &most, err);
     distance[t] = most >= 0 ? (float)most : NAN;
     *farthest = fmax(*farthest, most);
   }
-  cag_crossings_free(&work);
+  free_leaves(&l);
   return status;
 }

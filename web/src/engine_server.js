@@ -83,5 +83,9 @@ export function serverEngine() {
       const m = await (await ask("/api/measure", json("POST", { part }))).json();
       return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };
     },
+    faces: async (part) => (await ask("/api/faces", json("POST", { part }))).json(),
+    ghosts: async (file, line, column) => (await (await ask("/api/ghost", json("POST", { file, line, column }))).json()).ghosts,
+    surface: async (part, what) => (await ask("/api/surface", json("POST", { part, what }))).json(),
+    section: async (normal, offset) => (await (await ask("/api/section", json("POST", { normal, offset }))).json()).curves,
   };
 }
