@@ -161,6 +161,13 @@ static int ask_ghost(Question *q) {
   return status == CAG_STATUS_OK ? OK : complain_of_session(q);
 }
 
+// That a part has no such thing is an answer.
+static int give_reason(Question *q) {
+  complain_of_session(q);
+  cag_json_text(q->answer, "reason", q->error);
+  return OK;
+}
+
 static int ask_surface(Question *q) {
   CagSurfaceView v;
   const char *what = text_field(q, "what");
@@ -170,6 +177,7 @@ static int ask_surface(Question *q) {
   const int status = cag_session_part_surface(q->session, part, what, &v);
   if (status == CAG_STATUS_USAGE)
     return complain(q, BAD, "unknown `what`", "it is curvature, deviation, isolines, or net");
+  if (status == CAG_STATUS_SCRIPT) return give_reason(q);
   if (status != CAG_STATUS_OK) return complain_of_session(q);
   cag_json_text(q->answer, "mesh", v.id);
   if (v.mean) add_floats(q, "mean", v.mean, 3 * v.triangle_count);

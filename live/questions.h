@@ -5,7 +5,7 @@
 // |---|---|---|
 // | faces | part | mesh, operands: the source of each, faces: pairs of a count and an operand |
 // | ghost | file, line, column | ghosts: part, type, mesh, placement, line, radius, motion, place |
-// | surface | part, what | what it asks for: mesh, mean, gaussian, distance, farthest, points, sizes |
+// | surface | part, what | of mesh, mean, gaussian, distance, farthest, points, sizes, what it asks for; or the reason why there is no such thing |
 // | section | normal, offset | curves: part, closed, exact, length, area, points |
 //
 // Long lists of numbers are base64 of 32-bit floats, least byte first.

@@ -47,23 +47,48 @@ static bool item_of_shape(CagValue v, CagItem *out) {
   return true;
 }
 
-static void find_axis(const Walk *w, CagGhost *out) {
-  const CagItem *item = &w->like.item;
-  const CagSurface *s = item->kind == CAG_ITEM_SURFACE ? item->as.surface : NULL, *inner;
+// The axis of a surface of revolution, in its coordinates.
+static bool surface_axis(const CagSurface *s, CagVec3 *axis, CagVec3 *through) {
+  const CagSurface *inner;
   const CagCurve *profile;
   CagTransform map = cag_transform_identity();
   double from, to;
-  if (item->kind == CAG_ITEM_SOLID && item->as.solid->kind == CAG_SOLID_REVOLUTION &&
-      item->as.solid->face_count > 0)
-    s = item->as.solid->faces[0];
-  if (s && cag_surface_placed_view(s, &inner, &map)) s = inner;
-  if (!s || !cag_surface_revolution_view(s, &profile, &out->axis, &out->through, &from, &to))
-    return;
-  map = cag_transform_multiply(&w->context, &map);
-  const CagVec3 end = cag_transform_point(&map, cag_add(out->through, out->axis));
-  out->through = cag_transform_point(&map, out->through);
+  if (cag_surface_placed_view(s, &inner, &map)) s = inner;
+  if (!cag_surface_revolution_view(s, &profile, axis, through, &from, &to)) return false;
+  const CagVec3 end = cag_transform_point(&map, cag_add(*through, *axis));
+  *through = cag_transform_point(&map, *through);
+  *axis = cag_sub(end, *through);
+  return true;
+}
+
+static void find_axis(const Walk *w, CagGhost *out) {
+  const CagItem *item = &w->like.item;
+  const bool solid = item->kind == CAG_ITEM_SOLID && item->as.solid->kind == CAG_SOLID_REVOLUTION;
+  if (item->kind == CAG_ITEM_SURFACE)
+    out->has_axis = surface_axis(item->as.surface, &out->axis, &out->through);
+  for (size_t i = 0; solid && !out->has_axis && i < item->as.solid->face_count; i++)
+    out->has_axis = surface_axis(item->as.solid->faces[i], &out->axis, &out->through);
+  if (!out->has_axis) return;
+  const CagVec3 end = cag_transform_point(&w->context, cag_add(out->through, out->axis));
+  out->through = cag_transform_point(&w->context, out->through);
   out->axis = cag_sub(end, out->through);
-  out->has_axis = true;
+}
+
+// A plane profile that is revolved about a parallel of Z stands upright: [x, y] is [x, 0, y].
+static bool stands_upright(const CagGhost *g, const CagTransform *context) {
+  const CagItem *item = &g->item;
+  CagTransform back;
+  CagError ignored;
+  const bool plane = (item->kind == CAG_ITEM_CURVE && item->as.curve->dimension == 2) ||
+                     (item->kind == CAG_ITEM_REGION && item->placement.planar);
+  if (!plane || !g->has_axis || cag_transform_inverse(context, &back, &ignored)) return false;
+  const CagVec3 axis = cag_transform_vector(&back, g->axis);
+  return hypot(axis.x, axis.y) < SMALL_TURN * fabs(axis.z);
+}
+
+static CagTransform upright(const CagTransform *context) {
+  const CagTransform up = {.m = {{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}};
+  return cag_transform_multiply(context, &up);
 }
 
 // The inputs of a call; `context` has the coordinates of the call.
@@ -77,6 +102,7 @@ static void walk_inputs(const Walk *w, const CagOriginStep *step, const CagTrans
     inner.like.user = step;
     inner.like.parameter = step->inputs->items[i].parameter;
     find_axis(w, &inner.like);
+    if (stands_upright(&inner.like, context)) inner.context = upright(context);
     walk_shape(&inner);
   }
 }
@@ -118,6 +144,11 @@ static bool add_state(const Walk *w, const CagTransform *place, const CagOriginS
   return true;
 }
 
+static bool is_identity(const CagTransform *t) {
+  const CagTransform same = cag_transform_identity();
+  return memcmp(t->m, same.m, sizeof t->m) == 0;
+}
+
 static void walk_shape(const Walk *w) {
   CagTransform place = w->context, undo = cag_transform_identity(), moves = w->context;
   const CagOriginStep *step = w->origin->last, *next = NULL, *shaped = NULL;
@@ -127,9 +158,9 @@ static void walk_shape(const Walk *w) {
   for (; step; next = step, step = step->before) {
     CagTransform back;
     if (next && next->kind == CAG_STEP_MOVED) {
-      shown = false;
-      // A state that a projection has flattened is lost.
       const CagTransform motion = cag_motion_transform(next->motion);
+      if (!is_identity(&motion)) shown = false;
+      // A state that a projection has flattened is lost.
       if (cag_transform_inverse(&motion, &back, &ignored)) return;
       undo = cag_transform_multiply(&back, &undo);
       place = cag_transform_multiply(&w->context, &undo);

@@ -89,9 +89,7 @@ static CagStatus each_face(const CagItem *item, OnFace *each, CagPolylines *l, C
   if (item->kind == CAG_ITEM_SURFACE) return each(item->as.surface, l, err);
   if (item->kind != CAG_ITEM_SOLID) return fail_without(item, why_no_surface(item), err);
   if (item->as.solid->face_count == 0)
-    return fail_without(
-        item, "is a set operation, whose faces have no parameters; choose one of its operands",
-        err);
+    return fail_without(item, "is a set operation, whose faces have no parameters", err);
   for (size_t i = 0; !status && i < item->as.solid->face_count; i++)
     status = each(item->as.solid->faces[i], l, err);
   return status;

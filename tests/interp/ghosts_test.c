@@ -286,9 +286,15 @@ static void a_profile_is_shown_with_its_axis(void **state) {
     assert_string_equal(seen.type, "curve");
     assert_string_equal(seen.motion, "revolve");
     assert_true(fabs(seen.last.point[0] - 20) < 1e-12);
+    expect_box(&seen, (double[]){21, 0, 0}, (double[]){24, 0, 7}); // [x, y] is [x, 0, y]
     assert_true(fabs(fabs(seen.last.direction[2]) - 1) < 1e-12);
   }
-  Seen seen = ghosts_of(s, "show loft([circle(5), translate(cir^cle(3), [0, 0, 4])])\n");
+  Seen seen = ghosts_of(s, "p = region([[2, 0], [4, 5], [2, 7]])\nshow revolve(^p)\n");
+  assert_int_equal(seen.count, 1);
+  assert_string_equal(seen.type, "region");
+  assert_string_equal(seen.motion, "revolve");
+  expect_box(&seen, (double[]){2, 0, 0}, (double[]){4, 0, 7});
+  seen = ghosts_of(s, "show loft([circle(5), translate(cir^cle(3), [0, 0, 4])])\n");
   assert_int_equal(seen.count, 1);
   seen = ghosts_of(s, "show loft([circle(5), ^translate(circle(3), [0, 0, 4])])\n");
   assert_int_equal(seen.count, 1);

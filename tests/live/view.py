@@ -265,7 +265,7 @@ def test_surfaces():
     net = ask(v, "surface", {"part": "patch", "what": "net"})
     assert net["sizes"] == [4] * 8 and len(floats(net["points"])) == 3 * 32
     assert len(ask(v, "surface", {"part": "patch", "what": "isolines"})["sizes"]) == 18
-    assert "mesh" in ask(v, "surface", {"part": "mesh", "what": "curvature"}, 422)["error"]
+    assert "is a mesh" in ask(v, "surface", {"part": "mesh", "what": "curvature"})["reason"]
     ask(v, "surface", {"part": "sphere", "what": "charm"}, 400)
     ask(v, "surface", {"part": "sphere"}, 400)
     ask(v, "surface", {"part": "nobody", "what": "net"}, 404)

@@ -189,7 +189,8 @@
  * @typedef {"curvature" | "deviation" | "isolines" | "net"} SurfaceQuestion
  *
  * @typedef {object} SurfaceAnswer  numbers are base64 of 32-bit floats; see floatsOf
- * @property {string} mesh  that the values belong to
+ * @property {string} [reason]  why the part has no such thing
+ * @property {string} [mesh]  that the values belong to
  * @property {string} [mean]  at the corners of the triangles, 1/mm
  * @property {string} [gaussian]  1/mm2
  * @property {string} [distance]  of the triangles, mm
@@ -234,7 +235,7 @@
  * @property {(part: string) => Promise<Measures>} measure
  * @property {(part: string) => Promise<FacesAnswer>} faces
  * @property {(file: string, line: number, column: number) => Promise<Ghost[]>} ghosts  at a location of the script as it was run
- * @property {(part: string, what: SurfaceQuestion) => Promise<SurfaceAnswer>} surface  fails with the reason if the part has no such thing
+ * @property {(part: string, what: SurfaceQuestion) => Promise<SurfaceAnswer>} surface
  * @property {(normal: Triple, offset: number) => Promise<SectionCurve[]>} section
  */
 

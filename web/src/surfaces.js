@@ -132,7 +132,10 @@ export class Surfaces {
     const tint = this.view.color("--accent");
     this.lines.color.copy(tint);
     this.points.color.copy(tint);
-    for (const answer of answers) if (answer instanceof Error) out.problems.push(answer.message);
+    for (const answer of answers) {
+      if (answer instanceof Error) out.problems.push(answer.message);
+      else if (answer?.reason) out.problems.push(answer.reason);
+    }
     if (kind === "zebra") for (const v of chosen) this.addZebra(v, out);
     else if (kind === "normals") for (const v of chosen) this.addNormals(v, out);
     else {
@@ -140,7 +143,7 @@ export class Surfaces {
       const good = [];
       chosen.forEach((view, i) => {
         const answer = answers[i];
-        if (answer && !(answer instanceof Error) && (answer.mesh === "" || answer.mesh === view.part.mesh)) good.push({ view, answer });
+        if (answer && !(answer instanceof Error) && !answer.reason && (answer.mesh === "" || answer.mesh === view.part.mesh)) good.push({ view, answer });
       });
       if (kind === "isolines" || kind === "net") for (const { answer } of good) this.addLines(answer, kind === "net");
       else this.addValues(kind, good, percent, out);
