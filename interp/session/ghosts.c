@@ -326,7 +326,7 @@ int cag_session_ghosts(CagSession *s, const char *file, size_t line, size_t colu
   int status = cag_session_geometry(s, find_ghosts, &f);
   for (size_t i = 0, given = 0; status == CAG_STATUS_OK && i < f.count; i++) {
     const CagGhost *g = &f.all.items[f.found[i]];
-    if (g->shown || given++ == MOST_GHOSTS) continue;
+    if (g->shown || given++ >= MOST_GHOSTS) continue;
     status = give_ghost(s, g, has, give, context);
     // A half space, for example, has no mesh.
     if (status == CAG_STATUS_SCRIPT) status = CAG_STATUS_OK;

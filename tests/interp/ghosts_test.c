@@ -326,6 +326,8 @@ static void loops_have_a_ghost_for_each_round(void **state) {
       s, "show box([40, 10, 5]) - [for i in 0..3: translate(cyl^inder(9, 2), [10 * i, 5, -1])]\n");
   assert_int_equal(seen.count, 4);
   assert_string_equal(seen.motion, "translate");
+  assert_int_equal(
+      ghosts_of(s, "show [for i in 0..<200: translate(sphere(^1), [3 * i, 0, 0])]\n").count, 64);
   cag_session_free(s);
 }
 
