@@ -120,24 +120,30 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
 
 // --- Origins of operands ---
 
+// The operands that take the place of one that dissolves.
 static size_t origin_count(const CagSolid *operand, CagSetOperation op, size_t index) {
   return cag_solid_dissolves(operand, op, index) ? operand->core->count : 1;
 }
 
+static CagOperands *known_operands(const CagOrigin *o, const CagSolid *s) {
+  return s->core && o->operands && o->operands->count == s->core->count ? o->operands : NULL;
+}
+
 // Where the operands of a set operation come from, in the order in which cag_solid_combine keeps
-// them: those of an operand that dissolves take its place. `origins` has those of n operands.
+// them. `origins` are those of n operands.
 static CagOperands *operands_of(CagVm *vm, CagSetOperation op, CagSolid *const *operands,
-                                const CagOperands *origins) {
+                                const CagOrigin *origins, size_t n) {
   size_t count = 0, at = 0;
-  for (size_t i = 0; i < origins->count; i++) count += origin_count(operands[i], op, i);
-  CagOperands *out = cag_operands_new(vm, count);
-  for (size_t i = 0; i < origins->count; i++) {
-    const CagOrigin *o = &origins->items[i];
-    const size_t n = origin_count(operands[i], op, i);
-    if (!cag_solid_dissolves(operands[i], op, i)) out->items[at] = *o;
-    else if (o->operands && o->operands->count == n)
-      memcpy(out->items + at, o->operands->items, n * sizeof *out->items);
-    at += n;
+  CagOperands *first =
+      cag_solid_dissolves(operands[0], op, 0) ? known_operands(&origins[0], operands[0]) : NULL;
+  const size_t from = first ? 1 : 0;
+  for (size_t i = from; i < n; i++) count += origin_count(operands[i], op, i);
+  CagOperands *out = cag_operands_new(vm, first, count);
+  for (size_t i = from; i < n; i++) {
+    const CagOperands *known = known_operands(&origins[i], operands[i]);
+    if (!cag_solid_dissolves(operands[i], op, i)) out->items[at] = origins[i];
+    else if (known) cag_operands_list(known, out->items + at);
+    at += origin_count(operands[i], op, i);
   }
   return out;
 }
@@ -204,7 +210,7 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
   if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, call->err));
   CagSolid **parts = cag_hold_solid_array(call, shapes->length);
   *said = cag_list_get(call->vm, shapes, 0);
-  CagOperands *origins = cag_operands_new(call->vm, shapes->length);
+  CagOperands *origins = cag_operands_new(call->vm, NULL, shapes->length);
   for (size_t i = 0; i < shapes->length; i++) {
     const CagValue shape = cag_list_get(call->vm, shapes, i);
     origins->items[i] = CAG_AS_SHAPE(shape)->origin;
@@ -214,7 +220,7 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
     if (!relabel_operand(call, paint, &parts[i])) return false;
   }
   if (shapes->length == 1) *origin = origins->items[0];
-  else origin->operands = operands_of(call->vm, CAG_UNION, parts, origins);
+  else origin->operands = operands_of(call->vm, CAG_UNION, parts, origins->items, shapes->length);
   const CagStatus status = combine(call, CAG_UNION, parts, shapes->length, out, call->err);
   cag_release_held(call, parts);
   return cag_geometry_ok(call, status);
@@ -267,7 +273,7 @@ static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
   CagSolid **operands = cag_hold_solid_array(call, n);
-  CagOperands *origins = cag_operands_new(call->vm, n);
+  CagOperands *origins = cag_operands_new(call->vm, NULL, n);
   Paint paint;
   if (!find_paint(call, items, n, &paint)) return false;
   for (size_t i = 0; i < n; i++)
@@ -275,7 +281,7 @@ static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
         !read_operand(call, items[i], i, &paint, &operands[i], &origins->items[i],
                       i == 0 ? &said : &unused))
       return false;
-  CagOperands *origin = n > 1 ? operands_of(call->vm, op, operands, origins) : NULL;
+  CagOperands *origin = n > 1 ? operands_of(call->vm, op, operands, origins->items, n) : NULL;
   if (!cag_solid_result(call, combine(call, op, operands, n, &made, call->err), &made, result))
     return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
@@ -352,10 +358,9 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   if (!cag_geometry_ok(c->call, status)) return false;
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
-  CagOperands *origins = cag_operands_new(c->call->vm, 2);
-  origins->items[0] = CAG_AS_SHAPE(v)->origin;
-  origins->items[1] = c->origin;
-  CAG_AS_SHAPE(value)->origin.operands = operands_of(c->call->vm, CAG_INTERSECTION, parts, origins);
+  const CagOrigin origins[2] = {CAG_AS_SHAPE(v)->origin, c->origin};
+  CAG_AS_SHAPE(value)->origin.operands =
+      operands_of(c->call->vm, CAG_INTERSECTION, parts, origins, 2);
   // A part that is obviously outside is dropped. If only its mesh could show that, it is kept.
   bool outside = !cag_solid_reach(made, &reach, c->call->err) && !(reach.min.x <= reach.max.x);
   return outside || cag_builder_add(c->call->vm, into, value);

@@ -107,24 +107,35 @@ static void walk_inputs(const Walk *w, const CagOriginStep *step, const CagTrans
   }
 }
 
+static void walk_operand(const Walk *w, const CagOriginStep *step, const CagTransform *context,
+                         const CagOrigin *origin, size_t i) {
+  const CagSolidCore *core = w->like.item.as.solid->core;
+  Walk inner = {.out = w->out, .context = *context, .origin = origin};
+  inner.like.item = (CagItem){.kind = CAG_ITEM_SOLID,
+                              .as.solid = core->operands[i],
+                              .placement = cag_transform_identity(),
+                              .tolerance = w->like.item.tolerance};
+  inner.like.part = w->like.part;
+  // Of operands that were united without a call of their own, the user is the call around it.
+  inner.like.user = step ? step : w->like.user;
+  inner.like.operand = step ? i : w->like.operand;
+  inner.like.operand_count = step ? core->count : w->like.operand_count;
+  walk_shape(&inner);
+}
+
 static void walk_operands(const Walk *w, const CagOriginStep *step) {
   const CagOperands *operands = w->origin->operands;
   const CagSolid *s = w->like.item.kind == CAG_ITEM_SOLID ? w->like.item.as.solid : NULL;
   if (!operands || !s || !s->core || s->core->count != operands->count) return;
   const CagTransform context = cag_transform_multiply(&w->context, &s->placement);
-  for (size_t i = 0; i < operands->count; i++) {
-    Walk inner = {.out = w->out, .context = context, .origin = &operands->items[i]};
-    inner.like.item = (CagItem){.kind = CAG_ITEM_SOLID,
-                                .as.solid = s->core->operands[i],
-                                .placement = cag_transform_identity(),
-                                .tolerance = w->like.item.tolerance};
-    inner.like.part = w->like.part;
-    // Of operands that were united without a call of their own, the user is the call around it.
-    inner.like.user = step ? step : w->like.user;
-    inner.like.operand = step ? i : w->like.operand;
-    inner.like.operand_count = step ? operands->count : w->like.operand_count;
-    walk_shape(&inner);
+  CagOrigin *origins = cag_calloc(operands->count + 1, sizeof *origins);
+  if (!origins) {
+    w->out->failed = true;
+    return;
   }
+  cag_operands_list(operands, origins);
+  for (size_t i = 0; i < operands->count; i++) walk_operand(w, step, &context, &origins[i], i);
+  cag_free(origins);
 }
 
 static bool add_state(const Walk *w, const CagTransform *place, const CagOriginStep *step,

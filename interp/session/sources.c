@@ -141,16 +141,18 @@ static void collect_operands(Collecting *c, const CagSolid *s, const CagOrigin *
     add_operand(c, o, trail);
     return;
   }
-  const CagOperands *known =
-      o->operands && o->operands->count == s->core->count ? o->operands : NULL;
+  const size_t n = s->core->count;
+  CagOrigin *origins = cag_calloc(n + 1, sizeof *origins);
+  c->failed = !origins;
+  if (origins && o->operands && o->operands->count == n) cag_operands_list(o->operands, origins);
   Trail inner = {.last = o->last, .chain = cag_digest_start(), .outer = trail};
   digest_chain(o->last, &inner.chain);
   inner.whole = trail ? trail->whole : cag_digest_start();
   digest_chain(o->last, &inner.whole);
   const bool adds = o->last && !is_on_trail(trail, &inner.chain);
-  for (size_t i = 0; i < s->core->count; i++)
-    collect_operands(c, s->core->operands[i], known ? &known->items[i] : &(CagOrigin){0},
-                     adds ? &inner : trail);
+  for (size_t i = 0; origins && i < n; i++)
+    collect_operands(c, s->core->operands[i], &origins[i], adds ? &inner : trail);
+  cag_free(origins);
 }
 
 static int collect_part(CagSession *s, void *context) {
@@ -163,14 +165,15 @@ static int collect_part(CagSession *s, void *context) {
   c.to->part = part;
   const CagOrigin *own = source ? &source->shape->origin : NULL;
   // The part's own calls are its origin, so its operands have no trail yet.
-  if (own && item->kind == CAG_ITEM_SOLID && is_operation(item->as.solid))
-    collect_operands(&c, item->as.solid, &(CagOrigin){.operands = own->operands}, NULL);
+  if (own) collect_operands(&c, item->as.solid, &(CagOrigin){.operands = own->operands}, NULL);
   if (c.many) c.to->count = c.to->operand_count = 0;
   return c.failed && !c.many ? cag_session_fail_memory(s) : CAG_STATUS_OK;
 }
 
 static const CagSessionSources *sources_of(CagSession *s, size_t part) {
   if (!s->has_scene || part >= s->scene.item_count) return NULL;
+  const CagItem *item = &s->scene.items[part];
+  if (item->kind != CAG_ITEM_SOLID || !is_operation(item->as.solid)) return NULL;
   if (s->part_sources && s->part_sources->part == part) return s->part_sources;
   CagAccount *before = cag_account_lend(&s->vm->account);
   cag_session_drop_sources(s);

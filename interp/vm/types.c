@@ -431,7 +431,9 @@ static void scan_internal(CagHeap *h, CagObject *o) {
   }
   if (o->flags == CAG_INTERNAL_OPERANDS) {
     const CagOperands *operands = (CagOperands *)o;
-    for (size_t i = 0; i < operands->count; i++) cag_mark_origin(h, &operands->items[i]);
+    const size_t before = operands->first ? operands->first->count : 0;
+    if (operands->first) cag_mark_object(h, &operands->first->head);
+    for (size_t i = 0; before + i < operands->count; i++) cag_mark_origin(h, &operands->items[i]);
   }
   if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
 }

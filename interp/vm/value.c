@@ -403,12 +403,20 @@ void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTr
   CAG_AS_SHAPE(moved)->motion = note;
 }
 
-CagOperands *cag_operands_new(CagVm *vm, size_t n) {
+CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n) {
   CagOperands *o = cag_alloc(vm, CAG_INTERNAL, sizeof *o + n * sizeof *o->items);
   o->head.flags = CAG_INTERNAL_OPERANDS;
-  o->count = n;
+  o->count = (first ? first->count : 0) + n;
+  o->first = first;
   memset(o->items, 0, n * sizeof *o->items);
   return o;
+}
+
+void cag_operands_list(const CagOperands *o, CagOrigin *out) {
+  for (; o; o = o->first) {
+    const size_t before = o->first ? o->first->count : 0;
+    memcpy(out + before, o->items, (o->count - before) * sizeof *out);
+  }
 }
 
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {

@@ -244,11 +244,14 @@ typedef struct CagOrigin {
   struct CagOperands *operands; // SOLID: of the operands of its set operation; NULL: unknown
 } CagOrigin;
 
-// Where the operands of a set operation come from, in the order of those of the solid's core.
+// Where the operands of a set operation come from, in the order of those of the solid's core. The
+// first ones may be those of another operation, which was flattened into this one: a loop that adds
+// one operand in each round does not copy the others.
 typedef struct CagOperands {
   CagObject head; // CAG_INTERNAL
-  size_t count;
-  CagOrigin items[];
+  size_t count;   // of all
+  struct CagOperands *first;
+  CagOrigin items[]; // the others
 } CagOperands;
 
 // The shape that was moved to make another one, and the rigid motion between them. The mesh of what
@@ -423,8 +426,10 @@ void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
 // Notes that the call under way made a shape by moving another one, for its origin.
 void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
 CagTransform cag_motion_transform(const CagMotionNote *note);
-// Where n operands come from; all are unknown.
-CagOperands *cag_operands_new(CagVm *vm, size_t n);
+// Where the operands `first` (NULL: none) and n further ones come from, which are unknown.
+CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n);
+// Copies the origins of all operands to a list of o->count.
+void cag_operands_list(const CagOperands *o, CagOrigin *out);
 // Notes that a shape is another one after a rigid motion.
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the

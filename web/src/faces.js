@@ -38,10 +38,14 @@ export class FaceTint {
       transparent: true, opacity: 0.3, depthWrite: false, side: DoubleSide, toneMapped: false, polygonOffset: true, polygonOffsetFactor: 0.5, polygonOffsetUnits: 0.5,
     });
     this.material.clippingPlanes = view.parts.clipping;
+    /** @type {Piece[]} */
+    this.pieces = [];
   }
 
-  /** @param {Piece[]} pieces */
+  /** Shows these pieces, and releases those that were shown before. @param {Piece[]} pieces */
   show(pieces) {
+    for (const piece of this.pieces) if (!pieces.includes(piece)) release(piece);
+    this.pieces = pieces;
     this.material.color.copy(this.view.color("--hint"));
     this.group.children = pieces.map(({ shape, group }) => {
       const mesh = new Mesh(shape.surface, this.material);
@@ -51,6 +55,12 @@ export class FaceTint {
       return mesh;
     });
   }
+}
+
+/** The positions are those of the part, which keeps them. @param {Piece} piece */
+function release({ shape: { surface } }) {
+  surface.deleteAttribute("position");
+  surface.dispose();
 }
 
 export class FaceSources {
