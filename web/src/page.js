@@ -382,6 +382,7 @@ async function start(engine) {
   for (const tool of tools) tool.addEventListener(tool instanceof HTMLInputElement ? "change" : "click", () => flip(tool.dataset.do ?? ""));
   measure.toggled.on((on) => {
     point([]);
+    pointFace(null);
     scene.classList.toggle("measuring", on);
     overlay.point("", 0, 0);
     markTools();
