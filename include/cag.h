@@ -557,6 +557,90 @@ typedef struct CagSiteOptions {
 CAG_API int cag_session_write_site(CagSession *s, const char *folder,
                                    const CagSiteOptions *options);
 
+// --- What a page asks about parts ---
+// These calls need a scene, too. They work on the shapes that the run made, and evaluate nothing. What
+// they return is valid until the next of them, or until the next mesh of the session is made.
+
+// The sources of the faces of a set operation: the origins of its operands, and of theirs. Operands
+// that were made by the same calls, such as those of a loop, are one source. Returns the name of the
+// definition that source i of a part was first the value of, "" if there is none, or NULL after the
+// last source. Parts that are not set operations have none.
+CAG_API const char *cag_session_part_source(CagSession *s, size_t part, size_t i);
+// Location k in the origin of a source, as for cag_session_part_place, but without the `show`: first
+// the calls that the set operations around it went through, which *what calls "combined", and then
+// its own.
+CAG_API bool cag_session_source_place(CagSession *s, size_t part, size_t i, size_t k,
+                                      const char **what, CagPlaceView *out);
+
+typedef struct CagFacesView {
+  char id[33];              // of the mesh that the triangles belong to
+  size_t triangle_count;    // of the mesh
+  const uint32_t *operands; // of each triangle: the number of the operand that it is a part of
+  size_t operand_count;
+  const uint32_t *sources; // of each operand
+} CagFacesView;
+// Finds which operand each triangle of the mesh of a part comes from. Fails if the part is not a set
+// operation of solids.
+CAG_API int cag_session_part_faces(CagSession *s, size_t part, CagFacesView *out);
+
+// A shape that is not shown itself, where it stands in the scene.
+typedef struct CagGhostView {
+  const char *part;   // the name of the part that was made of it; NULL: none
+  const char *type;   // as of a part
+  CagPlaceView place; // of the call that made it
+  // What the script does to it next: "translate", "rotate", "transform" (any other map), "revolve",
+  // or NULL.
+  const char *motion;
+  double point[3], direction[3]; // the axis, or the vector of a translation
+  double angle;                  // of a rotation, in degrees
+  double frame[3][4];            // of "transform": the image of the axes
+} CagGhostView;
+// Gives the shapes that are the value of the smallest expression at a location of the script: none
+// if that is shown itself. `column` counts code points. Shapes of a loop are given several times, at
+// most 64. `has` is as for cag_session_part_mesh.
+CAG_API int cag_session_ghosts(CagSession *s, const char *file, size_t line, size_t column,
+                               bool (*has)(void *context, const char *id),
+                               void (*give)(void *context, const CagGhostView *ghost,
+                                            const CagMeshView *mesh),
+                               void *context);
+
+// Numbers and lines of the exact surface of a part, in the coordinates of the scene.
+typedef struct CagSurfaceView {
+  char id[33];           // of the mesh that the values belong to; "" if there are none
+  size_t triangle_count; // of this mesh
+  // Curvature: the mean and the Gaussian curvature (1/mm, 1/mm2) at the corners of the triangles, 3 per
+  // triangle, relative to the outward or front side: positive where a ball's are. NaN: unknown.
+  const float *mean, *gaussian;
+  const float *distance; // per triangle, of its farthest point from the surface, mm. NaN: unknown
+  double farthest;       // the largest of them
+  size_t point_count, line_count;
+  const float *points;        // of all lines, 3 numbers each
+  const uint32_t *line_sizes; // points of each line
+} CagSurfaceView;
+// `what` is "curvature", "deviation", "isolines", or "net" (the control points of a spline). Fails, with
+// the reason, if the part has no such thing: a mesh has no exact surface.
+CAG_API int cag_session_part_surface(CagSession *s, size_t part, const char *what,
+                                     CagSurfaceView *out);
+
+// A curve in which a plane cuts a part.
+typedef struct CagSectionCurve {
+  const char *part;
+  bool closed, exact; // exact: not of a mesh
+  double length;
+  double area; // within a closed curve, negative for the outline of a hole; NaN for an open curve
+  size_t point_count;
+  const float *points; // a polyline within the tolerance of the part, 3 numbers each
+} CagSectionCurve;
+// Gives the curves in which the plane a x + b y + c z = d, {a, b, c, d}, cuts the parts. Lines and conics
+// are exact; other curves are within a millionth of the size of the part.
+CAG_API int cag_session_section_curves(CagSession *s, const double plane[4],
+                                       void (*give)(void *context, const CagSectionCurve *c),
+                                       void *context);
+// The bytes that the last run and its scene have in use.
+CAG_API size_t cag_session_memory(const CagSession *s);
+// The pixels of image i that the script shows. Returns false if there is none.
+CAG_API bool cag_session_image_size(CagSession *s, size_t i, size_t *width, size_t *height);
+
 // --- Documents ---
 // A workspace holds the texts that are being edited, for editors and language servers. A document is
 // a script, open or in a file, or a module of the library. All questions are answered from the

@@ -37,6 +37,10 @@ static bool keep_mesh(void *context, const CagMeshView *m) {
   return cag_live_mesh_bytes(m, &bytes, &size) && cag_meshes_keep(context, m->id, bytes, size);
 }
 
+CagLiveMeshes cag_runner_meshes(const CagRunner *r) {
+  return (CagLiveMeshes){has_mesh, keep_mesh, r->options.meshes};
+}
+
 static void publish(void *context, const char *event, const char *json) {
   const CagRunner *r = context;
   cag_server_publish(*r->options.server, event, json, true);

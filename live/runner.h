@@ -9,6 +9,7 @@
 #include "cag.h"
 #include "live/meshes.h"
 #include "live/request.h"
+#include "live/scene_json.h"
 #include "live/server.h"
 
 // Called on the runner's thread with the session of the last run; NULL: there is none.
@@ -37,6 +38,8 @@ void cag_runner_again(CagRunner *r, const char *saved);
 // Does something with the last session as soon as the runner is free. Returns false if memory ran
 // out.
 bool cag_runner_do(CagRunner *r, CagLiveTask *task, void *context);
+// Where the meshes of scenes are kept.
+CagLiveMeshes cag_runner_meshes(const CagRunner *r);
 // A copy of the last request, for another session with the same params. False: memory ran out.
 bool cag_runner_last(CagRunner *r, CagLiveRequest *out);
 // Makes a session as runs do, and runs the request. Returns NULL if memory ran out.

@@ -108,6 +108,26 @@ static void write_origin(CagJson *j, CagSession *s, size_t part) {
   cag_json_close(j, ']');
 }
 
+static void write_sources(CagJson *j, CagSession *s, size_t part) {
+  const char *name, *what;
+  CagPlaceView place;
+  cag_json_open_in(j, "sources", '[');
+  for (size_t i = 0; (name = cag_session_part_source(s, part, i)); i++) {
+    cag_json_open(j, '{');
+    cag_json_text(j, "name", name);
+    cag_json_open_in(j, "origin", '[');
+    for (size_t k = 0; cag_session_source_place(s, part, i, k, &what, &place); k++) {
+      cag_json_open(j, '{');
+      cag_json_text(j, "what", what);
+      cag_live_place(j, &place);
+      cag_json_close(j, '}');
+    }
+    cag_json_close(j, ']');
+    cag_json_close(j, '}');
+  }
+  cag_json_close(j, ']');
+}
+
 static void write_labels_of(CagJson *j, CagSession *s, size_t part) {
   uint32_t label;
   size_t material;
@@ -132,6 +152,7 @@ static void write_part(CagJson *j, CagSession *s, size_t i, const CagPartView *p
   cag_json_number(j, "radius", m->radius);
   write_bounds(j, p->low, p->high);
   write_origin(j, s, i);
+  write_sources(j, s, i);
   cag_json_close(j, '}');
 }
 
@@ -240,10 +261,14 @@ static void write_stage(CagJson *j, CagSession *s) {
 
 static void write_images(CagJson *j, CagSession *s) {
   const char *name;
+  size_t width, height;
   cag_json_open_in(j, "images", '[');
   for (size_t i = 0; (name = cag_session_image(s, i)); i++) {
     cag_json_open(j, '{');
     cag_json_text(j, "name", name);
+    cag_session_image_size(s, i, &width, &height);
+    cag_json_number(j, "width", (double)width);
+    cag_json_number(j, "height", (double)height);
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');
@@ -359,6 +384,7 @@ void cag_live_messages(CagSession *s, const CagLiveRun *run, CagString *out) {
   cag_json_number(&j, "run", run->run);
   cag_json_bool(&j, "ok", run->status == CAG_STATUS_OK);
   cag_json_number(&j, "seconds", run->seconds);
+  cag_json_number(&j, "memory", (double)cag_session_memory(s));
   write_prints(&j, run->prints);
   cag_json_open_in(&j, "diagnostics", '[');
   for (size_t i = 0; i < cag_session_error_count(s); i++) {

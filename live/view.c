@@ -14,8 +14,8 @@
 #include "live/model_answers.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
+#include "live/questions.h"
 #include "live/render_jobs.h"
-#include "live/robot_json.h"
 #include "live/runner.h"
 #include "live/watch_files.h"
 
@@ -339,26 +339,18 @@ static void answer_measure(View *v, CagExchange *x) {
   free(part);
 }
 
-// --- Robots ---
+// --- Questions about the last scene ---
 
-static void answer_about_robot(Errand *e, CagSession *s,
-                               int (*answer)(CagSession *s, const char *request, size_t size,
-                                             CagString *out)) {
-  CagString text = {0};
-  answer_text(e->x, answer(s, e->word, strlen(e->word), &text), &text);
-  cag_string_free(&text);
-  free_errand(e);
-}
-
-static void do_pose(CagSession *s, void *context) { answer_about_robot(context, s, cag_live_pose); }
-
-static void do_reach(CagSession *s, void *context) {
-  answer_about_robot(context, s, cag_live_reach);
-}
-
-static void send_body_on_errand(View *v, CagExchange *x, CagLiveTask *task) {
+static void do_ask(CagSession *s, void *context) {
+  Errand *e = context;
+  CagString answer = {0};
   size_t size;
-  send_on_errand(v, x, cag_exchange_body(x, &size), task);
+  const char *request = cag_exchange_body(e->x, &size);
+  const CagLiveMeshes meshes = cag_runner_meshes(e->view->runner);
+  const int status = cag_live_ask(e->word, s, request, size, &meshes, &answer);
+  answer_text(e->x, status, &answer);
+  cag_string_free(&answer);
+  free_errand(e);
 }
 
 // --- Pictures ---
@@ -448,10 +440,11 @@ static void route_open(View *v, CagExchange *x) {
   else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
   else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
   else if (is_request(x, "POST", "/api/lsp")) cag_lsp_pages_ask(v->editors, x);
-  else if (is_request(x, "POST", "/api/pose")) send_body_on_errand(v, x, do_pose);
-  else if (is_request(x, "POST", "/api/reach")) send_body_on_errand(v, x, do_reach);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
+  else if (!strcmp(cag_exchange_method(x), "POST") && (rest = rest_after(path, "/api/")) &&
+           cag_live_is_question(rest))
+    send_on_errand(v, x, rest, do_ask);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);
 }
 

@@ -1,4 +1,4 @@
-// What the worker of the playground calls (web/src/playground/worker.js).
+// What the worker of the playground calls (web/src/worker.js).
 //
 // The files of the model are in /model, in the file system that emscripten keeps in memory. Texts are
 // UTF-8 and end with a NUL. Functions that return a status leave an answer, which is read by
@@ -13,6 +13,7 @@
 #include "live/lsp.h"
 #include "live/model_answers.h"
 #include "live/model_run.h"
+#include "live/questions.h"
 
 #define FOLDER "/model"
 // A run may take this much memory. The last good run is kept while the next one is under way, and
@@ -116,6 +117,15 @@ EMSCRIPTEN_KEEPALIVE int playground_image(const char *name) {
 
 EMSCRIPTEN_KEEPALIVE int playground_measure(const char *script, const char *part) {
   return keep_answer(cag_answer_measure(good.session, script, part));
+}
+
+// See live/questions.h. An answer with "error" is a refusal.
+EMSCRIPTEN_KEEPALIVE int playground_question(const char *question, const char *request) {
+  CagString s = {0};
+  const CagLiveMeshes meshes = {has_mesh, keep_mesh, NULL};
+  cag_live_ask(question, good.session, request, strlen(request), &meshes, &s);
+  if (s.failed) cag_string_free(&s);
+  return keep_text(s.bytes, s.length, NULL);
 }
 
 static void tell_progress(void *context, double percent, const char *phase) {

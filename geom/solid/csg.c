@@ -233,7 +233,7 @@ static bool is_identity(const CagTransform *t) {
 }
 
 // (a | b) | c is a | b | c, likewise for &; (a - b) - c is a - b - c.
-static bool dissolves(const CagSolid *operand, CagSetOperation op, size_t index) {
+bool cag_solid_dissolves(const CagSolid *operand, CagSetOperation op, size_t index) {
   return operand->kind == kind_of(op) && (op != CAG_DIFFERENCE || index == 0) &&
          is_identity(&operand->placement);
 }
@@ -256,12 +256,12 @@ CagStatus cag_solid_combine(CagSetOperation op, CagSolid *const *operands, size_
                             const volatile int *interrupt, CagSolid **out, CagError *err) {
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
-    count += dissolves(operands[i], op, i) ? operands[i]->core->count : 1;
+    count += cag_solid_dissolves(operands[i], op, i) ? operands[i]->core->count : 1;
   CagSolid *s = NULL;
   CagStatus status = block(kind_of(op), count, &s, err);
   if (status) return status;
   for (size_t i = 0; i < n; i++) {
-    bool apart = dissolves(operands[i], op, i);
+    bool apart = cag_solid_dissolves(operands[i], op, i);
     size_t parts = apart ? operands[i]->core->count : 1;
     for (size_t k = 0; k < parts; k++)
       s->core->operands[s->core->count++] =

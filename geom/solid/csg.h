@@ -47,6 +47,8 @@ bool cag_solid_is_compound(const CagSolid *s);
 //   interrupt  nonzero cancels meshing; must outlive the solid; may be NULL
 CagStatus cag_solid_combine(CagSetOperation op, CagSolid *const *operands, size_t n,
                             const volatile int *interrupt, CagSolid **out, CagError *err);
+// Whether an operand with this index is flattened in this way: its own operands take its place.
+bool cag_solid_dissolves(const CagSolid *operand, CagSetOperation op, size_t index);
 // A copy in which `relabel` replaces the label of each operand without operands of its own, or of
 // the solid itself if it has no operands. Operations without labels count as having no operands.
 typedef uint32_t CagRelabel(void *context, uint32_t label);

@@ -118,6 +118,36 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
   return true;
 }
 
+// --- Origins of operands ---
+
+// The operands that take the place of one that dissolves.
+static size_t origin_count(const CagSolid *operand, CagSetOperation op, size_t index) {
+  return cag_solid_dissolves(operand, op, index) ? operand->core->count : 1;
+}
+
+static CagOperands *known_operands(const CagOrigin *o, const CagSolid *s) {
+  return s->core && o->operands && o->operands->count == s->core->count ? o->operands : NULL;
+}
+
+// Where the operands of a set operation come from, in the order in which cag_solid_combine keeps
+// them. `origins` are those of n operands.
+static CagOperands *operands_of(CagVm *vm, CagSetOperation op, CagSolid *const *operands,
+                                const CagOrigin *origins, size_t n) {
+  size_t count = 0, at = 0;
+  CagOperands *first =
+      cag_solid_dissolves(operands[0], op, 0) ? known_operands(&origins[0], operands[0]) : NULL;
+  const size_t from = first ? 1 : 0;
+  for (size_t i = from; i < n; i++) count += origin_count(operands[i], op, i);
+  CagOperands *out = cag_operands_new(vm, first, count);
+  for (size_t i = from; i < n; i++) {
+    const CagOperands *known = known_operands(&origins[i], operands[i]);
+    if (!cag_solid_dissolves(operands[i], op, i)) out->items[at] = origins[i];
+    else if (known) cag_operands_list(known, out->items + at);
+    at += origin_count(operands[i], op, i);
+  }
+  return out;
+}
+
 // --- Operands ---
 
 // Adds the number of the operand to an error, counted from 1.
@@ -171,21 +201,26 @@ static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands,
 }
 
 // Reads a shape, or a group or list, whose shapes are united. If there are none, the result is an
-// empty solid. `said` is the first shape, if any.
+// empty solid. `said` is the first shape, if any. *origin is that of the only shape, or has those of
+// several.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
-                         CagValue *said) {
+                         CagOrigin *origin, CagValue *said) {
   CagList *shapes;
   if (!cag_list_shapes(call, v, &shapes)) return false;
   if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, call->err));
   CagSolid **parts = cag_hold_solid_array(call, shapes->length);
   *said = cag_list_get(call->vm, shapes, 0);
+  CagOperands *origins = cag_operands_new(call->vm, NULL, shapes->length);
   for (size_t i = 0; i < shapes->length; i++) {
     const CagValue shape = cag_list_get(call->vm, shapes, i);
+    origins->items[i] = CAG_AS_SHAPE(shape)->origin;
     if (!read_one(call, shape, index, &parts[i])) return false;
     if (!paint || !paint->mixed) continue;
     paint->said = CAG_AS_SHAPE(shape)->material;
     if (!relabel_operand(call, paint, &parts[i])) return false;
   }
+  if (shapes->length == 1) *origin = origins->items[0];
+  else origin->operands = operands_of(call->vm, CAG_UNION, parts, origins->items, shapes->length);
   const CagStatus status = combine(call, CAG_UNION, parts, shapes->length, out, call->err);
   cag_release_held(call, parts);
   return cag_geometry_ok(call, status);
@@ -238,14 +273,23 @@ static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
   CagSolid **operands = cag_hold_solid_array(call, n);
+  CagOperands *origins = cag_operands_new(call->vm, NULL, n);
   Paint paint;
   if (!find_paint(call, items, n, &paint)) return false;
   for (size_t i = 0; i < n; i++)
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
-        !read_operand(call, items[i], i, &paint, &operands[i], i == 0 ? &said : &unused))
+        !read_operand(call, items[i], i, &paint, &operands[i], &origins->items[i],
+                      i == 0 ? &said : &unused))
       return false;
+  CagOperands *origin = n > 1 ? operands_of(call->vm, op, operands, origins->items, n) : NULL;
   if (!cag_solid_result(call, combine(call, op, operands, n, &made, call->err), &made, result))
     return false;
+  CagShape *shape = CAG_AS_SHAPE(*result);
+  if (n > 1) shape->origin.operands = origin;
+  else
+    shape->origin =
+        (CagOrigin){.last = origins->items[0].last, .operands = origins->items[0].operands};
+  shape->copied = n == 1;
   if (said.type != CAG_UNSET) inherit_material(*result, CAG_AS_SHAPE(said));
   if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have their own
   return true;
@@ -302,6 +346,7 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
 typedef struct Clip {
   CagCall *call;
   CagSolid *by;
+  CagOrigin origin; // of `by`
 } Clip;
 
 static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
@@ -309,10 +354,13 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagBounds reach;
   if (!read_one(c->call, v, 0, &parts[0])) return false;
   CagStatus status = combine(c->call, CAG_INTERSECTION, parts, 2, &made, c->call->err);
-  cag_solid_release(parts[0]);
+  cag_hold_solid(c->call, parts[0]);
   if (!cag_geometry_ok(c->call, status)) return false;
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
+  const CagOrigin origins[2] = {CAG_AS_SHAPE(v)->origin, c->origin};
+  CAG_AS_SHAPE(value)->origin.operands =
+      operands_of(c->call->vm, CAG_INTERSECTION, parts, origins, 2);
   // A part that is obviously outside is dropped. If only its mesh could show that, it is kept.
   bool outside = !cag_solid_reach(made, &reach, c->call->err) && !(reach.min.x <= reach.max.x);
   return outside || cag_builder_add(c->call->vm, into, value);
@@ -408,12 +456,12 @@ bool cag_solids_is_empty(CagCall *call, CagValue *result) {
 }
 
 bool cag_solids_clip(CagCall *call, CagValue *result) {
-  Clip c = {call, NULL};
+  Clip c = {.call = call};
   CagValue said;
   if (call->values[1].type == CAG_PLANE) {
     const CagPlane *plane = &CAG_AS_PLANE(call->values[1])->plane;
     if (!cag_geometry_ok(call, cag_solid_half_space(plane, &c.by, call->err))) return false;
-  } else if (!read_operand(call, call->values[1], 1, NULL, &c.by, &said)) {
+  } else if (!read_operand(call, call->values[1], 1, NULL, &c.by, &c.origin, &said)) {
     return false;
   }
   cag_hold_solid(call, c.by);

@@ -100,6 +100,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   if (t->in_front && cag_is_shape(v) && !check_in_front(call, t, v)) return false;
   if (type->transform) {
     if (!type->transform(call, t, v, result)) return false;
+    if (cag_is_shape(v)) cag_shape_note_motion(call->vm, *result, v, t);
     if (keeps_mesh(v) && cag_transform_is_rigid(t)) cag_shape_moved(call->vm, *result, v, t);
     if (cag_is_shape(v) && CAG_AS_SHAPE(v)->limb && cag_transform_is_affine(t))
       cag_limb_moved(call->vm, *result, v, t);

@@ -150,7 +150,8 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
   if (s->material) cag_mark_object(h, &s->material->head);
   if (s->name) cag_mark_object(h, &s->name->head);
-  if (s->origin.last) cag_mark_object(h, &s->origin.last->head);
+  cag_mark_origin(h, &s->origin);
+  if (s->motion) cag_mark_object(h, &s->motion->head);
   if (s->still) cag_mark_object(h, &s->still->head);
   if (s->limb) cag_mark_object(h, &s->limb->head);
 }
@@ -259,6 +260,13 @@ const CagValueType cag_type_region = {.print = print_region,
 SHAPE(CagSolid, solid)
 SHAPE(CagMesh, mesh)
 
+// A set operation keeps its operands.
+static bool move_operation(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
+  if (!move_solid(call, t, v, result)) return false;
+  CAG_AS_SHAPE(*result)->origin.operands = CAG_AS_SHAPE(v)->origin.operands;
+  return true;
+}
+
 static void print_solid(CagVm *vm, CagString *s, CagValue v) {
   (void)vm;
   char text[400] = "";
@@ -293,7 +301,7 @@ const CagValueType cag_type_solid = {.print = print_solid,
                                      .retain = retain_solid,
                                      .destroy = destroy_solid,
                                      .call = cag_shape_call,
-                                     .transform = move_solid};
+                                     .transform = move_operation};
 const CagValueType cag_type_mesh = {.print = print_mesh,
                                     .scan = scan_shape,
                                     .retain = retain_mesh,

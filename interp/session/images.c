@@ -284,3 +284,33 @@ const char *cag_session_image(CagSession *s, size_t i) {
   cag_session_end(s, CAG_STATUS_OK);
   return q.found ? s->text : NULL;
 }
+
+typedef struct Size {
+  size_t index, width, height;
+  bool found;
+} Size;
+
+static int find_size(CagSession *s, void *context) {
+  Size *z = context;
+  CagShownImages images;
+  CagError err = {0};
+  if (cag_shown_images(s, &images, &err)) return cag_session_fail_geometry(s, &err);
+  z->found = z->index < images.count;
+  if (z->found) {
+    z->width = images.items[z->index].raster->width;
+    z->height = images.items[z->index].raster->height;
+  }
+  cag_shown_images_free(&images);
+  return CAG_STATUS_OK;
+}
+
+bool cag_session_image_size(CagSession *s, size_t i, size_t *width, size_t *height) {
+  Size z = {.index = i};
+  *width = *height = 0;
+  if (!cag_session_begin(s)) return false;
+  if (cag_session_refresh(s) == CAG_STATUS_OK) cag_session_geometry(s, find_size, &z);
+  cag_session_end(s, CAG_STATUS_OK);
+  *width = z.width;
+  *height = z.height;
+  return z.found;
+}

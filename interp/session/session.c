@@ -44,6 +44,8 @@ static void drop_scene(CagSession *s) {
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   cag_session_drop_robots(s);
   if (s->has_scene) cag_scene_free(&s->scene);
+  cag_session_drop_sources(s);
+  cag_session_drop_mesh(s); // it shares the geometry of the scene
   s->has_scene = false;
   cag_account_lend(before);
 }
@@ -53,7 +55,6 @@ void cag_session_drop_vm(CagSession *s) {
   drop_scene(s);
   cag_free(s->inputs);
   cag_session_drop_params(s);
-  cag_session_drop_mesh(s);
   cag_free(s->sources.items);
   s->sources = (CagItemSources){0};
   cag_account_lend(before);
@@ -404,6 +405,8 @@ int cag_session_run_text(CagSession *s, const char *name, const char *text, size
 const char *cag_session_read_file(const CagSession *s, size_t i) {
   return s->vm && i < s->vm->read_count ? s->vm->reads[i] : NULL;
 }
+
+size_t cag_session_memory(const CagSession *s) { return s->vm ? s->vm->account.used : 0; }
 
 // --- Diagnostics ---
 

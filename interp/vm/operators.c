@@ -6,6 +6,7 @@
 
 #include "base/utf8.h"
 #include "interp/vm/apply.h"
+#include "interp/vm/calls.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
 #include "interp/vm/value_type.h"
@@ -325,7 +326,9 @@ static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result
   bool ok = vm->differentiation ? cag_jet_transform(vm, t, v, result)
                                 : cag_transform_apply(vm, t, v, result);
   vm->top = top;
-  return ok && !vm->failed;
+  if (!ok || vm->failed) return false;
+  cag_note_origin(vm, *result, &v, 1);
+  return true;
 }
 
 // Operators of the types of values beyond those of the language.

@@ -407,13 +407,34 @@ static void print_nothing(CagVm *vm, CagString *s, CagValue v) {
   add(s, "nothing");
 }
 
+// Names of definitions are interned, so they need no marks.
+void cag_mark_origin(CagHeap *h, const CagOrigin *o) {
+  if (o->last) cag_mark_object(h, &o->last->head);
+  if (o->operands) cag_mark_object(h, &o->operands->head);
+}
+
+static void scan_step(CagHeap *h, const CagOriginStep *step) {
+  if (step->before) cag_mark_object(h, &step->before->head);
+  if (step->motion) cag_mark_object(h, &step->motion->head);
+  if (step->inputs) cag_mark_object(h, &step->inputs->head);
+}
+
 static void scan_internal(CagHeap *h, CagObject *o) {
   const CagBuilder *b = (CagBuilder *)o;
   if (o->flags == CAG_INTERNAL_BUILDER && (b->mixed || b->dim == 0))
     cag_mark_values(h, b->data, b->length);
   if (o->flags == CAG_INTERNAL_LABEL) cag_mark_object(h, &((CagLabelText *)o)->text->head);
-  const CagOriginStep *step = (CagOriginStep *)o;
-  if (o->flags == CAG_INTERNAL_STEP && step->before) cag_mark_object(h, &step->before->head);
+  if (o->flags == CAG_INTERNAL_STEP) scan_step(h, (CagOriginStep *)o);
+  if (o->flags == CAG_INTERNAL_INPUTS) {
+    const CagInputs *inputs = (CagInputs *)o;
+    for (size_t i = 0; i < inputs->count; i++) cag_mark_value(h, inputs->items[i].shape);
+  }
+  if (o->flags == CAG_INTERNAL_OPERANDS) {
+    const CagOperands *operands = (CagOperands *)o;
+    const size_t before = operands->first ? operands->first->count : 0;
+    if (operands->first) cag_mark_object(h, &operands->first->head);
+    for (size_t i = 0; before + i < operands->count; i++) cag_mark_origin(h, &operands->items[i]);
+  }
   if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
   if (o->flags == CAG_INTERNAL_POSTURE) cag_mark_object(h, &((CagPosture *)o)->robot->head);
   if (o->flags == CAG_INTERNAL_LIMB) cag_mark_object(h, &((CagLimb *)o)->posture->head);

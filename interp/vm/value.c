@@ -336,10 +336,21 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
   CagObject head = s->head;
   *s = *from;
   s->head = head;
-  s->fresh = true;
+  s->fresh = s->copied = true;
   const CagValueType *type = cag_value_type(shape);
   if (type->retain) type->retain(&s->head);
   return cag_object(shape.type, s);
+}
+
+// The levels of shapes that a step keeps: those before it, and one more for those of its inputs.
+static uint16_t held_levels(const CagOriginStep *before, const CagInputs *inputs) {
+  uint16_t most = before ? before->held : 0;
+  for (size_t i = 0; inputs && i < inputs->count; i++) {
+    const CagOriginStep *last = CAG_AS_SHAPE(inputs->items[i].shape)->origin.last;
+    const uint16_t levels = (uint16_t)(1 + (last ? last->held : 0));
+    if (levels > most) most = levels;
+  }
+  return most;
 }
 
 void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
@@ -351,8 +362,61 @@ void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
   step->head = head;
   step->head.flags = CAG_INTERNAL_STEP;
   step->before = before;
-  step->depth = before ? before->depth + 1 : 0;
+  step->depth = before ? (uint16_t)(before->depth + 1) : 0;
+  step->held = held_levels(before, step->inputs);
+  if (step->inputs && step->held > CAG_INPUTS_DEPTH) {
+    step->inputs = NULL;
+    step->held = before ? before->held : 0;
+  }
   o->last = step;
+}
+
+static bool is_translation(const CagTransform *t) {
+  const double *m = t->m[0];
+  for (int i = 0; i < 16; i++)
+    if (i % 4 != 3 && m[i] != (i % 5 == 0)) return false;
+  return t->m[3][3] == 1 && !t->in_front;
+}
+
+CagTransform cag_motion_transform(const CagMotionNote *note) {
+  if (!note->translates) return note->t[0];
+  CagTransform t = cag_translate(note->step);
+  t.planar = note->planar;
+  return t;
+}
+
+void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
+  const CagMotionNote *before = CAG_AS_SHAPE(from)->fresh ? CAG_AS_SHAPE(from)->motion : NULL;
+  CagTransform t = *motion;
+  if (before) {
+    const CagTransform first = cag_motion_transform(before);
+    t = cag_transform_multiply(motion, &first);
+  }
+  const bool translates = is_translation(&t);
+  CagMotionNote *note =
+      cag_alloc(vm, CAG_INTERNAL, sizeof *note + (translates ? 0 : sizeof *note->t));
+  note->head.flags = CAG_INTERNAL_MOTION;
+  note->translates = translates;
+  note->planar = t.planar;
+  note->step = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
+  if (!translates) note->t[0] = t;
+  CAG_AS_SHAPE(moved)->motion = note;
+}
+
+CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n) {
+  CagOperands *o = cag_alloc(vm, CAG_INTERNAL, sizeof *o + n * sizeof *o->items);
+  o->head.flags = CAG_INTERNAL_OPERANDS;
+  o->count = (first ? first->count : 0) + n;
+  o->first = first;
+  memset(o->items, 0, n * sizeof *o->items);
+  return o;
+}
+
+void cag_operands_list(const CagOperands *o, CagOrigin *out) {
+  for (; o; o = o->first) {
+    const size_t before = o->first ? o->first->count : 0;
+    memcpy(out + before, o->items, (o->count - before) * sizeof *out);
+  }
 }
 
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {

@@ -190,6 +190,32 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
+// The transform by which a call moved a shape. Most are translations, for which the vector is enough.
+typedef struct CagMotionNote {
+  CagObject head; // CAG_INTERNAL
+  CagVec3 step;   // if it is a translation
+  bool translates, planar;
+  CagTransform t[]; // else: one
+} CagMotionNote;
+
+// The curves, regions, and surfaces that a call made a shape of, such as the profile of a
+// revolution.
+typedef struct CagInputs {
+  CagObject head; // CAG_INTERNAL
+  size_t count;
+  struct CagInput {
+    size_t parameter; // index of the argument that is the shape, or a list with it
+    CagValue shape;
+  } items[];
+} CagInputs;
+
+// What a call did with the shape before it.
+typedef enum CagStepKind {
+  CAG_STEP_SHAPED, // made another shape of it, or of `inputs`
+  CAG_STEP_MOVED,  // moved it by `motion`
+  CAG_STEP_SAID    // gave it attributes
+} CagStepKind;
+
 // A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
 typedef struct CagOriginStep {
   CagObject head; // CAG_INTERNAL
@@ -198,17 +224,35 @@ typedef struct CagOriginStep {
   const CagSource *caller; // in the library: the nearest call outside of it; else NULL
   CagSpan caller_span;
   struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
-  uint32_t depth;               // number of calls before it
+  CagMotionNote *motion;        // MOVED
+  CagInputs *inputs;            // SHAPED; NULL: none, or not kept
+  CagStepKind kind;
+  uint16_t depth; // number of calls before it
+  uint16_t held;  // levels of shapes that are kept by inputs of inputs, here and before
 } CagOriginStep;
 
 // The most calls that are kept. Of more, those in between are dropped: first the latest ones.
 enum { CAG_ORIGIN_DEPTH = 12 };
+// The most levels of inputs that are kept, so that a loop that reshapes a curve again and again does
+// not keep all of its curves.
+enum { CAG_INPUTS_DEPTH = 6 };
 
 // Where a shape comes from in the script.
 typedef struct CagOrigin {
-  CagOriginStep *last; // NULL: not made by a call
-  CagText *definition; // the definition whose value it first was; NULL: none
+  CagOriginStep *last;          // NULL: not made by a call
+  CagText *definition;          // the definition whose value it first was; NULL: none
+  struct CagOperands *operands; // SOLID: of the operands of its set operation; NULL: unknown
 } CagOrigin;
+
+// Where the operands of a set operation come from, in the order of those of the solid's core. The
+// first ones may be those of another operation, which was flattened into this one: a loop that adds
+// one operand in each round does not copy the others.
+typedef struct CagOperands {
+  CagObject head; // CAG_INTERNAL
+  size_t count;   // of all
+  struct CagOperands *first;
+  CagOrigin items[]; // the others
+} CagOperands;
 
 // The shape that was moved to make another one, and the rigid motion between them. The mesh of what
 // only moves is made once.
@@ -252,13 +296,15 @@ typedef struct CagShape {
   CagRecord *material;    // NULL: not set
   CagText *name;          // NULL: not set
   CagOrigin origin;
+  CagMotionNote *motion;       // by the call that is not in its origin yet; NULL: it did not move
   CagStill *still;             // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
   CagLimb *limb;               // NULL: not of a robot, or changed since it was drawn
   CagLineStyle line;           // of curves
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
-  bool fresh; // the call that makes it has not been added to its origin yet
+  bool fresh;  // the call that makes it has not been added to its origin yet
+  bool copied; // while fresh: it has the geometry of an argument of that call
 } CagShape;
 
 // --- Cameras, lights, and settings (sky, background, ground) ---
@@ -395,6 +441,13 @@ CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
 // Adds a call to an origin, which is changed in place. `like` has its location.
 void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
+// Notes that the call under way made a shape by moving another one, for its origin.
+void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
+CagTransform cag_motion_transform(const CagMotionNote *note);
+// Where the operands `first` (NULL: none) and n further ones come from, which are unknown.
+CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n);
+// Copies the origins of all operands to a list of o->count.
+void cag_operands_list(const CagOperands *o, CagOrigin *out);
 // Notes that a shape is another one after a rigid motion.
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
 // Notes that `moved` is the image of the limb `from` by an affine map.

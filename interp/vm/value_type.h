@@ -47,6 +47,7 @@ static inline const CagValueType *cag_value_type(CagValue v) { return cag_value_
 
 // --- For `scan` ---
 void cag_mark_object(CagHeap *h, CagObject *o); // NULL is allowed
+void cag_mark_origin(CagHeap *h, const CagOrigin *o);
 void cag_mark_value(CagHeap *h, CagValue v);
 // Ends early if the run must stop.
 void cag_mark_values(CagHeap *h, const CagValue *v, size_t n);

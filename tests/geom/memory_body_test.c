@@ -10,6 +10,7 @@
 #include "geom/meet/section.h"
 #include "geom/mesh/check.h"
 #include "geom/mesh/hull.h"
+#include "geom/ray/mesh_surface.h"
 #include "geom/robot/path.h"
 #include "geom/robot/robot.h"
 #include "geom/solid/clip.h"
@@ -423,15 +424,47 @@ QUESTION(in_general_position) {
   cag_solid_in_general_position(s, NULL);
   return CAG_OK;
 }
+// What the exact surface tells about the mesh.
+QUESTION(mesh_against_surface) {
+  SOLID;
+  CagMesh *m;
+  CagCaster *caster = NULL;
+  const CagTessellation how = coarse();
+  double farthest = 0;
+  CagStatus status = cag_solid_tessellate(s, &how, &m, e);
+  if (status) return status;
+  const size_t n = m->triangle_count;
+  float *values = __real_malloc((6 * n + 1) * sizeof *values);
+  uint32_t *leaves = __real_malloc((n + 1) * sizeof *leaves);
+  status = cag_mesh_leaves(s, m, leaves, e);
+  if (!status) status = cag_caster_of_solid(s, &caster, e);
+  if (!status) status = cag_mesh_curvature(caster, m, values, values + 3 * n, e);
+  if (!status) status = cag_mesh_deviation(caster, m, values, &farthest, e);
+  if (!status) fault_found(farthest + (n > 0 ? leaves[n - 1] : 0));
+  cag_caster_free(caster);
+  cag_mesh_release(m);
+  __real_free(values);
+  __real_free(leaves);
+  return status;
+}
 typedef struct Question {
   const char *name;
   FaultyOperation ask;
 } Question;
 static const Question QUESTIONS[] = {
-    ROW(solid_bounds),    ROW(mass),          ROW(solid_moved),
-    ROW(solid_sheared),   ROW(solid_mesh),    ROW(is_empty),
-    ROW(reach),           ROW(holds),         ROW(clipped_line),
-    ROW(clipped_surface), ROW(solid_section), ROW(in_general_position),
+    ROW(solid_bounds),
+    ROW(mass),
+    ROW(solid_moved),
+    ROW(solid_sheared),
+    ROW(solid_mesh),
+    ROW(is_empty),
+    ROW(reach),
+    ROW(holds),
+    ROW(clipped_line),
+    ROW(clipped_surface),
+    ROW(solid_section),
+    ROW(in_general_position),
+    ROW(mesh_against_surface),
 };
 
 static CagStatus make_kind(const void *given, CagError *e) {

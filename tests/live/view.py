@@ -4,6 +4,8 @@
     view.py PROGRAM [TEST ...]   closes with `N passed, N failed, N skipped`
 """
 
+import array
+import base64
 import http.client
 import json
 import math
@@ -197,6 +199,110 @@ def test_imported_files_are_watched():
         f.write("knob = box([4, 5, 6])\n")
     scene = v.wait("scene", lambda e: e["parts"][0]["bounds"][1] == [4, 5, 6])
     assert scene["run"] > run and scene["parts"][0]["origin"][-1]["file"] == "parts.cag"
+    v.close()
+
+
+BLOCK = """hole = cylinder(20, 8, centered: true)
+block = box([40, 40, 10], centered: true)
+show translate(block - hole, [0, 0, 30]) |> named("part")
+show tessellate(sphere(3)) |> named("mesh")
+show image([[0, 1, 0], [1, 0, 1]]) |> named("dots")
+"""
+
+
+def floats(text):
+    return array.array("f", base64.b64decode(text))
+
+
+def ask(v, question, request, expected=200):
+    status, body, _ = v.ask("POST", "/api/" + question, json.dumps(request))
+    assert status == expected, (status, body)
+    return json.loads(body)
+
+
+def test_faces_and_their_sources():
+    v = View(BLOCK)
+    part = mesh_of(v.scene(1), "part")
+    assert [s["name"] for s in part["sources"]] == ["block", "hole"]
+    assert part["sources"][1]["origin"] == [{"what": "made", "file": "model.cag", "line": 1, "column": 8, "endLine": 1, "endColumn": 39, "library": False}]
+    faces = ask(v, "faces", {"part": "part"})
+    assert faces["mesh"] == part["mesh"] and faces["operands"] == [0, 1]
+    _, body, _ = v.ask("GET", "/api/mesh/" + part["mesh"])
+    assert sum(faces["faces"][::2]) == int.from_bytes(body[12:16], "little")
+    assert set(faces["faces"][1::2]) == {0, 1}
+    ask(v, "faces", {"part": "mesh"}, 422)
+    ask(v, "faces", {"part": "nobody"}, 404)
+    ask(v, "faces", {}, 404)
+    v.close()
+
+
+def test_ghosts():
+    v = View(BLOCK)
+    v.scene(1)
+    (ghost,) = ask(v, "ghost", {"file": "model.cag", "line": 3, "column": 25})["ghosts"]
+    assert ghost["part"] == "part" and ghost["type"] == "solid" and ghost["place"]["line"] == 1
+    assert abs(ghost["placement"][11] - 20) < 1e-12  # it is centered
+    assert v.ask("GET", "/api/mesh/" + ghost["mesh"])[0] == 200
+    (moved,) = ask(v, "ghost", {"file": "model.cag", "line": 3, "column": 22})["ghosts"]
+    assert moved["motion"] == {"kind": "translate", "point": [0, 0, 0], "direction": [0, 0, 30], "angle": 0, "frame": None}
+    assert ask(v, "ghost", {"file": "model.cag", "line": 3, "column": 2})["ghosts"] == []
+    assert ask(v, "ghost", {"file": "../x.cag", "line": 1e9, "column": 1})["ghosts"] == []
+    for bad in [{}, {"file": "model.cag"}, {"file": "model.cag", "line": 0, "column": 1}, {"file": "model.cag", "line": 1.5, "column": 1}, {"file": 3, "line": 1, "column": 1}, {"file": "model.cag", "line": 1, "column": 1e300}]:
+        assert ask(v, "ghost", bad, 400)["error"]
+    assert v.ask("POST", "/api/ghost", "[1]")[0] == 400 and v.ask("POST", "/api/ghost", "{")[0] == 400
+    assert v.ask("GET", "/api/ghost")[0] == 404
+    # The last good scene answers while the script is wrong.
+    v.wait("messages", lambda m, run=v.run(files={"model.cag": "show ("}): m["run"] == run)
+    assert len(ask(v, "ghost", {"file": "model.cag", "line": 3, "column": 25})["ghosts"]) == 1
+    v.close()
+
+
+def test_surfaces():
+    v = View("show sphere(5)\nshow bspline_surface([for i in 0..3: [for k in 0..3: [i, k, i * k]]]) |> named(\"patch\")\nshow tessellate(sphere(3)) |> named(\"mesh\")\n")
+    sphere = mesh_of(v.scene(1), "sphere")
+    bent = ask(v, "surface", {"part": "sphere", "what": "curvature"})
+    assert bent["mesh"] == sphere["mesh"]
+    gaussian = floats(bent["gaussian"])
+    assert len(gaussian) % 3 == 0 and all(x != x or abs(x - 1 / 25) < 1e-6 for x in gaussian)
+    away = ask(v, "surface", {"part": "sphere", "what": "deviation"})
+    assert 3 * len(floats(away["distance"])) == len(gaussian) and 0 < away["farthest"] < 0.02
+    net = ask(v, "surface", {"part": "patch", "what": "net"})
+    assert net["sizes"] == [4] * 8 and len(floats(net["points"])) == 3 * 32
+    assert len(ask(v, "surface", {"part": "patch", "what": "isolines"})["sizes"]) == 18
+    assert "is a mesh" in ask(v, "surface", {"part": "mesh", "what": "curvature"})["reason"]
+    ask(v, "surface", {"part": "sphere", "what": "charm"}, 400)
+    ask(v, "surface", {"part": "sphere"}, 400)
+    ask(v, "surface", {"part": "nobody", "what": "net"}, 404)
+    v.close()
+
+
+def test_section_curves():
+    v = View(BLOCK)
+    v.scene(1)
+    curves = ask(v, "section", {"normal": [0, 0, 1], "offset": 30})["curves"]
+    assert [c["part"] for c in curves] == ["part", "part"] and all(c["closed"] and c["exact"] for c in curves)
+    assert abs(sum(c["area"] for c in curves) - (1600 - 64 * math.pi)) < 1e-6
+    assert abs(sum(c["length"] for c in curves) - (160 + 16 * math.pi)) < 1e-6
+    points = floats(curves[1]["points"])
+    assert len(points) > 60 and all(abs(z - 30) < 1e-5 for z in points[2::3])
+    assert ask(v, "section", {"normal": [1, 0, 0], "offset": 900})["curves"] == []
+    for bad in [{}, {"normal": [0, 0, 0], "offset": 1}, {"normal": [0, 1], "offset": 1}, {"normal": [0, 1, "z"], "offset": 1}, {"normal": [0, 0, 1]}]:
+        assert ask(v, "section", bad, 400)["error"]
+    v.close()
+
+
+def test_memory_and_sizes_of_images():
+    v = View(BLOCK)
+    assert v.scene(1)["images"] == [{"name": "dots", "width": 3, "height": 2}]
+    assert v.wait("messages")["memory"] > 10000
+    v.close()
+
+
+def test_nothing_is_asked_before_the_first_scene():
+    v = View("show (\n")
+    v.wait("messages")
+    for question in ["faces", "ghost", "surface", "section"]:
+        assert ask(v, question, {"part": "x"}, 409)["error"]
     v.close()
 
 

@@ -125,11 +125,13 @@ async function block(browser) {
     await page.key("7");
     await drawn(page);
     const [x, y] = await middle(page);
-    for (let i = 0; i < 40 && !(await page.value('document.querySelector(".tip:not([hidden])")?.textContent')); i++) {
+    const tip = () => page.value('document.querySelector(".tip:not([hidden])")?.textContent ?? ""');
+    // What the face comes from is asked for when it is pointed at.
+    for (let i = 0; i < 100 && !(await tip()).includes("from"); i++) {
       await page.mouse("mouseMoved", x + 30 + (i % 2), y + 4, { button: "none" });
       await pause(50);
     }
-    equal(await page.value('document.querySelector(".tip").textContent'), "block · solid · 40 × 30 × 20 mm");
+    equal(await tip(), "block · solid · 40 × 30 × 20 mm · from box([width, 30, 20], centered: true)");
   });
   await test("a click selects the part, with its measures and its places in the script", async () => {
     const [x, y] = await middle(page);
@@ -137,13 +139,47 @@ async function block(browser) {
     await page.until('document.querySelector("#selection strong")?.textContent === "block"');
     equal(await page.value(fact("size")), "40 × 30 × 20 mm");
     await page.until('document.querySelectorAll(".chain li").length >= 2');
-    const chain = await page.value('[...document.querySelectorAll(".chain .place")].map((p) => p.textContent)');
+    const chain = await page.value('[...document.querySelectorAll(".chain[aria-label=\'Places in the script\'] .place")].map((p) => p.textContent)');
     check(chain[0].includes("shown") && chain[0].includes("block.cag:9"), `unexpected: ${chain[0]}`);
     await page.until(fact("volume"));
     const volume = await page.value(fact("volume"));
     check(Math.abs(parseFloat(volume) / ((40 * 30 - Math.PI * 25) * 20) - 1) < 1e-3, `the volume is ${volume}`);
     const image = await picture(page, "selected");
     check(colorCount(image, await sceneOf(page)) > 40, "the scene is blank");
+  });
+  await test("a click on a face tells which operand it comes from", async () => {
+    const face = '[...document.querySelectorAll(".chain[aria-label=\'Places of the face\'] .place")].map((p) => p.textContent)';
+    await page.until(`(${face}).length === 1`);
+    equal(await page.value(face), ["madeblock.cag:6box([width, 30, 20], centered: true)"]);
+    // The hole is seen from above.
+    await page.key("5");
+    await page.key("f");
+    await drawn(page);
+    const at = await page.value(`(() => {
+      const { view } = cagPage, found = [];
+      for (let y = 0; y < view.height; y += 3)
+        for (let x = 0; x < view.width; x += 3) {
+          const hit = view.pick(x, y);
+          if (hit && Math.hypot(hit.point.x, hit.point.y) < 5.01 && Math.abs(hit.point.z) < 9) found.push([x, y]);
+        }
+      return found[Math.floor(found.length / 2)] ?? null;
+    })()`);
+    check(at, "the hole is not seen");
+    const r = await page.box("#scene");
+    await page.click(r.x + at[0], r.y + at[1]);
+    await page.until(`(${face})[0]?.includes("cylinder(40, 5, centered: true)")`);
+    check(colorCount(await picture(page, "face"), await sceneOf(page)) > 40, "the scene is blank");
+    await page.key("7");
+  });
+  await test("the shape of an expression that is not shown appears as a ghost", async () => {
+    const before = await picture(page, "ghost-before"), note = 'document.querySelector(".ghost-note:not([hidden])")?.textContent ?? ""';
+    const place = (line, column) => page.value(`cagPage.editor.select(${JSON.stringify({ file: "block.cag", line, column, endLine: line, endColumn: column })})`);
+    await place(6, 50);
+    await page.until(`(${note}) === "cylinder(40, 5, centered: true)"`);
+    check(difference(before, await picture(page, "ghost"), await sceneOf(page)) > 0.003, "the ghost is not seen");
+    await place(9, 8);
+    await page.until(`(${note}) === ""`); // a turn by 0deg leaves it as it is shown
+    await page.value("document.querySelector('#scene').focus()");
   });
   await test("a place of the chain selects its text in the editor", async () => {
     await page.value('[...document.querySelectorAll(".chain .place")].at(-1).click()');
@@ -226,6 +262,16 @@ async function block(browser) {
     equal(await page.value(offset), 0);
     await page.drag([r.x + r.width / 2, r.y + r.height / 2], [r.x + r.width / 2, r.y + r.height / 2 + 20]);
     check((await page.value(offset)) < 0, "the plane did not follow the handle");
+    // The exact curves: a rectangle with a hole.
+    const width = await page.value(`Number(document.querySelector("[data-param=width] input[type=number]").value)`);
+    const cut = (name) => `[...document.querySelectorAll("#section dt")].find((d) => d.textContent === ${JSON.stringify(name)})?.nextSibling.textContent`;
+    await page.until(cut("length"));
+    equal(await page.value(cut("curves")), "2");
+    const length = 2 * (width + 30) + 10 * Math.PI, area = width * 30 - 25 * Math.PI;
+    check(Math.abs(parseFloat(await page.value(cut("length"))) / length - 1) < 1e-6, "the length is wrong");
+    check(Math.abs(parseFloat(await page.value(cut("area"))) / area - 1) < 1e-6, "the area is wrong");
+    check(await page.value(`document.querySelector("#section .section-curves button").title`).then((t) => /^Copy section\(block, plane\(\[0, 0, -?[\d.]+\], Z\)\)$/.test(t)), "no expression");
+    await picture(page, "section-curves");
     await page.value("document.querySelector('#scene').focus()");
     await page.key("x");
   });
@@ -250,6 +296,25 @@ async function block(browser) {
     await page.until(`Math.abs(parseFloat(${fact("distance")}) - ${width}) < 0.01`);
     await picture(page, "measure");
     await page.key("Escape");
+  });
+  await test("curvature, distance, and lines of surfaces are shown with their numbers", async () => {
+    await page.value("document.querySelector('#scene').focus()");
+    await page.key("Escape");
+    await page.key("7");
+    const choose = (kind) => page.value(`(() => { const s = document.querySelector("#surfaces select"); s.closest("details").open = true; s.value = ${JSON.stringify(kind)}; s.dispatchEvent(new Event("change")); })()`);
+    const legend = 'document.querySelector("#surfaces .legend:not([hidden])")?.getAttribute("aria-label") ?? ""', seen = "document.querySelector('#surfaces').textContent";
+    const before = await picture(page, "surfaces-before");
+    await choose("mean"); // -1/10 in the hole, 0 elsewhere
+    await page.until(`(${legend}) === "Colors from -0.1 to 0 1/mm"`);
+    check(difference(before, await picture(page, "mean"), await sceneOf(page)) > 0.02, "no colors");
+    await choose("deviation");
+    await page.until(`/The mesh is at most 0\\.0\\d+ mm from the surface/.test(${seen})`);
+    await choose("zebra");
+    check(difference(before, await picture(page, "zebra"), await sceneOf(page)) > 0.02, "no stripes");
+    await choose("net");
+    await page.until(`(${seen}).includes("block is a set operation")`);
+    await choose("");
+    check(difference(before, await picture(page, "surfaces-after"), await sceneOf(page)) < 0.001, "something stays");
   });
   await test("parts are hidden, and shown again", async () => {
     await page.key("7");

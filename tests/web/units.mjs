@@ -2,6 +2,9 @@
 //   node tests/web/units.mjs
 import { Bvh } from "../../web/src/bvh.js";
 import { isClosed } from "../../web/src/closed.js";
+import { colorOf, scaleOf } from "../../web/src/colors.js";
+import { floatsOf } from "../../web/src/engine.js";
+import { operandsOf } from "../../web/src/faces.js";
 import { formatNumber, formatPoint } from "../../web/src/format.js";
 import { clampJoint, jointsExpression, rewriteJoint, roundJoint, sameJoints } from "../../web/src/joints.js";
 import { MeshCache, readMesh } from "../../web/src/mesh.js";
@@ -11,6 +14,8 @@ import { diffLines, offsetOf, paramValueRange, rangeOf } from "../../web/src/pla
 import { chainLength, circleOf, edgeChain, findingsOfTwo, flatFace, isStraight } from "../../web/src/recognize.js";
 import { Runs } from "../../web/src/runs.js";
 import { roundUp, scaleLength } from "../../web/src/scale.js";
+import { sumByPart } from "../../web/src/section_curves.js";
+import { valuesOf } from "../../web/src/surfaces.js";
 
 let passed = 0, failed = 0;
 async function test(name, body) {
@@ -25,6 +30,9 @@ async function test(name, body) {
 function equal(found, expected) {
   const a = JSON.stringify(found), b = JSON.stringify(expected);
   if (a !== b) throw new Error(`expected ${b}, found ${a}`);
+}
+function check(truth, what) {
+  if (!truth) throw new Error(what);
 }
 function near(found, expected, tolerance = 1e-9) {
   if (!(Math.abs(found - expected) <= tolerance)) throw new Error(`expected ${expected}, found ${found}`);
@@ -307,6 +315,58 @@ await test("a robot is the same if its joints and their values in the script are
   equal(sameJoints([turning], [turning, sliding]), false);
   equal(sameJoints([turning], [{ ...turning, value: 31 }]), false);
   equal(sameJoints([turning], [{ ...turning, high: 80 }]), false);
+});
+
+// --- Surfaces ---
+
+const base64 = (numbers) => Buffer.from(new Float32Array(numbers).buffer).toString("base64");
+
+await test("floats are read from base64", () => {
+  equal([...floatsOf(base64([1, -0.5, 3]))], [1, -0.5, 3]);
+  equal([...floatsOf("")], []);
+});
+
+await test("operands of triangles follow the order in which they are drawn", () => {
+  const answer = { mesh: "", operands: [0, 0, 1], faces: [2, 0, 1, 2] };
+  equal([...operandsOf(answer, 3, null)], [0, 0, 2]);
+  equal([...operandsOf(answer, 3, Uint32Array.of(2, 0, 1))], [2, 0, 0]);
+});
+
+await test("triangles sorted by label remember their order", () => {
+  const data = readMesh(encode({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], triangles: [0, 1, 2, 1, 2, 0, 2, 0, 1], labels: [7, 0, 7] }));
+  equal([...data.order], [1, 0, 2]);
+});
+
+await test("principal curvatures follow from the mean and Gaussian ones", () => {
+  // A torus of radii 5 and 2, outside: 1/2 and 1/7.
+  const answer = { mesh: "", mean: base64([0.5 * (1 / 2 + 1 / 7), 0, 0]), gaussian: base64([1 / 14, 0, 0]) };
+  near(valuesOf("max", answer, null)[0], 1 / 2, 1e-6);
+  near(valuesOf("min", answer, null)[0], 1 / 7, 1e-6);
+  equal([...valuesOf("deviation", { mesh: "", distance: base64([1, 2]) }, Uint32Array.of(1, 0))], [2, 2, 2, 1, 1, 1]);
+});
+
+await test("scales leave out rare extremes, and are symmetric if both signs occur", () => {
+  const values = Float32Array.from({ length: 1001 }, (_, i) => i / 1000);
+  values[1000] = 1e6;
+  const scale = scaleOf([values], 98);
+  near(scale.low, 0.01, 1e-6);
+  near(scale.high, 0.99, 1e-6);
+  equal(scaleOf([values], 100).high, 1e6);
+  equal(scaleOf([Float32Array.of(-1, NaN, 4)], 100), { low: -4, high: 4, diverging: true });
+  equal(scaleOf([Float32Array.of(NaN)], 100).diverging, false);
+});
+
+await test("the ends of a scale have its first and last color", () => {
+  const scale = { low: -1, high: 1, diverging: true }, low = colorOf(scale, -1), beyond = colorOf(scale, -9), middle = colorOf(scale, 0);
+  equal(beyond, low);
+  check(low[2] > low[0] && Math.abs(middle[0] - middle[2]) < 0.02, "the colors are wrong");
+  equal(colorOf({ low: 3, high: 3, diverging: false }, 3).every(Number.isFinite), true);
+});
+
+await test("section curves are summed by part", () => {
+  const curve = (part, length, area) => ({ part, closed: area !== null, exact: true, length, area, points: "" });
+  equal(sumByPart([curve("a", 3, 9), curve("a", 2, -4), curve("b", 1, null)]), [
+    { part: "a", count: 2, length: 5, area: 5, exact: true }, { part: "b", count: 1, length: 1, area: null, exact: true }]);
 });
 
 console.log(`${passed} passed, ${failed} failed, 0 skipped`);

@@ -152,6 +152,12 @@ export class Editor {
     return state.doc.lineAt(state.selection.main.head).number;
   }
 
+  /** The column of the cursor, from 1, in code points. */
+  column() {
+    const { state } = this.view, at = state.selection.main.head, line = state.doc.lineAt(at);
+    return [...line.text.slice(0, at - line.from)].length + 1;
+  }
+
   /** Opens a file, or gives an open file another text. @param {string} path @param {string} text */
   open(path, text) {
     const current = this.text(path);

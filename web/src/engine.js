@@ -55,6 +55,7 @@
  * @property {number} radius
  * @property {[Triple, Triple]} bounds
  * @property {Origin[]} origin
+ * @property {{ name: string, origin: Origin[] }[]} [sources]  what the faces of a set operation come from
  *
  * @typedef {object} Joint  values are in degrees or mm
  * @property {string} name
@@ -200,6 +201,47 @@
  * @property {[Triple, Triple] | null} bounds
  * @property {boolean | null} watertight
  *
+ * @typedef {object} FacesAnswer
+ * @property {string} mesh  the id of the mesh that the triangles belong to
+ * @property {number[]} operands  the source of each operand
+ * @property {number[]} faces  pairs of a count of triangles, and their operand
+ *
+ * @typedef {object} Motion  what the script does to a shape next
+ * @property {"translate" | "rotate" | "revolve" | "transform"} kind
+ * @property {Triple} point  of an axis
+ * @property {Triple} direction  of an axis, or the vector of a translation
+ * @property {number} angle  degrees
+ * @property {number[] | null} frame  3 rows of 4: the image of the axes
+ *
+ * @typedef {object} Ghost  a shape that is not shown itself
+ * @property {string | null} part  that was made of it
+ * @property {string} type
+ * @property {string} mesh
+ * @property {number[]} placement
+ * @property {boolean} line
+ * @property {Motion | null} motion
+ * @property {Place} place  of the call that made it
+ *
+ * @typedef {"curvature" | "deviation" | "isolines" | "net"} SurfaceQuestion
+ *
+ * @typedef {object} SurfaceAnswer  numbers are base64 of 32-bit floats; see floatsOf
+ * @property {string} [reason]  why the part has no such thing
+ * @property {string} [mesh]  that the values belong to
+ * @property {string} [mean]  at the corners of the triangles, 1/mm
+ * @property {string} [gaussian]  1/mm2
+ * @property {string} [distance]  of the triangles, mm
+ * @property {number} [farthest]
+ * @property {string} [points]  of lines, in the scene
+ * @property {number[]} [sizes]  the points of each line
+ *
+ * @typedef {object} SectionCurve
+ * @property {string} part
+ * @property {boolean} closed
+ * @property {boolean} exact
+ * @property {number} length
+ * @property {number | null} area  negative for the outline of a hole; null for an open curve
+ * @property {string} points
+ *
  * @typedef {Record<string, Record<string, any>>} ParamSets
  *
  * @typedef {object} EngineListener
@@ -231,6 +273,10 @@
  * @property {(request: ReachRequest) => Promise<RobotPose & Reached>} reach  joint values that bring the tool to a target
  * @property {(messages: object[], check: boolean) => Promise<import("./language.js").Message[]>} lsp  messages of the language server (JSON-RPC); check:
  *   look for problems in what changed. Resolves with what the server has to say
+ * @property {(part: string) => Promise<FacesAnswer>} faces
+ * @property {(file: string, line: number, column: number) => Promise<Ghost[]>} ghosts  at a location of the script as it was run
+ * @property {(part: string, what: SurfaceQuestion) => Promise<SurfaceAnswer>} surface
+ * @property {(normal: Triple, offset: number) => Promise<SectionCurve[]>} section
  */
 
 /**
@@ -258,6 +304,12 @@ export function listenEarly(engine) {
     for (const tell of kept) tell(listener);
     kept = [];
   };
+}
+
+/** The numbers of an answer. @param {string} text  base64 */
+export function floatsOf(text) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  return new Float32Array(bytes.buffer);
 }
 
 /** An error that the engine reports. */

@@ -1,6 +1,7 @@
 // The engine behind HTTP: requests, and one stream of events.
 
 import { EngineError } from "./engine.js";
+import { questions } from "./questions.js";
 
 // Milliseconds until the page looks for a server that is gone.
 const RETRY_AFTER = 1000;
@@ -85,7 +86,6 @@ export function serverEngine() {
       const m = await (await ask("/api/measure", json("POST", { part }))).json();
       return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };
     },
-    pose: async (robot, q) => (await ask("/api/pose", json("POST", { robot, q }))).json(),
-    reach: async (request) => (await ask("/api/reach", json("POST", request))).json(),
+    ...questions(async (question, request) => (await ask(`/api/${question}`, json("POST", request))).json()),
   };
 }

@@ -5,6 +5,7 @@
 
 import { EngineError } from "./engine.js";
 import { isModule } from "./places.js";
+import { questions } from "./questions.js";
 
 const PATIENCE = 400; // milliseconds that a run may go on when there is a newer one
 const MESHES_MOST = 256 << 20; // bytes of meshes that are kept
@@ -253,7 +254,7 @@ class WorkerEngine {
 
   /** @param {string} name */
   restoreBefore(name) {
-    if (["export", "image", "measure"].includes(name) && !this.underWay) this.restore(this.active);
+    if (["export", "image", "measure", "question"].includes(name) && !this.underWay) this.restore(this.active);
   }
 
   /** @param {object[]} messages @param {boolean} check */
@@ -342,6 +343,11 @@ export function workerEngine(model) {
     },
     image: async (name) => blobOf(await engine.ask("image", name)),
     lsp: (messages, check) => engine.lsp(messages, check),
+    ...questions(async (question, request) => {
+      const answer = JSON.parse(textOf(await engine.ask("question", question, JSON.stringify(request))));
+      if (answer.error) throw new EngineError(answer.error, answer.help ?? "");
+      return answer;
+    }),
     sets: async () => model.sets(),
     writeSets: async (sets) => model.writeSets(sets),
     measure: async (part) => {

@@ -10,6 +10,7 @@ const HAS_NORMALS = 1, HAS_LABELS = 2;
  * @property {Float32Array} positions
  * @property {Float32Array | null} normals
  * @property {Uint32Array} triangles  those of one label are adjacent
+ * @property {Uint32Array | null} order  the number of each triangle in the engine's order; null: the same
  * @property {{ label: number, start: number, count: number }[]} groups  ranges of triangles by label
  * @property {Uint32Array} edges  pairs of vertices: feature edges, or the segments of a curve
  * @property {number} bytes
@@ -40,8 +41,8 @@ export function readMesh(buffer) {
   const triangles = /** @type {Uint32Array} */ (take(Uint32Array, triangleCount * 3));
   const labels = hasLabels ? /** @type {Uint32Array} */ (take(Uint32Array, triangleCount)) : null;
   const edges = /** @type {Uint32Array} */ (take(Uint32Array, edgeCount * 2));
-  const groups = labels ? sortByLabel(triangles, labels) : [{ label: 0, start: 0, count: triangleCount }];
-  return { positions, normals, triangles, groups, edges, bytes: buffer.byteLength };
+  const { groups, order } = labels ? sortByLabel(triangles, labels) : { groups: [{ label: 0, start: 0, count: triangleCount }], order: null };
+  return { positions, normals, triangles, order, groups, edges, bytes: buffer.byteLength };
 }
 
 /** @param {Uint32Array} triangles @param {Uint32Array} labels */
@@ -55,15 +56,16 @@ function sortByLabel(triangles, labels) {
     start += group.count;
     return group;
   });
-  if (groups.length < 2) return groups;
+  if (groups.length < 2) return { groups, order: null };
   const next = new Map(groups.map((g) => [g.label, g.start]));
-  const source = triangles.slice();
+  const source = triangles.slice(), order = new Uint32Array(labels.length);
   for (let i = 0; i < labels.length; i++) {
     const to = next.get(labels[i]) ?? 0;
     next.set(labels[i], to + 1);
     triangles.set(source.subarray(3 * i, 3 * i + 3), 3 * to);
+    order[to] = i;
   }
-  return groups;
+  return { groups, order };
 }
 
 /**

@@ -56,8 +56,8 @@ export class Outline {
   /**
    * @param {import("three").WebGLRenderer} renderer
    * @param {import("three").Camera} camera
-   * @param {import("./parts.js").PartView[]} picked
-   * @param {import("./parts.js").PartView[]} pointed
+   * @param {(import("./parts.js").PartView | import("./faces.js").Piece)[]} picked
+   * @param {(import("./parts.js").PartView | import("./faces.js").Piece)[]} pointed
    * @param {import("three").Plane[]} clipping
    */
   render(renderer, camera, picked, pointed, clipping) {
@@ -79,7 +79,7 @@ export class Outline {
     this.masked.children = [];
   }
 
-  /** @param {import("./parts.js").PartView[]} views @param {MeshBasicMaterial} material @param {import("three").Plane[]} clipping */
+  /** @param {(import("./parts.js").PartView | import("./faces.js").Piece)[]} views @param {MeshBasicMaterial} material @param {import("three").Plane[]} clipping */
   masks(views, material, clipping) {
     material.clippingPlanes = clipping;
     return views.filter((v) => v.surface && v.group.visible).map((v) => {

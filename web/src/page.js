@@ -3,8 +3,10 @@
 import { Controls, viewOfKey } from "./controls.js";
 import { byId, h } from "./dom.js";
 import { listenEarly } from "./engine.js";
+import { FaceSources, FaceTint } from "./faces.js";
 import { Files } from "./files.js";
 import { formatSize } from "./format.js";
+import { Ghosts, motionText } from "./ghosts.js";
 import { Handles } from "./handles.js";
 import { Layout } from "./layout.js";
 import { MeasurePanel } from "./measure_panel.js";
@@ -17,12 +19,17 @@ import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
 import { RobotsPanel } from "./robots.js";
 import { Runs } from "./runs.js";
+import { SectionCurves } from "./section_curves.js";
 import { SectionPanel } from "./section_panel.js";
 import { SelectionPanel } from "./selection_panel.js";
+import { SurfacePanel } from "./surface_panel.js";
+import { Surfaces } from "./surfaces.js";
 import { TimeBar } from "./time_bar.js";
 import { View } from "./view.js";
 
 const TYPING_PAUSE = 200; // milliseconds from the last key to the run
+const CURSOR_PAUSE = 120; // milliseconds from the last move of the cursor to the ghost
+const MOST_EXCERPT = 40; // characters of a script that are shown beside the pointer
 const EDITOR_AFTER = 400; // milliseconds to wait for the first picture, at most
 const TOLD_FOR = 4000; // milliseconds that a remark stays
 const NEW_SCRIPT = "untitled.cag";
@@ -156,9 +163,16 @@ export async function start(engine) {
     runs.now();
   });
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
+  const sources = new FaceSources(engine), faceTint = new FaceTint(view), ghosts = new Ghosts(view, engine);
+  const surfacePanel = new SurfacePanel(byId("surfaces", HTMLDivElement), view, new Surfaces(view, engine));
+  const sectionCurves = new SectionCurves(byId("section", HTMLDivElement), view, engine, (name) => {
+    const part = view.parts.views.get(name)?.part;
+    return part ? expressionOf(part) : "";
+  });
+  view.drawn.on(() => sectionCurves.update());
   panels.push(
     (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), (m) => robots.show(m), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
-    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection(), () => showMade());
+    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => noteTexts(), () => keepSelection(), () => showMade(), () => surfacePanel.refresh());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
   function expressionOf(part) {
@@ -167,14 +181,54 @@ export async function start(engine) {
     return show ? shownExpression(excerpt(show)) : "";
   }
 
-  /** @param {string[]} names */
-  function select(names) {
+  /** @param {string[]} names @param {Source | null} [face] */
+  function select(names, face = null) {
     view.selected = names;
+    if (!face) chosenFace = [];
     const part = view.parts.views.get(names[names.length - 1])?.part ?? null;
-    selection.show(part, part ? expressionOf(part) : "", !runs.coarse);
+    selection.show(part, part ? expressionOf(part) : "", !runs.coarse, face);
     partsPanel.refresh();
-    view.invalidate();
+    surfacePanel.refresh();
+    showFaces();
     return part;
+  }
+  /** @typedef {{ name: string, origin: import("./engine.js").Origin[] }} Source */
+  /** Faces that are outlined: of the operand that was clicked, that is pointed at, and those that the line of the cursor made. */
+  let chosenFace = /** @type {import("./faces.js").Piece[]} */ ([]), pointedFace = chosenFace, madeFaces = chosenFace;
+  function showFaces() {
+    view.faces = [...chosenFace, ...pointedFace, ...(pointedFace.length ? [] : madeFaces)];
+    faceTint.show(view.faces);
+    view.invalidate();
+  }
+  /** What the face under a click comes from is told when it is known. @param {import("./picking.js").Hit} hit */
+  async function selectFace({ view: partView, triangle }) {
+    const names = view.selected, faces = await sources.get(partView);
+    if (!faces || view.selected !== names || view.parts.views.get(partView.part.name) !== partView) return;
+    const operand = faces.operands[triangle];
+    chosenFace = [sources.piece(partView, faces, (o) => o === operand)];
+    select(names, sources.sourceOf(partView, faces, triangle));
+  }
+  /** @param {Source} source */
+  function sourceText(source) {
+    if (source.name) return source.name;
+    const place = [...source.origin].reverse().find((o) => !o.library);
+    if (!place) return "";
+    const text = excerpt(place).replace(/\s+/g, " ").trim();
+    return text && text.length <= MOST_EXCERPT ? text : `line ${place.line}`;
+  }
+  let facePointed = ""; // which operand
+  /** The face that is pointed at, and what it comes from. @param {import("./picking.js").Hit | null} hit @returns {string} */
+  function pointFace(hit) {
+    const faces = hit && hit.triangle >= 0 && sources.has(hit.view) ? sources.now(hit.view) : null;
+    if (hit && hit.triangle >= 0 && !faces && sources.has(hit.view) && !runs.coarse) sources.get(hit.view);
+    const key = hit && faces ? `${hit.view.part.name} ${faces.operands[hit.triangle]} ${view.message?.run}` : "";
+    if (key !== facePointed) {
+      facePointed = key;
+      pointedFace = hit && faces ? [sources.piece(hit.view, faces, (o) => o === faces.operands[hit.triangle])] : [];
+      showFaces();
+    }
+    const source = hit && faces ? sources.sourceOf(hit.view, faces, hit.triangle) : null;
+    return source ? sourceText(source) : "";
   }
   /** After a run, what was selected is measured again. */
   function keepSelection() {
@@ -198,8 +252,10 @@ export async function start(engine) {
   controls.clicked.on(({ x, y, event }) => {
     if (measure.active) return measure.click(x, y);
     const hit = view.pick(x, y);
-    if (hit) selectOne(hit.view.part.name, event.shiftKey);
-    else if (!event.shiftKey) select([]);
+    if (hit) {
+      selectOne(hit.view.part.name, event.shiftKey);
+      if (hit.triangle >= 0 && sources.has(hit.view) && view.selected.includes(hit.view.part.name)) selectFace(hit);
+    } else if (!event.shiftKey) select([]);
   });
   controls.doubleClicked.on(({ x, y }) => {
     const origin = view.pick(x, y)?.view.part.origin ?? [];
@@ -208,9 +264,10 @@ export async function start(engine) {
   });
   controls.hovered.on((at) => {
     if (measure.active) return measure.hover(at);
-    const part = at ? view.pick(at.x, at.y)?.view.part : undefined;
+    const hit = at ? view.pick(at.x, at.y) : null, part = hit?.view.part, face = pointFace(hit);
     point(part ? [part.name] : made);
-    overlay.point(part ? `${part.name} · ${part.type} · ${formatSize(part.bounds)}` : "", at?.x ?? 0, at?.y ?? 0);
+    const texts = part ? [part.name, part.type, formatSize(part.bounds), face && `from ${face}`] : [];
+    overlay.point(texts.filter(Boolean).join(" · "), at?.x ?? 0, at?.y ?? 0);
   });
 
   // --- Places ---
@@ -230,13 +287,56 @@ export async function start(engine) {
 
   /** What the line of the cursor made. @type {string[]} */
   let made = [];
+  /** @param {import("./engine.js").Origin[]} origin */
+  const isOnLine = (origin) => {
+    const path = editor?.path, line = editor?.line() ?? 0;
+    return origin.some((o) => o.file === path && o.line <= line && line <= o.endLine);
+  };
   function showMade() {
     if (!editor) return;
-    const parts = newest.scene?.parts ?? [], path = editor.path, line = editor.line();
-    made = parts.filter((p) => p.origin.some((o) => o.file === path && o.line <= line && line <= o.endLine)).map((p) => p.name);
+    const parts = newest.scene?.parts ?? [];
+    made = parts.filter((p) => isOnLine(p.origin)).map((p) => p.name);
     // A line that made everything tells nothing.
     if (made.length === parts.length && parts.length > 1) made = [];
     point(made);
+    showMadeFaces();
+    clearTimeout(looking);
+    looking = window.setTimeout(showGhosts, CURSOR_PAUSE);
+  }
+  /** The faces that come from the line of the cursor, of parts that do not. */
+  async function showMadeFaces() {
+    const turn = ++madeTurn;
+    const views = [...view.parts.visible()].filter((v) => sources.has(v) && !made.includes(v.part.name) && v.part.sources?.some((s) => isOnLine(s.origin)));
+    const all = runs.coarse ? [] : await Promise.all(views.map((v) => sources.get(v)));
+    if (turn !== madeTurn) return;
+    madeFaces = all.flatMap((faces, i) => {
+      const of = views[i].part.sources ?? [];
+      return faces ? [sources.piece(views[i], faces, (o) => isOnLine(of[faces.sources[o]]?.origin ?? []))] : [];
+    });
+    showFaces();
+  }
+  let madeTurn = 0, looking = 0;
+  const ghostNote = h("div", { class: "ghost-note", role: "status", hidden: true });
+  over.append(ghostNote);
+  /** Ghosts are shown while one works in the editor, of the text that was run. */
+  async function showGhosts() {
+    const text = editor && textOf(editor.path);
+    if (editor && editor.hasFocus() && text === ranTexts.get(editor.path) && !runs.coarse) await ghosts.look(editor.path, editor.line(), editor.column());
+    else if (!editor || editor.hasFocus()) ghosts.clear();
+    const first = ghosts.shown[0], count = ghosts.shown.length;
+    ghostNote.hidden = !first;
+    if (!first) return;
+    const named = excerpt(first.place).replace(/\s+/g, " ").trim();
+    ghostNote.textContent = [named || first.type, count > 1 ? `${count} times` : "", motionText(first)].filter(Boolean).join(" · ");
+  }
+  /** The texts of the last scene, by path. @type {Map<string, string>} */
+  const ranTexts = new Map();
+  function noteTexts() {
+    ranTexts.clear();
+    for (const path of [newest.scene?.script ?? file, ...(newest.scene?.files ?? [])]) {
+      const text = editor?.text(path);
+      if (typeof text === "string") ranTexts.set(path, text);
+    }
   }
 
   // --- View ---
@@ -304,6 +404,7 @@ export async function start(engine) {
   for (const tool of tools) tool.addEventListener(tool instanceof HTMLInputElement ? "change" : "click", () => flip(tool.dataset.do ?? ""));
   measure.toggled.on((on) => {
     point([]);
+    pointFace(null);
     scene.classList.toggle("measuring", on);
     overlay.point("", 0, 0);
     markTools();
@@ -327,7 +428,7 @@ export async function start(engine) {
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
     " ": () => byId("time", HTMLDivElement).hidden || timeBar.toggle(), "?": () => keyDialog.showModal(),
-    Escape: () => robots.handle.cancel() || (measure.active ? measure.toggle(false) : select([])),
+    Escape: () => (measure.active ? measure.toggle(false) : (ghosts.clear(), (ghostNote.hidden = true), select([]))),
   };
   /** @param {(name: string) => void} choose */
   function chooseSelected(choose) {
@@ -412,6 +513,7 @@ export async function start(engine) {
     opened.setProblems(newest.messages.diagnostics);
     opened.setValues(newest.messages.values);
   }
+  noteTexts();
   keepSelection();
   root.dataset.ready = "true";
   // For tests, and for those who look into the page.

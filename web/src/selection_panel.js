@@ -5,7 +5,7 @@ import { formatNumber, formatPoint, formatSize } from "./format.js";
 import { Topic } from "./topic.js";
 
 /** How the chain of places names its links. @type {Record<string, string>} */
-const LINKS = { show: "shown", changed: "changed", made: "made" };
+const LINKS = { show: "shown", changed: "changed", combined: "combined", made: "made" };
 
 /** @param {string} text */
 export const copyText = (text) => navigator.clipboard.writeText(text);
@@ -31,8 +31,9 @@ export class SelectionPanel {
    * @param {import("./engine.js").Part | null} part
    * @param {string} expression  of the part in the script
    * @param {boolean} [measured]  false: something is being dragged, and measures would be late
+   * @param {{ name: string, origin: import("./engine.js").Origin[] } | null} [face]  what the face that was clicked comes from
    */
-  async show(part, expression, measured = true) {
+  async show(part, expression, measured = true, face = null) {
     const asked = ++this.asked;
     if (!part) {
       this.body.replaceChildren(h("p", { class: "faint" }, "Click a part to see where it comes from and how large it is."));
@@ -42,7 +43,9 @@ export class SelectionPanel {
     this.add(table, "size", formatSize(part.bounds), "");
     this.body.replaceChildren(
       h("div", { class: "row" }, h("strong", {}, part.name), h("span", { class: "faint" }, part.type)),
-      h("p", { class: "faint" }, part.story), this.chain(part), table);
+      h("p", { class: "faint" }, part.story),
+      ...(face ? [h("h3", { class: "face" }, face.name ? `This face comes from ${face.name}` : "This face comes from"), this.chain(face.origin, "Places of the face"), h("h3", {}, "The part")] : []),
+      this.chain(part.origin, "Places in the script"), table);
     if (!measured) return;
     try {
       const m = await this.engine.measure(part.name);
@@ -53,9 +56,9 @@ export class SelectionPanel {
     }
   }
 
-  /** @param {import("./engine.js").Part} part */
-  chain(part) {
-    return h("ol", { class: "chain", "aria-label": "Places in the script" }, ...part.origin.map((place) => {
+  /** @param {import("./engine.js").Origin[]} origin @param {string} label */
+  chain(origin, label) {
+    return h("ol", { class: "chain", "aria-label": label }, ...origin.map((place) => {
       const text = this.excerpt(place).replace(/\s+/g, " ").trim();
       return h("li", {}, h("button", { type: "button", class: "quiet place", onclick: () => this.placeWanted.emit(place) },
         h("span", { class: "what" }, LINKS[place.what] ?? place.what), h("span", { class: "faint" }, `${place.file}:${place.line}`),

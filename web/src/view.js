@@ -83,6 +83,10 @@ export class View {
     this.selected = [];
     /** @type {string[]} */
     this.pointed = [];
+    /** Parts of surfaces that are outlined like what is pointed at: faces, and ghosts. @type {import("./faces.js").Piece[]} */
+    this.faces = [];
+    /** @type {import("./faces.js").Piece[]} */
+    this.ghosts = [];
     /** The camera of the script that is looked through. @type {string | null} */
     this.following = null;
     /** @type {Topic<View>} after each picture */
@@ -149,7 +153,12 @@ export class View {
     const selected = views(this.selected), pointed = views(this.pointed.filter((n) => !this.selected.includes(n)));
     this.outline.material.uniforms.picked.value.copy(themeColor("--accent"));
     this.outline.material.uniforms.pointed.value.copy(themeColor("--hint"));
-    this.outline.render(renderer, this.camera, selected, pointed, this.parts.clipping);
+    this.outline.render(renderer, this.camera, selected, [...pointed, ...this.faces, ...this.ghosts], this.parts.clipping);
+  }
+
+  /** @param {string} name  of a CSS variable */
+  color(name) {
+    return themeColor(name);
   }
 
   /** A picture as shown, in `scale` times as many pixels. @param {number} scale @returns {Promise<Blob>} */

@@ -28,6 +28,7 @@ declare module "cag-wasm" {
     _playground_document(name: number): number;
     _playground_lsp(messages: number, check: number): number;
     _playground_library(module: number): number;
+    _playground_question(question: number, request: number): number;
   }
   export interface Host {
     event(name: string, json: string): void;

@@ -50,7 +50,7 @@ function ask(program, name, values) {
   /** @type {Record<string, (...addresses: number[]) => number>} */
   const functions = { hello: cag._playground_hello, export: cag._playground_export, image: cag._playground_image, measure: cag._playground_measure,
     picture: cag._playground_picture, format: cag._playground_format, document: cag._playground_document,
-    lsp: cag._playground_lsp, library: cag._playground_library };
+    lsp: cag._playground_lsp, library: cag._playground_library, question: cag._playground_question };
   return program.ask(functions[name], ...values);
 }
 
