@@ -169,13 +169,18 @@ int cag_runner_run(CagRunner *r, CagLiveRequest *request) {
   return number;
 }
 
-void cag_runner_again(CagRunner *r, const char *saved) {
+void cag_runner_forget_text(CagRunner *r, const char *path) {
+  pthread_mutex_lock(&r->mutex);
+  cag_live_request_drop_text(&r->last, path);
+  pthread_mutex_unlock(&r->mutex);
+}
+
+void cag_runner_again(CagRunner *r) {
   CagLiveRequest again = {.coarse = 1};
   pthread_mutex_lock(&r->mutex);
   if (!r->is_pending && r->has_last && !cag_live_request_copy(&r->last, &again))
     again = (CagLiveRequest){.coarse = 1};
   if (!r->is_pending) {
-    if (saved) cag_live_request_drop_text(&again, saved);
     again.coarse = 1;
     start_pending(r, &again);
   }

@@ -32,9 +32,11 @@ CagRunner *cag_runner_start(const CagRunnerOptions *options);
 void cag_runner_stop(CagRunner *r);
 // Takes over the contents of the request. Returns the number of the run.
 int cag_runner_run(CagRunner *r, CagLiveRequest *request);
-// Runs the last request again, with the files as they are now. `saved`: the path below the folder of
-// a file whose unsaved text does not count any more; NULL: all unsaved texts count.
-void cag_runner_again(CagRunner *r, const char *saved);
+// From now on, the file on the disk counts when the last request is run again, and not the unsaved text
+// that it had. `path` is below the folder.
+void cag_runner_forget_text(CagRunner *r, const char *path);
+// Runs the last request again, with the files as they are now.
+void cag_runner_again(CagRunner *r);
 // Does something with the last session as soon as the runner is free. Returns false if memory ran
 // out.
 bool cag_runner_do(CagRunner *r, CagLiveTask *task, void *context);

@@ -193,6 +193,8 @@ static void save_file(View *v, CagExchange *x, const char *path) {
   }
   cag_model_version(text, size, version);
   if (!strcmp(path, v->name)) memcpy(v->version, version, sizeof version);
+  cag_runner_forget_text(v->runner, path);
+  cag_runner_again(v->runner);
   answer_version(x, 200, version);
 }
 
@@ -513,31 +515,45 @@ static bool is_new_version(View *v) {
   return !same;
 }
 
-static void tell_change(View *v, const char *path) {
+static void tell_change(View *v, const char *path, const char *below) {
   CagString s = {0};
   CagJson j = {.to = &s};
-  const char *below = path_below(v, path);
+  char *text, version[CAG_VERSION_SIZE] = "";
+  size_t size;
+  const char *why;
+  if (below && cag_model_read(v->folder, below, &text, &size, &why)) {
+    cag_model_version(text, size, version);
+    free(text);
+  }
   cag_json_open(&j, '{');
   cag_json_text(&j, "path", below ? below : path);
-  cag_json_text(&j, "version", v->version);
+  cag_json_text(&j, "version", version);
   cag_json_close(&j, '}');
   if (s.bytes) cag_server_publish(v->server, "file", s.bytes, false);
   cag_string_free(&s);
 }
 
-// Runs the script again if a file was changed by somebody else.
-static void look_at_files(View *v) {
-  const char *path;
+// Returns whether the change concerns the script: not if the page has saved it, or if it is the same.
+static bool note_change(View *v, const char *path) {
   char real[PATH_MAX];
-  watch_what_was_read(v);
-  if (!cag_file_watch_look(v->watch, &path)) return;
   // Imports are watched by the path that the script asked for as well, such as /a/./b.cag.
   if (realpath(path, real)) path = real;
   const char *below = path_below(v, path);
-  // If the page itself has saved the script, another file may have changed at the same time.
-  const bool own = below && !strcmp(below, v->name), saved = own && !is_new_version(v);
-  if (!saved) tell_change(v, path);
-  cag_runner_again(v->runner, saved ? NULL : below);
+  if (below && !strcmp(below, v->name) && !is_new_version(v)) return false;
+  tell_change(v, path, below);
+  if (below) cag_runner_forget_text(v->runner, below);
+  return true;
+}
+
+// Runs the script again if files have changed.
+static void look_at_files(View *v) {
+  const char *path;
+  watch_what_was_read(v);
+  if (!cag_file_watch_look(v->watch, NULL)) return;
+  bool changed = false;
+  for (size_t i = 0; (path = cag_file_watch_changed(v->watch, i)); i++)
+    changed = note_change(v, path) || changed;
+  if (changed) cag_runner_again(v->runner);
 }
 
 // --- The whole ---

@@ -35,7 +35,8 @@ typedef struct State {
 typedef struct File {
   char *path;
   State state;
-  bool changed; // and not yet reported
+  bool changed;  // and not yet reported
+  bool reported; // by the last look
 } File;
 
 // A folder of at least one file. A folder that has not been watched so far is tried again.
@@ -260,12 +261,19 @@ bool cag_file_watch_look(CagFileWatch *w, const char **path) {
     compare_states(w);
   }
   for (size_t i = 0; i < w->file_count; i++) {
+    w->files[i].reported = w->files[i].changed;
     if (!w->files[i].changed) continue;
     if (!found && path) *path = w->files[i].path;
     w->files[i].changed = false;
     found = true;
   }
   return found;
+}
+
+const char *cag_file_watch_changed(const CagFileWatch *w, size_t i) {
+  for (size_t k = 0; k < w->file_count; k++)
+    if (w->files[k].reported && i-- == 0) return w->files[k].path;
+  return NULL;
 }
 
 // Waits for an event or the next look, at most `timeout` milliseconds (-1: no limit). Returns false

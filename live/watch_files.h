@@ -35,6 +35,8 @@ int cag_file_watch_interval(const CagFileWatch *w);
 // Looks at the files. Returns whether one of them has changed since it was last reported, and the
 // path of the first one (NULL: not needed), which is valid until the list is replaced.
 bool cag_file_watch_look(CagFileWatch *w, const char **path);
+// Returns file i of those that the last look found to have changed, or NULL.
+const char *cag_file_watch_changed(const CagFileWatch *w, size_t i);
 
 // Waits until a file has changed, and then until no file has changed for `quiet` milliseconds, or
 // `most` milliseconds have passed, because editors save in several steps. Returns false after
