@@ -120,6 +120,7 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   a->hidden = b->hidden;
   a->drawn = b->drawn;
   a->origin.last = b->origin.last;
+  a->origin.motion = b->origin.motion;
 }
 
 bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {

@@ -5,6 +5,7 @@
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/types.h"
 #include "interp/vm/jet.h"
+#include "interp/vm/origin.h"
 #include "interp/vm/vm.h"
 
 // Whether the mesh of a shape that only moves is worth keeping. Solids with a frame of their own
@@ -100,6 +101,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
   if (t->in_front && cag_is_shape(v) && !check_in_front(call, t, v)) return false;
   if (type->transform) {
     if (!type->transform(call, t, v, result)) return false;
+    if (cag_is_shape(v) && v.type != CAG_GROUP) cag_origin_moved(call->vm, *result, t);
     if (keeps_mesh(v) && cag_transform_is_rigid(t)) cag_shape_moved(call->vm, *result, v, t);
     return true;
   }

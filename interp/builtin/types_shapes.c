@@ -151,6 +151,7 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   if (s->material) cag_mark_object(h, &s->material->head);
   if (s->name) cag_mark_object(h, &s->name->head);
   if (s->origin.last) cag_mark_object(h, &s->origin.last->head);
+  if (s->origin.motion) cag_mark_object(h, &s->origin.motion->head);
   if (s->still) cag_mark_object(h, &s->still->head);
 }
 

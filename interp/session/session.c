@@ -44,6 +44,7 @@ static void drop_scene(CagSession *s) {
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   if (s->has_scene) cag_scene_free(&s->scene);
   s->has_scene = false;
+  cag_session_drop_points(s);
   cag_account_lend(before);
 }
 

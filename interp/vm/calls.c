@@ -8,6 +8,7 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/origin.h"
 #include "interp/vm/value_type.h"
 #include "lang/foreign.h"
 
@@ -180,29 +181,6 @@ static bool check_answer(CagVm *vm, const char *name, bool ok) {
                      vm->errors.items[0].message);
 }
 
-// Adds a call to the origins of the shapes that it made. The first of a list tells whether it made
-// the others.
-static void add_call_to_origin(CagVm *vm, CagValue v, const CagOriginStep *step) {
-  const CagList *items = NULL;
-  if (v.type == CAG_LIST) items = CAG_AS_LIST(v);
-  if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->fresh) items = CAG_AS_SHAPE(v)->as.items;
-  for (size_t i = 0; items && items->dim == 0 && i < items->length; i++) {
-    const CagValue item = items->as.items[i];
-    if (!cag_is_shape(item) || !CAG_AS_SHAPE(item)->fresh) break;
-    add_call_to_origin(vm, item, step);
-  }
-  if (!cag_is_shape(v) || !CAG_AS_SHAPE(v)->fresh) return;
-  CAG_AS_SHAPE(v)->fresh = false;
-  cag_origin_add(vm, &CAG_AS_SHAPE(v)->origin, step);
-}
-
-static void note_origin(CagVm *vm, CagValue result) {
-  CagOriginStep step = {0};
-  if (!cag_vm_place(vm, &step.source, &step.span)) return;
-  if (step.source->library) cag_vm_caller(vm, &step.caller, &step.caller_span);
-  add_call_to_origin(vm, result, &step);
-}
-
 static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count,
                          const char *const *names, size_t named, bool direct, CagValue *result) {
   size_t positional = count - named;
@@ -252,7 +230,8 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   ok = ok && cag_check_defined(&call, *result);
   cag_vm_release_held(vm, held);
   if (vm->stop) ok = cag_stop_answer(vm); // interrupted work may have returned anything
-  if (ok && (cag_is_shape(*result) || result->type == CAG_LIST)) note_origin(vm, *result);
+  if (ok && (cag_is_shape(*result) || result->type == CAG_LIST))
+    cag_origin_note(&call, index, *result);
   vm->native = native.outer;
   vm->top = top;
   return ok;

@@ -27,7 +27,8 @@ enum {
   CAG_INTERNAL_LAYOUT = 2,
   CAG_INTERNAL_LABEL = 3,
   CAG_INTERNAL_STEP = 4,
-  CAG_INTERNAL_STILL = 5
+  CAG_INTERNAL_STILL = 5,
+  CAG_INTERNAL_CALL = 6
 };
 
 void cag_heap_init(CagVm *vm);

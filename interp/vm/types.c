@@ -407,13 +407,20 @@ static void print_nothing(CagVm *vm, CagString *s, CagValue v) {
   add(s, "nothing");
 }
 
+static void scan_step(CagHeap *h, const CagOriginStep *step) {
+  if (step->before) cag_mark_object(h, &step->before->head);
+  if (step->call) cag_mark_object(h, &step->call->head);
+  if (step->motion) cag_mark_object(h, &step->motion->head);
+}
+
 static void scan_internal(CagHeap *h, CagObject *o) {
   const CagBuilder *b = (CagBuilder *)o;
   if (o->flags == CAG_INTERNAL_BUILDER && (b->mixed || b->dim == 0))
     cag_mark_values(h, b->data, b->length);
   if (o->flags == CAG_INTERNAL_LABEL) cag_mark_object(h, &((CagLabelText *)o)->text->head);
-  const CagOriginStep *step = (CagOriginStep *)o;
-  if (o->flags == CAG_INTERNAL_STEP && step->before) cag_mark_object(h, &step->before->head);
+  if (o->flags == CAG_INTERNAL_STEP) scan_step(h, (CagOriginStep *)o);
+  const CagOriginCall *call = (CagOriginCall *)o;
+  if (o->flags == CAG_INTERNAL_CALL) cag_mark_values(h, call->values, call->count);
   if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
 }
 

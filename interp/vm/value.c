@@ -342,19 +342,6 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
   return cag_object(shape.type, s);
 }
 
-void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
-  CagOriginStep *before = o->last;
-  if (before && before->depth >= CAG_ORIGIN_DEPTH) before = before->before; // drops the latest one
-  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step);
-  const CagObject head = step->head;
-  *step = *like;
-  step->head = head;
-  step->head.flags = CAG_INTERNAL_STEP;
-  step->before = before;
-  step->depth = before ? before->depth + 1 : 0;
-  o->last = step;
-}
-
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
   CagShape *to = CAG_AS_SHAPE(moved), *shape = CAG_AS_SHAPE(from);
   CagStill *before = shape->still, *still = cag_alloc(vm, CAG_INTERNAL, sizeof *still);

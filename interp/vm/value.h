@@ -190,6 +190,17 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
+// The arguments of a call that made or moved shapes, for finding the points in them. Shapes are
+// replaced by their last steps, and what is not needed (long lists, functions) by CAG_UNSET.
+struct CagBuiltin;
+typedef struct CagOriginCall {
+  CagObject head; // CAG_INTERNAL
+  const struct CagBuiltin *row;
+  size_t index; // of the built-in
+  size_t count; // by parameter, without the last ones that were not given
+  CagValue values[];
+} CagOriginCall;
+
 // A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
 typedef struct CagOriginStep {
   CagObject head; // CAG_INTERNAL
@@ -197,6 +208,8 @@ typedef struct CagOriginStep {
   CagSpan span;
   const CagSource *caller; // in the library: the nearest call outside of it; else NULL
   CagSpan caller_span;
+  CagOriginCall *call;       // what was called
+  CagTransformValue *motion; // what the shape went through since the step before; NULL: none
   struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
   uint32_t depth;               // number of calls before it
 } CagOriginStep;
@@ -206,7 +219,8 @@ enum { CAG_ORIGIN_DEPTH = 12 };
 
 // Where a shape comes from in the script.
 typedef struct CagOrigin {
-  CagOriginStep *last; // NULL: not made by a call
+  CagOriginStep *last;       // NULL: not made by a call
+  CagTransformValue *motion; // since the last step; NULL: none
   CagText *definition; // the definition whose value it first was; NULL: none
 } CagOrigin;
 
@@ -375,8 +389,6 @@ CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
 CagValue cag_image_value(CagVm *vm, CagRaster *r);
 CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
-// Adds a call to an origin, which is changed in place. `like` has its location.
-void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
 // Notes that a shape is another one after a rigid motion.
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes; the

@@ -1,0 +1,205 @@
+// Params with which a point comes close to a target: Gauss-Newton steps within the ranges. Derivatives
+// are differences, since a script computes points in any way.
+
+#include <math.h>
+#include <string.h>
+
+#include "interp/session/points.h"
+
+// The most params that are solved for at once.
+enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
+// The step of differences, as a part of a param's range.
+#define DIFFERENCE 1e-5
+// What is added to the diagonal of the normal equations, as a part of its largest element: of several
+// params that do the same, all change a little.
+#define DAMPING 1e-9
+
+// Params are unknowns of 0 to 1, from the low to the high end of their ranges.
+typedef struct Solving {
+  CagPointWork work;
+  size_t point, n;
+  CagTrialParam params[MOST_UNKNOWNS];
+  CagVec3 target, at; // at: with the values in params
+  double tolerance;
+  bool found;
+  double columns[MOST_UNKNOWNS][3]; // derivatives of the point
+} Solving;
+
+static bool point_with(Solving *v, const CagTrialParam *params, CagVec3 *out) {
+  CagPointWork *f = &v->work;
+  if (!cag_trial_spots(&f->trial, params, v->n, &f->moved) || v->point >= f->moved.count)
+    return false;
+  *out = cag_point_spot_at(&f->moved.items[v->point]);
+  return isfinite(out->x + out->y + out->z);
+}
+
+static double miss(const Solving *v, CagVec3 at) { return cag_norm(cag_sub(at, v->target)); }
+
+// Params whose differences cannot be computed do not change.
+static void find_columns(Solving *v) {
+  for (size_t k = 0; k < v->n; k++) {
+    CagTrialParam params[MOST_UNKNOWNS];
+    CagVec3 there;
+    memcpy(params, v->params, sizeof params);
+    const double range = params[k].high - params[k].low;
+    const double h =
+        params[k].value + DIFFERENCE * range <= params[k].high ? DIFFERENCE : -DIFFERENCE;
+    params[k].value += h * range;
+    const bool found = point_with(v, params, &there);
+    const CagVec3 d = found ? cag_scaled(cag_sub(there, v->at), 1 / h) : cag_vec3(0, 0, 0);
+    v->columns[k][0] = d.x;
+    v->columns[k][1] = d.y;
+    v->columns[k][2] = d.z;
+  }
+}
+
+static double dot3(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Solves the normal equations of the free unknowns, which are positive definite by the damping, by
+// elimination.
+static void normal_step(const Solving *v, const bool *fixed, double step[MOST_UNKNOWNS]) {
+  double a[MOST_UNKNOWNS][MOST_UNKNOWNS + 1], largest = 0;
+  const CagVec3 d = cag_sub(v->target, v->at);
+  const double r[3] = {d.x, d.y, d.z};
+  for (size_t i = 0; i < v->n; i++) largest = fmax(largest, dot3(v->columns[i], v->columns[i]));
+  for (size_t i = 0; i < v->n; i++) {
+    for (size_t j = 0; j < v->n; j++)
+      a[i][j] = fixed[i] || fixed[j] ? 0 : dot3(v->columns[i], v->columns[j]);
+    a[i][i] += fixed[i] || largest == 0 ? 1 : DAMPING * largest;
+    a[i][v->n] = fixed[i] ? 0 : dot3(v->columns[i], r);
+  }
+  for (size_t i = 0; i < v->n; i++)
+    for (size_t j = i + 1; j < v->n; j++) {
+      const double factor = a[j][i] / a[i][i];
+      for (size_t k = i; k <= v->n; k++) a[j][k] -= factor * a[i][k];
+    }
+  for (size_t i = v->n; i-- > 0;) {
+    step[i] = a[i][v->n];
+    for (size_t k = i + 1; k < v->n; k++) step[i] -= a[i][k] * step[k];
+    step[i] /= a[i][i];
+  }
+}
+
+// The step within the ranges: a param that would leave its range is fixed, and the others take over.
+static void bounded_step(const Solving *v, double step[MOST_UNKNOWNS]) {
+  bool fixed[MOST_UNKNOWNS] = {false}, again = true;
+  while (again) {
+    again = false;
+    normal_step(v, fixed, step);
+    for (size_t k = 0; k < v->n; k++) {
+      const CagTrialParam *p = &v->params[k];
+      const double range = p->high - p->low, to = p->value + step[k] * range;
+      const bool at_end =
+          (p->value <= p->low && to < p->low) || (p->value >= p->high && to > p->high);
+      if (fixed[k] || !at_end) continue;
+      fixed[k] = again = true;
+    }
+  }
+}
+
+// Takes the step, or a part of it that comes closer. Returns false if none does.
+static bool take_step(Solving *v, const double *step) {
+  double part = 1;
+  for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
+    CagTrialParam params[MOST_UNKNOWNS];
+    CagVec3 there;
+    memcpy(params, v->params, sizeof params);
+    for (size_t k = 0; k < v->n; k++) {
+      CagTrialParam *p = &params[k];
+      p->value = fmin(p->high, fmax(p->low, p->value + part * step[k] * (p->high - p->low)));
+    }
+    if (!point_with(v, params, &there) || !(miss(v, there) < miss(v, v->at))) continue;
+    memcpy(v->params, params, sizeof params);
+    v->at = there;
+    return true;
+  }
+  return false;
+}
+
+// The largest power of ten by which the param may change without moving the point by the tolerance.
+static double step_of(const Solving *v, size_t k) {
+  const CagTrialParam *p = &v->params[k];
+  const double range = p->high - p->low, speed = sqrt(dot3(v->columns[k], v->columns[k])) / range;
+  const double most = speed > 0 ? fmin(v->tolerance / speed, range) : range;
+  return pow(10, floor(log10(fmax(most, 1e-9 * range))));
+}
+
+// The values that the point had not moved by stay as they are.
+static void round_params(Solving *v) {
+  for (size_t k = 0; k < v->n; k++) {
+    CagTrialParam *p = &v->params[k];
+    if (dot3(v->columns[k], v->columns[k]) == 0) continue;
+    const double step = step_of(v, k),
+                 rounded = step >= 1 ? round(p->value / step) * step
+                                     : round(p->value * round(1 / step)) / round(1 / step);
+    if (rounded >= p->low && rounded <= p->high) p->value = rounded;
+  }
+}
+
+static bool solve_point(CagVm *vm, void *context) {
+  Solving *v = context;
+  (void)vm;
+  double step[MOST_UNKNOWNS];
+  cag_trial_begin(&v->work.trial, v->work.session, v->work.part);
+  v->found = point_with(v, v->params, &v->at);
+  for (int i = 0; v->found && i < MOST_ROUNDS; i++) {
+    const double before = miss(v, v->at);
+    find_columns(v);
+    bounded_step(v, step);
+    if (!take_step(v, step) || before - miss(v, v->at) < 0.01 * v->tolerance) break;
+  }
+  if (v->found) {
+    round_params(v);
+    point_with(v, v->params, &v->at);
+  }
+  cag_trial_end(&v->work.trial);
+  return true;
+}
+
+static bool find_param(const CagSession *s, const char *name, CagTrialParam *out) {
+  for (size_t i = 0; cag_trial_param(s, i, out); i++)
+    if (!strcmp(out->name, name)) return true;
+  return false;
+}
+
+static void give_values(const Solving *v,
+                        void (*give)(void *context, const char *name, const char *value),
+                        void *context) {
+  for (size_t k = 0; k < v->n; k++) {
+    char text[64];
+    CagString number = {0};
+    cag_print_number(&number, v->params[k].value + 0);
+    snprintf(text, sizeof text, "%s%s", number.bytes ? number.bytes : "0",
+             v->params[k].angle ? "deg" : "");
+    cag_string_free(&number);
+    give(context, v->params[k].name, text);
+  }
+}
+
+int cag_session_solve_point(CagSession *s, size_t part, size_t point, const double target[3],
+                            double tolerance, const char *const *names, size_t n,
+                            void (*give)(void *context, const char *name, const char *value),
+                            void *context, double at[3]) {
+  Solving v = {.work = {.session = s, .part = part},
+               .point = point,
+               .n = n,
+               .target = cag_vec3(target[0], target[1], target[2]),
+               .tolerance = tolerance > 0 ? tolerance : 1e-6};
+  if (n == 0 || n > MOST_UNKNOWNS || !isfinite(target[0] + target[1] + target[2]))
+    return CAG_STATUS_USAGE;
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
+  bool known = cag_points_of_part(s, part) && cag_session_list_params(s);
+  for (size_t k = 0; known && k < n; k++) known = find_param(s, names[k], &v.params[k]);
+  int status = CAG_STATUS_USAGE;
+  if (known) status = cag_points_work(s, solve_point, &v.work, &v);
+  if (status == CAG_STATUS_OK && !v.found) status = CAG_STATUS_USAGE;
+  if (status == CAG_STATUS_OK) {
+    give_values(&v, give, context);
+    at[0] = v.at.x;
+    at[1] = v.at.y;
+    at[2] = v.at.z;
+  }
+  return cag_session_end(s, status);
+}

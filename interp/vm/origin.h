@@ -1,0 +1,16 @@
+// Where shapes come from in the script: the calls that made, moved, and changed them.
+
+#ifndef CAG_INTERP_VM_ORIGIN_H
+#define CAG_INTERP_VM_ORIGIN_H
+
+#include "interp/vm/builtin.h"
+
+// The most numbers in an argument that are kept.
+enum { CAG_ORIGIN_NUMBERS = 1200 };
+
+// Adds a call that has just succeeded to the origins of the shapes that it made.
+void cag_origin_note(const CagCall *call, size_t index, CagValue result);
+// Notes that a shape, which was made just now, is another one after this map.
+void cag_origin_moved(CagVm *vm, CagValue moved, const CagTransform *t);
+
+#endif
