@@ -13,6 +13,7 @@
 #include "live/measures.h"
 #include "live/model_files.h"
 #include "live/page_files.h"
+#include "live/points_json.h"
 #include "live/render_jobs.h"
 #include "live/runner.h"
 #include "live/watch_files.h"
@@ -425,6 +426,38 @@ static void answer_measure(View *v, CagExchange *x) {
   free(part);
 }
 
+// --- Points that can be dragged ---
+
+static void answer_points_with(CagSession *s, Errand *e,
+                               void (*make)(CagSession *s, const char *request, size_t size,
+                                            CagLiveAnswer *out)) {
+  CagLiveAnswer answer = {0};
+  if (s) make(s, e->word, strlen(e->word), &answer);
+  if (!s) cag_exchange_fail(e->x, 409, "the script has not run without errors yet", NULL);
+  else if (answer.status != 200) cag_exchange_fail(e->x, answer.status, answer.why, NULL);
+  else answer_text(e->x, 200, &answer.text);
+  cag_string_free(&answer.text);
+  free_errand(e);
+}
+
+static void do_points(CagSession *s, void *context) {
+  answer_points_with(s, context, cag_live_points);
+}
+
+static void do_solve(CagSession *s, void *context) {
+  answer_points_with(s, context, cag_live_solve);
+}
+
+// Sends the body of the request.
+static void send_body_on_errand(View *v, CagExchange *x, CagLiveTask *task) {
+  size_t size;
+  const char *body = cag_exchange_body(x, &size);
+  char *copy = strndup(body ? body : "", size);
+  if (copy) send_on_errand(v, x, copy, task);
+  else answer_out_of_memory(x);
+  free(copy);
+}
+
 // --- Pictures ---
 
 static void answer_render(View *v, CagExchange *x) {
@@ -523,6 +556,8 @@ static void route_open(View *v, CagExchange *x) {
   else if (is_request(x, "POST", "/api/export")) answer_export(v, x);
   else if (get && (rest = rest_after(path, "/api/image/"))) send_on_errand(v, x, rest, do_image);
   else if (is_request(x, "POST", "/api/measure")) answer_measure(v, x);
+  else if (is_request(x, "POST", "/api/points")) send_body_on_errand(v, x, do_points);
+  else if (is_request(x, "POST", "/api/solve")) send_body_on_errand(v, x, do_solve);
   else if (is_request(x, "POST", "/api/render")) answer_render(v, x);
   else if ((rest = rest_after(path, "/api/job/"))) answer_job(v, x, rest);
   else cag_exchange_fail(x, 404, "there is nothing here", NULL);
