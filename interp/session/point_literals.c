@@ -149,7 +149,7 @@ static const CagExpr *argument_of(const Written *w, const CagSignature *s, size_
 
 CagLiteral cag_literal_of_argument(const CagVm *vm, const CagOriginStep *step, size_t parameter) {
   const CagModuleUnit *m = module_of(vm, step->source);
-  const CagSignature *s = step->call ? cag_builtin_signature_of(step->call->row) : NULL;
+  const CagSignature *s = cag_builtin_signature_of(step->row);
   const CagExpr *found = NULL;
   for (size_t i = 0; m && s && !found && i < m->ast->count; i++)
     if (contains(m->ast->statements[i]->span, step->span))
@@ -159,7 +159,7 @@ CagLiteral cag_literal_of_argument(const CagVm *vm, const CagOriginStep *step, s
   const CagExpr *callee = w.callee;
   while (callee->kind == CAG_EXPR_GROUP) callee = callee->as.unary.operand;
   if (callee->kind != CAG_EXPR_NAME || callee->as.name.binding != CAG_BIND_BUILTIN ||
-      callee->as.name.index != step->call->index)
+      callee->as.name.index != step->index)
     return unknown;
   return (CagLiteral){m, argument_of(&w, s, parameter)};
 }

@@ -48,7 +48,7 @@ static void add_spot(Walk *w, const CagOriginStep *step, const Frame *f, const d
   if (!CAG_RESERVE(out->items, out->capacity, out->count + 1)) cag_vm_out_of_memory(w->vm);
   CagPointSpot *p = &out->items[out->count++];
   *p = (CagPointSpot){.step = step,
-                      .function = cag_builtin_name(step->call->index),
+                      .function = cag_builtin_name(step->index),
                       .map = frame_map(f, (int)dimension),
                       .dimension = (int)dimension,
                       .literal = literal};
@@ -92,10 +92,6 @@ static bool has_alternative(const char *words, const char *wanted) {
   return false;
 }
 
-static bool is_translation(const CagOriginCall *call) {
-  return !strcmp(call->row->result, "as G") && !strcmp(cag_builtin_name(call->index), "translate");
-}
-
 // The points in one argument.
 static void add_argument(Walk *w, const CagOriginStep *step, const Frame *f, size_t k,
                          const char *words) {
@@ -104,7 +100,7 @@ static void add_argument(Walk *w, const CagOriginStep *step, const Frame *f, siz
   size_t n;
   if (v.type != CAG_LIST) return;
   const CagList *list = CAG_AS_LIST(v);
-  const bool point = has_alternative(words, "point") || is_translation(step->call);
+  const bool point = has_alternative(words, "point") || cag_is_translation(step->row);
   const CagLiteral literal =
       w->literals ? cag_literal_of_argument(w->vm, step, k) : (CagLiteral){0};
   if (point && cag_as_vector(v, &x, &n) && (n == 2 || n == 3)) add_spot(w, step, f, x, n, literal);
@@ -116,9 +112,9 @@ static void add_argument(Walk *w, const CagOriginStep *step, const Frame *f, siz
 // Calls that only move shapes or give them attributes have no points, except translations.
 static void add_call(Walk *w, const CagOriginStep *step, const Frame *f) {
   const CagOriginCall *call = step->call;
-  const CagSignature *s = cag_builtin_signature_of(call->row);
-  const bool changes = !strncmp(call->row->result, "as ", 3);
-  if (!s || (changes && !is_translation(call))) return;
+  const CagSignature *s = cag_builtin_signature_of(step->row);
+  const bool changes = !strncmp(step->row->result, "as ", 3);
+  if (!call || !s || (changes && !cag_is_translation(step->row))) return;
   const size_t count = call->count < s->count ? call->count : s->count;
   for (size_t k = changes ? 1 : 0; k < count; k++) add_argument(w, step, f, k, s->words[k]);
 }
@@ -147,24 +143,24 @@ static bool bends(const char *function) {
 static bool is_upright_axis(const CagOriginCall *call) {
   const double *x;
   size_t n;
-  if (call->count < 2 || call->values[1].type == CAG_UNSET) return true;
+  if (!call || call->count < 2 || call->values[1].type == CAG_UNSET) return true;
   return cag_as_vector(call->values[1], &x, &n) && n == 3 && x[0] == 0 && x[1] == 0;
 }
 
 static void walk_chain(Walk *w, const CagOriginStep *step, Frame f) {
   if (++w->depth > MOST_DEPTH) step = NULL;
-  for (; step && step->call && ++w->steps <= MOST_STEPS; step = step->before) {
-    const char *function = cag_builtin_name(step->call->index);
+  for (; step && ++w->steps <= MOST_STEPS; step = step->before) {
+    const char *function = cag_builtin_name(step->index);
     // The vector of a translation is a point of the scene after it.
-    if (is_translation(step->call)) add_call(w, step, &f);
+    if (cag_is_translation(step->row)) add_call(w, step, &f);
     if (!strcmp(function, "revolve") && is_upright_axis(step->call) && !f.lifted) {
       f.outer = cag_transform_multiply(&f.outer, &f.inner);
       f.inner = cag_transform_identity();
       f.lifted = true;
     }
     if (step->motion) f.inner = cag_transform_multiply(&f.inner, &step->motion->t);
-    if (!is_translation(step->call) && !bends(function)) add_call(w, step, &f);
-    for (size_t i = 0; i < step->call->count; i++)
+    if (!cag_is_translation(step->row) && !bends(function)) add_call(w, step, &f);
+    for (size_t i = 0; step->call && i < step->call->count; i++)
       if (i > 0 || !bends(function)) walk_operands(w, step->call->values[i], &f);
     if (bends(function)) break;
   }

@@ -5,18 +5,21 @@
 
 #include "interp/vm/origin.h"
 
+#include <string.h>
+
 #include "interp/vm/vm.h"
 
 // Lists are followed this deep for shapes.
 #define LIST_DEPTH 3
 // The most shapes in an argument whose steps are kept.
 #define MOST_SHAPES 400
+// Of more arguments, which only functions of any number of shapes have, the first ones are kept.
+#define MOST_ARGUMENTS 64
 
 // The arguments of the call that is noted. They are copied when the first shape is found.
 typedef struct Noting {
   const CagCall *call;
-  size_t index;
-  CagOriginStep step; // its location
+  CagOriginStep step; // its location and function
   bool copied;
 } Noting;
 
@@ -51,38 +54,59 @@ static CagValue kept_list(CagVm *vm, CagValue v, const CagOriginStep *before, in
   return cag_list_values(vm, kept, list->length);
 }
 
-// What is kept of an argument. `before` is the step that the chain itself continues.
+// Numbers, or the steps of shapes. `before` is the step that the chain itself continues.
 static CagValue kept_argument(CagVm *vm, CagValue v, const CagOriginStep *before, int depth) {
-  switch (v.type) {
-  case CAG_NONE:
-  case CAG_BOOL:
-  case CAG_NUMBER:
-  case CAG_ANGLE:
-  case CAG_PLANE: return v;
-  case CAG_LIST: return kept_list(vm, v, before, depth);
-  case CAG_GROUP:
+  if (v.type == CAG_LIST) return kept_list(vm, v, before, depth);
+  if (v.type == CAG_GROUP)
     return kept_list(vm, cag_object(CAG_LIST, CAG_AS_SHAPE(v)->as.items), before, depth);
-  default: break;
-  }
   if (!cag_is_shape(v)) return cag_unset();
   CagOriginStep *last = CAG_AS_SHAPE(v)->origin.last;
   return last && last != before ? cag_object(CAG_INTERNAL, last) : cag_unset();
 }
 
-static CagOriginCall *kept_call(const Noting *n, const CagOriginStep *before) {
-  const CagCall *call = n->call;
-  size_t count = call->count;
-  while (count > 0 && call->values[count - 1].type == CAG_UNSET) count--;
-  CagOriginCall *kept =
-      cag_alloc(call->vm, CAG_INTERNAL, sizeof *kept + count * sizeof *kept->values);
-  kept->head.flags = CAG_INTERNAL_CALL;
-  kept->row = call->builtin;
-  kept->index = n->index;
-  kept->count = count;
-  for (size_t i = 0; i < count; i++) kept->values[i] = cag_unset();
-  for (size_t i = 0; i < count; i++)
-    kept->values[i] = kept_argument(call->vm, call->values[i], before, 0);
-  return kept;
+// Lists that kept_list has made are of steps and of such lists.
+static bool holds_steps(CagValue list) {
+  const CagList *l = CAG_AS_LIST(list);
+  bool found = false;
+  for (size_t i = 0; l->dim == 0 && !found && i < l->length; i++) {
+    const CagValue item = l->as.items[i];
+    found = item.type == CAG_INTERNAL || (item.type == CAG_LIST && holds_steps(item));
+  }
+  return found;
+}
+
+// Whether an argument of a call may have points, or a vector that tells where shapes are.
+static bool has_points(const CagBuiltin *row, const char *words) {
+  if (!strncmp(row->result, "as ", 3)) return !strcmp(words, "vector") && cag_is_translation(row);
+  return strstr(words, "point") || strstr(words, "vector");
+}
+
+// What is kept of argument k.
+static CagValue kept_of(const CagCall *call, size_t k, const CagOriginStep *before) {
+  const CagSignature *s = cag_builtin_signature_of(call->builtin);
+  const CagValue kept = kept_argument(call->vm, call->values[k], before, 0);
+  const bool numbers = kept.type == CAG_LIST && !holds_steps(kept);
+  if (kept.type == CAG_INTERNAL || (kept.type == CAG_LIST && !numbers)) return kept;
+  return numbers && k < s->count && has_points(call->builtin, s->words[k]) ? kept : cag_unset();
+}
+
+static CagOriginCall *kept_call(const CagCall *call, const CagOriginStep *before) {
+  CagValue kept[MOST_ARGUMENTS];
+  size_t count = 0;
+  for (size_t k = 0; k < call->count && k < MOST_ARGUMENTS; k++) {
+    kept[k] = kept_of(call, k, before);
+    if (kept[k].type != CAG_UNSET) count = k + 1;
+  }
+  if (count == 0) return NULL;
+  CagOriginCall *made = cag_alloc(call->vm, CAG_INTERNAL, sizeof *made + count * sizeof *kept);
+  made->head.flags = CAG_INTERNAL_CALL;
+  made->count = count;
+  memcpy(made->values, kept, count * sizeof *kept);
+  return made;
+}
+
+bool cag_is_translation(const CagBuiltin *row) {
+  return !strcmp(row->result, "as G") && !strcmp(cag_builtin_signature_of(row)->name, "translate");
 }
 
 // --- Steps ---
@@ -126,13 +150,13 @@ static void note_in(Noting *n, CagValue v) {
   if (!cag_is_shape(v) || !CAG_AS_SHAPE(v)->fresh) return;
   CagOrigin *o = &CAG_AS_SHAPE(v)->origin;
   CAG_AS_SHAPE(v)->fresh = false;
-  if (!n->copied) n->step.call = kept_call(n, o->last);
+  if (!n->copied) n->step.call = kept_call(n->call, o->last);
   n->copied = true;
   add_step(n->call->vm, o, &n->step);
 }
 
 void cag_origin_note(const CagCall *call, size_t index, CagValue result) {
-  Noting n = {.call = call, .index = index};
+  Noting n = {.call = call, .step = {.row = call->builtin, .index = index}};
   if (!cag_vm_place(call->vm, &n.step.source, &n.step.span)) return;
   if (n.step.source->library) cag_vm_caller(call->vm, &n.step.caller, &n.step.caller_span);
   note_in(&n, result);

@@ -10,6 +10,8 @@ enum { CAG_ORIGIN_NUMBERS = 1200 };
 
 // Adds a call that has just succeeded to the origins of the shapes that it made.
 void cag_origin_note(const CagCall *call, size_t index, CagValue result);
+// Whether a row of the table is `translate(G, V)`.
+bool cag_is_translation(const CagBuiltin *row);
 // Notes that a shape, which was made just now, is another one after this map.
 void cag_origin_moved(CagVm *vm, CagValue moved, const CagTransform *t);
 

@@ -190,14 +190,12 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
-// The arguments of a call that made or moved shapes, for finding the points in them. Shapes are
-// replaced by their last steps, and what is not needed (long lists, functions) by CAG_UNSET.
+// What is kept of the arguments of a call that made shapes or translated them: points and vectors, and
+// the last steps of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
 struct CagBuiltin;
 typedef struct CagOriginCall {
   CagObject head; // CAG_INTERNAL
-  const struct CagBuiltin *row;
-  size_t index; // of the built-in
-  size_t count; // by parameter, without the last ones that were not given
+  size_t count;   // by parameter, up to the last one that is kept
   CagValue values[];
 } CagOriginCall;
 
@@ -208,8 +206,10 @@ typedef struct CagOriginStep {
   CagSpan span;
   const CagSource *caller; // in the library: the nearest call outside of it; else NULL
   CagSpan caller_span;
-  CagOriginCall *call;       // what was called
-  CagTransformValue *motion; // what the shape went through since the step before; NULL: none
+  const struct CagBuiltin *row; // what was called
+  size_t index;                 // of its name
+  CagOriginCall *call;          // its arguments; NULL: none are kept
+  CagTransformValue *motion;    // of the shape since the step before; NULL: none
   struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
   uint32_t depth;               // number of calls before it
 } CagOriginStep;
@@ -221,7 +221,7 @@ enum { CAG_ORIGIN_DEPTH = 12 };
 typedef struct CagOrigin {
   CagOriginStep *last;       // NULL: not made by a call
   CagTransformValue *motion; // since the last step; NULL: none
-  CagText *definition; // the definition whose value it first was; NULL: none
+  CagText *definition;       // the definition whose value it first was; NULL: none
 } CagOrigin;
 
 // The shape that was moved to make another one, and the rigid motion between them. The mesh of what
