@@ -371,23 +371,29 @@ CAG_API int cag_session_points(CagSession *s, size_t part, size_t *count, size_t
 CAG_API bool cag_session_point(CagSession *s, size_t i, CagPointView *out);
 // Returns the name of param k that moves point i, or NULL. It is a number or an angle with a range.
 CAG_API const char *cag_session_point_param(CagSession *s, size_t i, size_t k);
-// Finds values of params with which a point of a part comes as close as possible to a target: least
-// squares, by Gauss-Newton steps with differences as derivatives, within the ranges of the params
-// (Nocedal and Wright 2006, 10.3). The shown expression is evaluated for each step. Values are
-// rounded to a power of ten that moves the point by less than `tolerance` (mm).
-//
-//   point      the id of the point
-//   names      params that may change, at most 8
-//   give       receives the value of each as an expression, such as "12.5" or "30deg"
-//   at         receives where the point is with these values
+// Where a point of a part is wanted, and the params that may change for it.
+typedef struct CagPointGoal {
+  size_t part, point; // point: its id
+  double target[3];
+  // A unit vector, along which differences count very little, because a viewer who looks that way
+  // does not see them. Zero: all differences count.
+  double along[3];
+  double tolerance; // mm; 0: 1e-6
+  const char *const *names;
+  size_t count; // of names, 1 to 8
+} CagPointGoal;
+// Finds values of params with which a point comes as close as possible to a target: least squares, by
+// Gauss-Newton steps with differences as derivatives, within the ranges of the params (Nocedal and
+// Wright 2006, 10.3). The shown expression is evaluated for each step. Values are rounded to a power
+// of ten that moves the point by less than the tolerance. Calls `give` with the value of each param as
+// an expression, such as "12.5" or "30deg"; `at` receives where the point is with these values.
 //
 // The result of the last run stays as it is. Fails with CAG_STATUS_USAGE if there is no such part or
-// point, or if a name is not a number or an angle with a range.
-CAG_API int
-cag_session_solve_point(CagSession *s, size_t part, size_t point, const double target[3],
-                        double tolerance, const char *const *names, size_t n,
-                        void (*give)(void *context, const char *name, const char *value),
-                        void *context, double at[3]);
+// point, or if a name is not that of a number or an angle with a range.
+CAG_API int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
+                                    void (*give)(void *context, const char *name,
+                                                 const char *value),
+                                    void *context, double at[3]);
 
 typedef struct CagMaterialView {
   const char *name, *texture;              // texture: "" for none

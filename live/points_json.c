@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_PARAMS = 8 };
+enum { MOST_PARAMS = 8, MOST_ID = 1000000 };
+#define UNIT_ERROR 1e-6
 
 static void refuse(CagLiveAnswer *out, int status, const char *why) {
   out->status = status;
@@ -37,13 +38,15 @@ static const char *message_of(const CagSession *s) {
 
 // --- Points ---
 
+static double norm3(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
 // The plane of a point with two coordinates. Returns false if the map flattens it.
 static bool find_normal(const CagPointView *p, double out[3]) {
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     out[i] = p->map[j][0] * p->map[k][1] - p->map[k][0] * p->map[j][1];
   }
-  const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+  const double length = norm3(out);
   for (int i = 0; i < 3; i++) out[i] /= length;
   return length > 0 && isfinite(length);
 }
@@ -130,14 +133,8 @@ void cag_live_points(CagSession *s, const char *request, size_t size, CagLiveAns
 
 // --- Params for a point ---
 
-typedef struct Wanted {
-  size_t part, point, count;
-  double target[3], pixel;
-  const char *names[MOST_PARAMS];
-} Wanted;
-
-static bool read_target(const cJSON *json, double out[3]) {
-  const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "target");
+static bool read_vector(const cJSON *json, const char *field, double out[3]) {
+  const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, field);
   if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != 3) return false;
   for (int i = 0; i < 3; i++) {
     const cJSON *x = cJSON_GetArrayItem(list, i);
@@ -147,30 +144,35 @@ static bool read_target(const cJSON *json, double out[3]) {
   return true;
 }
 
-static bool read_names(const cJSON *json, Wanted *out) {
+static bool read_names(const cJSON *json, const char *names[MOST_PARAMS], CagPointGoal *out) {
   const cJSON *item, *list = cJSON_GetObjectItemCaseSensitive(json, "params");
+  out->names = names;
   cJSON_ArrayForEach(item, list) {
     if (!cJSON_IsString(item) || out->count == MOST_PARAMS) return false;
-    out->names[out->count++] = item->valuestring;
+    names[out->count++] = item->valuestring;
   }
   return cJSON_IsArray(list) && out->count > 0;
 }
 
-static bool read_wanted(CagSession *s, const cJSON *json, Wanted *out, CagLiveAnswer *answer) {
+static bool read_goal(CagSession *s, const cJSON *json, CagPointGoal *out, CagLiveAnswer *answer) {
   const cJSON *point = cJSON_GetObjectItemCaseSensitive(json, "point"),
               *pixel = cJSON_GetObjectItemCaseSensitive(json, "pixel");
   const char *name = text_of(json, "part");
   const double id = cJSON_IsNumber(point) ? point->valuedouble : -1;
+  const bool sighted = read_vector(json, "along", out->along);
   if (!name) refuse(answer, 400, "expected `part`, the name of a part");
-  else if (!(id >= 0 && id < 1e6)) refuse(answer, 400, "expected `point`, the id of a point");
-  else if (!read_target(json, out->target))
+  else if (!(id >= 0 && id < MOST_ID)) refuse(answer, 400, "expected `point`, the id of a point");
+  else if (!read_vector(json, "target", out->target))
     refuse(answer, 400, "expected `target`, a list of three numbers");
-  else if (!read_names(json, out))
+  else if (sighted && fabs(norm3(out->along) - 1) > UNIT_ERROR)
+    refuse(answer, 400, "expected `along`, a vector of length 1");
+  else if (out->count == 0)
     refuse(answer, 400, "expected `params`, a list of 1 to 8 names of params");
   else if (!find_part(s, name, &out->part)) refuse(answer, 404, "there is no such part");
-  out->point = id >= 0 ? (size_t)id : 0;
-  out->pixel = cJSON_IsNumber(pixel) ? pixel->valuedouble : 0;
-  return answer->status == 200;
+  if (answer->status != 200) return false;
+  out->point = (size_t)id;
+  out->tolerance = cJSON_IsNumber(pixel) ? pixel->valuedouble : 0;
+  return true;
 }
 
 static void write_value(void *context, const char *name, const char *value) {
@@ -179,15 +181,16 @@ static void write_value(void *context, const char *name, const char *value) {
 
 void cag_live_solve(CagSession *s, const char *request, size_t size, CagLiveAnswer *out) {
   cJSON *json = cJSON_ParseWithLength(request, size);
-  Wanted w = {0};
+  const char *names[MOST_PARAMS];
+  CagPointGoal goal = {0};
   double at[3];
   CagJson j = {.to = &out->text};
   *out = (CagLiveAnswer){.status = 200};
-  if (read_wanted(s, json, &w, out)) {
+  if (!read_names(json, names, &goal)) goal.count = 0;
+  if (read_goal(s, json, &goal, out)) {
     cag_json_open(&j, '{');
     cag_json_open_in(&j, "params", '{');
-    const int status = cag_session_solve_point(s, w.part, w.point, w.target, w.pixel, w.names,
-                                               w.count, write_value, &j, at);
+    const int status = cag_session_solve_point(s, &goal, write_value, &j, at);
     cag_json_close(&j, '}');
     if (status == CAG_STATUS_OK) cag_json_numbers(&j, "at", at, 3);
     cag_json_close(&j, '}');

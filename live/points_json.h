@@ -19,15 +19,17 @@ typedef struct CagLiveAnswer {
 //   id, call, dimension, at     see CagPointView
 //   plane        {origin, normal} of a point in a plane, in the scene; null in space
 //   map          3 rows of 4: from the coordinates in the script, mm, to the scene
-//   numbers      for each coordinate: {file, line, column, endLine, endColumn, library, value, unit,
+//   numbers      for each coordinate: {file, line, column, endLine, endColumn, value, unit,
 //                scale} of the number in the script; null if it is computed
 //   locked       why it cannot be moved; null
 //   params       names of params that move it
 void cag_live_points(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
-// {"part": NAME, "point": ID, "target": [x, y, z], "params": [NAME, ...], "pixel": MM} gives
+// {"part": NAME, "point": ID, "target": [x, y, z], "along": [x, y, z], "params": [NAME, ...],
+// "pixel": MM} gives
 // {"params": {NAME: VALUE, ...}, "at": [x, y, z]}: values of these params with which the point comes
-// closest to the target, rounded so that it moves by less than a pixel.
+// closest to the target, as seen along this unit vector (which may be left out), rounded so that it
+// moves by less than a pixel.
 void cag_live_solve(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
 #endif

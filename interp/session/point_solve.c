@@ -14,12 +14,18 @@ enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
 // params that do the same, all change a little.
 #define DAMPING 1e-9
 
+// What counts of a difference along the line of sight.
+#define DEPTH 1e-3
+// The tolerance, mm, if none is given.
+#define TOLERANCE 1e-6
+
 // Params are unknowns of 0 to 1, from the low to the high end of their ranges.
 typedef struct Solving {
   CagPointWork work;
   size_t point, n;
   CagTrialParam params[MOST_UNKNOWNS];
   CagVec3 target, at; // at: with the values in params
+  CagVec3 along;      // the line of sight; zero: none
   double tolerance;
   bool found;
   double columns[MOST_UNKNOWNS][3]; // derivatives of the point
@@ -33,7 +39,14 @@ static bool point_with(Solving *v, const CagTrialParam *params, CagVec3 *out) {
   return isfinite(out->x + out->y + out->z);
 }
 
-static double miss(const Solving *v, CagVec3 at) { return cag_norm(cag_sub(at, v->target)); }
+// A difference as far as it counts.
+static CagVec3 seen(const Solving *v, CagVec3 d) {
+  return cag_madd(d, (DEPTH - 1) * cag_dot(d, v->along), v->along);
+}
+
+static double miss(const Solving *v, CagVec3 at) {
+  return cag_norm(seen(v, cag_sub(at, v->target)));
+}
 
 // Params whose differences cannot be computed do not change.
 static void find_columns(Solving *v) {
@@ -46,7 +59,7 @@ static void find_columns(Solving *v) {
         params[k].value + DIFFERENCE * range <= params[k].high ? DIFFERENCE : -DIFFERENCE;
     params[k].value += h * range;
     const bool found = point_with(v, params, &there);
-    const CagVec3 d = found ? cag_scaled(cag_sub(there, v->at), 1 / h) : cag_vec3(0, 0, 0);
+    const CagVec3 d = found ? cag_scaled(seen(v, cag_sub(there, v->at)), 1 / h) : cag_vec3(0, 0, 0);
     v->columns[k][0] = d.x;
     v->columns[k][1] = d.y;
     v->columns[k][2] = d.z;
@@ -61,7 +74,7 @@ static double dot3(const double *a, const double *b) {
 // elimination.
 static void normal_step(const Solving *v, const bool *fixed, double step[MOST_UNKNOWNS]) {
   double a[MOST_UNKNOWNS][MOST_UNKNOWNS + 1], largest = 0;
-  const CagVec3 d = cag_sub(v->target, v->at);
+  const CagVec3 d = seen(v, cag_sub(v->target, v->at));
   const double r[3] = {d.x, d.y, d.z};
   for (size_t i = 0; i < v->n; i++) largest = fmax(largest, dot3(v->columns[i], v->columns[i]));
   for (size_t i = 0; i < v->n; i++) {
@@ -178,20 +191,21 @@ static void give_values(const Solving *v,
   }
 }
 
-int cag_session_solve_point(CagSession *s, size_t part, size_t point, const double target[3],
-                            double tolerance, const char *const *names, size_t n,
+static CagVec3 vector_of(const double x[3]) { return cag_vec3(x[0], x[1], x[2]); }
+
+int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
                             void (*give)(void *context, const char *name, const char *value),
                             void *context, double at[3]) {
-  Solving v = {.work = {.session = s, .part = part},
-               .point = point,
-               .n = n,
-               .target = cag_vec3(target[0], target[1], target[2]),
-               .tolerance = tolerance > 0 ? tolerance : 1e-6};
-  if (n == 0 || n > MOST_UNKNOWNS || !isfinite(target[0] + target[1] + target[2]))
+  Solving v = {.work = {.session = s, .part = goal->part},
+               .point = goal->point,
+               .n = goal->count,
+               .target = vector_of(goal->target),
+               .along = vector_of(goal->along),
+               .tolerance = goal->tolerance > 0 ? goal->tolerance : TOLERANCE};
+  if (v.n == 0 || v.n > MOST_UNKNOWNS || !isfinite(cag_norm(v.target)) || !cag_session_begin(s))
     return CAG_STATUS_USAGE;
-  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
-  bool known = cag_points_of_part(s, part) && cag_session_list_params(s);
-  for (size_t k = 0; known && k < n; k++) known = find_param(s, names[k], &v.params[k]);
+  bool known = cag_points_of_part(s, goal->part) && cag_session_list_params(s);
+  for (size_t k = 0; known && k < v.n; k++) known = find_param(s, goal->names[k], &v.params[k]);
   int status = CAG_STATUS_USAGE;
   if (known) status = cag_points_work(s, solve_point, &v.work, &v);
   if (status == CAG_STATUS_OK && !v.found) status = CAG_STATUS_USAGE;

@@ -4,9 +4,9 @@
 // Content-Security-Policy.
 
 import { acceptCompletion, completeAnyWord } from "@codemirror/autocomplete";
-import { indentWithTab } from "@codemirror/commands";
+import { indentWithTab, isolateHistory } from "@codemirror/commands";
 import { setDiagnostics } from "@codemirror/lint";
-import { EditorState, StateEffect, StateField } from "@codemirror/state";
+import { EditorState, StateEffect, StateField, Transaction } from "@codemirror/state";
 import { Decoration, EditorView, keymap } from "@codemirror/view";
 import { basicSetup } from "codemirror";
 import { cag, cagLanguage } from "./cag_language.js";
@@ -68,6 +68,7 @@ export class Editor {
     /** @type {Map<string, EditorState>} */
     this.states = new Map();
     this.path = "";
+    this.quiet = false; // a change under way is not typed
     /** @type {Diagnostic[]} */
     this.problems = [];
     const root = host.attachShadow({ mode: "open" });
@@ -125,11 +126,33 @@ export class Editor {
 
   /** Changes a part of a file, as one step to undo. @param {string} path @param {number} from @param {number} to @param {string} insert */
   replace(path, from, to, insert) {
-    if (path === this.path) this.view.dispatch({ changes: { from, to, insert } });
+    this.change(path, [{ from, to, insert }]);
+  }
+
+  /**
+   * Changes parts of a file.
+   *
+   * @param {string} path
+   * @param {{ from: number, to: number, insert: string }[]} changes
+   * @param {"step" | "hidden" | undefined} [history]  a step to undo by itself, or none; undefined: as typing is
+   */
+  change(path, changes, history) {
+    const annotations = history === "step" ? isolateHistory.of("full") : history === "hidden" ? Transaction.addToHistory.of(false) : undefined;
+    if (path === this.path) this.view.dispatch({ changes, annotations });
     else {
       const state = this.states.get(path);
-      if (state) this.states.set(path, state.update({ changes: { from, to, insert } }).state);
+      if (state) this.states.set(path, state.update({ changes, annotations }).state);
       this.changed.emit(path);
+    }
+  }
+
+  /** Makes changes that do not run the script by themselves. @param {() => void} make */
+  quietly(make) {
+    this.quiet = true;
+    try {
+      make();
+    } finally {
+      this.quiet = false;
     }
   }
 

@@ -79,6 +79,8 @@ export function serverEngine() {
     writeSets: async (sets) => {
       await ask("/api/params", json("PUT", sets));
     },
+    points: async (part) => (await ask("/api/points", json("POST", { part }))).json(),
+    solve: async (request) => (await ask("/api/solve", json("POST", request))).json(),
     measure: async (part) => {
       const m = await (await ask("/api/measure", json("POST", { part }))).json();
       return { ...m, bounds: m.bounds && [m.bounds.min, m.bounds.max] };

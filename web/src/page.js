@@ -16,6 +16,7 @@ import { Overlay } from "./overlay.js";
 import { ParamsPanel } from "./params.js";
 import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
+import { PointTool } from "./point_tool.js";
 import { Runs } from "./runs.js";
 import { SectionPanel } from "./section_panel.js";
 import { SelectionPanel } from "./selection_panel.js";
@@ -141,11 +142,19 @@ async function start(engine) {
   const partsPanel = new PartsPanel(byId("parts", HTMLDivElement), view);
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
+  const points = new PointTool({
+    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report,
+    run: (dragging) => {
+      timeBar.forget();
+      if (dragging) runs.drag();
+      else runs.drop();
+    },
+  });
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
   panels.push(
     (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
-    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection(), () => showMade());
+    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => keepSelection(), () => showMade(), () => points.on && points.update());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
   function expressionOf(part) {
@@ -154,12 +163,15 @@ async function start(engine) {
     return show ? shownExpression(excerpt(show)) : "";
   }
 
+  let selected = ""; // the parts whose points are shown
   /** @param {string[]} names */
   function select(names) {
     view.selected = names;
     const part = view.parts.views.get(names[names.length - 1])?.part ?? null;
     selection.show(part, part ? expressionOf(part) : "", !runs.coarse);
     partsPanel.refresh();
+    if (points.on && names.join() !== selected) points.update();
+    selected = names.join();
     view.invalidate();
     return part;
   }
@@ -259,6 +271,7 @@ async function start(engine) {
     backdrop: { is: () => stage.backdrop, set: (on) => (stage.backdrop = on) },
     shadows: { is: () => stage.shadows, set: (on) => (stage.shadows = on) },
     section: { is: () => view.section.on, set: (on) => (sectionPanel.toggle(on), on && openPanel("section")) },
+    points: { is: () => points.on, set: (on) => (points.toggle(on), on && openPanel("selection")) },
     measure: { is: () => measure.active, set: (on) => (measure.toggle(on), on && openPanel("measure")) },
   };
   /** @param {string} name */
@@ -300,7 +313,7 @@ async function start(engine) {
   /** @type {Record<string, () => void>} */
   const keys = {
     f: () => flip("fit"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
-    g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"),
+    g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"), d: () => flip("points"),
     e: () => hello.readOnly || layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
@@ -364,8 +377,11 @@ async function start(engine) {
   else documents.begin(file);
   if (newest.scene) documents.list(newest.scene.files ?? []);
   let typing = 0;
+  points.editor = opened;
+  if (points.on) points.update();
   opened.changed.on(() => {
     clearTimeout(typing);
+    if (opened.quiet) return;
     typing = window.setTimeout(() => {
       timeBar.forget();
       runs.now();

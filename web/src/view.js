@@ -104,6 +104,13 @@ export class View {
     return (2 * this.orbit.halfHeight) / this.height;
   }
 
+  /** The size of a pixel at a point, mm. @param {Vector3} at */
+  pixelAt(at) {
+    const { orbit, height } = this;
+    const distance = orbit.orthographic ? orbit.distance : orbit.eye().sub(at).dot(orbit.direction());
+    return (2 * distance * Math.tan(orbit.fov / 2)) / height;
+  }
+
   /** Draws soon. */
   invalidate() {
     if (this.due) return;
