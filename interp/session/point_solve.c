@@ -14,6 +14,8 @@ enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
 // params that do the same, all change a little.
 #define DAMPING 1e-9
 
+// Params are rounded to at least this part of their range.
+#define SMALLEST_STEP 1e-9
 // What counts of a difference along the line of sight.
 #define DEPTH 1e-3
 // The tolerance, mm, if none is given.
@@ -131,15 +133,16 @@ static bool take_step(Solving *v, const double *step) {
   return false;
 }
 
-// The largest power of ten by which the param may change without moving the point by the tolerance.
+// The largest power of ten by which a change of the param moves the point by less than the tolerance.
 static double step_of(const Solving *v, size_t k) {
   const CagTrialParam *p = &v->params[k];
   const double range = p->high - p->low, speed = sqrt(dot3(v->columns[k], v->columns[k])) / range;
   const double most = speed > 0 ? fmin(v->tolerance / speed, range) : range;
-  return pow(10, floor(log10(fmax(most, 1e-9 * range))));
+  // The logarithm of a power of ten may be rounded.
+  return pow(10, ceil(log10(fmax(most, SMALLEST_STEP * range)) - 1e-9) - 1);
 }
 
-// The values that the point had not moved by stay as they are.
+// A param that does not move the point keeps its value.
 static void round_params(Solving *v) {
   for (size_t k = 0; k < v->n; k++) {
     CagTrialParam *p = &v->params[k];

@@ -182,6 +182,19 @@ export class Editor {
     if (focus) this.view.focus();
   }
 
+  /**
+   * Marks a range of a file, or nothing. The cursor stays.
+   *
+   * @param {string} path
+   * @param {[number, number] | null} range
+   * @param {boolean} [scroll]  so that it is seen
+   */
+  mark(path, range, scroll = false) {
+    if (path !== this.path) return;
+    const seen = range && scroll ? [EditorView.scrollIntoView(range[0], { y: "nearest", x: "nearest", yMargin: 40, xMargin: 40 })] : [];
+    this.view.dispatch({ effects: [...seen, markRange.of(range)] });
+  }
+
   /** @param {Diagnostic[]} problems */
   setProblems(problems) {
     this.problems = problems;

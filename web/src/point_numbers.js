@@ -69,7 +69,7 @@ export function moveCoordinates(point, shift, { right, up, back }) {
  * @param {number} pixel  the size of a pixel in this coordinate, mm
  */
 export function numberText(mm, { unit, scale }, pixel) {
-  const power = Math.max(-12, Math.floor(Math.log10(pixel / scale) + 1e-9));
+  const power = Math.max(-12, Math.ceil(Math.log10(pixel / scale) - 1e-9) - 1);
   const value = mm / scale;
   const rounded = power >= 0 ? Math.round(value / 10 ** power) * 10 ** power : Number(value.toFixed(-power));
   // Numbers with an exponent are legal, but nobody writes them so.

@@ -114,7 +114,7 @@ export class PointTool {
         begin: () => this.begin(made),
         move: (target) => this.move(target),
         drop: (canceled) => this.end(canceled ? "cancel" : "drop"),
-        point: (on) => this.options.params.mark(on && !this.lockOf(made.point) ? made.point.params : []),
+        point: (on) => this.pointAt(on ? made : null),
       });
       this.shown.set(key, one);
     }
@@ -123,6 +123,19 @@ export class PointTool {
     if (!ahead) one.at.set(...point.at);
     one.point = point;
     this.describe(one);
+  }
+
+  /** Marks what a point would change. @param {Shown | null} one */
+  pointAt(one) {
+    const { params, file } = this.options, moves = one && !this.lockOf(one.point) ? one : null;
+    params.mark(moves ? moves.point.params : []);
+    if (this.drag) return;
+    this.editor?.mark(file, moves && this.rangeOfNumbers(this.find(moves.point) ?? []));
+  }
+
+  /** @param {Written[]} written @returns {[number, number] | null} */
+  rangeOfNumbers(written) {
+    return written.length ? [Math.min(...written.map((w) => w.from)), Math.max(...written.map((w) => w.to))] : null;
   }
 
   /** @param {Shown} one */
@@ -166,6 +179,7 @@ export class PointTool {
     }
     this.drag = { shown, point, written, params: { ...params.values }, moved: false, wanted: null, asking: false, ended: null };
     shown.button.classList.add("dragged");
+    if (written.length) this.editor?.mark(written[0].path, this.rangeOfNumbers(written), true);
     return true;
   }
 
