@@ -384,7 +384,8 @@ typedef struct CagPointGoal {
 } CagPointGoal;
 // Finds values of params with which a point comes as close as possible to a target: least squares, by
 // Gauss-Newton steps with differences as derivatives, within the ranges of the params (Nocedal and
-// Wright 2006, 10.3). The shown expression is evaluated for each step. Values are rounded to a power
+// Wright 2006, 10.3). The shown expression is evaluated for each step; after 0.5 s, the best values
+// so far are taken. Values are rounded to a power
 // of ten that moves the point by less than the tolerance. Calls `give` with the value of each param as
 // an expression, such as "12.5" or "30deg"; `at` receives where the point is with these values.
 //

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "interp/session/points.h"
 
 // The most params that are solved for at once.
@@ -14,6 +15,10 @@ enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
 // params that do the same, all change a little.
 #define DAMPING 1e-9
 
+// Seconds after which no round begins: someone who drags the point waits for the next run.
+#define SOLVE_TIME 0.5
+// Steps that move the point by less than this part of the tolerance are not taken.
+#define CLOSE_ENOUGH 0.05
 // Params are rounded to at least this part of their range.
 #define SMALLEST_STEP 1e-9
 // What counts of a difference along the line of sight.
@@ -154,19 +159,31 @@ static void round_params(Solving *v) {
   }
 }
 
+// How far the point would move by a step if it moved along straight lines.
+static double reach_of(const Solving *v, const double *step) {
+  double d[3] = {0};
+  for (size_t k = 0; k < v->n; k++)
+    for (int i = 0; i < 3; i++) d[i] += v->columns[k][i] * step[k];
+  return sqrt(dot3(d, d));
+}
+
+static void solve_rounds(Solving *v) {
+  double step[MOST_UNKNOWNS];
+  const double begin = cag_clock_seconds();
+  for (int i = 0; i < MOST_ROUNDS && cag_clock_seconds() - begin < SOLVE_TIME; i++) {
+    find_columns(v);
+    bounded_step(v, step);
+    if (reach_of(v, step) < CLOSE_ENOUGH * v->tolerance || !take_step(v, step)) return;
+  }
+}
+
 static bool solve_point(CagVm *vm, void *context) {
   Solving *v = context;
   (void)vm;
-  double step[MOST_UNKNOWNS];
   cag_trial_begin(&v->work.trial, v->work.session, v->work.part);
   v->found = point_with(v, v->params, &v->at);
-  for (int i = 0; v->found && i < MOST_ROUNDS; i++) {
-    const double before = miss(v, v->at);
-    find_columns(v);
-    bounded_step(v, step);
-    if (!take_step(v, step) || before - miss(v, v->at) < 0.01 * v->tolerance) break;
-  }
   if (v->found) {
+    solve_rounds(v);
     round_params(v);
     point_with(v, v->params, &v->at);
   }

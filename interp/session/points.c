@@ -218,8 +218,10 @@ static bool find_points(CagVm *vm, void *context) {
 
 bool cag_points_of_part(const CagSession *s, size_t part) {
   if (!s->has_scene || part >= s->scene.item_count) return false;
-  const size_t number = s->scene.items[part].number;
-  return number < s->sources.count && s->sources.items[number].shape;
+  const CagItem *item = &s->scene.items[part];
+  const size_t number = item->number;
+  return item->kind != CAG_ITEM_GROUND && number < s->sources.count &&
+         s->sources.items[number].shape;
 }
 
 int cag_points_work(CagSession *s, bool (*work)(CagVm *vm, void *context), CagPointWork *w,

@@ -346,7 +346,6 @@ async function points(browser) {
     return Math.hypot(at[0] - to[0], at[1] - to[1]);
   };
   const undo = async (expected) => {
-    await page.value(`${EDITOR}.focus()`);
     await page.key("z", { modifiers: 2 });
     await page.until(`(${text}) === ${JSON.stringify(expected)}`);
     await page.value("document.querySelector('#scene').focus()");
@@ -388,6 +387,11 @@ async function points(browser) {
     await drag(0, 0, 20);
     check((await page.value(text)) !== one, "the second drag changed nothing");
     await undo(one);
+    await undo(whole);
+    // In the editor, too.
+    await page.key("z", { modifiers: 2 + 8 });
+    await page.until(`(${text}) === ${JSON.stringify(one)}`);
+    await page.value(`${EDITOR}.focus()`);
     await undo(whole);
   });
   await test("Escape takes a drag back", async () => {

@@ -4,7 +4,7 @@
 // Content-Security-Policy.
 
 import { acceptCompletion, completeAnyWord } from "@codemirror/autocomplete";
-import { indentWithTab, isolateHistory } from "@codemirror/commands";
+import { indentWithTab, isolateHistory, redo, undo } from "@codemirror/commands";
 import { setDiagnostics } from "@codemirror/lint";
 import { EditorState, StateEffect, StateField, Transaction } from "@codemirror/state";
 import { Decoration, EditorView, keymap } from "@codemirror/view";
@@ -144,6 +144,11 @@ export class Editor {
       if (state) this.states.set(path, state.update({ changes, annotations }).state);
       this.changed.emit(path);
     }
+  }
+
+  /** Takes back the last step in the file that is shown, or does it again. @param {boolean} again */
+  undo(again) {
+    (again ? redo : undo)(this.view);
   }
 
   /** Makes changes that do not run the script by themselves. @param {() => void} make */

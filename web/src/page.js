@@ -334,6 +334,12 @@ async function start(engine) {
     }
     const target = e.target instanceof Element ? e.target : null;
     const typing = editor?.hasFocus() || target?.closest("input:not([type=range]):not([type=checkbox]), select, textarea, dialog");
+    // What was dragged in the scene is undone there, too.
+    const undone = e.key.toLowerCase() === "z" || e.key === "y";
+    if ((e.ctrlKey || e.metaKey) && undone && !typing && !hello.readOnly && !points.dragging) {
+      e.preventDefault();
+      editor?.undo(e.shiftKey || e.key === "y");
+    }
     // Space presses the button that has the focus.
     const pressed = e.key === " " && target?.closest("button, summary, input");
     if (e.ctrlKey || e.metaKey || e.altKey || typing || pressed || e.defaultPrevented) return;

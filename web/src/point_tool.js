@@ -19,6 +19,7 @@ import { columnOf, moveCoordinates, numberText, readNumber } from "./point_numbe
  * @property {number} from  in the text as it is now
  * @property {number} to
  * @property {string} before  its text before the drag
+ * @property {string} now
  *
  * @typedef {object} Drag
  * @property {Shown} shown
@@ -192,7 +193,7 @@ export class PointTool {
       const text = this.editor?.text(number.file) ?? "", [from, to] = rangeOf(text, number), before = text.slice(from, to);
       const value = readNumber(before, number);
       if (value === null || Math.abs(value - number.value) > 1e-9 * Math.max(1, Math.abs(value))) return null;
-      written.push({ k, path: number.file, from, to, before });
+      written.push({ k, path: number.file, from, to, before, now: before });
     }
     return written;
   }
@@ -207,7 +208,9 @@ export class PointTool {
       const { right, up, back } = view.orbit.axes(), axes = { right: right.toArray(), up: up.toArray(), back: back.toArray() };
       const moves = moveCoordinates(point, target.clone().sub(at).toArray(), axes);
       const texts = drag.written.map(({ k }) => this.textOf(point, k, moves[k]));
-      this.write(texts);
+      const same = drag.written.every((w, i) => w.now === texts[i]);
+      if (same && !point.params.length) return;
+      if (!same) this.write(texts);
       shown.at.copy(this.placeOf(point, drag.written, texts));
     }
     if (point.params.length) {
@@ -236,7 +239,7 @@ export class PointTool {
   /** Writes the numbers of the drag into the script, without a step to undo. @param {string[]} texts @param {"hidden" | "step"} [history] */
   write(texts, history = "hidden") {
     const { editor, drag } = this;
-    if (!editor || !drag || !drag.written.length) return;
+    if (!editor || !drag || !drag.written.length || !this.isIntact(drag)) return;
     const path = drag.written[0].path, ordered = drag.written.map((w, i) => ({ w, text: texts[i] })).sort((a, b) => a.w.from - b.w.from);
     editor.quietly(() => editor.change(path, ordered.map(({ w, text }) => ({ from: w.from, to: w.to, insert: text })), history));
     let shift = 0;
@@ -244,8 +247,14 @@ export class PointTool {
       const length = w.to - w.from;
       w.from += shift;
       w.to = w.from + text.length;
+      w.now = text;
       shift += text.length - length;
     }
+  }
+
+  /** Whether the numbers of the drag are where it has written them: somebody else may have changed the file. @param {Drag} drag */
+  isIntact({ written }) {
+    return written.every((w) => this.editor?.text(w.path)?.slice(w.from, w.to) === w.now);
   }
 
   /** Finds params for the newest target, one request after the other. @param {Drag} drag */
@@ -285,10 +294,9 @@ export class PointTool {
 
   /** Ends a drag: its numbers become one step to undo, or everything is as before. @param {Drag} drag */
   settle(drag) {
-    const { editor } = this, texts = drag.written.map((w) => editor?.text(w.path)?.slice(w.from, w.to) ?? w.before);
-    const before = drag.written.map((w) => w.before);
+    const texts = drag.written.map((w) => w.now), before = drag.written.map((w) => w.before);
     if (drag.moved) {
-      if (texts.join() !== before.join()) {
+      if (texts.join() !== before.join() && this.isIntact(drag)) {
         this.write(before);
         if (drag.ended === "drop") this.write(texts, "step");
       }
