@@ -358,6 +358,7 @@ typedef struct CagPointView {
   double map[3][4]; // from the coordinates in the script, mm, to the scene
   CagPointNumber numbers[3];
   const char *locked; // why nothing of it can be moved; NULL: something can
+  bool moved[3];      // by params, of each coordinate
   size_t param_count; // number of params that move it
 } CagPointView;
 // The most points of a part that are given.
@@ -375,9 +376,9 @@ CAG_API const char *cag_session_point_param(CagSession *s, size_t i, size_t k);
 typedef struct CagPointGoal {
   size_t part, point; // point: its id
   double target[3];
-  // A unit vector, along which differences count very little, because a viewer who looks that way
-  // does not see them. Zero: all differences count.
-  double along[3];
+  // Directions in which differences count very little, of any length: the line of sight of a viewer, or
+  // those in which numbers of the script move the point. Zero: none.
+  double ignored[2][3];
   double tolerance; // mm; 0: 1e-6
   const char *const *names;
   size_t count; // of names, 1 to 8

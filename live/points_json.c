@@ -5,7 +5,6 @@
 #include <string.h>
 
 enum { MOST_PARAMS = 8, MOST_ID = 1000000 };
-#define UNIT_ERROR 1e-6
 
 static void refuse(CagLiveAnswer *out, int status, const char *why) {
   out->status = status;
@@ -92,6 +91,9 @@ static void write_point(CagJson *j, CagSession *s, size_t i, const CagPointView 
   cag_json_open_in(j, "numbers", '[');
   for (int k = 0; k < p->dimension; k++) write_coordinate(j, &p->numbers[k]);
   cag_json_close(j, ']');
+  cag_json_open_in(j, "moved", '[');
+  for (int k = 0; k < p->dimension; k++) cag_json_bool(j, NULL, p->moved[k]);
+  cag_json_close(j, ']');
   cag_json_text(j, "locked", p->locked);
   cag_json_open_in(j, "params", '[');
   for (size_t k = 0; (name = cag_session_point_param(s, i, k)); k++) cag_json_text(j, NULL, name);
@@ -133,8 +135,7 @@ void cag_live_points(CagSession *s, const char *request, size_t size, CagLiveAns
 
 // --- Params for a point ---
 
-static bool read_vector(const cJSON *json, const char *field, double out[3]) {
-  const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, field);
+static bool read_vector(const cJSON *list, double out[3]) {
   if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != 3) return false;
   for (int i = 0; i < 3; i++) {
     const cJSON *x = cJSON_GetArrayItem(list, i);
@@ -142,6 +143,15 @@ static bool read_vector(const cJSON *json, const char *field, double out[3]) {
     out[i] = x->valuedouble;
   }
   return true;
+}
+
+// Directions may be left out.
+static bool read_ignored(const cJSON *json, CagPointGoal *out) {
+  const cJSON *item, *list = cJSON_GetObjectItemCaseSensitive(json, "ignored");
+  int n = 0;
+  if (!list) return true;
+  cJSON_ArrayForEach(item, list) if (n == 2 || !read_vector(item, out->ignored[n++])) return false;
+  return cJSON_IsArray(list);
 }
 
 static bool read_names(const cJSON *json, const char *names[MOST_PARAMS], CagPointGoal *out) {
@@ -159,13 +169,12 @@ static bool read_goal(CagSession *s, const cJSON *json, CagPointGoal *out, CagLi
               *pixel = cJSON_GetObjectItemCaseSensitive(json, "pixel");
   const char *name = text_of(json, "part");
   const double id = cJSON_IsNumber(point) ? point->valuedouble : -1;
-  const bool sighted = read_vector(json, "along", out->along);
   if (!name) refuse(answer, 400, "expected `part`, the name of a part");
   else if (!(id >= 0 && id < MOST_ID)) refuse(answer, 400, "expected `point`, the id of a point");
-  else if (!read_vector(json, "target", out->target))
+  else if (!read_vector(cJSON_GetObjectItemCaseSensitive(json, "target"), out->target))
     refuse(answer, 400, "expected `target`, a list of three numbers");
-  else if (sighted && fabs(norm3(out->along) - 1) > UNIT_ERROR)
-    refuse(answer, 400, "expected `along`, a vector of length 1");
+  else if (!read_ignored(json, out))
+    refuse(answer, 400, "expected `ignored`, a list of at most two directions");
   else if (out->count == 0)
     refuse(answer, 400, "expected `params`, a list of 1 to 8 names of params");
   else if (!find_part(s, name, &out->part)) refuse(answer, 404, "there is no such part");

@@ -21,15 +21,15 @@ typedef struct CagLiveAnswer {
 //   map          3 rows of 4: from the coordinates in the script, mm, to the scene
 //   numbers      for each coordinate: {file, line, column, endLine, endColumn, value, unit,
 //                scale} of the number in the script; null if it is computed
+//   moved        for each coordinate: whether params move it
 //   locked       why it cannot be moved; null
 //   params       names of params that move it
 void cag_live_points(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
-// {"part": NAME, "point": ID, "target": [x, y, z], "along": [x, y, z], "params": [NAME, ...],
-// "pixel": MM} gives
-// {"params": {NAME: VALUE, ...}, "at": [x, y, z]}: values of these params with which the point comes
-// closest to the target, as seen along this unit vector (which may be left out), rounded so that it
-// moves by less than a pixel.
+// {"part": NAME, "point": ID, "target": [x, y, z], "ignored": [[x, y, z], ...], "params": [NAME, ...],
+// "pixel": MM} gives {"params": {NAME: VALUE, ...}, "at": [x, y, z]}: values of these params with which
+// the point comes closest to the target, except in at most two directions that are ignored (which may
+// be left out), rounded so that the point moves by less than a pixel.
 void cag_live_solve(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "geom/linalg/tolerance.h"
 #include "interp/session/points.h"
 
 // The most params that are solved for at once.
@@ -21,8 +22,8 @@ enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
 #define CLOSE_ENOUGH 0.05
 // Params are rounded to at least this part of their range.
 #define SMALLEST_STEP 1e-9
-// What counts of a difference along the line of sight.
-#define DEPTH 1e-3
+// What counts of a difference in a direction that is ignored.
+#define IGNORED 1e-3
 // The tolerance, mm, if none is given.
 #define TOLERANCE 1e-6
 
@@ -32,7 +33,7 @@ typedef struct Solving {
   size_t point, n;
   CagTrialParam params[MOST_UNKNOWNS];
   CagVec3 target, at; // at: with the values in params
-  CagVec3 along;      // the line of sight; zero: none
+  CagVec3 ignored[2]; // perpendicular unit vectors; zero: none
   double tolerance;
   bool found;
   double columns[MOST_UNKNOWNS][3]; // derivatives of the point
@@ -48,7 +49,9 @@ static bool point_with(Solving *v, const CagTrialParam *params, CagVec3 *out) {
 
 // A difference as far as it counts.
 static CagVec3 seen(const Solving *v, CagVec3 d) {
-  return cag_madd(d, (DEPTH - 1) * cag_dot(d, v->along), v->along);
+  for (int i = 0; i < 2; i++)
+    d = cag_madd(d, (IGNORED - 1) * cag_dot(d, v->ignored[i]), v->ignored[i]);
+  return d;
 }
 
 static double miss(const Solving *v, CagVec3 at) {
@@ -213,6 +216,19 @@ static void give_values(const Solving *v,
 
 static CagVec3 vector_of(const double x[3]) { return cag_vec3(x[0], x[1], x[2]); }
 
+// Makes the directions perpendicular unit vectors, as far as they are independent.
+static void find_ignored(const CagPointGoal *goal, CagVec3 out[2]) {
+  for (int i = 0; i < 2; i++) {
+    CagVec3 d = vector_of(goal->ignored[i]);
+    const double length = cag_norm(d);
+    out[i] = cag_vec3(0, 0, 0);
+    if (!(length > 0) || !isfinite(length)) continue;
+    d = cag_scaled(d, 1 / length);
+    if (i > 0) d = cag_madd(d, -cag_dot(d, out[0]), out[0]);
+    if (cag_norm(d) > CAG_PARALLEL) out[i] = cag_scaled(d, 1 / cag_norm(d));
+  }
+}
+
 int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
                             void (*give)(void *context, const char *name, const char *value),
                             void *context, double at[3]) {
@@ -220,10 +236,10 @@ int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
                .point = goal->point,
                .n = goal->count,
                .target = vector_of(goal->target),
-               .along = vector_of(goal->along),
                .tolerance = goal->tolerance > 0 ? goal->tolerance : TOLERANCE};
   if (v.n == 0 || v.n > MOST_UNKNOWNS || !isfinite(cag_norm(v.target)) || !cag_session_begin(s))
     return CAG_STATUS_USAGE;
+  find_ignored(goal, v.ignored);
   bool known = cag_points_of_part(s, goal->part) && cag_session_list_params(s);
   for (size_t k = 0; known && k < v.n; k++) known = find_param(s, goal->names[k], &v.params[k]);
   int status = CAG_STATUS_USAGE;

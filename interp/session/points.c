@@ -126,14 +126,18 @@ static void read_point(const CagVm *vm, const CagPointSpot *spot, size_t id, Fou
 
 // --- Params that move points ---
 
-// Whether the coordinates in the script differ; a later call may move all points of the part alike.
-static bool is_moved(const CagPointSpot *a, const CagPointSpot *b) {
-  double size = 1, d = 0;
+// Finds the coordinates in the script that differ; a later call may move all points of the part alike.
+static bool find_moved(const CagPointSpot *a, const CagPointSpot *b, bool moved[3]) {
+  double size = 1;
+  bool any = false;
+  if (a->dimension != b->dimension) return false;
+  for (int k = 0; k < a->dimension; k++) size = fmax(size, fabs(a->values[k]));
   for (int k = 0; k < a->dimension; k++) {
-    size = fmax(size, fabs(a->values[k]));
-    d = fmax(d, fabs(a->values[k] - b->values[k]));
+    const double d = fabs(a->values[k] - b->values[k]);
+    if (!(isfinite(d) && d > MOVED * size)) continue;
+    any = moved[k] = true;
   }
-  return a->dimension == b->dimension && isfinite(d) && d > MOVED * size;
+  return any;
 }
 
 static void note_moved(CagSessionPoints *points, const CagPointWork *f, size_t param) {
@@ -141,7 +145,8 @@ static void note_moved(CagSessionPoints *points, const CagPointWork *f, size_t p
   for (size_t i = 0; i < points->count; i++) {
     FoundPoint *p = &points->items[i];
     const size_t id = p->view.id;
-    const bool moved = p->computed && is_moved(&f->spots.items[id], &f->moved.items[id]);
+    const bool moved =
+        p->computed && find_moved(&f->spots.items[id], &f->moved.items[id], p->view.moved);
     points->moved_by[i * points->param_count + param] = moved;
     if (moved) p->view.param_count++;
   }

@@ -481,12 +481,33 @@ static void the_line_of_sight_does_not_count(void **state) {
   find_points(s, "param h = 2 in 0..50\nshow sphere(1) |> translate([0, 0, h])\n", 0);
   // From [0, 0, 2], 10 up in the picture.
   const CagPointGoal goal = {.target = {0, 10 * c, 2 + 10 * c},
-                             .along = {0, c, -c},
+                             .ignored = {{0, c, -c}},
                              .tolerance = 0.01,
                              .names = names,
                              .count = 1};
   assert_int_equal(cag_session_solve_point(s, &goal, note_value, &f, at), CAG_STATUS_OK);
   assert_true(fabs(f.values[0] - (2 + 10 / c)) < 0.02);
+  cag_session_free(s);
+}
+
+// The numbers of a point take care of their directions, wherever they are.
+static void directions_of_numbers_do_not_count(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  CagPointView p;
+  const char *names[] = {"h"};
+  double at[3];
+  Found f = {0};
+  find_points(s, "param h = 2 in 0..50\nshow sphere(1) |> translate([7, 8, h])\n", 0);
+  assert_true(cag_session_point(s, 0, &p));
+  assert_true(!p.moved[0] && !p.moved[1] && p.moved[2]);
+  const CagPointGoal goal = {.target = {100, -100, 30},
+                             .ignored = {{3, 0, 0}, {5, 5, 0}},
+                             .tolerance = 0.01,
+                             .names = names,
+                             .count = 1};
+  assert_int_equal(cag_session_solve_point(s, &goal, note_value, &f, at), CAG_STATUS_OK);
+  assert_true(fabs(f.values[0] - 30) < 0.02);
   cag_session_free(s);
 }
 
@@ -516,6 +537,7 @@ int main(void) {
       cmocka_unit_test(params_that_move_a_point_are_found),
       cmocka_unit_test(params_are_solved_for),
       cmocka_unit_test(the_line_of_sight_does_not_count),
+      cmocka_unit_test(directions_of_numbers_do_not_count),
       cmocka_unit_test(parts_without_points_have_none),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

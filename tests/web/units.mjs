@@ -279,7 +279,7 @@ await test("typing runs at once, and what was waiting is forgotten", async () =>
 const PLAIN = { unit: "", scale: 1 }, CM = { unit: "cm", scale: 10 };
 const FRONT = { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0] };
 // A point whose coordinates are those of the scene, scaled; null: computed.
-const point = (numbers, scale = 1) => ({ numbers, map: [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0] });
+const point = (numbers, scale = 1, moved = [false, false, false]) => ({ numbers, moved, map: [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0] });
 
 await test("numbers are rounded to a power of ten below a pixel", () => {
   const rows = [
@@ -303,6 +303,8 @@ await test("coordinates follow the picture, and depth stays where the picture le
   const c = Math.SQRT1_2, above = { right: [1, 0, 0], up: [0, c, c], back: [0, -c, c] };
   moveCoordinates(point([null, null, PLAIN]), [0, 10 * c, 10 * c], above).forEach((x, k) => near(x, [0, 0, 10 / c][k], 1e-4));
   equal(moveCoordinates(point([null, null, null]), [1, 2, 3], FRONT), [0, 0, 0]);
+  // Params move the rest.
+  moveCoordinates(point([PLAIN, PLAIN, null], 1, [false, false, true]), [4, 0, 6], FRONT).forEach((x, k) => near(x, [4, 0, 6][k], 1e-6));
   equal(moveCoordinates(point([PLAIN, PLAIN, PLAIN], 0), [1, 2, 3], FRONT), [0, 0, 0]);
   equal(columnOf({ map: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12] }, 1), [2, 6, 10]);
 });

@@ -180,6 +180,7 @@
  * @property {{ origin: Triple, normal: Triple } | null} plane  of a point with 2 coordinates
  * @property {number[]} map  3 rows of 4, from the coordinates in the script, mm, to the scene
  * @property {(PointNumber | null)[]} numbers  of each coordinate; null: it is computed
+ * @property {boolean[]} moved  by params, of each coordinate
  * @property {string | null} locked  why the point cannot be moved
  * @property {string[]} params  that move it
  *
@@ -187,7 +188,7 @@
  * @property {string} part
  * @property {number} point  its id
  * @property {number[]} target
- * @property {number[]} along  the direction of sight
+ * @property {number[][]} ignored  at most two directions in which differences do not count
  * @property {string[]} params
  * @property {number} pixel  its size, mm
  *

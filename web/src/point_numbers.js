@@ -40,8 +40,8 @@ function solve(a, b) {
 }
 
 /**
- * By how many mm the coordinates that stand as numbers change, so that the point comes as close to a target as the picture shows: least squares,
- * in which depth counts little. Coordinates that are computed get 0.
+ * By how many mm the coordinates change that stand as numbers or that params move, so that the point comes as close to a target as the picture
+ * shows: least squares, in which depth counts little. Other coordinates get 0.
  *
  * @param {PointInfo} point
  * @param {number[]} shift  from the point to the target, in the scene
@@ -49,7 +49,7 @@ function solve(a, b) {
  * @returns {number[]}
  */
 export function moveCoordinates(point, shift, { right, up, back }) {
-  const free = point.numbers.flatMap((n, k) => (n ? [k] : []));
+  const free = point.numbers.flatMap((n, k) => (n || point.moved[k] ? [k] : []));
   const seen = (/** @type {number[]} */ v) => [dot(v, right), dot(v, up), DEPTH * dot(v, back)];
   const columns = free.map((k) => seen(columnOf(point, k))), wanted = seen(shift);
   const trace = columns.reduce((sum, c) => sum + dot(c, c), 0);

@@ -44,6 +44,7 @@ import { columnOf, moveCoordinates, numberText, readNumber } from "./point_numbe
  */
 
 const MOST_POINTS = 300; // of all selected parts
+const MOST_PARAMS = 8; // that are solved for at once
 const AXES = ["x", "y", "z"];
 
 export class PointTool {
@@ -119,9 +120,8 @@ export class PointTool {
       });
       this.shown.set(key, one);
     }
-    // The handle that is dragged is ahead of the scene, unless only a run tells where it is.
-    const ahead = this.drag?.shown === one && !(this.drag.written.length && point.params.length);
-    if (!ahead) one.at.set(...point.at);
+    // The handle that is dragged is ahead of the scene.
+    if (this.drag?.shown !== one) one.at.set(...point.at);
     one.point = point;
     this.describe(one);
   }
@@ -204,19 +204,21 @@ export class PointTool {
     if (!drag || drag.ended) return;
     drag.moved = true;
     const { point, shown } = drag, at = new Vector3(...point.at);
+    /** Where params are to move the point. */
+    let wanted = target.clone(), same = true;
     if (drag.written.length) {
       const { right, up, back } = view.orbit.axes(), axes = { right: right.toArray(), up: up.toArray(), back: back.toArray() };
       const moves = moveCoordinates(point, target.clone().sub(at).toArray(), axes);
       const texts = drag.written.map(({ k }) => this.textOf(point, k, moves[k]));
-      const same = drag.written.every((w, i) => w.now === texts[i]);
-      if (same && !point.params.length) return;
+      same = drag.written.every((w, i) => w.now === texts[i]);
       if (!same) this.write(texts);
-      shown.at.copy(this.placeOf(point, drag.written, texts));
+      wanted = this.placeOf(point, moves.map((x, k) => (drag.written.some((w) => w.k === k) ? 0 : x)));
+      shown.at.copy(this.placeOf(point, moves));
     }
     if (point.params.length) {
-      drag.wanted = target.clone();
+      drag.wanted = wanted;
       this.solve(drag);
-    } else this.options.run(true);
+    } else if (!same) this.options.run(true);
     view.invalidate();
   }
 
@@ -226,13 +228,10 @@ export class PointTool {
     return numberText(number.value + move, number, this.options.view.pixelAt(new Vector3(...point.at)) / (length || 1));
   }
 
-  /** Where the point is with new texts of its numbers. @param {PointInfo} point @param {Written[]} written @param {string[]} texts */
-  placeOf(point, written, texts) {
+  /** Where the point is when its coordinates change. @param {PointInfo} point @param {number[]} moves  mm */
+  placeOf(point, moves) {
     const at = new Vector3(...point.at);
-    written.forEach(({ k }, i) => {
-      const number = /** @type {PointNumber} */ (point.numbers[k]);
-      at.addScaledVector(new Vector3(...columnOf(point, k)), (readNumber(texts[i], number) ?? number.value) - number.value);
-    });
+    moves.forEach((x, k) => at.addScaledVector(new Vector3(...columnOf(point, k)), x));
     return at;
   }
 
@@ -265,10 +264,12 @@ export class PointTool {
     drag.asking = true;
     try {
       while (drag.wanted && !canceled()) {
-        const target = drag.wanted, along = target.clone().sub(view.orbit.orthographic ? target.clone().add(view.orbit.direction()) : view.orbit.eye());
+        const target = drag.wanted, { part } = drag.shown, { point } = drag, names = point.params.slice(0, MOST_PARAMS);
         drag.wanted = null;
-        const { part } = drag.shown, { id } = drag.point, names = drag.point.params.slice(0, 8);
-        const found = await engine.solve({ part, point: id, target: target.toArray(), along: along.normalize().toArray(), params: names, pixel: view.pixelAt(target) });
+        const sight = view.orbit.orthographic ? view.orbit.direction() : target.clone().sub(view.orbit.eye());
+        // Numbers of the script take care of their directions.
+        const ignored = drag.written.length ? drag.written.map(({ k }) => columnOf(point, k)).slice(0, 2) : [sight.toArray()];
+        const found = await engine.solve({ part, point: point.id, target: target.toArray(), ignored, params: names, pixel: view.pixelAt(target) });
         if (canceled()) break;
         params.set(found.params);
         if (!drag.written.length) drag.shown.at.set(...found.at);
