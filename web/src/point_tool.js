@@ -148,6 +148,7 @@ export class PointTool {
     button.classList.toggle("locked", locked !== null);
     button.classList.toggle("computed", !locked && point.params.length > 0 && (numbers === 0 || this.options.readOnly));
     button.classList.toggle("space", point.plane === null);
+    button.classList.toggle("move", point.call === "translate"); // often where another point is
     button.setAttribute("aria-label", label);
     button.setAttribute("aria-disabled", String(locked !== null));
     button.title = locked ? `Locked: ${locked}` : `${point.call} point${params ? `, ${params}` : ""}`;
