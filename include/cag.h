@@ -354,6 +354,65 @@ CAG_API int cag_session_part_mesh(CagSession *s, size_t part, double coarse,
                                   bool (*has)(void *context, const char *id), void *context,
                                   CagMeshView *out);
 
+// A coordinate of a point as it stands in the script.
+typedef struct CagPointNumber {
+  bool literal;       // it is a number, which can be replaced; else nothing else is set
+  CagPlaceView place; // of the number with its sign and unit
+  double value;       // mm
+  char unit[8];       // as written: "", "mm", "cm" ...
+  double scale;       // mm per unit
+} CagPointNumber;
+
+// A point in a call that made or moved a part, or one of the shapes that the part was made of: a
+// control point, vertex, or data point of a curve, surface, or region, or the vector of a
+// `translate`, which is at the image of the origin.
+typedef struct CagPointView {
+  size_t id;        // stays the same while only numbers change
+  const char *call; // the function, such as "polyline"
+  int dimension;    // coordinates in the script: 2 (in a plane) or 3
+  double at[3];     // in the scene
+  double map[3][4]; // from the coordinates in the script, mm, to the scene
+  CagPointNumber numbers[3];
+  const char *locked; // why nothing of it can be moved; NULL: something can
+  bool moved[3];      // by params, of each coordinate
+  size_t param_count; // number of params that move it
+} CagPointView;
+// The most points of a part that are given.
+enum { CAG_POINTS_MAX = 300 };
+// Finds the points of a part. *omitted receives the number of those beyond CAG_POINTS_MAX; of more,
+// points that can be moved come first. Params are tried out by evaluating the shown expression again,
+// so this may take as long as a few runs without meshes; params for which there is no time (1 s) do
+// not count. Fails with CAG_STATUS_USAGE if there is no such part.
+CAG_API int cag_session_points(CagSession *s, size_t part, size_t *count, size_t *omitted);
+// Returns point i of those that were found last, which are valid until the next run or search.
+CAG_API bool cag_session_point(CagSession *s, size_t i, CagPointView *out);
+// Returns the name of param k that moves point i, or NULL. It is a number or an angle with a range.
+CAG_API const char *cag_session_point_param(CagSession *s, size_t i, size_t k);
+// Where a point of a part is wanted, and the params that may change for it.
+typedef struct CagPointGoal {
+  size_t part, point; // point: its id
+  double target[3];
+  // Directions in which differences count very little, of any length: the line of sight of a viewer, or
+  // those in which numbers of the script move the point. Zero: none.
+  double ignored[2][3];
+  double tolerance; // mm; 0: 1e-6
+  const char *const *names;
+  size_t count; // of names, 1 to 8
+} CagPointGoal;
+// Finds values of params with which a point comes as close as possible to a target: least squares, by
+// Gauss-Newton steps with differences as derivatives, within the ranges of the params (Nocedal and
+// Wright 2006, 10.3). The shown expression is evaluated for each step; after 0.5 s, the best values
+// so far are taken. Values are rounded to a power
+// of ten that moves the point by less than the tolerance. Calls `give` with the value of each param as
+// an expression, such as "12.5" or "30deg"; `at` receives where the point is with these values.
+//
+// The result of the last run stays as it is. Fails with CAG_STATUS_USAGE if there is no such part or
+// point, or if a name is not that of a number or an angle with a range.
+CAG_API int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
+                                    void (*give)(void *context, const char *name,
+                                                 const char *value),
+                                    void *context, double at[3]);
+
 typedef struct CagMaterialView {
   const char *name, *texture;              // texture: "" for none
   double color[3], color2[3], emission[3]; // linear light

@@ -234,6 +234,14 @@ static const Unit *find_unit(const char *name, size_t length) {
 
 bool cag_lexer_is_unit(const char *name) { return find_unit(name, strlen(name)) != NULL; }
 
+double cag_lexer_unit_length(const char *name) {
+  const Unit *unit = find_unit(name, strlen(name));
+  if (!unit || unit->angle) return 0;
+  // Dividing rounds once: 0.1 as a factor would not be exact.
+  return unit->shift < 0 ? unit->factor / pow(10, -unit->shift)
+                         : unit->factor * pow(10, unit->shift);
+}
+
 // Reports an unknown unit, and suggests the one that was probably meant.
 static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t end) {
   const char *text = lx->source->text;

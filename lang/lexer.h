@@ -143,5 +143,7 @@ extern const char cag_lexer_brace_help[];
 
 // Tests whether a word is a unit that can directly follow a number.
 bool cag_lexer_is_unit(const char *name);
+// Returns the millimeters of a unit of length, or 0 if it is none.
+double cag_lexer_unit_length(const char *name);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "live/place_json.h"
+#include "live/points_json.h"
 #include "live/robot_json.h"
 
 enum { OK = 200, BAD = 400, MISSING = 404, NOT_YET = 409, REFUSED = 422, BROKEN = 500 };
@@ -232,12 +233,44 @@ static const struct {
   int (*ask)(Question *q);
 } QUESTIONS[] = {
     {"faces", ask_faces}, {"ghost", ask_ghost}, {"surface", ask_surface}, {"section", ask_section}};
+static int write_refusal(int status, const char *error, const char *help, CagString *out) {
+  CagJson j = {.to = out};
+  cag_json_open(&j, '{');
+  cag_json_text(&j, "error", error);
+  cag_json_text(&j, "help", help);
+  cag_json_close(&j, '}');
+  return status;
+}
+
+typedef void PointsAnswerer(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
+
+static int about_points(PointsAnswerer *answer, CagSession *s, const char *request, size_t size,
+                        CagString *out) {
+  CagLiveAnswer a = {0};
+  if (!s) return write_refusal(NOT_YET, "the script has not run without errors yet", NULL, out);
+  answer(s, request, size, &a);
+  if (a.status == OK) *out = a.text;
+  else cag_string_free(&a.text);
+  return a.status == OK ? OK : write_refusal(a.status, a.why, NULL, out);
+}
+
+static int answer_points(CagSession *s, const char *request, size_t size, CagString *out) {
+  return about_points(cag_live_points, s, request, size, out);
+}
+
+static int answer_solve(CagSession *s, const char *request, size_t size, CagString *out) {
+  return about_points(cag_live_solve, s, request, size, out);
+}
+
 // Questions that other files answer as a whole.
 typedef int LiveAnswerer(CagSession *s, const char *request, size_t size, CagString *out);
 static const struct {
   const char *name;
   LiveAnswerer *answer;
-} ANSWERERS[] = {{"pose", cag_live_pose}, {"reach", cag_live_reach}};
+} ANSWERERS[] = {{"pose", cag_live_pose},
+                 {"reach", cag_live_reach},
+                 {"points", answer_points},
+                 {"solve", answer_solve}};
 enum { QUESTION_COUNT = sizeof QUESTIONS / sizeof *QUESTIONS };
 
 static size_t find_question(const char *name) {
@@ -279,11 +312,7 @@ int cag_live_ask(const char *question, CagSession *s, const char *request, size_
   if (q.failed || out->failed) status = complain(&q, BROKEN, "out of memory", NULL);
   if (status != OK) {
     cag_string_free(out);
-    j = (CagJson){.to = out};
-    cag_json_open(&j, '{');
-    cag_json_text(&j, "error", q.error);
-    cag_json_text(&j, "help", q.help);
-    cag_json_close(&j, '}');
+    write_refusal(status, q.error, q.help, out);
   }
   cJSON_Delete(json);
   return status;

@@ -7,6 +7,7 @@
 // | ghost | file, line, column | ghosts: part, type, mesh, placement, line, radius, motion, place |
 // | surface | part, what | of mesh, mean, gaussian, distance, farthest, points, sizes, what it asks for; or the reason why there is no such thing |
 // | pose, reach | see robot_json.h | |
+// | points, solve | see points_json.h | |
 // | section | normal, offset | curves: part, closed, exact, length, area, points |
 //
 // Long lists of numbers are base64 of 32-bit floats, least byte first.

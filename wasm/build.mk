@@ -16,7 +16,7 @@ WASM_LEFT_OUT := base/aside.c base/parallel.c base/large_stack.c base/reserve.c 
                  interp/render/exr_read.c interp/render/exr_write.c interp/render/exr_complaint.c \
                  interp/render/povray.c interp/render/povray_files.c interp/render/povray_log.c interp/render/povray_process.c \
                  interp/render/sandbox.c interp/session/markdown.c $(wildcard interp/session/site*.c)
-WASM_LIVE := $(patsubst %,live/%.c,json json_write lsp lsp_files lsp_requests measures model_answers model_files model_run place_json questions request robot_json scene_json)
+WASM_LIVE := $(patsubst %,live/%.c,json json_write lsp lsp_files lsp_requests measures model_answers model_files model_run place_json points_json questions request robot_json scene_json)
 WASM_SRC  := $(filter-out $(WASM_LEFT_OUT),$(BASE_SRC) $(LANG_SRC) $(GEOM_SRC) $(INTERP_SRC)) $(WASM_LIVE) \
              $(sort $(wildcard wasm/*.c wasm/*/*.c))
 WASM_OBJ  := $(patsubst %.c,$(WASM)/%.o,$(WASM_SRC)) $(patsubst %,$(WASM)/gen/%.o,stdlib documents builtins) $(WASM)/wasm/lapack.o

@@ -117,8 +117,8 @@ static bool read_params(CagVm *vm, void *context) {
   return true;
 }
 
-// Lists the params if that was not done since the run. Nothing here adds a diagnostic.
-static bool list_params(CagSession *s) {
+// Nothing here adds a diagnostic.
+bool cag_session_list_params(CagSession *s) {
   if (s->params) return true;
   if (!s->vm || s->main == CAG_NO_MODULE || s->interactive) return false;
   const bool ok = cag_session_work(s, read_params, s) == CAG_STATUS_OK;
@@ -130,7 +130,7 @@ static bool list_params(CagSession *s) {
 bool cag_session_param(CagSession *s, size_t i, CagParamView *out) {
   *out = (CagParamView){0};
   if (!cag_session_begin(s)) return false;
-  const bool found = list_params(s) && i < s->params->count;
+  const bool found = cag_session_list_params(s) && i < s->params->count;
   if (found) {
     const Param *p = &s->params->items[i];
     *out = p->view;
@@ -140,6 +140,13 @@ bool cag_session_param(CagSession *s, size_t i, CagParamView *out) {
   }
   cag_session_end(s, CAG_STATUS_OK);
   return found;
+}
+
+bool cag_session_param_range(const CagSession *s, size_t i, double *low, double *high) {
+  if (!s->params || i >= s->params->count || !s->params->items[i].view.ranged) return false;
+  *low = s->params->items[i].view.low;
+  *high = s->params->items[i].view.high;
+  return true;
 }
 
 const char *cag_session_param_choice(CagSession *s, size_t param, size_t i) {

@@ -47,6 +47,7 @@ static void drop_scene(CagSession *s) {
   cag_session_drop_sources(s);
   cag_session_drop_mesh(s); // it shares the geometry of the scene
   s->has_scene = false;
+  cag_session_drop_points(s);
   cag_account_lend(before);
 }
 

@@ -41,6 +41,7 @@ struct CagSession {
   struct CagSessionMesh *mesh;            // the one that was made last; may be NULL
   struct CagSessionSources *part_sources; // of the part that was asked about last; may be NULL
   struct CagSessionRobots *robots;        // of the scene; NULL: not looked for yet
+  struct CagSessionPoints *points;        // those that were found last; may be NULL
   CagSceneForm form;                      // of the scene
   bool has_section;
   CagPlane section; // what lies on its positive side is cut off
@@ -95,6 +96,12 @@ bool cag_session_shows_image(const CagSession *s);
 int cag_session_write_image(CagSession *s, const char *path, bool png,
                             const CagImageOptions *options);
 void cag_session_drop_params(CagSession *s);
+// Lists the params of the main script, if that was not done since the run. Returns false if it
+// cannot be done. Starts work of the session, so it cannot be part of such work.
+bool cag_session_list_params(CagSession *s);
+// Returns whether param i, which must have been listed, has a range.
+bool cag_session_param_range(const CagSession *s, size_t i, double *low, double *high);
+void cag_session_drop_points(CagSession *s);
 // A location for the host. No source: none.
 CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
 void cag_session_drop_mesh(CagSession *s);

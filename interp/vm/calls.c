@@ -8,6 +8,7 @@
 #include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/origin.h"
 #include "interp/vm/value_type.h"
 #include "lang/foreign.h"
 
@@ -180,102 +181,6 @@ static bool check_answer(CagVm *vm, const char *name, bool ok) {
                      vm->errors.items[0].message);
 }
 
-// --- Origins ---
-
-// The most shapes that a call is noted to have been made of.
-enum { MOST_INPUTS = 64 };
-
-// A call whose results get it as a step of their origins.
-typedef struct NotedCall {
-  CagVm *vm;
-  CagOriginStep step;
-  const CagValue *values; // arguments
-  size_t count;
-  bool sought; // `inputs` has been made
-  CagInputs *inputs;
-} NotedCall;
-
-// Calls `give` for the shapes among the arguments, and in lists among them.
-static void each_shape(const NotedCall *c,
-                       void (*give)(void *context, size_t parameter, CagValue shape),
-                       void *context) {
-  for (size_t i = 0; i < c->count; i++) {
-    const CagValue v = c->values[i];
-    if (cag_is_shape(v)) give(context, i, v);
-    if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0) continue;
-    const CagList *list = CAG_AS_LIST(v);
-    for (size_t k = 0; k < list->length && cag_is_shape(list->as.items[k]); k++)
-      give(context, i, list->as.items[k]);
-  }
-}
-
-// Bodies and meshes are not kept: they are large, and set operations keep their operands anyway.
-static bool is_kept_input(CagValue v) {
-  return v.type == CAG_CURVE || v.type == CAG_REGION || v.type == CAG_SURFACE;
-}
-
-static void count_input(void *context, size_t parameter, CagValue shape) {
-  (void)parameter;
-  if (is_kept_input(shape)) ++*(size_t *)context;
-}
-
-static void add_input(void *context, size_t parameter, CagValue shape) {
-  CagInputs *inputs = context;
-  if (!is_kept_input(shape) || inputs->count == MOST_INPUTS) return;
-  inputs->items[inputs->count].parameter = parameter;
-  inputs->items[inputs->count++].shape = shape;
-}
-
-static CagInputs *inputs_of(NotedCall *c) {
-  if (c->sought) return c->inputs;
-  c->sought = true;
-  size_t n = 0;
-  each_shape(c, count_input, &n);
-  if (n == 0) return NULL;
-  if (n > MOST_INPUTS) n = MOST_INPUTS;
-  c->inputs = cag_alloc(c->vm, CAG_INTERNAL, sizeof *c->inputs + n * sizeof *c->inputs->items);
-  c->inputs->head.flags = CAG_INTERNAL_INPUTS;
-  c->inputs->count = 0;
-  each_shape(c, add_input, c->inputs);
-  return c->inputs;
-}
-
-static void add_step(NotedCall *c, CagValue v) {
-  CagShape *s = CAG_AS_SHAPE(v);
-  CagOriginStep *step = &c->step;
-  step->motion = s->motion;
-  step->inputs = NULL;
-  step->kind = CAG_STEP_SHAPED;
-  if (s->motion) step->kind = CAG_STEP_MOVED;
-  else if (s->copied) step->kind = CAG_STEP_SAID;
-  else if (!s->origin.operands) step->inputs = inputs_of(c);
-  s->fresh = s->copied = false;
-  s->motion = NULL;
-  cag_origin_add(c->vm, &s->origin, step);
-}
-
-// Adds a call to the origins of the shapes that it made. The first of a list tells whether it made
-// the others.
-static void add_call_to_origin(NotedCall *c, CagValue v) {
-  const CagList *items = NULL;
-  if (v.type == CAG_LIST) items = CAG_AS_LIST(v);
-  if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->fresh) items = CAG_AS_SHAPE(v)->as.items;
-  for (size_t i = 0; items && items->dim == 0 && i < items->length; i++) {
-    const CagValue item = items->as.items[i];
-    if (!cag_is_shape(item) || !CAG_AS_SHAPE(item)->fresh) break;
-    add_call_to_origin(c, item);
-  }
-  if (cag_is_shape(v) && CAG_AS_SHAPE(v)->fresh) add_step(c, v);
-}
-
-void cag_note_origin(CagVm *vm, CagValue result, const CagValue *values, size_t count) {
-  NotedCall c = {.vm = vm, .values = values, .count = count};
-  if (!cag_is_shape(result) && result.type != CAG_LIST) return;
-  if (!cag_vm_place(vm, &c.step.source, &c.step.span)) return;
-  if (c.step.source->library) cag_vm_caller(vm, &c.step.caller, &c.step.caller_span);
-  add_call_to_origin(&c, result);
-}
-
 static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count,
                          const char *const *names, size_t named, bool direct, CagValue *result) {
   size_t positional = count - named;
@@ -325,7 +230,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   ok = ok && cag_check_defined(&call, *result);
   cag_vm_release_held(vm, held);
   if (vm->stop) ok = cag_stop_answer(vm); // interrupted work may have returned anything
-  if (ok) cag_note_origin(vm, *result, values, total);
+  if (ok) cag_origin_note(&call, index, *result);
   vm->native = native.outer;
   vm->top = top;
   return ok;

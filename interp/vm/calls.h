@@ -14,8 +14,5 @@ bool cag_bind_closure(CagVm *vm, const CagProto *p, CagValue *arguments, size_t 
 // and vm->top is at or after their end.
 bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t count,
                      const char *const *names, size_t named, bool direct, CagValue *result);
-// Adds the call under way, with its arguments, to the origins of the shapes that it made: of a shape,
-// or of those in a list.
-void cag_note_origin(CagVm *vm, CagValue result, const CagValue *values, size_t count);
 
 #endif

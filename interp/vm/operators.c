@@ -9,6 +9,7 @@
 #include "interp/vm/calls.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/jet_builtins.h"
+#include "interp/vm/origin.h"
 #include "interp/vm/value_type.h"
 #include "interp/vm/vm.h"
 #include "lang/foreign.h"
@@ -327,7 +328,7 @@ static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result
                                 : cag_transform_apply(vm, t, v, result);
   vm->top = top;
   if (!ok || vm->failed) return false;
-  cag_note_origin(vm, *result, &v, 1);
+  cag_origin_note_operator(vm, *result, &v, 1);
   return true;
 }
 

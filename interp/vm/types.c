@@ -415,6 +415,7 @@ void cag_mark_origin(CagHeap *h, const CagOrigin *o) {
 
 static void scan_step(CagHeap *h, const CagOriginStep *step) {
   if (step->before) cag_mark_object(h, &step->before->head);
+  if (step->call) cag_mark_object(h, &step->call->head);
   if (step->motion) cag_mark_object(h, &step->motion->head);
   if (step->inputs) cag_mark_object(h, &step->inputs->head);
 }
@@ -435,6 +436,8 @@ static void scan_internal(CagHeap *h, CagObject *o) {
     if (operands->first) cag_mark_object(h, &operands->first->head);
     for (size_t i = 0; before + i < operands->count; i++) cag_mark_origin(h, &operands->items[i]);
   }
+  const CagOriginCall *call = (CagOriginCall *)o;
+  if (o->flags == CAG_INTERNAL_CALL) cag_mark_values(h, call->values, call->count);
   if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
   if (o->flags == CAG_INTERNAL_POSTURE) cag_mark_object(h, &((CagPosture *)o)->robot->head);
   if (o->flags == CAG_INTERNAL_LIMB) cag_mark_object(h, &((CagLimb *)o)->posture->head);

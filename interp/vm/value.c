@@ -353,24 +353,6 @@ static uint16_t held_levels(const CagOriginStep *before, const CagInputs *inputs
   return most;
 }
 
-void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
-  CagOriginStep *before = o->last;
-  if (before && before->depth >= CAG_ORIGIN_DEPTH) before = before->before; // drops the latest one
-  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step);
-  const CagObject head = step->head;
-  *step = *like;
-  step->head = head;
-  step->head.flags = CAG_INTERNAL_STEP;
-  step->before = before;
-  step->depth = before ? (uint16_t)(before->depth + 1) : 0;
-  step->held = held_levels(before, step->inputs);
-  if (step->inputs && step->held > CAG_INPUTS_DEPTH) {
-    step->inputs = NULL;
-    step->held = before ? before->held : 0;
-  }
-  o->last = step;
-}
-
 static bool is_translation(const CagTransform *t) {
   const double *m = t->m[0];
   for (int i = 0; i < 16; i++)
@@ -385,8 +367,9 @@ CagTransform cag_motion_transform(const CagMotionNote *note) {
   return t;
 }
 
-void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
-  const CagMotionNote *before = CAG_AS_SHAPE(from)->fresh ? CAG_AS_SHAPE(from)->motion : NULL;
+// The note of a motion, after another one (NULL: none).
+static CagMotionNote *motion_note(CagVm *vm, const CagTransform *motion,
+                                  const CagMotionNote *before) {
   CagTransform t = *motion;
   if (before) {
     const CagTransform first = cag_motion_transform(before);
@@ -400,7 +383,42 @@ void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTr
   note->planar = t.planar;
   note->step = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
   if (!translates) note->t[0] = t;
-  CAG_AS_SHAPE(moved)->motion = note;
+  return note;
+}
+
+void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
+  const CagMotionNote *before = CAG_AS_SHAPE(from)->fresh ? CAG_AS_SHAPE(from)->motion : NULL;
+  CAG_AS_SHAPE(moved)->motion = motion_note(vm, motion, before);
+}
+
+// A step takes over the motion of the one that is dropped before it.
+static void take_motion(CagVm *vm, CagOriginStep *step, const CagOriginStep *dropped) {
+  const CagTransform own =
+      step->motion ? cag_motion_transform(step->motion) : cag_transform_identity();
+  step->motion = motion_note(vm, &own, dropped->motion);
+  if (step->kind == CAG_STEP_SAID) step->kind = CAG_STEP_MOVED;
+}
+
+void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
+  CagOriginStep *dropped = NULL, *before = o->last;
+  if (before && before->depth >= CAG_ORIGIN_DEPTH) { // drops the latest one
+    dropped = before;
+    before = before->before;
+  }
+  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step);
+  const CagObject head = step->head;
+  *step = *like;
+  step->head = head;
+  step->head.flags = CAG_INTERNAL_STEP;
+  step->before = before;
+  step->depth = before ? (uint16_t)(before->depth + 1) : 0;
+  step->held = held_levels(before, step->inputs);
+  if (step->inputs && step->held > CAG_INPUTS_DEPTH) {
+    step->inputs = NULL;
+    step->held = before ? before->held : 0;
+  }
+  o->last = step;
+  if (dropped && dropped->motion) take_motion(vm, step, dropped);
 }
 
 CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n) {

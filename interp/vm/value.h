@@ -216,6 +216,15 @@ typedef enum CagStepKind {
   CAG_STEP_SAID    // gave it attributes
 } CagStepKind;
 
+// What is kept of the arguments of a call that made shapes or translated them: points and vectors, and
+// the last steps of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
+struct CagBuiltin;
+typedef struct CagOriginCall {
+  CagObject head; // CAG_INTERNAL
+  size_t count;   // by parameter, up to the last one that is kept
+  CagValue values[];
+} CagOriginCall;
+
 // A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
 typedef struct CagOriginStep {
   CagObject head; // CAG_INTERNAL
@@ -223,6 +232,9 @@ typedef struct CagOriginStep {
   CagSpan span;
   const CagSource *caller; // in the library: the nearest call outside of it; else NULL
   CagSpan caller_span;
+  const struct CagBuiltin *row; // what was called
+  size_t index;                 // of its name
+  CagOriginCall *call;          // its arguments; NULL: none are kept
   struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
   CagMotionNote *motion;        // MOVED
   CagInputs *inputs;            // SHAPED; NULL: none, or not kept

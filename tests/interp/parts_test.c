@@ -279,6 +279,21 @@ static void params_of_a_script_that_fails_are_known(void **state) {
   cag_session_free(s);
 }
 
+static void a_ground_that_was_added_is_no_shape(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  CagPartView part = {0};
+  CagPlaceView place;
+  const char *what;
+  size_t i = 0;
+  build_scene(s, "show tube(helix(9, 4, 2), 1)\n");
+  while (cag_session_part(s, i, &part) && strcmp(part.type, "ground") != 0) i++;
+  assert_string_equal(part.type, "ground");
+  assert_null(part.story);
+  assert_false(cag_session_part_place(s, i, 0, &what, &place));
+  cag_session_free(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equal_shapes_have_one_mesh),
@@ -290,6 +305,7 @@ int main(void) {
       cmocka_unit_test(a_ground_has_no_story),
       cmocka_unit_test(params_are_described),
       cmocka_unit_test(params_of_a_script_that_fails_are_known),
+      cmocka_unit_test(a_ground_that_was_added_is_no_shape),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -514,6 +514,68 @@ def test_sizes_are_limited():
     v.close()
 
 
+def points_of(v, part, status=200):
+    found, body, _ = v.ask("POST", "/api/points", json.dumps({"part": part}))
+    assert found == status, (found, body)
+    return json.loads(body)
+
+
+def test_points_that_can_be_dragged():
+    v = View(VASE)
+    v.scene(1)
+    answer = points_of(v, "vase")
+    points = answer["points"]
+    assert answer["omitted"] == 0 and [p["at"] for p in points] == [[0, 0, 0], [20, 0, 0], [24, 0, 40], [0, 0, 40]]
+    third = points[2]
+    assert third["numbers"][1] is None and third["params"] == ["height"] and third["moved"] == [False, True] and third["locked"] is None
+    text = VASE.split("\n")[1]
+    number = third["numbers"][0]
+    assert text[number["column"] - 1 : number["endColumn"] - 1] == "24" and number["line"] == 2
+    assert [number[k] for k in ("file", "value", "unit", "scale")] == ["model.cag", 24, "", 1]
+    assert third["plane"]["normal"] == [0, -1, 0] and third["map"] == [1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0]
+    move = points_of(v, "box")["points"]
+    assert [p["call"] for p in move] == ["translate"] and move[0]["plane"] is None and move[0]["at"] == [60, 0, 0]
+    v.close()
+
+
+def test_params_follow_a_point():
+    v = View(VASE)
+    v.scene(1)
+    wanted = {"part": "vase", "point": 2, "target": [24, 0, 61.234], "ignored": [[0, 1, 0]], "params": ["height"], "pixel": 0.1}
+    status, body, _ = v.ask("POST", "/api/solve", json.dumps(wanted))
+    assert status == 200 and json.loads(body) == {"params": {"height": "61.23"}, "at": [24, 0, 61.23]}, body
+    # The scene is as it was.
+    assert points_of(v, "vase")["points"][2]["at"] == [24, 0, 40]
+    # Beyond the range, the param stays at its end.
+    wanted["target"] = [24, 0, 500]
+    assert json.loads(v.ask("POST", "/api/solve", json.dumps(wanted))[1])["params"] == {"height": "90"}
+    v.close()
+
+
+def test_points_that_are_not_there():
+    v = View(VASE)
+    v.scene(1)
+    points_of(v, "bottle", 404)
+    points_of(v, 7, 400)
+    for body in ("", "[", "[]", "null", '{"part": null}', "\0", '"vase"'):
+        status, answer, _ = v.ask("POST", "/api/points", body)
+        assert status == 400 and "`part`" in json.loads(answer)["error"], (body, status, answer)
+    good = {"part": "vase", "point": 2, "target": [24, 0, 61], "params": ["height"]}
+    assert v.ask("POST", "/api/solve", json.dumps(good))[0] == 200
+    for field, value, expected in (
+        ("part", None, 400), ("part", "bottle", 404), ("point", -1, 400), ("point", "2", 400), ("point", 1e300, 400), ("point", 77, 404),
+        ("target", [1, 2], 400), ("target", [1, 2, "3"], 400), ("target", None, 400), ("params", [], 400), ("params", ["width"], 404),
+        ("params", ["height"] * 9, 400), ("params", [1], 400), ("params", "height", 400), ("ignored", [0, 0, 2], 400), ("ignored", [[0, 0, 1]] * 3, 400), ("ignored", 1, 400), ("ignored", [[0, 0, 0]], 200)):
+        status, answer, _ = v.ask("POST", "/api/solve", json.dumps({**good, field: value}))
+        assert status == expected and ("error" in json.loads(answer)) == (status != 200), (field, value, status, answer)
+    assert v.ask("GET", "/api/points")[0] == 404
+    v.close()
+    broken = View("show sphere(\n")
+    broken.wait("messages")
+    points_of(broken, "sphere", 409)
+    broken.close()
+
+
 def memory_of(process):
     with open(f"/proc/{process.pid}/status") as f:
         return next(int(line.split()[1]) for line in f if line.startswith("VmRSS"))

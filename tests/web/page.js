@@ -44,6 +44,20 @@ show arm |> posed([
 const TEN = `show robot([for i in 0..9: revolute(a: 100, alpha: if i % 2 == 0 then 90deg else -90deg, shape: box([90, 20, 20]))], name: "ten")
   |> posed([for i in 0..9: if i % 4 < 2 then 25deg else -25deg])
 `;
+const POINTS = `// Points that can be dragged.
+param height = 30 in 10..60  "height of the mast, mm"
+
+outline = [
+  [0, 0], [40mm, 0], // the front
+  [4cm, -2.5e1], [0, 20],
+]
+plate = polyline(outline, closed: true)
+rail = bspline([[0, 0, 40], [20, 0, 60], [40, 0, 40], [60, 10, 50]])
+patch = bezier_surface([[[0, 40, 0], [30, 40, 5]], [[0, 70, 0], [30, 70, 12.5]]])
+ball = sphere(4) |> translate([70, 0, 10])
+mast = polyline([[50, 50, 0], [50, 50, height], [50 + cos(60deg), 60, 0]])
+show plate, rail, patch, ball, mast
+`;
 
 // Starts a server for a script, and returns its address.
 const servers = [];
@@ -387,6 +401,176 @@ async function block(browser) {
   await page.close();
 }
 
+async function points(browser) {
+  const { url, file } = await serve("points.cag", POINTS);
+  const page = await browser.open(url, { width: 1200, height: 760 });
+  const handles = '[...document.querySelectorAll(".handle.point:not([hidden])")]';
+  const settled = "!document.querySelector('#status').classList.contains('busy')";
+  const place = (i) => page.value(`(() => { const r = ${handles}[${i}].getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
+  const chosen = async (part, count) => {
+    await page.value(`[...document.querySelectorAll("#parts .part")].find((b) => b.textContent.startsWith("${part}")).click()`);
+    await page.value("document.querySelector('#scene').focus()");
+    await page.until(`${handles}.length === ${count}`);
+    await drawn(page);
+  };
+  // Drags a point, and waits for the scene that shows the result. Returns by how many pixels the handle misses the pointer then.
+  const drag = async (i, dx, dy) => {
+    const run = await page.value("Number(document.documentElement.dataset.run)"), from = await place(i), to = [from[0] + dx, from[1] + dy];
+    await page.drag(from, to, 6);
+    await page.until(`Number(document.documentElement.dataset.run) > ${run} && ${settled}`);
+    await page.until(`!document.querySelector(".handle.dragged")`);
+    await drawn(page);
+    const at = await place(i);
+    return Math.hypot(at[0] - to[0], at[1] - to[1]);
+  };
+  const undo = async (expected) => {
+    await page.key("z", { modifiers: 2 });
+    await page.until(`(${text}) === ${JSON.stringify(expected)}`);
+    await page.value("document.querySelector('#scene').focus()");
+    await page.until(settled);
+    await pause(400);
+    await page.until(settled);
+  };
+  const written = async (pattern) => {
+    const now = await page.value(text), found = pattern.exec(now);
+    check(found, `expected ${pattern}, found\n${now}`);
+    return found.slice(1);
+  };
+  const whole = POINTS.replace(/\n$/, "\n");
+
+  await test("the points of a selected part are handles", async () => {
+    await page.until(READY);
+    await page.key("d");
+    await page.until('document.querySelector("[data-do=points]").getAttribute("aria-pressed") === "true"');
+    await chosen("plate", 4);
+    check((await page.value('document.querySelector("#selection").textContent')).includes("4 points shown."), "the panel does not tell the number of points");
+    await picture(page, "points");
+  });
+  await test("dragging a vertex changes its numbers, which keep their units, and is one step to undo", async () => {
+    await page.key("5"); // from above
+    await page.key("f");
+    await drawn(page);
+    const off = await drag(2, 30, 25);
+    check(off < 1.5, `the handle is ${off} pixels from the pointer`);
+    const [x, y] = await written(/^ {2}\[([-\d.]+)cm, (-?[\d.]+)\], \[0, 20\],$/m);
+    check(Number(x) > 4 && Number(y) < -25, `x = ${x}, y = ${y}`);
+    check(/^\d+\.\d{1,3}$/.test(x) && /^-\d+(\.\d{1,2})?$/.test(y), `${x} and ${y} are not round`);
+    equal(await page.value(text), whole.replace("[4cm, -2.5e1]", `[${x}cm, ${y}]`));
+    await picture(page, "points-dragged");
+    await undo(whole);
+  });
+  await test("two drags are two steps to undo", async () => {
+    await drag(1, -20, 0);
+    const one = await page.value(text);
+    await drag(0, 0, 20);
+    check((await page.value(text)) !== one, "the second drag changed nothing");
+    await undo(one);
+    await undo(whole);
+    // In the editor, too.
+    await page.key("z", { modifiers: 2 + 8 });
+    await page.until(`(${text}) === ${JSON.stringify(one)}`);
+    await page.value(`${EDITOR}.focus()`);
+    await undo(whole);
+  });
+  await test("Escape takes a drag back", async () => {
+    const [x, y] = await place(2);
+    await page.mouse("mouseMoved", x, y, { button: "none" });
+    await page.mouse("mousePressed", x, y);
+    for (let i = 1; i < 5; i++) await page.mouse("mouseMoved", x + 10 * i, y, { buttons: 1 });
+    await page.until(`(${text}) !== ${JSON.stringify(whole)}`);
+    await page.key("Escape");
+    await page.until(`(${text}) === ${JSON.stringify(whole)}`);
+    await page.mouse("mouseReleased", x + 50, y);
+    equal(await page.value("document.querySelector('#parts li.selected')?.textContent.startsWith('plate')"), true);
+    equal(await page.value(text), whole);
+    await page.until(settled);
+  });
+  await test("arrow keys move the handle that has the focus", async () => {
+    const before = await place(1), run = await page.value("Number(document.documentElement.dataset.run)");
+    await page.value(`${handles}[1].focus()`);
+    await page.key("ArrowRight");
+    await page.until(`Number(document.documentElement.dataset.run) > ${run} && ${settled}`);
+    await drawn(page);
+    const after = await place(1);
+    check(Math.abs(after[0] - before[0] - 4) < 1 && Math.abs(after[1] - before[1]) < 1, `moved by ${after[0] - before[0]}, ${after[1] - before[1]}`);
+    equal(await page.value(`document.activeElement === ${handles}[1]`), true);
+    await written(/\[[\d.]+mm, 0\]/);
+    await undo(whole);
+  });
+  await test("a point in space moves parallel to the screen", async () => {
+    await page.key("7");
+    await chosen("rail", 4);
+    await page.key("f");
+    await drawn(page);
+    const off = await drag(1, 40, -30);
+    check(off < 1.5, `the handle is ${off} pixels from the pointer`);
+    const [x, y, z] = (await written(/\[0, 0, 40\], \[([-\d.]+), ([-\d.]+), ([-\d.]+)\], \[40, 0, 40\]/)).map(Number);
+    const moved = [x - 20, y, z - 60], view = [1 / Math.sqrt(3), -1 / Math.sqrt(3), 1 / Math.sqrt(3)];
+    const size = Math.hypot(...moved), depth = moved.reduce((sum, m, i) => sum + m * view[i], 0);
+    check(size > 3 && Math.abs(depth) < 0.03 * size, `moved by ${moved}`);
+    await picture(page, "points-rail");
+    await undo(whole);
+  });
+  await test("a point of a net", async () => {
+    await chosen("patch", 4);
+    const off = await drag(3, 5, -35);
+    check(off < 1.5, `the handle is ${off} pixels from the pointer`);
+    const [z] = await written(/\[\[0, 70, 0\], \[[-\d.]+, [-\d.]+, ([-\d.]+)\]\]\]\)/);
+    check(Number(z) > 13, `z = ${z}`);
+    await undo(whole);
+  });
+  await test("the vector of a translation", async () => {
+    await chosen("ball", 1);
+    await page.key("f");
+    await drawn(page);
+    const off = await drag(0, -30, 10);
+    check(off < 1.5, `the handle is ${off} pixels from the pointer`);
+    const [x] = await written(/translate\(\[([-\d.]+), [-\d.]+, [-\d.]+\]\)/);
+    check(Number(x) < 70, `x = ${x}`);
+    await undo(whole);
+  });
+  await test("a computed point moves the param that it depends on, which is marked before", async () => {
+    await page.key("1"); // from the front
+    await chosen("mast", 3);
+    await page.key("f");
+    await drawn(page);
+    equal(await page.value(`${handles}.map((b) => b.classList.contains("locked"))`), [false, false, false]);
+    const from = await place(1);
+    await page.mouse("mouseMoved", from[0], from[1], { button: "none" });
+    await page.until('document.querySelector("[data-param=height]").classList.contains("marked")');
+    await picture(page, "points-computed");
+    const off = await drag(1, 0, -40);
+    check(off < 2, `the handle is ${off} pixels from the pointer`);
+    const value = Number(await page.value('document.querySelector("[data-param=height] input[type=number]").value'));
+    check(value > 32 && value <= 60, `height = ${value}`);
+    await page.until(`Math.abs(Number((${fact("size")})?.split(" × ")[2]?.replace(" mm", "")) - ${value}) < 0.01`);
+    await page.value('document.querySelector("[data-param=height] [aria-label^=Reset]").click()');
+    await page.until(settled);
+  });
+  await test("what cannot be moved is locked, with the reason", async () => {
+    await page.value(`${EDITOR}.focus()`);
+    await page.key("End", { modifiers: 2 });
+    await page.type("show line([cos(0deg), 0], [9 + 9, 9 * 2]) |> named(\"fixed\")");
+    await page.until('[...document.querySelectorAll("#parts .part")].some((b) => b.textContent.startsWith("fixed"))');
+    await chosen("fixed", 2);
+    const [first, second] = await page.value(`${handles}.map((b) => [b.classList.contains("locked"), b.title])`);
+    equal(first[0], false); // its y is a number
+    equal(second[0], true);
+    check(second[1].includes("`[9 + 9, 9 * 2]`"), second[1]);
+    const before = await page.value(text), from = await place(1);
+    await page.drag(from, [from[0] + 20, from[1]]);
+    equal(await page.value(text), before);
+  });
+  await test("without the switch there are no handles, and the file is unchanged", async () => {
+    await page.value("document.querySelector('#scene').focus()");
+    await page.key("d");
+    await page.until(`${handles}.length === 0`);
+    equal(fs.readFileSync(file, "utf8"), POINTS);
+    equal(page.problems, []);
+  });
+  await page.close();
+}
+
 async function film(browser) {
   const { url } = await serve("film.cag", FILM);
   const page = await browser.open(url, SIZE);
@@ -588,6 +772,7 @@ async function main() {
   try {
     await block(browser);
     await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE });
+    await points(browser);
     await film(browser);
     await robots(browser);
     await tenLinks(browser);

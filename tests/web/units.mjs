@@ -11,6 +11,7 @@ import { MeshCache, readMesh } from "../../web/src/mesh.js";
 import { marks } from "../../web/src/messages.js";
 import { expressionOf, parseNumber, quote, settingOf, stepOf, unquote } from "../../web/src/params.js";
 import { diffLines, offsetOf, paramValueRange, rangeOf } from "../../web/src/places.js";
+import { columnOf, moveCoordinates, numberText, readNumber } from "../../web/src/point_numbers.js";
 import { chainLength, circleOf, edgeChain, findingsOfTwo, flatFace, isStraight } from "../../web/src/recognize.js";
 import { Runs } from "../../web/src/runs.js";
 import { roundUp, scaleLength } from "../../web/src/scale.js";
@@ -367,6 +368,39 @@ await test("section curves are summed by part", () => {
   const curve = (part, length, area) => ({ part, closed: area !== null, exact: true, length, area, points: "" });
   equal(sumByPart([curve("a", 3, 9), curve("a", 2, -4), curve("b", 1, null)]), [
     { part: "a", count: 2, length: 5, area: 5, exact: true }, { part: "b", count: 1, length: 1, area: null, exact: true }]);
+// --- Numbers of points ---
+
+const PLAIN = { unit: "", scale: 1 }, CM = { unit: "cm", scale: 10 };
+const FRONT = { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0] };
+// A point whose coordinates are those of the scene, scaled; null: computed.
+const point = (numbers, scale = 1, moved = [false, false, false]) => ({ numbers, moved, map: [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0] });
+
+await test("numbers are rounded to a power of ten below a pixel", () => {
+  const rows = [
+    [12.3456, PLAIN, 0.05, "12.35"], [12.3456, PLAIN, 0.1, "12.35"], [12.3456, PLAIN, 0.11, "12.3"], [12.3, PLAIN, 3, "12"],
+    [1234, PLAIN, 40, "1230"], [-0.001, PLAIN, 0.1, "0"], [-3.04, PLAIN, 0.5, "-3"], [-3.04, PLAIN, 0.02, "-3.04"], [100, PLAIN, 0.01, "100"],
+    [25.4321, CM, 0.5, "2.54cm"], [25, CM, 0.5, "2.5cm"], [0.1 + 0.2, PLAIN, 0.001, "0.3"], [1e-7, PLAIN, 1e-8, "0.0000001"]];
+  for (const [mm, number, pixel, expected] of rows) equal(numberText(mm, number, pixel), expected);
+});
+await test("numbers are read with their sign and unit", () => {
+  const rows = [
+    ["12.5", PLAIN, 12.5], ["-3", PLAIN, -3], ["- 3", PLAIN, -3], ["2.5cm", CM, 25], ["-1_000", PLAIN, -1000], ["1e2", PLAIN, 100], ["1.5e-1cm", CM, 1.5],
+    ["2.5", CM, null], ["2.5cm", PLAIN, null], ["w", PLAIN, null], ["", PLAIN, null], ["3 + 4", PLAIN, null]];
+  for (const [text, number, expected] of rows) equal(readNumber(text, number), expected);
+});
+await test("coordinates follow the picture, and depth stays where the picture leaves a choice", () => {
+  const all = point([PLAIN, PLAIN, PLAIN], 2);
+  moveCoordinates(all, [4, 0, 6], FRONT).forEach((x, k) => near(x, [2, 0, 3][k], 1e-6));
+  // Only z is a number: the point moves along a line, to the height of the target.
+  moveCoordinates(point([null, null, PLAIN]), [4, 5, 6], FRONT).forEach((x, k) => near(x, [0, 0, 6][k], 1e-4));
+  // Of a line that is seen from above at an angle, what counts is where it is in the picture.
+  const c = Math.SQRT1_2, above = { right: [1, 0, 0], up: [0, c, c], back: [0, -c, c] };
+  moveCoordinates(point([null, null, PLAIN]), [0, 10 * c, 10 * c], above).forEach((x, k) => near(x, [0, 0, 10 / c][k], 1e-4));
+  equal(moveCoordinates(point([null, null, null]), [1, 2, 3], FRONT), [0, 0, 0]);
+  // Params move the rest.
+  moveCoordinates(point([PLAIN, PLAIN, null], 1, [false, false, true]), [4, 0, 6], FRONT).forEach((x, k) => near(x, [4, 0, 6][k], 1e-6));
+  equal(moveCoordinates(point([PLAIN, PLAIN, PLAIN], 0), [1, 2, 3], FRONT), [0, 0, 0]);
+  equal(columnOf({ map: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12] }, 1), [2, 6, 10]);
 });
 
 console.log(`${passed} passed, ${failed} failed, 0 skipped`);

@@ -64,7 +64,8 @@ export class Controls {
   move(e) {
     const before = this.fingers.get(e.pointerId), now = this.place(e);
     if (!before) {
-      if (e.pointerType !== "touch") this.hoverAt(now);
+      const onHandle = e.target instanceof Element && e.target.closest(".handle");
+      if (e.pointerType !== "touch") this.hoverAt(onHandle ? null : now);
       return;
     }
     const dx = now.x - before.x, dy = now.y - before.y;

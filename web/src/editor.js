@@ -4,9 +4,9 @@
 // Content-Security-Policy.
 
 import { acceptCompletion } from "@codemirror/autocomplete";
-import { indentWithTab } from "@codemirror/commands";
+import { indentWithTab, isolateHistory, redo, undo } from "@codemirror/commands";
 import { setDiagnostics } from "@codemirror/lint";
-import { EditorState, StateEffect, StateField } from "@codemirror/state";
+import { EditorState, StateEffect, StateField, Transaction } from "@codemirror/state";
 import { Decoration, EditorView, keymap } from "@codemirror/view";
 import { basicSetup } from "codemirror";
 import { assistance, changesOf, completeBy, offsetIn } from "./assist.js";
@@ -111,6 +111,7 @@ export class Editor {
     /** @type {Map<string, EditorState>} */
     this.states = new Map();
     this.path = "";
+    this.quiet = false; // a change under way is not typed
     /** @type {Diagnostic[]} */
     this.problems = [];
     const root = host.attachShadow({ mode: "open" });
@@ -182,10 +183,22 @@ export class Editor {
 
   /** Changes a part of a file, as one step to undo. @param {string} path @param {number} from @param {number} to @param {string} insert */
   replace(path, from, to, insert) {
-    if (path === this.path) this.view.dispatch({ changes: { from, to, insert } });
+    this.change(path, [{ from, to, insert }]);
+  }
+
+  /**
+   * Changes parts of a file.
+   *
+   * @param {string} path
+   * @param {{ from: number, to: number, insert: string }[]} changes
+   * @param {"step" | "hidden" | undefined} [history]  a step to undo by itself, or none; undefined: as typing is
+   */
+  change(path, changes, history) {
+    const annotations = history === "step" ? isolateHistory.of("full") : history === "hidden" ? Transaction.addToHistory.of(false) : undefined;
+    if (path === this.path) this.view.dispatch({ changes, annotations });
     else {
       const state = this.states.get(path);
-      if (state) this.states.set(path, state.update({ changes: { from, to, insert } }).state);
+      if (state) this.states.set(path, state.update({ changes, annotations }).state);
       this.noteChange(path);
     }
   }
@@ -210,6 +223,21 @@ export class Editor {
         this.states.set(path, state.update({ changes }).state);
         this.noteChange(path);
       }
+    }
+  }
+
+  /** Takes back the last step in the file that is shown, or does it again. @param {boolean} again */
+  undo(again) {
+    (again ? redo : undo)(this.view);
+  }
+
+  /** Makes changes that do not run the script by themselves. @param {() => void} make */
+  quietly(make) {
+    this.quiet = true;
+    try {
+      make();
+    } finally {
+      this.quiet = false;
     }
   }
 
@@ -238,6 +266,19 @@ export class Editor {
       effects: [EditorView.scrollIntoView(from, { y: "center" }), markRange.of([from, to])],
     });
     if (focus) this.view.focus();
+  }
+
+  /**
+   * Marks a range of a file, or nothing. The cursor stays.
+   *
+   * @param {string} path
+   * @param {[number, number] | null} range
+   * @param {boolean} [scroll]  so that it is seen
+   */
+  mark(path, range, scroll = false) {
+    if (path !== this.path) return;
+    const seen = range && scroll ? [EditorView.scrollIntoView(range[0], { y: "nearest", x: "nearest", yMargin: 40, xMargin: 40 })] : [];
+    this.view.dispatch({ effects: [...seen, markRange.of(range)] });
   }
 
   /** @param {Diagnostic[]} problems */

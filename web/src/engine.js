@@ -244,6 +244,32 @@
  *
  * @typedef {Record<string, Record<string, any>>} ParamSets
  *
+ * @typedef {object} NumberFields
+ * @property {number} value  mm
+ * @property {string} unit  as written; "": none
+ * @property {number} scale  mm per unit
+ * @typedef {Place & NumberFields} PointNumber
+ *
+ * @typedef {object} PointInfo  a point in a call that made or moved a part
+ * @property {number} id  stays the same while only numbers change
+ * @property {string} call  the function, such as "polyline"
+ * @property {number} dimension  2 or 3 coordinates
+ * @property {Triple} at  in the scene
+ * @property {{ origin: Triple, normal: Triple } | null} plane  of a point with 2 coordinates
+ * @property {number[]} map  3 rows of 4, from the coordinates in the script, mm, to the scene
+ * @property {(PointNumber | null)[]} numbers  of each coordinate; null: it is computed
+ * @property {boolean[]} moved  by params, of each coordinate
+ * @property {string | null} locked  why the point cannot be moved
+ * @property {string[]} params  that move it
+ *
+ * @typedef {object} SolveRequest
+ * @property {string} part
+ * @property {number} point  its id
+ * @property {number[]} target
+ * @property {number[][]} ignored  at most two directions in which differences do not count
+ * @property {string[]} params
+ * @property {number} pixel  its size, mm
+ *
  * @typedef {object} EngineListener
  * @property {(state: RunState) => void} state
  * @property {(scene: SceneMessage) => void} scene
@@ -277,6 +303,9 @@
  * @property {(file: string, line: number, column: number) => Promise<Ghost[]>} ghosts  at a location of the script as it was run
  * @property {(part: string, what: SurfaceQuestion) => Promise<SurfaceAnswer>} surface
  * @property {(normal: Triple, offset: number) => Promise<SectionCurve[]>} section
+ * @property {(part: string) => Promise<{ points: PointInfo[], omitted: number }>} points
+ * @property {(request: SolveRequest) => Promise<{ params: Record<string, string>, at: Triple }>} solve
+ *   values of params with which a point comes closest to a target
  */
 
 /**

@@ -96,10 +96,10 @@ export class Overlay {
     element.hidden = p === null;
     if (!p) return;
     const text = /** @type {HTMLElement} */ (element.lastElementChild);
-    const size = label.size > 0 ? label.size / this.pixelAt(at) : TEXT_SIZE;
+    const size = label.size > 0 ? label.size / view.pixelAt(at) : TEXT_SIZE;
     let angle = 0;
     if (label.along?.some((x) => x !== 0)) {
-      const q = view.project(at.clone().addScaledVector(new Vector3(...label.along), 10 * this.pixelAt(at)));
+      const q = view.project(at.clone().addScaledVector(new Vector3(...label.along), 10 * view.pixelAt(at)));
       if (q) angle = Math.atan2(q.y - p.y, q.x - p.x);
     }
     const arrow = label.mark === "arrow" ? /** @type {SVGElement} */ (element.firstElementChild) : null;
@@ -113,13 +113,6 @@ export class Overlay {
     text.style.fontSize = `${size.toFixed(1)}px`;
     const [x, y] = PLACES[label.place] ?? PLACES.right, gap = label.mark === "none" && label.place === "center" ? 0 : GAP;
     text.style.transform = `rotate(${angle.toFixed(4)}rad) translate(calc(-50% + ${x * 50}% + ${x * gap}px), calc(-50% + ${y * 50}% + ${y * gap}px))`;
-  }
-
-  /** The size of a pixel at a point, mm. @param {Vector3} at */
-  pixelAt(at) {
-    const { orbit, height } = this.view;
-    const distance = orbit.orthographic ? orbit.distance : orbit.eye().sub(at).dot(orbit.direction());
-    return (2 * distance * Math.tan(orbit.fov / 2)) / height;
   }
 
   /** Shows a text next to the pointer. @param {string} text @param {number} x @param {number} y */

@@ -17,6 +17,7 @@ import { Overlay } from "./overlay.js";
 import { ParamsPanel } from "./params.js";
 import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
+import { PointTool } from "./point_tool.js";
 import { RobotsPanel } from "./robots.js";
 import { Runs } from "./runs.js";
 import { SectionCurves } from "./section_curves.js";
@@ -153,6 +154,14 @@ export async function start(engine) {
   const partsPanel = new PartsPanel(byId("parts", HTMLDivElement), view);
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
+  const points = new PointTool({
+    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report,
+    run: (dragging) => {
+      timeBar.forget();
+      if (dragging) runs.drag();
+      else runs.drop();
+    },
+  });
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const robots = new RobotsPanel(byId("robots", HTMLDivElement), over, view, engine, {
     readOnly: hello.readOnly, textOf: (path) => editor?.text(path) ?? null, entered: () => controls.hoverAt(null),
@@ -172,7 +181,7 @@ export async function start(engine) {
   view.drawn.on(() => sectionCurves.update());
   panels.push(
     (m) => params.show(m.params, !runs.pending), (m) => timeBar.show(m.timed), (m) => robots.show(m), () => partsPanel.show(), () => sectionPanel.show(), (m) => output.show(m),
-    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => noteTexts(), () => keepSelection(), () => showMade(), () => surfacePanel.refresh());
+    (m) => files?.list(m.files ?? []), (m) => fillViews(m), () => markTools(), (m) => timeBar.arrived(m), () => noteTexts(), () => keepSelection(), () => showMade(), () => surfacePanel.refresh(), () => points.on && points.update());
 
   /** The expression of a part, "" if there is none to write. @param {import("./engine.js").Part} part */
   function expressionOf(part) {
@@ -181,6 +190,7 @@ export async function start(engine) {
     return show ? shownExpression(excerpt(show)) : "";
   }
 
+  let selected = ""; // the parts whose points are shown
   /** @param {string[]} names @param {Source | null} [face] */
   function select(names, face = null) {
     view.selected = names;
@@ -188,6 +198,8 @@ export async function start(engine) {
     const part = view.parts.views.get(names[names.length - 1])?.part ?? null;
     selection.show(part, part ? expressionOf(part) : "", !runs.coarse, face);
     partsPanel.refresh();
+    if (points.on && names.join() !== selected) points.update();
+    selected = names.join();
     surfacePanel.refresh();
     showFaces();
     return part;
@@ -373,6 +385,7 @@ export async function start(engine) {
     backdrop: { is: () => stage.backdrop, set: (on) => (stage.backdrop = on) },
     shadows: { is: () => stage.shadows, set: (on) => (stage.shadows = on) },
     section: { is: () => view.section.on, set: (on) => (sectionPanel.toggle(on), on && openPanel("section")) },
+    points: { is: () => points.on, set: (on) => (points.toggle(on), on && openPanel("selection")) },
     measure: { is: () => measure.active, set: (on) => (measure.toggle(on), on && openPanel("measure")) },
     values: {
       is: () => editor?.showsValues ?? true,
@@ -423,7 +436,7 @@ export async function start(engine) {
   /** @type {Record<string, () => void>} */
   const keys = {
     f: () => flip("fit"), v: () => flip("values"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
-    g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"),
+    g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"), d: () => flip("points"),
     e: () => hello.readOnly || layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
@@ -444,6 +457,12 @@ export async function start(engine) {
     }
     const target = e.target instanceof Element ? e.target : null;
     const typing = editor?.hasFocus() || target?.closest("input:not([type=range]):not([type=checkbox]), select, textarea, dialog");
+    // What was dragged in the scene is undone there, too.
+    const undone = e.key.toLowerCase() === "z" || e.key === "y";
+    if ((e.ctrlKey || e.metaKey) && undone && !typing && !hello.readOnly && !points.dragging) {
+      e.preventDefault();
+      editor?.undo(e.shiftKey || e.key === "y");
+    }
     // Space presses the button that has the focus.
     const pressed = e.key === " " && target?.closest("button, summary, input");
     if (e.ctrlKey || e.metaKey || e.altKey || typing || pressed || e.defaultPrevented) return;
@@ -492,8 +511,11 @@ export async function start(engine) {
   else documents.begin(file);
   if (newest.scene) documents.list(newest.scene.files ?? []);
   let typing = 0;
+  points.editor = opened;
+  if (points.on) points.update();
   opened.changed.on(() => {
     clearTimeout(typing);
+    if (opened.quiet) return;
     typing = window.setTimeout(() => {
       timeBar.forget();
       runs.now();

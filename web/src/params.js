@@ -218,6 +218,22 @@ export class ParamsPanel {
     this.changed.emit(dragging);
   }
 
+  /** Sets values without telling that they have changed. @param {Record<string, string>} values  expressions */
+  set(values) {
+    for (const [name, value] of Object.entries(values)) {
+      const param = this.params.find((p) => p.name === name);
+      if (param && value === param.initial) delete this.values[name];
+      else this.values[name] = value;
+    }
+    this.refresh();
+  }
+
+  /** Marks params that something moves. @param {string[]} names */
+  mark(names) {
+    for (const [name, { row }] of this.rows) row.classList.toggle("marked", names.includes(name));
+    if (names.length) this.rows.get(names[0])?.row.scrollIntoView({ block: "nearest" });
+  }
+
   refresh() {
     for (const param of this.params) {
       const row = this.rows.get(param.name);

@@ -2,9 +2,11 @@
 
 /**
  * @param {(question: string, request: object) => Promise<any>} ask
- * @returns {Pick<import("./engine.js").Engine, "pose" | "reach" | "faces" | "ghosts" | "surface" | "section">}
+ * @returns {Pick<import("./engine.js").Engine, "points" | "solve" | "pose" | "reach" | "faces" | "ghosts" | "surface" | "section">}
  */
 export const questions = (ask) => ({
+  points: (part) => ask("points", { part }),
+  solve: (request) => ask("solve", request),
   pose: (robot, q) => ask("pose", { robot, q }),
   reach: (request) => ask("reach", request),
   faces: (part) => ask("faces", { part }),

@@ -15,7 +15,7 @@ import { Topic } from "./topic.js";
 /** @typedef {import("./engine.js").SceneMessage} SceneMessage */
 
 const MOST_PIXEL_RATIO = 2;
-const TOOLBAR = 40; // pixels
+const TOOLBAR_GAP = 8; // pixels around the toolbar
 const GROUND_SIZES = 60; // side of an unbounded ground, in radii of the scene
 
 // The names of renderers that have no graphics processor.
@@ -106,6 +106,13 @@ export class View {
   /** The size of a pixel at the target, mm. */
   get pixel() {
     return (2 * this.orbit.halfHeight) / this.height;
+  }
+
+  /** The size of a pixel at a point, mm. @param {Vector3} at */
+  pixelAt(at) {
+    const { orbit, height } = this;
+    const distance = orbit.orthographic ? orbit.distance : orbit.eye().sub(at).dot(orbit.direction());
+    return (2 * distance * Math.tan(orbit.fov / 2)) / height;
   }
 
   /** Draws soon. */
@@ -274,7 +281,9 @@ export class View {
     this.following = null;
     for (const label of names.length ? [] : (this.message?.labels ?? [])) box.expandByPoint(new Vector3(...label.at));
     // What is fitted is in the middle, below the toolbar.
-    this.orbit.fit(box.min, box.max, this.aspect, Math.max(0.5, 1 - (2 * TOOLBAR) / this.height));
+    const toolbar = this.canvas.parentElement?.querySelector("[role=toolbar]");
+    const covered = (toolbar?.clientHeight ?? 0) + TOOLBAR_GAP;
+    this.orbit.fit(box.min, box.max, this.aspect, Math.max(0.5, 1 - (2 * covered) / this.height));
     this.invalidate();
   }
 
