@@ -368,6 +368,8 @@ await test("section curves are summed by part", () => {
   const curve = (part, length, area) => ({ part, closed: area !== null, exact: true, length, area, points: "" });
   equal(sumByPart([curve("a", 3, 9), curve("a", 2, -4), curve("b", 1, null)]), [
     { part: "a", count: 2, length: 5, area: 5, exact: true }, { part: "b", count: 1, length: 1, area: null, exact: true }]);
+});
+
 // --- Numbers of points ---
 
 const PLAIN = { unit: "", scale: 1 }, CM = { unit: "cm", scale: 10 };
