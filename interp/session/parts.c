@@ -21,8 +21,10 @@
 
 // --- Descriptions ---
 
+// A ground has no shape. If it was added to the scene, its number is not that of a source.
 static const CagItemSource *source_of(const CagSession *s, const CagItem *item) {
-  const bool known = item->number < s->sources.count && s->sources.items[item->number].shape;
+  const bool known = item->kind != CAG_ITEM_GROUND && item->number < s->sources.count &&
+                     s->sources.items[item->number].shape;
   return known ? &s->sources.items[item->number] : NULL;
 }
 

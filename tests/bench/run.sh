@@ -223,3 +223,5 @@ if peer povray; then theirs=$(best "$CAG" render examples/vase.cag -o "$tmp/v.ex
 report "vase, 16 samples of light, 960x540" "$ours" "POV-Ray" "$theirs" "<= 0.25"
 echo "--- language server, 5,000 lines"
 if peer python3; then python3 tests/bench/lsp.py "$CAG"; fi
+# Only if it was built.
+if [ -f "$B/playground/cag.wasm" ] && peer node && peer chromium; then node tests/bench/playground.js chromium "$CAG" "$B/playground"; fi
