@@ -12,7 +12,7 @@ WASM_DEPS := $(BUILD)/playground-deps
 EMCC      := NODE_PATH=/usr/share/nodejs emcc
 WASM_CLANG ?= clang
 # Linear memory for the C stack, in bytes.
-WASM_STACK := 2097152
+WASM_STACK := 4194304
 
 WASM_LEFT_OUT := base/aside.c base/parallel.c base/large_stack.c base/reserve.c interp/session/watch.c \
                  interp/render/exr_read.c interp/render/exr_write.c interp/render/exr_complaint.c \
@@ -34,7 +34,7 @@ WASM_LINK := -s MODULARIZE=1 -s EXPORT_ES6=1 -s USE_ES6_IMPORT_META=0 -s ENVIRON
 # Clang 14 moves loads past stores to another variable that has the same place on the stack.
 WASM_CORRECT := -mllvm -no-stack-coloring
 
-$(WASM)/flags: wasm/build.mk
+$(WASM)/flags:
 	@mkdir -p $(@D)
 	$Qecho $$($(EMCC) --cflags) $(WASM_CORRECT) > $@
 $(WASM_DEPS)/libdeps.a: wasm/deps.sh

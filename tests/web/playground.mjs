@@ -1,5 +1,5 @@
 // Compares the program as WebAssembly with the native one: all examples, limits, and wrong input. Runs in node, without a browser.
-//   node tests/web/playground.mjs CAG CAG.MJS [--times]     --times also prints how long the examples take, in each
+//   node tests/web/playground.mjs CAG CAG.MJS [--times]     --times also prints how long the examples take, in each, and includes slow ones
 // The last line is `N passed, N failed, 0 skipped`.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
@@ -54,8 +54,11 @@ async function start() {
 // --- The examples ---
 
 const FOLDER = "examples/";
+// These take from 5 to 50 seconds, most of them for meshes.
+const SLOW = ["sensing/depth.cag", "robots/workspace.cag", "sensing/templates.cag", "surfaces/curvature_contours.cag"];
 const scripts = ["", "curves", "surfaces", "robots", "sensing"].flatMap((folder) =>
-  readdirSync(FOLDER + folder).filter((n) => n.endsWith(".cag") && n !== "stage.cag").map((n) => (folder ? `${folder}/${n}` : n)));
+  readdirSync(FOLDER + folder).filter((n) => n.endsWith(".cag") && n !== "stage.cag").map((n) => (folder ? `${folder}/${n}` : n)))
+  .filter((path) => option === "--times" || !SLOW.includes(path));
 
 // Numbers that are computed in another order, by other libraries.
 const close = (a, b, scale, tolerance) => Math.abs(a - b) <= tolerance * Math.max(scale, Math.abs(a));
