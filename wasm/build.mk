@@ -3,14 +3,16 @@
 # `make playground` needs emscripten, clang, libeigen3-dev, and dpkg-dev, and downloads the Debian sources of the libraries once.
 # Files of the folder wasm/ replace those that need threads, processes, or libraries that are not there.
 
-PLAYGROUND_OPT ?= -O2
+PLAYGROUND_OPT ?= -O2 -fno-unroll-loops
+# Of code that takes little of the time, so that less is sent.
+PLAYGROUND_OPT_SMALL ?= -Os
 WASM      := $(BUILD)/wasm
 WASM_DEPS := $(BUILD)/playground-deps
 # emcc looks for its packages where Debian's node does.
 EMCC      := NODE_PATH=/usr/share/nodejs emcc
 WASM_CLANG ?= clang
 # Linear memory for the C stack, in bytes.
-WASM_STACK := 2097152
+WASM_STACK := 4194304
 
 WASM_LEFT_OUT := base/aside.c base/parallel.c base/large_stack.c base/reserve.c interp/session/watch.c \
                  interp/render/exr_read.c interp/render/exr_write.c interp/render/exr_complaint.c \
@@ -21,19 +23,23 @@ WASM_SRC  := $(filter-out $(WASM_LEFT_OUT),$(BASE_SRC) $(LANG_SRC) $(GEOM_SRC) $
              $(sort $(wildcard wasm/*.c wasm/*/*.c))
 WASM_OBJ  := $(patsubst %.c,$(WASM)/%.o,$(WASM_SRC)) $(patsubst %,$(WASM)/gen/%.o,stdlib documents builtins) $(WASM)/wasm/lapack.o
 # The flags of emcc are asked for when they are needed. Calling clang directly takes half of the time of emcc.
-WASM_FLAGS = $$(cat $(WASM)/flags) $(PLAYGROUND_OPT) -msimd128 $(WARN) -Iwasm -I$(WASM_DEPS)/include -MMD -MP
+WASM_SMALL := base geom/camera geom/image geom/meet geom/robot geom/solid interp/builtin interp/check interp/doc interp/document interp/formats interp/scene interp/session lang live wasm
+WASM_FLAGS = $$(cat $(WASM)/flags) $(if $(filter $(addsuffix /%,$(WASM_SMALL)),$<),$(PLAYGROUND_OPT_SMALL),$(PLAYGROUND_OPT)) -msimd128 $(WARN) -Iwasm -I$(WASM_DEPS)/include -MMD -MP
 WASM_CFLAGS = $(WASM_FLAGS) -std=c17 -D_GNU_SOURCE -fno-math-errno -fno-trapping-math -ffp-contract=off -I. -Iinclude -I$(BUILD)/gen \
               -DCAG_VERSION='"$(VERSION)"'
 WASM_LINK := -s MODULARIZE=1 -s EXPORT_ES6=1 -s USE_ES6_IMPORT_META=0 -s ENVIRONMENT=worker -s DYNAMIC_EXECUTION=0 \
              -s FILESYSTEM=1 -s FORCE_FILESYSTEM=1 -s ALLOW_MEMORY_GROWTH=1 -s INITIAL_MEMORY=33554432 -s MAXIMUM_MEMORY=2147483648 \
-             -s TOTAL_STACK=$(WASM_STACK) -s EXPORTED_FUNCTIONS=_malloc,_free -s EXPORTED_RUNTIME_METHODS=FS,UTF8ToString --no-entry
+             -s TOTAL_STACK=$(WASM_STACK) -Wl,--stack-first -s EXPORTED_FUNCTIONS=_malloc,_free -s EXPORTED_RUNTIME_METHODS=FS,UTF8ToString --no-entry
+
+# Clang 14 moves loads past stores to another variable that has the same place on the stack.
+WASM_CORRECT := -mllvm -no-stack-coloring
 
 $(WASM)/flags:
 	@mkdir -p $(@D)
-	$Q$(EMCC) --cflags > $@
+	$Qecho $$($(EMCC) --cflags) $(WASM_CORRECT) > $@
 $(WASM_DEPS)/libdeps.a: wasm/deps.sh
 	@echo "libraries for WebAssembly"
-	$QNODE_PATH=/usr/share/nodejs CLANG=$(WASM_CLANG) sh wasm/deps.sh $(WASM_DEPS)
+	$QNODE_PATH=/usr/share/nodejs CLANG=$(WASM_CLANG) OPT="-Os $(WASM_CORRECT)" sh wasm/deps.sh $(WASM_DEPS)
 $(WASM)/%.o: %.c $(WASM)/flags | $(WASM_DEPS)/libdeps.a $(BUILD)/gen/builtin_functions.h
 	@mkdir -p $(@D)
 	@echo "wasm $<"
@@ -47,16 +53,16 @@ $(WASM)/wasm/lapack.o: wasm/lapack.cpp wasm/lapacke.h $(WASM)/flags
 	@echo "wasm $<"
 	$Q$(WASM_CLANG)++ $(WASM_FLAGS) -Wno-deprecated-declarations -std=c++17 -fno-exceptions -fno-rtti -DEIGEN_NO_DEBUG -DNDEBUG -DEIGEN_MPL2_ONLY \
 	  -isystem /usr/include/eigen3 -isystem $$(sed -n 's/.*--sysroot=\([^ ]*\).*/\1/p' $(WASM)/flags)/include/c++/v1 -c $< -o $@
-$(WASM)/cag.js: $(WASM_OBJ) $(WASM_DEPS)/libdeps.a wasm/build.mk
+$(WASM)/cag.mjs: $(WASM_OBJ) $(WASM_DEPS)/libdeps.a wasm/build.mk
 	@echo "link $@"
 	$Q$(EMCC) $(PLAYGROUND_OPT) $(WASM_LINK) $(WASM_OBJ) $(WASM_DEPS)/libdeps.a -lc++ -lc++abi -o $@
 
 # Everything together. PLAYGROUND_PICTURES=--no-pictures leaves out the pictures of the examples and of the documentation.
 PLAYGROUND := $(BUILD)/playground
 PLAYGROUND_PICTURES ?=
-$(PLAYGROUND)/worker.js: $(WASM)/cag.js web/playground.sh $(wildcard web/src/*) | web/node_modules
+$(PLAYGROUND)/worker.js: $(WASM)/cag.mjs web/playground.sh $(wildcard web/src/*) | web/node_modules
 	@echo "bundle $(PLAYGROUND)"
-	$Qsh web/playground.sh $(PLAYGROUND) $(WASM)/cag.js $(WASM_DEPS)/sources
+	$Qsh web/playground.sh $(PLAYGROUND) $(WASM)/cag.mjs $(WASM_DEPS)/sources
 $(PLAYGROUND)/examples.json: tools/playground_examples.mjs $(wildcard examples/*.cag examples/*/*.cag) | $(BUILD)/cag
 	@mkdir -p $(@D)
 	@echo "examples of $(PLAYGROUND)"

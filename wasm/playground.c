@@ -11,6 +11,7 @@
 
 #include "cag.h"
 #include "live/lsp.h"
+#include "live/measures.h"
 #include "live/model_answers.h"
 #include "live/model_run.h"
 #include "live/questions.h"
@@ -115,7 +116,14 @@ EMSCRIPTEN_KEEPALIVE int playground_image(const char *name) {
   return keep_answer(cag_answer_image(good.session, name));
 }
 
+// The measures of a part, or of all if its name is empty.
 EMSCRIPTEN_KEEPALIVE int playground_measure(const char *script, const char *part) {
+  if (!*part && good.session) {
+    CagMeasuring m = cag_measure(good.session, script, NULL);
+    char *text = cJSON_PrintUnformatted(m.whole);
+    cJSON_Delete(m.whole);
+    return keep_text(text, text ? strlen(text) : 0, NULL);
+  }
   return keep_answer(cag_answer_measure(good.session, script, part));
 }
 

@@ -1,23 +1,26 @@
 #!/bin/sh
 # Bundles the playground into FOLDER: the page with its engine, and the worker.
-#   web/playground.sh FOLDER CAG.JS SOURCES     CAG.JS is emscripten's part of the program, with cag.wasm beside it; SOURCES has the sources of
+#   web/playground.sh FOLDER CAG.MJS SOURCES     CAG.MJS is emscripten's part of the program, with cag.wasm beside it; SOURCES has the sources of
 #                                               the libraries in the program, for their licenses
 set -eu
 out=$(mkdir -p "$1" && cd "$1" && pwd) program=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") sources=$(cd "$3" && pwd)
 cd "$(dirname "$0")"
 bundle() { esbuild "$1" --bundle --minify --charset=utf8 --legal-comments=none --log-level=warning "--outfile=$out/$2" --target=es2022 --format=esm "--alias:cag-wasm=$program" '--external:./editor.bundle.js'; }
+bundle src/boot.js boot.js
 bundle src/playground.js playground.js
 bundle src/editor.js editor.bundle.js
 bundle src/worker.js worker.js
 cat src/page.css src/playground.css | esbuild --loader=css --minify --log-level=warning > "$out/page.css"
 cp src/icon.svg "$out"
-cp "${program%.js}.wasm" "$out"
+cp "${program%.mjs}.wasm" "$out"
 # The page is that of cag view, with another entry, and with a policy that the server would send.
 policy="default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' data:; base-uri 'none'; form-action 'none'; object-src 'none'"
 notice='Loading. If nothing appears, the page must be served: run <code>python3 -m http.server<\/code> in its folder, and open <code>http:\/\/localhost:8000<\/code>.'
 sed -e "s|<meta charset=\"utf-8\">|&\\
 <meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" \
-  -e 's|src="page.js"|src="playground.js"|' -e "s/<p id=\"notice\" role=\"alert\" hidden><\/p>/<p id=\"notice\" role=\"alert\">$notice<\/p>/" src/index.html > "$out/index.html"
+  -e 's|<script type="module" src="page.js"></script>|<script type="module" src="boot.js"></script>\
+<link rel="modulepreload" href="worker.js">\
+<script type="module" src="playground.js"></script>|' -e "s/<p id=\"notice\" role=\"alert\" hidden><\/p>/<p id=\"notice\" role=\"alert\">$notice<\/p>/" src/index.html > "$out/index.html"
 grep -q playground.js "$out/index.html" && grep -q http.server "$out/index.html" && grep -q wasm-unsafe-eval "$out/index.html"
 {
   for name in three codemirror @codemirror/view @codemirror/state @lezer/common @lezer/highlight style-mod w3c-keyname crelt; do

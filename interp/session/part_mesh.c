@@ -129,6 +129,7 @@ static CagStatus make_line(const CagItem *item, double tolerance, CagSessionMesh
   double *t = NULL;
   size_t n = 0;
   if (!(tolerance > 0)) tolerance = SIZE_PART * size_of(item);
+  if (!(tolerance > 0)) tolerance = SIZE_PART; // all points of the curve coincide
   CagStatus status = cag_curve_discretize(c, tolerance, LINE_TURN, &t, &n, err);
   if (status) return status;
   m->positions = cag_malloc((3 * n + 1) * sizeof *m->positions);

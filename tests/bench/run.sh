@@ -226,3 +226,5 @@ if peer python3; then python3 tests/bench/lsp.py "$CAG"; fi
 
 echo "--- the page of cag view"
 if peer node && peer chromium; then node tests/bench/live.js "$CAG" "$(command -v chromium)"; fi
+# Only if it was built.
+if [ -f "$B/playground/cag.wasm" ] && peer node && peer chromium; then node tests/bench/playground.js chromium "$CAG" "$B/playground"; fi

@@ -1,5 +1,6 @@
 // Uses the page of `cag view` in headless Chromium as a person would: looks, clicks, drags, types, saves.
 //   node page.js CHROMIUM COMMAND ...      COMMAND starts the server for the script whose path is added, and prints its address
+// PLAYGROUND=1 uses a playground, whose files are kept in the browser (COMMAND is playground_server.js).
 // Pictures are kept in the folder PICTURES, if it is set. The last line is `N passed, N failed, 0 skipped`.
 "use strict";
 const { spawn } = require("child_process");
@@ -96,6 +97,14 @@ function equal(found, expected) {
 }
 function check(truth, what) {
   if (!truth) throw new Error(what);
+}
+
+// A file as the server, or the playground, has it.
+const inPlayground = Boolean(process.env.PLAYGROUND);
+async function storedText(page, file) {
+  if (!inPlayground) return fs.readFileSync(file, "utf8");
+  const sets = /^(.*)\.params\.json$/.exec(path.basename(file));
+  return (await page.value(`localStorage.getItem(${JSON.stringify(sets ? `cag:sets:${sets[1]}` : `cag:file:${path.basename(file)}`)})`)) ?? "";
 }
 
 const READY = 'document.documentElement.dataset.ready === "true" && document.documentElement.dataset.run';
@@ -228,8 +237,8 @@ async function block(browser) {
     await press(page, "Write into script");
     await page.until(`(${text}).includes("param width = ${value} in 10..100")`);
     await page.key("s", { modifiers: 2 });
-    for (let i = 0; i < 200 && !fs.readFileSync(file, "utf8").includes(`param width = ${value} in`); i++) await pause(50);
-    equal(fs.readFileSync(file, "utf8"), BLOCK.replace("width = 40", `width = ${value}`));
+    for (let i = 0; i < 200 && !(await storedText(page, file)).includes(`param width = ${value} in`); i++) await pause(50);
+    equal(await storedText(page, file), BLOCK.replace("width = 40", `width = ${value}`));
     await page.until('!document.querySelector("#tabs .dirty")');
   });
   await test("an error is shown at its place, and the last scene stays", async () => {
@@ -252,7 +261,13 @@ async function block(browser) {
     const after = await picture(page, "line");
     check(difference(before, after, await sceneOf(page)) > 0, "nothing is highlighted");
   });
-  await test("a file that changes on disk while the editor has unsaved text is asked about", async () => {
+  if (inPlayground) await test("the address follows the script, and another script in it takes its place", async () => {
+    await page.until('location.hash.includes("code=")');
+    await page.value(`location.hash = ${JSON.stringify(`name=block.cag&text=${encodeURIComponent(BLOCK.replace("A block", "The block"))}`)}`);
+    await page.until(`${READY} && (${text}).startsWith("// The block") && !(${text}).includes("sphere")`);
+    await page.until('document.querySelectorAll("#parts li").length === 1');
+  });
+  else await test("a file that changes on disk while the editor has unsaved text is asked about", async () => {
     const disk = fs.readFileSync(file, "utf8").replace("A block", "The block");
     fs.writeFileSync(file, disk);
     await page.key("s", { modifiers: 2 });
@@ -362,7 +377,7 @@ async function block(browser) {
     await page.type("wide");
     await page.key("Enter");
     await page.until('document.querySelector("#params select[aria-label^=Named]").value === "wide"');
-    const sets = JSON.parse(fs.readFileSync(`${file}.params.json`, "utf8"));
+    const sets = JSON.parse(await storedText(page, `${file}.params.json`));
     equal([sets.wide.width, sets.wide.finish], [64, "red"]);
     await page.value('document.querySelector("[data-param=width] [aria-label^=Reset]").click()');
     await page.until(`${field}.value === "${width}"`);
@@ -386,7 +401,7 @@ async function block(browser) {
     equal([png.width, png.height], await page.value('[document.querySelector("#scene").clientWidth, document.querySelector("#scene").clientHeight]'));
     check(colorCount(png, { x: 0, y: 0, width: png.width, height: png.height }) > 20, "the picture is blank");
   });
-  await test("another page sees the same", async () => {
+  if (!inPlayground) await test("another page sees the same", async () => {
     const other = await browser.open(new URL("/", url).href, { width: 500, height: 400 });
     await other.until(READY);
     equal(await other.value("document.querySelector('[data-param=width] input[type=number]').value"), "64");

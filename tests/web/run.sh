@@ -35,6 +35,25 @@ else
     skip 'chromium is missing'
   fi
 fi
+# The playground is built where emscripten is installed. Without pictures, that takes less than half of the time.
+if ! command -v emcc > /dev/null || ! command -v node > /dev/null || ! command -v esbuild > /dev/null; then
+  skip 'emscripten, node, or esbuild is missing'
+elif ! make -s playground BUILD="$BUILD" PLAYGROUND_PICTURES=--no-pictures > "$work/log" 2>&1; then
+  # The sources of the libraries are downloaded.
+  if [ -f "$BUILD/playground-deps/libdeps.a" ]; then
+    tail -n 20 "$work/log"
+    echo 'FAILED: make playground'
+    failed=$((failed + 1))
+  else
+    skip 'the sources of the libraries of the playground cannot be downloaded'
+  fi
+else
+  run node tests/web/playground.mjs "$BUILD/cag" "$BUILD/wasm/cag.mjs"
+  if [ -n "$browser" ]; then
+    PLAYGROUND=1 run node tests/web/page.js "$browser" node tests/web/playground_server.js "$BUILD/playground"
+    run node tests/web/playground_page.js "$browser" "$BUILD/playground"
+  fi
+fi
 # The committed bundle is what the sources give. Another esbuild writes other bytes.
 if [ "$(esbuild --version 2> /dev/null)" != 0.17.0 ] || ! make -s web/node_modules > "$work/log" 2>&1; then
   skip 'esbuild 0.17.0 or the packages of web/ are missing'

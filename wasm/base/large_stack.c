@@ -10,7 +10,7 @@
 
 // Chosen by measurement: the recursions of tests/web/playground.mjs end in an error of the script.
 // They need at most half of the stack of a worker in Chromium, whose stack is the smallest.
-#define STACK_BYTES ((size_t)448 << 10)
+#define STACK_BYTES ((size_t)704 << 10)
 
 bool cag_large_stack_run(void (*work)(void *context, char *low), void *context) {
   char here;

@@ -27,6 +27,14 @@ const MESHES_MOST = 256 << 20; // bytes of meshes that are kept
  * @property {(sets: import("./engine.js").ParamSets) => void} writeSets
  */
 
+/** The worker that boot.js has started, once. @returns {{ worker: Worker, heard: MessageEvent[], stop: () => void } | undefined} */
+function takeEarly() {
+  const page = /** @type {any} */ (globalThis), early = page.cagEarly;
+  delete page.cagEarly;
+  early?.stop();
+  return early;
+}
+
 /** A worker, and the calls that it has not answered. */
 class Client {
   /**
@@ -35,7 +43,8 @@ class Client {
    * @param {(crash: Crash, client: Client) => void} crashed
    */
   constructor(module, hear, crashed) {
-    this.worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+    const early = takeEarly();
+    this.worker = early?.worker ?? new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     /** @type {Map<number, Waiting>} */
     this.waiting = new Map();
     this.calls = 0;
@@ -51,7 +60,8 @@ class Client {
       else waiting.failed(new EngineError(data.error));
     });
     this.worker.addEventListener("error", (event) => hear({ failed: event.message || "worker.js cannot be loaded" }));
-    this.worker.postMessage({ start: module });
+    if (!early) this.worker.postMessage({ start: module });
+    for (const event of early?.heard ?? []) setTimeout(() => this.worker.dispatchEvent(new MessageEvent("message", { data: event.data })));
   }
 
   /** @param {any} call @returns {Promise<any>} */

@@ -1,6 +1,5 @@
 // The program as WebAssembly: calls with texts, and the files of the model.
 
-import make from "cag-wasm";
 import { EngineError } from "./engine.js";
 
 const FOLDER = "/model/";
@@ -21,10 +20,11 @@ export class Program {
   }
 
   /**
+   * @param {typeof import("cag-wasm").default} make
    * @param {WebAssembly.Module} module
    * @param {import("cag-wasm").Host} host
    */
-  static async start(module, host) {
+  static async start(make, module, host) {
     const cag = await make({
       host,
       instantiateWasm: (imports, done) => {

@@ -1,5 +1,6 @@
 // The worker of the playground: runs cag as WebAssembly. engine_worker.js sends it calls, which it does one after the other.
 
+import make from "cag-wasm";
 import { crashOf, Program } from "./wasm_program.js";
 
 /**
@@ -30,7 +31,7 @@ const host = {
 /** @param {WebAssembly.Module | null} given  compiled by another worker */
 async function start(given) {
   const module = given ?? (await WebAssembly.compileStreaming(fetch(new URL("cag.wasm", import.meta.url))));
-  const program = await Program.start(module, host);
+  const program = await Program.start(make, module, host);
   post({ module });
   return program;
 }
