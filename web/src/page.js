@@ -1,7 +1,7 @@
 // The page of cag view: makes its parts and connects them.
 
 import { Controls, viewOfKey } from "./controls.js";
-import { byId, h } from "./dom.js";
+import { byId, downloads, h } from "./dom.js";
 import { listenEarly } from "./engine.js";
 import { serverEngine } from "./engine_server.js";
 import { Files } from "./files.js";
@@ -16,11 +16,13 @@ import { Overlay } from "./overlay.js";
 import { ParamsPanel } from "./params.js";
 import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
+import { RemoteEditor, RemoteFiles } from "./remote_editor.js";
 import { Runs } from "./runs.js";
 import { SectionPanel } from "./section_panel.js";
 import { SelectionPanel } from "./selection_panel.js";
 import { TimeBar } from "./time_bar.js";
 import { View } from "./view.js";
+import { findWebview } from "./webview.js";
 
 const TYPING_PAUSE = 200; // milliseconds from the last key to the run
 const EDITOR_AFTER = 400; // milliseconds to wait for the first picture, at most
@@ -30,8 +32,11 @@ const NEW_SCRIPT = "untitled.cag";
 /** @typedef {import("./engine.js").SceneMessage} SceneMessage */
 /** @typedef {import("./engine.js").Place} Place */
 
-/** @param {import("./engine.js").Engine} engine */
-async function start(engine) {
+/**
+ * @param {import("./engine.js").Engine} engine
+ * @param {import("./webview.js").Webview | null} [webview]  the panel of a text editor, which is then the editor of the page
+ */
+async function start(engine, webview = null) {
   const helloLater = engine.hello(), listen = listenEarly(engine);
   const root = document.documentElement;
   const scene = byId("scene", HTMLDivElement), notice = byId("notice", HTMLParagraphElement), status = byId("status", HTMLSpanElement);
@@ -40,9 +45,9 @@ async function start(engine) {
   const hello = await helloLater;
   const overlay = new Overlay(over, view), handles = new Handles(over, view), controls = new Controls(scene, view);
   const layout = new Layout(() => view.invalidate());
-  /** @type {Files | null} */
+  /** @type {Files | RemoteFiles | null} */
   let files = null;
-  /** @type {import("./editor.js").Editor | null} */
+  /** @type {import("./editor.js").Editor | RemoteEditor | null} */
   let editor = null;
   /** The newest that arrived. @type {{ scene: SceneMessage | null, messages: import("./engine.js").RunMessages | null }} */
   const newest = { scene: null, messages: null };
@@ -98,7 +103,12 @@ async function start(engine) {
   const file = hello.file || NEW_SCRIPT, canSave = !hello.readOnly && !hello.untitled;
   document.title = `${file} - cag`;
   byId("title", HTMLSpanElement).textContent = file;
-  if (hello.readOnly) layout.readOnly();
+  const hasEditor = !hello.readOnly && !webview;
+  if (!hasEditor) layout.withoutEditor();
+  if (webview) {
+    downloads.save = (name, blob) => webview.download(name, blob);
+    webview.themeChanged(() => view.invalidate());
+  }
 
   // --- Runs ---
 
@@ -209,7 +219,7 @@ async function start(engine) {
   /** @param {Place} place */
   async function goTo(place) {
     if (!files || !editor) return;
-    if (document.body.classList.contains("no-editor") && !hello.readOnly) layout.toggle("editor");
+    if (document.body.classList.contains("no-editor") && hasEditor) layout.toggle("editor");
     try {
       await files.show(place.file);
       editor.select(place);
@@ -314,7 +324,7 @@ async function start(engine) {
   const keys = {
     f: () => flip("fit"), v: () => flip("values"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
     g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"),
-    e: () => hello.readOnly || layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
+    e: () => hasEditor && layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
     " ": () => byId("time", HTMLDivElement).hidden || timeBar.toggle(), "?": () => keyDialog.showModal(),
@@ -346,7 +356,8 @@ async function start(engine) {
 
   // --- Events ---
 
-  let connected = false;
+  /** @type {boolean | null} null: not yet */
+  let connected = null;
   listen({
     state: (state) => runs.state(state),
     scene: (message) => showScene(message),
@@ -361,22 +372,28 @@ async function start(engine) {
     },
     file: (change) => files?.changedOnDisk(change),
     progress: (p) => output?.progress(p),
-    connection: (on, problem) => {
+    connection: (on, problem, restart) => {
+      const again = on && connected === false;
       if (on && !connected) runs.restart();
       connected = on;
       say(problem);
+      if (restart) notice.append(" ", h("button", { type: "button", onclick: restart }, "Start it again"));
+      // A server that was started again has run the script as it is on the disk.
+      if (again && files) runs.now();
     },
   });
   // --- Editor ---
 
-  await Promise.race([firstPicture(view), new Promise((done) => setTimeout(done, EDITOR_AFTER))]);
-  const { Editor } = /** @type {typeof import("./editor.js")} */ (await import(/** @type {any} */ ("./editor.bundle.js")));
-  /** @type {import("./editor.js").Editor} */
-  const opened = new Editor(byId("editor", HTMLDivElement), {
-    readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
-  });
+  const opened = webview ? new RemoteEditor(webview, file, report) : await ownEditor();
   editor = opened;
-  const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report));
+  const documents = (files = opened instanceof RemoteEditor ? new RemoteFiles(engine, opened, report) : new Files(byId("tabs", HTMLDivElement), engine, opened, report));
+  async function ownEditor() {
+    await Promise.race([firstPicture(view), new Promise((done) => setTimeout(done, EDITOR_AFTER))]);
+    const { Editor } = /** @type {typeof import("./editor.js")} */ (await import(/** @type {any} */ ("./editor.bundle.js")));
+    return new Editor(byId("editor", HTMLDivElement), {
+      readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
+    });
+  }
   opened.fixesChanged.on(() => messages.refresh());
   if (hello.file && !hello.untitled) await documents.show(file).catch(report);
   else documents.begin(file);
@@ -403,6 +420,8 @@ async function start(engine) {
     opened.setProblems(newest.messages.diagnostics);
     opened.setValues(newest.messages.values);
   }
+  // What another editor had not saved when the page was opened.
+  if (documents.unsaved) runs.now();
   keepSelection();
   root.dataset.ready = "true";
   // For tests, and for those who look into the page.
@@ -414,7 +433,8 @@ function firstPicture(view) {
   return view.message ? Promise.resolve() : new Promise((done) => view.drawn.on(() => view.message && done(undefined)));
 }
 
-start(serverEngine()).catch((error) => {
+const webview = findWebview();
+start(serverEngine(webview?.transport), webview).catch((error) => {
   const notice = byId("notice", HTMLParagraphElement);
   notice.textContent = error.message;
   notice.hidden = false;
