@@ -93,7 +93,7 @@ class ViewServer {
         if (!this.running) return;
         this.running = false;
         this.agent.destroy();
-        if (!this.stopped) this.ended(`\`${this.command} view\` has ended ${signal ? `by the signal ${signal}` : `with status ${status}`}`);
+        if (!this.stopped) this.ended(`\`${this.command} view\` ${signal ? `was ended by the signal ${signal}` : `has ended with status ${status}`}`);
       });
       // What the program says is read to its end first.
       child.on("close", (status) => {
