@@ -308,8 +308,8 @@ typedef struct CagValueView {
 // Gives the values of definitions at the top level of the main script and of the modules that it
 // imported, except the library: of those that the run has evaluated, unless they are functions, or
 // their text is the value.
-CAG_API void cag_session_values(CagSession *s,
-                                void (*give)(void *context, const CagValueView *v), void *context);
+CAG_API void cag_session_values(CagSession *s, void (*give)(void *context, const CagValueView *v),
+                                void *context);
 
 // The following need a scene, as cag_session_scene makes it.
 

@@ -2,10 +2,11 @@
 
 const vscode = require("vscode");
 const { Client } = require("./client");
+const { Previews } = require("./preview");
 
 const SELECTOR = { language: "cag" };
 const LANGUAGE = "cag";
-let client, diagnostics, output, legend, tests;
+let client, diagnostics, output, legend, tests, previews;
 const running = []; // what ends with the server
 
 // --- From the protocol to the editor ---
@@ -257,15 +258,31 @@ async function runTests(request) {
 
 // --- The life of the extension ---
 
+// The file that the language server shows for a module of the library: where an import of it leads. Returns nothing if the server does not run.
+async function libraryUri(module) {
+  const uri = `untitled:${module}`;
+  client.notify("textDocument/didOpen", { textDocument: { uri, languageId: LANGUAGE, version: 1, text: `import ${module}\n` } });
+  const links = ask("textDocument/documentLink", { textDocument: { uri } });
+  client.notify("textDocument/didClose", { textDocument: { uri } });
+  const [link] = (await links) || [];
+  return link && uriOf(link.target);
+}
+
 function commands() {
-  const run = (command) => async (uri) => {
-    const target = uri || (vscode.window.activeTextEditor && vscode.window.activeTextEditor.document.uri.toString());
-    if (!target) return;
-    const answer = await ask("workspace/executeCommand", { command, arguments: [target.toString()] });
+  // The command gets a URI, as a text from a lens, or is for the script that is edited.
+  const register = (name, run) =>
+    vscode.commands.registerCommand(name, async (uri) => {
+      const editor = vscode.window.activeTextEditor, target = uri || (editor && isOurs(editor.document) && editor.document.uri);
+      if (target) await run(uriOf(target.toString()));
+    });
+  const server = (command) => async (uri) => {
+    const answer = await ask("workspace/executeCommand", { command, arguments: [uri.toString()] });
     if (answer && answer.output) output.append(answer.output);
   };
-  const own = ["cag.preview", "cag.render", "cag.runTest"].map((name) => vscode.commands.registerCommand(name, run(name)));
-  return [...own, vscode.commands.registerCommand("cag.restart", restart)];
+  return [
+    register("cag.preview", (uri) => previews.show(uri)), register("cag.previewInBrowser", server("cag.preview")), register("cag.render", server("cag.render")),
+    register("cag.runTest", server("cag.runTest")), vscode.commands.registerCommand("cag.restart", restart),
+  ];
 }
 
 function settings() {
@@ -345,7 +362,8 @@ async function activate(context) {
   diagnostics = vscode.languages.createDiagnosticCollection("cag");
   tests = vscode.tests.createTestController("cag", "cag");
   tests.createRunProfile("Run", vscode.TestRunProfileKind.Run, runTests, true);
-  context.subscriptions.push(output, diagnostics, tests, ...commands());
+  previews = new Previews(context.globalStorageUri, libraryUri);
+  context.subscriptions.push(output, diagnostics, tests, previews, ...commands());
   await start();
 }
 

@@ -94,8 +94,19 @@ if command -v node > /dev/null && command -v unzip > /dev/null; then
   XDG_CACHE_HOME=$work/cache timeout 120 node tests/live/vscode.js "$work/vsix/extension" "$build/cag" "$work/model" > "$work/vscode" 2>&1
   result 'the extension ends' $? "$(grep -v '^ok ' "$work/vscode")"
   passed=$((passed + $(grep -c '^ok ' "$work/vscode")))
+  # The preview in a panel, whose page is shown by Chromium.
+  browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
+  if [ -z "$browser" ]; then
+    count=$(sed -n '/^async function withBrowser/,$p' tests/live/vscode_preview.js | grep -c '^ *await check("')
+    echo "skipped: $count tests of the page in a panel: chromium is missing"
+    skipped=$((skipped + count))
+  fi
+  mkdir "$work/preview"
+  XDG_CACHE_HOME=$work/cache timeout 300 node tests/live/vscode_preview.js "$work/vsix/extension" "$build/cag" "$work/preview" $browser > "$work/vscode" 2>&1
+  result 'the preview ends' $? "$(grep -v '^ok ' "$work/vscode")"
+  passed=$((passed + $(grep -c '^ok ' "$work/vscode")))
 else
-  count=$(grep -c '^ *await check("' tests/live/vscode.js)
+  count=$(cat tests/live/vscode.js tests/live/vscode_preview.js | grep -c '^ *await check("')
   echo "skipped: $count tests of the extension of Visual Studio Code: node or unzip is missing"
   skipped=$((skipped + count))
 fi

@@ -4,113 +4,17 @@
 
 const assert = require("assert");
 const fs = require("fs");
-const Module = require("module");
 const path = require("path");
+const { standIn, until, check, failed, Position, Range, Uri } = require("./vscode_module.js");
 
 const [extension, program, folder] = process.argv.slice(2);
 
-// --- The stand-in: only what the extension uses ---
-
-class Position { constructor(line, character) { Object.assign(this, { line, character }); } }
-class Range { constructor(start, end) { Object.assign(this, { start, end }); } }
-class Uri {
-  constructor(text) { this.text = text; this.scheme = text.split(":")[0]; this.fsPath = decodeURIComponent(text.slice(7)); }
-  static parse(text) { return new Uri(text); }
-  toString() { return this.text; }
-}
-const plain = (...names) => class { constructor(...values) { names.forEach((name, i) => { this[name] = values[i]; }); } };
-const disposable = { dispose() {} };
-const given = {}, events = {}, messages = [], published = new Map(), opened = [], commands = {};
-const register = (kind) => (selector, provider) => { given[kind] = provider === undefined ? selector : provider; return disposable; };
-const event = (name) => (handler) => { events[name] = handler; return disposable; };
 const settings = { command: program, runOnSave: true, inlayHints: true, modulePath: [] };
-const items = new Map();
-
-const vscode = {
-  Position, Range, Uri,
-  Location: plain("uri", "range"), MarkdownString: plain("value"), TextEdit: plain("range", "newText"), Diagnostic: plain("range", "message", "severity"),
-  DiagnosticRelatedInformation: plain("location", "message"), DocumentSymbol: plain("name", "detail", "kind", "range", "selectionRange"),
-  CompletionItem: plain("label", "kind"), SnippetString: plain("value"), CompletionList: plain("items", "isIncomplete"), CodeAction: plain("title", "kind"),
-  CodeActionKind: { Empty: { append: (value) => ({ value }) } }, SelectionRange: plain("range", "parent"), Hover: plain("contents", "range"),
-  SignatureHelp: class {}, SignatureInformation: plain("label", "documentation"), ParameterInformation: plain("label", "documentation"),
-  DocumentHighlight: plain("range"), SymbolInformation: plain("name", "kind", "container", "location"), FoldingRange: plain("start", "end", "kind"),
-  DocumentLink: plain("range", "target"), Color: plain("red", "green", "blue", "alpha"), ColorInformation: plain("range", "color"), ColorPresentation: plain("label"),
-  InlayHint: plain("position", "label", "kind"), CodeLens: plain("range", "command"), SemanticTokens: plain("data", "resultId"),
-  SemanticTokensEdit: plain("start", "deleteCount", "data"), SemanticTokensEdits: plain("edits", "resultId"), SemanticTokensLegend: plain("types", "modifiers"),
-  WorkspaceEdit: class { constructor() { this.all = new Map(); } set(uri, edits) { this.all.set(uri.toString(), edits); } },
-  TestRunProfileKind: { Run: 1 }, TestMessage: plain("message"),
-  languages: {
-    createDiagnosticCollection: () => ({ set: (uri, list) => published.set(uri.toString(), list), clear: () => published.clear(), ...disposable }),
-    ...Object.fromEntries(["CompletionItem", "Hover", "SignatureHelp", "Definition", "Reference", "DocumentHighlight", "Rename", "DocumentSymbol", "WorkspaceSymbol", "FoldingRange",
-      "SelectionRange", "DocumentLink", "Color", "InlayHints", "DocumentFormattingEdit", "DocumentRangeFormattingEdit", "OnTypeFormattingEdit", "CodeActions", "CodeLens",
-      "DocumentSemanticTokens"].map((kind) => [`register${kind}Provider`, register(kind)])),
-  },
-  window: {
-    createOutputChannel: () => ({ append() {}, appendLine() {}, ...disposable }), activeTextEditor: undefined,
-    showErrorMessage: (text) => messages.push(text), showInformationMessage: (text) => messages.push(text),
-  },
-  workspace: {
-    workspaceFolders: [{ uri: new Uri("file://" + folder), name: "work" }], textDocuments: [],
-    getConfiguration: () => ({ get: (name) => settings[name] }), asRelativePath: (uri) => uri.fsPath,
-    createFileSystemWatcher: () => ({ onDidCreate: event("created"), onDidChange: event("changed"), onDidDelete: event("deleted"), ...disposable }),
-    ...Object.fromEntries(["OpenTextDocument", "ChangeTextDocument", "SaveTextDocument", "CloseTextDocument", "ChangeConfiguration", "ChangeWorkspaceFolders"].map((name) => [`onDid${name}`, event(name)])),
-  },
-  commands: {
-    registerCommand: (name, run) => { commands[name] = run; return disposable; },
-    executeCommand: async (name, uri) => { opened.push(uri.toString()); },
-  },
-  tests: {
-    createTestController: () => ({
-      items: { delete: (id) => items.delete(id), add: (item) => items.set(item.id, item), forEach: (each) => items.forEach(each) },
-      createTestItem: (id, label, uri) => ({ id, label, uri }), createRunProfile: (name, kind, run) => { given.runTests = run; },
-      createTestRun: () => ({ started() {}, appendOutput() {}, passed: (item) => { item.state = "passed"; }, failed: (item) => { item.state = "failed"; }, end() {} }), ...disposable,
-    }),
-  },
-};
-
-const load = Module._load;
-Module._load = (name, ...rest) => (name === "vscode" ? vscode : load(name, ...rest));
-
-// --- Tests ---
-
-class Document {
-  constructor(name, text) { this.uri = new Uri("file://" + path.join(folder, name)); this.languageId = "cag"; this.version = 1; this.text = text; fs.writeFileSync(this.uri.fsPath, text); }
-  getText() { return this.text; }
-  at(mark, inside = 0) {
-    const before = this.text.slice(0, this.text.indexOf(mark) + inside), line = before.split("\n").length - 1;
-    return new Position(line, before.length - before.lastIndexOf("\n") - 1);
-  }
-  replace(old, text) {
-    const range = new Range(this.at(old), this.at(old, old.length));
-    this.text = this.text.replace(old, text);
-    this.version++;
-    events.ChangeTextDocument({ document: this, contentChanges: [{ range, text }] });
-  }
-}
-
-async function until(condition, what) {
-  for (let i = 0; i < 1000; i++) {
-    const value = condition();
-    if (value) return value;
-    await new Promise((resolve) => setTimeout(resolve, 20));
-  }
-  throw new Error(`no ${what} in 20 s`);
-}
-
-let failures = 0;
-async function check(name, test) {
-  try {
-    await test();
-    console.log(`ok ${name}`);
-  } catch (error) {
-    failures++;
-    console.log(`FAILED ${name}: ${error.stack}`);
-  }
-}
+const { vscode, given, events, messages, published, commands, items, Document } = standIn({ settings, folder });
 
 async function main() {
   const { activate, deactivate } = require(path.join(extension, require(path.join(extension, "package.json")).main));
-  await activate({ subscriptions: [] });
+  await activate({ subscriptions: [], globalStorageUri: Uri.file(path.join(folder, "storage")) });
   const d = new Document("a.cag", "import std.materials as mat\nf(a, b) = a + b\nshow sphere(f(1, 2)) |> color(\"teal\")\nprint spher, mat.brass.color // expect: 3\n");
   const list = () => published.get(d.uri.toString());
   events.OpenTextDocument(d);
@@ -202,4 +106,4 @@ async function main() {
   assert.deepStrictEqual(messages, []);
 }
 
-main().then(() => process.exit(failures ? 1 : 0), (error) => { console.log(`FAILED the test: ${error.stack}`); process.exit(1); });
+main().then(() => process.exit(failed() ? 1 : 0), (error) => { console.log(`FAILED the test: ${error.stack}`); process.exit(1); });

@@ -13,6 +13,7 @@ import { expressionOf, parseNumber, quote, settingOf, stepOf, unquote } from "..
 import { diffLines, offsetOf, paramValueRange, rangeOf } from "../../web/src/places.js";
 import { columnOf, moveCoordinates, numberText, readNumber } from "../../web/src/point_numbers.js";
 import { chainLength, circleOf, edgeChain, findingsOfTwo, flatFace, isStraight } from "../../web/src/recognize.js";
+import { compose, RemoteEditor, RemoteFiles } from "../../web/src/remote_editor.js";
 import { Runs } from "../../web/src/runs.js";
 import { roundUp, scaleLength } from "../../web/src/scale.js";
 import { sumByPart } from "../../web/src/section_curves.js";
@@ -403,6 +404,97 @@ await test("coordinates follow the picture, and depth stays where the picture le
   moveCoordinates(point([PLAIN, PLAIN, null], 1, [false, false, true]), [4, 0, 6], FRONT).forEach((x, k) => near(x, [4, 0, 6][k], 1e-6));
   equal(moveCoordinates(point([PLAIN, PLAIN, PLAIN], 0), [1, 2, 3], FRONT), [0, 0, 0]);
   equal(columnOf({ map: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12] }, 1), [2, 6, 10]);
+});
+
+// --- Texts of another editor ---
+
+const applied = (text, changes) => [...changes].sort((a, b) => b.from - a.from).reduce((t, c) => t.slice(0, c.from) + c.insert + t.slice(c.to), text);
+await test("changes one after the other are the same as their composition", () => {
+  let seed = 7;
+  const random = (n) => (seed = (seed * 48271) % 2147483647) % n;
+  for (let round = 0; round < 2000; round++) {
+    const base = "abcdefghijklmnop".slice(0, random(17));
+    let text = base, changes = [];
+    for (let i = random(6) + 1; i > 0; i--) {
+      const from = random(text.length + 1), change = { from, to: from + random(text.length - from + 1), insert: "XYZW".slice(0, random(5)) };
+      changes = compose(changes, change);
+      text = applied(text, [change]);
+      equal(applied(base, changes), text);
+      changes.slice(1).forEach((c, k) => equal(c.from > changes[k].to, true));
+    }
+  }
+});
+
+// An editor around the page that answers when it is told to.
+function remote() {
+  const posted = [], listeners = {}, asked = [], heard = [];
+  const webview = {
+    on: (type, listener) => (listeners[type] = listener), post: (type, fields) => posted.push({ type, ...fields }),
+    ask: (type, fields) => new Promise((done) => asked.push({ type, ...fields, answer: done })),
+  };
+  const editor = new RemoteEditor(webview, "a.cag", (error) => heard.push(error.message));
+  for (const topic of ["changed", "settled", "cursorMoved"]) editor[topic].on(() => heard.push(topic));
+  const document = (text, dirty, version) => listeners.document({ document: { path: "a.cag", text, dirty, version } });
+  return { editor, posted, listeners, asked, heard, document, soon: () => new Promise((done) => setTimeout(done)) };
+}
+await test("what is typed in another editor runs, and what is saved settles", () => {
+  const { editor, heard, document } = remote();
+  document("x = 1", false, 1);
+  equal([heard, editor.unsaved], [[], null]);
+  document("x = 2", true, 2);
+  document("x = 2", true, 2);
+  equal([heard, editor.unsaved], [["changed"], { "a.cag": "x = 2" }]);
+  document("x = 2", false, 2);
+  equal([heard, editor.unsaved], [["changed", "settled"], null]);
+});
+await test("changes of the page at one time are one step of the other editor", async () => {
+  const { editor, asked, heard, document, soon } = remote();
+  document("a = 1\nb = 2\n", false, 4);
+  editor.replace("a.cag", 4, 5, "100");
+  editor.replace("a.cag", 12, 13, "7");
+  equal(editor.text("a.cag"), "a = 100\nb = 7\n");
+  await soon();
+  equal(asked.map(({ type, files }) => ({ type, files })), [{ type: "edit", files: [{ path: "a.cag", version: 4, changes: [
+    { from: 4, to: 5, insert: "100", old: "1" }, { from: 10, to: 11, insert: "7", old: "2" }] }] }]);
+  document("a = 100\nb = 7\n", true, 5);
+  asked[0].answer({ problem: "", documents: [{ path: "a.cag", text: "a = 100\nb = 7\n", dirty: true, version: 5 }] });
+  await soon();
+  equal(heard, ["changed", "changed"]);
+  editor.replace("a.cag", 4, 7, "1");
+  await soon();
+  equal(asked[1].files[0].version, 5);
+});
+await test("a drag is one step of the other editor, and a refused change is given up", async () => {
+  const { editor, asked, heard, document, soon } = remote();
+  document("a = 1\n", false, 1);
+  for (const insert of ["2", "3", "1"]) editor.change("a.cag", [{ from: 4, to: 5, insert }], "hidden");
+  await soon();
+  equal(asked.length, 0);
+  editor.change("a.cag", [{ from: 4, to: 5, insert: "9" }], "step");
+  await soon();
+  equal(asked[0].files[0].changes, [{ from: 4, to: 5, insert: "9", old: "1" }]);
+  document("a = 1 // typed\n", true, 2);
+  equal(editor.text("a.cag"), "a = 9\n");
+  asked[0].answer({ problem: "changed meanwhile", documents: [{ path: "a.cag", text: "a = 1 // typed\n", dirty: true, version: 2 }] });
+  await soon();
+  equal(editor.text("a.cag"), "a = 1 // typed\n");
+  equal(heard.includes("changed meanwhile"), true);
+});
+await test("files that the other editor has not open are read from the engine", async () => {
+  const { editor, listeners, document, soon } = remote();
+  let disk = "one";
+  const files = new RemoteFiles({ read: async () => ({ text: disk, version: "" }) }, editor, () => {});
+  await files.show("a.cag");
+  equal(editor.text("a.cag"), "one");
+  disk = "two";
+  await files.changedOnDisk({ path: "a.cag" });
+  equal(editor.text("a.cag"), "two");
+  document("three", true, 1);
+  await files.changedOnDisk({ path: "a.cag" });
+  equal(editor.text("a.cag"), "three");
+  listeners.closed({ path: "a.cag" });
+  await soon();
+  equal([editor.text("a.cag"), files.unsaved], ["two", null]);
 });
 
 console.log(`${passed} passed, ${failed} failed, 0 skipped`);

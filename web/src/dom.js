@@ -80,8 +80,12 @@ export function iconButton(name, label, onclick) {
   return h("button", { type: "button", class: "quiet", "aria-label": label, title: label, onclick }, icon(name));
 }
 
+/** Saves downloads where the browser cannot. @type {{ save: ((name: string, blob: Blob) => Promise<void>) | null }} */
+export const downloads = { save: null };
+
 /** @param {string} name @param {Blob} blob */
 export function download(name, blob) {
+  if (downloads.save) return void downloads.save(name, blob);
   const url = URL.createObjectURL(blob);
   const link = h("a", { href: url, download: name });
   document.body.append(link);

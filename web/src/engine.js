@@ -276,7 +276,7 @@
  * @property {(messages: RunMessages) => void} messages
  * @property {(file: FileVersion) => void} file  changed on the disk by somebody else
  * @property {(progress: Progress) => void} progress
- * @property {(connected: boolean, problem: string) => void} connection
+ * @property {(connected: boolean, problem: string, restart?: () => void) => void} connection  restart: starts the engine again, if the page can
  *
  * @typedef {object} Engine
  * @property {() => Promise<Hello>} hello
@@ -326,7 +326,7 @@ export function listenEarly(engine) {
     messages: (x) => pass((l) => l.messages(x)),
     file: (x) => pass((l) => l.file(x)),
     progress: (x) => pass((l) => l.progress(x)),
-    connection: (on, problem) => pass((l) => l.connection(on, problem)),
+    connection: (on, problem, restart) => pass((l) => l.connection(on, problem, restart)),
   });
   return (listener) => {
     ready = listener;

@@ -6,20 +6,27 @@ import { questions } from "./questions.js";
 // Milliseconds until the page looks for a server that is gone.
 const RETRY_AFTER = 1000;
 
+/** The kinds of events in the stream. */
+export const EVENTS = /** @type {const} */ (["state", "scene", "messages", "file", "progress"]);
+
 /**
- * @param {string} path
- * @param {RequestInit} [options]
- * @returns {Promise<Response>}
+ * How requests reach the server.
+ *
+ * @typedef {object} Transport
+ * @property {(path: string, options?: { method?: string, headers?: Record<string, string>, body?: string, cache?: RequestCache }) => Promise<Response>} fetch
+ * @property {(listener: import("./engine.js").EngineListener) => void} listen  to the stream of events
  */
-async function ask(path, options) {
-  const response = await fetch(path, { credentials: "same-origin", ...options });
+
+/** @param {Promise<Response>} answer */
+async function accepted(answer) {
+  const response = await answer;
   if (response.ok) return response;
   /** @type {{ error?: string, help?: string }} */
   const problem = await response.json().catch(() => ({}));
   throw new EngineError(problem.error ?? `the server answered with status ${response.status}`, problem.help);
 }
 
-/** @param {string} method @param {unknown} body @returns {RequestInit} */
+/** @param {string} method @param {unknown} body */
 const json = (method, body) => ({ method, body: JSON.stringify(body), headers: { "Content-Type": "application/json" } });
 
 /** @param {string | null} tag */
@@ -32,7 +39,7 @@ const fileAt = (path) => `/api/file?path=${encodeURIComponent(path)}`;
 function connect(listener) {
   const source = new EventSource("/api/events");
   source.addEventListener("open", () => listener.connection(true, ""));
-  for (const name of /** @type {const} */ (["state", "scene", "messages", "file", "progress"]))
+  for (const name of EVENTS)
     source.addEventListener(name, (event) => listener[name](JSON.parse(event.data)));
   source.addEventListener("error", async () => {
     source.close();
@@ -44,12 +51,16 @@ function connect(listener) {
   });
 }
 
-/** @returns {import("./engine.js").Engine} */
-export function serverEngine() {
+/** The browser asks by itself. @type {Transport} */
+const browser = { fetch: (path, options) => fetch(path, { credentials: "same-origin", ...options }), listen: connect };
+
+/** @param {Transport} [transport] @returns {import("./engine.js").Engine} */
+export function serverEngine(transport = browser) {
+  const ask = (/** @type {Parameters<Transport["fetch"]>} */ ...request) => accepted(transport.fetch(...request));
   const page = crypto.randomUUID?.() ?? Math.random().toString(36).slice(2);
   return {
     hello: async () => (await ask("/api/hello")).json(),
-    listen: connect,
+    listen: transport.listen,
     run: async (request) => (await (await ask("/api/run", json("POST", request))).json()).run,
     mesh: async (id) => (await ask(`/api/mesh/${encodeURIComponent(id)}`)).arrayBuffer(),
     files: async () => (await ask("/api/files")).json(),
@@ -59,7 +70,7 @@ export function serverEngine() {
     },
     write: async (path, text, version) => {
       const headers = { "If-Match": `"${version}"`, "Content-Type": "text/plain; charset=utf-8" };
-      const response = await fetch(fileAt(path), { method: "PUT", body: text, headers, credentials: "same-origin" });
+      const response = await transport.fetch(fileAt(path), { method: "PUT", body: text, headers });
       if (response.status !== 412 && !response.ok) {
         const problem = await response.json().catch(() => ({}));
         throw new EngineError(problem.error ?? `cannot save ${path}`, problem.help);

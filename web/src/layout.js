@@ -68,9 +68,9 @@ export class Layout {
     remember("width", String(this.width));
   }
 
-  /** No editor: the files cannot be changed. */
-  readOnly() {
-    document.body.classList.add("no-editor", "read-only");
+  /** The page has no editor of its own. */
+  withoutEditor() {
+    document.body.classList.add("no-editor", "without-editor");
     this.buttons.editor.hidden = true;
   }
 }

@@ -2,5 +2,7 @@
 
 import { serverEngine } from "./engine_server.js";
 import { showFailure, start } from "./page.js";
+import { findWebview } from "./webview.js";
 
-start(serverEngine()).catch(showFailure);
+const webview = findWebview();
+start(serverEngine(webview?.transport), webview).catch(showFailure);

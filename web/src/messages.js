@@ -60,6 +60,7 @@ export class MessagesPanel {
 
   /** @param {string} text */
   problem(text) {
+    if (this.host.firstElementChild?.textContent === text) return;
     this.host.prepend(h("div", { class: "diagnostic error" }, h("p", {}, text)));
   }
 }

@@ -1,7 +1,7 @@
 // The page: makes its parts and connects them.
 
 import { Controls, viewOfKey } from "./controls.js";
-import { byId, h } from "./dom.js";
+import { byId, downloads, h } from "./dom.js";
 import { listenEarly } from "./engine.js";
 import { FaceSources, FaceTint } from "./faces.js";
 import { Files } from "./files.js";
@@ -18,6 +18,7 @@ import { ParamsPanel } from "./params.js";
 import { PartsPanel } from "./parts_panel.js";
 import { offsetOf, paramValueRange, rangeOf, shownExpression } from "./places.js";
 import { PointTool } from "./point_tool.js";
+import { RemoteEditor, RemoteFiles } from "./remote_editor.js";
 import { RobotsPanel } from "./robots.js";
 import { Runs } from "./runs.js";
 import { SectionCurves } from "./section_curves.js";
@@ -38,8 +39,11 @@ const NEW_SCRIPT = "untitled.cag";
 /** @typedef {import("./engine.js").SceneMessage} SceneMessage */
 /** @typedef {import("./engine.js").Place} Place */
 
-/** @param {import("./engine.js").Engine} engine */
-export async function start(engine) {
+/**
+ * @param {import("./engine.js").Engine} engine
+ * @param {import("./webview.js").Webview | null} [webview]  the panel of a text editor, which is then the editor of the page
+ */
+export async function start(engine, webview = null) {
   const helloLater = engine.hello(), listen = listenEarly(engine);
   const root = document.documentElement;
   const scene = byId("scene", HTMLDivElement), notice = byId("notice", HTMLParagraphElement), status = byId("status", HTMLSpanElement);
@@ -48,9 +52,9 @@ export async function start(engine) {
   const hello = await helloLater;
   const overlay = new Overlay(over, view), handles = new Handles(over, view), controls = new Controls(scene, view);
   const layout = new Layout(() => view.invalidate());
-  /** @type {Files | null} */
+  /** @type {Files | RemoteFiles | null} */
   let files = null;
-  /** @type {import("./editor.js").Editor | null} */
+  /** @type {import("./editor.js").Editor | RemoteEditor | null} */
   let editor = null;
   /** The newest that arrived. @type {{ scene: SceneMessage | null, messages: import("./engine.js").RunMessages | null }} */
   const newest = { scene: null, messages: null };
@@ -106,7 +110,12 @@ export async function start(engine) {
   const file = hello.file || NEW_SCRIPT, canSave = !hello.readOnly && !hello.untitled;
   document.title = `${file} - cag`;
   byId("title", HTMLSpanElement).textContent = file;
-  if (hello.readOnly) layout.readOnly();
+  const hasEditor = !hello.readOnly && !webview;
+  if (!hasEditor) layout.withoutEditor();
+  if (webview) {
+    downloads.save = (name, blob) => webview.download(name, blob);
+    webview.themeChanged(() => view.invalidate());
+  }
 
   // --- Runs ---
 
@@ -287,7 +296,7 @@ export async function start(engine) {
   /** @param {Place} place */
   async function goTo(place) {
     if (!files || !editor) return;
-    if (document.body.classList.contains("no-editor") && !hello.readOnly) layout.toggle("editor");
+    if (document.body.classList.contains("no-editor") && hasEditor) layout.toggle("editor");
     try {
       await files.show(place.file);
       editor.select(place);
@@ -437,11 +446,11 @@ export async function start(engine) {
   const keys = {
     f: () => flip("fit"), v: () => flip("values"), o: () => flip("orthographic"), l: () => flip("edges"), w: () => flip("wireframe"), b: () => flip("oneSided"),
     g: () => flip("grid"), k: () => flip("backdrop"), s: () => flip("shadows"), m: () => flip("measure"), x: () => flip("section"), d: () => flip("points"),
-    e: () => hello.readOnly || layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
+    e: () => hasEditor && layout.toggle("editor"), p: () => layout.toggle("side"), u: () => partsPanel.showAll(),
     h: () => chooseSelected((n) => parts.hidden.add(n)), t: () => chooseSelected((n) => parts.glass.delete(n) || parts.glass.add(n)),
     a: () => chooseSelected((n) => (parts.alone = parts.alone === n ? null : n)),
     " ": () => byId("time", HTMLDivElement).hidden || timeBar.toggle(), "?": () => keyDialog.showModal(),
-    Escape: () => (measure.active ? measure.toggle(false) : (ghosts.clear(), (ghostNote.hidden = true), select([]))),
+    Escape: () => robots.handle.cancel() || (measure.active ? measure.toggle(false) : (ghosts.clear(), (ghostNote.hidden = true), select([]))),
   };
   /** @param {(name: string) => void} choose */
   function chooseSelected(choose) {
@@ -475,7 +484,8 @@ export async function start(engine) {
 
   // --- Events ---
 
-  let connected = false;
+  /** @type {boolean | null} null: not yet */
+  let connected = null;
   listen({
     state: (state) => runs.state(state),
     scene: (message) => showScene(message),
@@ -490,22 +500,28 @@ export async function start(engine) {
     },
     file: (change) => files?.changedOnDisk(change),
     progress: (p) => output?.progress(p),
-    connection: (on, problem) => {
+    connection: (on, problem, restart) => {
+      const again = on && connected === false;
       if (on && !connected) runs.restart();
       connected = on;
       say(problem);
+      if (restart) notice.append(" ", h("button", { type: "button", onclick: restart }, "Start it again"));
+      // A server that was started again has run the script as it is on the disk.
+      if (again && files) runs.now();
     },
   });
   // --- Editor ---
 
-  await Promise.race([firstPicture(view), new Promise((done) => setTimeout(done, EDITOR_AFTER))]);
-  const { Editor } = /** @type {typeof import("./editor.js")} */ (await import(/** @type {any} */ ("./editor.bundle.js")));
-  /** @type {import("./editor.js").Editor} */
-  const opened = new Editor(byId("editor", HTMLDivElement), {
-    readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
-  });
+  const opened = webview ? new RemoteEditor(webview, file, report) : await ownEditor();
   editor = opened;
-  const documents = (files = new Files(byId("tabs", HTMLDivElement), engine, opened, report, hello.keepsEdits));
+  const documents = (files = opened instanceof RemoteEditor ? new RemoteFiles(engine, opened, report) : new Files(byId("tabs", HTMLDivElement), engine, opened, report, hello.keepsEdits));
+  async function ownEditor() {
+    await Promise.race([firstPicture(view), new Promise((done) => setTimeout(done, EDITOR_AFTER))]);
+    const { Editor } = /** @type {typeof import("./editor.js")} */ (await import(/** @type {any} */ ("./editor.bundle.js")));
+    return new Editor(byId("editor", HTMLDivElement), {
+      readOnly: hello.readOnly, folder: hello.folder, lsp: engine.lsp, load: async (path) => files?.load(path), go: goTo, say: tell,
+    });
+  }
   opened.fixesChanged.on(() => messages.refresh());
   if (hello.file && !hello.untitled) await documents.show(file).catch(report);
   else documents.begin(file);
@@ -536,6 +552,8 @@ export async function start(engine) {
     opened.setValues(newest.messages.values);
   }
   noteTexts();
+  // What another editor had not saved when the page was opened.
+  if (documents.unsaved) runs.now();
   keepSelection();
   root.dataset.ready = "true";
   // For tests, and for those who look into the page.

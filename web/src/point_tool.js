@@ -52,7 +52,7 @@ export class PointTool {
   constructor(options) {
     this.options = options;
     this.on = false;
-    /** @type {import("./editor.js").Editor | null} */
+    /** @type {import("./editor.js").Editor | import("./remote_editor.js").RemoteEditor | null} */
     this.editor = null;
     /** By part and id. @type {Map<string, Shown>} */
     this.shown = new Map();
