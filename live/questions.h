@@ -1,5 +1,5 @@
-// What a page asks about the shapes of the last run, as JSON: for the server, and for the program in
-// the browser.
+// What a page asks about the shapes of the last run, as JSON: for the server, and for the program
+// in the browser.
 //
 // | question | request | answer |
 // |---|---|---|
@@ -19,9 +19,9 @@
 #include "live/json_write.h"
 #include "live/scene_json.h"
 
-// Answers a question about a session that has a scene, or none (NULL). Returns a status of HTTP, 200
-// unless it failed. *out receives the answer, or an error with its help. `meshes` keeps the meshes of
-// ghosts.
+// Answers a question about a session that has a scene, or none (NULL). Returns a status of HTTP,
+// 200 unless it failed. *out receives the answer, or an error with its help. `meshes` keeps the
+// meshes of ghosts.
 int cag_live_ask(const char *question, CagSession *s, const char *request, size_t size,
                  const CagLiveMeshes *meshes, CagString *out);
 // Whether there is such a question.

@@ -8,13 +8,13 @@
 #include "geom/ray/ray_curvature.h"
 #include "geom/solid/csg.h"
 
-// The surface is looked for within this fraction of the size. The nearest crossing counts, so that this
-// only bounds the work.
+// The surface is looked for within this fraction of the size. The nearest crossing counts, so that
+// this only bounds the work.
 #define REACH 0.05
 // The least cosine of the angle between a triangle and the surface that it stands for.
 #define ALIKE 0.3
-// Curvature is taken this fraction of the way from a corner to the center of the triangle, so that it is
-// that of the triangle's own face at edges.
+// Curvature is taken this fraction of the way from a corner to the center of the triangle, so that
+// it is that of the triangle's own face at edges.
 #define INWARD 1e-3
 // The work is stopped between so many triangles.
 enum { LOOK_UP = 256 };
@@ -208,8 +208,8 @@ static CagStatus corner_bend(Leaves *l, const Triangle *t, size_t k, CagVec3 alo
   return status;
 }
 
-// A corner where the surface was not found, at a pole or beyond an edge, gets the numbers of another
-// one of its triangle.
+// A corner where the surface was not found, at a pole or beyond an edge, gets the numbers of
+// another one of its triangle.
 static void fill_corners(CagBend *bends) {
   for (int k = 0; k < 3; k++)
     for (int i = 0; isnan(bends[k].mean) && i < 3; i++) bends[k] = bends[i];

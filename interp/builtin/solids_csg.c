@@ -201,8 +201,8 @@ static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands,
 }
 
 // Reads a shape, or a group or list, whose shapes are united. If there are none, the result is an
-// empty solid. `said` is the first shape, if any. *origin is that of the only shape, or has those of
-// several.
+// empty solid. `said` is the first shape, if any. *origin is that of the only shape, or has those
+// of several.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagOrigin *origin, CagValue *said) {
   CagList *shapes;

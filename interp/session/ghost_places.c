@@ -1,8 +1,9 @@
 // Which shape an expression of the script stands for.
 //
 // Calls and operators are known by their location, which the shapes that they made have in their
-// origins. Other expressions are known by what is done with them: the second operand of a difference
-// is the operand that the difference has. A name that is used in no such way stands for its definition.
+// origins. Other expressions are known by what is done with them: the second operand of a
+// difference is the operand that the difference has. A name that is used in no such way stands for
+// its definition.
 
 #include <string.h>
 

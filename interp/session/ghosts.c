@@ -1,10 +1,10 @@
-// The structure of shapes: what they were before they were moved, the operands of set operations, and
-// the curves, regions, and surfaces that other shapes were made of.
+// The structure of shapes: what they were before they were moved, the operands of set operations,
+// and the curves, regions, and surfaces that other shapes were made of.
 //
-// A state of a shape is its value after one of its calls. It is kept as the geometry of the last state
-// and a map, since calls only move it or give it attributes; a call that makes another shape ends the
-// states, and starts those of its inputs. Coordinates are those of the call: an operand stands where
-// the operation has it, and follows the operation's later moves.
+// A state of a shape is its value after one of its calls. It is kept as the geometry of the last
+// state and a map, since calls only move it or give it attributes; a call that makes another shape
+// ends the states, and starts those of its inputs. Coordinates are those of the call: an operand
+// stands where the operation has it, and follows the operation's later moves.
 
 #include "interp/session/ghosts.h"
 

@@ -2,7 +2,8 @@
 //
 // A mesh is known by the digest of the geometry that it is made of and of how fine it is, so that a
 // host asks for meshes only that it does not have. What only moves keeps its mesh: a shape that was
-// moved remembers the shape before (CagStill), and solids with a frame of their own are meshed in it.
+// moved remembers the shape before (CagStill), and solids with a frame of their own are meshed in
+// it.
 
 #include "interp/session/part_mesh.h"
 

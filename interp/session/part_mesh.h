@@ -23,8 +23,8 @@ typedef struct CagSessionMesh {
 const CagItemSource *cag_session_item_source(const CagSession *s, const CagItem *item);
 // Returns the type of an item for hosts, such as "solid".
 const char *cag_session_item_type(const CagItem *item);
-// Makes the mesh of an item, as cag_session_part_mesh does, within a call that has begun. `shape` is
-// what the item shows; NULL: unknown, or an operand.
+// Makes the mesh of an item, as cag_session_part_mesh does, within a call that has begun. `shape`
+// is what the item shows; NULL: unknown, or an operand.
 int cag_session_item_mesh(CagSession *s, const CagItem *item, const CagShape *shape, double coarse,
                           bool (*has)(void *context, const char *id), void *context,
                           CagMeshView *out);

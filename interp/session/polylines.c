@@ -3,7 +3,8 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// The largest turn between segments of a line, in radians, and its tolerance as a fraction of its size.
+// The largest turn between segments of a line, in radians, and its tolerance as a fraction of its
+// size.
 #define LINE_TURN 0.1
 #define LINE_PART 2e-4
 

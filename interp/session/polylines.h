@@ -17,8 +17,8 @@ void cag_polylines_free(CagPolylines *l);
 // Begins another line, to which points are then added.
 CagStatus cag_polylines_begin(CagPolylines *l, CagError *err);
 CagStatus cag_polylines_add(CagPolylines *l, CagVec3 p, CagError *err);
-// Adds the image of a curve under a map as a line. The line stays so close to it that this cannot be
-// seen where the curve fills the screen.
+// Adds the image of a curve under a map as a line. The line stays so close to it that this cannot
+// be seen where the curve fills the screen.
 CagStatus cag_polylines_curve(CagPolylines *l, const CagCurve *c, const CagTransform *map,
                               CagError *err);
 

@@ -1,5 +1,5 @@
-// What the exact surfaces of parts are like: curvature, lines of parameters, control points, and how
-// far meshes are from them.
+// What the exact surfaces of parts are like: curvature, lines of parameters, control points, and
+// how far meshes are from them.
 
 #include <math.h>
 #include <string.h>
