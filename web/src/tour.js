@@ -11,7 +11,7 @@ const CHAPTER = "docs/guide/getting-started.html";
 function readSteps(page, base) {
   /** @type {Step[]} */
   const steps = [];
-  const main = page.querySelector("main") ?? page.body;
+  const main = page.querySelector("main article") ?? page.body;
   for (const element of [...main.children]) {
     if (/^H[12]$/.test(element.tagName)) steps.push({ title: element.textContent ?? "", content: [] });
     else steps[steps.length - 1]?.content.push(element);
