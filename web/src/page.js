@@ -143,13 +143,14 @@ async function start(engine) {
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
   const points = new PointTool({
-    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report,
+    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report, pending: () => runs.pending,
     run: (dragging) => {
       timeBar.forget();
       if (dragging) runs.drag();
       else runs.drop();
     },
   });
+  runs.busy.on((busy) => !busy && points.held && points.update());
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const output = new OutputPanel(byId("output", HTMLDivElement), engine, hello, view, report);
   panels.push(
