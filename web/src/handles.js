@@ -138,18 +138,24 @@ class FreeDrag {
       this.last = { x: e.clientX, y: e.clientY };
       this.begin(false);
     });
-    button.addEventListener("pointermove", (e) => {
-      if (!this.drag || this.drag.keys) return;
-      const dx = e.clientX - this.last.x, dy = e.clientY - this.last.y;
-      if (!this.drag.moved && Math.hypot(dx, dy) < CLICK) return;
-      this.last = { x: e.clientX, y: e.clientY };
-      this.step(dx, dy);
+    button.addEventListener("pointermove", (e) => this.follow(e));
+    button.addEventListener("pointerup", (e) => {
+      this.follow(e);
+      this.end(false);
     });
-    button.addEventListener("pointerup", () => this.end(false));
     button.addEventListener("pointercancel", () => this.end(true));
     button.addEventListener("blur", () => this.drag?.keys && this.end(false));
     button.addEventListener("keydown", (e) => this.key(e));
     button.addEventListener("keyup", (e) => e.key in ARROWS && this.drag?.keys && this.end(false));
+  }
+
+  /** @param {PointerEvent} e */
+  follow(e) {
+    if (!this.drag || this.drag.keys) return;
+    const dx = e.clientX - this.last.x, dy = e.clientY - this.last.y;
+    if (this.drag.moved ? dx === 0 && dy === 0 : Math.hypot(dx, dy) < CLICK) return;
+    this.last = { x: e.clientX, y: e.clientY };
+    this.step(dx, dy);
   }
 
   /** @param {KeyboardEvent} e */

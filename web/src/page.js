@@ -164,13 +164,14 @@ export async function start(engine, webview = null) {
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
   const points = new PointTool({
-    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report,
+    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report, pending: () => runs.pending,
     run: (dragging) => {
       timeBar.forget();
       if (dragging) runs.drag();
       else runs.drop();
     },
   });
+  runs.busy.on((busy) => !busy && points.held && points.update());
   const measure = new MeasurePanel(byId("measure", HTMLDivElement), over, view);
   const robots = new RobotsPanel(byId("robots", HTMLDivElement), over, view, engine, {
     readOnly: hello.readOnly, textOf: (path) => editor?.text(path) ?? null, entered: () => controls.hoverAt(null),

@@ -40,10 +40,12 @@ import { columnOf, moveCoordinates, numberText, readNumber } from "./point_numbe
  * @property {string} file  the path of the script
  * @property {HTMLElement} note  where the number of points is told
  * @property {(dragging: boolean) => void} run  runs the script with what has changed
+ * @property {() => boolean} pending  a run is under way or to come
  * @property {(error: Error) => void} report
  */
 
 const MOST_POINTS = 300; // of all selected parts
+const QUICK = 50; // milliseconds in which points are found while one is dragged
 const MOST_PARAMS = 8; // that are solved for at once
 const AXES = ["x", "y", "z"];
 
@@ -58,7 +60,10 @@ export class PointTool {
     this.shown = new Map();
     /** @type {Drag | null} */
     this.drag = null;
+    /** The handle that was dragged last. @type {Shown | null} */
+    this.held = null;
     this.asked = 0;
+    this.took = 0; // milliseconds, the last answer
     this.count = h("p", { class: "faint", role: "status" });
     options.note.append(this.count);
   }
@@ -75,12 +80,14 @@ export class PointTool {
 
   /** Asks for the points of what is selected. */
   async update() {
-    const { engine, view } = this.options, asked = ++this.asked;
+    if (this.dragging && this.took > QUICK) return; // it would slow the drag down
+    const { engine, view } = this.options, asked = ++this.asked, begin = performance.now();
     const parts = this.on && this.editor ? view.selected.filter((n) => view.parts.views.has(n)) : [];
     try {
       const answers = await Promise.all(parts.map((part) => engine.points(part).then((a) => ({ part, ...a }))));
+      this.took = performance.now() - begin;
       if (asked === this.asked) this.show(answers);
-    } catch (error) {
+    } catch {
       // Of a part that is gone meanwhile, the next scene tells.
       if (asked === this.asked) this.show([]);
     }
@@ -120,8 +127,9 @@ export class PointTool {
       });
       this.shown.set(key, one);
     }
-    // The handle that is dragged is ahead of the scene.
-    if (this.drag?.shown !== one) one.at.set(...point.at);
+    // The handle that is dragged is ahead of the scene, until the last run of the drag has ended.
+    if (this.held === one && !this.dragging && !this.options.pending()) this.held = null;
+    if (this.held !== one) one.at.set(...point.at);
     one.point = point;
     this.describe(one);
   }
@@ -180,6 +188,7 @@ export class PointTool {
       return false;
     }
     this.drag = { shown, point, written, params: { ...params.values }, moved: false, wanted: null, asking: false, ended: null };
+    this.held = shown;
     shown.button.classList.add("dragged");
     if (written.length) this.editor?.mark(written[0].path, this.rangeOfNumbers(written), true);
     return true;
