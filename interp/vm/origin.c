@@ -87,7 +87,9 @@ static bool holds_steps(CagValue list) {
 // Whether an argument of a call may have points, or a vector that tells where shapes are.
 static bool has_points(const CagBuiltin *row, const char *words) {
   if (!strncmp(row->result, "as ", 3)) return !strcmp(words, "vector") && cag_is_translation(row);
-  return strstr(words, "point") || strstr(words, "vector");
+  // Of vectors, only the axis of a revolution tells where points are.
+  return strstr(words, "point") ||
+         (strstr(words, "vector") && !strcmp(cag_builtin_signature_of(row)->name, "revolve"));
 }
 
 // What is kept of argument k.
