@@ -15,6 +15,36 @@ show cilinder(4, 1)
 const TOOLS = `height = 12 * 2
 `;
 
+const EDITS = Number(process.env.EDITS ?? 10000);
+
+// Runs in the page: makes random edits, and replays them on a text. In the end, asks the page's language server and a new one about the text.
+const randomEdits = async (edits, path) => {
+  const { editor } = globalThis.cagPage, { view, language } = editor;
+  const PIECES = ["(", ")", "[", "]", "{", "}", "\n", "  ", "\"", "a", "size", " = ", "box(", "é", "😀", "//", "1.5mm", ", ", "\n\n", "if ", "for i in 0..3: ", "show ", "`"];
+  let seed = 20261127, replay = view.state.doc.toString();
+  const random = (n) => {
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+    return Math.floor((seed / 2 ** 32) * n);
+  };
+  // Half of a pair of UTF-16 units is no character.
+  const whole = (at) => (/[\uDC00-\uDFFF]/.test(replay[at] ?? "") ? at - 1 : at);
+  for (let i = 0; i < edits; i++) {
+    const from = whole(random(replay.length + 1)), to = whole(Math.min(replay.length, from + (replay.length > 400 ? random(12) : random(3)))), insert = PIECES[random(PIECES.length)];
+    view.dispatch({ changes: { from, to: Math.max(from, to), insert } });
+    replay = replay.slice(0, from) + insert + replay.slice(Math.max(from, to));
+    if (i % 40 === 0) await new Promise((done) => setTimeout(done, 1));
+  }
+  const ask = { textDocument: { uri: language.uri(path) } };
+  const symbols = await language.ask("textDocument/documentSymbol", ask);
+  const body = (messages) => ({ method: "POST", body: JSON.stringify({ page: "fresh", messages }), headers: { "Content-Type": "application/json" } });
+  const message = (method, params, id) => ({ jsonrpc: "2.0", method, params, ...(id ? { id } : {}) });
+  const answers = await (await fetch("/api/lsp", body([
+    message("initialize", { capabilities: { textDocument: { documentSymbol: {} } } }, 1),
+    message("textDocument/didOpen", { textDocument: { uri: ask.textDocument.uri, languageId: "cag", version: 1, text: replay } }),
+    message("textDocument/documentSymbol", ask, 2)]))).json();
+  return { editor: editor.text(path), replay, known: language.known.get(path).text, symbols: JSON.stringify(symbols), fresh: JSON.stringify(answers.find((a) => a.id === 2).result) };
+};
+
 exports.language = async ({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE }) => {
   fs.writeFileSync(path.join(folder, "tools.cag"), TOOLS);
   const { url, file } = await serve("language.cag", SCRIPT);
@@ -133,6 +163,22 @@ exports.language = async ({ browser, serve, folder, test, equal, check, picture,
     await picture(page, "language-actions");
     await page.value(`${extract}.click()`);
     await page.until(`(${text}).includes("value = 2 + 3") && (${text}).includes("size = value")`);
+  });
+  await test(`${EDITS} random edits leave the editor and the language server with the same text`, async () => {
+    const heap = async () => {
+      await page.say("HeapProfiler.collectGarbage");
+      return (await page.say("Runtime.getHeapUsage")).usedSize;
+    };
+    const before = await heap(), original = await page.value("cagPage.editor.text(cagPage.editor.path)");
+    const found = await page.value(`(${randomEdits})(${EDITS}, ${JSON.stringify(path.basename(file))})`);
+    equal(found.editor, found.replay);
+    equal(found.known, found.replay);
+    equal(found.symbols, found.fresh);
+    // What was broken is as before.
+    await page.value(`cagPage.editor.open(cagPage.editor.path, ${JSON.stringify(original)})`);
+    await page.until(`document.documentElement.dataset.ok === "true" && !${EDITOR}.querySelector(".cm-lintRange-error")`);
+    const grown = (await heap()) - before;
+    check(grown < 24 * 2 ** 20, `the page has ${(grown / 2 ** 20).toFixed(1)} MiB more`);
   });
   await test("the editor has no errors", async () => equal(page.problems, []));
   await page.close();
