@@ -139,6 +139,14 @@ static void change_html(cmark_node *node, cmark_node_type type) {
   cmark_node_free(node);
 }
 
+// The pictures of guides are not part of the program: what they show is told instead.
+static void change_image(cmark_node *node) {
+  cmark_node *told = cmark_node_new(CMARK_NODE_EMPH), *child;
+  while ((child = cmark_node_first_child(node))) cmark_node_append_child(told, child);
+  cmark_node_replace(node, told);
+  cmark_node_free(node);
+}
+
 static void change(const Document *d, cmark_node *node) {
   const cmark_node_type type = cmark_node_get_type(node);
   const bool is_html = type == CMARK_NODE_HTML_INLINE || type == CMARK_NODE_HTML_BLOCK;
@@ -147,6 +155,7 @@ static void change(const Document *d, cmark_node *node) {
   else if (type == CMARK_NODE_CODE) change_code(d, node);
   else if (type == CMARK_NODE_HEADING) anchor_heading(d, node);
   else if (type == CMARK_NODE_LINK) change_link(d, node);
+  else if (type == CMARK_NODE_IMAGE) change_image(node);
 }
 
 // Nodes are collected first, because the changes modify the tree.

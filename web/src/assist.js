@@ -47,14 +47,24 @@ function completionOf(item) {
   };
 }
 
+/** Names that begin with what is written come first, then those that contain it, each in the order of the server. @param {Completion[]} items @param {string} written */
+export function sortCompletions(items, written) {
+  const key = (/** @type {Completion} */ { label, sortText }) => {
+    const at = label.toLowerCase().indexOf(written);
+    return `${at === 0 ? 0 : at > 0 ? 1 : 2}${sortText}`;
+  };
+  return items.map((item) => ({ item, key: key(item) })).sort((a, b) => (a.key < b.key ? -1 : a.key > b.key ? 1 : 0)).map(({ item }) => item);
+}
+
 /** @param {Language} language @param {() => string} path @returns {import("@codemirror/autocomplete").CompletionSource} */
 export const completeBy = (language, path) => async (context) => {
   const before = context.matchBefore(/[\p{L}_][\p{L}\p{M}\p{N}_]*$/u), last = context.state.sliceDoc(context.pos - 1, context.pos);
   if (!context.explicit && !before && !/[."/]/.test(last)) return null;
   const list = await language.complete(path(), positionOf(context.state.doc, context.pos));
   if (!list || list.items.length === 0 || context.aborted) return null;
-  const items = [...list.items].sort((a, b) => (a.sortText < b.sortText ? -1 : a.sortText > b.sortText ? 1 : 0));
-  return { from: offsetIn(context.state.doc, items[0].textEdit.range.start), options: items.map(completionOf), filter: false };
+  const from = offsetIn(context.state.doc, list.items[0].textEdit.range.start), written = context.state.sliceDoc(from, context.pos).toLowerCase();
+  const items = sortCompletions(list.items, written);
+  return { from, options: items.map(completionOf), filter: false };
 };
 
 // --- Signatures ---

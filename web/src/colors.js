@@ -48,20 +48,33 @@ const MOST_SAMPLES = 20000;
  * The scale of some values without rare extremes. If both signs occur, it is symmetric about 0.
  *
  * @param {Float32Array[]} lists
- * @param {number} [percent]  of the values that are within
+ * @param {number} [percent]  of the weight that is within
+ * @param {Float32Array[]} [weights]  of the values, such as the areas that have them; else all count alike
  * @returns {Scale}
  */
-export function scaleOf(lists, percent = 100 * (1 - 2 * RARE)) {
+export function scaleOf(lists, percent = 100 * (1 - 2 * RARE), weights) {
   const total = lists.reduce((n, l) => n + l.length, 0), step = Math.max(1, Math.floor(total / MOST_SAMPLES));
-  /** @type {number[]} */
+  /** @type {{ value: number, weight: number }[]} */
   const sample = [];
-  for (const list of lists) for (let i = 0; i < list.length; i += step) if (Number.isFinite(list[i])) sample.push(list[i]);
+  lists.forEach((list, k) => {
+    for (let i = 0; i < list.length; i += step) if (Number.isFinite(list[i])) sample.push({ value: list[i], weight: weights ? weights[k][i] : 1 });
+  });
   if (sample.length === 0) return { low: 0, high: 1, diverging: false };
-  sample.sort((a, b) => a - b);
-  const out = (1 - percent / 100) / 2, at = (/** @type {number} */ part) => sample[Math.round(part * (sample.length - 1))];
-  const low = at(out), high = at(1 - out), size = Math.max(Math.abs(low), Math.abs(high));
+  sample.sort((a, b) => a.value - b.value);
+  const out = (1 - percent / 100) / 2, low = quantile(sample, out), high = quantile(sample, 1 - out), size = Math.max(Math.abs(low), Math.abs(high));
   // What rounding leaves of a zero has no sign.
   const tiny = 1e-6 * size;
   if (low < -tiny && high > tiny) return { low: -size, high: size, diverging: true };
   return { low, high, diverging: false };
+}
+
+/** The value below which a part of the weight is. @param {{ value: number, weight: number }[]} sample  sorted @param {number} part */
+function quantile(sample, part) {
+  const wanted = part * sample.reduce((sum, { weight }) => sum + weight, 0);
+  let sum = 0;
+  for (const { value, weight } of sample) {
+    sum += weight;
+    if (sum > wanted) return value;
+  }
+  return sample[sample.length - 1].value;
 }

@@ -14,7 +14,7 @@ const PLACES = {
 const TEXT_SIZE = 13; // pixels, of labels without a size
 const GAP = 8; // pixels between a location and its text
 const AXES = /** @type {const} */ ([["X", 1, 0, 0], ["Y", 0, 1, 0], ["Z", 0, 0, 1]]);
-const ARM = 24; // pixels
+const ARM = 21; // pixels
 
 /** In a name, such as P_1, what follows `_` is lower, as in cag's pictures (interp/formats/svg_label.c). @param {string} text */
 function subscripts(text) {

@@ -73,6 +73,18 @@ const LIT_FRAGMENT = `#include <clipping_planes_pars_fragment>
   }`;
 const ZEBRA_STRIPES = 16;
 
+/** The area of the triangle of each corner. @param {{ positions: Float32Array, triangles: Uint32Array }} mesh */
+export function areasOf({ positions, triangles }) {
+  const areas = new Float32Array(triangles.length), [a, b, c] = [new Vector3(), new Vector3(), new Vector3()];
+  for (let i = 0; i < triangles.length; i += 3) {
+    a.fromArray(positions, 3 * triangles[i]);
+    b.fromArray(positions, 3 * triangles[i + 1]).sub(a);
+    c.fromArray(positions, 3 * triangles[i + 2]).sub(a);
+    areas.fill(b.cross(c).length() / 2, i, i + 3);
+  }
+  return areas;
+}
+
 export class Surfaces {
   /** @param {import("./view.js").View} view @param {import("./engine.js").Engine} engine */
   constructor(view, engine) {
@@ -156,7 +168,7 @@ export class Surfaces {
   addValues(kind, good, percent, out) {
     const lists = good.map(({ view, answer }) => valuesOf(kind, answer, view.shape.data.order));
     if (lists.length === 0) return;
-    out.scale = scaleOf(lists, percent);
+    out.scale = scaleOf(lists, percent, good.map(({ view }) => areasOf(view.shape.data)));
     if (kind === "deviation") out.farthest = Math.max(...good.map(({ answer }) => answer.farthest ?? 0));
     const { scale } = out;
     good.forEach(({ view }, i) => {
