@@ -1,7 +1,6 @@
 #include "base/large_stack.h"
 
 #include <pthread.h>
-#include <stddef.h>
 
 // Reserved address space. Deep recursion through built-ins needs about 1 KiB per call (more with
 // sanitizers).
@@ -37,4 +36,8 @@ bool cag_large_stack_run(void (*work)(void *context, char *low), void *context) 
   pthread_attr_destroy(&attributes);
   if (started) pthread_join(thread, NULL);
   return started;
+}
+
+bool cag_large_stack_has_room(const char *here, const char *low, size_t reserve) {
+  return here - low > (ptrdiff_t)reserve;
 }

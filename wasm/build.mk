@@ -10,7 +10,8 @@ WASM      := $(BUILD)/wasm
 WASM_DEPS := $(BUILD)/playground-deps
 # emcc looks for its packages where Debian's node does.
 EMCC      := NODE_PATH=/usr/share/nodejs emcc
-WASM_CLANG ?= clang
+# The one that emcc calls.
+WASM_CLANG ?= $(notdir $(firstword $(wildcard /usr/bin/clang-14) clang))
 # Linear memory for the C stack, in bytes.
 WASM_STACK := 4194304
 
@@ -51,7 +52,7 @@ $(WASM)/gen/%.o: $(BUILD)/gen/%.c $(WASM)/flags | $(WASM_DEPS)/libdeps.a
 $(WASM)/wasm/lapack.o: wasm/lapack.cpp wasm/lapacke.h $(WASM)/flags
 	@mkdir -p $(@D)
 	@echo "wasm $<"
-	$Q$(WASM_CLANG)++ $(WASM_FLAGS) -Wno-deprecated-declarations -std=c++17 -fno-exceptions -fno-rtti -DEIGEN_NO_DEBUG -DNDEBUG -DEIGEN_MPL2_ONLY \
+	$Q$(WASM_CLANG) -x c++ $(WASM_FLAGS) -Wno-deprecated-declarations -std=c++17 -fno-exceptions -fno-rtti -DEIGEN_NO_DEBUG -DNDEBUG -DEIGEN_MPL2_ONLY \
 	  -isystem /usr/include/eigen3 -isystem $$(sed -n 's/.*--sysroot=\([^ ]*\).*/\1/p' $(WASM)/flags)/include/c++/v1 -c $< -o $@
 $(WASM)/cag.mjs: $(WASM_OBJ) $(WASM_DEPS)/libdeps.a wasm/build.mk
 	@echo "link $@"

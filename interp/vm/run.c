@@ -4,18 +4,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/large_stack.h"
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "interp/vm/calls.h"
 #include "interp/vm/vm.h"
 
 // Free space that the C stack must have for a nested run. The deepest built-in needs far less.
-#define C_STACK_RESERVE ((ptrdiff_t)256 * 1024)
+#define C_STACK_RESERVE ((size_t)256 * 1024)
 
 bool cag_room_on_c_stack(CagVm *vm) {
-  char here;
+  const char here = 0;
   if (vm->stack_low == NULL) return true;
-  if (&here - vm->stack_low <= C_STACK_RESERVE) return false;
+  if (!cag_large_stack_has_room(&here, vm->stack_low, C_STACK_RESERVE)) return false;
   if (&here >= vm->stack_paid) return true;
   const size_t bytes = (size_t)(vm->stack_paid - &here) + CAG_STACK_STEP;
   if (!cag_account_hold(bytes)) return false;

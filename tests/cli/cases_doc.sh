@@ -92,6 +92,14 @@ for file in index.html index.js search.js style.css errors.html guide/getting-st
   exists "site/$file"
 done
 
+it 'examples have no links to a playground, unless its address is given'
+! grep -rq 'class="edit"' site || wrong 'there is a link'
+try doc --html linked --no-pictures --playground ../play/
+status 0
+grep -q '<a class="edit" href="../../play/#text=print%20' linked/functions/sin.html || wrong 'a function has no link'
+grep -q '<a class="edit" href="../../play/#text=' linked/cookbook/index.html || wrong 'the cookbook has no links'
+! grep -q 'expect%3A' linked/functions/sin.html || wrong 'the link has expectations'
+
 it 'every function has a page'
 "$CAG" doc | sed -n '/^Library/q;s/^  //p' | tr ' ' '\n' | sort -u > names
 [ "$(wc -l < names)" -gt 400 ] || wrong 'there are few names'

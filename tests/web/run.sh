@@ -36,8 +36,8 @@ else
   fi
 fi
 # The playground is built where emscripten is installed. Without pictures, that takes less than half of the time.
-if ! command -v emcc > /dev/null || ! command -v node > /dev/null || ! command -v esbuild > /dev/null; then
-  skip 'emscripten, node, or esbuild is missing'
+if ! command -v emcc > /dev/null || ! command -v node > /dev/null || ! command -v esbuild > /dev/null || ! command -v dpkg-source > /dev/null || [ ! -d /usr/include/eigen3 ]; then
+  skip 'emscripten, libeigen3-dev, dpkg-dev, node, or esbuild is missing'
 elif ! make -s playground BUILD="$BUILD" PLAYGROUND_PICTURES=--no-pictures > "$work/log" 2>&1; then
   # The sources of the libraries are downloaded.
   if [ -f "$BUILD/playground-deps/libdeps.a" ]; then
