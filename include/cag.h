@@ -74,9 +74,9 @@ typedef struct CagSessionOptions {
   // A script can read files and modules below its own folder, and below those of module_path. For a
   // script run from text, this is its folder (NULL: the working folder).
   const char *folder;
-  // Returns the text that replaces a file that the script imports, given its real path, or NULL: the
-  // file counts. For editors with unsaved texts. The text must stay the same during a run. May be
-  // NULL.
+  // Returns the text that replaces a file that the script imports, given its real path, or NULL:
+  // the file counts. For editors with unsaved texts. The text must stay the same during a run. May
+  // be NULL.
   const char *(*find_text)(void *context, const char *path, size_t *length);
   void *find_text_context;
   FILE *out;      // where `print` writes (stdout)
@@ -215,8 +215,8 @@ CAG_API const char *cag_standard_camera(size_t i);
 // Writes the scene to a file, under a temporary name that is renamed at the end. `format` is one of
 // "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", "json", and, for
 // an image that is shown, "exr" and "png"; NULL: that of the path's extension. The path "-" is
-// standard output and needs a format. Three formats write files next to the path: obj its materials,
-// gltf its data, and urdf its meshes.
+// standard output and needs a format. Three formats write files next to the path: obj its
+// materials, gltf its data, and urdf its meshes.
 CAG_API int cag_session_export(CagSession *s, const char *path, const char *format);
 // Returns the name of image i that is shown, or NULL.
 CAG_API const char *cag_session_image(CagSession *s, size_t i);
@@ -227,8 +227,8 @@ typedef struct CagImageOptions {
   int bits;          // of .png: 8 or 16 per channel; 0: 8
 } CagImageOptions;
 CAG_API void cag_image_options_init(CagImageOptions *o);
-// Writes an image that the script shows to an .exr file, all channels as 32-bit floats, or to a .png
-// file (options NULL: the defaults). Other formats are those of cag_session_export, which also
+// Writes an image that the script shows to an .exr file, all channels as 32-bit floats, or to a
+// .png file (options NULL: the defaults). Other formats are those of cag_session_export, which also
 // accepts these two.
 CAG_API int cag_session_export_image(CagSession *s, const char *path, const char *format,
                                      const CagImageOptions *options);
@@ -246,8 +246,8 @@ typedef struct CagRenderRegion {
 typedef struct CagRenderOptions {
   int width, height;   // pixels, both or none; 0: the camera's
   const char *quality; // "draft", "normal", or "final"; NULL: normal
-  // "povray"; "preview", the built-in renderer; or NULL: preview for drafts and where POV-Ray is not
-  // found, and else povray.
+  // "povray"; "preview", the built-in renderer; or NULL: preview for drafts and where POV-Ray is
+  // not found, and else povray.
   const char *engine;
   int samples; // per pixel: of light for preview, of the lens for povray; 0: by the quality
   // preview: "color,depth,normal,object,material,uv,curvature", or some of these, in one .exr of
@@ -273,7 +273,8 @@ CAG_API int cag_session_render(CagSession *s, const CagRenderOptions *options, c
 CAG_API const char *cag_find_povray(char *buffer, size_t size);
 
 // --- What a page shows ---
-// These calls describe the last run, for programs that show its scene and let its params be changed.
+// These calls describe the last run, for programs that show its scene and let its params be
+// changed.
 
 // A location in a script.
 typedef struct CagPlaceView {
@@ -324,7 +325,8 @@ typedef struct CagPartView {
 CAG_API bool cag_session_part(CagSession *s, size_t i, CagPartView *out);
 // Location k in the origin of a part: the `show` it came through, then calls that moved it or gave
 // it attributes, the latest first, and finally the call that made it. For calls in the library, the
-// location in the user's script comes once before them. *what receives "show", "changed", or "made".
+// location in the user's script comes once before them. *what receives "show", "changed", or
+// "made".
 CAG_API bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **what,
                                     CagPlaceView *out);
 // The material of triangles with a label, of a part with several materials. Returns false after the
@@ -346,10 +348,10 @@ typedef struct CagMeshView {
   const uint32_t *labels;           // of triangles; NULL: all 0
   const uint32_t *edges;            // 2 per feature edge, or segment of a curve
 } CagMeshView;
-// Makes the mesh of a part, which is valid until the next mesh of the session is made. `coarse`: the
-// tolerance is so many times larger; 1: as in exports. `has`, which may be NULL, is asked whether the
-// host already has the mesh with this identity: then only the identity and the placement are set.
-// Not for grounds.
+// Makes the mesh of a part, which is valid until the next mesh of the session is made. `coarse`:
+// the tolerance is so many times larger; 1: as in exports. `has`, which may be NULL, is asked
+// whether the host already has the mesh with this identity: then only the identity and the
+// placement are set. Not for grounds.
 CAG_API int cag_session_part_mesh(CagSession *s, size_t part, double coarse,
                                   bool (*has)(void *context, const char *id), void *context,
                                   CagMeshView *out);
@@ -380,9 +382,9 @@ typedef struct CagPointView {
 // The most points of a part that are given.
 enum { CAG_POINTS_MAX = 300 };
 // Finds the points of a part. *omitted receives the number of those beyond CAG_POINTS_MAX; of more,
-// points that can be moved come first. Params are tried out by evaluating the shown expression again,
-// so this may take as long as a few runs without meshes; params for which there is no time (1 s) do
-// not count. Fails with CAG_STATUS_USAGE if there is no such part.
+// points that can be moved come first. Params are tried out by evaluating the shown expression
+// again, so this may take as long as a few runs without meshes; params for which there is no time
+// (1 s) do not count. Fails with CAG_STATUS_USAGE if there is no such part.
 CAG_API int cag_session_points(CagSession *s, size_t part, size_t *count, size_t *omitted);
 // Returns point i of those that were found last, which are valid until the next run or search.
 CAG_API bool cag_session_point(CagSession *s, size_t i, CagPointView *out);
@@ -392,22 +394,22 @@ CAG_API const char *cag_session_point_param(CagSession *s, size_t i, size_t k);
 typedef struct CagPointGoal {
   size_t part, point; // point: its id
   double target[3];
-  // Directions in which differences count very little, of any length: the line of sight of a viewer, or
-  // those in which numbers of the script move the point. Zero: none.
+  // Directions in which differences count very little, of any length: the line of sight of a
+  // viewer, or those in which numbers of the script move the point. Zero: none.
   double ignored[2][3];
   double tolerance; // mm; 0: 1e-6
   const char *const *names;
   size_t count; // of names, 1 to 8
 } CagPointGoal;
-// Finds values of params with which a point comes as close as possible to a target: least squares, by
-// Gauss-Newton steps with differences as derivatives, within the ranges of the params (Nocedal and
-// Wright 2006, 10.3). The shown expression is evaluated for each step; after 0.5 s, the best values
-// so far are taken. Values are rounded to a power
-// of ten that moves the point by less than the tolerance. Calls `give` with the value of each param as
-// an expression, such as "12.5" or "30deg"; `at` receives where the point is with these values.
+// Finds values of params with which a point comes as close as possible to a target: least squares,
+// by Gauss-Newton steps with differences as derivatives, within the ranges of the params (Nocedal
+// and Wright 2006, 10.3). The shown expression is evaluated for each step; after 0.5 s, the best
+// values so far are taken. Values are rounded to a power of ten that moves the point by less than
+// the tolerance. Calls `give` with the value of each param as an expression, such as "12.5" or
+// "30deg"; `at` receives where the point is with these values.
 //
-// The result of the last run stays as it is. Fails with CAG_STATUS_USAGE if there is no such part or
-// point, or if a name is not that of a number or an angle with a range.
+// The result of the last run stays as it is. Fails with CAG_STATUS_USAGE if there is no such part
+// or point, or if a name is not that of a number or an angle with a range.
 CAG_API int cag_session_solve_point(CagSession *s, const CagPointGoal *goal,
                                     void (*give)(void *context, const char *name,
                                                  const char *value),
@@ -457,13 +459,13 @@ CAG_API bool cag_session_sky_color(CagSession *s, size_t i, double out[3]);
 
 // --- Robots that a scene shows ---
 // A robot that is shown (by `posed`, or by itself) can be brought to other joint values without
-// another run: its parts are not made again, but get motions. Robots are found where they were moved,
-// colored, or grouped. Shapes that were changed otherwise (by a set operation, for example) are not
-// parts of a robot.
+// another run: its parts are not made again, but get motions. Robots are found where they were
+// moved, colored, or grouped. Shapes that were changed otherwise (by a set operation, for example)
+// are not parts of a robot.
 //
-// Joint values are in the units of the script: degrees for revolute joints, millimeters for prismatic
-// ones. Frames and motions have 3 rows of 4 numbers. They are in the coordinates of the scene, so a
-// robot that was scaled has frames with axes that are not unit vectors.
+// Joint values are in the units of the script: degrees for revolute joints, millimeters for
+// prismatic ones. Frames and motions have 3 rows of 4 numbers. They are in the coordinates of the
+// scene, so a robot that was scaled has frames with axes that are not unit vectors.
 
 typedef struct CagRobotView {
   const char *name; // unique among the robots of the scene
@@ -471,8 +473,8 @@ typedef struct CagRobotView {
 } CagRobotView;
 // Returns whether there is a robot i in the scene.
 CAG_API bool cag_session_robot(CagSession *s, size_t i, CagRobotView *out);
-// Returns the index of part k of a robot, as for cag_session_part; (size_t)-1: there is none. `name`
-// receives the name of the part, or NULL; it may be NULL.
+// Returns the index of part k of a robot, as for cag_session_part; (size_t)-1: there is none.
+// `name` receives the name of the part, or NULL; it may be NULL.
 CAG_API size_t cag_session_robot_part(CagSession *s, size_t robot, size_t k, const char **name);
 
 typedef struct CagJointView {
@@ -520,13 +522,13 @@ typedef struct CagReachView {
   double distance; // mm, from the target to the tool
   double angle;    // degrees, between the target's orientation and that of the tool
 } CagReachView;
-// Inverse kinematics: joint values that bring the tool to a target, near the joint values `near`. If
-// the target can be reached without a jump from there, they are found by damped least squares from
-// `near`. Otherwise, they are found as by `ik`. If the target is out of reach, they are those of the
-// closest pose; among poses that are equally close to within a few percent, the nearest to `near` is
-// chosen, so that a target that moves steadily gives a steady motion. `target` is a frame like
-// those of CagRobotPose: of a robot that was scaled, its axes are as long as those of the tool.
-// `out` is valid until the next call about robots. Fails with "joint-count", "not-finite",
+// Inverse kinematics: joint values that bring the tool to a target, near the joint values `near`.
+// If the target can be reached without a jump from there, they are found by damped least squares
+// from `near`. Otherwise, they are found as by `ik`. If the target is out of reach, they are those
+// of the closest pose; among poses that are equally close to within a few percent, the nearest to
+// `near` is chosen, so that a target that moves steadily gives a steady motion. `target` is a frame
+// like those of CagRobotPose: of a robot that was scaled, its axes are as long as those of the
+// tool. `out` is valid until the next call about robots. Fails with "joint-count", "not-finite",
 // "not-rigid" (the axes of the target are dependent, or the robot was flattened by its placement).
 CAG_API int cag_session_robot_reach(CagSession *s, size_t robot, const double target[3][4],
                                     CagReach orientation, const double *near, size_t count,
@@ -589,8 +591,8 @@ CAG_API bool cag_builtin_row(size_t i, const char **signature, const char **summ
 // the language, or an error code; NULL: an overview. `styled` makes headings bold on a terminal.
 // Returns false if the name is unknown or memory ran out.
 CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out);
-// Returns script i of the cookbook: its name ("01-turned-vase.cag") and its text, whose first line is its
-// title as a comment. Returns false after the last one.
+// Returns script i of the cookbook: its name ("01-turned-vase.cag") and its text, whose first line
+// is its title as a comment. Returns false after the last one.
 CAG_API bool cag_cookbook(size_t i, const char **name, const char **text);
 // Calls `give` with each name that cag_session_document knows.
 CAG_API void cag_session_document_names(CagSession *s,
@@ -617,17 +619,17 @@ CAG_API int cag_session_write_site(CagSession *s, const char *folder,
                                    const CagSiteOptions *options);
 
 // --- What a page asks about parts ---
-// These calls need a scene, too. They work on the shapes that the run made, and evaluate nothing. What
-// they return is valid until the next of them, or until the next mesh of the session is made.
+// These calls need a scene, too. They work on the shapes that the run made, and evaluate nothing.
+// What they return is valid until the next of them, or until the next mesh of the session is made.
 
 // The sources of the faces of a set operation: the origins of its operands, and of theirs. Operands
-// that were made by the same calls, such as those of a loop, are one source. Returns the name of the
-// definition that source i of a part was first the value of, "" if there is none, or NULL after the
-// last source. Parts that are not set operations have none.
+// that were made by the same calls, such as those of a loop, are one source. Returns the name of
+// the definition that source i of a part was first the value of, "" if there is none, or NULL after
+// the last source. Parts that are not set operations have none.
 CAG_API const char *cag_session_part_source(CagSession *s, size_t part, size_t i);
-// Location k in the origin of a source, as for cag_session_part_place, but without the `show`: first
-// the calls that the set operations around it went through, which *what calls "combined", and then
-// its own.
+// Location k in the origin of a source, as for cag_session_part_place, but without the `show`:
+// first the calls that the set operations around it went through, which *what calls "combined", and
+// then its own.
 CAG_API bool cag_session_source_place(CagSession *s, size_t part, size_t i, size_t k,
                                       const char **what, CagPlaceView *out);
 
@@ -638,8 +640,8 @@ typedef struct CagFacesView {
   size_t operand_count;
   const uint32_t *sources; // of each operand
 } CagFacesView;
-// Finds which operand each triangle of the mesh of a part comes from. Fails if the part is not a set
-// operation of solids.
+// Finds which operand each triangle of the mesh of a part comes from. Fails if the part is not a
+// set operation of solids.
 CAG_API int cag_session_part_faces(CagSession *s, size_t part, CagFacesView *out);
 
 // A shape that is not shown itself, where it stands in the scene.
@@ -655,8 +657,8 @@ typedef struct CagGhostView {
   double frame[3][4];            // of "transform": the image of the axes
 } CagGhostView;
 // Gives the shapes that are the value of the smallest expression at a location of the script: none
-// if that is shown itself. `column` counts code points. Shapes of a loop are given several times, at
-// most 64. `has` is as for cag_session_part_mesh.
+// if that is shown itself. `column` counts code points. Shapes of a loop are given several times,
+// at most 64. `has` is as for cag_session_part_mesh.
 CAG_API int cag_session_ghosts(CagSession *s, const char *file, size_t line, size_t column,
                                bool (*has)(void *context, const char *id),
                                void (*give)(void *context, const CagGhostView *ghost,
@@ -667,8 +669,8 @@ CAG_API int cag_session_ghosts(CagSession *s, const char *file, size_t line, siz
 typedef struct CagSurfaceView {
   char id[33];           // of the mesh that the values belong to; "" if there are none
   size_t triangle_count; // of this mesh
-  // Curvature: the mean and the Gaussian curvature (1/mm, 1/mm2) at the corners of the triangles, 3 per
-  // triangle, relative to the outward or front side: positive where a ball's are. NaN: unknown.
+  // Curvature: the mean and the Gaussian curvature (1/mm, 1/mm2) at the corners of the triangles, 3
+  // per triangle, relative to the outward or front side: positive where a ball's are. NaN: unknown.
   const float *mean, *gaussian;
   const float *distance; // per triangle, of its farthest point from the surface, mm. NaN: unknown
   double farthest;       // the largest of them
@@ -676,8 +678,8 @@ typedef struct CagSurfaceView {
   const float *points;        // of all lines, 3 numbers each
   const uint32_t *line_sizes; // points of each line
 } CagSurfaceView;
-// `what` is "curvature", "deviation", "isolines", or "net" (the control points of a spline). Fails, with
-// the reason, if the part has no such thing: a mesh has no exact surface.
+// `what` is "curvature", "deviation", "isolines", or "net" (the control points of a spline). Fails,
+// with the reason, if the part has no such thing: a mesh has no exact surface.
 CAG_API int cag_session_part_surface(CagSession *s, size_t part, const char *what,
                                      CagSurfaceView *out);
 
@@ -690,8 +692,8 @@ typedef struct CagSectionCurve {
   size_t point_count;
   const float *points; // a polyline within the tolerance of the part, 3 numbers each
 } CagSectionCurve;
-// Gives the curves in which the plane a x + b y + c z = d, {a, b, c, d}, cuts the parts. Lines and conics
-// are exact; other curves are within a millionth of the size of the part.
+// Gives the curves in which the plane a x + b y + c z = d, {a, b, c, d}, cuts the parts. Lines and
+// conics are exact; other curves are within a millionth of the size of the part.
 CAG_API int cag_session_section_curves(CagSession *s, const double plane[4],
                                        void (*give)(void *context, const CagSectionCurve *c),
                                        void *context);
@@ -701,8 +703,8 @@ CAG_API size_t cag_session_memory(const CagSession *s);
 CAG_API bool cag_session_image_size(CagSession *s, size_t i, size_t *width, size_t *height);
 
 // --- Documents ---
-// A workspace holds the texts that are being edited, for editors and language servers. A document is
-// a script, open or in a file, or a module of the library. All questions are answered from the
+// A workspace holds the texts that are being edited, for editors and language servers. A document
+// is a script, open or in a file, or a module of the library. All questions are answered from the
 // text; no script is run. Definitions that are constant (literals and calls of fast built-ins) are
 // evaluated, as by cag_session_check_text.
 //
@@ -717,8 +719,8 @@ CAG_API bool cag_session_image_size(CagSession *s, size_t i, size_t *width, size
 
 typedef struct CagWorkspace CagWorkspace;
 
-// Makes an empty workspace. Of the options, those for modules, memory, time, depth, and interruption
-// are used, for each check or question. Returns NULL if memory ran out.
+// Makes an empty workspace. Of the options, those for modules, memory, time, depth, and
+// interruption are used, for each check or question. Returns NULL if memory ran out.
 CAG_API CagWorkspace *cag_workspace_new(const CagSessionOptions *options);
 CAG_API void cag_workspace_free(CagWorkspace *w);
 // Opens a document, or replaces its text. Returns false if memory ran out.

@@ -19,9 +19,9 @@ CagLspPages *cag_lsp_pages_new(const CagSessionOptions *session, const char *fol
 // Answers what waits, and frees everything. NULL is allowed.
 void cag_lsp_pages_free(CagLspPages *p);
 // Answers x, later and on another thread. The body is {"page": "a name that the page has chosen",
-// "messages": [...], "check": true}. The answer is a list of messages: the answers to these, and what
-// the server had to say since the last request. With "check", changed documents are checked first; if
-// the page asks again meanwhile, the check ends and its problems are missing.
+// "messages": [...], "check": true}. The answer is a list of messages: the answers to these, and
+// what the server had to say since the last request. With "check", changed documents are checked
+// first; if the page asks again meanwhile, the check ends and its problems are missing.
 void cag_lsp_pages_ask(CagLspPages *p, CagExchange *x);
 
 #endif

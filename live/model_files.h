@@ -8,8 +8,8 @@
 
 enum { CAG_VERSION_SIZE = 33 };
 
-// Returns the real path of `path` below `folder`, whose file may be missing (malloc). Returns NULL if it
-// leads out of the folder, also by symbolic links.
+// Returns the real path of `path` below `folder`, whose file may be missing (malloc). Returns NULL
+// if it leads out of the folder, also by symbolic links.
 char *cag_model_path(const char *folder, const char *path);
 // Reads the file at `path` below `folder`. Refuses paths that lead out of the folder, also by
 // symbolic links, and anything but regular files. *text is malloc'd and ends with a NUL. Returns

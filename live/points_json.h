@@ -1,5 +1,5 @@
-// The points of a part that a page shows as handles, as JSON: for the server, and for the program in
-// the browser.
+// The points of a part that a page shows as handles, as JSON: for the server, and for the program
+// in the browser.
 
 #ifndef CAG_LIVE_POINTS_JSON_H
 #define CAG_LIVE_POINTS_JSON_H
@@ -26,10 +26,10 @@ typedef struct CagLiveAnswer {
 //   params       names of params that move it
 void cag_live_points(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
-// {"part": NAME, "point": ID, "target": [x, y, z], "ignored": [[x, y, z], ...], "params": [NAME, ...],
-// "pixel": MM} gives {"params": {NAME: VALUE, ...}, "at": [x, y, z]}: values of these params with which
-// the point comes closest to the target, except in at most two directions that are ignored (which may
-// be left out), rounded so that the point moves by less than a pixel.
+// {"part": NAME, "point": ID, "target": [x, y, z], "ignored": [[x, y, z], ...], "params": [NAME,
+// ...], "pixel": MM} gives {"params": {NAME: VALUE, ...}, "at": [x, y, z]}: values of these params
+// with which the point comes closest to the target, except in at most two directions that are
+// ignored (which may be left out), rounded so that the point moves by less than a pixel.
 void cag_live_solve(CagSession *s, const char *request, size_t size, CagLiveAnswer *out);
 
 #endif

@@ -28,7 +28,8 @@ typedef struct CagLiveRequest {
 } CagLiveRequest;
 
 // Reads a request, such as {"files": {"vase.cag": "..."}, "params": {"height": "120"}, "time": 0.5,
-// "frames": 24, "loop": true, "coarse": false}. Returns false if the JSON is wrong or memory runs out.
+// "frames": 24, "loop": true, "coarse": false}. Returns false if the JSON is wrong or memory runs
+// out.
 bool cag_live_request_read(const char *json, size_t size, CagLiveRequest *out);
 // The unsaved text of a file, or NULL.
 const char *cag_live_request_text(const CagLiveRequest *r, const char *path);

@@ -1,7 +1,7 @@
 // The thread that runs the script of a page, and does what needs the result of the last run.
 //
-// At most one run is under way. A newer request interrupts it, and takes the place of one that waits.
-// Tasks (exports, measures) use the session of the last run that succeeded.
+// At most one run is under way. A newer request interrupts it, and takes the place of one that
+// waits. Tasks (exports, measures) use the session of the last run that succeeded.
 
 #ifndef CAG_LIVE_RUNNER_H
 #define CAG_LIVE_RUNNER_H
@@ -32,8 +32,8 @@ CagRunner *cag_runner_start(const CagRunnerOptions *options);
 void cag_runner_stop(CagRunner *r);
 // Takes over the contents of the request. Returns the number of the run.
 int cag_runner_run(CagRunner *r, CagLiveRequest *request);
-// From now on, the file on the disk counts when the last request is run again, and not the unsaved text
-// that it had. `path` is below the folder.
+// From now on, the file on the disk counts when the last request is run again, and not the unsaved
+// text that it had. `path` is below the folder.
 void cag_runner_forget_text(CagRunner *r, const char *path);
 // Runs the last request again, with the files as they are now.
 void cag_runner_again(CagRunner *r);

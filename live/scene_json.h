@@ -25,8 +25,8 @@ typedef struct CagLiveModel {
   double coarse;      // the tolerance of meshes is so many times larger
 } CagLiveModel;
 
-// Adds the scene of the last run to a JSON text, and makes its meshes. Returns a status; the text is
-// only complete if it is CAG_STATUS_OK.
+// Adds the scene of the last run to a JSON text, and makes its meshes. Returns a status; the text
+// is only complete if it is CAG_STATUS_OK.
 int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
                    CagString *out);
 

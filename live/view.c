@@ -481,7 +481,8 @@ static void note_files(void *context, CagSession *s) {
   pthread_mutex_unlock(&v->gate);
 }
 
-// Watches the script and what it has read. Text that was given instead of a file is not among these.
+// Watches the script and what it has read. Text that was given instead of a file is not among
+// these.
 static void watch_what_was_read(View *v) {
   char script[2 * PATH_MAX];
   pthread_mutex_lock(&v->gate);
@@ -533,7 +534,8 @@ static void tell_change(View *v, const char *path, const char *below) {
   cag_string_free(&s);
 }
 
-// Returns whether the change concerns the script: not if the page has saved it, or if it is the same.
+// Returns whether the change concerns the script: not if the page has saved it, or if it is the
+// same.
 static bool note_change(View *v, const char *path) {
   char real[PATH_MAX];
   // Imports are watched by the path that the script asked for as well, such as /a/./b.cag.

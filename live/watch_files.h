@@ -21,7 +21,8 @@ void cag_file_watch_free(CagFileWatch *w);
 // Replaces the list of files, given by absolute paths; a file may be missing. Files that stay in
 // the list keep their state, so a change since the last look is still noticed. A new file counts as
 // changed if it was changed at or after `since`, seconds of cag_file_watch_now: a run that began
-// then may have read an earlier state. Returns false if memory ran out; the list is then incomplete.
+// then may have read an earlier state. Returns false if memory ran out; the list is then
+// incomplete.
 bool cag_file_watch_set(CagFileWatch *w, const char *const *paths, size_t count, double since);
 
 // The time in seconds by the clock of files.

@@ -1,7 +1,7 @@
 // What the worker of the playground calls (web/src/worker.js).
 //
-// The files of the model are in /model, in the file system that emscripten keeps in memory. Texts are
-// UTF-8 and end with a NUL. Functions that return a status leave an answer, which is read by
+// The files of the model are in /model, in the file system that emscripten keeps in memory. Texts
+// are UTF-8 and end with a NUL. Functions that return a status leave an answer, which is read by
 // playground_bytes and its neighbors and is valid until the next call.
 
 #include <cJSON.h>
@@ -91,7 +91,8 @@ static CagSessionOptions session_options(void) {
   return o;
 }
 
-// Runs the script of the request, and publishes what it shows. Returns whether the request is valid.
+// Runs the script of the request, and publishes what it shows. Returns whether the request is
+// valid.
 EMSCRIPTEN_KEEPALIVE int playground_run(const char *script, int number, const char *request) {
   CagLiveRequest q;
   const CagModel model = {.session = session_options(),

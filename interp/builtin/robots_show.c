@@ -68,9 +68,9 @@ static double length_of(const CagVec3 *points, size_t n) {
   return sum > 0 ? sum : 1;
 }
 
-// Adds the rods between the points of the skeleton. The directions of both rods of a link are fixed in
-// a frame: that from the frame before the link to the foot of the common normal in that frame, and that
-// from there to the frame after the link in this one.
+// Adds the rods between the points of the skeleton. The directions of both rods of a link are fixed
+// in a frame: that from the frame before the link to the foot of the common normal in that frame,
+// and that from there to the frame after the link in this one.
 static bool add_rods(Drawing *d, const CagRobot *r, const CagVec3 *points, size_t n) {
   size_t at = 1;
   for (size_t i = 0; i <= r->link_count; i++) {

@@ -92,8 +92,8 @@ struct CagWorkspace {
 Document *cag_workspace_document(CagWorkspace *w, const char *file);
 // Reads the text, unless it is known. Returns false if the file cannot be read.
 bool cag_document_has_text(CagWorkspace *w, Document *d);
-// Parses the text and resolves its names if that has not been done yet. Returns false if there is no text,
-// or memory or time ran out.
+// Parses the text and resolves its names if that has not been done yet. Returns false if there is
+// no text, or memory or time ran out.
 bool cag_document_ready(CagWorkspace *w, Document *d);
 // The same by name. Returns NULL on failure.
 Document *cag_document_get(CagWorkspace *w, const char *file);

@@ -19,8 +19,8 @@ CagLiteral cag_literal_of_argument(const CagVm *vm, const CagOriginStep *step, s
 // result does not depend on a run.
 CagLiteral cag_literal_resolve(const CagVm *vm, CagLiteral l);
 
-// Finds the n elements of a list. All elements of a comprehension are its body. Elements that cannot
-// be found get no expression.
+// Finds the n elements of a list. All elements of a comprehension are its body. Elements that
+// cannot be found get no expression.
 void cag_literal_elements(const CagVm *vm, CagLiteral list, size_t n, CagLiteral *out);
 
 // Whether an expression is a number, which may have a minus sign. *span is that of its text.

@@ -1,5 +1,5 @@
-// Params with which a point comes close to a target: Gauss-Newton steps within the ranges. Derivatives
-// are differences, since a script computes points in any way.
+// Params with which a point comes close to a target: Gauss-Newton steps within the ranges.
+// Derivatives are differences, since a script computes points in any way.
 
 #include <math.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 enum { MOST_UNKNOWNS = 8, MOST_ROUNDS = 12, MOST_HALVINGS = 5 };
 // The step of differences, as a part of a param's range.
 #define DIFFERENCE 1e-5
-// What is added to the diagonal of the normal equations, as a part of its largest element: of several
-// params that do the same, all change a little.
+// What is added to the diagonal of the normal equations, as a part of its largest element: of
+// several params that do the same, all change a little.
 #define DAMPING 1e-9
 
 // Seconds after which no round begins: someone who drags the point waits for the next run.
@@ -105,7 +105,8 @@ static void normal_step(const Solving *v, const bool *fixed, double step[MOST_UN
   }
 }
 
-// The step within the ranges: a param that would leave its range is fixed, and the others take over.
+// The step within the ranges: a param that would leave its range is fixed, and the others take
+// over.
 static void bounded_step(const Solving *v, double step[MOST_UNKNOWNS]) {
   bool fixed[MOST_UNKNOWNS] = {false}, again = true;
   while (again) {
@@ -141,7 +142,8 @@ static bool take_step(Solving *v, const double *step) {
   return false;
 }
 
-// The largest power of ten by which a change of the param moves the point by less than the tolerance.
+// The largest power of ten by which a change of the param moves the point by less than the
+// tolerance.
 static double step_of(const Solving *v, size_t k) {
   const CagTrialParam *p = &v->params[k];
   const double range = p->high - p->low, speed = sqrt(dot3(v->columns[k], v->columns[k])) / range;

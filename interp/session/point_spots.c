@@ -1,5 +1,5 @@
-// The tree of calls is walked from the shape that is shown to those that it was made of. The map from
-// the coordinates of a call to the scene is built on the way.
+// The tree of calls is walked from the shape that is shown to those that it was made of. The map
+// from the coordinates of a call to the scene is built on the way.
 
 #include <string.h>
 
@@ -132,8 +132,8 @@ static void walk_operands(Walk *w, CagValue v, const Frame *f) {
   for (size_t i = 0; i < list->length; i++) walk_operands(w, list->as.items[i], f);
 }
 
-// Whether a call moves each point of its first shape in its own way, so that the points before it are
-// nowhere in the scene.
+// Whether a call moves each point of its first shape in its own way, so that the points before it
+// are nowhere in the scene.
 static bool bends(const char *function) {
   static const char *const NAMES[] = {"sweep", "sweep_by", "remap"};
   for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)

@@ -1,5 +1,5 @@
-// Tries other values of params: the definitions of the script are forgotten, the shown expression is
-// evaluated again, and afterwards everything is as it was.
+// Tries other values of params: the definitions of the script are forgotten, the shown expression
+// is evaluated again, and afterwards everything is as it was.
 
 #include <math.h>
 #include <string.h>

@@ -126,7 +126,8 @@ static void read_point(const CagVm *vm, const CagPointSpot *spot, size_t id, Fou
 
 // --- Params that move points ---
 
-// Finds the coordinates in the script that differ; a later call may move all points of the part alike.
+// Finds the coordinates in the script that differ; a later call may move all points of the part
+// alike.
 static bool find_moved(const CagPointSpot *a, const CagPointSpot *b, bool moved[3]) {
   double size = 1;
   bool any = false;

@@ -32,8 +32,8 @@ typedef struct CagTrialParam {
   bool angle;
   double low, high, value;
 } CagTrialParam;
-// Returns param i (from 0) of the main script among those with a range of numbers or angles that has
-// two ends. The params must have been listed. False: there is none.
+// Returns param i (from 0) of the main script among those with a range of numbers or angles that
+// has two ends. The params must have been listed. False: there is none.
 bool cag_trial_param(const CagSession *s, size_t i, CagTrialParam *out);
 
 // What a shown part would be if params were different. Between begin and end, definitions may have
@@ -54,8 +54,8 @@ void cag_trial_end(CagTrial *t);
 // error, if the script fails or the part is not there.
 bool cag_trial_spots(CagTrial *t, const CagTrialParam *items, size_t n, CagPointSpots *out);
 
-// The lists and trials of work on the points of a part. The lists are freed when the work has ended,
-// also if it was abandoned.
+// The lists and trials of work on the points of a part. The lists are freed when the work has
+// ended, also if it was abandoned.
 typedef struct CagPointWork {
   CagSession *session;
   size_t part;

@@ -1,4 +1,5 @@
-// Where a script says the joint values of a robot: the numbers in the list `q` of a call of `posed`.
+// Where a script says the joint values of a robot: the numbers in the list `q` of a call of
+// `posed`.
 
 #include <string.h>
 

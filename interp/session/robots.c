@@ -1,10 +1,10 @@
 // The robots that a scene shows, and where their parts go if their joints move.
 //
-// A robot is a run of items that have limbs of one posture, in the same place and in ascending order.
-// So a drawing that is shown twice is two robots.
+// A robot is a run of items that have limbs of one posture, in the same place and in ascending
+// order. So a drawing that is shown twice is two robots.
 //
-// A part that moves with a frame F of the chain goes, in the world of the robot, from F(q0) to F(q). Its
-// motion in the scene is base F(q) F(q0)^-1 base^-1.
+// A part that moves with a frame F of the chain goes, in the world of the robot, from F(q0) to
+// F(q). Its motion in the scene is base F(q) F(q0)^-1 base^-1.
 
 #include "interp/session/robots.h"
 
@@ -229,8 +229,8 @@ static CagTransform rigid_inverse(const CagTransform *t) {
   return out;
 }
 
-// Moves the rod between two points of the skeleton, whose direction is fixed in the frame of the limb,
-// and makes it as long as it now is.
+// Moves the rod between two points of the skeleton, whose direction is fixed in the frame of the
+// limb, and makes it as long as it now is.
 static CagTransform rod_motion(const CagRobot *r, const CagLimb *limb, const CagTransform *turn,
                                const Posed *from, const Posed *to) {
   const size_t end = limb->section;
@@ -333,8 +333,8 @@ int cag_session_robot_pose(CagSession *s, size_t robot, const double *q, size_t 
 
 // --- Reach ---
 
-// The target in the world of the robot: its axes are made orthogonal, in the order z, x, y, because a
-// placement may have scaled them.
+// The target in the world of the robot: its axes are made orthogonal, in the order z, x, y, because
+// a placement may have scaled them.
 static CagStatus read_target(const CagSessionRobot *robot, const double given[3][4],
                              CagTransform *out, CagError *err) {
   CagTransform t = cag_transform_identity();

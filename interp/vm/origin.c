@@ -1,7 +1,7 @@
-// Each shape has a chain of steps, one for each call that it went through. A step keeps the arguments
-// of the call, so that a page can show the points in them, and the map between the shape before and
-// after it. The steps of other operands are among the arguments: together they are the tree of calls
-// that made the shape, without the shapes in between.
+// Each shape has a chain of steps, one for each call that it went through. A step keeps the
+// arguments of the call, so that a page can show the points in them, and the map between the shape
+// before and after it. The steps of other operands are among the arguments: together they are the
+// tree of calls that made the shape, without the shapes in between.
 
 #include "interp/vm/origin.h"
 
@@ -19,8 +19,8 @@
 // The most shapes that a call is noted to have been made of.
 enum { MOST_INPUTS = 64 };
 
-// A call whose results get it as a step of their origins. What is kept of its arguments is made when
-// the first shape is found.
+// A call whose results get it as a step of their origins. What is kept of its arguments is made
+// when the first shape is found.
 typedef struct NotedCall {
   CagVm *vm;
   const CagCall *call; // NULL: an operator

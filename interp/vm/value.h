@@ -190,7 +190,8 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
-// The transform by which a call moved a shape. Most are translations, for which the vector is enough.
+// The transform by which a call moved a shape. Most are translations, for which the vector is
+// enough.
 typedef struct CagMotionNote {
   CagObject head; // CAG_INTERNAL
   CagVec3 step;   // if it is a translation
@@ -216,8 +217,8 @@ typedef enum CagStepKind {
   CAG_STEP_SAID    // gave it attributes
 } CagStepKind;
 
-// What is kept of the arguments of a call that made shapes or translated them: points and vectors, and
-// the last steps of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
+// What is kept of the arguments of a call that made shapes or translated them: points and vectors,
+// and the last steps of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
 struct CagBuiltin;
 typedef struct CagOriginCall {
   CagObject head; // CAG_INTERNAL
@@ -245,8 +246,8 @@ typedef struct CagOriginStep {
 
 // The most calls that are kept. Of more, those in between are dropped: first the latest ones.
 enum { CAG_ORIGIN_DEPTH = 12 };
-// The most levels of inputs that are kept, so that a loop that reshapes a curve again and again does
-// not keep all of its curves.
+// The most levels of inputs that are kept, so that a loop that reshapes a curve again and again
+// does not keep all of its curves.
 enum { CAG_INPUTS_DEPTH = 6 };
 
 // Where a shape comes from in the script.

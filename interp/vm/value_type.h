@@ -32,8 +32,8 @@ typedef struct CagValueType {
   // Calls the value: v(arguments). Returns false if an error was set.
   bool (*call)(CagVm *vm, CagValue v, const CagValue *arguments, size_t n,
                CagValue *result); // NULL: the value cannot be called
-  // Computes + - * / of operands of which one is of the type, and -v as v * -1. Sets *known to false
-  // if the operator does not apply to them. Returns false if an error was set.
+  // Computes + - * / of operands of which one is of the type, and -v as v * -1. Sets *known to
+  // false if the operator does not apply to them. Returns false if an error was set.
   bool (*arithmetic)(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result,
                      bool *known); // NULL: it has no operators
   // Computes T * v. Returns false if an error was set.

@@ -1,5 +1,5 @@
-// Robots that a page moves: which of them are found, where their parts go, and which joint values reach
-// a target.
+// Robots that a page moves: which of them are found, where their parts go, and which joint values
+// reach a target.
 
 #include <math.h>
 
@@ -109,8 +109,8 @@ static void parts_go_where_the_language_poses_them(void **state) {
              "[10deg, 20deg, 30, 40deg]", "[-20deg, 50deg, 130, 10deg]", scara, 4, ")\n", ROUNDED);
 }
 
-// The default drawing has rods whose radii are 0.018 of the length of the skeleton, which depends on
-// the slides: here 90 of 1000 mm.
+// The default drawing has rods whose radii are 0.018 of the length of the skeleton, which depends
+// on the slides: here 90 of 1000 mm.
 static void rods_follow_slides(void **state) {
   (void)state;
   const double q[] = {40, 130, 60};
@@ -208,8 +208,8 @@ static void targets_of_forward_kinematics_are_reached(void **state) {
   cag_session_free(s);
 }
 
-// A robot that is dragged does not jump: small steps of the target are small steps of the joints, also
-// beyond the reach of the arm.
+// A robot that is dragged does not jump: small steps of the target are small steps of the joints,
+// also beyond the reach of the arm.
 static void a_drag_is_steady(void **state) {
   (void)state;
   CagSession *s =

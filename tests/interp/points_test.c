@@ -1,5 +1,5 @@
-// The points of parts that can be dragged: where they are in the scene, where their numbers stand in
-// the script, and which params move them.
+// The points of parts that can be dragged: where they are in the scene, where their numbers stand
+// in the script, and which params move them.
 
 #include <math.h>
 #include <stdlib.h>

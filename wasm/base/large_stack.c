@@ -1,8 +1,8 @@
 // Replaces base/large_stack.c where there are no threads.
 //
 // WebAssembly has two stacks. The one in memory has a fixed size (WASM_STACK in wasm/build.mk). The
-// other belongs to the browser, which ends the program if it overflows. Its size and use are unknown,
-// so the levels of recursion are counted: those that ask for room. The recursions of
+// other belongs to the browser, which ends the program if it overflows. Its size and use are
+// unknown, so the levels of recursion are counted: those that ask for room. The recursions of
 // tests/web/playground.mjs and playground_page.js end in an error of the script.
 
 #include "base/large_stack.h"

@@ -1,5 +1,5 @@
-// Replaces the C library's qsort, which does not keep the order of equal elements. That of glibc does,
-// and with the same order, results are the same as those of the native program.
+// Replaces the C library's qsort, which does not keep the order of equal elements. That of glibc
+// does, and with the same order, results are the same as those of the native program.
 
 #include <stdbool.h>
 #include <stdlib.h>
