@@ -111,8 +111,8 @@ async function main() {
     }
     await shot(page, "playground-tour");
     await press(page, "Open in the editor");
-    await page.until(`${READY} && location.hash.includes("code=") && document.querySelector("#tour .try") && document.querySelectorAll("#parts li").length > 0`);
-    check((await page.value(TEXT)).includes("revolve(profile)"), "another text");
+    // The page is loaded again.
+    await page.until(`${READY} && (${TEXT}).includes("thicken(revolve(profile), 3)") && document.querySelector("#tour .try") && document.querySelectorAll("#parts li").length > 0`);
   });
   await test("what is missing is said", async () => {
     await press(page, "About");
@@ -123,9 +123,9 @@ async function main() {
   });
   await test("endless recursion ends as an error, and the next script runs", async () => {
     for (const text of DEEP) {
-      await go(`#text=${encodeURIComponent(text).replaceAll("(", "%28")}`, `${READY} && ${OK} === "false"`);
+      await go(`#text=${encodeURIComponent(text)}`, `${READY} && ${OK} === "false"`);
       check(/E\d{4}/.test(await page.value(MESSAGES)), await page.value(MESSAGES));
-      await page.value("cagPage.editor.replace(cagPage.editor.path, 0, 1e9 < 0 ? 0 : cagPage.editor.text(cagPage.editor.path).length, 'print 40 + 2')");
+      await page.value("cagPage.editor.replace(cagPage.editor.path, 0, cagPage.editor.text(cagPage.editor.path).length, 'print 40 + 2')");
       await page.until(`${OK} === "true" && ${MESSAGES}.includes("42")`);
       if (process.env.VERBOSE) console.log(text.slice(0, 40), page.problems.length);
     }
@@ -144,7 +144,8 @@ async function main() {
     await page.until(`${READY} && ${OK}`);
     equal((await page.value(TEXT)).trim(), text.trim());
   });
-  await test("there are no other errors", async () => equal(page.problems, []));
+  // The documentation has no icon.
+  await test("there are no other errors", async () => equal(page.problems.filter((p) => !p.includes("favicon.ico")), []));
   await browser.close();
   server.close();
 }
