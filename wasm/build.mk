@@ -35,7 +35,7 @@ WASM_LINK := -s MODULARIZE=1 -s EXPORT_ES6=1 -s USE_ES6_IMPORT_META=0 -s ENVIRON
 # Clang 14 moves loads past stores to another variable that has the same place on the stack.
 WASM_CORRECT := -mllvm -no-stack-coloring
 
-$(WASM)/flags:
+$(WASM)/flags: wasm/build.mk
 	@mkdir -p $(@D)
 	$Qecho $$($(EMCC) --cflags) $(WASM_CORRECT) > $@
 $(WASM_DEPS)/libdeps.a: wasm/deps.sh

@@ -109,7 +109,7 @@ async function storedText(page, file) {
 
 const READY = 'document.documentElement.dataset.ready === "true" && document.documentElement.dataset.run';
 const EDITOR = 'document.querySelector("#editor").shadowRoot.querySelector(".cm-content")';
-const text = `[...${EDITOR}.querySelectorAll(".cm-line")].map((l) => l.textContent).join("\\n")`;
+const text = "cagPage.editor.text(cagPage.editor.path)";
 const fact = (name) => `[...document.querySelectorAll("#selection dt, #measure dt")].find((d) => d.textContent === ${JSON.stringify(name)})?.nextSibling.textContent`;
 const button = (label) => `[...document.querySelectorAll("button")].find((b) => b.textContent === ${JSON.stringify(label)} && b.offsetParent)`;
 
@@ -786,7 +786,7 @@ async function main() {
   const browser = new Browser(chromium);
   try {
     await block(browser);
-    await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE });
+    await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE, alone: inPlayground });
     await points(browser);
     await film(browser);
     await robots(browser);

@@ -45,9 +45,10 @@ const randomEdits = async (edits, path) => {
   return { editor: editor.text(path), replay, known: language.known.get(path).text, symbols: JSON.stringify(symbols), fresh: JSON.stringify(answers.find((a) => a.id === 2).result) };
 };
 
-exports.language = async ({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE }) => {
+// `alone`: there is one file only.
+exports.language = async ({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE, alone }) => {
   fs.writeFileSync(path.join(folder, "tools.cag"), TOOLS);
-  const { url, file } = await serve("language.cag", SCRIPT);
+  const { url, file } = await serve("language.cag", alone ? SCRIPT.replace(/^import.*/, "tools = { height: 12 * 2 }") : SCRIPT);
   const page = await browser.open(url, SIZE);
   const ROOT = EDITOR.replace(/\.querySelector\("\.cm-content"\)$/, "");
   // Puts the cursor into a text, by the editor's own selection.
@@ -70,14 +71,14 @@ exports.language = async ({ browser, serve, folder, test, equal, check, picture,
     await page.until(`!${EDITOR}.querySelector(".cm-lintRange-error")`);
   });
   await test("values of definitions stand at the ends of their lines", async () => {
-    await page.until(`(${values}).length === 2`);
-    equal(await page.value(values), ["5", "box, 5 x 5 x 24"]);
+    await page.until(`(${values}).includes("5") && (${values}).includes("box, 5 x 5 x 24")`);
+    const count = await page.value(`(${values}).length`);
     await picture(page, "language-values");
     await page.value("document.querySelector('#scene').focus()");
     await page.key("v");
     await page.until(`(${values}).length === 0`);
     await page.key("v");
-    await page.until(`(${values}).length === 2`);
+    await page.until(`(${values}).length === ${count}`);
   });
   await test("names are completed, with their descriptions", async () => {
     await cursor("show body", "\n");
@@ -122,7 +123,7 @@ exports.language = async ({ browser, serve, folder, test, equal, check, picture,
     await page.type("2)");
     await page.until('document.documentElement.dataset.ok === "true"');
   });
-  await test("a name is changed everywhere, also in other files, which are saved on their own", async () => {
+  if (!alone) await test("a name is changed everywhere, also in other files, which are saved on their own", async () => {
     await cursor("tools.hei", "ght");
     await page.key("F2");
     await page.until('document.querySelector("dialog[open] input")?.value === "height"');
@@ -135,7 +136,7 @@ exports.language = async ({ browser, serve, folder, test, equal, check, picture,
     equal(fs.readFileSync(path.join(folder, "tools.cag"), "utf8"), TOOLS);
     equal(fs.readFileSync(file, "utf8"), SCRIPT);
   });
-  await test("definitions are found in other files and in the library", async () => {
+  if (!alone) await test("definitions are found in other files and in the library", async () => {
     await cursor("tools.len", "gth");
     await page.key("F12");
     await page.until('document.querySelector("#tabs [aria-selected=true]")?.textContent.startsWith("tools.cag")');
@@ -164,7 +165,7 @@ exports.language = async ({ browser, serve, folder, test, equal, check, picture,
     await page.value(`${extract}.click()`);
     await page.until(`(${text}).includes("value = 2 + 3") && (${text}).includes("size = value")`);
   });
-  await test(`${EDITS} random edits leave the editor and the language server with the same text`, async () => {
+  if (!alone) await test(`${EDITS} random edits leave the editor and the language server with the same text`, async () => {
     const heap = async () => {
       await page.say("HeapProfiler.collectGarbage");
       return (await page.say("Runtime.getHeapUsage")).usedSize;
