@@ -98,6 +98,7 @@ language_suites() {
 # The slowest ones start first.
 points=${MEMORY_POINTS:-3}
 alone='limits output signals'
+suite counted "tests/web" "sh tests/web/run.sh"
 if [ -n "${SANITIZED:-}" ]; then
   case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
   # Three scripts take 12 s each without sanitizers, and four times as long with them.
@@ -108,6 +109,8 @@ if [ -n "${SANITIZED:-}" ]; then
   unit_suites "$SANITIZED" "sanitized "
   vector_suites "$SANITIZED" "sanitized "
 fi
+suite counted "tests/live view" "python3 tests/live/view.py '$BUILD/cag'"
+suite counted "tests/live" "sh tests/live/run.sh"
 language_suites "$BUILD" "" ""
 suite counted "tests/scenes" "'$BUILD/cag' test tests/scenes"
 suite counted "cag test examples" "'$BUILD/cag' test --no-pictures examples stdlib"
@@ -127,9 +130,6 @@ for cases in tests/cli/cases_*.sh; do
 done
 suite counted "tests/repl" "sh tests/repl/run.sh"
 suite counted "tests/editors" "sh tests/editors/run.sh"
-suite counted "tests/live view" "python3 tests/live/view.py '$BUILD/cag'"
-suite counted "tests/live" "sh tests/live/run.sh"
-suite counted "tests/web" "sh tests/web/run.sh"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
