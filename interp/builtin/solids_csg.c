@@ -120,9 +120,9 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
 
 // --- Origins of operands ---
 
-// The operands that take the place of one that dissolves.
+// The operands that take the place of one that dissolves, which has a core.
 static size_t origin_count(const CagSolid *operand, CagSetOperation op, size_t index) {
-  return cag_solid_dissolves(operand, op, index) ? operand->core->count : 1;
+  return operand->core && cag_solid_dissolves(operand, op, index) ? operand->core->count : 1;
 }
 
 static CagOperands *known_operands(const CagOrigin *o, const CagSolid *s) {
