@@ -22,7 +22,7 @@ WASM_LEFT_OUT := base/aside.c base/parallel.c base/large_stack.c base/reserve.c 
 WASM_LIVE := $(patsubst %,live/%.c,json json_write lsp lsp_files lsp_requests measures model_answers model_files model_run place_json points_json questions request robot_json scene_json)
 WASM_SRC  := $(filter-out $(WASM_LEFT_OUT),$(BASE_SRC) $(LANG_SRC) $(GEOM_SRC) $(INTERP_SRC)) $(WASM_LIVE) \
              $(sort $(wildcard wasm/*.c wasm/*/*.c))
-WASM_OBJ  := $(patsubst %.c,$(WASM)/%.o,$(WASM_SRC)) $(patsubst %,$(WASM)/gen/%.o,stdlib documents builtins) $(WASM)/wasm/lapack.o
+WASM_OBJ  := $(patsubst %.c,$(WASM)/%.o,$(WASM_SRC)) $(patsubst %,$(WASM)/gen/%.o,stdlib builtins) $(WASM)/wasm/lapack.o
 # The flags of emcc are asked for when they are needed. Calling clang directly takes half of the time of emcc.
 WASM_SMALL := base geom/camera geom/image geom/meet geom/robot geom/solid interp/builtin interp/check interp/doc interp/document interp/formats interp/scene interp/session lang live wasm
 WASM_FLAGS = $$(cat $(WASM)/flags) $(if $(filter $(addsuffix /%,$(WASM_SMALL)),$<),$(PLAYGROUND_OPT_SMALL),$(PLAYGROUND_OPT)) -msimd128 $(WARN) -Iwasm -I$(WASM_DEPS)/include -MMD -MP
