@@ -83,13 +83,28 @@ static void fail_circle(CagVm *vm, const CagModuleUnit *from, const CagStatement
   cag_string_free(&chain);
 }
 
-// Returns the path for messages: that of the importing file with its last part replaced.
+// The length of a folder's path without its last part, or the same if that is not known by name.
+static size_t parent_length(const char *path, size_t n) {
+  const bool up = n >= 3 && !strncmp(path + n - 3, "../", 3) && (n == 3 || path[n - 4] == '/');
+  if (n <= 1 || up) return n;
+  n--;
+  while (n > 0 && path[n - 1] != '/') n--;
+  return n;
+}
+
+// Returns the path for messages: that of the importing file with its last part replaced, without
+// detours such as `./`.
 static char *shown_path(const CagModuleUnit *from, const char *relative) {
   const char *slash = from->path ? strrchr(from->name, '/') : NULL;
+  size_t n = slash ? (size_t)(slash - from->name) + 1 : 0;
+  for (;;) {
+    const size_t parent = parent_length(from->name, n);
+    if (!strncmp(relative, "./", 2)) relative += 2;
+    else if (!strncmp(relative, "../", 3) && parent < n) relative += 3, n = parent;
+    else break;
+  }
   char *out = NULL;
-  if (cag_asprintf(&out, "%.*s%s", slash ? (int)(slash - from->name + 1) : 0, from->name,
-                   relative) < 0)
-    return NULL;
+  if (cag_asprintf(&out, "%.*s%s", (int)n, from->name, relative) < 0) return NULL;
   return out;
 }
 

@@ -720,6 +720,19 @@ def test_unsaved_imports_and_values():
     assert v.close() == 130
 
 
+def test_places_in_imported_files_have_paths_below_the_folder():
+    v = View("x = 1\n")
+    os.makedirs(os.path.join(v.folder, "sub/deep"))
+    for name, text in {"sub/a.cag": 'import "./../b.cag" as b\nimport "./deep/c.cag" as c\na = b.b + c.c\n', "b.cag": "b = 1 + 1\n", "sub/deep/c.cag": 'import "../../b.cag" as b\nc = b.b * 2\n'}.items():
+        with open(os.path.join(v.folder, name), "w") as f:
+            f.write(text)
+    run = v.run(files={"model.cag": 'import "./sub/a.cag" as a\nshow box([a.a, 1, 1])\n'}, params={})
+    messages = v.wait("messages", lambda m: m["run"] >= run)
+    assert sorted((x["file"], x["text"]) for x in messages["values"]) == [("b.cag", "2"), ("sub/a.cag", "6"), ("sub/deep/c.cag", "4")], messages
+    assert sorted(v.scene(run)["files"]) == ["b.cag", "model.cag", "sub/a.cag", "sub/deep/c.cag"]
+    assert v.close() == 130
+
+
 def test_library_texts():
     v = View(VASE)
     status, body, _ = v.ask("GET", "/api/file?path=std.materials")

@@ -586,6 +586,32 @@ async function points(browser) {
   await page.close();
 }
 
+async function importedPoints(browser) {
+  const name = "imported_points.cag", before = "plate = polyline([[0, 0], [40mm, 0], [40, 20]], closed: true)\n";
+  fs.writeFileSync(path.join(folder, name), before);
+  const { url } = await serve("importing.cag", 'import "./imported_points.cag" as parts\nshow parts.plate\n');
+  const page = await browser.open(url, SIZE);
+  await test("the numbers of a point are changed in the script that has them, which is shown", async () => {
+    await page.until(READY);
+    await page.value('document.querySelector("#parts .part").click()');
+    await page.value("document.querySelector('#scene').focus()");
+    await page.key("d");
+    await page.until('document.querySelectorAll(".handle.point:not(.locked)").length === 3 && document.querySelector("#selection").textContent.includes("length")');
+    await drawn(page);
+    await page.value('[...document.querySelectorAll(".handle.point")].find((b) => b.ariaLabel.includes("x 40, y 0")).focus()');
+    await page.key("ArrowRight");
+    await page.until(`cagPage.editor.path === ${JSON.stringify(name)}`);
+    const after = await page.until(`cagPage.editor.text(${JSON.stringify(name)}) !== ${JSON.stringify(before)} && cagPage.editor.text(${JSON.stringify(name)})`);
+    check(/^plate = polyline\(\[\[0, 0\], \[4\d(\.\d+)?mm, 0\], \[40, 20\]\], closed: true\)\n$/.test(after), after);
+    await page.until('!document.querySelector("#status").textContent.includes("error") && [...document.querySelectorAll(".handle.point")].some((b) => !/x (0|40), /.test(b.ariaLabel))');
+    await page.value("document.querySelector('#scene').focus()");
+    await page.key("z", { modifiers: 2 });
+    await page.until(`cagPage.editor.text(${JSON.stringify(name)}) === ${JSON.stringify(before)}`);
+    equal(page.problems, []);
+  });
+  await page.close();
+}
+
 async function film(browser) {
   const { url } = await serve("film.cag", FILM);
   const page = await browser.open(url, SIZE);
@@ -788,6 +814,7 @@ async function main() {
     await block(browser);
     await language({ browser, serve, folder, test, equal, check, picture, EDITOR, text, SIZE, alone: inPlayground });
     await points(browser);
+    if (!inPlayground) await importedPoints(browser);
     await film(browser);
     await robots(browser);
     await tenLinks(browser);

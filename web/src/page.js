@@ -164,7 +164,8 @@ export async function start(engine, webview = null) {
   const selection = new SelectionPanel(byId("selection", HTMLDivElement), engine, excerpt);
   const sectionPanel = new SectionPanel(byId("section", HTMLDivElement), view, handles);
   const points = new PointTool({
-    engine, view, handles, params, readOnly: hello.readOnly, file, note: byId("selection", HTMLDivElement), report, pending: () => runs.pending,
+    engine, view, handles, params, readOnly: hello.readOnly, note: byId("selection", HTMLDivElement), report,
+    load: (path) => files?.load(path), showFile: (path) => files?.show(path), pending: () => runs.pending,
     run: (dragging) => {
       timeBar.forget();
       if (dragging) runs.drag();

@@ -37,7 +37,8 @@ import { columnOf, moveCoordinates, numberText, readNumber } from "./point_numbe
  * @property {import("./handles.js").Handles} handles
  * @property {import("./params.js").ParamsPanel} params
  * @property {boolean} readOnly
- * @property {string} file  the path of the script
+ * @property {(path: string) => Promise<void> | undefined} load  opens a script without showing it
+ * @property {(path: string) => Promise<void> | undefined} showFile
  * @property {HTMLElement} note  where the number of points is told
  * @property {(dragging: boolean) => void} run  runs the script with what has changed
  * @property {() => boolean} pending  a run is under way or to come
@@ -86,11 +87,18 @@ export class PointTool {
     try {
       const answers = await Promise.all(parts.map((part) => engine.points(part).then((a) => ({ part, ...a }))));
       this.took = performance.now() - begin;
+      await this.openFiles(answers.flatMap(({ points }) => points.flatMap(({ numbers }) => this.filesOf(numbers))));
       if (asked === this.asked) this.show(answers);
     } catch {
       // Of a part that is gone meanwhile, the next scene tells.
       if (asked === this.asked) this.show([]);
     }
+  }
+
+  /** Opens the scripts that have the numbers, without showing them. One that cannot be opened stays closed. @param {string[]} paths */
+  async openFiles(paths) {
+    const closed = [...new Set(paths)].filter((path) => this.editor?.text(path) === null);
+    await Promise.allSettled(closed.map((path) => this.options.load(path)));
   }
 
   /** @param {{ part: string, points: PointInfo[], omitted: number }[]} answers */
@@ -136,10 +144,11 @@ export class PointTool {
 
   /** Marks what a point would change. @param {Shown | null} one */
   pointAt(one) {
-    const { params, file } = this.options, moves = one && !this.lockOf(one.point) ? one : null;
+    const { params } = this.options, moves = one && !this.lockOf(one.point) ? one : null;
     params.mark(moves ? moves.point.params : []);
     if (this.drag) return;
-    this.editor?.mark(file, moves && this.rangeOfNumbers(this.find(moves.point) ?? []));
+    const found = moves ? this.find(moves.point) ?? [] : [], path = found[0]?.path ?? this.editor?.path;
+    if (path) this.editor?.mark(path, this.rangeOfNumbers(found));
   }
 
   /** @param {Written[]} written @returns {[number, number] | null} */
@@ -171,9 +180,15 @@ export class PointTool {
 
   /** @param {PointInfo} point */
   lockOfNumbers({ numbers }) {
-    const other = numbers.find((n) => n && n.file !== this.options.file);
+    const files = this.filesOf(numbers), closed = files.find((path) => this.editor?.text(path) === null);
     if (this.options.readOnly) return "the page is opened with --read-only";
-    return other ? `its numbers are in ${other.file}; open that script with cag view to move it` : null;
+    if (files.length > 1) return `its numbers are in ${files.join(" and ")}`;
+    return closed ? `its numbers are in ${closed}, which cannot be opened` : null;
+  }
+
+  /** @param {PointInfo["numbers"]} numbers */
+  filesOf(numbers) {
+    return [...new Set(numbers.flatMap((n) => (n ? [n.file] : [])))];
   }
 
   // --- A drag ---
@@ -190,8 +205,19 @@ export class PointTool {
     this.drag = { shown, point, written, params: { ...params.values }, moved: false, wanted: null, asking: false, ended: null };
     this.held = shown;
     shown.button.classList.add("dragged");
-    if (written.length) this.editor?.mark(written[0].path, this.rangeOfNumbers(written), true);
+    if (written.length) this.reveal(written);
     return true;
+  }
+
+  /** Shows the numbers in the editor, where the drag is undone. @param {Written[]} written */
+  async reveal(written) {
+    const { path } = written[0];
+    try {
+      if (this.editor?.path !== path) await this.options.showFile(path);
+      this.editor?.mark(path, this.rangeOfNumbers(written), true);
+    } catch (error) {
+      this.options.report(/** @type {Error} */ (error));
+    }
   }
 
   /** Where the numbers of a point are in the editor; null: they are not there any more. @param {PointInfo} point @returns {Written[] | null} */
