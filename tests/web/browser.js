@@ -5,6 +5,7 @@ const fs = require("fs");
 const os = require("os");
 const path = require("path");
 
+const MOST_ANSWER = 300000, SHORT_ANSWER = 5000; // milliseconds
 const WAIT = Number(process.env.WEB_TEST_WAIT ?? 60000); // milliseconds for a condition to come true on a loaded machine
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -36,10 +37,21 @@ class Browser {
     else if (message.method) for (const l of this.listeners) l(message);
   }
 
-  say(method, params = {}, sessionId = undefined) {
+  // What is evaluated while a page is being replaced may never be answered: `most` is the milliseconds to wait.
+  say(method, params = {}, sessionId = undefined, most = MOST_ANSWER) {
     const id = ++this.number;
     this.process.stdio[3].write(JSON.stringify({ id, method, params, sessionId }) + "\0");
-    return new Promise((done, fail) => this.waiting.set(id, (m) => (m.error ? fail(new Error(`${method}: ${m.error.message}`)) : done(m.result))));
+    return new Promise((done, fail) => {
+      const timer = setTimeout(() => {
+        this.waiting.delete(id);
+        fail(new Error(`${method}: no answer`));
+      }, most);
+      this.waiting.set(id, (m) => {
+        clearTimeout(timer);
+        if (m.error) fail(new Error(`${method}: ${m.error.message}`));
+        else done(m.result);
+      });
+    });
   }
 
   async open(url, { width = 1280, height = 800, scale = 1, dark = false, touch = false } = {}) {
@@ -82,12 +94,12 @@ class Page {
     });
   }
 
-  say(method, params) {
-    return this.browser.say(method, params, this.session);
+  say(method, params, most) {
+    return this.browser.say(method, params, this.session, most);
   }
 
-  async value(expression) {
-    const { result, exceptionDetails } = await this.say("Runtime.evaluate", { expression, returnByValue: true, awaitPromise: true });
+  async value(expression, most) {
+    const { result, exceptionDetails } = await this.say("Runtime.evaluate", { expression, returnByValue: true, awaitPromise: true }, most);
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);
     return result.value;
   }
@@ -97,7 +109,7 @@ class Page {
     const end = Date.now() + wait;
     for (;;) {
       // While a page is being replaced, nothing can be evaluated.
-      const value = await this.value(expression).catch(() => false);
+      const value = await this.value(expression, SHORT_ANSWER).catch(() => false);
       if (value) return value;
       if (Date.now() > end) throw new Error(`never came true: ${expression}\n  ${this.problems.join("\n  ")}`);
       await pause(30);
