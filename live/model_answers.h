@@ -12,7 +12,7 @@
 enum { CAG_ANSWER_NAME = 256 };
 
 typedef struct CagModelAnswer {
-  int status;                 // of HTTP; if it is not 200, there are no bytes
+  int status;                 // of HTTP; only 200 comes with bytes
   char *bytes;                // malloc'd
   size_t size;                // of the bytes
   const char *type;           // NULL: JSON

@@ -10,7 +10,7 @@
 #include "geom/mesh/mesh.h"
 #include "geom/ray/caster.h"
 
-// The operands of a set operation that are no set operations themselves, in depth-first order.
+// The operands of a set operation, in depth-first order. Of nested set operations, their operands.
 size_t cag_solid_leaf_count(const CagSolid *s);
 // Finds the number of the leaf that each triangle of the solid's mesh is a part of. The mesh is in
 // the coordinates of the solid. A triangle that lies on no leaf, because it is too small to have a

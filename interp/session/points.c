@@ -23,7 +23,7 @@ enum { MOST_LOCKED = 100 };
 typedef struct FoundPoint {
   CagPointView view;
   char why[120];
-  bool computed; // a coordinate is no number in the script
+  bool computed; // a coordinate is not a number in the script
   size_t row;    // in moved_by
 } FoundPoint;
 

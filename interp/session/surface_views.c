@@ -148,7 +148,7 @@ static CagStatus find_net(const CagItem *item, CagPolylines *l, CagError *err) {
   const CagStatus status = item->kind == CAG_ITEM_CURVE ? curve_net(item->as.curve, l, err)
                                                         : each_face(item, face_net, l, err);
   if (status || l->count > 0) return status;
-  return fail_without(item, "is no spline, so it has no control points", err);
+  return fail_without(item, "is not a spline, so it has no control points", err);
 }
 
 // --- Values ---

@@ -167,7 +167,7 @@ static void what_has_no_exact_surface_says_so(void **state) {
   expect_refusal(s, "show tessellate(sphere(3))\n", "deviation", "is a mesh");
   expect_refusal(s, "show circle(3)\n", "curvature", "is a curve");
   expect_refusal(s, "show region(circle(3))\n", "curvature", "is a region");
-  expect_refusal(s, "show sphere(3)\n", "net", "is no spline");
+  expect_refusal(s, "show sphere(3)\n", "net", "is not a spline");
   expect_refusal(s, "show sphere(3) - box([3, 3, 3])\n", "isolines", "is a set operation");
   assert_int_equal(cag_session_part_surface(s, 0, "charm", &v), CAG_STATUS_USAGE);
   assert_int_equal(cag_session_part_surface(s, 99, "net", &v), CAG_STATUS_USAGE);

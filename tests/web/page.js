@@ -576,7 +576,7 @@ async function points(browser) {
     await page.drag(from, [from[0] + 20, from[1]]);
     equal(await page.value(text), before);
   });
-  await test("without the switch there are no handles, and the file is unchanged", async () => {
+  await test("turning the switch off removes the handles and leaves the file unchanged", async () => {
     await page.value("document.querySelector('#scene').focus()");
     await page.key("d");
     await page.until(`${handles}.length === 0`);

@@ -26,7 +26,7 @@ const randomEdits = async (edits, path) => {
     seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
     return Math.floor((seed / 2 ** 32) * n);
   };
-  // Half of a pair of UTF-16 units is no character.
+  // Never cuts a pair of UTF-16 units, which is one character.
   const whole = (at) => (/[\uDC00-\uDFFF]/.test(replay[at] ?? "") ? at - 1 : at);
   for (let i = 0; i < edits; i++) {
     const from = whole(random(replay.length + 1)), to = whole(Math.min(replay.length, from + (replay.length > 400 ? random(12) : random(3)))), insert = PIECES[random(PIECES.length)];

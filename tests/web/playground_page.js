@@ -145,7 +145,7 @@ async function main() {
     equal((await page.value(TEXT)).trim(), text.trim());
   });
   // The documentation has no icon.
-  await test("there are no other errors", async () => equal(page.problems.filter((p) => !p.includes("favicon.ico")), []));
+  await test("the page reports no other errors", async () => equal(page.problems.filter((p) => !p.includes("favicon.ico")), []));
   await browser.close();
   server.close();
 }

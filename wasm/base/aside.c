@@ -1,4 +1,4 @@
-// Replaces base/aside.c where there are no threads: the caller does the work.
+// Replaces base/aside.c in a browser, which gives the program one thread: the caller does the work.
 
 #include "base/aside.h"
 

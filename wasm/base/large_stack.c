@@ -1,4 +1,4 @@
-// Replaces base/large_stack.c where there are no threads.
+// Replaces base/large_stack.c in a browser, which gives the program one thread.
 //
 // WebAssembly has two stacks. The one in memory has a fixed size (WASM_STACK in wasm/build.mk). The
 // other belongs to the browser, which ends the program if it overflows. Its size and use are
