@@ -16,7 +16,7 @@ typedef struct CagModelPrints {
 static void define_all(CagSession *s, const CagLiveRequest *q) {
   char time[40];
   for (size_t i = 0; i < q->define_count; i++)
-    cag_session_define(s, q->defines[i].name, q->defines[i].value);
+    cag_session_define(s, q->defines[i].name, q->defines[i].text);
   cag_session_set_loop(s, q->loop);
   if (!q->has_time) return;
   const double steps = q->frames > 1 ? q->frames - (q->loop ? 0 : 1) : 0;

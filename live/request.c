@@ -8,68 +8,54 @@
 #define COARSE 8.0
 
 static void free_text(CagLiveText *t) {
-  free(t->path);
+  free(t->name);
   free(t->text);
 }
 
+static void free_texts(CagLiveText *texts, size_t n) {
+  for (size_t i = 0; i < n; i++) free_text(&texts[i]);
+  free(texts);
+}
+
 void cag_live_request_free(CagLiveRequest *r) {
-  for (size_t i = 0; i < r->define_count; i++) {
-    free(r->defines[i].name);
-    free(r->defines[i].value);
-  }
-  free(r->defines);
-  for (size_t i = 0; i < r->text_count; i++) free_text(&r->texts[i]);
-  free(r->texts);
+  free_texts(r->defines, r->define_count);
+  free_texts(r->texts, r->text_count);
   *r = (CagLiveRequest){0};
+}
+
+static bool copy_texts(const CagLiveText *from, size_t n, CagLiveText **out, size_t *count) {
+  *count = 0;
+  *out = calloc(n + 1, sizeof **out);
+  for (; *out && *count < n; ++*count) {
+    CagLiveText *t = &(*out)[*count];
+    *t = (CagLiveText){strdup(from[*count].name), strdup(from[*count].text)};
+    if (t->name && t->text) continue;
+    free_text(t);
+    return false;
+  }
+  return *out;
 }
 
 bool cag_live_request_copy(const CagLiveRequest *from, CagLiveRequest *to) {
   *to = *from;
-  to->defines = calloc(from->define_count + 1, sizeof *to->defines);
-  to->texts = calloc(from->text_count + 1, sizeof *to->texts);
-  bool ok = to->defines && to->texts;
-  for (size_t i = 0; ok && i < from->define_count; i++) {
-    to->defines[i].name = strdup(from->defines[i].name);
-    to->defines[i].value = strdup(from->defines[i].value);
-    ok = to->defines[i].name && to->defines[i].value;
-  }
-  for (size_t i = 0; ok && i < from->text_count; i++) {
-    to->texts[i].path = strdup(from->texts[i].path);
-    to->texts[i].text = strdup(from->texts[i].text);
-    ok = to->texts[i].path && to->texts[i].text;
-  }
-  if (!to->defines) to->define_count = 0;
-  if (!to->texts) to->text_count = 0;
+  to->texts = NULL;
+  to->text_count = 0;
+  const bool ok = copy_texts(from->defines, from->define_count, &to->defines, &to->define_count) &&
+                  copy_texts(from->texts, from->text_count, &to->texts, &to->text_count);
   if (!ok) cag_live_request_free(to);
   return ok;
 }
 
-static bool read_defines(const cJSON *params, CagLiveRequest *q) {
-  const int n = cJSON_GetArraySize(params);
-  q->defines = calloc((size_t)n + 1, sizeof *q->defines);
-  if (!q->defines) return false;
+// Reads the texts of an object, with their names.
+static bool read_texts(const cJSON *object, CagLiveText **out, size_t *count) {
+  *out = calloc((size_t)cJSON_GetArraySize(object) + 1, sizeof **out);
+  if (!*out) return false;
   const cJSON *item;
-  cJSON_ArrayForEach(item, params) {
+  cJSON_ArrayForEach(item, object) {
     if (!cJSON_IsString(item)) continue;
-    CagLiveDefine *d = &q->defines[q->define_count++];
-    d->name = strdup(item->string);
-    d->value = strdup(item->valuestring);
-    if (!d->name || !d->value) return false;
-  }
-  return true;
-}
-
-static bool read_texts(const cJSON *files, CagLiveRequest *q) {
-  const int n = cJSON_GetArraySize(files);
-  q->texts = calloc((size_t)n + 1, sizeof *q->texts);
-  if (!q->texts) return false;
-  const cJSON *item;
-  cJSON_ArrayForEach(item, files) {
-    if (!cJSON_IsString(item)) continue;
-    CagLiveText *t = &q->texts[q->text_count++];
-    t->path = strdup(item->string);
-    t->text = strdup(item->valuestring);
-    if (!t->path || !t->text) return false;
+    CagLiveText *t = &(*out)[(*count)++];
+    *t = (CagLiveText){strdup(item->string), strdup(item->valuestring)};
+    if (!t->name || !t->text) return false;
   }
   return true;
 }
@@ -88,8 +74,10 @@ bool cag_live_request_read(const char *text, size_t size, CagLiveRequest *out) {
       .has_time = cJSON_IsNumber(time),
       .time = cJSON_IsNumber(time) ? time->valuedouble : 0,
       .frames = cJSON_IsNumber(frames) ? frames->valuedouble : 1};
-  const bool ok = read_defines(cJSON_GetObjectItemCaseSensitive(json, "params"), out) &&
-                  read_texts(cJSON_GetObjectItemCaseSensitive(json, "files"), out);
+  const bool ok =
+      read_texts(cJSON_GetObjectItemCaseSensitive(json, "params"), &out->defines,
+                 &out->define_count) &&
+      read_texts(cJSON_GetObjectItemCaseSensitive(json, "files"), &out->texts, &out->text_count);
   cJSON_Delete(json);
   if (!ok) cag_live_request_free(out);
   return ok;
@@ -97,13 +85,13 @@ bool cag_live_request_read(const char *text, size_t size, CagLiveRequest *out) {
 
 const char *cag_live_request_text(const CagLiveRequest *r, const char *path) {
   for (size_t i = 0; i < r->text_count; i++)
-    if (!strcmp(r->texts[i].path, path)) return r->texts[i].text;
+    if (!strcmp(r->texts[i].name, path)) return r->texts[i].text;
   return NULL;
 }
 
 void cag_live_request_drop_text(CagLiveRequest *r, const char *path) {
   for (size_t i = 0; i < r->text_count; i++) {
-    if (strcmp(r->texts[i].path, path) != 0) continue;
+    if (strcmp(r->texts[i].name, path) != 0) continue;
     free_text(&r->texts[i]);
     r->texts[i] = r->texts[--r->text_count];
     return;

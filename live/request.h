@@ -6,21 +6,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef struct CagLiveDefine {
-  char *name, *value;
-} CagLiveDefine;
-
-// The unsaved text of a file, which replaces that on the disk.
 typedef struct CagLiveText {
-  char *path; // below the folder
-  char *text;
+  char *name, *text;
 } CagLiveText;
 
 // Everything is malloc'd.
 typedef struct CagLiveRequest {
+  // Unsaved texts, which replace files. Their names are paths below the folder.
   CagLiveText *texts;
   size_t text_count;
-  CagLiveDefine *defines;
+  CagLiveText *defines; // expressions of params
   size_t define_count;
   bool has_time, loop;
   double time, frames;

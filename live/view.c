@@ -626,9 +626,9 @@ static void start_first_run(View *v) {
   const CagViewOptions *o = v->options;
   CagLiveRequest q = {.coarse = 1, .defines = calloc(o->define_count + 1, sizeof *q.defines)};
   for (size_t i = 0; q.defines && i < o->define_count; i++) {
-    CagLiveDefine *d = &q.defines[q.define_count++];
-    *d = (CagLiveDefine){strdup(o->define_names[i]), strdup(o->define_values[i])};
-    if (d->name && d->value) continue;
+    CagLiveText *d = &q.defines[q.define_count++];
+    *d = (CagLiveText){strdup(o->define_names[i]), strdup(o->define_values[i])};
+    if (d->name && d->text) continue;
     cag_live_request_free(&q);
     return;
   }
