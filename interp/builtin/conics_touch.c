@@ -135,7 +135,7 @@ bool cag_conics_rounded_region(CagCall *call, const struct cag_conics_rounded_re
   if (cag_region_is_empty(region)) out = cag_region_retain(region);
   else if (!cag_geometry_ok(call, cag_region_from_loops(loops, region->count, &out, call->err)))
     return false;
-  *result = cag_region_value(call->vm, out, &shape->placement);
+  *result = cag_region_value(call->vm, out, shape->placement);
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

@@ -289,7 +289,7 @@ static bool read_area(CagCall *call, double *area, CagVec3 *centroid, int *dimen
     return cag_geometry_ok(call,
                            cag_curve_area(CAG_AS_SHAPE(v)->as.curve, area, centroid, call->err));
   const CagShape *shape = CAG_AS_SHAPE(v);
-  const CagTransform *place = &shape->placement;
+  const CagTransform *place = shape->placement;
   if (!cag_geometry_ok(call, cag_region_area(shape->as.region, area, centroid, call->err)))
     return false;
   CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));

@@ -177,7 +177,7 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   switch (v.type) {
   case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
   case CAG_REGION:
-    return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
+    return body_add_region(vm, b, shape->as.region, shape->placement, tolerance, err);
   case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
   case CAG_MESH: return cag_parts_add_mesh(b->into, shape->as.mesh, NULL, 0, err);
   case CAG_LABEL: return cag_parts_add_point(b->into, shape->as.label->at, err);

@@ -76,7 +76,7 @@ static CagStatus add_region(Cloud *cloud, const CagShape *shape, CagError *err) 
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < shape->as.region->count; i++) {
     CagCurve *loop;
-    status = cag_curve_transform(shape->as.region->loops[i], &shape->placement, &loop, err);
+    status = cag_curve_transform(shape->as.region->loops[i], shape->placement, &loop, err);
     if (status) break;
     status = add_curve(cloud, loop, shape->tolerance, err);
     cag_curve_release(loop);

@@ -157,7 +157,7 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
     CagSurface *flat = NULL;
     if (cag_region_is_empty(shape->as.region))
       return cag_mesh_new(0, 0, false, false, false, out, err);
-    CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
+    CagStatus status = cag_surface_planar(shape->as.region, shape->placement, &flat, err);
     if (!status) status = cag_surface_tessellate(flat, &own, out, err);
     cag_surface_release(flat);
     return status;

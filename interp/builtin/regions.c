@@ -110,7 +110,7 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
     CagCurve *placed = NULL;
     CagValue loop;
     CagStatus status =
-        cag_curve_transform(shape->as.region->loops[i], &shape->placement, &placed, call->err);
+        cag_curve_transform(shape->as.region->loops[i], shape->placement, &placed, call->err);
     if (!cag_curve_result(call, status, &placed, &loop) || !cag_builder_add(call->vm, loops, loop))
       return false;
   }
@@ -159,14 +159,14 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
   if (o->first.type == CAG_UNSET) o->first = v;
   if (v.type == CAG_CURVE)
     return cag_geometry_ok(o->call, cag_region_new(shape->as.curve, NULL, 0, out, o->call->err));
-  if (!o->based) o->base = shape->placement;
+  if (!o->based) o->base = shape->placement[0];
   o->based = true;
-  if (!memcmp(o->base.m, shape->placement.m, sizeof o->base.m)) {
+  if (!memcmp(o->base.m, shape->placement->m, sizeof o->base.m)) {
     *out = cag_region_retain(shape->as.region);
     return true;
   }
   CagTransform t;
-  CagStatus status = between_planes(&o->base, &shape->placement, operand, &t, o->call->err);
+  CagStatus status = between_planes(&o->base, shape->placement, operand, &t, o->call->err);
   if (!status) status = cag_region_transform(shape->as.region, &t, out, o->call->err);
   return cag_geometry_ok(o->call, status);
 }
@@ -236,7 +236,7 @@ bool cag_regions_offset(CagCall *call, const struct cag_regions_offset *a, CagVa
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a tolerance greater than 0");
   CagStatus status = cag_region_offset(shape->as.region, a->d, tolerance, &out, call->err);
   if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_region_value(call->vm, out, &shape->placement);
+  *result = cag_region_value(call->vm, out, shape->placement);
   cag_shape_say_alike(*result, a->R);
   return true;
 }
@@ -247,7 +247,7 @@ bool cag_regions_inertia(CagCall *call, const struct cag_regions_inertia *a, Cag
   const double density = a->density;
   double area = 0, xx = 0, xy = 0, yy = 0, *m;
   CagVec3 center;
-  if (!shape->placement.planar)
+  if (!shape->placement->planar)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects a region of the plane, found one that was moved into space");
   const bool empty = cag_region_is_empty(shape->as.region);

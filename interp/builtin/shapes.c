@@ -224,7 +224,7 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
   CagValue v = call->values[argument];
   *placement = cag_transform_identity();
   if (v.type == CAG_REGION) {
-    *placement = CAG_AS_SHAPE(v)->placement;
+    *placement = CAG_AS_SHAPE(v)->placement[0];
     *out = cag_region_retain(CAG_AS_SHAPE(v)->as.region);
     return true;
   }
@@ -255,7 +255,7 @@ static void bounds_join(CagBounds *into, const CagBounds *b) {
 // The exact bounds of a placed region are those of its transformed boundary.
 static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimension,
                                CagError *err) {
-  const CagTransform *place = &shape->placement;
+  const CagTransform *place = shape->placement;
   *dimension = place->planar ? 2 : 3;
   *out = CAG_BOUNDS_EMPTY;
   if (cag_region_is_empty(shape->as.region)) return cag_region_bounds(shape->as.region, out, err);

@@ -387,7 +387,7 @@ static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
   CagMesh *m = NULL;
   CagStatus status = CAG_OK;
   if (v.type == CAG_SURFACE) s = cag_surface_retain(shape->as.surface);
-  else status = cag_surface_planar(shape->as.region, &shape->placement, &s, c->call->err);
+  else status = cag_surface_planar(shape->as.region, shape->placement, &s, c->call->err);
   if (!status) status = cag_surface_clip(s, c->by, &how, &m, c->call->err);
   cag_surface_release(s);
   return add_clipped(c, status, m, v, into);

@@ -95,7 +95,7 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
       faces[i] = cag_surface_retain(shape->as.surface);
     } else if (v.type == CAG_REGION) {
       if (!cag_geometry_ok(
-              call, cag_surface_planar(shape->as.region, &shape->placement, &faces[i], call->err)))
+              call, cag_surface_planar(shape->as.region, shape->placement, &faces[i], call->err)))
         return false;
     } else {
       return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",

@@ -119,7 +119,7 @@ static CagStatus body_mesh(CagValue v, const CagTessellation *how, CagMesh **out
     return CAG_OK;
   }
   if (v.type == CAG_SOLID) return cag_solid_tessellate(shape->as.solid, how, out, err);
-  CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
+  CagStatus status = cag_surface_planar(shape->as.region, shape->placement, &flat, err);
   if (!status) status = cag_surface_tessellate(flat, how, out, err);
   cag_surface_release(flat);
   return status;

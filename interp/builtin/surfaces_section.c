@@ -161,7 +161,7 @@ static bool section_of(CagCall *call, CagValue v, const void *question, CagCurve
   else if (v.type == CAG_MESH)
     status = cag_mesh_section(shape->as.mesh, &a->plane, list, call->err);
   else if (v.type == CAG_REGION) {
-    status = cag_surface_planar(shape->as.region, &shape->placement, &flat, call->err);
+    status = cag_surface_planar(shape->as.region, shape->placement, &flat, call->err);
     if (!status) status = cag_surface_section(flat, &a->plane, a->tolerance, list, call->err);
     cag_surface_release(flat);
   } else return cag_fail_type(call, 0, "surfaces, solids, meshes, or regions");

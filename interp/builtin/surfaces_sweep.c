@@ -234,7 +234,7 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
         shape->as.region->count, i);
   CagCurve *placed = NULL;
   CagStatus status =
-      cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, call->err);
+      cag_curve_transform(shape->as.region->loops[0], shape->placement, &placed, call->err);
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_curve(call, placed);
   *out = placed;

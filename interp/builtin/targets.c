@@ -26,7 +26,7 @@ static CagStatus make_caster(CagValue v, CagCaster **out, CagError *err) {
   if (v.type == CAG_MESH) return cag_caster_of_mesh(s->as.mesh, out, err);
   if (v.type == CAG_SURFACE) return cag_caster_of_surface(s->as.surface, out, err);
   CagSurface *flat = NULL;
-  CagStatus status = cag_surface_planar(s->as.region, &s->placement, &flat, err);
+  CagStatus status = cag_surface_planar(s->as.region, s->placement, &flat, err);
   if (!status) status = cag_caster_of_surface(flat, out, err);
   cag_surface_release(flat);
   return status;

@@ -235,9 +235,9 @@ static void destroy_region(CagObject *o) { cag_region_release(((CagShape *)o)->a
 
 static bool move_region(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagTransform place = cag_transform_multiply(t, &shape->placement);
+  CagTransform place = cag_transform_multiply(t, shape->placement);
   CagRegion *moved;
-  if (t->planar && shape->placement.planar) {
+  if (t->planar && shape->placement->planar) {
     if (!cag_geometry_ok(call, cag_region_transform(shape->as.region, &place, &moved, call->err)))
       return false;
     *result = cag_region_value(call->vm, moved, NULL);

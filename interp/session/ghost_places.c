@@ -52,8 +52,9 @@ static bool is_same_span(CagSpan a, CagSpan b) { return a.start == b.start && a.
 // Whether a call is that of an expression, or is made by the library for it.
 static bool is_step_at(const CagOriginStep *step, const CagSource *source, CagSpan span) {
   if (!step) return false;
-  return (step->source == source && is_same_span(step->span, span)) ||
-         (step->caller == source && is_same_span(step->caller_span, span));
+  const CagOriginSite *at = step->site;
+  return (at->source == source && is_same_span(at->span, span)) ||
+         (at->caller == source && is_same_span(at->caller_span, span));
 }
 
 static void look_below(void *context, const CagExpr *e) {

@@ -40,9 +40,10 @@ static bool item_of_shape(CagValue v, CagItem *out) {
                               [CAG_MESH] = CAG_ITEM_MESH};
   if (v.type < CAG_CURVE || v.type > CAG_MESH) return false;
   const CagShape *shape = CAG_AS_SHAPE(v);
-  *out = (CagItem){.kind = (CagItemKind)KINDS[v.type],
-                   .placement = v.type == CAG_REGION ? shape->placement : cag_transform_identity(),
-                   .tolerance = shape->tolerance};
+  *out =
+      (CagItem){.kind = (CagItemKind)KINDS[v.type],
+                .placement = v.type == CAG_REGION ? shape->placement[0] : cag_transform_identity(),
+                .tolerance = shape->tolerance};
   out->as.curve = shape->as.curve; // the members of both unions are pointers to the geometry
   return true;
 }
@@ -93,14 +94,15 @@ static CagTransform upright(const CagTransform *context) {
 
 // The inputs of a call; `context` has the coordinates of the call.
 static void walk_inputs(const Walk *w, const CagOriginStep *step, const CagTransform *context) {
-  for (size_t i = 0; step->inputs && i < step->inputs->count; i++) {
-    const CagValue v = step->inputs->items[i].shape;
+  const CagInputs *inputs = cag_step_inputs(step);
+  for (size_t i = 0; inputs && i < inputs->count; i++) {
+    const CagValue v = inputs->items[i].shape;
     Walk inner = {.out = w->out, .context = *context, .origin = &CAG_AS_SHAPE(v)->origin};
     if (!item_of_shape(v, &inner.like.item)) continue;
     inner.like.shape = CAG_AS_SHAPE(v);
     inner.like.part = w->like.part;
     inner.like.user = step;
-    inner.like.parameter = step->inputs->items[i].parameter;
+    inner.like.parameter = inputs->items[i].parameter;
     find_axis(w, &inner.like);
     if (stands_upright(&inner.like, context)) inner.context = upright(context);
     walk_shape(&inner);
@@ -169,7 +171,7 @@ static void walk_shape(const Walk *w) {
   for (; step; next = step, step = step->before) {
     CagTransform back;
     if (next && next->kind == CAG_STEP_MOVED) {
-      const CagTransform motion = cag_motion_transform(next->motion);
+      const CagTransform motion = cag_motion_transform(cag_step_motion(next));
       if (!is_identity(&motion)) shown = false;
       // A state that a projection has flattened is lost.
       if (cag_transform_inverse(&motion, &back, &ignored)) return;
@@ -235,7 +237,7 @@ static CagVec3 direction_at(const CagTransform *t, CagVec3 at, CagVec3 v) {
 }
 
 static void describe_motion(const CagGhost *g, CagGhostView *out) {
-  const CagTransform t = cag_motion_transform(g->next->motion);
+  const CagTransform t = cag_motion_transform(cag_step_motion(g->next));
   const CagVec3 step = {t.m[0][3], t.m[1][3], t.m[2][3]}, origin = {0, 0, 0};
   const CagTransform frame = cag_transform_multiply(&g->context, &t);
   CagTransformClass c;
@@ -310,7 +312,7 @@ static int give_ghost(CagSession *s, const CagGhost *g, bool (*has)(void *contex
   CagMeshView mesh;
   CagGhostView view = {.type = cag_session_item_type(&g->item),
                        .part = g->part < s->scene.item_count ? s->scene.items[g->part].name : NULL};
-  if (g->step) view.place = cag_session_place(g->step->source, g->step->span);
+  if (g->step) view.place = cag_session_place(g->step->site->source, g->step->site->span);
   describe_next(g, &view);
   const int status = cag_session_item_mesh(s, &g->item, g->shape, 1, has, context, &mesh);
   if (status != CAG_STATUS_OK) return status;

@@ -93,7 +93,7 @@ static void find_still(const CagItem *item, const CagShape *shape, Still *out, C
     out->moved = true;
     out->item.placement = cag_transform_identity();
   } else if (before) {
-    out->motion = before->motion;
+    out->motion = cag_motion_transform(before->motion);
     out->moved = true;
     share_geometry(&out->item, before->shape);
   }

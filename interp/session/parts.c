@@ -73,10 +73,11 @@ bool cag_session_part(CagSession *s, size_t i, CagPartView *out) {
 }
 
 bool cag_origin_other_caller(const CagOriginStep *step, const CagOriginStep *later) {
-  if (!step->caller) return false;
-  return !later || later->caller != step->caller ||
-         later->caller_span.start != step->caller_span.start ||
-         later->caller_span.end != step->caller_span.end;
+  const CagOriginSite *at = step->site, *after = later ? later->site : NULL;
+  if (!at->caller) return false;
+  return !after || after->caller != at->caller ||
+         after->caller_span.start != at->caller_span.start ||
+         after->caller_span.end != at->caller_span.end;
 }
 
 bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **what,
@@ -93,12 +94,12 @@ bool cag_session_part_place(CagSession *s, size_t part, size_t k, const char **w
   for (const CagOriginStep *step = source->shape->origin.last; step; step = step->before) {
     *what = step->before ? "changed" : "made";
     if (cag_origin_other_caller(step, later) && --k == 0) {
-      *out = cag_session_place(step->caller, step->caller_span);
+      *out = cag_session_place(step->site->caller, step->site->caller_span);
       return true;
     }
     later = step;
     if (--k > 0) continue;
-    *out = cag_session_place(step->source, step->span);
+    *out = cag_session_place(step->site->source, step->site->span);
     return true;
   }
   return false;

@@ -148,18 +148,18 @@ static const CagExpr *argument_of(const Written *w, const CagSignature *s, size_
 }
 
 CagLiteral cag_literal_of_argument(const CagVm *vm, const CagOriginStep *step, size_t parameter) {
-  const CagModuleUnit *m = module_of(vm, step->source);
-  const CagSignature *s = cag_builtin_signature_of(step->row);
+  const CagModuleUnit *m = module_of(vm, step->site->source);
+  const CagSignature *s = cag_builtin_signature_of(step->site->row);
   const CagExpr *found = NULL;
   for (size_t i = 0; m && s && !found && i < m->ast->count; i++)
-    if (contains(m->ast->statements[i]->span, step->span))
-      found = find_in_statement(m->ast->statements[i], step->span);
+    if (contains(m->ast->statements[i]->span, step->site->span))
+      found = find_in_statement(m->ast->statements[i], step->site->span);
   if (!found) return unknown;
   const Written w = written_call(found);
   const CagExpr *callee = w.callee;
   while (callee->kind == CAG_EXPR_GROUP) callee = callee->as.unary.operand;
   if (callee->kind != CAG_EXPR_NAME || callee->as.name.binding != CAG_BIND_BUILTIN ||
-      callee->as.name.index != step->index)
+      callee->as.name.index != step->site->index)
     return unknown;
   return (CagLiteral){m, argument_of(&w, s, parameter)};
 }

@@ -48,7 +48,7 @@ static void add_spot(Walk *w, const CagOriginStep *step, const Frame *f, const d
   if (!CAG_RESERVE(out->items, out->capacity, out->count + 1)) cag_vm_out_of_memory(w->vm);
   CagPointSpot *p = &out->items[out->count++];
   *p = (CagPointSpot){.step = step,
-                      .function = cag_builtin_name(step->index),
+                      .function = cag_builtin_name(step->site->index),
                       .map = frame_map(f, (int)dimension),
                       .dimension = (int)dimension,
                       .literal = literal};
@@ -95,29 +95,38 @@ static bool has_alternative(const char *words, const char *wanted) {
 // The points in one argument.
 static void add_argument(Walk *w, const CagOriginStep *step, const Frame *f, size_t k,
                          const char *words) {
-  const CagValue v = step->call->values[k];
+  const CagValue v = step->call[0]->values[k];
   const double *x;
   size_t n;
   if (v.type != CAG_LIST) return;
   const CagList *list = CAG_AS_LIST(v);
-  const bool point = has_alternative(words, "point") || cag_is_translation(step->row);
   const CagLiteral literal =
       w->literals ? cag_literal_of_argument(w->vm, step, k) : (CagLiteral){0};
-  if (point && cag_as_vector(v, &x, &n) && (n == 2 || n == 3)) add_spot(w, step, f, x, n, literal);
+  if (has_alternative(words, "point") && cag_as_vector(v, &x, &n) && (n == 2 || n == 3))
+    add_spot(w, step, f, x, n, literal);
   else if (has_alternative(words, "list of points") && list->dim != 1)
     add_points(w, step, f, list, literal);
   else if (has_alternative(words, "list of rows of points")) add_rows(w, step, f, list, literal);
 }
 
-// Calls that only move shapes or give them attributes have no points, except translations.
+// Calls that only move shapes or give them attributes have no points.
 static void add_call(Walk *w, const CagOriginStep *step, const Frame *f) {
-  const CagOriginCall *call = step->call;
+  const CagOriginCall *call = cag_step_call(step);
   if (!call) return;
-  const CagSignature *s = cag_builtin_signature_of(step->row);
-  const bool changes = !strncmp(step->row->result, "as ", 3);
-  if (!s || (changes && !cag_is_translation(step->row))) return;
+  const CagSignature *s = cag_builtin_signature_of(step->site->row);
+  if (!s || !strncmp(step->site->row->result, "as ", 3)) return;
   const size_t count = call->count < s->count ? call->count : s->count;
-  for (size_t k = changes ? 1 : 0; k < count; k++) add_argument(w, step, f, k, s->words[k]);
+  for (size_t k = 0; k < count; k++) add_argument(w, step, f, k, s->words[k]);
+}
+
+// The vector of a translation is a point of the scene after it.
+static void add_translation(Walk *w, const CagOriginStep *step, const Frame *f) {
+  double x[3];
+  const CagMotionNote *motion = cag_step_motion(step);
+  const size_t n = motion ? cag_motion_vector(motion, x) : 0;
+  if (n == 0) return;
+  add_spot(w, step, f, x, n,
+           w->literals ? cag_literal_of_argument(w->vm, step, 1) : (CagLiteral){0});
 }
 
 // --- Steps ---
@@ -151,21 +160,22 @@ static bool is_upright_axis(const CagOriginCall *call) {
 static void walk_chain(Walk *w, const CagOriginStep *step, Frame f) {
   if (++w->depth > MOST_DEPTH) step = NULL;
   for (; step && ++w->steps <= MOST_STEPS; step = step->before) {
-    const char *function = step->row ? cag_builtin_name(step->index) : ""; // an operator
-    // The vector of a translation is a point of the scene after it.
-    if (cag_is_translation(step->row)) add_call(w, step, &f);
-    if (!strcmp(function, "revolve") && is_upright_axis(step->call) && !f.lifted) {
+    const char *function =
+        step->site->row ? cag_builtin_name(step->site->index) : ""; // an operator
+    const CagOriginCall *call = cag_step_call(step);
+    add_translation(w, step, &f);
+    if (!strcmp(function, "revolve") && is_upright_axis(call) && !f.lifted) {
       f.outer = cag_transform_multiply(&f.outer, &f.inner);
       f.inner = cag_transform_identity();
       f.lifted = true;
     }
-    if (step->motion) {
-      const CagTransform motion = cag_motion_transform(step->motion);
+    if (cag_step_motion(step)) {
+      const CagTransform motion = cag_motion_transform(cag_step_motion(step));
       f.inner = cag_transform_multiply(&f.inner, &motion);
     }
-    if (!cag_is_translation(step->row) && !bends(function)) add_call(w, step, &f);
-    for (size_t i = 0; step->call && i < step->call->count; i++)
-      if (i > 0 || !bends(function)) walk_operands(w, step->call->values[i], &f);
+    if (!bends(function)) add_call(w, step, &f);
+    for (size_t i = 0; call && i < call->count; i++)
+      if (i > 0 || !bends(function)) walk_operands(w, call->values[i], &f);
     if (bends(function)) break;
   }
   w->depth--;

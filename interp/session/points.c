@@ -85,8 +85,8 @@ static int read_numbers(const CagVm *vm, const CagPointSpot *spot, CagPointView 
 // Why no coordinate of a point is a number in the script.
 static void tell_why(const CagPointSpot *spot, FoundPoint *p) {
   const CagExpr *e = spot->literal.expr;
-  const CagSource *source = e ? spot->literal.module->source : spot->step->source;
-  if (spot->step->source->library || source->library) {
+  const CagSource *source = e ? spot->literal.module->source : spot->step->site->source;
+  if (spot->step->site->source->library || source->library) {
     snprintf(p->why, sizeof p->why, "made by a function of the standard library");
   } else if (!e) {
     snprintf(p->why, sizeof p->why, "computed by the script, without a param that has a range");

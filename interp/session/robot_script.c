@@ -47,8 +47,8 @@ static const CagModuleUnit *unit_of(const CagVm *vm, const CagSource *source) {
 }
 
 static bool find_call(const CagVm *vm, const CagOriginStep *step, Search *out) {
-  *out = (Search){.span = step->span};
-  const CagModuleUnit *m = step->source ? unit_of(vm, step->source) : NULL;
+  *out = (Search){.span = step->site->span};
+  const CagModuleUnit *m = step->site->source ? unit_of(vm, step->site->source) : NULL;
   if (!m || !m->ast) return false;
   for (size_t i = 0; i < m->ast->count && !out->call; i++)
     cag_tree_of_statement(m->ast->statements[i], look_for_call, out);
@@ -113,11 +113,11 @@ static Said said_joints(const CagSession *s, const CagSessionRobot *robot) {
   const CagOriginStep *step = shape->origin.last;
   while (step && !find_call(s->vm, step, &found)) step = step->before;
   if (!step) return (Said){.why = "the script shows the robot without posed"};
-  if (step->source->library) return (Said){.why = "the library calls posed"};
+  if (step->site->source->library) return (Said){.why = "the library calls posed"};
   const CagExpr *q = argument_q(&found);
   if (!q) return (Said){.why = "the script gives posed no q"};
   const CagExpr *list = said_value(q);
-  return (Said){step->source, list, why_not(list, robot->chain->joint_count)};
+  return (Said){step->site->source, list, why_not(list, robot->chain->joint_count)};
 }
 
 const char *cag_session_robot_joint_place(CagSession *s, size_t robot, size_t joint,

@@ -299,7 +299,7 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
   case CAG_REGION:
     item = add_item(b, CAG_ITEM_REGION, name ? name : "region");
     if (item) item->as.region = cag_region_retain(shape->as.region);
-    if (item) item->placement = shape->placement;
+    if (item) item->placement = shape->placement[0];
     break;
   case CAG_SURFACE:
     item = add_item(b, CAG_ITEM_SURFACE, name ? name : surface_name(shape->as.surface));

@@ -57,11 +57,12 @@ typedef struct Trail {
 
 static void digest_chain(const CagOriginStep *last, CagDigest *d) {
   for (const CagOriginStep *step = last; step; step = step->before) {
-    const uint64_t span = ((uint64_t)step->span.start << 32) | step->span.end,
-                   caller = ((uint64_t)step->caller_span.start << 32) | step->caller_span.end;
-    cag_digest_word(d, (uint64_t)(size_t)step->source);
+    const uint64_t span = ((uint64_t)step->site->span.start << 32) | step->site->span.end,
+                   caller = ((uint64_t)step->site->caller_span.start << 32) |
+                            step->site->caller_span.end;
+    cag_digest_word(d, (uint64_t)(size_t)step->site->source);
     cag_digest_word(d, span);
-    if (step->caller) cag_digest_word(d, caller);
+    if (step->site->caller) cag_digest_word(d, caller);
   }
 }
 
@@ -81,8 +82,8 @@ static void add_chain(Source *out, const CagOriginStep *last, const char *what, 
   for (const CagOriginStep *step = last; step; later = step, step = step->before) {
     const char *own = what ? what : step->before ? "changed" : "made";
     if (cag_origin_other_caller(step, later))
-      add_place(out, &(SourcePlace){step->caller, step->caller_span, own}, failed);
-    add_place(out, &(SourcePlace){step->source, step->span, own}, failed);
+      add_place(out, &(SourcePlace){step->site->caller, step->site->caller_span, own}, failed);
+    add_place(out, &(SourcePlace){step->site->source, step->site->span, own}, failed);
   }
 }
 

@@ -315,6 +315,7 @@ static void mark_evenly(CagHeap *h) {
 void cag_collect(CagVm *vm) {
   CagHeap *h = &vm->heap;
   if (h->unfinished) mark_evenly(h);
+  vm->recent = (CagRecentOrigins){0};
   h->mark = h->mark == 1 ? 2 : 1;
   const bool short_of_memory = vm->account.used > vm->account.limit / 4;
   if (vm->account.used > vm->account.limit / 2) cag_memo_clear(vm);

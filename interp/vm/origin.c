@@ -23,11 +23,13 @@ enum { MOST_INPUTS = 64 };
 // when the first shape is found.
 typedef struct NotedCall {
   CagVm *vm;
-  const CagCall *call; // NULL: an operator
-  CagOriginStep step;
+  const CagCall *call;    // NULL: an operator
+  CagOriginSite at;       // what its site is like
+  CagOriginSite *site;    // NULL: not made yet
   const CagValue *values; // arguments
   size_t count;
-  bool copied; // step.call has been made
+  bool sought_call; // `kept` has been made
+  CagOriginCall *kept;
   bool sought; // `inputs` has been made
   CagInputs *inputs;
 } NotedCall;
@@ -84,9 +86,10 @@ static bool holds_steps(CagValue list) {
   return found;
 }
 
-// Whether an argument of a call may have points, or a vector that tells where shapes are.
+// Whether an argument of a call may have points, or a vector that tells where shapes are. The vector
+// of a translation is in its motion.
 static bool has_points(const CagBuiltin *row, const char *words) {
-  if (!strncmp(row->result, "as ", 3)) return !strcmp(words, "vector") && cag_is_translation(row);
+  if (!strncmp(row->result, "as ", 3)) return false;
   // Of vectors, only the axis of a revolution tells where points are.
   return strstr(words, "point") ||
          (strstr(words, "vector") && !strcmp(cag_builtin_signature_of(row)->name, "revolve"));
@@ -168,22 +171,82 @@ static CagInputs *inputs_of(NotedCall *c) {
   return c->inputs;
 }
 
+// --- What steps share ---
+
+static size_t slot_of(uint64_t hash) {
+  return (hash * 0x9e3779b97f4a7c15u >> 32) % CAG_RECENT_COUNT;
+}
+
+// Whether what is made now may be shared: not in a call from geometry, which older objects must not
+// refer to (heap.c).
+static bool may_share(const CagVm *vm) { return vm->heap.depth == 0; }
+
+static CagOriginSite *site_of(NotedCall *c) {
+  if (c->site) return c->site;
+  const CagOriginSite *at = &c->at;
+  CagOriginSite **slot =
+      &c->vm->recent.sites[slot_of((uint64_t)at->span.start << 20 ^ at->caller_span.start)];
+  const CagOriginSite *s = *slot;
+  if (s && s->source == at->source && s->span.start == at->span.start &&
+      s->span.end == at->span.end && s->caller == at->caller &&
+      s->caller_span.start == at->caller_span.start && s->caller_span.end == at->caller_span.end &&
+      s->row == at->row && s->index == at->index)
+    return c->site = *slot;
+  c->site = cag_alloc(c->vm, CAG_INTERNAL, sizeof *c->site);
+  const CagObject head = c->site->head;
+  *c->site = *at;
+  c->site->head = head;
+  c->site->head.flags = CAG_INTERNAL_SITE;
+  if (may_share(c->vm)) *slot = c->site;
+  return c->site;
+}
+
+static bool is_same_motion(const CagMotionNote *a, const CagMotionNote *b) {
+  return a->numbers == b->numbers && a->given == b->given && a->planar == b->planar &&
+         a->in_front == b->in_front &&
+         !memcmp(a->m, b->m, cag_motion_bytes(a) - offsetof(CagMotionNote, m));
+}
+
+static CagMotionNote *shared_motion(CagVm *vm, CagMotionNote *note) {
+  CagDigest d = cag_digest_start();
+  cag_digest_numbers(&d, note->m, note->numbers);
+  CagMotionNote **slot = &vm->recent.motions[slot_of(d.a)];
+  if (*slot && is_same_motion(*slot, note)) return *slot;
+  if (may_share(vm)) *slot = note;
+  return note;
+}
+
+// The motion of a shape, with the vector that the call was given if it is a translation.
+static CagMotionNote *motion_of(NotedCall *c, CagMotionNote *note) {
+  const double *x;
+  size_t n;
+  if (!c->call || !cag_is_translation(c->call->builtin) || c->count < 2 ||
+      !cag_as_vector(c->values[1], &x, &n) || (n != 2 && n != 3))
+    return shared_motion(c->vm, note);
+  const double v[] = {x[0], x[1], n == 3 ? x[2] : 0};
+  if (note->numbers == 3 && !memcmp(v, note->m, sizeof v)) {
+    note->given = (uint8_t)n;
+    return shared_motion(c->vm, note);
+  }
+  const CagTransform t = cag_motion_transform(note);
+  return shared_motion(c->vm, cag_motion_note(c->vm, &t, x, n));
+}
+
 // --- Steps ---
 
 static void add_step(NotedCall *c, CagValue v) {
   CagShape *s = CAG_AS_SHAPE(v);
-  CagOriginStep *step = &c->step;
-  step->motion = s->motion;
-  step->inputs = NULL;
-  step->kind = CAG_STEP_SHAPED;
-  if (s->motion) step->kind = CAG_STEP_MOVED;
-  else if (s->copied) step->kind = CAG_STEP_SAID;
-  else if (!s->origin.operands) step->inputs = inputs_of(c);
-  if (c->call && !c->copied) step->call = kept_call(c->call, s->origin.last);
-  c->copied = true;
+  CagOriginStep step = {.site = site_of(c), .kind = CAG_STEP_SHAPED};
+  if (s->motion) {
+    step.kind = CAG_STEP_MOVED;
+    step.as.motion = motion_of(c, s->motion);
+  } else if (s->copied) step.kind = CAG_STEP_SAID;
+  else if (!s->origin.operands) step.as.inputs = inputs_of(c);
+  if (c->call && !c->sought_call) c->kept = kept_call(c->call, s->origin.last);
+  c->sought_call = true;
   s->fresh = s->copied = false;
   s->motion = NULL;
-  cag_origin_add(c->vm, &s->origin, step);
+  cag_origin_add(c->vm, &s->origin, &step, c->kept);
 }
 
 // Adds a call to the origins of the shapes that it made. The first of a list tells whether it made
@@ -202,15 +265,16 @@ static void add_call_to_origin(NotedCall *c, CagValue v) {
 
 static void note(NotedCall *c, CagValue result) {
   if (!cag_is_shape(result) && result.type != CAG_LIST) return;
-  if (!cag_vm_place(c->vm, &c->step.source, &c->step.span)) return;
-  if (c->step.source->library) cag_vm_caller(c->vm, &c->step.caller, &c->step.caller_span);
+  CagOriginSite *at = &c->at;
+  if (!cag_vm_place(c->vm, &at->source, &at->span)) return;
+  if (at->source->library) cag_vm_caller(c->vm, &at->caller, &at->caller_span);
   add_call_to_origin(c, result);
 }
 
 void cag_origin_note(const CagCall *call, size_t index, CagValue result) {
   note(&(NotedCall){.vm = call->vm,
                     .call = call,
-                    .step = {.row = call->builtin, .index = index},
+                    .at = {.row = call->builtin, .index = index},
                     .values = call->values,
                     .count = call->count},
        result);

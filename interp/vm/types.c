@@ -415,9 +415,10 @@ void cag_mark_origin(CagHeap *h, const CagOrigin *o) {
 
 static void scan_step(CagHeap *h, const CagOriginStep *step) {
   if (step->before) cag_mark_object(h, &step->before->head);
-  if (step->call) cag_mark_object(h, &step->call->head);
-  if (step->motion) cag_mark_object(h, &step->motion->head);
-  if (step->inputs) cag_mark_object(h, &step->inputs->head);
+  cag_mark_object(h, &step->site->head);
+  if (step->called) cag_mark_object(h, &step->call[0]->head);
+  if (cag_step_motion(step)) cag_mark_object(h, &step->as.motion->head);
+  if (cag_step_inputs(step)) cag_mark_object(h, &step->as.inputs->head);
 }
 
 static void scan_internal(CagHeap *h, CagObject *o) {
@@ -438,7 +439,10 @@ static void scan_internal(CagHeap *h, CagObject *o) {
   }
   const CagOriginCall *call = (CagOriginCall *)o;
   if (o->flags == CAG_INTERNAL_CALL) cag_mark_values(h, call->values, call->count);
-  if (o->flags == CAG_INTERNAL_STILL) cag_mark_object(h, &((CagStill *)o)->shape->head);
+  if (o->flags == CAG_INTERNAL_STILL) {
+    cag_mark_object(h, &((CagStill *)o)->shape->head);
+    cag_mark_object(h, &((CagStill *)o)->motion->head);
+  }
   if (o->flags == CAG_INTERNAL_POSTURE) cag_mark_object(h, &((CagPosture *)o)->robot->head);
   if (o->flags == CAG_INTERNAL_LIMB) cag_mark_object(h, &((CagLimb *)o)->posture->head);
 }

@@ -245,8 +245,9 @@ CagValue cag_plane_value(CagVm *vm, const CagPlane *p) {
 }
 
 static CagShape *shape_new(CagVm *vm, CagType type) {
-  CagShape *s = cag_alloc(vm, type, sizeof *s);
-  s->placement = cag_transform_identity();
+  const bool placed = type == CAG_REGION;
+  CagShape *s = cag_alloc(vm, type, sizeof *s + (placed ? sizeof *s->placement : 0));
+  if (placed) s->placement[0] = cag_transform_identity();
   s->fresh = true;
   return s;
 }
@@ -278,7 +279,7 @@ CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
 CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement) {
   CagShape *s = shape_of(vm, CAG_REGION, release_region, r);
   s->as.region = r;
-  if (placement) s->placement = *placement;
+  if (placement) s->placement[0] = *placement;
   return cag_object(CAG_REGION, s);
 }
 
@@ -336,6 +337,7 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
   CagObject head = s->head;
   *s = *from;
   s->head = head;
+  if (shape.type == CAG_REGION) s->placement[0] = from->placement[0];
   s->fresh = s->copied = true;
   const CagValueType *type = cag_value_type(shape);
   if (type->retain) type->retain(&s->head);
@@ -343,82 +345,123 @@ CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
 }
 
 // The levels of shapes that a step keeps: those before it, and one more for those of its inputs.
-static uint16_t held_levels(const CagOriginStep *before, const CagInputs *inputs) {
-  uint16_t most = before ? before->held : 0;
+static size_t held_levels(const CagOriginStep *before, const CagInputs *inputs) {
+  size_t most = before ? before->held : 0;
   for (size_t i = 0; inputs && i < inputs->count; i++) {
     const CagOriginStep *last = CAG_AS_SHAPE(inputs->items[i].shape)->origin.last;
-    const uint16_t levels = (uint16_t)(1 + (last ? last->held : 0));
+    const size_t levels = 1 + (last ? last->held : 0);
     if (levels > most) most = levels;
   }
   return most;
 }
 
-static bool is_translation(const CagTransform *t) {
-  const double *m = t->m[0];
-  for (int i = 0; i < 16; i++)
-    if (i % 4 != 3 && m[i] != (i % 5 == 0)) return false;
-  return t->m[3][3] == 1 && !t->in_front;
+// --- Motions ---
+
+// How many numbers of a transform tell it.
+static uint8_t motion_numbers(const CagTransform *t) {
+  static const double last_row[] = {0, 0, 0, 1};
+  if (t->in_front || memcmp(t->m[3], last_row, sizeof last_row) != 0) return 16;
+  for (int i = 0; i < 12; i++)
+    if (i % 4 != 3 && t->m[i / 4][i % 4] != (i % 5 == 0)) return 12;
+  return 3;
 }
 
 CagTransform cag_motion_transform(const CagMotionNote *note) {
-  if (!note->translates) return note->t[0];
-  CagTransform t = cag_translate(note->step);
+  CagTransform t = cag_transform_identity();
+  if (note->numbers == 3) t = cag_translate(cag_vec3(note->m[0], note->m[1], note->m[2]));
+  else memcpy(t.m, note->m, note->numbers * sizeof *note->m);
   t.planar = note->planar;
+  t.in_front = note->in_front;
   return t;
 }
 
-// The note of a motion, after another one (NULL: none).
-static CagMotionNote *motion_note(CagVm *vm, const CagTransform *motion,
-                                  const CagMotionNote *before) {
-  CagTransform t = *motion;
-  if (before) {
-    const CagTransform first = cag_motion_transform(before);
-    t = cag_transform_multiply(motion, &first);
-  }
-  const bool translates = is_translation(&t);
+// Whether the vector of the call follows the numbers of the motion.
+static bool has_other_vector(const CagMotionNote *note) {
+  return note->given > 0 && note->numbers != 3;
+}
+
+size_t cag_motion_vector(const CagMotionNote *note, double out[3]) {
+  const double *v = has_other_vector(note) ? note->m + note->numbers : note->m;
+  memcpy(out, v, note->given * sizeof *v);
+  return note->given;
+}
+
+size_t cag_motion_bytes(const CagMotionNote *note) {
+  return sizeof *note + (note->numbers + (has_other_vector(note) ? 3u : 0)) * sizeof *note->m;
+}
+
+CagMotionNote *cag_motion_note(CagVm *vm, const CagTransform *t, const double *vector,
+                               size_t given) {
+  uint8_t numbers = motion_numbers(t);
+  const double moved[] = {t->m[0][3], t->m[1][3], t->m[2][3]};
+  double v[3] = {0};
+  memcpy(v, vector, given * sizeof *v);
+  if (numbers == 3 && given > 0 && memcmp(v, moved, sizeof v) != 0) numbers = 12;
+  const bool extra = given > 0 && numbers != 3;
   CagMotionNote *note =
-      cag_alloc(vm, CAG_INTERNAL, sizeof *note + (translates ? 0 : sizeof *note->t));
+      cag_alloc(vm, CAG_INTERNAL, sizeof *note + (numbers + (extra ? 3u : 0)) * sizeof *note->m);
   note->head.flags = CAG_INTERNAL_MOTION;
-  note->translates = translates;
-  note->planar = t.planar;
-  note->step = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
-  if (!translates) note->t[0] = t;
+  note->numbers = numbers;
+  note->given = (uint8_t)given;
+  note->planar = t->planar;
+  note->in_front = t->in_front;
+  memcpy(note->m, numbers == 3 ? moved : t->m[0], numbers * sizeof *moved);
+  if (extra) memcpy(note->m + numbers, v, sizeof v);
   return note;
 }
 
 void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
-  const CagMotionNote *before = CAG_AS_SHAPE(from)->fresh ? CAG_AS_SHAPE(from)->motion : NULL;
-  CAG_AS_SHAPE(moved)->motion = motion_note(vm, motion, before);
+  CagTransform t = *motion;
+  const CagShape *before = CAG_AS_SHAPE(from);
+  if (before->fresh && before->motion) {
+    const CagTransform first = cag_motion_transform(before->motion);
+    t = cag_transform_multiply(motion, &first);
+  }
+  CAG_AS_SHAPE(moved)->motion = cag_motion_note(vm, &t, NULL, 0);
 }
+
+// --- Steps ---
 
 // A step takes over the motion of the one that is dropped before it.
-static void take_motion(CagVm *vm, CagOriginStep *step, const CagOriginStep *dropped) {
-  const CagTransform own =
-      step->motion ? cag_motion_transform(step->motion) : cag_transform_identity();
-  step->motion = motion_note(vm, &own, dropped->motion);
-  if (step->kind == CAG_STEP_SAID) step->kind = CAG_STEP_MOVED;
+static void take_motion(CagVm *vm, CagOriginStep *step, const CagMotionNote *dropped) {
+  const CagMotionNote *own = cag_step_motion(step);
+  CagTransform t = cag_motion_transform(dropped);
+  double vector[3];
+  size_t given = 0;
+  if (own) {
+    const CagTransform after = cag_motion_transform(own);
+    t = cag_transform_multiply(&after, &t);
+    given = cag_motion_vector(own, vector);
+  }
+  step->as.motion = cag_motion_note(vm, &t, vector, given);
+  step->kind = CAG_STEP_MOVED;
 }
 
-void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like) {
-  CagOriginStep *dropped = NULL, *before = o->last;
+void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like, CagOriginCall *call) {
+  const CagOriginStep *dropped = NULL;
+  CagOriginStep *before = o->last;
   if (before && before->depth >= CAG_ORIGIN_DEPTH) { // drops the latest one
     dropped = before;
     before = before->before;
   }
-  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step);
-  const CagObject head = step->head;
-  *step = *like;
-  step->head = head;
+  CagOriginStep *step = cag_alloc(vm, CAG_INTERNAL, sizeof *step + (call ? sizeof call : 0));
   step->head.flags = CAG_INTERNAL_STEP;
+  step->site = like->site;
+  step->kind = like->kind;
+  step->as = like->as;
+  step->called = call != NULL;
+  if (call) step->call[0] = call;
   step->before = before;
-  step->depth = before ? (uint16_t)(before->depth + 1) : 0;
-  step->held = held_levels(before, step->inputs);
-  if (step->inputs && step->held > CAG_INPUTS_DEPTH) {
-    step->inputs = NULL;
-    step->held = before ? before->held : 0;
-  }
+  step->depth = before ? (uint8_t)(before->depth + 1) : 0;
   o->last = step;
-  if (dropped && dropped->motion) take_motion(vm, step, dropped);
+  if (dropped && cag_step_motion(dropped)) take_motion(vm, step, cag_step_motion(dropped));
+  const CagInputs *inputs = cag_step_inputs(step);
+  size_t held = held_levels(before, inputs);
+  if (inputs && held > CAG_INPUTS_DEPTH) {
+    step->as.inputs = NULL;
+    held = before ? before->held : 0;
+  }
+  step->held = (uint8_t)held;
 }
 
 CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n) {
@@ -439,10 +482,16 @@ void cag_operands_list(const CagOperands *o, CagOrigin *out) {
 
 void cag_shape_moved(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion) {
   CagShape *to = CAG_AS_SHAPE(moved), *shape = CAG_AS_SHAPE(from);
-  CagStill *before = shape->still, *still = cag_alloc(vm, CAG_INTERNAL, sizeof *still);
+  const CagStill *before = shape->still;
+  CagStill *still = cag_alloc(vm, CAG_INTERNAL, sizeof *still);
   still->head.flags = CAG_INTERNAL_STILL;
   still->shape = before ? before->shape : shape;
-  still->motion = before ? cag_transform_multiply(motion, &before->motion) : *motion;
+  if (before) {
+    const CagTransform first = cag_motion_transform(before->motion),
+                       both = cag_transform_multiply(motion, &first);
+    still->motion = cag_motion_note(vm, &both, NULL, 0);
+  } else if (to->motion && !shape->fresh) still->motion = to->motion;
+  else still->motion = cag_motion_note(vm, motion, NULL, 0);
   to->still = still;
 }
 

@@ -190,13 +190,14 @@ typedef struct CagLineStyle {
   double radius, dash; // 0: not set
 } CagLineStyle;
 
-// The transform by which a call moved a shape. Most are translations, for which the vector is
-// enough.
+// The transform by which a call moved a shape. Most are translations or affine, for which fewer
+// numbers are enough.
 typedef struct CagMotionNote {
-  CagObject head; // CAG_INTERNAL
-  CagVec3 step;   // if it is a translation
-  bool translates, planar;
-  CagTransform t[]; // else: one
+  CagObject head;  // CAG_INTERNAL
+  uint8_t numbers; // 3: a translation, 12: affine, 16
+  uint8_t given;   // coordinates of the vector that the call was given, if it is `translate`
+  bool planar, in_front;
+  double m[]; // `numbers` of them, by rows; then the vector if it is another one
 } CagMotionNote;
 
 // The curves, regions, and surfaces that a call made a shape of, such as the profile of a
@@ -217,32 +218,53 @@ typedef enum CagStepKind {
   CAG_STEP_SAID    // gave it attributes
 } CagStepKind;
 
-// What is kept of the arguments of a call that made shapes or translated them: points and vectors,
-// and the last steps of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
-struct CagBuiltin;
+// What is kept of the arguments of a call that made shapes: points and vectors, and the last steps
+// of shapes (CAG_INTERNAL). Everything else is CAG_UNSET.
 typedef struct CagOriginCall {
   CagObject head; // CAG_INTERNAL
   size_t count;   // by parameter, up to the last one that is kept
   CagValue values[];
 } CagOriginCall;
 
-// A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
-typedef struct CagOriginStep {
+// A place where the script calls a built-in. The steps that are made there share it.
+struct CagBuiltin;
+typedef struct CagOriginSite {
   CagObject head; // CAG_INTERNAL
   const CagSource *source;
   CagSpan span;
   const CagSource *caller; // in the library: the nearest call outside of it; else NULL
   CagSpan caller_span;
-  const struct CagBuiltin *row; // what was called
+  const struct CagBuiltin *row; // what is called; NULL: an operator
   size_t index;                 // of its name
-  CagOriginCall *call;          // its arguments; NULL: none are kept
+} CagOriginSite;
+
+// A call of the script that a shape went through, which made it, moved it, or gave it an attribute.
+// A script may have millions of them.
+typedef struct CagOriginStep {
+  CagObject head; // CAG_INTERNAL
+  CagOriginSite *site;
   struct CagOriginStep *before; // the call before this one; NULL: this one made the shape
-  CagMotionNote *motion;        // MOVED
-  CagInputs *inputs;            // SHAPED; NULL: none, or not kept
-  CagStepKind kind;
-  uint16_t depth; // number of calls before it
-  uint16_t held;  // levels of shapes that are kept by inputs of inputs, here and before
+  union {
+    CagMotionNote *motion; // MOVED
+    CagInputs *inputs;     // SHAPED; NULL: none, or not kept
+  } as;
+  uint8_t kind;          // CagStepKind
+  uint8_t depth;         // number of calls before it
+  uint8_t held;          // levels of shapes that are kept by inputs of inputs, here and before
+  bool called;           // whether there is `call`
+  CagOriginCall *call[]; // its arguments, if any are kept: see cag_step_call
 } CagOriginStep;
+
+// The inputs, motion, and arguments of a step, each NULL if there are none.
+static inline const CagInputs *cag_step_inputs(const CagOriginStep *s) {
+  return s->kind == CAG_STEP_SHAPED ? s->as.inputs : NULL;
+}
+static inline const CagMotionNote *cag_step_motion(const CagOriginStep *s) {
+  return s->kind == CAG_STEP_MOVED ? s->as.motion : NULL;
+}
+static inline const CagOriginCall *cag_step_call(const CagOriginStep *s) {
+  return s->called ? s->call[0] : NULL;
+}
 
 // The most calls that are kept. Of more, those in between are dropped: first the latest ones.
 enum { CAG_ORIGIN_DEPTH = 12 };
@@ -273,7 +295,7 @@ struct CagShape;
 typedef struct CagStill {
   CagObject head; // CAG_INTERNAL
   struct CagShape *shape;
-  CagTransform motion;
+  CagMotionNote *motion;
 } CagStill;
 
 // The joint values with which a robot was drawn.
@@ -304,10 +326,8 @@ typedef struct CagShape {
     CagLabelText *label;
     CagList *items; // GROUP: list of shapes (dim 0)
   } as;
-  CagTransform placement; // REGION only: from z = 0 to the plane of the region; other
-                          // shapes are transformed themselves
-  CagRecord *material;    // NULL: not set
-  CagText *name;          // NULL: not set
+  CagRecord *material; // NULL: not set
+  CagText *name;       // NULL: not set
   CagOrigin origin;
   CagMotionNote *motion;       // by the call that is not in its origin yet; NULL: it did not move
   CagStill *still;             // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
@@ -316,8 +336,10 @@ typedef struct CagShape {
   double tolerance;            // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
-  bool fresh;  // the call that makes it has not been added to its origin yet
-  bool copied; // while fresh: it has the geometry of an argument of that call
+  bool fresh;               // the call that makes it has not been added to its origin yet
+  bool copied;              // while fresh: it has the geometry of an argument of that call
+  CagTransform placement[]; // REGION: one, from z = 0 to the plane of the region; other shapes,
+                            // which are transformed themselves, have none
 } CagShape;
 
 // --- Cameras, lights, and settings (sky, background, ground) ---
@@ -452,11 +474,19 @@ CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
 CagValue cag_image_value(CagVm *vm, CagRaster *r);
 CagValue cag_label_value(CagVm *vm, const CagLabelText *like); // copies all but the header
 CagValue cag_group_value(CagVm *vm, CagValue list);            // list of shapes
-// Adds a call to an origin, which is changed in place. `like` has its location.
-void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like);
+// Adds a call to an origin, which is changed in place. `like` is all but its `before` and what
+// follows from that.
+void cag_origin_add(CagVm *vm, CagOrigin *o, const CagOriginStep *like, CagOriginCall *call);
 // Notes that the call under way made a shape by moving another one, for its origin.
 void cag_shape_note_motion(CagVm *vm, CagValue moved, CagValue from, const CagTransform *motion);
+// Makes a note. `vector` is what the call was given, if it is `translate`, of `given` coordinates; 0:
+// it is another call.
+CagMotionNote *cag_motion_note(CagVm *vm, const CagTransform *t, const double *vector,
+                               size_t given);
+size_t cag_motion_bytes(const CagMotionNote *note); // its size
 CagTransform cag_motion_transform(const CagMotionNote *note);
+// The vector that `translate` was given, of 2 or 3 coordinates; 0: it was another call.
+size_t cag_motion_vector(const CagMotionNote *note, double out[3]);
 // Where the operands `first` (NULL: none) and n further ones come from, which are unknown.
 CagOperands *cag_operands_new(CagVm *vm, CagOperands *first, size_t n);
 // Copies the origins of all operands to a list of o->count.

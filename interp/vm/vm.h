@@ -189,6 +189,14 @@ typedef struct CagNative {
   size_t order_count;
 } CagNative;
 
+// What the origins of many shapes share: calls from one place, and equal motions. Collections forget
+// them, so they are no roots.
+enum { CAG_RECENT_COUNT = 64 };
+typedef struct CagRecentOrigins {
+  CagOriginSite *sites[CAG_RECENT_COUNT];
+  CagMotionNote *motions[CAG_RECENT_COUNT];
+} CagRecentOrigins;
+
 struct CagVm {
   CagAccount account; // what the run has allocated; its limit is --max-memory
   CagHeap heap;
@@ -212,6 +220,7 @@ struct CagVm {
     void *what;
   } * held;
   size_t held_count, held_capacity;
+  CagRecentOrigins recent;
   CagMemo memos[CAG_MEMO_COUNT];
   size_t memo_bytes;
   uint32_t differentiation; // level of the jets in use; 0: none

@@ -12,8 +12,8 @@ static void expect_origin(const CagVm *vm, size_t shown, const char *text, size_
   const CagOriginStep *made = o->last;
   assert_non_null(made);
   while (made->before) made = made->before;
-  assert_int_equal(made->span.start, at);
-  assert_int_equal(made->span.end, at + strlen(text));
+  assert_int_equal(made->site->span.start, at);
+  assert_int_equal(made->site->span.end, at + strlen(text));
   if (definition) assert_string_equal(o->definition->bytes, definition);
   else assert_null(o->definition);
 }
