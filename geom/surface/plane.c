@@ -1,5 +1,6 @@
 // Parallelograms: S(u, v) = origin + u x + v y over the unit square.
 
+#include <math.h>
 #include <stdio.h>
 
 #include "geom/surface/family.h"
@@ -85,6 +86,21 @@ static const CagSurfaceKind plane_kind = {
     .digest = plane_digest,
 };
 
+// What cag_surface_judge would find, from the corners alone.
+static void judge_plane(Parallelogram *p) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (int k = 0; k < 4; k++) cag_bounds_add(&box, plane_point(p, k & 1, k >> 1));
+  const double size = cag_norm(cag_sub(box.max, box.min)) +
+                      CAG_SURFACE_SAME * fmax(cag_norm(box.min), cag_norm(box.max));
+  const bool no_x = cag_norm(p->x) <= CAG_SURFACE_SAME * size,
+             no_y = cag_norm(p->y) <= CAG_SURFACE_SAME * size;
+  CagSurface *s = &p->base;
+  s->pole_u0 = s->pole_u1 = no_y;
+  s->pole_v0 = s->pole_v1 = no_x;
+  s->closed_u = no_x && !no_y;
+  s->closed_v = no_y && !no_x;
+}
+
 CagStatus cag_surface_parallelogram(CagVec3 origin, CagVec3 x, CagVec3 y, CagSurface **out,
                                     CagError *err) {
   CagSurface *s;
@@ -94,7 +110,7 @@ CagStatus cag_surface_parallelogram(CagVec3 origin, CagVec3 x, CagVec3 y, CagSur
   p->origin = origin;
   p->x = x;
   p->y = y;
-  cag_surface_judge(s);
+  judge_plane(p);
   *out = s;
   return CAG_OK;
 }
