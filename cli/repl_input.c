@@ -20,6 +20,7 @@
 #include <unistd.h>
 #include <wchar.h>
 
+#include "base/state_file.h"
 #include "base/utf8.h"
 #include "cli/repl.h"
 
@@ -44,27 +45,6 @@ struct CagReplInput {
 };
 
 // --- History ---
-
-// Creates the missing folders of a path.
-static void make_folders(char *path) {
-  for (char *at = path + 1; *at; at++) {
-    if (*at != '/') continue;
-    *at = 0;
-    mkdir(path, 0700);
-    *at = '/';
-  }
-}
-
-static char *find_history(void) {
-  const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-  char *path = NULL;
-  int n = -1;
-  if (state && *state == '/') n = asprintf(&path, "%s/cag/history", state);
-  else if (home && *home == '/') n = asprintf(&path, "%s/.local/state/cag/history", home);
-  if (n < 0) return NULL;
-  make_folders(path);
-  return path;
-}
 
 static void remember(CagReplInput *in, const char *line) {
   HistEvent event;
@@ -296,7 +276,7 @@ static bool start_editor(CagReplInput *in) {
   el_set(in->editor, EL_BIND, "^I", "cag-complete", NULL);
   el_set(in->editor, EL_BIND, "^R", "em-inc-search-prev", NULL);
   el_source(in->editor, NULL);
-  in->history_path = find_history();
+  in->history_path = cag_state_file("history");
   load_history(in);
   return true;
 }
