@@ -7,11 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include "live/json_write.h"
 #include "live/microhttpd.h"
+#include "live/server_token.h"
 
 enum { KINDS_MAX = 8, IDLE_SECONDS = 30 };
 #define COOKIE "cag-view"
@@ -414,15 +414,6 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *c, const cha
 
 // --- The server ---
 
-static bool make_token(char out[CAG_SERVER_TOKEN + 1]) {
-  static const char DIGITS[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
-  unsigned char random[CAG_SERVER_TOKEN];
-  if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random) return false;
-  for (int i = 0; i < CAG_SERVER_TOKEN; i++) out[i] = DIGITS[random[i] & 63];
-  out[CAG_SERVER_TOKEN] = 0;
-  return true;
-}
-
 static void ignore_log(void *context, const char *format, va_list arguments) {
   (void)context, (void)format, (void)arguments;
 }
@@ -459,7 +450,7 @@ CagServer *cag_server_start(const CagServerOptions *options, char *why, size_t s
   s->options = *options;
   pthread_mutex_init(&s->mutex, NULL);
   errno = 0;
-  if (make_token(s->token) && start_daemons(s)) return s;
+  if (cag_server_make_token(options->port, s->token) && start_daemons(s)) return s;
   if (options->port) snprintf(why, size, "cannot use port %d: %s", options->port, strerror(errno));
   else snprintf(why, size, "cannot listen on 127.0.0.1: %s", strerror(errno));
   pthread_mutex_destroy(&s->mutex);

@@ -12,7 +12,7 @@
 #include <stddef.h>
 
 #define CAG_SERVER_BODY_MAX ((size_t)32 << 20)
-enum { CAG_SERVER_CONNECTIONS = 64, CAG_SERVER_LISTENERS = 16, CAG_SERVER_TOKEN = 32 };
+enum { CAG_SERVER_CONNECTIONS = 64, CAG_SERVER_LISTENERS = 16 };
 
 typedef struct CagServer CagServer;
 typedef struct CagExchange CagExchange;
@@ -29,7 +29,7 @@ CagServer *cag_server_start(const CagServerOptions *options, char *why, size_t s
 // All exchanges must have been answered.
 void cag_server_stop(CagServer *s);
 int cag_server_port(const CagServer *s);
-const char *cag_server_token(const CagServer *s); // CAG_SERVER_TOKEN characters
+const char *cag_server_token(const CagServer *s); // see server_token.h
 
 // --- Exchanges ---
 

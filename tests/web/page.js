@@ -5,6 +5,7 @@
 "use strict";
 const { spawn } = require("child_process");
 const fs = require("fs");
+const net = require("net");
 const os = require("os");
 const path = require("path");
 const { Browser, pause } = require("./browser.js");
@@ -60,19 +61,20 @@ mast = polyline([[50, 50, 0], [50, 50, height], [50 + cos(60deg), 60, 0]])
 show plate, rail, patch, ball, mast
 `;
 
-// Starts a server for a script, and returns its address.
+// Starts a server for a script, and returns its address and its process.
 const servers = [];
-function serve(name, text) {
+function serve(name, text, ...options) {
   const file = path.join(folder, name);
   fs.writeFileSync(file, text);
-  const server = spawn(command[0], [...command.slice(1), file], { stdio: ["ignore", "pipe", "inherit"] });
+  const env = { ...process.env, XDG_STATE_HOME: path.join(folder, "state") };
+  const server = spawn(command[0], [...command.slice(1), file, ...options], { stdio: ["ignore", "pipe", "inherit"], env });
   servers.push(server);
   return new Promise((done, fail) => {
     let output = "";
     server.stdout.on("data", (data) => {
       output += data;
       const found = /http:\/\/\S+/.exec(output);
-      if (found) done({ url: found[0], file });
+      if (found) done({ url: found[0], file, server });
     });
     server.on("exit", (status) => fail(new Error(`the server ended with status ${status}: ${output}`)));
   });
@@ -808,6 +810,33 @@ async function tenLinks(browser) {
   await page.close();
 }
 
+// A port that no program listens on.
+const freePort = () => new Promise((done) => {
+  const listener = net.createServer().listen(0, "127.0.0.1", () => {
+    const { port } = listener.address();
+    listener.close(() => done(port));
+  });
+});
+
+async function restarted(browser) {
+  const sphere = (radius) => `show sphere(${radius})\n`;
+  const port = String(await freePort());
+  await test("a page connects to the server that was started again after its server died", async () => {
+    const first = await serve("again.cag", sphere(5), "--port", port);
+    const page = await browser.open(first.url);
+    await page.until(READY);
+    const ended = new Promise((done) => first.server.on("exit", done));
+    first.server.kill("SIGKILL");
+    await ended;
+    await page.until('document.querySelector("#notice").textContent.includes("does not answer")');
+    const second = await serve("again.cag", sphere(7), "--port", port);
+    equal(second.url, first.url);
+    await page.until('document.querySelector("#notice").hidden');
+    await page.until(`${text}.includes("sphere(7)")`);
+    await page.close();
+  });
+}
+
 async function main() {
   const browser = new Browser(chromium);
   try {
@@ -819,6 +848,7 @@ async function main() {
     await robots(browser);
     await tenLinks(browser);
     await small(browser);
+    if (!inPlayground) await restarted(browser);
   } finally {
     await browser.close();
     for (const s of servers) s.kill();

@@ -128,6 +128,18 @@ export class Files {
     }
   }
 
+  /** Takes what changed on the disk while no server watched it. */
+  async compareWithDisk() {
+    for (const path of this.open.keys()) {
+      if (isModule(path)) continue;
+      try {
+        await this.changedOnDisk({ path, version: (await this.engine.read(path)).version });
+      } catch (error) {
+        this.report(/** @type {Error} */ (error));
+      }
+    }
+  }
+
   /** Takes the text on the disk. @param {string} path @param {string} text @param {string} version */
   take(path, text, version) {
     this.open.set(path, { version, saved: text });

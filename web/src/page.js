@@ -509,7 +509,7 @@ export async function start(engine, webview = null) {
       say(problem);
       if (restart) notice.append(" ", h("button", { type: "button", onclick: restart }, "Start it again"));
       // A server that was started again has run the script as it is on the disk.
-      if (again && files) runs.now();
+      if (again && files) files.compareWithDisk().then(() => runs.now());
     },
   });
   // --- Editor ---

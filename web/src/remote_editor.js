@@ -301,6 +301,9 @@ export class RemoteFiles {
     this.editor.save();
   }
 
+  /** The editor watches its files. */
+  async compareWithDisk() {}
+
   /** The editor watches the files that it has open. @param {import("./engine.js").FileVersion} change */
   async changedOnDisk({ path }) {
     if (this.editor.text(path) !== null && !this.editor.isOpen(path)) await this.load(path).catch(this.report);
