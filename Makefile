@@ -205,8 +205,8 @@ test-sanitize:
 test-programs-clang:
 	$(MAKE) BUILD=$(BUILD)-clang CC=clang $(SANITIZED) test-programs
 
-# Runs what has threads under the thread sanitizer: work that is left behind, interruptions, the pages of a site, and scripts that are tested
-# side by side. One copy of each function: the choice between copies is made before the sanitizer has begun.
+# Runs what has threads under the thread sanitizer: work that is left behind, interruptions, the pages of a site, scripts that are tested side
+# by side, and the server of the page. One copy of each function: the choice between copies is made before the sanitizer has begun.
 VOLATILE := $(BUILD)-threads/volatile.o
 THREADED := OPT="-O0 -DCAG_ONE_COPY --param tsan-distinguish-volatile=1" SANITIZE="-fsanitize=thread"
 THREAD_TESTS := base/aside_test interp/interrupt_test interp/site_test
@@ -219,6 +219,7 @@ test-programs-threads:
 test-threads: test-programs-threads
 	@for t in $(THREAD_TESTS); do $(abspath $(BUILD)-threads)/tests/$$t || exit 1; done
 	$(BUILD)-threads/cag test --jobs 4 $(THREAD_SCRIPTS)
+	TSAN_OPTIONS=exitcode=66 python3 tests/live/view.py $(BUILD)-threads/cag
 
 # Runs the tests of rays with Embree for all meshes, however small. Needs libembree-dev.
 EMBREE_TESTS := ray ray_mesh caster_nearest nearest nearest_planar nearest_swept

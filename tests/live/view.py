@@ -36,7 +36,7 @@ def accept_interrupts():
 class View:
     """A server with its folder, and a listener of its events."""
 
-    def __init__(self, text, *options, name="model.cag", others={}):
+    def __init__(self, text, *options, name="model.cag", others={}, state=None):
         self.folder = tempfile.mkdtemp()
         for other, content in others.items():
             with open(os.path.join(self.folder, other), "w") as f:
@@ -45,7 +45,7 @@ class View:
         self.path = os.path.join(self.folder, name)
         with open(self.path, "w") as f:
             f.write(text)
-        self.process = subprocess.Popen([CAG, "view", self.path, "--no-open", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=accept_interrupts)
+        self.process = subprocess.Popen([CAG, "view", self.path, "--no-open", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=accept_interrupts, env={**os.environ, "XDG_STATE_HOME": state or os.path.join(self.folder, "state")})
         self.address = self.process.stdout.readline().strip()
         self.port = int(self.address.split(":")[2].split("/")[0])
         self.token = self.address.split("t=")[1]
@@ -605,6 +605,38 @@ def test_a_thousand_connections_and_slow_readers():
     for s in slow:
         s.close()
     v.close()
+
+
+def test_a_server_on_the_same_port_has_the_same_token():
+    state = tempfile.mkdtemp()
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        port = str(s.getsockname()[1])
+
+    def token(on=port):
+        v = View(VASE, "--port", on, state=state)
+        assert v.close() == 130
+        return v.token
+
+    first = token()
+    path = os.path.join(state, "cag", f"view-{port}.token")
+    assert token() == first and os.stat(path).st_mode & 0o777 == 0o600
+    os.chmod(path, 0o644)  # others could have read it
+    second = token()
+    assert second != first and token() == second and os.stat(path).st_mode & 0o777 == 0o600
+    other = os.path.join(state, "other")
+    os.rename(path, other)
+    os.symlink(other, path)
+    third = token()
+    assert third != second and not os.path.islink(path)
+    with open(other) as f:
+        assert f.read() == second
+    with open(path, "w") as f:
+        f.write("short")
+    assert token() not in (first, second, third, "short")
+    one, two = View(VASE), View(VASE)  # on any free port: always another one
+    assert one.token != two.token and one.close() == 130 and two.close() == 130
+    shutil.rmtree(state)
 
 
 def test_a_port_in_use():
