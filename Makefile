@@ -211,6 +211,7 @@ VOLATILE := $(BUILD)-threads/volatile.o
 THREADED := OPT="-O0 -DCAG_ONE_COPY --param tsan-distinguish-volatile=1" SANITIZE="-fsanitize=thread"
 THREAD_TESTS := base/aside_test interp/interrupt_test interp/site_test
 THREAD_SCRIPTS := tests/language/values tests/language/modules tests/language/words
+THREAD_PAGES := $(addprefix test_,a_newer_run_cancels_an_older_one a_save_by_another_editor_runs_the_script exports_and_pictures language_server)
 test-programs-threads:
 	@mkdir -p $(BUILD)-threads
 	gcc -std=c17 $(WARN) -fPIC -c tests/threads/volatile.c -o $(VOLATILE)
@@ -219,7 +220,7 @@ test-programs-threads:
 test-threads: test-programs-threads
 	@for t in $(THREAD_TESTS); do $(abspath $(BUILD)-threads)/tests/$$t || exit 1; done
 	$(BUILD)-threads/cag test --jobs 4 $(THREAD_SCRIPTS)
-	TSAN_OPTIONS=exitcode=66 python3 tests/live/view.py $(BUILD)-threads/cag
+	TSAN_OPTIONS=exitcode=66 python3 tests/live/view.py $(BUILD)-threads/cag $(THREAD_PAGES)
 
 # Runs the tests of rays with Embree for all meshes, however small. Needs libembree-dev.
 EMBREE_TESTS := ray ray_mesh caster_nearest nearest nearest_planar nearest_swept
