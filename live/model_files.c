@@ -67,17 +67,16 @@ static bool ends_with(const char *path, const char *end) {
 }
 
 bool cag_model_write(const char *folder, const char *path, const char *text, size_t size,
-                     const char **why) {
+                     CagError *err) {
   char real[PATH_MAX];
-  CagError err;
-  if (!resolve(folder, path, real, why)) return false;
-  *why = "only scripts and their params can be written";
-  if (!ends_with(path, ".cag") && !ends_with(path, ".params.json")) return false;
-  *why = "the file cannot be written";
-  CagAtomicFile *f = cag_atomic_file_open(real, &err);
+  const char *why;
+  if (!resolve(folder, path, real, &why)) return cag_fail_io(err, CAG_E_FILE, NULL, "%s", why);
+  if (!ends_with(path, ".cag") && !ends_with(path, ".params.json"))
+    return cag_fail_io(err, CAG_E_FILE, NULL, "only scripts and their params can be written");
+  CagAtomicFile *f = cag_atomic_file_open(real, err);
   if (!f) return false;
   cag_atomic_file_write(f, text, size);
-  return cag_atomic_file_commit(f, &err);
+  return cag_atomic_file_commit(f, err);
 }
 
 void cag_model_version(const char *text, size_t size, char out[CAG_VERSION_SIZE]) {

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/status.h"
+
 enum { CAG_VERSION_SIZE = 33 };
 
 // Returns the real path of `path` below `folder`, whose file may be missing (malloc). Returns NULL
@@ -19,7 +21,7 @@ bool cag_model_read(const char *folder, const char *path, char **text, size_t *s
 // Writes the file, which must be a script (.cag) or params (.params.json), under a temporary name
 // that is renamed.
 bool cag_model_write(const char *folder, const char *path, const char *text, size_t size,
-                     const char **why);
+                     CagError *err);
 // The version of a text: equal texts have equal versions.
 void cag_model_version(const char *text, size_t size, char out[CAG_VERSION_SIZE]);
 

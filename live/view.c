@@ -175,7 +175,7 @@ static bool is_version(const View *v, CagExchange *x, const char *path,
 static void save_file(View *v, CagExchange *x, const char *path) {
   char version[CAG_VERSION_SIZE];
   size_t size;
-  const char *why, *text = cag_exchange_body(x, &size);
+  const char *text = cag_exchange_body(x, &size);
   if (v->options->read_only || !v->options->file) {
     cag_exchange_fail(x, 403,
                       v->options->read_only ? "the page was opened with --read-only"
@@ -187,8 +187,9 @@ static void save_file(View *v, CagExchange *x, const char *path) {
     answer_version(x, 412, version);
     return;
   }
-  if (!cag_model_write(v->folder, path, text, size, &why)) {
-    cag_exchange_fail(x, 403, why, NULL);
+  CagError err;
+  if (!cag_model_write(v->folder, path, text, size, &err)) {
+    cag_exchange_fail(x, 403, err.message, *err.help ? err.help : NULL);
     return;
   }
   cag_model_version(text, size, version);
@@ -239,6 +240,7 @@ static void answer_params(View *v, CagExchange *x, bool put) {
   char path[PATH_MAX + 16], *text;
   size_t size;
   const char *why, *body;
+  CagError err;
   params_path(v, path);
   if (!put && !cag_model_read(v->folder, path, &text, &size, &why)) {
     cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = "{}", .size = 2});
@@ -252,8 +254,8 @@ static void answer_params(View *v, CagExchange *x, bool put) {
     cJSON *json = cJSON_ParseWithLength(body, size);
     char *printed = cJSON_IsObject(json) ? cJSON_Print(json) : NULL;
     if (!printed) cag_exchange_fail(x, 400, "expected a JSON object", NULL);
-    else if (!cag_model_write(v->folder, path, printed, strlen(printed), &why))
-      cag_exchange_fail(x, 403, why, NULL);
+    else if (!cag_model_write(v->folder, path, printed, strlen(printed), &err))
+      cag_exchange_fail(x, 403, err.message, *err.help ? err.help : NULL);
     else cag_exchange_answer(x, &(CagAnswer){.status = 200, .bytes = "{}", .size = 2});
     free(printed);
     cJSON_Delete(json);
