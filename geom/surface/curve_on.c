@@ -283,7 +283,9 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
                            CagError *err) {
   const OnSurface *c = (const OnSurface *)curve;
   const CagTransform map = c->mapped ? cag_transform_multiply(t, &c->map) : *t;
-  return make(c->surface, c->plane, &map, out, err);
+  CagStatus status = make(c->surface, c->plane, &map, out, err);
+  if (!status) (*out)->dimension = cag_curve_image_dimension(curve, t);
+  return status;
 }
 
 // The same with another plane curve; takes ownership of the reference.
@@ -297,7 +299,9 @@ static CagStatus part(const CagCurve *curve, const CagCurvePart *p, CagCurve **o
   const OnSurface *c = (const OnSurface *)curve;
   CagCurve *plane;
   CagStatus status = c->plane->kind->part(c->plane, p, &plane, err);
-  return status ? status : along(c, plane, out, err);
+  if (!status) status = along(c, plane, out, err);
+  if (!status) (*out)->dimension = curve->dimension;
+  return status;
 }
 
 static CagBounds hull(const CagCurve *curve, double a, double b) {

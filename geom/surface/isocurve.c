@@ -92,6 +92,7 @@ static CagStatus isocurve_transform(const CagCurve *curve, const CagTransform *t
   if (status) return status;
   status = isocurve_new(moved, c->direction, c->at, running(c, curve->start),
                         running(c, curve->end), curve->start, curve->end, out, err);
+  if (!status) (*out)->dimension = cag_curve_image_dimension(curve, t);
   cag_surface_release(moved);
   return status;
 }
@@ -99,8 +100,10 @@ static CagStatus isocurve_transform(const CagCurve *curve, const CagTransform *t
 static CagStatus isocurve_part(const CagCurve *curve, const CagCurvePart *p, CagCurve **out,
                                CagError *err) {
   const Isocurve *c = (const Isocurve *)curve;
-  return isocurve_new(c->surface, c->direction, c->at, running(c, p->from), running(c, p->to),
-                      p->start, p->end, out, err);
+  CagStatus status = isocurve_new(c->surface, c->direction, c->at, running(c, p->from),
+                                  running(c, p->to), p->start, p->end, out, err);
+  if (!status) (*out)->dimension = curve->dimension;
+  return status;
 }
 
 static CagBounds isocurve_hull(const CagCurve *curve, double a, double b) {
