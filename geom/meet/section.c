@@ -22,6 +22,8 @@
 // A face within this fraction of the size of the plane lies in it and is not cut.
 #define WITHIN CAG_COINCIDENT
 #define DEFAULT_TOLERANCE 1e-6
+// A direction along the axis of a cylinder has no polar plane, but for rounding.
+#define ALONG_AXIS 1e-12
 // A traced curve runs along an exact one within this many tolerances.
 #define NEAR_RUN 8
 
@@ -232,12 +234,32 @@ CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tol
   return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }
 
+// The plane with the points of a quadric at which a line of sight touches it: the polar plane of the
+// eye, or of the point at infinity in the direction. Returns false if there is none.
+static bool polar_plane(const CagQuadric *q, CagVec3 direction, CagVec3 eye, bool central,
+                        CagPlane *out) {
+  double a[4][4], row[4], size = 0;
+  CagError none;
+  const CagVec3 from = central ? eye : direction;
+  cag_quadric_rows(q, a);
+  for (int i = 0; i < 4; i++) {
+    row[i] = a[i][0] * from.x + a[i][1] * from.y + a[i][2] * from.z + (central ? a[i][3] : 0);
+  }
+  for (int i = 0; i < 9; i++) size = fmax(size, fabs(a[i / 3][i % 3]));
+  const double length = cag_norm(cag_vec3(row[0], row[1], row[2]));
+  return length > ALONG_AXIS * size && !cag_plane_from_row(row, out, &none);
+}
+
 CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
                               double tolerance, CagCurveList *out, CagError *err) {
   const CagRegion *region;
   CagTransform frame;
   // A flat face has no contour.
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
+  CagQuadric q;
+  CagPlane plane;
+  if (cag_surface_quadric_view(s, &q) && polar_plane(&q, direction, eye, central, &plane))
+    return cag_surface_section(s, &plane, tolerance, out, err);
   CagLevel level = cag_level_contour(direction, eye, central);
   return cag_surface_level_curves(s, &level, tolerance, out, NULL, err);
 }
