@@ -6,10 +6,12 @@
 
 #include "geom/meet/curvature_contour.h"
 #include "geom/meet/curvature_line.h"
+#include "geom/meet/shadow.h"
 #include "geom/surface/motion.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
 
 // --- Quadrics ---
@@ -190,6 +192,64 @@ bool cag_sections_contour(CagCall *call, const struct cag_sections_contour *a, C
     return cag_fail_call(call, -1, CAG_ERR_value,
                          "needs either the direction of the view, or the eye point as `from`");
   return curves_result(call, contour_of, a, result);
+}
+
+// --- Silhouettes ---
+
+// Adds the shadow of one shape to the list of regions, which the call holds.
+static CagStatus solid_shadow(const CagVm *vm, const CagShape *shape, const CagTransform *frame,
+                              CagRegion **out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(shape->as.solid, &box, err);
+  if (status) return status;
+  const double size = cag_norm(cag_sub(box.max, box.min));
+  const CagTessellation how = cag_shape_tessellation(
+      vm, shape->tolerance > 0 ? shape->tolerance : CAG_SHAPE_TOLERANCE * size);
+  return cag_solid_shadow(shape->as.solid, frame, 0, &how, out, err);
+}
+
+static bool add_shadow(CagCall *call, CagValue v, const CagTransform *frame, CagRegion **out) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagSurface *flat = NULL;
+  CagStatus status = CAG_OK;
+  switch (v.type) {
+  case CAG_SURFACE: status = cag_surface_shadow(shape->as.surface, frame, 0, out, call->err); break;
+  case CAG_SOLID: status = solid_shadow(call->vm, shape, frame, out, call->err); break;
+  case CAG_MESH: status = cag_mesh_shadow(shape->as.mesh, frame, out, call->err); break;
+  case CAG_REGION:
+    status = cag_surface_planar(shape->as.region, shape->placement, &flat, call->err);
+    if (!status) status = cag_surface_shadow(flat, frame, 0, out, call->err);
+    cag_surface_release(flat);
+    break;
+  default: return cag_fail_type(call, 0, "regions, surfaces, solids, or meshes");
+  }
+  if (status && cag_is_empty_shape(call->err)) status = cag_region_empty(out, call->err);
+  return cag_geometry_ok(call, status);
+}
+
+bool cag_sections_silhouette(CagCall *call, const struct cag_sections_silhouette *a,
+                             CagValue *result) {
+  CagList *shapes;
+  if (!cag_list_shapes(call, call->values[0], &shapes)) return false;
+  const CagPlane plane = {.normal = cag_unit(a->direction.at)};
+  CagTransform frame = cag_plane_frame(&plane);
+  CagRegion **parts = cag_hold_region_array(call, shapes->length), *all = NULL;
+  bool ok = true;
+  cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    ok = add_shadow(call, cag_list_get(call->vm, shapes, i), &frame, &parts[i]);
+  cag_root_pop(call->vm, 1);
+  if (!ok) return false;
+  const CagStatus status =
+      shapes->length ? cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts,
+                                          shapes->length, &all, call->err)
+                     : cag_region_empty(&all, call->err);
+  if (!cag_geometry_ok(call, status)) return false;
+  // Along Z, it is a region of the XY plane.
+  const bool plain = plane.normal.x == 0 && plane.normal.y == 0 && plane.normal.z > 0;
+  frame.planar = false;
+  *result = cag_region_value(call->vm, all, plain ? NULL : &frame);
+  return true;
 }
 
 bool cag_sections_curvature_line(CagCall *call, const struct cag_sections_curvature_line *a,
