@@ -435,6 +435,8 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
   }
   double tolerance = fmax(SAME * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
   CagStatus status = CAG_OK;
+  *out = NULL;
+  if (!(tolerance > 0)) return CAG_OK; // a single point
   for (int i = 0; i < ATTEMPTS; i++, tolerance *= GROWTH) {
     status = attempt(walks, n, tolerance, thin, rule, parameter, out, err);
     if (status != CAG_E_CONVERGENCE) break;
