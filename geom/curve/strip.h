@@ -7,7 +7,7 @@
 #ifndef CAG_GEOM_STRIP_H
 #define CAG_GEOM_STRIP_H
 
-#include "geom/curve/region_stroke.h"
+#include "geom/curve/joins.h"
 #include "geom/curve/region_walks.h"
 
 // A smooth part of a curve.
