@@ -10,19 +10,10 @@
 
 #include "base/array.h"
 #include "base/memory.h"
-#include "base/stop.h"
+#include "geom/curve/biarc.h"
 #include "geom/curve/family.h"
 #include "geom/curve/runs.h"
 #include "geom/linalg/tolerance.h"
-
-// Points at which a pair of arcs is compared with the curve.
-#define LOOKS 8
-// Halvings of a smooth part, and its turn from which on it is halved without a comparison (cosine).
-#define HALVINGS 24
-#define TURN_MOST 0.5
-// An arc is straight if it rises above its tangent by less than this fraction of its chord: its
-// center would be so far away that rounding moves its ends.
-#define FLAT 1e-7
 
 // --- Directions ---
 
@@ -134,96 +125,11 @@ static CagStatus put_arc(Trace *t, CagVec3 from, CagVec3 direction, double radiu
   return CAG_OK;
 }
 
-// --- Arcs of other curves ---
-
-// The signed radius of the arc from p in the unit direction to q; infinite for a segment.
-static double radius_to(CagVec3 p, CagVec3 direction, CagVec3 q) {
-  const CagVec3 chord = cag_sub(q, p);
-  const double rise = cag_dot(left_of(direction), chord), square = cag_dot(chord, chord);
-  return fabs(rise) <= FLAT * sqrt(square) ? INFINITY : square / (2 * rise);
-}
-
-// Two arcs that meet smoothly: from p in the direction u to the middle, and on to q in the
-// direction v. Both are as long as possible alike (Bolton 1975).
-typedef struct Biarc {
-  CagVec3 p, q, u, v, middle;
-} Biarc;
-
-static bool biarc_between(CagVec3 p, CagVec3 u, CagVec3 q, CagVec3 v, Biarc *out) {
-  const CagVec3 w = cag_sub(q, p), sum = cag_add(u, v);
-  const double a = 2 * (1 - cag_dot(u, v)), b = cag_dot(w, sum), c = cag_dot(w, w);
-  // a d^2 + 2 b d = c, by the stable formula of its positive root.
-  const double root = b + sqrt(b * b + a * c);
-  if (!(root > 0)) return false;
-  const double d = c / root;
-  *out = (Biarc){p, q, u, v, cag_scaled(cag_add(cag_add(p, q), cag_scaled(cag_sub(u, v), d)), 0.5)};
-  return true;
-}
-
-// The distance of a point from an arc, if it is beside it.
-static double off_arc(CagVec3 start, CagVec3 direction, double radius, CagVec3 p) {
-  const CagVec3 r = cag_sub(p, start);
-  if (isinf(radius)) return fabs(cag_cross(direction, r).z);
-  return fabs(cag_norm(cag_sub(r, cag_scaled(left_of(direction), radius))) - fabs(radius));
-}
-
-static CagStatus fits(const CagCurve *c, double a, double b, const Biarc *arcs, double tolerance,
-                      bool *out, CagError *err) {
-  const double first = radius_to(arcs->p, arcs->u, arcs->middle),
-               second = -radius_to(arcs->q, cag_scaled(arcs->v, -1), arcs->middle);
-  const CagVec3 chord = cag_sub(arcs->q, arcs->p);
-  const double half = cag_dot(cag_sub(arcs->middle, arcs->p), chord);
-  *out = true;
-  for (int i = 1; i < LOOKS && *out; i++) {
-    CagVec3 p;
-    CagStatus status = cag_curve_point(c, a + (b - a) * i / LOOKS, &p, err);
-    if (status) return status;
-    const bool before = cag_dot(cag_sub(p, arcs->p), chord) < half;
-    const double off =
-        before ? off_arc(arcs->p, arcs->u, first, p) : off_arc(arcs->q, arcs->v, second, p);
-    *out = off <= tolerance;
-  }
-  return CAG_OK;
-}
-
-static CagStatus put_arc_to(Trace *t, CagVec3 p, CagVec3 direction, CagVec3 q, CagError *err) {
-  const double radius = radius_to(p, direction, q);
-  if (isinf(radius)) return put_side(t, p, q, err);
-  const double sine = cag_norm(cag_sub(q, p)) / (2 * fabs(radius));
-  return put_arc(t, p, direction, radius, 2 * asin(fmin(1, sine)), err);
-}
-
-static CagStatus put_biarc(Trace *t, const Biarc *arcs, CagError *err) {
-  CagStatus status = put_arc_to(t, arcs->p, arcs->u, arcs->middle, err);
-  if (status) return status;
-  // The second arc, by its mirror image from the end.
-  const double radius = -radius_to(arcs->q, cag_scaled(arcs->v, -1), arcs->middle);
-  if (isinf(radius)) return put_side(t, arcs->middle, arcs->q, err);
-  const CagVec3 center = cag_madd(arcs->q, radius, left_of(arcs->v)),
-                out = cag_scaled(cag_sub(arcs->middle, center), 1 / radius);
-  const double sine = cag_norm(cag_sub(arcs->q, arcs->middle)) / (2 * fabs(radius));
-  return put_arc(t, arcs->middle, cag_unit(left_of(out)), radius, 2 * asin(fmin(1, sine)), err);
-}
-
-// The smooth part of the curve over [a, b].
-static CagStatus put_smooth(Trace *t, const CagCurve *c, double a, double b, int halvings,
-                            CagError *err) {
-  CagVec3 p, q, u, v;
-  CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &p, err);
-  if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &q, err);
-  if (!status) status = cag_curve_tangent(c, a, CAG_SIDE_RIGHT, &u, err);
-  if (!status) status = cag_curve_tangent(c, b, CAG_SIDE_LEFT, &v, err);
-  if (!status) status = cag_stop_check(err);
-  if (status) return status;
-  Biarc arcs;
-  bool good = cag_dot(u, v) > TURN_MOST && biarc_between(p, u, q, v, &arcs);
-  if (good) status = fits(c, a, b, &arcs, t->tolerance, &good, err);
-  if (status) return status;
-  if (good) return put_biarc(t, &arcs, err);
-  const double middle = a + (b - a) / 2;
-  if (halvings == 0 || !(a < middle && middle < b)) return put_side(t, p, q, err);
-  status = put_smooth(t, c, a, middle, halvings - 1, err);
-  return status ? status : put_smooth(t, c, middle, b, halvings - 1, err);
+static CagStatus put_step(void *context, const CagArcStep *step, CagError *err) {
+  Trace *t = context;
+  return isinf(step->radius)
+             ? put_side(t, step->from, step->to, err)
+             : put_arc(t, step->from, step->direction, step->radius, step->turn, err);
 }
 
 // --- Loops ---
@@ -242,15 +148,8 @@ static CagStatus put_bent(Trace *t, const CagCurve *c, CagError *err) {
                     : put_arc(t, from, u, sense * r, fabs(rate) * (c->end - c->start), err);
     }
   }
-  double *cuts;
-  size_t n;
   t->near = true;
-  CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
-  if (status) return status;
-  for (size_t i = 0; !status && i + 1 < n; i++)
-    status = put_smooth(t, c, cuts[i], cuts[i + 1], HALVINGS, err);
-  cag_free(cuts);
-  return status;
+  return cag_curve_arcs(c, t->tolerance, put_step, t, err);
 }
 
 void cag_outline_free(CagOutline *o) {

@@ -11,8 +11,8 @@
 // Strips are oriented: where a part bends towards its strip with a radius below |d|, the strip
 // folds over, and the area beyond the fold would count negatively. On a circle, the curve runs
 // through the center instead, and the sector beyond it is added (removed) on its own. Other such
-// parts are not moved; instead the whole neighborhood of the part is added (removed). Such a part
-// extends a little beyond the point where the strip begins to fold, so that its ends are not cusps
+// parts are replaced by arcs, or, if joins are round, not moved; instead the whole neighborhood of
+// the part is added (removed). Such a part extends a little beyond the point where the strip begins to fold, so that its ends are not cusps
 // of the shifted curve.
 
 #include <math.h>
@@ -41,7 +41,7 @@ static bool overlaps(const CagStripPart *a, const CagStripPart *b, double left) 
          reach <= cag_norm(cag_sub(b->ends[1], b->ends[0]));
 }
 
-// Parts that fold are left in place, except for circles.
+// Parts that fold are left in place, except for circles. They have round joins only.
 static bool stays(const CagStripPart *p) { return p->folds && !p->round; }
 
 // From the end of one part's strip to the start of the next one's.
@@ -53,16 +53,11 @@ static CagStatus put_corner(Border *o, const CagStripPart *a, const CagStripPart
   const bool outer =
       turn == CAG_TURN_BACK || turn == (o->left > 0 ? CAG_TURN_RIGHT : CAG_TURN_LEFT);
   const bool still = stays(a) || stays(b);
-  CagStatus status = CAG_OK;
   // The neighborhoods of parts that stay have round ends.
-  if (outer && !(still && o->joins->join == CAG_JOIN_ROUND)) {
-    if (stays(a)) status = cag_walks_put_line(&o->walks, corner, from, 1, err);
-    if (!status) status = cag_strip_put_join(&o->walks, a, b, o->left, o->joins, 1, err);
-    if (!status && stays(b)) status = cag_walks_put_line(&o->walks, to, corner, 1, err);
-    return status;
-  }
+  if (outer && !still) return cag_strip_put_join(&o->walks, a, b, o->left, o->joins, 1, err);
   if (!still && (turn == CAG_TURN_NONE || overlaps(a, b, o->left)))
     return cag_walks_put_line(&o->walks, from, to, 1, err);
+  CagStatus status = CAG_OK;
   if (!stays(a)) status = cag_walks_put_line(&o->walks, from, corner, 1, err);
   if (!status && !stays(b)) status = cag_walks_put_line(&o->walks, corner, to, 1, err);
   return status;
@@ -86,6 +81,8 @@ static CagStatus put_part(Border *o, const CagStripPart *p, CagError *err) {
 static CagStatus put_loop(Border *o, const CagCurve *loop, CagError *err) {
   CagStripParts parts = {0};
   CagStatus status = cag_strip_parts_add(&parts, loop, o->left, err);
+  if (!status && o->joins->join != CAG_JOIN_ROUND)
+    status = cag_strip_parts_unfold(&parts, o->left, false, o->tolerance, &o->near, err);
   for (size_t i = 0; !status && i < parts.n; i++) {
     const CagStripPart *p = &parts.items[i], *before = &parts.items[(i + parts.n - 1) % parts.n];
     // A smooth closed curve moves to a closed curve.

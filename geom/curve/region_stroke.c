@@ -113,7 +113,10 @@ static bool is_point(const CagCurve *c) {
 static CagStatus put_curve(Pen *pen, const CagCurve *c, CagError *err) {
   CagStripParts parts = {0};
   if (is_point(c)) return put_point(pen, c, err);
+  const CagStroke *stroke = pen->stroke;
   CagStatus status = find_parts(pen, c, &parts, err);
+  if (!status && (stroke->cap != CAG_CAP_ROUND || stroke->joins.join != CAG_JOIN_ROUND))
+    status = cag_strip_parts_unfold(&parts, pen->half, true, stroke->tolerance, &pen->near, err);
   for (size_t i = 0; !status && i < parts.n; i++) {
     const CagStripPart *p = &parts.items[i], *before = &parts.items[(i + parts.n - 1) % parts.n];
     status = put_strips(pen, p, err);

@@ -14,9 +14,8 @@ typedef struct CagStroke {
 } CagStroke;
 
 // The points on normals of the curves up to half of the width, and the joins of their corners and
-// the caps of their ends. A closed curve has no ends. A curve that bends with a radius below half
-// of the width is round at the ends of that part, unless it is a circle. A curve that is a single
-// point has round and square caps, a square along the axes.
+// the caps of their ends. A closed curve has no ends. A curve that is a single point has round and
+// square caps, a square along the axes.
 CagStatus cag_region_stroke(const CagCurve *const *curves, size_t count, const CagStroke *stroke,
                             CagRegion **out, CagError *err);
 

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "geom/curve/approximate.h"
+#include "geom/curve/biarc.h"
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
@@ -207,6 +208,41 @@ CagStatus cag_strip_parts_add(CagStripParts *parts, const CagCurve *c, double le
     from = cuts[i];
   }
   cag_free(cuts);
+  return status;
+}
+
+// --- Parts that fold as arcs ---
+
+typedef struct Arcs {
+  CagStripParts *parts;
+  double left;
+  bool both;
+} Arcs;
+
+static CagStatus add_step(void *context, const CagArcStep *step, CagError *err) {
+  Arcs *a = context;
+  CagCurve *c;
+  if (step->from.x == step->to.x && step->from.y == step->to.y) return CAG_OK;
+  const bool folds =
+      fabs(step->radius) <= fabs(a->left) && (a->both || (step->radius > 0) == (a->left > 0));
+  CagStatus status = cag_arc_step_curve(step, &c, err);
+  return status ? status : add_part(a->parts, c, folds, err);
+}
+
+CagStatus cag_strip_parts_unfold(CagStripParts *parts, double left, bool both, double tolerance,
+                                 bool *near, CagError *err) {
+  CagStripParts all = {0};
+  Arcs arcs = {&all, left, both};
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < parts->n; i++) {
+    const CagStripPart *p = &parts->items[i];
+    const bool replaced = p->folds && !p->round;
+    *near = *near || replaced;
+    status = replaced ? cag_curve_arcs(p->curve, tolerance, add_step, &arcs, err)
+                      : cag_strip_parts_copy(&all, p, err);
+  }
+  cag_strip_parts_free(parts);
+  *parts = all;
   return status;
 }
 

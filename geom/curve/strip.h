@@ -31,6 +31,11 @@ void cag_strip_parts_free(CagStripParts *parts);
 // strip of the width begins or ends to fold. Parts without length are left out.
 CagStatus cag_strip_parts_add(CagStripParts *parts, const CagCurve *c, double left, CagError *err);
 CagStatus cag_strip_parts_copy(CagStripParts *parts, const CagStripPart *p, CagError *err);
+// Replaces parts that fold, other than circles, by arcs within the tolerance; *near is set if there
+// are any. The strips of arcs have straight ends, so corners and ends are as for circles. both: the
+// strips on both sides count, not only the one of the width.
+CagStatus cag_strip_parts_unfold(CagStripParts *parts, double left, bool both, double tolerance,
+                                 bool *near, CagError *err);
 
 // The end of the strip of the width at an end (0 or 1) of the part.
 CagVec3 cag_strip_end(const CagStripPart *p, int end, double left);

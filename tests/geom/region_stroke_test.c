@@ -188,6 +188,86 @@ static void round_strokes_are_the_points_within_half_of_the_width(void **state) 
   }
 }
 
+// Whether a normal of the curve reaches the point within the distance. *clear is false if that
+// depends on a normal at an end of the curve or of the distance, or at a center of curvature.
+static bool is_on_normal(const CagCurve *c, CagVec3 p, double most, bool *clear) {
+  enum { STEPS = 4000 };
+  const double near = 5e-3;
+  bool found = false;
+  double before = 0;
+  *clear = true;
+  for (int i = 0; i <= STEPS; i++) {
+    CagVec3 d[2];
+    OK(cag_curve_eval(c, c->start + (c->end - c->start) * i / STEPS, 1, CAG_SIDE_RIGHT, d, &err));
+    const CagVec3 r = cag_sub(p, d[0]);
+    const double f = cag_dot(r, cag_unit(d[1])), distance = cag_norm(r);
+    const bool end = i == 0 || i == STEPS;
+    // At a center of curvature, the component along the curve touches zero.
+    if (fabs(f) < near && distance < most + near)
+      *clear = *clear && !end && fabs(distance - most) > near && fabs(f - before) > 1e-5;
+    if (i > 0 && (f > 0) != (before > 0) && distance <= most) found = true;
+    before = f;
+  }
+  return found;
+}
+
+static void butt_strokes_consist_of_normals(void **state) {
+  (void)state;
+  enum { LOOKS = 40 };
+  // y = x^2, whose radius of curvature is 1/2 at the origin; and a part of it that bends everywhere.
+  const CagVec3 whole[] = {{-1, 1, 0}, {0, -1, 0}, {1, 1, 0}},
+                part[] = {{-0.2, 0.04, 0}, {0.1, -0.08, 0}, {0.4, 0.16, 0}};
+  for (int k = 0; k < 4; k++) {
+    CagCurve *c;
+    const double width = k / 2 ? 3 : 1.6;
+    int looks = 0;
+    OK(cag_curve_bezier(k % 2 ? whole : part, NULL, 3, 2, &c, &err));
+    CagRegion *r = stroked(cag_curve_retain(c), width, CAG_CAP_BUTT, CAG_JOIN_ROUND);
+    for (int i = 0; i < LOOKS * LOOKS; i++) {
+      const CagVec3 p = {-2.5 + 5 * (i % LOOKS + 0.43) / LOOKS, -2 + 5 * (i / LOOKS + 0.57) / LOOKS,
+                         0};
+      bool clear;
+      const bool in = is_on_normal(c, p, width / 2, &clear);
+      if (!clear) continue;
+      looks++;
+      if (holds(r, p.x, p.y) != in) fail_msg("stroke %d at [%g, %g]: %d", k, p.x, p.y, !in);
+    }
+    assert_true(looks > LOOKS * LOOKS / 2);
+    cag_region_release(r);
+    cag_curve_release(c);
+  }
+}
+
+// A notch whose bottom bends with a radius below the distance.
+static void offsets_of_tight_bends_have_the_chosen_join(void **state) {
+  (void)state;
+  const CagVec3 bottom[] = {{1, 2, 0}, {0.9, 1, 0}, {0.1, 1, 0}, {0, 2, 0}};
+  const CagVec3 rest[] = {{0, 2, 0}, {-2, 2, 0}, {-2, -2, 0}, {3, -2, 0}, {3, 2, 0}, {1, 2, 0}};
+  CagCurve *parts[2], *loop;
+  OK(cag_curve_bezier(bottom, NULL, 4, 2, &parts[0], &err));
+  OK(cag_curve_polyline(rest, 6, false, 2, &parts[1], &err));
+  OK(cag_curve_join(parts, 2, &loop, &err));
+  CagRegion *r, *grown;
+  OK(cag_region_new(loop, NULL, 0, &r, &err));
+  const double d = 1;
+  for (int join = CAG_JOIN_MITER; join <= CAG_JOIN_SQUARE; join++) {
+    const CagJoins joins = {join, LIMIT};
+    OK(cag_region_offset_joined(r, d, 1e-6, &joins, &grown, &err));
+    assert_int_equal(grown->count, 1);
+    double area;
+    OK(cag_region_area(grown, &area, NULL, &err));
+    // The notch is filled. Between its corners, which are nearly right angles, bevels leave a right
+    // triangle with the hypotenuse 1 open, and squares one with 1 - 2 tan(22.5 deg).
+    const double base = join == CAG_JOIN_BEVEL ? 1 : 1 - 2 * tan(M_PI / 8),
+                 open = join == CAG_JOIN_MITER ? 0 : base * base / 4;
+    NEAR(area, 5 * 4 + 18 * d + 4 * join_area(join, M_PI / 2, d) - open, 0.05);
+    cag_region_release(grown);
+  }
+  cag_region_release(r);
+  cag_curve_release(loop);
+  for (int i = 0; i < 2; i++) cag_curve_release(parts[i]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(corners_of_offsets_have_the_chosen_join),
@@ -197,6 +277,8 @@ int main(void) {
       cmocka_unit_test(closed_curves_have_no_caps),
       cmocka_unit_test(strokes_wider_than_a_circle_cover_its_center),
       cmocka_unit_test(points_have_round_and_square_caps),
+      cmocka_unit_test(butt_strokes_consist_of_normals),
+      cmocka_unit_test(offsets_of_tight_bends_have_the_chosen_join),
       cmocka_unit_test(round_strokes_are_the_points_within_half_of_the_width),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
