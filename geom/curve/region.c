@@ -4,7 +4,6 @@
 
 #include "geom/curve/region.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -159,23 +158,6 @@ static CagStatus loop_within(const CagCurve *inner, const CagCurve *outer, bool 
 
 // --- Construction ---
 
-static CagStatus check_loop(const CagCurve *c, const char *argument, long index, CagError *err) {
-  char which[64] = "the outer boundary";
-  if (index >= 0) snprintf(which, sizeof which, "%.30s[%ld]", argument, index);
-  if (c->dimension != 2)
-    return cag_fail(
-        err, CAG_E_ARGUMENT, CAG_ERR_not_planar, argument, index,
-        "%s is a space curve; a region must be bounded by plane curves, with points [x, y]", which);
-  if (c->closed) return CAG_OK;
-  CagVec3 p, q;
-  CagStatus status = cag_curve_point(c, c->start, &p, err);
-  if (!status) status = cag_curve_point(c, c->end, &q, err);
-  if (status) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_not_closed, argument, index,
-                  "%s is not closed: it runs from [%.9g, %.9g] to [%.9g, %.9g], %.3g apart", which,
-                  p.x, p.y, q.x, q.y, cag_norm(cag_sub(p, q)));
-}
-
 // The loop, oriented counter-clockwise (or clockwise); fails if it encloses no area.
 static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, CagError *err) {
   // An area below this fraction of the squared size is rounding.
@@ -197,9 +179,9 @@ static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, Cag
 
 CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t hole_count,
                          CagRegion **out, CagError *err) {
-  CagStatus status = check_loop(outer, "C", -1, err);
+  CagStatus status = cag_region_check_closed(outer, "C", -1, err);
   for (size_t i = 0; !status && i < hole_count; i++)
-    status = check_loop(holes[i], "holes", (long)i, err);
+    status = cag_region_check_closed(holes[i], "holes", (long)i, err);
   if (status) return status;
   CagRegion *r = allocate(hole_count + 1);
   if (!r) return cag_fail_memory(err);
@@ -234,7 +216,8 @@ CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **ou
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_curves, "C", -1,
                     "a region needs at least one closed curve");
   CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
+  for (size_t i = 0; !status && i < n; i++)
+    status = cag_region_check_closed(loops[i], "curves", (long)i, err);
   if (!status) status = cag_region_check_loops(loops, n, err);
   if (status) return status;
   bool *within = cag_calloc(n * n, sizeof *within); // within[i * n + k]: loop i lies in loop k

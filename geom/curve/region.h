@@ -10,6 +10,7 @@
 #define CAG_GEOM_REGION_H
 
 #include "geom/curve/curve.h"
+#include "geom/curve/joins.h"
 
 typedef struct CagRegion {
   int references;
@@ -71,6 +72,9 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
 // empty region. Fails like the set operations, and with "too-far".
 CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
                             CagError *err);
+// The same with other corners.
+CagStatus cag_region_offset_joined(const CagRegion *r, double d, double tolerance,
+                                   const CagJoins *joins, CagRegion **out, CagError *err);
 
 // --- Internal ---
 

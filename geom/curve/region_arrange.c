@@ -424,8 +424,8 @@ static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, doubl
   return status;
 }
 
-CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
-                             double thin, CagRegion **out, CagError *err) {
+// The distance within which points of the walks are identified.
+static double same_distance(const CagWalk *walks, size_t n) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < n; i++) {
     const CagCurve *c = walks[i].curve;
@@ -433,11 +433,52 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
     cag_bounds_add(&box, one.min);
     cag_bounds_add(&box, one.max);
   }
-  double tolerance = fmax(SAME * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
+  return fmax(SAME * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
+}
+
+CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
+                             double thin, CagRegion **out, CagError *err) {
+  double tolerance = same_distance(walks, n);
   CagStatus status = CAG_OK;
+  *out = NULL;
+  if (!(tolerance > 0)) return CAG_OK; // a single point
   for (int i = 0; i < ATTEMPTS; i++, tolerance *= GROWTH) {
     status = attempt(walks, n, tolerance, thin, rule, parameter, out, err);
     if (status != CAG_E_CONVERGENCE) break;
   }
+  return status;
+}
+
+// --- Common points ---
+
+static CagStatus share_corner(const Edges *edges, const Corners *corners, bool *out,
+                              CagError *err) {
+  unsigned char *operands = cag_calloc(corners->n + 1, sizeof *operands); // a bit for each
+  *out = false;
+  if (!operands) return cag_fail_memory(err);
+  for (size_t i = 0; i < edges->n && !*out; i++) {
+    const CagRegionEdge *e = &edges->items[i];
+    const int which = (e->count[0] ? 1 : 0) | (e->count[1] ? 2 : 0);
+    operands[e->from] |= which;
+    operands[e->to] |= which;
+    *out = operands[e->from] == 3 || operands[e->to] == 3;
+  }
+  cag_free(operands);
+  return CAG_OK;
+}
+
+CagStatus cag_region_arrange_share(const CagWalk *walks, size_t n, bool *out, CagError *err) {
+  CagRegionPieces pieces = {.walks = walks, .tolerance = same_distance(walks, n)};
+  Corners corners = {0};
+  Edges edges = {0};
+  *out = false;
+  if (!(pieces.tolerance > 0)) return CAG_OK;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) status = cag_region_pieces_add(&pieces, i, err);
+  if (!status) status = cut_pieces(&pieces, &corners, &edges, err);
+  if (!status) status = share_corner(&edges, &corners, out, err);
+  cag_free(edges.items);
+  corners_free(&corners);
+  cag_region_pieces_free(&pieces);
   return status;
 }

@@ -26,6 +26,9 @@ typedef bool (*CagFaceRule)(const int winding[2], int parameter);
 CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
                              double thin, CagRegion **out, CagError *err);
 
+// Whether walks of both operands have a common point.
+CagStatus cag_region_arrange_share(const CagWalk *walks, size_t n, bool *out, CagError *err);
+
 // --- Pieces: parts of the walks that are monotone in x and in y (region_pieces.c) ---
 
 typedef struct CagRegionPiece {

@@ -7,6 +7,7 @@
 #include "geom/curve/region_check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -21,6 +22,24 @@
 #define CROSSING_ANGLE (M_PI / 18)
 // Edges closer than this fraction of the total size touch.
 #define TOUCH CAG_COINCIDENT
+
+CagStatus cag_region_check_closed(const CagCurve *c, const char *argument, long index,
+                                  CagError *err) {
+  char which[64] = "the outer boundary";
+  if (index >= 0) snprintf(which, sizeof which, "%.30s[%ld]", argument, index);
+  if (c->dimension != 2)
+    return cag_fail(
+        err, CAG_E_ARGUMENT, CAG_ERR_not_planar, argument, index,
+        "%s is a space curve; a region must be bounded by plane curves, with points [x, y]", which);
+  if (c->closed) return CAG_OK;
+  CagVec3 p, q;
+  CagStatus status = cag_curve_point(c, c->start, &p, err);
+  if (!status) status = cag_curve_point(c, c->end, &q, err);
+  if (status) return status;
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_not_closed, argument, index,
+                  "%s is not closed: it runs from [%.9g, %.9g] to [%.9g, %.9g], %.3g apart", which,
+                  p.x, p.y, q.x, q.y, cag_norm(cag_sub(p, q)));
+}
 
 static double loop_size(const CagCurve *c) {
   CagBounds b = c->kind->hull(c, c->start, c->end);

@@ -1,9 +1,20 @@
 // Regions of the plane.
 
-#include <string.h>
-
+#include "geom/curve/region_fill.h"
 #include "interp/builtin/curves.h"
 #include "interp/builtin/holds.h"
+
+// Reads the points of a list that is part of an argument; they are held.
+static bool read_points(CagCall *call, int argument, CagValue v, CagVec3 **points, size_t *n,
+                        int *dimension) {
+  // cag_arg_points reads an argument, so the list temporarily replaces it.
+  CagValue kept = call->values[argument];
+  call->values[argument] = v;
+  const bool ok = cag_arg_points(call, argument, points, n, dimension);
+  call->values[argument] = kept;
+  if (ok) cag_hold(call, *points);
+  return ok;
+}
 
 // Reads a closed plane curve from a curve or a list of points. Messages name `argument`. *out has
 // one reference.
@@ -16,16 +27,10 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
     return cag_fail_call(call, argument, CAG_ERR_type,
                          "expects closed plane curves or lists of points, found %s",
                          cag_type_article(v));
-  // cag_arg_points reads an argument, so the list temporarily replaces it.
-  CagValue kept = call->values[argument];
   CagVec3 *points;
   size_t n;
   int dimension;
-  call->values[argument] = v;
-  const bool ok = cag_arg_points(call, argument, &points, &n, &dimension);
-  call->values[argument] = kept;
-  if (!ok) return false;
-  cag_hold(call, points);
+  if (!read_points(call, argument, v, &points, &n, &dimension)) return false;
   if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, call->err)))
     return false;
   cag_release_held(call, points);
@@ -50,7 +55,11 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
   if (!cag_region_loops_plane(call, loops, outer + holes, &frame, &in_space)) return false;
   CagStatus status = outer == 1 ? cag_region_new(loops[0], loops + 1, holes, &region, call->err)
                                 : cag_region_from_loops(loops, outer + holes, &region, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
+  if (!cag_geometry_ok(call, status)) {
+    if (call->err->id == CAG_ERR_region_crossing || call->err->id == CAG_ERR_zero_area)
+      cag_fail_help(call->vm, "pass `fill: \"nonzero\"` to fill outlines that cross");
+    return false;
+  }
   *result = cag_region_value(call->vm, region, in_space ? &frame : NULL);
   return true;
 }
@@ -68,11 +77,108 @@ static bool bounded_by_some(CagCall *call, const CagList *holes, CagValue *resul
   return bounded_by(call, loops, outer, n - outer, result);
 }
 
+// --- Outlines that may cross ---
+
+// Whether the value is a list of outlines; else it is one outline.
+static bool is_list_of_outlines(CagCall *call, CagValue v) {
+  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0) return false;
+  for (size_t i = 0; i < CAG_AS_LIST(v)->length; i++) {
+    const CagValue item = cag_list_get(call->vm, CAG_AS_LIST(v), i);
+    if (item.type == CAG_CURVE) return true;
+    if (item.type != CAG_LIST) return false;
+    if (CAG_AS_LIST(item)->dim != 0) return true;
+    if (CAG_AS_LIST(item)->length > 0)
+      return cag_list_get(call->vm, CAG_AS_LIST(item), 0).type == CAG_LIST;
+  }
+  return CAG_AS_LIST(v)->length > 0;
+}
+
+// Outlines, in a common plane once all are read.
+typedef struct Outlines {
+  CagCurve **loops; // held
+  size_t n;
+} Outlines;
+
+// Whether fewer than three of the points differ from the next one, so that they bound nothing.
+static bool bound_nothing(const CagVec3 *p, size_t n) {
+  size_t steps = 0;
+  for (size_t i = 0; i < n && steps < 3; i++) steps += cag_norm(cag_sub(p[i], p[(i + 1) % n])) > 0;
+  return steps < 3;
+}
+
+// Reads a closed plane curve; *out is NULL for points that bound nothing.
+static bool read_outline(CagCall *call, int argument, CagValue v, CagCurve **out) {
+  CagVec3 *points;
+  size_t n;
+  int dimension;
+  *out = NULL;
+  if (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 0) return true;
+  if (v.type == CAG_LIST) {
+    if (!read_points(call, argument, v, &points, &n, &dimension)) return false;
+    const bool nothing = bound_nothing(points, n);
+    cag_release_held(call, points);
+    if (nothing) return true;
+  }
+  return read_loop(call, argument, v, out);
+}
+
+static bool read_outlines(CagCall *call, int argument, CagValue v, Outlines *out) {
+  const bool several = is_list_of_outlines(call, v);
+  const size_t count = several ? CAG_AS_LIST(v)->length : 1;
+  out->loops = cag_hold_curve_array(call, count);
+  out->n = 0;
+  for (size_t i = 0; i < count; i++) {
+    const CagValue one = several ? cag_list_get(call->vm, CAG_AS_LIST(v), i) : v;
+    if (!read_outline(call, argument, one, &out->loops[out->n])) return false;
+    out->n += out->loops[out->n] != NULL;
+  }
+  return true;
+}
+
+static bool filled(CagCall *call, const Outlines *o, CagFill fill, CagRegion **out) {
+  return cag_geometry_ok(
+      call, cag_region_fill((const CagCurve *const *)o->loops, o->n, fill, out, call->err));
+}
+
+// The region inside the outlines, but not inside the holes.
+static bool filled_region(CagCall *call, CagFill fill, CagValue *result) {
+  Outlines all, holes = {0};
+  CagTransform frame;
+  bool in_space;
+  if (!read_outlines(call, 0, call->values[0], &all)) return false;
+  const size_t outer = all.n;
+  if (cag_given(call, 1) && !read_outlines(call, 1, call->values[1], &holes)) return false;
+  CagCurve **loops = cag_hold_curve_array(call, outer + holes.n);
+  for (size_t i = 0; i < outer; i++) loops[i] = cag_curve_retain(all.loops[i]);
+  for (size_t i = 0; i < holes.n; i++) loops[outer + i] = cag_curve_retain(holes.loops[i]);
+  if (!cag_region_loops_plane(call, loops, outer + holes.n, &frame, &in_space)) return false;
+  CagRegion **parts = cag_hold_region_array(call, 2), *region = NULL;
+  const Outlines around = {loops, outer}, within = {loops + outer, holes.n};
+  if (!filled(call, &around, fill, &parts[0])) return false;
+  if (holes.n > 0) {
+    if (!filled(call, &within, fill, &parts[1])) return false;
+    CagStatus status =
+        cag_region_boolean(CAG_REGION_DIFFERENCE, parts[0], parts[1], &region, call->err);
+    if (!cag_geometry_ok(call, status)) return false;
+  } else {
+    region = cag_region_retain(parts[0]);
+  }
+  *result = cag_region_value(call->vm, region, in_space ? &frame : NULL);
+  return true;
+}
+
 bool cag_curves_region(CagCall *call, CagValue *result) {
+  static const char *const fills[] = {[CAG_FILL_EVEN_ODD] = "even-odd",
+                                      [CAG_FILL_NONZERO] = "nonzero",
+                                      [CAG_FILL_POSITIVE] = "positive",
+                                      NULL};
   const CagValue outline = call->values[0];
   CagList *holes = NULL;
   CagRegion *region = NULL;
+  int fill;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
+  if (!cag_arg_choice(call, 2, fills, &fill)) return false;
+  if (cag_given(call, 2)) return filled_region(call, (CagFill)fill, result);
   if (outline.type != CAG_LIST || CAG_AS_LIST(outline)->length > 0)
     return bounded_by_some(call, holes, result);
   // A region without boundary curves is empty, so it cannot have holes.
@@ -81,6 +187,17 @@ bool cag_curves_region(CagCall *call, CagValue *result) {
                                         "the outline is empty, so holes[0] does not lie within it")
                              : cag_region_empty(&region, call->err);
   return cag_region_result(call, status, &region, result);
+}
+
+bool cag_regions_repaired(CagCall *call, CagValue *result) {
+  if (call->values[0].type != CAG_REGION) return filled_region(call, CAG_FILL_EVEN_ODD, result);
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
+  const Outlines loops = {shape->as.region->loops, shape->as.region->count};
+  CagRegion *out = NULL;
+  if (!filled(call, &loops, CAG_FILL_EVEN_ODD, &out)) return false;
+  *result = cag_region_value(call->vm, out, shape->placement);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
 }
 
 bool cag_curves_polygon(CagCall *call, CagValue *result) {
@@ -115,152 +232,5 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
       return false;
   }
   *result = cag_builder_finish(call->vm, loops);
-  return true;
-}
-
-// --- Set operations and offsets ---
-
-// Computes the transform from the plane `place` to the plane `base`. Fails if they are not the same
-// plane. Messages count operands from 1.
-static CagStatus between_planes(const CagTransform *base, const CagTransform *place, size_t operand,
-                                CagTransform *out, CagError *err) {
-  const double same =
-      1e-9; // tolerance for the distance between the planes, relative to the region's distance
-  CagTransform back;
-  CagStatus status = cag_transform_inverse(base, &back, err);
-  if (status) return status;
-  *out = cag_transform_multiply(&back, place);
-  const double reach = 1 + fabs(out->m[0][3]) + fabs(out->m[1][3]);
-  if (!(fabs(out->m[2][0]) <= same && fabs(out->m[2][1]) <= same &&
-        fabs(out->m[2][3]) <= same * reach))
-    return cag_fail(
-        err, CAG_E_ARGUMENT, CAG_ERR_region_planes, "", -1,
-        "operand %zu lies in another plane than the first region; combine the regions in one plane, then move the result",
-        operand);
-  for (int i = 0; i < 4; i++) out->m[2][i] = out->m[i][2] = i == 2;
-  out->planar = true;
-  return CAG_OK;
-}
-
-// The operands of a set operation, which are read one after the other.
-typedef struct Operands {
-  CagCall *call;
-  CagTransform base; // the plane of the first region
-  bool based;
-  CagValue first; // the first shape; unset: none so far
-} Operands;
-
-// Reads a region or closed plane curve, in the common plane; *out has one reference.
-static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out) {
-  if (v.type != CAG_REGION && v.type != CAG_CURVE)
-    return cag_fail_call(o->call, -1, CAG_ERR_type, "expects regions, found %s as operand %zu",
-                         cag_type_article(v), operand);
-  const CagShape *shape = CAG_AS_SHAPE(v);
-  if (o->first.type == CAG_UNSET) o->first = v;
-  if (v.type == CAG_CURVE)
-    return cag_geometry_ok(o->call, cag_region_new(shape->as.curve, NULL, 0, out, o->call->err));
-  if (!o->based) o->base = shape->placement[0];
-  o->based = true;
-  if (!memcmp(o->base.m, shape->placement->m, sizeof o->base.m)) {
-    *out = cag_region_retain(shape->as.region);
-    return true;
-  }
-  CagTransform t;
-  CagStatus status = between_planes(&o->base, shape->placement, operand, &t, o->call->err);
-  if (!status) status = cag_region_transform(shape->as.region, &t, out, o->call->err);
-  return cag_geometry_ok(o->call, status);
-}
-
-// Returns the union of the shapes of an operand, or the empty region if there are none.
-static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
-  CagRegion **parts = cag_hold_region_array(o->call, shapes->length);
-  for (size_t i = 0; i < shapes->length; i++)
-    if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(o->call->vm)) ||
-        !read_shape(o, cag_list_get(o->call->vm, shapes, i), operand, &parts[i]))
-      return false;
-  CagStatus status = cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts,
-                                        shapes->length, out, o->call->err);
-  cag_release_held(o->call, parts);
-  return cag_geometry_ok(o->call, status);
-}
-
-// Reads a region, a closed plane curve, or a group or list of these, which are united.
-static bool read_operand(Operands *o, CagValue v, size_t operand, CagRegion **out) {
-  if (v.type != CAG_LIST && v.type != CAG_GROUP) return read_shape(o, v, operand, out);
-  CagBuilder *builder = cag_builder_new(o->call->vm);
-  if (!cag_shapes_collect(o->call, v, builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(o->call->vm, builder));
-  return unite_shapes(o, shapes, operand, out);
-}
-
-static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
-  CagValue *items;
-  size_t n;
-  CagRegion *out = NULL;
-  if (!cag_arg_several(call, &items, &n)) return false;
-  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
-  Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
-  CagRegion **regions = cag_hold_region_array(call, n);
-  for (size_t i = 0; i < n; i++)
-    if (!read_operand(&o, items[i], i + 1, &regions[i])) return false;
-  CagStatus status = cag_region_combine(op, (const CagRegion *const *)regions, n, &out, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_region_value(call->vm, out, &o.base);
-  if (o.first.type != CAG_UNSET) cag_shape_say_alike(*result, o.first);
-  return true;
-}
-
-bool cag_regions_unite(CagCall *call, CagValue *result) {
-  return combine(call, CAG_REGION_UNION, result);
-}
-
-bool cag_regions_subtract(CagCall *call, CagValue *result) {
-  return combine(call, CAG_REGION_DIFFERENCE, result);
-}
-
-bool cag_regions_intersect(CagCall *call, CagValue *result) {
-  return combine(call, CAG_REGION_INTERSECTION, result);
-}
-
-bool cag_regions_offset(CagCall *call, const struct cag_regions_offset *a, CagValue *result) {
-  const double part = 1e-6; // the default tolerance, as a fraction of the size
-  const CagShape *shape = CAG_AS_SHAPE(a->R);
-  double tolerance = a->tolerance;
-  CagRegion *out = NULL;
-  CagBounds box = {{0, 0, 0}, {1, 1, 0}};
-  if (!cag_region_is_empty(shape->as.region) &&
-      !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, call->err)))
-    return false;
-  if (!cag_given(call, 2)) tolerance = part * cag_norm(cag_sub(box.max, box.min));
-  if (!(tolerance > 0))
-    return cag_fail_call(call, 2, CAG_ERR_value, "expects a tolerance greater than 0");
-  CagStatus status = cag_region_offset(shape->as.region, a->d, tolerance, &out, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  *result = cag_region_value(call->vm, out, shape->placement);
-  cag_shape_say_alike(*result, a->R);
-  return true;
-}
-
-bool cag_regions_inertia(CagCall *call, const struct cag_regions_inertia *a, CagValue *result) {
-  static const char *const names[] = {"mass", "center", "matrix"};
-  const CagShape *shape = CAG_AS_SHAPE(a->R);
-  const double density = a->density;
-  double area = 0, xx = 0, xy = 0, yy = 0, *m;
-  CagVec3 center;
-  if (!shape->placement->planar)
-    return cag_fail_call(call, 0, CAG_ERR_value,
-                         "expects a region of the plane, found one that was moved into space");
-  const bool empty = cag_region_is_empty(shape->as.region);
-  CagStatus status = CAG_OK;
-  if (!empty)
-    status = cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, call->err);
-  if (!cag_geometry_ok(call, status)) return false;
-  CagValue matrix = cag_list_vectors(call->vm, 2, 2, &m);
-  m[0] = density * yy;
-  m[1] = m[2] = 0 - density * xy;
-  m[3] = density * xx;
-  const CagValue at = empty ? cag_none() : cag_point(call->vm, center, 2);
-  CagValue values[] = {cag_number(density * area), at, matrix};
-  *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
