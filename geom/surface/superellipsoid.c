@@ -2,9 +2,8 @@
 // (Barr 1981).
 //
 // S(u, v) = [a X(v) x(u), b X(v) y(u), c Z(v)], where (x, y) is the superellipse of exponent e at the
-// polar angle u, and (X, Z) that of exponent n at v. With the polar angle as parameter, partials are
-// finite where the exponent is at most 2; Barr's powers of cos and sin are not. Above 2, the
-// superellipse has cusps on the axes, and these powers are used.
+// polar angle u, and (X, Z) that of exponent n at v. With the polar angle as parameter, first partials
+// are finite for exponents of at most 2; Barr's powers of cos and sin have infinite ones below 1.
 //
 // Derivatives are those of truncated Taylor series within a quadrant, in which |cos| and |sin| are
 // analytic. On an axis, derivatives of |t|^k of an order above k, which are infinite unless k is an
@@ -84,19 +83,14 @@ static Curve superellipse(double e, double angle, int order, CagSide side) {
     d = f;
     f = next_d;
   }
-  if (e > 2) {
-    power_of_side(c, order, e, out.x);
-    power_of_side(s, order, e, out.y);
-  } else {
-    const double m = 2 / e;
-    double p[TERMS], q[TERMS], radius[TERMS];
-    power_of_side(c, order, m, p);
-    power_of_side(s, order, m, q);
-    for (int k = 0; k <= order; k++) p[k] += q[k];
-    power_of_series(p, order, -1 / m, radius);
-    multiply_series(c, radius, order, out.x);
-    multiply_series(s, radius, order, out.y);
-  }
+  const double m = 2 / e;
+  double p[TERMS], q[TERMS], radius[TERMS];
+  power_of_side(c, order, m, p);
+  power_of_side(s, order, m, q);
+  for (int k = 0; k <= order; k++) p[k] += q[k];
+  power_of_series(p, order, -1 / m, radius);
+  multiply_series(c, radius, order, out.x);
+  multiply_series(s, radius, order, out.y);
   factorial = 1;
   for (int k = 0; k <= order; k++) {
     factorial *= k > 0 ? k : 1;
@@ -144,7 +138,7 @@ static CagStatus superellipsoid_grid(const CagSurface *surface, const double *us
 }
 
 // Powers that are even integers are smooth on the axes.
-static bool is_smooth(double e) { return e <= 1 && fmod(2 / e, 2) == 0; }
+static bool is_smooth(double e) { return fmod(2 / e, 2) == 0; }
 
 static size_t superellipsoid_breaks(const CagSurface *surface, int direction, double *out,
                                     size_t capacity) {
