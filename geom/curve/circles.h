@@ -7,8 +7,8 @@
 
 #include "geom/curve/curve.h"
 
-// An object that a circle touches: the infinite line through p along d, or a circle (radius > 0)
-// about p.
+// An object that a circle touches: the infinite line through p along d, a circle (radius > 0) about
+// p, or, where this is allowed, the point p (d and the radius are 0).
 typedef struct CagTouched {
   CagVec3 p, d;
   double radius; // 0: a line
@@ -27,6 +27,18 @@ typedef struct CagTouchChoice {
 CagStatus cag_tangent_circle(const CagTouched *a, const CagTouched *b, double radius,
                              CagTouchChoice choice, CagVec3 *center, CagVec3 touch[2],
                              CagError *err);
+
+// The circles that are tangent to three circles, lines, or points, ascending by radius, then by x
+// and y of the center. Tangent lines and the three circles themselves are left out, and circles that
+// count several times are listed once. There may be none. Fails with "infinitely-many" if two of the
+// three are equal, or all three touch at one point.
+#define CAG_TANGENT_CIRCLES 8
+typedef struct CagTangentCircle {
+  CagVec3 center;
+  double radius;
+} CagTangentCircle;
+CagStatus cag_circles_tangent(const CagTouched touched[3],
+                              CagTangentCircle out[CAG_TANGENT_CIRCLES], size_t *n, CagError *err);
 
 typedef struct CagTangentLine {
   double t, t2; // parameters of the points of contact; t2: on the second curve

@@ -87,9 +87,10 @@ CagVec3 cag_convex_point(const CagConvex *c) { return support(c, cag_vec3(0, 0, 
 
 // --- Simplices ---
 
-// Up to four points of the difference of two bodies, and the weights with which they are combined.
+// Up to four points of the difference of two bodies, the points of the first one that they come from,
+// and the weights with which they are combined.
 typedef struct Simplex {
-  CagVec3 at[4];
+  CagVec3 at[4], of[4];
   double weight[4];
   int n;
 } Simplex;
@@ -130,14 +131,17 @@ static CagVec3 combined(const Simplex *s) {
 // Adds a point, and keeps the points that carry the one closest to the origin. Every combination
 // with positive weights is a point of the hull, so the least of them is safe even if the points
 // almost coincide.
-static CagVec3 add_apex(Simplex *s, CagVec3 apex) {
-  Simplex best = {.at = {apex}, .weight = {1}, .n = 1};
+static CagVec3 add_apex(Simplex *s, CagVec3 apex, CagVec3 of) {
+  Simplex best = {.at = {apex}, .of = {of}, .weight = {1}, .n = 1};
   CagVec3 nearest = apex;
   double least = cag_dot(apex, apex);
   for (unsigned which = 1; which < 1u << s->n; which++) {
-    Simplex part = {.at = {apex}, .n = 1};
+    Simplex part = {.at = {apex}, .of = {of}, .n = 1};
     for (int i = 0; i < s->n; i++)
-      if (which >> i & 1) part.at[part.n++] = s->at[i];
+      if (which >> i & 1) {
+        part.of[part.n] = s->of[i];
+        part.at[part.n++] = s->at[i];
+      }
     if (!weigh_points(&part)) continue;
     const CagVec3 v = combined(&part);
     const double square = cag_dot(v, v);
@@ -152,12 +156,18 @@ static CagVec3 add_apex(Simplex *s, CagVec3 apex) {
 
 // --- Convex bodies ---
 
-// Bounds of the distance of two bodies without rounding, and the unit normal toward the first one
-// of the half space that has the lower one.
+// Bounds of the distance of two bodies without rounding, the unit normal toward the first one of the
+// half space that has the lower one, and the points that have the upper one.
 typedef struct Gap {
   double least, most;
-  CagVec3 normal;
+  CagVec3 normal, points[2];
 } Gap;
+
+static CagVec3 combined_first(const Simplex *s) {
+  CagVec3 v = {0, 0, 0};
+  for (int i = 0; i < s->n; i++) v = cag_madd(v, s->weight[i], s->of[i]);
+  return v;
+}
 
 static bool holds_point(const Simplex *s, CagVec3 p) {
   for (int i = 0; i < s->n; i++)
@@ -165,23 +175,29 @@ static bool holds_point(const Simplex *s, CagVec3 p) {
   return false;
 }
 
-// Starts at v, any point of the difference of the bodies. Ends if the lower bound is at least
-// `enough`.
-static Gap gap_of(const CagConvex *a, const CagConvex *b, CagVec3 v, double size, double enough) {
+// Starts at the difference of a point of each body. Ends if the lower bound is at least `enough`.
+static Gap gap_of(const CagConvex *a, const CagConvex *b, CagVec3 p, CagVec3 q, double size,
+                  double enough) {
   Simplex s = {.n = 0};
-  Gap gap = {-INFINITY, INFINITY, {0, 0, 0}};
+  CagVec3 v = cag_sub(p, q);
+  Gap gap = {-INFINITY, INFINITY, {0, 0, 0}, {p, q}};
   double last = INFINITY; // of the simplex, which does not contain the start
   for (int round = 0; round < ROUNDS; round++) {
     const double norm = cag_norm(v);
     if (round > 0 && !(norm < last)) break; // only rounding is left
     if (round > 0) last = norm;
-    gap.most = fmin(gap.most, norm);
+    if (norm < gap.most) {
+      const CagVec3 first = round > 0 ? combined_first(&s) : p;
+      gap.most = norm;
+      gap.points[0] = first;
+      gap.points[1] = cag_sub(first, v);
+    }
     if (!(norm > CLOSE * size)) {
       gap.least = gap.most = 0;
       break;
     }
     const CagVec3 n = cag_scaled(v, 1 / norm);
-    const CagVec3 apex = cag_sub(support(a, cag_scaled(n, -1)), support(b, n));
+    const CagVec3 of = support(a, cag_scaled(n, -1)), apex = cag_sub(of, support(b, n));
     const double least = cag_dot(apex, n);
     if (least > gap.least) {
       gap.least = least;
@@ -189,7 +205,7 @@ static Gap gap_of(const CagConvex *a, const CagConvex *b, CagVec3 v, double size
     }
     if (gap.most - gap.least <= CLOSE * (size + gap.most) || gap.least >= enough) break;
     if (holds_point(&s, apex)) break;
-    v = add_apex(&s, apex);
+    v = add_apex(&s, apex, of);
   }
   return gap;
 }
@@ -245,7 +261,7 @@ static double least_wave(double x, double y, double angle, double half) {
 static void bound_by_plane(const Pair *pair, Arc *arc) {
   const CagVec3 p = ring_point(pair->ring, arc->angle);
   const CagConvex point = {.kind = CAG_CONVEX_HULL, .points = &p, .count = 1};
-  const Gap gap = gap_of(&point, pair->other, cag_sub(p, pair->middle), pair->size, pair->enough);
+  const Gap gap = gap_of(&point, pair->other, p, pair->middle, pair->size, pair->enough);
   const double x = cag_dot(pair->ring->x, gap.normal), y = cag_dot(pair->ring->y, gap.normal);
   const double here = x * cos(arc->angle) + y * sin(arc->angle);
   arc->most = gap.most;
@@ -288,8 +304,13 @@ static Arc arc_at(const Pair *pair, double angle, double half) {
   return arc;
 }
 
-// The least distance between two angles, by golden sections.
-static double refined(const Pair *pair, double low, double high) {
+// The nearest point of a ring, if it is off the axis.
+static CagVec3 nearest_of_ring(const CagConvex *ring, CagVec3 p) {
+  return support(ring, cag_sub(p, ring->center));
+}
+
+// The least distance between two angles, by golden sections, which replaces a larger one.
+static void refine(const Pair *pair, double low, double high, double *best, double *angle) {
   const double golden = (sqrt(5) - 1) / 2;
   double a = high - golden * (high - low), b = low + golden * (high - low);
   double at_a = arc_at(pair, a, 0).most, at_b = arc_at(pair, b, 0).most;
@@ -306,43 +327,55 @@ static double refined(const Pair *pair, double low, double high) {
       at_b = arc_at(pair, b = low + golden * (high - low), 0).most;
     }
   }
-  return fmin(at_a, at_b);
-}
-
-// The distance where the slope is zero near an angle, if there is a minimum.
-static double polished(const Pair *pair, double angle) {
-  Arc low = arc_at(pair, angle - POLISHED, 0), high = arc_at(pair, angle + POLISHED, 0);
-  double best = fmin(low.most, high.most);
-  for (int i = 0; i < POLISH_ROUNDS && low.slope < 0 && high.slope > 0; i++) {
-    const double part = low.slope / (low.slope - high.slope);
-    const Arc next = arc_at(pair, low.angle + part * (high.angle - low.angle), 0);
-    best = fmin(best, next.most);
-    if (next.slope < 0) low = next;
-    else high = next;
-  }
-  return best;
-}
-
-static double sampled_gap(const Pair *pair) {
-  const double step = 2 * M_PI / SAMPLES;
-  double at[SAMPLES], best = INFINITY;
-  for (int i = 0; i < SAMPLES; i++) {
-    at[i] = arc_at(pair, step * i, 0).most;
-    best = fmin(best, at[i]);
-  }
-  const double flat = CLOSE * pair->size;
-  for (int i = 0; i < SAMPLES; i++) {
-    const double before = at[(i + SAMPLES - 1) % SAMPLES], after = at[(i + 1) % SAMPLES];
-    if (at[i] > before || at[i] > after || fmax(before, after) - at[i] <= flat) continue;
-    best = fmin(best, refined(pair, step * (i - 1), step * (i + 1)));
-  }
-  return best;
+  if (!(fmin(at_a, at_b) < *best)) return;
+  *best = fmin(at_a, at_b);
+  *angle = at_a < at_b ? a : b;
 }
 
 static void keep_best(const Arc *arc, double *best, double *angle) {
   if (arc->most >= *best) return;
   *best = arc->most;
   *angle = arc->angle;
+}
+
+// The distance where the slope is zero near the angle, if there is a minimum, replaces a larger one.
+static void polish(const Pair *pair, double *best, double *angle) {
+  Arc low = arc_at(pair, *angle - POLISHED, 0), high = arc_at(pair, *angle + POLISHED, 0);
+  keep_best(&low, best, angle);
+  keep_best(&high, best, angle);
+  for (int i = 0; i < POLISH_ROUNDS && low.slope < 0 && high.slope > 0; i++) {
+    const double part = low.slope / (low.slope - high.slope);
+    const Arc next = arc_at(pair, low.angle + part * (high.angle - low.angle), 0);
+    keep_best(&next, best, angle);
+    if (next.slope < 0) low = next;
+    else high = next;
+  }
+}
+
+static void sample_gap(const Pair *pair, double *best, double *angle) {
+  const double step = 2 * M_PI / SAMPLES;
+  double at[SAMPLES];
+  for (int i = 0; i < SAMPLES; i++) {
+    const Arc arc = arc_at(pair, step * i, 0);
+    at[i] = arc.most;
+    keep_best(&arc, best, angle);
+  }
+  const double flat = CLOSE * pair->size;
+  for (int i = 0; i < SAMPLES; i++) {
+    const double before = at[(i + SAMPLES - 1) % SAMPLES], after = at[(i + 1) % SAMPLES];
+    if (at[i] > before || at[i] > after || fmax(before, after) - at[i] <= flat) continue;
+    refine(pair, step * (i - 1), step * (i + 1), best, angle);
+  }
+}
+
+// The bounds with the points that belong to the angle.
+static Gap gap_at(const Pair *pair, double least, double most, double angle) {
+  const CagVec3 p = ring_point(pair->ring, angle);
+  if (pair->other->kind == CAG_CONVEX_RING)
+    return (Gap){least, most, {0, 0, 0}, {p, nearest_of_ring(pair->other, p)}};
+  const CagConvex point = {.kind = CAG_CONVEX_HULL, .points = &p, .count = 1};
+  const Gap gap = gap_of(&point, pair->other, p, pair->middle, pair->size, INFINITY);
+  return (Gap){least, most, {0, 0, 0}, {p, gap.points[1]}};
 }
 
 // Bounds of the distance of a ring from another body, without rounding.
@@ -361,8 +394,8 @@ static Gap gap_of_ring(const Pair *pair) {
       if (arcs[i].least < fmin(best, pair->enough) - close) arcs[kept++] = arcs[i];
     n = kept;
     if (n == 0 || best <= pair->meeting) {
-      if (best > pair->meeting) best = fmin(best, polished(pair, angle));
-      return (Gap){fmin(best, pair->enough), best, {0, 0, 0}};
+      if (best > pair->meeting) polish(pair, &best, &angle);
+      return gap_at(pair, fmin(best, pair->enough), best, angle);
     }
     if (2 * n > MOST_ARCS) break;
     for (int i = 0; i < n; i++)
@@ -376,29 +409,44 @@ static Gap gap_of_ring(const Pair *pair) {
     memcpy(arcs, next, (size_t)count * sizeof *next);
     n = count;
   }
-  best = fmin(best, sampled_gap(pair));
-  return (Gap){fmin(best, pair->enough), best, {0, 0, 0}};
+  sample_gap(pair, &best, &angle);
+  return gap_at(pair, fmin(best, pair->enough), best, angle);
 }
 
 // --- All kinds ---
 
-bool cag_convex_distance(const CagConvex *a, const CagConvex *b, double most, double *out) {
+// Moves the points by the rounding of their bodies, but not beyond each other.
+static void round_points(const CagConvex *a, const CagConvex *b, CagVec3 points[2]) {
+  const CagVec3 way = cag_sub(points[1], points[0]);
+  const double gap = cag_norm(way), first = fmin(a->round, gap);
+  const double second = fmin(b->round, gap - first);
+  if (!(gap > 0)) return;
+  points[0] = cag_madd(points[0], first / gap, way);
+  points[1] = cag_madd(points[1], -second / gap, way);
+}
+
+bool cag_convex_distance(const CagConvex *a, const CagConvex *b, double most, double *out,
+                         CagVec3 points[2]) {
   const double round = a->round + b->round, enough = most + round;
-  const CagVec3 p = middle_of(a), q = middle_of(b), way = cag_sub(p, q);
-  const double size = size_of(a) + size_of(b) + round, far = cag_norm(way);
+  const CagVec3 p = middle_of(a), q = middle_of(b);
+  const double size = size_of(a) + size_of(b) + round, far = cag_norm(cag_sub(p, q));
   Gap gap;
   if (a->kind == CAG_CONVEX_RING || b->kind == CAG_CONVEX_RING) {
     const bool first = a->kind == CAG_CONVEX_RING;
     const Pair pair = {
         first ? a : b, first ? b : a, first ? q : p, size + far, round + ARC_CLOSE * size, enough};
     gap = gap_of_ring(&pair);
+    if (!first) gap = (Gap){gap.least, gap.most, gap.normal, {gap.points[1], gap.points[0]}};
   } else {
-    gap = gap_of(a, b, way, size, enough);
+    gap = gap_of(a, b, p, q, size, enough);
   }
   const double accepted = ACCEPTED * (size + far);
   if (gap.most <= round + accepted) *out = 0;
   else if (gap.least >= enough) *out = gap.least - round;
   else if (gap.most - gap.least <= accepted) *out = gap.most - round;
   else return false;
+  if (!points) return true;
+  memcpy(points, gap.points, sizeof gap.points);
+  round_points(a, b, points);
   return true;
 }

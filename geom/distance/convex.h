@@ -36,7 +36,10 @@ CagVec3 cag_convex_point(const CagConvex *c);
 //
 // The result is off by at most 1e-10 of the size of the bodies and their distance. Returns false if
 // that was not reached. Rings to whose points the other body is almost equally near, as for coaxial
-// ones, have no such proof: these are sampled, and the nearest samples refined.
-bool cag_convex_distance(const CagConvex *a, const CagConvex *b, double most, double *out);
+// ones, have no such proof: these are sampled, and the nearest samples refined. points: points of a
+// and b with about this distance, unless it is only a lower bound. They coincide if the bodies meet.
+// NULL: not wanted.
+bool cag_convex_distance(const CagConvex *a, const CagConvex *b, double most, double *out,
+                         CagVec3 points[2]);
 
 #endif

@@ -203,21 +203,25 @@ static double segments(CagVec3 p, CagVec3 q, CagVec3 r, CagVec3 s) {
   return nearest;
 }
 
-static bool pierces(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
+// Whether a segment crosses a triangle, and where.
+static bool pierces(CagVec3 p, CagVec3 q, const CagVec3 t[3], CagVec3 *at) {
   const CagVec3 n = cag_cross(cag_sub(t[1], t[0]), cag_sub(t[2], t[0]));
   const double a = cag_dot(n, cag_sub(p, t[0])), b = cag_dot(n, cag_sub(q, t[0]));
   if (!((a < 0 && b > 0) || (a > 0 && b < 0))) return false;
   const CagVec3 x = cag_lerp(p, q, a / (a - b));
   for (int i = 0; i < 3; i++)
     if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(x, t[i])), n) < 0) return false;
+  *at = x;
   return true;
 }
 
 static double chord_distance(const CagPart *a, const CagPart *b) {
   double nearest = INFINITY;
+  CagVec3 at;
   for (int i = 0; i < 3; i++) {
     const int next = (i + 1) % 3;
-    if (pierces(a->p[i], a->p[next], b->p) || pierces(b->p[i], b->p[next], a->p)) return 0;
+    if (pierces(a->p[i], a->p[next], b->p, &at) || pierces(b->p[i], b->p[next], a->p, &at))
+      return 0;
     nearest = fmin(nearest, cag_distance_to_triangle(a->p[i], b->p[0], b->p[1], b->p[2]));
     nearest = fmin(nearest, cag_distance_to_triangle(b->p[i], a->p[0], a->p[1], a->p[2]));
     for (int k = 0; k < 3; k++)
@@ -236,12 +240,14 @@ static void offer_foot(Feet *feet, CagVec3 p, CagVec3 q) {
   if (d < feet->distance) *feet = (Feet){d, {p, q}};
 }
 
-// The closest points of triangles that do not intersect.
+// The closest points of triangles, or a common one.
 static Feet chord_feet(const CagPart *a, const CagPart *b) {
   Feet nearest = {INFINITY, {a->p[0], b->p[0]}};
   CagVec3 foot;
   for (int i = 0; i < 3; i++) {
     const CagVec3 p = a->p[i], q = a->p[(i + 1) % 3];
+    if (pierces(p, q, b->p, &foot) || pierces(b->p[i], b->p[(i + 1) % 3], a->p, &foot))
+      return (Feet){0, {foot, foot}};
     if (cag_foot_in_triangle(p, b->p, &foot)) offer_foot(&nearest, p, foot);
     if (cag_foot_in_triangle(b->p[i], a->p, &foot)) offer_foot(&nearest, foot, b->p[i]);
     for (int k = 0; k < 3; k++) {

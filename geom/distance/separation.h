@@ -47,7 +47,8 @@ void cag_parts_free(CagParts *parts);
 // and no others.
 //
 //   most       maximum number of pairs to compare on the exact shapes
-//   points     the closest points of a and b if the shapes do not meet; may be NULL
+//   points     the closest points of a and b, which coincide within rounding if the shapes meet; may be
+//              NULL
 //   interrupt  may be NULL; a value other than 0 stops with CAG_E_CALLBACK
 //
 // Fails with "zero-area" if a set is empty, such as the set of a surface that is a single point,

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <string.h>
+
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
@@ -255,7 +257,7 @@ static CagStatus sorted_entries(const CagConvexList *list, const CagBounds *to, 
 
 // Both lists are ordered by the distance from the box of the other one, so most pairs are skipped.
 CagStatus cag_convex_list_distance(const CagConvexList *a, const CagConvexList *b, double *out,
-                                   bool *certain, CagError *err) {
+                                   CagVec3 points[2], bool *certain, CagError *err) {
   const CagBounds box[2] = {all_bounds(a), all_bounds(b)};
   Entry *first = NULL, *second = NULL;
   CagStatus status = sorted_entries(a, &box[1], &first, err);
@@ -268,10 +270,13 @@ CagStatus cag_convex_list_distance(const CagConvexList *a, const CagConvexList *
     for (size_t k = 0; !status && k < b->n && second[k].gap < best && best > 0; k++) {
       const size_t n = second[k].index;
       double distance;
+      CagVec3 found[2];
       if (box_gap(&a->bounds[m], &b->bounds[n]) >= best) continue;
-      const bool known = cag_convex_distance(&a->items[m], &b->items[n], best, &distance);
+      const bool known = cag_convex_distance(&a->items[m], &b->items[n], best, &distance, found);
       *certain = *certain && known;
-      if (known) best = fmin(best, distance);
+      if (!known || distance >= best) continue;
+      best = distance;
+      if (points) memcpy(points, found, sizeof found);
     }
   }
   cag_free(first);

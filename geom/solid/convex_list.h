@@ -22,8 +22,9 @@ CagStatus cag_solid_add_convex(const CagSolid *s, CagConvexList *list, bool *kno
 void cag_convex_list_free(CagConvexList *list);
 
 // Computes the distance of the unions of two lists, which are not empty, as cag_convex_distance
-// does. *certain is false if one of the distances could not be determined.
+// does, and its points (NULL: not wanted). *certain is false if one of the distances could not be
+// determined.
 CagStatus cag_convex_list_distance(const CagConvexList *a, const CagConvexList *b, double *out,
-                                   bool *certain, CagError *err);
+                                   CagVec3 points[2], bool *certain, CagError *err);
 
 #endif

@@ -24,6 +24,14 @@ typedef struct CagRefinement {
 CagStatus cag_surface_refine_by(const CagSurface *s, const CagRefinement by[2], CagSurface **out,
                                 CagError *err);
 CagStatus cag_surface_elevate(const CagSurface *s, int u, int v, CagSurface **out, CagError *err);
+// Removes the inner knot t `times` times, and lowers the degree by one in a direction. A closed
+// direction becomes open. *deviation (may be NULL) bounds the distance of new and old points at
+// equal parameters. Fail with "tolerance-exceeded", "no-such-knot", "order-range".
+CagStatus cag_surface_remove_knot(const CagSurface *s, int direction, double t, int times,
+                                  double tolerance, CagSurface **out, double *deviation,
+                                  CagError *err);
+CagStatus cag_surface_reduce_degree(const CagSurface *s, int direction, double tolerance,
+                                    CagSurface **out, double *deviation, CagError *err);
 // The Bezier pieces over 0..1, by rows of u: *nu x *nv of them; the array is malloc'd.
 CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *nu, size_t *nv,
                                 CagError *err);
@@ -42,6 +50,8 @@ CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0,
                            CagSurface **out, CagError *err);
 // S'(u, v) = S(v, u).
 CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err);
+// S'(u, v) = S(u0 + u1 - u, v), or the same in v, which is cag_surface_flip.
+CagStatus cag_surface_reverse(const CagSurface *s, int direction, CagSurface **out, CagError *err);
 // S + d n; partials up to order CAG_MAX_PARTIAL - 1.
 CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err);
 // The base surface and the distance of an offset. Returns false for another surface.

@@ -97,6 +97,10 @@ CagStatus cag_surface_translational(const CagCurve *a, const CagCurve *b, CagSur
 // A circle carried along the path in rotation-minimizing frames (double reflection, Wang et al.
 // 2008): u is the angle around, v the path's parameter.
 CagStatus cag_surface_tube(const CagCurve *path, double radius, CagSurface **out, CagError *err);
+// A superellipsoid of positive size about the origin with exponents e around Z and n along it, both
+// in 0.01..2. u is the longitude, v the latitude; normals point outward.
+CagStatus cag_surface_superellipsoid(CagVec3 size, double e, double n, CagSurface **out,
+                                     CagError *err);
 CagStatus cag_surface_torus(double major, double minor, CagSurface **out, CagError *err);
 // The part of the XY plane within a region (trimmed), placed by `frame`; u, v are x, y of the
 // region.

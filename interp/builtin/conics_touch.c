@@ -42,6 +42,28 @@ static bool read_touched(CagCall *call, int argument, CagTouched *out) {
                        "expects lines, circles, or arcs of circles in the plane");
 }
 
+// Reads a point of the plane, or what read_touched reads.
+static bool read_touched_or_point(CagCall *call, int argument, CagTouched *out) {
+  CagPoint p;
+  if (call->values[argument].type == CAG_CURVE) {
+    if (!read_touched(call, argument, out)) return false;
+    return out->radius > 0 || cag_norm(out->d) > 0 ||
+           cag_fail_value(call, argument, "a line whose length is not 0");
+  }
+  if (!cag_arg_vec(call, argument, &p.at, &p.dimension)) return false;
+  if (p.dimension != 2) return cag_fail_value(call, argument, "a point [x, y] of the plane");
+  *out = (CagTouched){.p = p.at};
+  return true;
+}
+
+static bool circle_value(CagCall *call, CagVec3 center, double radius, CagValue *result) {
+  CagCurve *c = NULL;
+  CagTransform frame = cag_translate(center);
+  frame.planar = true;
+  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
+}
+
 // Reads "inside" or "outside", or a list of two of these.
 static bool read_contact(CagCall *call, int argument, bool inside[2]) {
   static const char *const words[] = {"outside", "inside", NULL};
@@ -68,16 +90,32 @@ bool cag_conics_circle_tangent(CagCall *call, const struct cag_conics_circle_tan
   CagTouched p, q;
   CagTouchChoice choice = {.right = a->side, .near = a->nearness};
   CagVec3 center, touch[2];
-  CagCurve *c = NULL;
   if (!read_touched(call, 0, &p) || !read_touched(call, 1, &q) ||
       !read_contact(call, 5, choice.inside) ||
       !cag_geometry_ok(call,
                        cag_tangent_circle(&p, &q, a->radius, choice, &center, touch, call->err)))
     return false;
-  CagTransform frame = cag_translate(center);
-  frame.planar = true;
-  CagStatus status = cag_curve_arc(a->radius, a->radius, 0, FULL_TURN, &frame, &c, call->err);
-  return cag_curve_result(call, status, &c, result);
+  return circle_value(call, center, a->radius, result);
+}
+
+bool cag_conics_circles_tangent(CagCall *call, const struct cag_conics_circles_tangent *a,
+                                CagValue *result) {
+  CagTouched touched[3];
+  CagTangentCircle found[CAG_TANGENT_CIRCLES];
+  size_t n;
+  (void)a;
+  for (int i = 0; i < 3; i++)
+    if (!read_touched_or_point(call, i, &touched[i])) return false;
+  if (!cag_geometry_ok(call, cag_circles_tangent(touched, found, &n, call->err))) return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++) {
+    CagValue v;
+    if (!circle_value(call, found[i].center, found[i].radius, &v) ||
+        !cag_builder_add(call->vm, list, v))
+      return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 bool cag_conics_fillet(CagCall *call, const struct cag_conics_fillet *a, CagValue *result) {

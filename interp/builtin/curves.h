@@ -3,11 +3,15 @@
 #ifndef CAG_INTERP_BUILTIN_CURVES_H
 #define CAG_INTERP_BUILTIN_CURVES_H
 
+#include "geom/curve/feet.h"
 #include "geom/curve/region.h"
 #include "interp/builtin/shapes.h"
 
 // Fails with a geometry error. The arguments after the call are those of cag_fail after `err`.
 #define cag_fail_core(call, ...) cag_geometry_ok(call, cag_fail((call)->err, __VA_ARGS__))
+
+// The name of the kind of a foot of a perpendicular.
+CagValue cag_foot_kind_value(CagVm *vm, CagFootKind kind);
 
 // Reads the parameter of a curve, which is the second argument.
 static inline bool cag_arg_at(CagCall *call, const CagCurve *c, double *t) {

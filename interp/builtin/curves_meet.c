@@ -1,6 +1,7 @@
-// Intersections of curves with curves, surfaces, and planes.
+// Intersections of curves with curves, surfaces, and planes, and feet of perpendiculars.
 
 #include "base/memory.h"
+#include "geom/curve/feet.h"
 #include "geom/curve/intersect.h"
 #include "geom/meet/meet_curve.h"
 #include "interp/builtin/curves.h"
@@ -65,4 +66,28 @@ bool cag_bsplines_intersect(CagCall *call, const struct cag_bsplines_intersect *
   else return cag_fail_type(call, 1, "a curve, a surface, or a plane");
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
+}
+
+CagValue cag_foot_kind_value(CagVm *vm, CagFootKind kind) {
+  static const char *const names[] = {"minimum", "maximum", "saddle", "inflection"};
+  return cag_text_c(vm, names[kind]);
+}
+
+bool cag_curves_extrema(CagCall *call, const struct cag_curves_extrema *a, CagValue *result) {
+  static const char *const names[] = {"t", "point", "distance", "kind"};
+  CagFoot *feet;
+  size_t n;
+  const int dimension = a->C->dimension == 2 ? 2 : 3;
+  if (!cag_geometry_ok(call, cag_curve_feet(a->C, a->P.at, &feet, &n, call->err))) return false;
+  cag_hold_for(call, cag_free, feet);
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++) {
+    const CagValue values[] = {cag_parameter_value(a->C->angular, feet[i].at[0]),
+                               cag_point(call->vm, feet[i].point, dimension),
+                               cag_number(feet[i].distance),
+                               cag_foot_kind_value(call->vm, feet[i].kind)};
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4))) return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }

@@ -1,4 +1,8 @@
-// Distances of shapes.
+// Distances of shapes, and their nearest points.
+
+#include "interp/builtin/distances.h"
+
+#include <string.h>
 
 #include "base/array.h"
 #include "base/memory.h"
@@ -272,45 +276,54 @@ static bool shape_encloses(CagCall *call, CagValue v, const Body *outer, CagVec3
   return !is_in_bounds(&outer->bounds, p) || cag_shape_holds(call, v, p, yes, &body);
 }
 
-// Whether a shape of `outer` contains one of `inner`. The surfaces do not meet, so one point of
-// each decides. If the distance of convex bodies is certain, it is 0 already for those that contain
+// Whether a shape of `outer` contains one of `inner`, and a point of the latter. The surfaces do not
+// meet, so one point of each decides. If the distance of convex bodies is certain, it is 0 already for those that contain
 // each other.
-static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool certain, bool *yes) {
+static bool encloses(CagCall *call, const Body *outer, const Body *inner, bool certain, bool *yes,
+                     CagVec3 *at) {
   const size_t inner_count = inner->shapes ? inner->shapes->length : 1;
   for (size_t i = 0; !*yes && outer->shapes && i < outer->shapes->length; i++) {
     const CagValue v = cag_list_get(call->vm, outer->shapes, i);
     if (v.type != CAG_SOLID && v.type != CAG_MESH) continue;
     for (size_t k = 0; !*yes && k < inner_count; k++) {
       const size_t first = inner->first ? inner->first[k] : 0;
-      if (first < inner->parts.n &&
-          !shape_encloses(call, v, outer, inner->parts.items[first].p[0], yes))
-        return false;
+      if (first >= inner->parts.n) continue;
+      *at = inner->parts.items[first].p[0];
+      if (!shape_encloses(call, v, outer, *at, yes)) return false;
     }
-    for (size_t k = 0; !*yes && !(certain && outer->is_convex[i]) && k < inner->convex.n; k++)
-      if (!shape_encloses(call, v, outer, cag_convex_point(&inner->convex.items[k]), yes))
-        return false;
+    for (size_t k = 0; !*yes && !(certain && outer->is_convex[i]) && k < inner->convex.n; k++) {
+      *at = cag_convex_point(&inner->convex.items[k]);
+      if (!shape_encloses(call, v, outer, *at, yes)) return false;
+    }
   }
   return true;
 }
 
 // A distance, and locations on the meshes of set operations at which the exact shapes may be closer.
 typedef struct Nearest {
-  double distance;      // without these
+  CagClosest closest;   // without these
   double margin, apart; // of the locations (see separation.h); 0 without such meshes
   double rough;         // the least distance of the meshes
   size_t n;
   CagPartsNear near[4]; // of the pairs of parts
 } Nearest;
 
+static void keep_closest(CagClosest *best, double distance, const CagVec3 points[2]) {
+  if (distance >= best->distance) return;
+  best->distance = distance;
+  memcpy(best->points, points, sizeof best->points);
+}
+
 // Lowers the distance to that of the parts, if both have some.
 static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, Nearest *best, CagError *err) {
   const volatile int *stop = cag_vm_stop(vm);
   double found;
+  CagVec3 points[2];
   CagStatus status = CAG_OK;
-  if (a->n == 0 || b->n == 0 || best->distance == 0) return CAG_OK;
+  if (a->n == 0 || b->n == 0 || best->closest.distance == 0) return CAG_OK;
   if (best->margin == 0) {
-    status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found, NULL, stop, err);
-    if (!status) best->distance = fmin(best->distance, found);
+    status = cag_parts_distance(a, b, CAG_PARTS_PAIRS, &found, points, stop, err);
+    if (!status) keep_closest(&best->closest, found, points);
     return status;
   }
   CagPartsNear *near = &best->near[best->n];
@@ -327,14 +340,16 @@ static CagStatus parts_distance(CagVm *vm, CagParts *a, CagParts *b, Nearest *be
 static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, Nearest *out, bool *certain,
                                   CagError *err) {
   CagStatus status = CAG_OK;
-  *out = (Nearest){.distance = INFINITY, .rough = INFINITY};
+  CagClosest *closest = &out->closest;
+  *out = (Nearest){.closest = {.distance = INFINITY}, .rough = INFINITY};
   if ((a->is_rough || b->is_rough) && a->shapes && b->shapes) {
     out->margin = 2 * (a->tolerance + b->tolerance);
     out->apart = APART * sqrt(out->margin * (body_size(a) + body_size(b)));
   }
   *certain = true;
   if (a->convex.n > 0 && b->convex.n > 0)
-    status = cag_convex_list_distance(&a->convex, &b->convex, &out->distance, certain, err);
+    status = cag_convex_list_distance(&a->convex, &b->convex, &closest->distance, closest->points,
+                                      certain, err);
   if (!status && a->convex.n > 0 && (b->parts.n > 0 || !*certain))
     status = need_convex_parts(vm, a, err);
   if (!status && b->convex.n > 0 && (a->parts.n > 0 || !*certain))
@@ -344,17 +359,18 @@ static CagStatus surface_distance(CagVm *vm, Body *a, Body *b, Nearest *out, boo
   if (!status) status = parts_distance(vm, &a->parts, &b->convex_parts, out, err);
   if (!status && !*certain)
     status = parts_distance(vm, &a->convex_parts, &b->convex_parts, out, err);
-  if (status || isfinite(out->distance) || out->n > 0) return status;
-  return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &out->distance, NULL,
-                            cag_vm_stop(vm), err);
+  if (status || isfinite(closest->distance) || out->n > 0) return status;
+  return cag_parts_distance(&a->parts, &b->parts, CAG_PARTS_PAIRS, &closest->distance,
+                            closest->points, cag_vm_stop(vm), err);
 }
 
 // --- Exact set operations ---
 
 // The search for the closest points of set operations ends after this many steps, or if they move
-// by less than this fraction of the size of both.
+// by less than this fraction of the size of both. For points, the error is not squared.
 enum { POLISH_STEPS = 60 };
 #define POLISHED 1e-10
+#define POLISHED_POINTS 1e-14
 
 // Two points on the exact shapes, each the closest one to the point of the other shape before it.
 typedef struct Polish {
@@ -389,20 +405,20 @@ static CagVec3 limit_of_steps(CagVec3 before, CagVec3 at, CagVec3 next) {
 // each shape to the other in turn, the distance only decreases. Since this is slow where the shapes
 // are almost parallel, every other step starts from where the steps seem to end.
 static bool polish_location(CagCall *call, const CagTarget *const targets[2], CagVec3 start,
-                            double size, double *distance) {
+                            double size, double polished, CagClosest *best) {
   Polish now = {.targets = {targets[0], targets[1]}};
   if (!polish_from(call, &now, start, &now)) return false;
   for (int step = 0; step < POLISH_STEPS && now.distance > 0; step++) {
     Polish next, ahead;
     const CagVec3 before = now.points[0];
     if (!cag_keep_going(call->vm) || !polish_from(call, &now, before, &now)) return false;
-    if (cag_norm(cag_sub(now.points[0], before)) <= POLISHED * size) break;
+    if (cag_norm(cag_sub(now.points[0], before)) <= polished * size) break;
     if (!polish_from(call, &now, now.points[0], &next)) return false;
     const CagVec3 end = limit_of_steps(before, now.points[0], next.points[0]);
     if (!polish_from(call, &now, end, &ahead)) return false;
     now = ahead.distance < next.distance ? ahead : next;
   }
-  *distance = fmin(*distance, now.distance <= TOUCHING * size ? 0 : now.distance);
+  keep_closest(best, now.distance <= TOUCHING * size ? 0 : now.distance, now.points);
   return true;
 }
 
@@ -411,27 +427,28 @@ static bool polish_distance(CagCall *call, const Body *a, const Body *b, Nearest
   const CagTarget *targets[2];
   if (!cag_arg_near_target(call, 0, &targets[0]) || !cag_arg_near_target(call, 1, &targets[1]))
     return false;
-  const double limit = fmin(best->distance, best->rough) + best->margin;
+  const double limit = fmin(best->closest.distance, best->rough) + best->margin;
   for (size_t i = 0; i < best->n; i++)
-    for (size_t k = 0; k < best->near[i].n && best->distance > 0; k++)
+    for (size_t k = 0; k < best->near[i].n && best->closest.distance > 0; k++)
       if (best->near[i].distance[k] <= limit &&
           !polish_location(call, targets, best->near[i].points[k][0], body_size(a) + body_size(b),
-                           &best->distance))
+                           POLISHED, &best->closest))
         return false;
   return true;
 }
 
-static bool body_distance(CagCall *call, Body *a, Body *b, double *out) {
+static bool body_distance(CagCall *call, Body *a, Body *b, CagClosest *out) {
   bool certain, within = false;
   Nearest nearest;
+  CagVec3 at = {0, 0, 0};
   if (!cag_geometry_ok(call, surface_distance(call->vm, a, b, &nearest, &certain, call->err)))
     return false;
   if (nearest.n > 0 && !polish_distance(call, a, b, &nearest)) return false;
-  *out = nearest.distance;
-  if (*out == 0 || (certain && a->parts.n == 0 && b->parts.n == 0)) return true;
-  if (!encloses(call, a, b, certain, &within)) return false;
-  if (!within && !encloses(call, b, a, certain, &within)) return false;
-  if (within) *out = 0;
+  *out = nearest.closest;
+  if (out->distance == 0 || (certain && a->parts.n == 0 && b->parts.n == 0)) return true;
+  if (!encloses(call, a, b, certain, &within, &at)) return false;
+  if (!within && !encloses(call, b, a, certain, &within, &at)) return false;
+  if (within) *out = (CagClosest){0, {at, at}};
   return true;
 }
 
@@ -451,9 +468,9 @@ static bool read_ball(CagCall *call, int argument, CagVec3 *center, double *radi
   return true;
 }
 
-// The distance from a ball follows from that of its center. *known is false if neither argument is a
-// ball, or if there is nothing that can be near.
-static bool ball_distance(CagCall *call, double *out, bool *known) {
+// The closest point of a ball follows from that of its center. *known is false if neither argument
+// is a ball, or if there is nothing that can be near.
+static bool ball_distance(CagCall *call, CagClosest *out, bool *known) {
   *known = false;
   for (int k = 1; k >= 0; k--) {
     CagVec3 center;
@@ -469,21 +486,47 @@ static bool ball_distance(CagCall *call, double *out, bool *known) {
         !cag_target_closest(call, t, center, INFINITY, &near))
       return false;
     *known = near.found;
-    *out = fmax(0, near.distance - radius);
-    if (*out <= TOUCHING * (near.distance + radius)) *out = 0;
+    *out = (CagClosest){fmax(0, near.distance - radius), {near.point, near.point}};
+    if (out->distance <= TOUCHING * (near.distance + radius)) out->distance = 0;
+    else out->points[k] = cag_lerp(center, near.point, radius / near.distance);
     return true;
   }
   return true;
 }
 
-bool cag_hulls_distance(CagCall *call, CagValue *result) {
-  double distance = 0;
+static bool is_shapes(CagCall *call, int argument) {
+  const CagValue v = call->values[argument];
+  return cag_is_shape(v) || cag_is_list_of_shapes(call->vm, v);
+}
+
+// Points of curved bodies are known less exactly than their distance.
+static bool polish_points(CagCall *call, const Body *a, const Body *b, CagClosest *out) {
+  const CagTarget *targets[2];
+  CagClosest exact = {INFINITY, {out->points[0], out->points[1]}};
+  if (out->distance == 0 || !is_shapes(call, 0) || !is_shapes(call, 1)) return true;
+  if (!cag_arg_near_target(call, 0, &targets[0]) || !cag_arg_near_target(call, 1, &targets[1]) ||
+      !polish_location(call, targets, out->points[0], body_size(a) + body_size(b), POLISHED_POINTS,
+                       &exact))
+    return false;
+  // Other points would be those of another location.
+  if (fabs(exact.distance - out->distance) <= TOUCHING * (body_size(a) + body_size(b)))
+    memcpy(out->points, exact.points, sizeof exact.points);
+  return true;
+}
+
+bool cag_closest_of_arguments(CagCall *call, bool points, CagClosest *out) {
   bool known;
   Body *a, *b;
-  if (!ball_distance(call, &distance, &known)) return false;
-  if (!known &&
-      (!find_body(call, 0, &a) || !find_body(call, 1, &b) || !body_distance(call, a, b, &distance)))
-    return false;
-  *result = cag_number(distance);
+  *out = (CagClosest){0};
+  if (!ball_distance(call, out, &known)) return false;
+  if (known) return true;
+  return find_body(call, 0, &a) && find_body(call, 1, &b) && body_distance(call, a, b, out) &&
+         (!points || polish_points(call, a, b, out));
+}
+
+bool cag_hulls_distance(CagCall *call, CagValue *result) {
+  CagClosest closest;
+  if (!cag_closest_of_arguments(call, false, &closest)) return false;
+  *result = cag_number(closest.distance);
   return true;
 }

@@ -170,15 +170,22 @@ static bool draft_rows(Draft *d, const CagList *rows) {
   return true;
 }
 
-static bool image_of_rows(CagCall *call, CagValue *result) {
+CagRaster *cag_held_rows(CagCall *call, int argument) {
   CagList *rows;
-  if (!cag_arg_list(call, 0, &rows)) return false;
-  Draft d = {.call = call, .height = rows->length};
-  if (!draft_rows(&d, rows)) return false;
-  if (d.width == 0)
-    return cag_fail_call(call, 0, CAG_ERR_empty_image, "expects at least one row of pixels");
-  if ((!d.raster && !draft_begin(&d, 1)) || !name_channels(call, 1, d.raster)) return false;
-  *result = cag_image_result(call, d.raster);
+  if (!cag_arg_list(call, argument, &rows)) return NULL;
+  Draft d = {.call = call, .source = argument, .height = rows->length};
+  if (!draft_rows(&d, rows)) return NULL;
+  if (d.width == 0) {
+    cag_fail_call(call, argument, CAG_ERR_empty_image, "expects at least one row of pixels");
+    return NULL;
+  }
+  return d.raster || draft_begin(&d, 1) ? d.raster : NULL;
+}
+
+static bool image_of_rows(CagCall *call, CagValue *result) {
+  CagRaster *made = cag_held_rows(call, 0);
+  if (!made || !name_channels(call, 1, made)) return false;
+  *result = cag_image_result(call, made);
   return true;
 }
 

@@ -10,6 +10,8 @@
 bool cag_arg_image(CagCall *call, int argument, CagRaster **out);
 // Makes a raster, which the call holds until cag_image_result takes it. NULL: the error is set.
 CagRaster *cag_held_raster(CagCall *call, size_t width, size_t height, size_t channel_count);
+// Makes a raster of rows of pixels, which the call holds in the same way. NULL: the error is set.
+CagRaster *cag_held_rows(CagCall *call, int argument);
 // Holds a raster until the call ends or it is given away, and returns it.
 CagRaster *cag_hold_raster(CagCall *call, CagRaster *r);
 // The held raster as a value.

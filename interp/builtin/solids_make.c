@@ -8,18 +8,39 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
+// Reads positive sizes in x, y, and z: one for all, or three.
+static bool read_size(CagCall *call, CagValue v, CagVec3 *size) {
+  int dimension = 0;
+  if (v.type == CAG_NUMBER) {
+    if (!cag_arg_positive(call, 0, &size->x)) return false;
+    size->y = size->z = size->x;
+    return true;
+  }
+  if (v.type == CAG_LIST && !cag_arg_vec(call, 0, size, &dimension)) return false;
+  return dimension == 3 || cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
+}
+
 bool cag_solids_box(CagCall *call, const struct cag_solids_box *a, CagValue *result) {
   CagVec3 size;
-  int dimension = 0;
   CagSolid *s = NULL;
-  if (a->size.type == CAG_NUMBER) {
-    if (!cag_arg_positive(call, 0, &size.x)) return false;
-    size.y = size.z = size.x;
-  } else {
-    if (a->size.type == CAG_LIST && !cag_arg_vec(call, 0, &size, &dimension)) return false;
-    if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
-  }
+  if (!read_size(call, a->size, &size)) return false;
   return cag_solid_result(call, cag_solid_box(size, a->centered, &s, call->err), &s, result);
+}
+
+bool cag_solids_superellipsoid(CagCall *call, const struct cag_solids_superellipsoid *a,
+                               CagValue *result) {
+  const double least = 0.02, most = 2; // edges of the least one are rounded by about 1% of the size
+  CagVec3 size;
+  CagSurface *face = NULL;
+  CagSolid *s = NULL;
+  if (!read_size(call, a->size, &size)) return false;
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) return cag_fail_value(call, 0, "positive sizes");
+  if (!(a->e >= least && a->e <= most)) return cag_fail_value(call, 1, "a number from 0.02 to 2");
+  if (!(a->n >= least && a->n <= most)) return cag_fail_value(call, 2, "a number from 0.02 to 2");
+  CagStatus status = cag_surface_superellipsoid(size, a->e, a->n, &face, call->err);
+  if (!status) status = cag_solid_shell(&face, 1, &s, call->err);
+  if (face) cag_surface_release(face);
+  return cag_solid_result(call, status, &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, const struct cag_solids_sphere *a, CagValue *result) {

@@ -1,9 +1,11 @@
-// Intersections of surfaces with curves, planes, and surfaces, and closest points.
+// Intersections of surfaces with curves, planes, and surfaces, closest points, and feet.
 
 #include "base/memory.h"
 #include "geom/meet/meet_curve.h"
 #include "geom/meet/meet_surface.h"
+#include "geom/surface/feet.h"
 #include "geom/surface/nearest.h"
+#include "interp/builtin/curves.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
@@ -31,6 +33,24 @@ bool cag_meetings_closest(CagCall *call, const struct cag_meetings_closest *a, C
                        cag_parameter_value(a->S->angular_v, found.v),
                        cag_point(call->vm, found.point, 3), cag_number(found.distance)};
   *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+bool cag_meetings_extrema(CagCall *call, const struct cag_meetings_extrema *a, CagValue *result) {
+  static const char *const names[] = {"u", "v", "point", "distance", "kind"};
+  CagFoot *feet;
+  size_t n;
+  if (!cag_geometry_ok(call, cag_surface_feet(a->S, a->P.at, &feet, &n, call->err))) return false;
+  cag_hold_for(call, cag_free, feet);
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++) {
+    const CagValue values[] = {cag_parameter_value(a->S->angular_u, feet[i].at[0]),
+                               cag_parameter_value(a->S->angular_v, feet[i].at[1]),
+                               cag_point(call->vm, feet[i].point, 3), cag_number(feet[i].distance),
+                               cag_foot_kind_value(call->vm, feet[i].kind)};
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5))) return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
   return true;
 }
 

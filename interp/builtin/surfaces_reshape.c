@@ -101,6 +101,59 @@ bool cag_surfaces_insert_knot(CagCall *call, const struct cag_surfaces_insert_kn
   return cag_changed_surface_result(call, status, &out, result);
 }
 
+// A knot is redundant if removing it moves the surface by less than this fraction of its size.
+#define WITHOUT_EFFECT 1e-9
+
+bool cag_surfaces_remove_knot(CagCall *call, const struct cag_surfaces_remove_knot *a,
+                              CagValue *result) {
+  CagSurface *out = NULL;
+  CagBounds box;
+  int direction;
+  double t, tolerance = a->tolerance;
+  if (!read_direction(call, a->S, 1, &direction, &t)) return false;
+  if (!cag_given(call, 3)) {
+    if (!cag_geometry_ok(call, cag_surface_bounds(a->S, &box, call->err))) return false;
+    tolerance = WITHOUT_EFFECT * cag_norm(cag_sub(box.max, box.min));
+  }
+  CagStatus status =
+      cag_surface_remove_knot(a->S, direction, t, (int)a->times, tolerance, &out, NULL, call->err);
+  return cag_changed_surface_result(call, status, &out, result);
+}
+
+// Lowers the degree in a direction several times. The changes add up to at most the tolerance,
+// which is reduced by them.
+static CagStatus reduce_times(CagSurface **s, int direction, long times, double *tolerance,
+                              CagError *err) {
+  CagStatus status = CAG_OK;
+  for (long i = 0; !status && i < times; i++) {
+    CagSurface *next;
+    double moved;
+    status = cag_surface_reduce_degree(*s, direction, *tolerance, &next, &moved, err);
+    if (status) break;
+    *tolerance -= moved;
+    cag_surface_release(*s);
+    *s = next;
+  }
+  return status;
+}
+
+bool cag_surfaces_reduce_degree(CagCall *call, const struct cag_surfaces_reduce_degree *a,
+                                CagValue *result) {
+  CagSurface *out = cag_surface_retain(a->S);
+  double tolerance = a->tolerance;
+  const bool both = !cag_given(call, 2) && !cag_given(call, 3);
+  CagStatus status = reduce_times(&out, 0, both ? 1 : a->u, &tolerance, call->err);
+  if (!status) status = reduce_times(&out, 1, both ? 1 : a->v, &tolerance, call->err);
+  if (status) cag_surface_release(out);
+  return cag_changed_surface_result(call, status, &out, result);
+}
+
+bool cag_surfaces_reverse(CagCall *call, const struct cag_surfaces_reverse *a, CagValue *result) {
+  CagSurface *out = NULL;
+  return cag_changed_surface_result(call, cag_surface_reverse(a->S, a->direction, &out, call->err),
+                                    &out, result);
+}
+
 // Reads the refinement in one direction: whether there is any, and the knots to insert (NULL:
 // midpoints).
 static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "geom/linalg/tolerance.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
 #include "lang/foreign.h"
@@ -184,6 +185,34 @@ static bool make_scale(CagCall *call, int at, CagTransform *out) {
 
 bool cag_transforms_scale(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_scale);
+}
+
+// The factor that gives an extent this size; 1 if the size is 0.
+static bool resizing_factor(CagCall *call, char axis, double size, double extent, double largest,
+                            double *factor) {
+  *factor = size == 0 ? 1 : size / extent;
+  if (size < 0) return cag_fail_value(call, 1, "sizes that are not negative");
+  if (size == 0 || extent > CAG_ROUNDING * largest) return true;
+  return cag_fail_call(call, 1, CAG_ERR_value,
+                       "expects 0 for %c, because the shape has no extent along it", axis);
+}
+
+bool cag_transforms_resized(CagCall *call, const struct cag_transforms_resized *a,
+                            CagValue *result) {
+  CagVec3 size, f;
+  CagBounds b;
+  int dimension, shown;
+  CagTransform t;
+  if (!cag_arg_vec(call, 1, &size, &dimension) || !cag_value_bounds(call, a->G, &b, &shown))
+    return false;
+  const CagVec3 extent = cag_sub(b.max, b.min);
+  const double largest = fmax(extent.x, fmax(extent.y, extent.z));
+  if (!resizing_factor(call, 'x', size.x, extent.x, largest, &f.x) ||
+      !resizing_factor(call, 'y', size.y, extent.y, largest, &f.y) ||
+      !resizing_factor(call, 'z', size.z, extent.z, largest, &f.z) ||
+      !made(call, cag_scale(f, cag_vec3(0, 0, 0), &t, call->err), f.z == 1, &t))
+    return false;
+  return cag_transform_apply(call->vm, &t, a->G, result);
 }
 
 static bool make_reflect(CagCall *call, int at, CagTransform *out) {

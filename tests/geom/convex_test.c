@@ -196,7 +196,7 @@ static double measured(const CagSolid *a, const CagSolid *b) {
   OK(cag_solid_add_convex(b, &lists[1], &known[1], &err));
   assert_true(known[0] && known[1]);
   for (int k = 0; k < 2; k++) {
-    OK(cag_convex_list_distance(&lists[k], &lists[1 - k], &out[k], &certain, &err));
+    OK(cag_convex_list_distance(&lists[k], &lists[1 - k], &out[k], NULL, &certain, &err));
     assert_true(certain);
   }
   NEAR(out[0], out[1], 1e-9 * (1 + out[0]));
