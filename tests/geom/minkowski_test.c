@@ -195,6 +195,36 @@ static void sums_of_polygons_are_unions_of_copies(void **state) {
   }
 }
 
+static CagRegion *as_polygon(const CagRegion *r) {
+  double *t;
+  size_t n;
+  const CagCurve *c = r->loops[0];
+  OK(cag_curve_discretize(c, 1e-3, 0.5, &t, &n, &err));
+  CagVec3 *p = test_malloc(n * sizeof *p);
+  OK(cag_curve_eval_many(c, t, n, 0, p, &err));
+  CagRegion *out = region(path(p, n - 1), NULL);
+  test_free(p);
+  free(t);
+  return out;
+}
+
+// The sums of fine polygons, whose areas differ by the tolerance times the perimeter.
+static void sums_of_splines_are_those_of_fine_polygons(void **state) {
+  (void)state;
+  seed = 29;
+  for (int round = 0; round < 6; round++) {
+    CagRegion *a = region(blob(1, 4), NULL), *b = region(blob(0.5, 2), NULL);
+    CagRegion *fine_a = as_polygon(a), *fine_b = as_polygon(b), *r = sum(fine_a, fine_b);
+    CagRegion *smooth;
+    OK(cag_region_minkowski(a, b, 1e-5, &smooth, &err));
+    NEAR(free_area(smooth), free_area(r), 0.05);
+    cag_region_release(fine_a);
+    cag_region_release(fine_b);
+    cag_region_release(a);
+    cag_region_release(b);
+  }
+}
+
 // A hole with parallel sides all around is filled when the other region just fits into it.
 static void frames_lose_their_hole(void **state) {
   (void)state;
@@ -239,6 +269,7 @@ int main(void) {
       cmocka_unit_test(discs_add_their_radii),
       cmocka_unit_test(sums_with_discs_are_offsets),
       cmocka_unit_test(sums_of_polygons_are_unions_of_copies),
+      cmocka_unit_test(sums_of_splines_are_those_of_fine_polygons),
       cmocka_unit_test(frames_lose_their_hole),
       cmocka_unit_test(sums_with_the_empty_region_are_empty),
   };
