@@ -15,6 +15,8 @@
 #include "lang/tree.h"
 
 #define INDENT 2
+// Patterns with at most this many characters, without blanks, are not broken.
+#define SHORT_PATTERN 60
 // List elements up to this width are placed several per line.
 #define SMALL_ITEM 28
 
@@ -375,8 +377,36 @@ static Doc *rest_of_list(Format *f, const CagPattern *p) {
   return cag_layout_concat(&f->layout, &d);
 }
 
+// Counts characters without blanks and a comma before the bracket, which the layout may change.
+static bool is_short(const Format *f, CagSpan span) {
+  size_t n = 0;
+  bool comma = false;
+  for (uint32_t i = span.start; i < span.end && n <= SHORT_PATTERN; i++) {
+    if (strchr(" \t\r\n", f->text[i])) continue;
+    n += 1 - (comma && strchr("]}", f->text[i]));
+    comma = f->text[i] == ',';
+  }
+  return n <= SHORT_PATTERN;
+}
+
+// Formats a pattern that stays on one line.
+static Doc *short_pattern(Format *f, const CagPattern *p) {
+  const bool list = p->kind == CAG_PATTERN_LIST;
+  Docs d = {0};
+  set_word(f, &d, list ? "[" : "{ ");
+  for (size_t i = 0; i < p->count; i++) {
+    if (i) set_word(f, &d, ", ");
+    layout_add(&d, pattern_part(f, &p->parts[i]));
+  }
+  if (p->rest && p->count) set_word(f, &d, ", ");
+  if (p->rest) layout_add(&d, rest_of_list(f, p));
+  set_word(f, &d, list ? "]" : " }");
+  return cag_layout_concat(&f->layout, &d);
+}
+
 static Doc *pattern(Format *f, const CagPattern *p) {
   if (p->kind == CAG_PATTERN_NAME) return span_doc(f, p->span);
+  if (is_short(f, p->span) && !comments_before(f, p->span.end)) return short_pattern(f, p);
   const bool list = p->kind == CAG_PATTERN_LIST;
   Docs d = {0}, items = {0}, end = {0};
   set_comments(f, &d, p->span.start, false);
