@@ -108,3 +108,22 @@ const char *cag_source_line(const CagSource *s, size_t line, size_t *length) {
   *length = end - start;
   return s->text + start;
 }
+
+size_t cag_source_excerpt(const CagSource *s, CagSpan span, char *out, size_t size) {
+  const size_t most = size - 4; // before "..." and the NUL
+  size_t n = 0;
+  uint32_t i = span.start;
+  while (i < span.end && n < most) {
+    const size_t blank = strspn(s->text + i, " \t\r\n");
+    if (blank) out[n++] = ' ';
+    else out[n++] = s->text[i];
+    i += blank ? (uint32_t)blank : 1;
+  }
+  if (i < span.end) {
+    n = cag_utf8_start(out, n);
+    memcpy(out + n, "...", 3);
+    n += 3;
+  }
+  out[n] = 0;
+  return n;
+}

@@ -49,6 +49,10 @@ static inline void cag_source_check(const CagSource *s) {
   if (cag_source_stopped(s)) cag_memory_leave();
 }
 
+// Copies the text of a span to `out`, with a single blank for blanks and line breaks. A text that
+// does not fit is cut off and ends with "...". Returns its length. `size` is at least 8.
+size_t cag_source_excerpt(const CagSource *s, CagSpan span, char *out, size_t size);
+
 CagPosition cag_source_position(const CagSource *s, uint32_t offset);
 
 // Returns a pointer to line `line` (from 1), and its length without the newline.

@@ -14,6 +14,7 @@
 typedef struct CagExpr CagExpr;
 typedef struct CagDecl CagDecl;
 typedef struct CagFunctionAst CagFunctionAst;
+typedef struct CagPattern CagPattern;
 
 typedef enum CagExprKind {
   CAG_EXPR_NUMBER,   // number (a length unit has been applied: 2.5cm is 25)
@@ -75,11 +76,37 @@ typedef struct CagField {
   CagExpr *value;
 } CagField;
 
+typedef enum CagPatternKind {
+  CAG_PATTERN_NAME,  // decl
+  CAG_PATTERN_LIST,  // parts, rest
+  CAG_PATTERN_RECORD // parts
+} CagPatternKind;
+
+// An element of a list pattern, or a field of a record pattern. The pattern of a field without `:`
+// is a name with the span of the field.
+typedef struct CagPatternPart {
+  const char *field; // NULL: an element
+  CagSpan field_span;
+  CagPattern *pattern;
+} CagPatternPart;
+
+// What takes a value apart and names its parts: a name, [x, ...rest], or {a, b: [x, y]}.
+struct CagPattern {
+  CagPatternKind kind;
+  CagSpan span;
+  CagDecl *decl; // NAME: its name may be `_`
+  CagPatternPart *parts;
+  size_t count;
+  CagDecl *rest;     // LIST: the name after `...`, which may be `_`; NULL: none
+  CagSpan rest_span; // with its dots
+  // Of the outermost pattern: all its names in order, without `_`.
+  CagDecl **names;
+  size_t name_count;
+};
+
 // One `x in xs if c` or `[a, b] in xs if c` of a comprehension.
 typedef struct CagClause {
-  CagDecl **names; // one, or the names of the pattern; NULL entries stand for `_`
-  size_t name_count;
-  bool pattern; // written with [ ]
+  CagPattern *pattern;
   CagExpr *source;
   CagExpr *filter; // NULL: none
   CagSpan span;
@@ -107,12 +134,14 @@ struct CagDecl {
   CagStatement *statement; // TOP, BLOCK, IMPORT, IMPORTED: the statement that declares it
   size_t index; // TOP: its index among the module's tops; otherwise free for use by the compiler
   bool used;
+  bool whole; // stands for the value of a pattern, whose text is its name; no name refers to it
   const char *doc; // TOP: text of the /// lines before it; NULL: none
 };
 
 typedef struct CagParameter {
-  CagDecl *decl;     // its name may be `_`
-  CagExpr *fallback; // the default; NULL: none
+  CagDecl *decl;       // its name may be `_`
+  CagPattern *pattern; // NULL: a name
+  CagExpr *fallback;   // the default; NULL: none, as for a pattern
 } CagParameter;
 
 // The body of a lambda or of a definition with parameters.
@@ -245,6 +274,7 @@ struct CagStatement {
     } param; // domain: after `in`; may be NULL
     struct {
       CagDecl *decl;
+      CagPattern *pattern; // NULL: a name, or a name with parameters
       CagExpr *value;
     } definition; // with parameters: value is a LAMBDA whose function has a name
     struct {

@@ -1,14 +1,17 @@
 // Names that unparsable text may define.
 //
 // The search works on characters, because after a missing bracket or quote the lexer misreads the
-// rest of the text. A name counts as defined before a `=`, as a parameter, and between `for` and
-// `in`. If the text begins with two names, it is a definition in another language (`module f(x) {`,
-// `def f(x):`), and all names of its head count. All names of an import count, too.
+// rest of the text. A name counts as defined before a `=`, as a parameter, between `for` and `in`, and
+// in brackets at the start of a line that a `=` follows. If the text begins with two names, it is a
+// definition in another language (`module f(x) {`, `def f(x):`), and all names of its head count. All
+// names of an import count, too.
 
 #include "lang/damage.h"
 
 #include "base/array.h"
 #include "base/memory.h"
+
+#include <string.h>
 
 // Parameters in deeper brackets are ignored.
 #define NESTING_MAX 64
@@ -28,6 +31,7 @@ typedef struct Search {
   size_t opened[NESTING_MAX]; // index of the first word of each open bracket
   uint32_t at[NESTING_MAX];   // offset of each open bracket
   size_t depth;
+  uint32_t pattern;               // end of the pattern of a definition
   bool first, head, loop, import; // at the first word; in the head of a definition in another
                                   // language; between `for` and `in`; in an import
   CagDamagedName *found;
@@ -51,7 +55,8 @@ static Sequel sequel(const Search *s, uint32_t p) {
 
 static void add_word(Search *s, const CagToken *t) {
   if (!CAG_RESERVE(s->words, s->capacity, s->count + 1)) cag_memory_leave();
-  const bool defined = s->head || s->loop || s->import || sequel(s, t->span.end) != OTHER;
+  const bool defined = s->head || s->loop || s->import || t->span.start < s->pattern ||
+                       sequel(s, t->span.end) != OTHER;
   s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
 }
 
@@ -95,7 +100,36 @@ static uint32_t read_word(Search *s, uint32_t p) {
   return t.span.end > p ? t.span.end : p + 1;
 }
 
+// Longer patterns are not recognized.
+#define PATTERN_MAX 1000
+
+// Tests whether nothing but blanks is before `p` on its line.
+static bool starts_line(const Search *s, uint32_t p) {
+  while (p > 0 && (s->text[p - 1] == ' ' || s->text[p - 1] == '\t')) p--;
+  return p == 0 || s->text[p - 1] == '\n';
+}
+
+// Finds the end of a pattern that opens at `p`: the bracket before the `=` of its definition.
+static void find_pattern(Search *s, uint32_t p) {
+  const uint32_t end = s->end - p > PATTERN_MAX ? p + PATTERN_MAX : s->end;
+  if (!starts_line(s, p)) return;
+  size_t open = 0;
+  for (uint32_t i = p; i < end; i++) {
+    const char c = s->text[i];
+    if (c == '=' && !strchr("=>", s->text[i + 1]) && !strchr("=<>!", s->text[i - 1])) {
+      s->pattern = i; // its bracket is not closed
+      return;
+    }
+    if (c == '[' || c == '{') open++;
+    else if ((c == ']' || c == '}') && --open == 0) {
+      if (sequel(s, i + 1) == EQUALS) s->pattern = i;
+      return;
+    }
+  }
+}
+
 static void read_sign(Search *s, uint32_t p) {
+  if (s->text[p] == '[' || s->text[p] == '{') find_pattern(s, p);
   switch (s->text[p]) {
   case '(':
     if (s->depth < NESTING_MAX) {
@@ -105,9 +139,9 @@ static void read_sign(Search *s, uint32_t p) {
     s->depth++;
     break;
   case ')': close_bracket(s, p); break;
+  case '{': // in a pattern of a loop
+  case ':': s->head = false; break;
   case '=':
-  case '{':
-  case ':':
   case '\n': s->head = s->loop = false; break;
   default: break;
   }

@@ -44,6 +44,23 @@ static void dump_list(FILE *out, const char *word, CagExpr *const *items, size_t
   fputc(')', out);
 }
 
+static void dump_pattern(FILE *out, const CagPattern *pattern) {
+  if (pattern->kind == CAG_PATTERN_NAME) {
+    fputs(pattern->decl->name, out);
+    return;
+  }
+  const bool list = pattern->kind == CAG_PATTERN_LIST;
+  fputs(list ? "[" : "{", out);
+  for (size_t i = 0; i < pattern->count; i++) {
+    const CagPatternPart *part = &pattern->parts[i];
+    if (i) fputc(' ', out);
+    if (part->field) fprintf(out, "%s: ", part->field);
+    dump_pattern(out, part->pattern);
+  }
+  if (pattern->rest) fprintf(out, "%s...%s", pattern->count ? " " : "", pattern->rest->name);
+  fputs(list ? "]" : "}", out);
+}
+
 static void dump_parameters(FILE *out, const CagFunctionAst *f) {
   fputc('(', out);
   for (size_t i = 0; i < f->parameter_count; i++) {
@@ -53,6 +70,8 @@ static void dump_parameters(FILE *out, const CagFunctionAst *f) {
       fprintf(out, "(%s ", p->decl->name);
       cag_expr_dump(out, p->fallback);
       fputc(')', out);
+    } else if (p->pattern) {
+      dump_pattern(out, p->pattern);
     } else {
       fputs(p->decl->name, out);
     }
@@ -64,10 +83,9 @@ static void dump_comprehension(FILE *out, const CagExpr *e) {
   fputs("(for", out);
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
     const CagClause *c = &e->as.comprehension.clauses[i];
-    fputs(c->pattern ? " ([" : " (", out);
-    for (size_t k = 0; k < c->name_count; k++)
-      fprintf(out, "%s%s", k ? " " : "", c->names[k] ? c->names[k]->name : "_");
-    fputs(c->pattern ? "] " : " ", out);
+    fputs(" (", out);
+    dump_pattern(out, c->pattern);
+    fputc(' ', out);
     cag_expr_dump(out, c->source);
     if (c->filter) {
       fputs(" if ", out);
@@ -204,7 +222,10 @@ static void dump_statement(FILE *out, const CagStatement *s) {
     fputc(')', out);
     break;
   case CAG_STATEMENT_DEFINITION:
-    fprintf(out, "(= %s ", s->as.definition.decl->name);
+    fputs("(= ", out);
+    if (s->as.definition.pattern) dump_pattern(out, s->as.definition.pattern);
+    else fputs(s->as.definition.decl->name, out);
+    fputc(' ', out);
     cag_expr_dump(out, s->as.definition.value);
     fputc(')', out);
     break;

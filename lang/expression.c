@@ -90,7 +90,36 @@ const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *
   return NULL;
 }
 
-// parameters = parameter { "," parameter }          parameter = name [ "=" expr ]
+static bool at_bracket(CagTokenKind kind) {
+  return kind == CAG_TOKEN_LEFT_SQUARE || kind == CAG_TOKEN_LEFT_BRACE;
+}
+
+// parameter = name [ "=" expr ] | pattern
+static bool parameter(Parser *p, CagParameter *out) {
+  *out = (CagParameter){0};
+  CagToken name;
+  if (at_bracket(parse_kind(p))) {
+    out->pattern = cag_parse_pattern(p, CAG_DECL_PARAMETER, "the name of a parameter");
+    out->decl = cag_parse_whole(p, CAG_DECL_PARAMETER, out->pattern);
+    if (parse_kind(p) == CAG_TOKEN_EQUALS)
+      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_separator, cag_parse_here(p),
+                                     "a parameter that is a pattern has no default"),
+                     "name the parameter, and take it apart in a block");
+    return true;
+  }
+  if (!cag_parse_name_to_define(p, &name, "the name of a parameter")) return false;
+  out->decl = cag_parse_declare(p, CAG_DECL_PARAMETER, &name);
+  if (cag_parse_accept(p, CAG_TOKEN_EQUALS)) {
+    out->fallback = cag_parse_expression(p);
+  } else if (parse_kind(p) == CAG_TOKEN_COLON && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
+    cag_parse_help(cag_parse_error(p, CAG_ERR_expected_separator, cag_parse_here(p),
+                                   "expected `,` or `)`, found `:`"),
+                   "parameters have no types; a default is written %s = 1", name.as.name);
+  }
+  return true;
+}
+
+// parameters = parameter { "," parameter }
 //
 // Reads from the opening bracket to the closing one.
 static void parameters(Parser *p, CagFunctionAst *f) {
@@ -98,19 +127,10 @@ static void parameters(Parser *p, CagFunctionAst *f) {
   size_t list = cag_parse_list_begin(p);
   CagExpr *last = NULL;
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN) {
-    CagToken name;
-    if (parse_kind(p) == CAG_TOKEN_END) break;
-    if (!cag_parse_name_to_define(p, &name, "the name of a parameter")) break;
-    CagParameter parameter = {cag_parse_declare(p, CAG_DECL_PARAMETER, &name), NULL};
-    last = NULL;
-    if (cag_parse_accept(p, CAG_TOKEN_EQUALS)) {
-      parameter.fallback = last = cag_parse_expression(p);
-    } else if (parse_kind(p) == CAG_TOKEN_COLON && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
-      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_separator, cag_parse_here(p),
-                                     "expected `,` or `)`, found `:`"),
-                     "parameters have no types; a default is written %s = 1", name.as.name);
-    }
-    cag_parse_list_push(p, &parameter, sizeof parameter);
+    CagParameter item;
+    if (parse_kind(p) == CAG_TOKEN_END || !parameter(p, &item)) break;
+    last = item.fallback;
+    cag_parse_list_push(p, &item, sizeof item);
     if (!cag_parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
   cag_parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, last, "`,` or `)`");
@@ -140,11 +160,13 @@ CagFunctionAst *cag_parse_function(Parser *p, const char *name) {
 }
 
 // Tests whether `(` opens the parameters of a lambda, which is the case before `)`, `name ,`, `name
-// =`, or `name ) =>`.
+// =`, `name ) =>`, or a pattern if `=>` follows the matching `)`.
 bool cag_parse_opens_lambda(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_LEFT_PAREN) return false;
   CagTokenKind next = parse_kind_at(p, 1);
   if (next == CAG_TOKEN_RIGHT_PAREN) return true;
+  if (at_bracket(next))
+    return cag_parse_behind_bracket(p, parse_current(p)->span.start) == CAG_TOKEN_ARROW;
   if (next != CAG_TOKEN_NAME) return false;
   next = parse_kind_at(p, 2);
   return next == CAG_TOKEN_COMMA || next == CAG_TOKEN_EQUALS ||
@@ -162,10 +184,9 @@ CagExpr *cag_parse_lambda(Parser *p) {
   uint32_t start = cag_parse_here(p).start;
   CagFunctionAst *f = cag_arena_alloc(&p->module->arena, sizeof *f);
   if (parse_kind(p) == CAG_TOKEN_NAME) {
-    CagParameter parameter = {cag_parse_declare(p, CAG_DECL_PARAMETER, parse_current(p)), NULL};
+    f->parameters = cag_arena_alloc(&p->module->arena, sizeof *f->parameters);
+    f->parameters[0].decl = cag_parse_declare(p, CAG_DECL_PARAMETER, parse_current(p));
     cag_parse_advance(p);
-    f->parameters = cag_arena_alloc(&p->module->arena, sizeof parameter);
-    f->parameters[0] = parameter;
     f->parameter_count = f->required_count = 1;
   } else {
     if (cag_parse_at_tuple(p)) return cag_parse_group(p);

@@ -12,8 +12,11 @@
 
 #include "lang/layout.h"
 #include "lang/parser.h"
+#include "lang/tree.h"
 
 #define INDENT 2
+// Patterns with at most this many characters, without blanks, are not broken.
+#define SHORT_PATTERN 60
 // List elements up to this width are placed several per line.
 #define SMALL_ITEM 28
 
@@ -352,10 +355,80 @@ static uint32_t field_start(const CagExpr *e, size_t i) {
   return e->as.record.fields[i].name_span.start;
 }
 
+// ---- patterns ----
+
+static Doc *pattern(Format *f, const CagPattern *p);
+
+static Doc *pattern_part(Format *f, const CagPatternPart *part) {
+  Docs d = {0};
+  if (part->field && !cag_pattern_is_shorthand(part)) {
+    set_span(f, &d, part->field_span);
+    set_word(f, &d, ": ");
+  }
+  layout_add(&d, pattern(f, part->pattern));
+  return cag_layout_concat(&f->layout, &d);
+}
+
+static Doc *rest_of_list(Format *f, const CagPattern *p) {
+  Docs d = {0};
+  set_comments(f, &d, p->rest_span.start, false);
+  set_word(f, &d, "...");
+  set_span(f, &d, p->rest->span);
+  return cag_layout_concat(&f->layout, &d);
+}
+
+// Counts characters without blanks and a comma before the bracket, which the layout may change.
+static bool is_short(const Format *f, CagSpan span) {
+  size_t n = 0;
+  bool comma = false;
+  for (uint32_t i = span.start; i < span.end && n <= SHORT_PATTERN; i++) {
+    if (strchr(" \t\r\n", f->text[i])) continue;
+    n += 1 - (comma && strchr("]}", f->text[i]));
+    comma = f->text[i] == ',';
+  }
+  return n <= SHORT_PATTERN;
+}
+
+// Formats a pattern that stays on one line.
+static Doc *short_pattern(Format *f, const CagPattern *p) {
+  const bool list = p->kind == CAG_PATTERN_LIST;
+  Docs d = {0};
+  set_word(f, &d, list ? "[" : "{ ");
+  for (size_t i = 0; i < p->count; i++) {
+    if (i) set_word(f, &d, ", ");
+    layout_add(&d, pattern_part(f, &p->parts[i]));
+  }
+  if (p->rest && p->count) set_word(f, &d, ", ");
+  if (p->rest) layout_add(&d, rest_of_list(f, p));
+  set_word(f, &d, list ? "]" : " }");
+  return cag_layout_concat(&f->layout, &d);
+}
+
+static Doc *pattern(Format *f, const CagPattern *p) {
+  if (p->kind == CAG_PATTERN_NAME) return span_doc(f, p->span);
+  if (is_short(f, p->span) && !comments_before(f, p->span.end)) return short_pattern(f, p);
+  const bool list = p->kind == CAG_PATTERN_LIST;
+  Docs d = {0}, items = {0}, end = {0};
+  set_comments(f, &d, p->span.start, false);
+  for (size_t i = 0; i < p->count; i++) {
+    if (i) layout_add(&items, cag_layout_space(&f->layout));
+    Doc *item = pattern_part(f, &p->parts[i]);
+    if (i + 1 < p->count || p->rest) cag_layout_comma(item);
+    layout_add(&items, item);
+  }
+  if (p->rest && p->count) layout_add(&items, cag_layout_space(&f->layout));
+  if (p->rest) layout_add(&items, rest_of_list(f, p));
+  set_closer(f, &end, p->span.end, list ? "]" : "}");
+  layout_add(&d, cag_layout_brackets(&f->layout, list ? '[' : '{', &items,
+                                     cag_layout_concat(&f->layout, &end), INDENT, !list, false));
+  return cag_layout_concat(&f->layout, &d);
+}
+
 // ---- functions ----
 
 static Doc *parameter(Format *f, const CagParameter *p) {
   Docs d = {0};
+  if (p->pattern) return pattern(f, p->pattern);
   set_span(f, &d, p->decl->span);
   if (p->fallback) {
     set_word(f, &d, " = ");
@@ -408,7 +481,7 @@ static Doc *lambda(Format *f, const CagExpr *e) {
   const CagFunctionAst *fn = e->as.function;
   Docs d = {0};
   set_comments(f, &d, e->span.start, false);
-  if (fn->parameter_count == 1 && !fn->parameters[0].fallback)
+  if (fn->parameter_count == 1 && !fn->parameters[0].fallback && !fn->parameters[0].pattern)
     set_span(f, &d, fn->parameters[0].decl->span);
   else layout_add(&d, parameters(f, fn));
   set_word(f, &d, " =>");
@@ -618,13 +691,7 @@ static Doc *branches(Format *f, const CagExpr *e) {
 
 static void set_clause(Format *f, Docs *d, const CagClause *c) {
   set_comments(f, d, c->span.start, false);
-  if (c->pattern) set_word(f, d, "[");
-  for (size_t i = 0; i < c->name_count; i++) {
-    if (i) set_word(f, d, ", ");
-    if (c->names[i]) set_span(f, d, c->names[i]->span);
-    else set_word(f, d, "_");
-  }
-  if (c->pattern) set_word(f, d, "]");
+  layout_add(d, pattern(f, c->pattern));
   set_word(f, d, " in ");
   layout_add(d, expression(f, c->source));
   if (!c->filter) return;
@@ -820,7 +887,8 @@ static void set_param(Format *f, Docs *d, const CagStatement *s) {
 
 static void set_definition(Format *f, Docs *d, const CagStatement *s) {
   const CagExpr *value = s->as.definition.value;
-  set_span(f, d, s->as.definition.decl->span);
+  if (s->as.definition.pattern) layout_add(d, pattern(f, s->as.definition.pattern));
+  else set_span(f, d, s->as.definition.decl->span);
   if (value->kind == CAG_EXPR_LAMBDA && value->as.function->name) {
     layout_add(d, parameters(f, value->as.function));
     value = value->as.function->body;

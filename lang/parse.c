@@ -129,8 +129,7 @@ void cag_parse_probe_end(Parser *p) {
   p->probe_source = NULL;
 }
 
-// Returns the token after the bracket that closes the one at `start`, or ERROR if it is not found.
-static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
+CagTokenKind cag_parse_behind_bracket(Parser *p, uint32_t start) {
   cag_lexer_probe(&p->probe, &p->lexer, start);
   CagToken t;
   size_t open = 0, seen = 0, most = p->vain < VAIN_LIMIT ? LONGEST_PARAMETER_LIST : VAIN_LENGTH;
@@ -148,11 +147,12 @@ static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
 bool cag_parse_at_function(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_NAME || parse_kind_at(p, 1) != CAG_TOKEN_LEFT_PAREN) return false;
   const CagToken *paren = cag_parse_peek(p, 1);
-  return !paren->newline_before && kind_behind_bracket(p, paren->span.start) == CAG_TOKEN_EQUALS;
+  return !paren->newline_before &&
+         cag_parse_behind_bracket(p, paren->span.start) == CAG_TOKEN_EQUALS;
 }
 
 bool cag_parse_at_tuple(Parser *p) {
-  CagTokenKind behind = kind_behind_bracket(p, parse_current(p)->span.start);
+  CagTokenKind behind = cag_parse_behind_bracket(p, parse_current(p)->span.start);
   return behind != CAG_TOKEN_ARROW && behind != CAG_TOKEN_ERROR;
 }
 
@@ -175,6 +175,8 @@ bool cag_parse_at_statement(Parser *p) {
     if (next == CAG_TOKEN_EQUALS || next == CAG_TOKEN_ASSIGN_OPERATOR) return true;
     if (next == CAG_TOKEN_NAME) return !cag_parse_peek(p, 1)->newline_before;
     return cag_parse_at_function(p);
+  case CAG_TOKEN_LEFT_SQUARE:
+  case CAG_TOKEN_LEFT_BRACE: return cag_parse_at_pattern(p);
   default: return false;
   }
 }
@@ -308,6 +310,20 @@ static void report_ternary(Parser *p, const CagExpr *condition) {
                  b ? cag_parse_quote(p, b->span, third, sizeof third, "b") : "b");
 }
 
+// Reports a `=` in the bracket at the start of a statement, which was meant to be a pattern.
+static bool report_open_pattern(Parser *p) {
+  const Bracket *b = p->bracket_count ? &p->brackets[p->bracket_count - 1] : NULL;
+  if (!b || b->span.start != p->statement_head.start || b->closer != CAG_TOKEN_RIGHT_SQUARE)
+    return false;
+  const CagSpan equals = cag_parse_here(p), opener = b->span;
+  CagDiagnostic *d = cag_parse_error(p, CAG_ERR_bracket_not_closed, opener,
+                                     "this bracket is not closed: %s is missing before `=`",
+                                     cag_token_what(b->closer));
+  cag_parse_help(d, "opened here");
+  cag_parse_related(p, d, equals, "the definition of the pattern");
+  return true;
+}
+
 // Reports words of other languages after a value.
 static void report_habit(Parser *p, const CagExpr *before) {
   char text[QUOTE_SIZE];
@@ -317,6 +333,7 @@ static void report_habit(Parser *p, const CagExpr *before) {
   switch (parse_kind(p)) {
   case CAG_TOKEN_QUESTION: report_ternary(p, before); return;
   case CAG_TOKEN_EQUALS:
+    if (report_open_pattern(p)) return;
     d = cag_parse_error(p, CAG_ERR_equals_in_expression, here,
                         "`=` defines a name, and is not allowed here");
     cag_parse_help(d, "to compare, write ==");
@@ -347,7 +364,9 @@ static void report_habit(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_ARROW:
     d = cag_parse_error(p, CAG_ERR_function_parameters, here,
                         "expected the names of the parameters before `=>`");
-    cag_parse_help(d, "write x => e or (x, y) => e");
+    if (before && (before->kind == CAG_EXPR_LIST || before->kind == CAG_EXPR_RECORD))
+      cag_parse_help(d, "a pattern stands in parentheses: write (%s) => e", value);
+    else cag_parse_help(d, "write x => e or (x, y) => e");
     return;
   case CAG_TOKEN_COLON:
     if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)

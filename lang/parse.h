@@ -80,6 +80,8 @@ bool cag_parse_accept(Parser *p, CagTokenKind kind);
 bool cag_parse_at_newline(Parser *p);
 // Tests whether the current token starts a statement in the first column of a line.
 bool cag_parse_at_statement(Parser *p);
+// Returns the token after the bracket that closes the one at `start`, or ERROR if it is not found.
+CagTokenKind cag_parse_behind_bracket(Parser *p, uint32_t start);
 // Tests for a name with parameters and a `=`: a definition rather than a call.
 bool cag_parse_at_function(Parser *p);
 // Tests, at a `(` that could open parameters, for a list in parentheses: no `=>` follows.
@@ -185,6 +187,14 @@ CagExpr *cag_parse_branch(Parser *p);
 CagExpr *cag_parse_negation(Parser *p);
 CagExpr *cag_parse_postfix(Parser *p);
 CagExpr *cag_parse_group(Parser *p);
+// Tests for a list or a record before a `=`: the pattern of a definition.
+bool cag_parse_at_pattern(Parser *p);
+// pattern = name | "_" | "[" ... "]" | "{" ... "}"
+//
+// `kind` is that of its names; `what` describes the name that is expected if there is no bracket.
+CagPattern *cag_parse_pattern(Parser *p, CagDeclKind kind, const char *what);
+// Declares the value that a pattern takes apart. Its name is the text of the pattern.
+CagDecl *cag_parse_whole(Parser *p, CagDeclKind kind, const CagPattern *pattern);
 CagExpr *cag_parse_expression(Parser *p);
 CagExpr *cag_parse_operand(Parser *p);
 CagFunctionAst *cag_parse_function(Parser *p, const char *name);

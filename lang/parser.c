@@ -49,13 +49,19 @@ const char *cag_parse_doc(Parser *p) {
   return cag_parse_list_end(p, list, 1, &length);
 }
 
-static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
-  CagDecl *d = cag_parse_declare(p, CAG_DECL_TOP, name);
+// Makes a name belong to its statement.
+static void add_to_statement(Parser *p, CagStatement *s, CagDecl *d) {
   d->statement = s;
-  d->index = p->top_count;
   d->doc = s->doc;
+  if (d->kind != CAG_DECL_TOP) return;
+  d->index = p->top_count;
   if (!CAG_RESERVE(p->tops, p->top_capacity, p->top_count + 1)) cag_memory_leave();
   p->tops[p->top_count++] = d;
+}
+
+static CagDecl *declare_in(Parser *p, CagStatement *s, CagDeclKind kind, const CagToken *name) {
+  CagDecl *d = cag_parse_declare(p, kind, name);
+  add_to_statement(p, s, d);
   return d;
 }
 
@@ -81,20 +87,27 @@ static void expect(Parser *p, CagTokenKind kind, const char *wanted) {
   cag_parse_unexpected(p, NULL, CAG_ERR_expected_word, wanted);
 }
 
-// definition = name [ "(" [ parameters ] ")" ] "=" expr
+// pattern "=" expr
+static CagStatement *pattern_definition(Parser *p, CagDeclKind kind) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_DEFINITION);
+  CagPattern *pattern = s->as.definition.pattern = cag_parse_pattern(p, kind, "a name");
+  add_to_statement(p, s, s->as.definition.decl = cag_parse_whole(p, kind, pattern));
+  for (size_t i = 0; i < pattern->name_count; i++) add_to_statement(p, s, pattern->names[i]);
+  expect(p, CAG_TOKEN_EQUALS, "`=`");
+  s->as.definition.value = cag_parse_expression(p);
+  return end_statement(p, s);
+}
+
+// definition = name [ "(" [ parameters ] ")" ] "=" expr | pattern "=" expr
 CagStatement *cag_parse_definition(Parser *p, bool top) {
+  const CagDeclKind kind = top ? CAG_DECL_TOP : CAG_DECL_BLOCK;
+  if (parse_kind(p) != CAG_TOKEN_NAME) return pattern_definition(p, kind);
   CagStatement *s = new_statement(p, CAG_STATEMENT_DEFINITION);
   CagToken name = *parse_current(p);
   cag_parse_advance(p);
   CagFunctionAst *f = NULL;
   if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN) f = cag_parse_function(p, name.as.name);
-  if (top) {
-    s->as.definition.decl = declare_top(p, s, &name);
-  } else {
-    s->as.definition.decl = cag_parse_declare(p, CAG_DECL_BLOCK, &name);
-    s->as.definition.decl->statement = s;
-    s->as.definition.decl->doc = s->doc;
-  }
+  s->as.definition.decl = declare_in(p, s, kind, &name);
   if (!f || !cag_parse_foreign_body(p)) expect(p, CAG_TOKEN_EQUALS, "`=`");
   CagExpr *value = cag_parse_expression(p);
   if (f) {
@@ -141,7 +154,7 @@ static CagStatement *param(Parser *p) {
   cag_parse_advance(p);
   CagToken name;
   statement_name(p, &name, "the name of the param");
-  s->as.param.decl = declare_top(p, s, &name);
+  s->as.param.decl = declare_in(p, s, CAG_DECL_TOP, &name);
   expect(p, CAG_TOKEN_EQUALS, "`=` and a default");
   s->as.param.value = cag_parse_operand(p);
   if (cag_parse_accept(p, CAG_TOKEN_IN)) s->as.param.domain = cag_parse_expression(p);
@@ -274,6 +287,27 @@ static bool is_one_of(const char *name, const char *const *words, size_t count) 
   is_one_of(name, (const char *const[]){__VA_ARGS__},                                              \
             sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
+// Tests for a word that starts definitions in other languages, followed by a name or a pattern.
+static bool at_definition_keyword(Parser *p) {
+  const CagToken next = *cag_parse_peek(p, 1);
+  const bool bracket = next.kind == CAG_TOKEN_LEFT_SQUARE || next.kind == CAG_TOKEN_LEFT_BRACE;
+  if (next.kind != CAG_TOKEN_NAME && !bracket) return false;
+  if (!IS_ONE_OF(parse_current(p)->as.name, "let", "var", "val", "const", "def", "define", "fn",
+                 "fun", "func", "function", "local", "auto", "int", "float", "double", "string",
+                 "bool", "number", "module", "export", "final", "static", "set"))
+    return false;
+  return !bracket || cag_parse_behind_bracket(p, next.span.start) == CAG_TOKEN_EQUALS;
+}
+
+static void skip_definition_keyword(Parser *p) {
+  const CagToken word = *parse_current(p);
+  cag_parse_help(
+      cag_parse_mend(p, CAG_ERR_definition_keyword, word.span, "a definition starts with its name"),
+      "remove `%s`", word.as.name);
+  p->habit = word.span.start;
+  cag_parse_advance(p);
+}
+
 // Recognizes a name of another language at the start of a statement.
 //
 // A word before a definition is skipped, and the definition is read.
@@ -281,6 +315,10 @@ static bool name_habit(Parser *p) {
   CagToken word = *parse_current(p), next = *cag_parse_peek(p, 1);
   if (next.newline_before) return false;
   if (cag_parse_foreign_word(p)) return true;
+  if (at_definition_keyword(p)) {
+    skip_definition_keyword(p);
+    return false;
+  }
   bool value_follows = cag_parse_begins_expression(next.kind) && next.kind != CAG_TOKEN_MINUS &&
                        next.kind != CAG_TOKEN_LEFT_SQUARE &&
                        (next.kind != CAG_TOKEN_LEFT_PAREN || next.span.start > word.span.end);
@@ -299,16 +337,6 @@ static bool name_habit(Parser *p) {
                    "to build a list, write [for x in xs: ...]; to build a value, use %s",
                    cag_foreign_syntax(CAG_FOREIGN_while_loop));
     return true;
-  }
-  if (next.kind == CAG_TOKEN_NAME &&
-      IS_ONE_OF(word.as.name, "let", "var", "val", "const", "def", "define", "fn", "fun", "func",
-                "function", "local", "auto", "int", "float", "double", "string", "bool", "number",
-                "module", "export", "final", "static", "set")) {
-    cag_parse_help(cag_parse_mend(p, CAG_ERR_definition_keyword, word.span,
-                                  "a definition starts with its name"),
-                   "remove `%s`", word.as.name);
-    p->habit = word.span.start;
-    cag_parse_advance(p);
   }
   return false;
 }
@@ -409,6 +437,7 @@ static CagStatement *statement(Parser *p) {
   case CAG_TOKEN_NAME: return name_statement(p);
   default: break;
   }
+  if (cag_parse_at_pattern(p)) return cag_parse_definition(p, true);
   if (cag_parse_begins_expression(kind)) return expression_statement(p);
   char word[64];
   if (kind == CAG_TOKEN_RIGHT_PAREN || kind == CAG_TOKEN_RIGHT_SQUARE ||

@@ -7,38 +7,19 @@
 
 // ---- lists ----
 
-// "for" clause ...   clause = ( name | "[" name { "," name } "]" ) "in" expr [ "if" expr ]
-static bool clause_name(Parser *p, size_t *list) {
-  CagToken name;
-  (void)list;
-  if (!cag_parse_name_to_define(p, &name, "a name")) return false;
-  CagDecl *d = strcmp(name.as.name, "_") == 0 ? NULL : cag_parse_declare(p, CAG_DECL_CLAUSE, &name);
-  cag_parse_list_push(p, &d, sizeof d);
-  return true;
-}
-
+// clause = pattern "in" expr [ "if" expr ]
 static CagClause clause(Parser *p) {
   CagClause c = {.span = cag_parse_here(p)};
-  size_t list = cag_parse_list_begin(p);
-  if (parse_kind(p) == CAG_TOKEN_LEFT_SQUARE) {
-    c.pattern = true;
-    Opened o = cag_parse_open(p, false);
-    while (clause_name(p, &list) && cag_parse_accept(p, CAG_TOKEN_COMMA) &&
-           parse_kind(p) != CAG_TOKEN_RIGHT_SQUARE) {}
-    cag_parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, NULL, "`,` or `]`");
-  } else {
-    if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN)
-      cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, cag_parse_here(p),
-                                     "the loop of a comprehension is written without parentheses"),
-                     "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
-    clause_name(p, &list);
-    if (parse_kind(p) == CAG_TOKEN_COMMA && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
-      cag_parse_help(
-          cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p), "expected `in`, found `,`"),
-          "to unpack elements, write [for [a, b] in xs: ...]");
-    }
+  if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN)
+    cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, cag_parse_here(p),
+                                   "the loop of a comprehension is written without parentheses"),
+                   "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
+  c.pattern = cag_parse_pattern(p, CAG_DECL_CLAUSE, "a name");
+  if (parse_kind(p) == CAG_TOKEN_COMMA && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p), "expected `in`, found `,`"),
+        "to unpack elements, write [for [a, b] in xs: ...]");
   }
-  c.names = cag_parse_list_end(p, list, sizeof *c.names, &c.name_count);
   if (!cag_parse_accept(p, CAG_TOKEN_IN)) {
     if (parse_kind(p) == CAG_TOKEN_EQUALS) {
       cag_parse_help(
@@ -178,7 +159,7 @@ static CagExpr *record(Parser *p) {
 }
 
 static bool at_definition(Parser *p) {
-  if (parse_kind(p) != CAG_TOKEN_NAME) return false;
+  if (parse_kind(p) != CAG_TOKEN_NAME) return cag_parse_at_pattern(p);
   CagTokenKind next = parse_kind_at(p, 1);
   if (next == CAG_TOKEN_EQUALS) return true;
   return next == CAG_TOKEN_LEFT_PAREN && cag_parse_at_function(p);
@@ -368,6 +349,7 @@ bool cag_parse_at_next_definition(Parser *p) {
   if (!parse_current(p)->newline_before) return false;
   if (p->newlines && parse_kind(p) == CAG_TOKEN_NAME && parse_kind_at(p, 1) == CAG_TOKEN_EQUALS)
     return true;
+  if (p->newlines && cag_parse_at_pattern(p)) return true;
   return cag_parse_at_statement(p);
 }
 

@@ -99,8 +99,11 @@ static const CagDecl *defined_below(const Resolver *r, const char *name) {
   for (const OpenBlock *b = r->block; b; b = b->outer)
     for (size_t i = 0; i < b->block->as.block.count; i++) {
       const CagStatement *s = b->block->as.block.statements[i];
-      if (s->kind == CAG_STATEMENT_DEFINITION && s->as.definition.decl->name == name)
-        return s->as.definition.decl;
+      if (s->kind != CAG_STATEMENT_DEFINITION) continue;
+      if (s->as.definition.decl->name == name) return s->as.definition.decl;
+      const CagPattern *pattern = s->as.definition.pattern;
+      for (size_t k = 0; pattern && k < pattern->name_count; k++)
+        if (pattern->names[k]->name == name) return pattern->names[k];
     }
   return NULL;
 }
@@ -200,6 +203,16 @@ static void declare(Resolver *r, CagDecl *d) {
   c->scope = r->scope;
 }
 
+// Makes the names of a pattern visible, or else (NULL) the name of `whole`.
+static void declare_names(Resolver *r, CagDecl *whole, const CagPattern *pattern) {
+  if (!pattern) {
+    declare(r, whole);
+    return;
+  }
+  if (whole) whole->owner = r->function;
+  for (size_t i = 0; i < pattern->name_count; i++) declare(r, pattern->names[i]);
+}
+
 // ---- expressions ----
 
 static void walk(Resolver *r, CagExpr *e);
@@ -297,7 +310,7 @@ static void walk_parameters(Resolver *r, CagFunctionAst *f) {
       cag_diagnostic_add_note(d, CAG_NOTE_RELATED, r->module->source, with_default->decl->span,
                               "the parameter with a default");
     }
-    declare(r, p->decl);
+    declare_names(r, p->decl, p->pattern);
   }
 }
 
@@ -320,8 +333,7 @@ static void walk_comprehension(Resolver *r, CagExpr *e) {
     CagClause *c = &e->as.comprehension.clauses[i];
     walk(r, c->source);
     open_scope(r);
-    for (size_t k = 0; k < c->name_count; k++)
-      if (c->names[k]) declare(r, c->names[k]);
+    declare_names(r, NULL, c->pattern);
     if (c->filter) walk(r, c->filter);
   }
   walk(r, e->as.comprehension.body);
@@ -358,7 +370,7 @@ static void walk_block_statement(void *context, void *statement) {
   bool function = value->kind == CAG_EXPR_LAMBDA && value->as.function->self;
   if (function) declare(r, s->as.definition.decl);
   walk(r, value);
-  if (!function) declare(r, s->as.definition.decl);
+  if (!function) declare_names(r, s->as.definition.decl, s->as.definition.pattern);
 }
 
 // A function in a block is visible in its own body, so it is declared first. Other definitions are
@@ -513,7 +525,8 @@ static void declare_tops(Resolver *r) {
     CagStatement *s = r->module->statements[i];
     if (s->kind == CAG_STATEMENT_IMPORT) declare_import(r, s);
     else if (s->kind == CAG_STATEMENT_PARAM) declare(r, s->as.param.decl);
-    else if (s->kind == CAG_STATEMENT_DEFINITION) declare(r, s->as.definition.decl);
+    else if (s->kind == CAG_STATEMENT_DEFINITION)
+      declare_names(r, s->as.definition.decl, s->as.definition.pattern);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "lang/tree.h"
 
+#include <string.h>
+
 void cag_tree_of_statement(const CagStatement *s, void (*each)(void *context, const CagExpr *e),
                            void *context) {
   switch (s->kind) {
@@ -99,4 +101,55 @@ const CagStatement *cag_tree_statement(const CagModuleAst *ast, size_t offset) {
     else high = middle;
   }
   return low ? ast->statements[low - 1] : NULL;
+}
+
+// ---- values of names ----
+
+static const CagExpr *written_element(const CagExpr *list, size_t i) {
+  if (list->kind != CAG_EXPR_LIST || i >= list->as.list.count) return NULL;
+  for (size_t k = 0; k <= i; k++)
+    if (list->as.list.items[k]->kind == CAG_EXPR_SPREAD) return NULL;
+  return list->as.list.items[i];
+}
+
+static const CagExpr *written_field(const CagExpr *record, const char *name) {
+  const CagExpr *value = NULL;
+  for (size_t i = 0; record->kind == CAG_EXPR_RECORD && i < record->as.record.count; i++) {
+    const CagField *f = &record->as.record.fields[i];
+    if (!f->name) value = NULL; // a spread may replace the fields before it
+    else if (strcmp(f->name, name) == 0) value = f->value;
+  }
+  return value;
+}
+
+const CagExpr *cag_tree_part(const CagPattern *pattern, size_t i, const CagExpr *value) {
+  while (value && value->kind == CAG_EXPR_GROUP) value = value->as.unary.operand;
+  if (!value) return NULL;
+  const char *field = pattern->parts[i].field;
+  return field ? written_field(value, field) : written_element(value, i);
+}
+
+// Finds the part of the value that a name of the pattern stands for. Returns false if the name is
+// not in the pattern.
+static bool find_part(const CagPattern *pattern, const CagDecl *decl, const CagExpr *value,
+                      const CagExpr **out) {
+  if (pattern->kind == CAG_PATTERN_NAME) {
+    *out = value;
+    return pattern->decl == decl;
+  }
+  for (size_t i = 0; i < pattern->count; i++)
+    if (find_part(pattern->parts[i].pattern, decl, cag_tree_part(pattern, i, value), out))
+      return true;
+  *out = NULL;
+  return pattern->rest == decl;
+}
+
+const CagExpr *cag_tree_value(const CagDecl *decl) {
+  const CagStatement *s = decl->statement;
+  const CagExpr *value = NULL;
+  if (!s) return NULL;
+  if (s->kind == CAG_STATEMENT_PARAM) return s->as.param.value;
+  if (s->kind != CAG_STATEMENT_DEFINITION) return NULL;
+  if (decl == s->as.definition.decl) return s->as.definition.value;
+  return find_part(s->as.definition.pattern, decl, s->as.definition.value, &value) ? value : NULL;
 }

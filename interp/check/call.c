@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "lang/foreign.h"
+#include "lang/tree.h"
 
 // ---- calls ----
 
@@ -232,22 +233,24 @@ static CagTypes check_function(Check *c, const char *name, const CagFunctionAst 
 
 // Returns the function that an expression refers to, and its name, or NULL if it is unknown.
 static const CagFunctionAst *function_of(const Check *c, const CagExpr *e, const char **name) {
-  const CagStatement *s = NULL;
+  const CagDecl *found = NULL;
   if (e->kind == CAG_EXPR_NAME && e->as.name.binding == CAG_BIND_DECL && e->as.name.decl) {
     const CagDecl *decl = e->as.name.decl;
     *name = decl->name;
-    if (decl->kind == CAG_DECL_TOP || decl->kind == CAG_DECL_BLOCK) s = decl->statement;
-    if (decl->kind == CAG_DECL_IMPORTED) s = cag_check_find_public(c, decl->statement, decl->name);
+    if (decl->kind == CAG_DECL_TOP || decl->kind == CAG_DECL_BLOCK) found = decl;
+    if (decl->kind == CAG_DECL_IMPORTED)
+      found = cag_check_find_public(c, decl->statement, decl->name);
   } else if (e->kind == CAG_EXPR_MEMBER && e->as.member.object->kind == CAG_EXPR_NAME) {
     const CagExpr *object = e->as.member.object;
     const CagDecl *decl = object->as.name.binding == CAG_BIND_DECL ? object->as.name.decl : NULL;
     *name = e->as.member.name;
     if (decl && decl->kind == CAG_DECL_IMPORT)
-      s = cag_check_find_public(c, decl->statement, e->as.member.name);
+      found = cag_check_find_public(c, decl->statement, e->as.member.name);
   }
+  const CagStatement *s = found ? found->statement : NULL;
   if (!s || s->kind != CAG_STATEMENT_DEFINITION || s->damage != CAG_SOUND) return NULL;
-  const CagExpr *value = s->as.definition.value;
-  return value->kind == CAG_EXPR_LAMBDA ? value->as.function : NULL;
+  const CagExpr *value = cag_tree_value(found);
+  return value && value->kind == CAG_EXPR_LAMBDA ? value->as.function : NULL;
 }
 
 static bool names_builtin(const CagExpr *e) {

@@ -89,7 +89,8 @@ static void walk_statement(Check *c, const CagStatement *s) {
 static void mark_reached(Check *c, bool is_script) {
   const size_t n = c->ast->top_count;
   for (size_t i = 0; i < n; i++)
-    if (!is_script && c->ast->tops[i]->name[0] != '_') c->reached[i] = true;
+    if (!is_script && c->ast->tops[i]->name[0] != '_')
+      c->reached[i] = true; // the whole of a pattern, too
   for (size_t i = 0; i < c->edge_count; i++)
     if (c->edges[2 * i] == n) c->reached[c->edges[2 * i + 1]] = true;
   for (bool more = true; more;) {
@@ -112,6 +113,7 @@ static void warn_unused(Check *c) {
   mark_reached(c, is_script);
   for (size_t i = 0; i < c->ast->top_count; i++) {
     const CagDecl *decl = c->ast->tops[i];
+    if (decl->whole) continue;
     if (c->reached[i] || (decl->statement->kind == CAG_STATEMENT_PARAM && decl->used)) continue;
     snprintf(text, sizeof text,
              decl->used ? "%s is used only by unused definitions" : "%s is not used", decl->name);

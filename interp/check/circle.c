@@ -35,9 +35,15 @@ static const CagFunctionAst *function_of(const CagStatement *s) {
 
 static void walk(Graph *g, const CagExpr *e);
 
+// The whole of a pattern stands for its names.
+static const CagDecl *top_of_statement(const CagStatement *s) {
+  return s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl : s->as.definition.decl;
+}
+
 static const CagDecl *top_of(const CagExpr *e) {
   if (e->kind != CAG_EXPR_NAME || e->as.name.binding != CAG_BIND_DECL) return NULL;
-  return e->as.name.decl->kind == CAG_DECL_TOP ? e->as.name.decl : NULL;
+  const CagDecl *d = e->as.name.decl;
+  return d->kind == CAG_DECL_TOP ? top_of_statement(d->statement) : NULL;
 }
 
 static void add_edge(Graph *g, const CagExpr *name, bool called) {
@@ -174,7 +180,7 @@ void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
   size_t *path = cag_arena_alloc(&g.memory, (2 * n + 1) * sizeof *path);
   for (size_t k = 0; k < n; k++) {
     const CagStatement *s = ast->tops[k]->statement;
-    if (s->damage != CAG_SOUND) continue;
+    if (s->damage != CAG_SOUND || top_of_statement(s) != ast->tops[k]) continue;
     const CagFunctionAst *f = function_of(s);
     g.from = 2 * k + (f != NULL);
     if (f) walk(&g, f->body);

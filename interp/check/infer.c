@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lang/foreign.h"
+#include "lang/tree.h"
 
 // ---- expressions ----
 
@@ -62,6 +63,68 @@ static CagTypes types_of_elements(const CagExpr *source, CagTypes types) {
   return types == CAG_TYPES(TEXT) ? CAG_TYPES(TEXT) : CAG_TYPES_ANY;
 }
 
+// Returns the types of a part of a value, without reporting what is wrong in it again.
+static CagTypes types_of_part(Check *c, const CagExpr *part) {
+  if (!part || c->again) return CAG_TYPES_ANY;
+  c->unjudged++;
+  c->again = true;
+  const CagTypes types = cag_check_infer(c, part);
+  c->again = false;
+  c->unjudged--;
+  return types;
+}
+
+// Reports a list that is written with another number of elements, and a record that is written
+// without a field. Values with spreads are not checked.
+static void check_written(Check *c, const CagPattern *pattern, const CagExpr *value) {
+  char of[64], text[256];
+  while (value && value->kind == CAG_EXPR_GROUP) value = value->as.unary.operand;
+  const bool list = pattern->kind == CAG_PATTERN_LIST;
+  if (!value || value->kind != (list ? CAG_EXPR_LIST : CAG_EXPR_RECORD)) return;
+  const size_t n = list ? value->as.list.count : value->as.record.count;
+  for (size_t i = 0; i < n; i++)
+    if (list ? value->as.list.items[i]->kind == CAG_EXPR_SPREAD : !value->as.record.fields[i].name)
+      return;
+  cag_source_excerpt(c->ast->source, pattern->span, of, sizeof of);
+  if (list && (pattern->rest ? n < pattern->count : n != pattern->count)) {
+    snprintf(text, sizeof text, "the pattern %s expects a list of %s%zu element%s, found %zu", of,
+             pattern->rest ? "at least " : "", pattern->count, pattern->count == 1 ? "" : "s", n);
+    cag_check_report(c, CAG_ERR_pattern, value->span, text);
+  }
+  for (size_t i = 0; !list && i < pattern->count; i++) {
+    if (cag_tree_part(pattern, i, value)) continue;
+    snprintf(text, sizeof text, "the pattern %s expects the field `%s`, missing here", of,
+             pattern->parts[i].field);
+    cag_check_report(c, CAG_ERR_pattern, value->span, text);
+  }
+}
+
+void cag_check_learn_pattern(Check *c, const CagPattern *pattern, CagTypes types,
+                             const CagExpr *value) {
+  const CagTypes taken =
+      pattern->kind == CAG_PATTERN_RECORD ? CAG_TYPES(RECORD) : CAG_TYPES(LIST) | CAG_TYPES(RANGE);
+  char of[64], found[256], text[400];
+  if (pattern->kind == CAG_PATTERN_NAME) {
+    cag_check_learn(c, pattern->decl, types);
+    return;
+  }
+  if (!(types & taken)) {
+    snprintf(text, sizeof text, "the pattern %s expects %s, found %s",
+             (cag_source_excerpt(c->ast->source, pattern->span, of, sizeof of), of),
+             pattern->kind == CAG_PATTERN_RECORD ? "a record" : "a list",
+             cag_types_text(types, found, sizeof found));
+    cag_check_report(c, CAG_ERR_pattern, value ? value->span : pattern->span, text);
+  }
+  check_written(c, pattern, value);
+  const CagTypes elements = value ? types_of_elements(value, types) : CAG_TYPES_ANY;
+  for (size_t i = 0; i < pattern->count; i++) {
+    const CagExpr *part = cag_tree_part(pattern, i, value);
+    const CagTypes inner = part ? types_of_part(c, part) : elements;
+    cag_check_learn_pattern(c, pattern->parts[i].pattern, inner, part);
+  }
+  if (pattern->rest) cag_check_learn(c, pattern->rest, CAG_TYPES(LIST));
+}
+
 static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
     const CagClause *clause = &e->as.comprehension.clauses[i];
@@ -70,8 +133,8 @@ static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
     if (!(source & CAG_TYPES_LOOPED))
       cag_check_report_found(c, CAG_ERR_type, clause->source->span,
                              "a comprehension needs a list, range, text, or record", source);
-    for (size_t k = 0; k < clause->name_count; k++)
-      cag_check_learn(c, clause->names[k], clause->pattern ? CAG_TYPES_ANY : types);
+    cag_check_learn_pattern(c, clause->pattern,
+                            source == CAG_TYPES(RECORD) ? CAG_TYPES(LIST) : types, NULL);
     if (clause->filter) cag_check_expect_bool(c, clause->filter, "the condition");
   }
   cag_check_infer(c, e->as.comprehension.body);
@@ -81,6 +144,8 @@ static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
 static void walk_function(Check *c, const CagFunctionAst *fn) {
   for (size_t i = 0; i < fn->parameter_count; i++) {
     cag_check_learn(c, fn->parameters[i].decl, CAG_TYPES_ANY);
+    if (fn->parameters[i].pattern)
+      cag_check_learn_pattern(c, fn->parameters[i].pattern, CAG_TYPES_ANY, NULL);
     if (fn->parameters[i].fallback) cag_check_infer(c, fn->parameters[i].fallback);
   }
   const bool thunk = fn->parameter_count == 0;
@@ -89,8 +154,14 @@ static void walk_function(Check *c, const CagFunctionAst *fn) {
   c->thunks -= thunk;
 }
 
-static CagTypes infer_block(Check *c, const CagExpr *e) {
+static void warn_unused_in_block(Check *c, const CagDecl *decl) {
   char text[256];
+  if (decl->used || decl->name[0] == '_') return;
+  snprintf(text, sizeof text, "%s is not used", decl->name);
+  cag_check_warn(c, CAG_ERR_unused, decl->span, text);
+}
+
+static CagTypes infer_block(Check *c, const CagExpr *e) {
   for (size_t i = 0; i < e->as.block.count; i++) {
     const CagStatement *s = e->as.block.statements[i];
     if (s->kind == CAG_STATEMENT_ASSERT) {
@@ -99,11 +170,14 @@ static CagTypes infer_block(Check *c, const CagExpr *e) {
       continue;
     }
     const CagDecl *decl = s->as.definition.decl;
+    const CagPattern *pattern = s->as.definition.pattern;
     cag_check_learn(c, decl, CAG_TYPES_ANY); // recursion
-    cag_check_learn(c, decl, cag_check_infer(c, s->as.definition.value));
-    if (decl->used || decl->name[0] == '_') continue;
-    snprintf(text, sizeof text, "%s is not used", decl->name);
-    cag_check_warn(c, CAG_ERR_unused, decl->span, text);
+    const CagTypes types = cag_check_infer(c, s->as.definition.value);
+    cag_check_learn(c, decl, types);
+    if (!pattern) warn_unused_in_block(c, decl);
+    else cag_check_learn_pattern(c, pattern, types, s->as.definition.value);
+    for (size_t k = 0; pattern && k < pattern->name_count; k++)
+      warn_unused_in_block(c, pattern->names[k]);
   }
   return cag_check_infer(c, e->as.block.value);
 }

@@ -72,9 +72,35 @@ static void use_top(Check *c, size_t used) {
   c->edges[2 * c->edge_count++ + 1] = used;
 }
 
+// Checks the definition of a pattern, which stands for all its names.
+static void check_whole(Check *c, const CagDecl *whole) {
+  const CagPattern *pattern = whole->statement->as.definition.pattern;
+  const CagExpr *value = whole->statement->as.definition.value;
+  cag_check_learn_pattern(c, pattern, c->top_types[whole->index], value);
+  for (size_t i = 0; i < pattern->name_count; i++) {
+    const size_t k = pattern->names[i]->index;
+    c->top_types[k] = types_known(c, pattern->names[i]);
+    c->top_done[k] = true;
+  }
+}
+
+// Returns the types of a name of a pattern at the top level.
+static CagTypes types_of_part(Check *c, const CagDecl *decl) {
+  const CagDecl *whole = decl->statement->as.definition.decl;
+  cag_check_types_of_top(c, whole);
+  if (c->top_bad[whole->index]) c->top_bad[decl->index] = true;
+  return c->top_done[decl->index] ? c->top_types[decl->index] : CAG_TYPES_ANY;
+}
+
+static bool is_part(const CagDecl *decl) {
+  return decl->statement->kind == CAG_STATEMENT_DEFINITION &&
+         decl->statement->as.definition.decl != decl;
+}
+
 CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl) {
   const size_t k = decl->index;
   if (decl->statement->damage != CAG_SOUND) return CAG_TYPES_ANY;
+  if (is_part(decl)) return types_of_part(c, decl);
   if (c->top_done[k]) return c->top_types[k];
   if (c->top_busy[k] || c->depth > DEPTH_MAX) return CAG_TYPES_ANY;
   const size_t outer = c->top, errors = cag_check_error_count(c);
@@ -85,6 +111,7 @@ CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl) {
   c->top_types[k] = cag_check_infer(c, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value
                                                                       : s->as.definition.value);
   if (s->kind == CAG_STATEMENT_PARAM && s->as.param.domain) cag_check_infer(c, s->as.param.domain);
+  if (decl->whole) check_whole(c, decl);
   c->top = outer;
   c->depth--;
   c->top_done[k] = true;
@@ -92,19 +119,18 @@ CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl) {
   return c->top_types[k];
 }
 
-const CagStatement *cag_check_find_public(const Check *c, const CagStatement *import,
-                                          const char *name) {
+const CagDecl *cag_check_find_public(const Check *c, const CagStatement *import, const char *name) {
   if (!import || import->kind != CAG_STATEMENT_IMPORT || import->as.import.module == CAG_NO_MODULE)
     return NULL;
   const CagModuleUnit *m = c->vm->modules[import->as.import.module];
   for (size_t i = 0; i < m->public_count; i++)
-    if (strcmp(m->publics[i].name, name) == 0) return m->publics[i].statement;
+    if (strcmp(m->publics[i].name, name) == 0) return m->publics[i].decl;
   return NULL;
 }
 
-void cag_check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span) {
-  const char *said = s && s->doc ? strstr(s->doc, "deprecated:") : NULL;
-  if (!said) return;
+void cag_check_deprecated(Check *c, const CagDecl *decl, const char *name, CagSpan span) {
+  const char *said = decl && decl->doc ? strstr(decl->doc, "deprecated:") : NULL;
+  if (!said || c->again) return;
   said += strlen("deprecated:");
   said += strspn(said, " ");
   CagDiagnostic *d = cag_diagnostics_add(&c->vm->errors, CAG_ERR_deprecated, c->ast->source, span,
@@ -127,7 +153,8 @@ CagTypes cag_check_infer_name(Check *c, const CagExpr *e) {
   switch (decl->kind) {
   case CAG_DECL_TOP:
     use_top(c, decl->index);
-    cag_check_deprecated(c, decl->statement, decl->name, e->span);
+    if (is_part(decl)) use_top(c, decl->statement->as.definition.decl->index);
+    cag_check_deprecated(c, decl, decl->name, e->span);
     return cag_check_types_of_top(c, decl);
   case CAG_DECL_IMPORT: return CAG_TYPES(MODULE);
   case CAG_DECL_IMPORTED:

@@ -27,6 +27,7 @@ typedef struct Check {
   size_t top;             // definition whose value is being checked; the number of definitions for
                           // statements
   size_t unjudged;        // enclosing calls of `attempt`
+  bool again;             // a part of a value is inferred once more, for its types
   CagDiagnostics ignored; // errors in them
   size_t depth;           // nesting of definitions that are being checked
   CagConstants constants;
@@ -51,18 +52,21 @@ size_t cag_check_error_count(const Check *c);
 void cag_check_learn(Check *c, const CagDecl *decl, CagTypes types);
 // Returns the types of a top-level definition, and checks the definition first if necessary.
 CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl);
-// Returns the statement that defines an imported name or a member of an imported module, or NULL if
+// Returns the definition of an imported name or a member of an imported module, or NULL if
 // it is unknown.
-const CagStatement *cag_check_find_public(const Check *c, const CagStatement *import,
-                                          const char *name);
+const CagDecl *cag_check_find_public(const Check *c, const CagStatement *import, const char *name);
 // Warns about the use of a definition whose documentation contains `deprecated: ...`.
-void cag_check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span);
+void cag_check_deprecated(Check *c, const CagDecl *decl, const char *name, CagSpan span);
 CagTypes cag_check_infer_name(Check *c, const CagExpr *e);
 
 // ---- expressions ----
 
 // Infers the types that an expression may have, and reports errors in it.
 CagTypes cag_check_infer(Check *c, const CagExpr *e);
+// Records the types of the names of a pattern that takes a value of these types apart, and reports a
+// value that it cannot take apart. `value` is its expression, or NULL.
+void cag_check_learn_pattern(Check *c, const CagPattern *pattern, CagTypes types,
+                             const CagExpr *value);
 void cag_check_infer_all(Check *c, CagExpr *const *items, size_t count);
 CagTypes cag_check_infer_call(Check *c, const CagExpr *e);
 CagTypes cag_check_infer_pipe(Check *c, const CagExpr *e);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "interp/doc/doc.h"
 #include "interp/vm/stdlib.h"
+#include "lang/tree.h"
 
 // --- Texts of the source ---
 
@@ -143,8 +144,8 @@ static void read_entry(const CagModuleAst *ast, const CagDecl *d, CagDocEntry *e
     if (st->as.param.label) e->label = copy(st->as.param.label, strlen(st->as.param.label));
     return;
   }
-  const CagExpr *value = st->as.definition.value;
-  const bool head = value->kind == CAG_EXPR_LAMBDA && value->as.function->name;
+  const CagExpr *value = cag_tree_value(d);
+  const bool head = value && value->kind == CAG_EXPR_LAMBDA && value->as.function->name;
   if (!head) {
     e->kind = CAG_DOC_VALUE;
     e->signature = copy(d->name, strlen(d->name));
@@ -178,7 +179,8 @@ void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule
   out->entries = cag_calloc(ast->top_count + 1, sizeof *out->entries);
   if (!out->entries) cag_memory_leave();
   for (size_t i = 0; i < ast->top_count; i++)
-    if (ast->tops[i]->name[0] != '_') read_entry(ast, ast->tops[i], &out->entries[out->count++]);
+    if (!ast->tops[i]->whole && ast->tops[i]->name[0] != '_')
+      read_entry(ast, ast->tops[i], &out->entries[out->count++]);
 }
 
 void cag_doc_module_free(CagDocModule *m) {

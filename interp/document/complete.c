@@ -249,11 +249,7 @@ static void propose_import(Completion *c, const char *module, const CagModuleUni
   for (size_t i = 0; i < unit->public_count; i++) {
     const char *name = unit->publics[i].name;
     if (strncmp(name, n->word, n->length) != 0 || is_again(c, name)) continue;
-    const CagStatement *s = unit->publics[i].statement;
-    const Entity e = {.kind = ENTITY_DECL,
-                      .unit = unit,
-                      .decl = s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl
-                                                             : s->as.definition.decl};
+    const Entity e = {.kind = ENTITY_DECL, .unit = unit, .decl = unit->publics[i].decl};
     char text[256], detail[160];
     snprintf(text, sizeof text, "import %s: %s\n", module, name);
     snprintf(detail, sizeof detail, "import %s", module);
@@ -301,11 +297,7 @@ static void propose_field(void *context, const char *name, const CagExpr *value,
 
 static void propose_module_names(Completion *c, const CagModuleUnit *m) {
   for (size_t i = 0; i < m->public_count; i++) {
-    const CagStatement *s = m->publics[i].statement;
-    const Entity e = {.kind = ENTITY_DECL,
-                      .unit = m,
-                      .decl = s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl
-                                                             : s->as.definition.decl};
+    const Entity e = {.kind = ENTITY_DECL, .unit = m, .decl = m->publics[i].decl};
     if (!is_again(c, e.decl->name)) propose_entity(c, e.decl->name, &e, RANK_ARGUMENT);
   }
 }
@@ -374,8 +366,8 @@ static void complete_member(Completion *c, size_t end) {
     const CagModuleUnit *m = k < vm->module_count ? vm->modules[k] : NULL;
     for (size_t i = 0; m && i < m->public_count; i++)
       if (strcmp(m->publics[i].name, t[first + 2].as.name) == 0 &&
-          m->publics[i].statement->kind == CAG_STATEMENT_DEFINITION)
-        value = m->publics[i].statement->as.definition.value;
+          m->publics[i].decl->statement->kind == CAG_STATEMENT_DEFINITION)
+        value = cag_tree_value(m->publics[i].decl);
     unit = m;
     first += 2;
   }
@@ -417,6 +409,7 @@ static void propose_arguments(Completion *c, const CursorCall *call) {
   const CagFunctionAst *f = cag_entity_function(&call->callee);
   for (size_t i = call->position; f && i < f->parameter_count; i++) {
     const char *name = f->parameters[i].decl->name;
+    if (f->parameters[i].pattern) continue; // given by position
     const CagDocParameter *row =
         cag_doc_module_parameter(call->callee.unit->name, call->callee.decl->name, name);
     if (!is_given(c, call, name))
@@ -646,6 +639,14 @@ static void complete_name(Completion *c) {
   propose_imports(c);
 }
 
+// In a pattern, names are new, except those of fields.
+static bool complete_pattern(Completion *c) {
+  PatternAt at;
+  if (!cag_document_pattern(c->d, c->offset, &at)) return false;
+  if (at.value) cag_fields_of(c->d->session->vm, c->d->unit, at.value, propose_field, c);
+  return true;
+}
+
 static void complete(void *context) {
   Completion *c = context;
   cag_document_cursor(c->d, c->offset, &c->memory, &c->cursor);
@@ -662,7 +663,7 @@ static void complete(void *context) {
   else if (n > 0 && (t[n - 1].kind == CAG_TOKEN_NUMBER || t[n - 1].kind == CAG_TOKEN_ANGLE) &&
            cursor->word.start == t[n - 1].span.end && cursor->word.end > cursor->word.start) {
     // a unit
-  } else complete_name(c);
+  } else if (!complete_pattern(c)) complete_name(c);
 }
 
 void cag_document_complete(CagWorkspace *w, const char *file, size_t offset,

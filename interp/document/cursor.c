@@ -164,9 +164,11 @@ Entity cag_document_chain(const Document *d, const Cursor *c, size_t end, size_t
     const size_t k = module.decl->statement->as.import.module;
     const CagModuleUnit *m = k < vm->module_count ? vm->modules[k] : NULL;
     for (size_t i = 0; m && i < m->public_count; i++) {
-      const CagStatement *s = m->publics[i].statement;
-      if (strcmp(m->publics[i].name, name) != 0 || s->kind != CAG_STATEMENT_DEFINITION) continue;
-      return (Entity){.kind = ENTITY_DECL, .unit = m, .decl = s->as.definition.decl};
+      const CagDecl *decl = m->publics[i].decl;
+      if (strcmp(m->publics[i].name, name) != 0 ||
+          decl->statement->kind != CAG_STATEMENT_DEFINITION)
+        continue;
+      return (Entity){.kind = ENTITY_DECL, .unit = m, .decl = decl};
     }
     return none;
   }

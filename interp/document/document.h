@@ -46,8 +46,9 @@ typedef struct Occurrence {
   enum OccurrenceRole {
     ROLE_USE,
     ROLE_DEFINITION,
-    ROLE_IMPORTED, // in the list of an import
-    ROLE_LABEL     // the name of an argument
+    ROLE_SHORTHAND, // a definition by the name of a field: size in {size} = box
+    ROLE_IMPORTED,  // in the list of an import
+    ROLE_LABEL      // the name of an argument
   } role;
 } Occurrence;
 
@@ -144,6 +145,15 @@ typedef void GiveField(void *context, const char *name, const CagExpr *value,
                        const CagModuleUnit *unit);
 void cag_fields_of(const CagVm *vm, const CagModuleUnit *unit, const CagExpr *value,
                    GiveField *give, void *context);
+
+// --- pattern_at.c ---
+
+typedef struct PatternAt {
+  const CagPattern *pattern; // the innermost list or record pattern
+  const CagExpr *value;      // of which the name of a field is written; NULL: none, or unknown
+} PatternAt;
+// Finds the pattern of a definition around an offset. Returns false if there is none.
+bool cag_document_pattern(const Document *d, size_t offset, PatternAt *out);
 
 // --- words.c: the tokens before a cursor ---
 

@@ -230,21 +230,57 @@ static void fix_unknown_name(Actions *a, CagSpan span) {
 
 // ---- unused definitions ----
 
-// Returns the statement whose name is at a place, in the module or a block.
+// Returns the statement whose name is at a place, in the module or a block. If the name is in a
+// pattern, it is the place of the name.
 typedef struct StatementSearch {
   uint32_t at;
   const CagStatement *found;
+  const CagPattern *pattern; // of the statement; NULL: none
 } StatementSearch;
+
+static void test_statement(StatementSearch *s, const CagStatement *st) {
+  if (st->kind == CAG_STATEMENT_PARAM && st->as.param.decl->span.start == s->at) s->found = st;
+  if (st->kind != CAG_STATEMENT_DEFINITION) return;
+  const CagPattern *pattern = st->as.definition.pattern;
+  if (!pattern && st->as.definition.decl->span.start == s->at) s->found = st;
+  for (size_t i = 0; pattern && i < pattern->name_count; i++)
+    if (pattern->names[i]->span.start == s->at) {
+      s->found = st;
+      s->pattern = pattern;
+    }
+}
 
 static void find_in_blocks(void *context, const CagExpr *e) {
   StatementSearch *s = context;
   if (e->span.start > s->at || s->at > e->span.end) return;
-  for (size_t i = 0; e->kind == CAG_EXPR_BLOCK && i < e->as.block.count; i++) {
-    const CagStatement *st = e->as.block.statements[i];
-    if (st->kind == CAG_STATEMENT_DEFINITION && st->as.definition.decl->span.start == s->at)
-      s->found = st;
-  }
+  for (size_t i = 0; e->kind == CAG_EXPR_BLOCK && i < e->as.block.count; i++)
+    test_statement(s, e->as.block.statements[i]);
   cag_tree_below(e, find_in_blocks, s);
+}
+
+// Removes part k of a list, with its comma.
+static void remove_part(Actions *a, const CagPattern *pattern, size_t k, const char *title) {
+  const CagPatternPart *parts = pattern->parts;
+  const size_t start = k ? parts[k - 1].pattern->span.end : parts[k].field_span.start;
+  const size_t end = k ? parts[k].pattern->span.end : parts[k + 1].field_span.start;
+  give_fix(a, title, start, end, "");
+}
+
+// Removes a name from a pattern that has other names. The place of an element is kept by `_`, and
+// that of a field is not needed.
+static void remove_from_pattern(Actions *a, const CagPattern *pattern, CagSpan span) {
+  const char *title = text_of(a, "Remove the unused %s", source_text(a, span));
+  for (size_t i = 0; i < pattern->count; i++) {
+    const CagPattern *part = pattern->parts[i].pattern;
+    if (part->kind != CAG_PATTERN_NAME) remove_from_pattern(a, part, span);
+    else if (part->span.start != span.start) continue;
+    else if (pattern->parts[i].field && pattern->count > 1) remove_part(a, pattern, i, title);
+    else if (cag_pattern_is_shorthand(&pattern->parts[i]))
+      give_fix(a, title, span.end, span.end, ": _");
+    else give_fix(a, title, span.start, span.end, "_");
+  }
+  if (pattern->rest && pattern->rest->span.start == span.start)
+    give_fix(a, title, span.start, span.end, "_");
 }
 
 static void remove_statement(Actions *a, const CagStatement *s, const char *name) {
@@ -291,13 +327,12 @@ static void fix_unused(Actions *a, CagSpan span) {
     remove_statement(a, s, s->as.import.path);
     return;
   }
-  StatementSearch search = {span.start, NULL};
-  const CagDecl *decl = s->kind == CAG_STATEMENT_DEFINITION ? s->as.definition.decl
-                        : s->kind == CAG_STATEMENT_PARAM    ? s->as.param.decl
-                                                            : NULL;
-  if (decl && decl->span.start == span.start) search.found = s;
-  else cag_tree_of_statement(s, find_in_blocks, &search);
-  if (search.found) remove_statement(a, search.found, source_text(a, span));
+  StatementSearch search = {.at = span.start};
+  test_statement(&search, s);
+  if (!search.found) cag_tree_of_statement(s, find_in_blocks, &search);
+  if (search.pattern && search.pattern->name_count > 1)
+    remove_from_pattern(a, search.pattern, span);
+  else if (search.found) remove_statement(a, search.found, source_text(a, span));
 }
 
 // ---- fixes that the help of an error states ----
@@ -561,8 +596,8 @@ static void find_literal(void *context, const CagExpr *e) {
 }
 
 static void make_param(Actions *a, const CagStatement *s) {
-  if (s->kind != CAG_STATEMENT_DEFINITION || !is_param_value(s->as.definition.value) ||
-      a->start > s->as.definition.decl->span.end)
+  if (s->kind != CAG_STATEMENT_DEFINITION || s->as.definition.pattern ||
+      !is_param_value(s->as.definition.value) || a->start > s->as.definition.decl->span.end)
     return;
   const CagEdit edit = edit_of(a, s->span.start, s->span.start, "param ");
   give_action(a, text_of(a, "Make %s a param", s->as.definition.decl->name), CAG_ACTION_REWRITE,

@@ -104,7 +104,7 @@ static bool give_references(void *context, Document *d) {
   for (size_t i = 0; i < d->occurrence_count; i++) {
     const Occurrence *o = &d->occurrences[i];
     if (!refers(o, &n->entity)) continue;
-    if (o->role == ROLE_DEFINITION && !n->definition) continue;
+    if ((o->role == ROLE_DEFINITION || o->role == ROLE_SHORTHAND) && !n->definition) continue;
     give_span(n, d, d->unit, o->span);
   }
   return true;
@@ -219,7 +219,8 @@ typedef struct FileEdit {
 typedef struct Rename {
   Navigation n;
   const char *name;
-  char *alias; // " as NAME"
+  char *alias;     // " as NAME"
+  char *shorthand; // "FIELD: NAME"
   FileEdit *edits;
   size_t count, capacity;
   char *why;
@@ -240,7 +241,8 @@ static bool rename_in(void *context, Document *d) {
     const Occurrence *o = &d->occurrences[i];
     if (d == r->n.d && names_import(o, e))
       add_edit(r, d, (CagSpan){o->span.end, o->span.end}, r->alias);
-    else if (cag_entity_equal(&o->entity, e)) add_edit(r, d, o->span, r->name);
+    else if (cag_entity_equal(&o->entity, e))
+      add_edit(r, d, o->span, o->role == ROLE_SHORTHAND ? r->shorthand : r->name);
   }
   return true;
 }
@@ -335,6 +337,9 @@ static size_t moved(const Rename *r, const char *file, size_t offset) {
     const FileEdit *e = &r->edits[i];
     if (strcmp(e->file, file) == 0 && e->start < offset && e->end <= offset)
       out += strlen(e->text) - (e->end - e->start);
+    else if (strcmp(e->file, file) == 0 && e->text == r->shorthand && e->start <= offset &&
+             offset < e->end)
+      out += strlen(e->text) - (offset - e->start); // to the name after the field
   }
   return out;
 }
@@ -390,7 +395,9 @@ static void rename_all(void *context) {
              word_of(&n->entity));
     return;
   }
-  if (cag_asprintf(&r->alias, " as %s", r->name) < 0) cag_memory_leave();
+  if (cag_asprintf(&r->alias, " as %s", r->name) < 0 ||
+      cag_asprintf(&r->shorthand, "%s: %s", n->entity.decl->name, r->name) < 0)
+    cag_memory_leave();
   rename_in(r, n->d);
   if (!is_local(&n->entity)) cag_workspace_each(n->w, n->entity.decl->name, rename_elsewhere, r);
   CagSessionOptions options = n->w->options;
@@ -417,5 +424,6 @@ bool cag_document_rename(CagWorkspace *w, const char *file, size_t offset, const
   for (size_t i = 0; i < r.count; i++) cag_free(r.edits[i].file);
   cag_free(r.edits);
   cag_free(r.alias);
+  cag_free(r.shorthand);
   return r.ok;
 }

@@ -19,12 +19,8 @@ static const CagModuleUnit *imported_unit(const CagVm *vm, const CagDecl *decl) 
 // Finds a public definition of a module.
 static Entity public_entity(const CagModuleUnit *m, const char *name) {
   for (size_t i = 0; m && i < m->public_count; i++) {
-    const CagStatement *s = m->publics[i].statement;
     if (strcmp(m->publics[i].name, name) != 0) continue;
-    return (Entity){.kind = ENTITY_DECL,
-                    .unit = m,
-                    .decl =
-                        s->kind == CAG_STATEMENT_PARAM ? s->as.param.decl : s->as.definition.decl};
+    return (Entity){.kind = ENTITY_DECL, .unit = m, .decl = m->publics[i].decl};
   }
   return (Entity){.kind = ENTITY_NONE};
 }
@@ -88,10 +84,7 @@ bool cag_entity_equal(const Entity *a, const Entity *b) {
 }
 
 const CagExpr *cag_entity_value(const Entity *e) {
-  const CagStatement *s = e->kind == ENTITY_DECL ? e->decl->statement : NULL;
-  if (!s) return NULL;
-  if (s->kind == CAG_STATEMENT_PARAM) return s->as.param.value;
-  return s->kind == CAG_STATEMENT_DEFINITION ? s->as.definition.value : NULL;
+  return e->kind == ENTITY_DECL ? cag_tree_value(e->decl) : NULL;
 }
 
 const CagFunctionAst *cag_entity_function(const Entity *e) {
@@ -145,6 +138,28 @@ static void add_definition(Listing *l, const CagDecl *decl) {
   if (decl && strcmp(decl->name, "_") != 0) add(l, decl->span, e, decl, ROLE_DEFINITION);
 }
 
+static void add_pattern(Listing *l, const CagPattern *pattern) {
+  if (pattern->decl) add_definition(l, pattern->decl);
+  if (pattern->rest) add_definition(l, pattern->rest);
+  for (size_t i = 0; i < pattern->count; i++) {
+    const CagPatternPart *part = &pattern->parts[i];
+    const Entity field = {.kind = ENTITY_FIELD, .name = part->field};
+    if (cag_pattern_is_shorthand(part)) {
+      const Entity e = {.kind = ENTITY_DECL, .unit = l->d->unit, .decl = part->pattern->decl};
+      add(l, part->field_span, e, e.decl, ROLE_SHORTHAND);
+      continue;
+    }
+    if (part->field) add(l, part->field_span, field, NULL, ROLE_USE);
+    add_pattern(l, part->pattern);
+  }
+}
+
+// Adds the names of a pattern, or else (NULL) the name of `whole`.
+static void add_names(Listing *l, const CagDecl *whole, const CagPattern *pattern) {
+  if (pattern) add_pattern(l, pattern);
+  else add_definition(l, whole);
+}
+
 // The name of an argument is that of a parameter.
 static void add_label(Listing *l, const Entity *callee, const CagArgument *a) {
   const CagFunctionAst *f = cag_entity_function(callee);
@@ -160,7 +175,8 @@ static void add_label(Listing *l, const Entity *callee, const CagArgument *a) {
 static void list_expression(void *context, const CagExpr *e);
 
 static void list_statement(Listing *l, const CagStatement *s) {
-  if (s->kind == CAG_STATEMENT_DEFINITION) add_definition(l, s->as.definition.decl);
+  if (s->kind == CAG_STATEMENT_DEFINITION)
+    add_names(l, s->as.definition.decl, s->as.definition.pattern);
   if (s->kind == CAG_STATEMENT_PARAM) add_definition(l, s->as.param.decl);
   cag_tree_of_statement(s, list_expression, l);
 }
@@ -190,12 +206,11 @@ static void list_expression(void *context, const CagExpr *e) {
     break;
   case CAG_EXPR_LAMBDA:
     for (size_t i = 0; i < e->as.function->parameter_count; i++)
-      add_definition(l, e->as.function->parameters[i].decl);
+      add_names(l, e->as.function->parameters[i].decl, e->as.function->parameters[i].pattern);
     break;
   case CAG_EXPR_COMPREHENSION:
     for (size_t i = 0; i < e->as.comprehension.count; i++)
-      for (size_t k = 0; k < e->as.comprehension.clauses[i].name_count; k++)
-        add_definition(l, e->as.comprehension.clauses[i].names[k]);
+      add_pattern(l, e->as.comprehension.clauses[i].pattern);
     break;
   case CAG_EXPR_BLOCK:
     for (size_t i = 0; i < e->as.block.count; i++) list_statement(l, e->as.block.statements[i]);

@@ -31,6 +31,12 @@ static void add_decl(Scope *s, const CagDecl *decl) {
   s->decls[s->count++] = decl;
 }
 
+// Adds the names of a pattern, or else (NULL) the name of `whole`.
+static void add_names(Scope *s, const CagDecl *whole, const CagPattern *pattern) {
+  if (!pattern) add_decl(s, whole);
+  for (size_t i = 0; pattern && i < pattern->name_count; i++) add_decl(s, pattern->names[i]);
+}
+
 // Tests whether only blanks are between the end of an expression and the offset, and no bracket
 // closes the expression. It may then go on there.
 static bool continues(const Scope *s, CagSpan span) {
@@ -53,7 +59,8 @@ static void enter_block(Scope *s, const CagExpr *e) {
     if (st->kind != CAG_STATEMENT_DEFINITION) continue;
     const CagExpr *value = st->as.definition.value;
     const bool function = value->kind == CAG_EXPR_LAMBDA && value->as.function->self;
-    if (st->span.end <= s->offset || function) add_decl(s, st->as.definition.decl);
+    if (st->span.end <= s->offset || function)
+      add_names(s, st->as.definition.decl, st->as.definition.pattern);
   }
 }
 
@@ -61,7 +68,7 @@ static void enter_clauses(Scope *s, const CagExpr *e) {
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
     const CagClause *c = &e->as.comprehension.clauses[i];
     if (c->source->span.end > s->offset) break;
-    for (size_t k = 0; k < c->name_count; k++) add_decl(s, c->names[k]);
+    add_names(s, NULL, c->pattern);
   }
 }
 
@@ -70,7 +77,7 @@ static void enter_expression(void *context, const CagExpr *e) {
   if (!encloses(s, e->span)) return;
   if (e->kind == CAG_EXPR_LAMBDA)
     for (size_t i = 0; i < e->as.function->parameter_count; i++)
-      add_decl(s, e->as.function->parameters[i].decl);
+      add_names(s, e->as.function->parameters[i].decl, e->as.function->parameters[i].pattern);
   else if (e->kind == CAG_EXPR_BLOCK) enter_block(s, e);
   else if (e->kind == CAG_EXPR_COMPREHENSION) enter_clauses(s, e);
   cag_tree_below(e, enter_expression, s);
@@ -89,7 +96,8 @@ static void gather_module(Scope *s, const Document *d) {
   for (size_t i = 0; ast && i < ast->count; i++) {
     const CagStatement *st = ast->statements[i];
     if (st->kind == CAG_STATEMENT_PARAM) add_decl(s, st->as.param.decl);
-    if (st->kind == CAG_STATEMENT_DEFINITION) add_decl(s, st->as.definition.decl);
+    if (st->kind == CAG_STATEMENT_DEFINITION)
+      add_names(s, st->as.definition.decl, st->as.definition.pattern);
     if (st->kind != CAG_STATEMENT_IMPORT) continue;
     add_decl(s, st->as.import.decl);
     for (size_t k = 0; k < st->as.import.name_count; k++) add_decl(s, st->as.import.names[k].decl);
@@ -148,9 +156,10 @@ static void fields_of(const Fields *f, const CagModuleUnit *unit, const CagExpr 
 
 static void fields_of_module(const Fields *f, const CagModuleUnit *m) {
   for (size_t i = 0; i < m->public_count; i++) {
-    const CagStatement *s = m->publics[i].statement;
-    f->give(f->context, m->publics[i].name,
-            s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value, m);
+    const CagDecl *decl = m->publics[i].decl;
+    const CagExpr *value = cag_tree_value(decl);
+    if (!value) value = decl->statement->as.definition.value; // of the whole pattern
+    f->give(f->context, m->publics[i].name, value, m);
   }
 }
 

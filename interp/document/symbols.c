@@ -30,17 +30,26 @@ static void give_symbol(Symbols *s, const CagDecl *decl, CagSpan whole, const ch
 
 static void symbols_below(void *context, const CagExpr *e);
 
-static void give_definition(Symbols *s, const CagStatement *st) {
-  const CagDecl *decl =
-      st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl : st->as.definition.decl;
+static bool matches(const char *name, const char *query);
+
+static void give_name(Symbols *s, const CagStatement *st, const CagDecl *decl) {
   const Entity e = {.kind = ENTITY_DECL, .unit = s->d->unit, .decl = decl};
   CagString head = {0};
   cag_describe_head(&e, &head);
   const size_t name = strlen(decl->name);
   const char *detail = head.bytes && head.length > name ? head.bytes + name : "";
   if (st->kind == CAG_STATEMENT_PARAM && st->as.param.label) detail = st->as.param.label;
-  if (strcmp(decl->name, "_") != 0) give_symbol(s, decl, st->span, detail);
+  const bool wanted = !s->query || s->depth > 0 || matches(decl->name, s->query);
+  if (wanted && strcmp(decl->name, "_") != 0) give_symbol(s, decl, st->span, detail);
   cag_string_free(&head);
+}
+
+static void give_definition(Symbols *s, const CagStatement *st) {
+  const CagPattern *pattern =
+      st->kind == CAG_STATEMENT_DEFINITION ? st->as.definition.pattern : NULL;
+  if (!pattern)
+    give_name(s, st, st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl : st->as.definition.decl);
+  for (size_t i = 0; pattern && i < pattern->name_count; i++) give_name(s, st, pattern->names[i]);
   if (s->query) return;
   s->depth++;
   cag_tree_of_statement(st, symbols_below, s);
@@ -85,10 +94,8 @@ static void give_symbols(void *context) {
   const CagModuleAst *ast = s->d->unit->ast;
   for (size_t i = 0; ast && i < ast->count; i++) {
     const CagStatement *st = ast->statements[i];
-    if (st->kind != CAG_STATEMENT_DEFINITION && st->kind != CAG_STATEMENT_PARAM) continue;
-    const CagDecl *decl =
-        st->kind == CAG_STATEMENT_PARAM ? st->as.param.decl : st->as.definition.decl;
-    if (!s->query || matches(decl->name, s->query)) give_definition(s, st);
+    if (st->kind == CAG_STATEMENT_DEFINITION || st->kind == CAG_STATEMENT_PARAM)
+      give_definition(s, st);
   }
 }
 

@@ -51,7 +51,8 @@ static CagWordKind kind_of_decl(const Entity *e, unsigned *flags) {
 }
 
 static CagWordKind kind_of(const Occurrence *o, unsigned *flags) {
-  *flags = o->role == ROLE_DEFINITION ? CAG_WORD_IS_DEFINITION : 0;
+  const bool defines = o->role == ROLE_DEFINITION || o->role == ROLE_SHORTHAND;
+  *flags = defines ? CAG_WORD_IS_DEFINITION : 0;
   switch (o->entity.kind) {
   case ENTITY_NONE: return o->role == ROLE_LABEL ? CAG_WORD_PARAMETER : CAG_WORD_VALUE;
   case ENTITY_DECL: return kind_of_decl(&o->entity, flags);

@@ -164,11 +164,9 @@ static bool match_value(Search *s, const CagModuleUnit *unit, const CagExpr *e, 
 
 static bool match_public(Search *s, const CagModuleUnit *unit, const char *name, int left) {
   for (size_t i = 0; unit && i < unit->public_count; i++) {
-    const CagStatement *st = unit->publics[i].statement;
     if (strcmp(unit->publics[i].name, name) != 0) continue;
-    return match_value(
-        s, unit, st->kind == CAG_STATEMENT_PARAM ? st->as.param.value : st->as.definition.value,
-        left);
+    const CagExpr *value = cag_tree_value(unit->publics[i].decl);
+    return value && match_value(s, unit, value, left);
   }
   return false;
 }
@@ -181,13 +179,11 @@ static const CagModuleUnit *imported_unit(const CagVm *vm, const CagDecl *decl) 
 }
 
 static bool match_name(Search *s, const CagModuleUnit *unit, const CagDecl *decl, int left) {
-  const CagStatement *st = decl->statement;
   if (decl->kind == CAG_DECL_IMPORTED)
     return match_public(s, imported_unit(s->session->vm, decl), decl->name, left);
-  if ((decl->kind != CAG_DECL_TOP && decl->kind != CAG_DECL_BLOCK) || !st) return false;
-  if (st->kind == CAG_STATEMENT_PARAM) return match_value(s, unit, st->as.param.value, left);
-  return st->kind == CAG_STATEMENT_DEFINITION &&
-         match_value(s, unit, st->as.definition.value, left);
+  if (decl->kind != CAG_DECL_TOP && decl->kind != CAG_DECL_BLOCK) return false;
+  const CagExpr *value = cag_tree_value(decl);
+  return value && match_value(s, unit, value, left);
 }
 
 static const CagExpr *callee_of(const CagExpr *e) {

@@ -48,6 +48,7 @@ static void adopt(CagVm *vm, CagModuleUnit *m) {
   bool again = false;
   for (size_t i = 0; i < m->ast->top_count; i++) {
     const char *name = m->ast->tops[i]->name;
+    if (m->ast->tops[i]->whole) continue;
     size_t k = find_name(vm, name), g = m->tops[i];
     const size_t old = k == (size_t)-1 ? k : vm->outer_globals[k];
     // The slot of an earlier definition is reused. That of an imported name belongs to its module.

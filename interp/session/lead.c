@@ -77,8 +77,7 @@ static const char *lead_of_clause(const CagDecl *decl, const Around *around) {
   for (; around; around = around->outer)
     for (size_t i = 0; i < around->comprehension->as.comprehension.count; i++) {
       const CagClause *c = &around->comprehension->as.comprehension.clauses[i];
-      if (!c->pattern && c->name_count == 1 && c->names[0] == decl)
-        return lead(c->source, around->outer);
+      if (c->pattern->decl == decl) return lead(c->source, around->outer);
     }
   return NULL;
 }

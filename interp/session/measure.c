@@ -14,8 +14,10 @@ static bool fail_unknown(CagVm *vm, const CagModuleUnit *m, const char *name) {
   const size_t n = m ? m->ast->top_count : 0;
   const char **names = cag_malloc((n + 1) * sizeof *names);
   if (!names) return cag_vm_fail_memory(vm);
-  for (size_t i = 0; i < n; i++) names[i] = m->ast->tops[i]->name;
-  const char *nearest = cag_nearest_name(name, names, n);
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!m->ast->tops[i]->whole) names[count++] = m->ast->tops[i]->name;
+  const char *nearest = cag_nearest_name(name, names, count);
   CagDiagnostic *d =
       cag_diagnostics_add(&vm->errors, CAG_ERR_unknown_name, NULL, (CagSpan){0, 0},
                           "%s defines no name `%s`", m ? m->name : "the script", name);
@@ -29,7 +31,8 @@ bool cag_session_find_definition(CagSession *s, const char *name, CagValue *out)
   CagVm *vm = s->vm;
   const CagModuleUnit *m = s->main < vm->module_count ? vm->modules[s->main] : NULL;
   for (size_t i = m && m->ast ? m->ast->top_count : 0; i-- > 0;)
-    if (!strcmp(m->ast->tops[i]->name, name)) return cag_vm_force(vm, m->tops[i], out);
+    if (!m->ast->tops[i]->whole && !strcmp(m->ast->tops[i]->name, name))
+      return cag_vm_force(vm, m->tops[i], out);
   return fail_unknown(vm, m && m->ast ? m : NULL, name);
 }
 

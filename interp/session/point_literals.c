@@ -1,4 +1,5 @@
 #include "interp/session/point_literals.h"
+#include "lang/tree.h"
 
 #include <string.h>
 
@@ -166,13 +167,17 @@ CagLiteral cag_literal_of_argument(const CagVm *vm, const CagOriginStep *step, s
 
 // --- Names ---
 
+static CagLiteral defined_value(const CagModuleUnit *m, const CagDecl *decl) {
+  const CagStatement *s = decl->statement;
+  const CagExpr *value = s && s->kind == CAG_STATEMENT_DEFINITION ? cag_tree_value(decl) : NULL;
+  return value ? (CagLiteral){m, value} : unknown;
+}
+
 static CagLiteral public_value(const CagVm *vm, size_t module, const char *name) {
   if (module >= vm->module_count) return unknown;
   const CagModuleUnit *m = vm->modules[module];
   for (size_t i = 0; m->ast && i < m->public_count; i++) {
-    const CagStatement *s = m->publics[i].statement;
-    if (strcmp(m->publics[i].name, name) != 0 || !s) continue;
-    return s->kind == CAG_STATEMENT_DEFINITION ? (CagLiteral){m, s->as.definition.value} : unknown;
+    if (strcmp(m->publics[i].name, name) == 0) return defined_value(m, m->publics[i].decl);
   }
   return unknown;
 }
@@ -191,9 +196,7 @@ static CagLiteral named_value(const CagVm *vm, CagLiteral l) {
   if (l.expr->as.name.binding != CAG_BIND_DECL || !decl) return unknown;
   if (decl->kind == CAG_DECL_IMPORTED) return imported_value(vm, decl);
   const bool defined = decl->kind == CAG_DECL_TOP || decl->kind == CAG_DECL_BLOCK;
-  if (!defined || !decl->statement || decl->statement->kind != CAG_STATEMENT_DEFINITION)
-    return unknown;
-  return (CagLiteral){l.module, decl->statement->as.definition.value};
+  return defined ? defined_value(l.module, decl) : unknown;
 }
 
 static CagLiteral member_value(const CagVm *vm, CagLiteral l) {

@@ -79,10 +79,9 @@ static const CagExpr *said_value(const CagExpr *e) {
     const CagDecl *decl =
         e->kind == CAG_EXPR_NAME && e->as.name.binding == CAG_BIND_DECL ? e->as.name.decl : NULL;
     if (!decl || (decl->kind != CAG_DECL_TOP && decl->kind != CAG_DECL_BLOCK)) return e;
-    const CagStatement *s = decl->statement;
-    if (s->kind == CAG_STATEMENT_DEFINITION) e = s->as.definition.value;
-    else if (s->kind == CAG_STATEMENT_PARAM) e = s->as.param.value;
-    else return e;
+    const CagExpr *value = cag_tree_value(decl);
+    if (!value) return e;
+    e = value;
   }
   return e;
 }

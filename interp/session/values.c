@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "interp/session/session.h"
+#include "lang/tree.h"
 
 // Longer texts end with "...".
 enum { TEXT_MAX = 80 };
@@ -16,7 +17,9 @@ typedef struct Values {
 
 // Whether the definition says no more than its value: a number or a text, say.
 static bool is_plain(const CagModuleUnit *m, const CagDecl *d, const CagString *text) {
-  const CagSpan span = d->statement->span;
+  const CagExpr *value = cag_tree_value(d);
+  if (!value) return false;
+  const CagSpan span = {d->statement->span.start, value->span.end};
   const char *end = m->source->text + span.end;
   const size_t n = text->length;
   return span.end - span.start > n && memcmp(end - n, text->bytes, n) == 0;
@@ -50,9 +53,9 @@ static bool give_values(CagVm *vm, void *context) {
     const CagModuleUnit *m = vm->modules[i];
     if (!m->source || m->source->library || !m->ast || !m->tops) continue;
     for (size_t k = 0; k < m->ast->top_count; k++) {
-      const CagStatement *statement = m->ast->tops[k]->statement;
-      if (statement && statement->kind != CAG_STATEMENT_PARAM)
-        give_value(context, vm, m, m->ast->tops[k]);
+      const CagDecl *d = m->ast->tops[k];
+      if (d->statement && d->statement->kind != CAG_STATEMENT_PARAM && !d->whole)
+        give_value(context, vm, m, d);
     }
   }
   return true;

@@ -26,6 +26,7 @@ typedef struct Unit {
   const CagDecl **captured;       // decl of each capture
   size_t captured_capacity;
   uint32_t next;
+  uint32_t result; // where the next name of a pattern at the top level is put
   bool failed;
 } Unit;
 
@@ -437,6 +438,34 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
 
 static void compile_assert(Unit *u, const CagStatement *s);
 
+static void bind_name(Unit *u, CagDecl *decl, uint32_t value) {
+  if (decl->kind != CAG_DECL_TOP) decl->index = value;
+  else if (strcmp(decl->name, "_") != 0) emit(u, decl->span, CAG_CODE_MOVE, u->result++, value, 0);
+}
+
+// Takes apart the value of a register. The registers of the names remain in use. Places are those
+// of the whole pattern of a list or record, whose text is in messages.
+static void compile_pattern(Unit *u, const CagPattern *pattern, uint32_t value) {
+  const size_t n = pattern->count;
+  uint32_t first = 0;
+  switch (pattern->kind) {
+  case CAG_PATTERN_NAME: bind_name(u, pattern->decl, value); return;
+  case CAG_PATTERN_LIST:
+    first = take_registers(u, (uint32_t)n + (pattern->rest ? 1 : 0));
+    emit(u, pattern->span, pattern->rest ? CAG_CODE_UNPACK_REST : CAG_CODE_UNPACK, first, value,
+         (uint32_t)n);
+    break;
+  case CAG_PATTERN_RECORD:
+    first = take_registers(u, (uint32_t)n);
+    for (size_t i = 0; i < n; i++)
+      emit(u, pattern->span, CAG_CODE_FIELD, first + (uint32_t)i, value,
+           name_constant(u, pattern->parts[i].field));
+    break;
+  }
+  for (size_t i = 0; i < n; i++) compile_pattern(u, pattern->parts[i].pattern, first + (uint32_t)i);
+  if (pattern->rest) bind_name(u, pattern->rest, first + (uint32_t)n);
+}
+
 // Compiles the definitions and asserts of a block. Their registers remain in use.
 static void compile_block_head(Unit *u, const CagExpr *e) {
   for (size_t i = 0; i < e->as.block.count; i++) {
@@ -448,6 +477,7 @@ static void compile_block_head(Unit *u, const CagExpr *e) {
     uint32_t r = take_registers(u, 1);
     compile_to(u, s->as.definition.value, r);
     s->as.definition.decl->index = r;
+    if (s->as.definition.pattern) compile_pattern(u, s->as.definition.pattern, r);
   }
 }
 
@@ -467,14 +497,7 @@ static void compile_clause(Unit *u, const CagExpr *e, size_t k, uint32_t builder
   u->next = iterator + 4;
   size_t start = here(u);
   size_t next = emit_wide(u, clause->source->span, CAG_CODE_NEXT, iterator, 0);
-  if (clause->pattern) {
-    uint32_t first = take_registers(u, (uint32_t)clause->name_count);
-    emit(u, clause->span, CAG_CODE_UNPACK, first, iterator + 3, (uint32_t)clause->name_count);
-    for (size_t i = 0; i < clause->name_count; i++)
-      if (clause->names[i]) clause->names[i]->index = first + i;
-  } else if (clause->names[0]) {
-    clause->names[0]->index = iterator + 3;
-  }
+  compile_pattern(u, clause->pattern, iterator + 3);
   Patches skip = {0};
   if (clause->filter) jump_when(u, clause->filter, false, &skip);
   compile_clause(u, e, k + 1, builder);
@@ -781,13 +804,19 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
     p->parameters[i] = f->parameters[i].decl->name;
     f->parameters[i].decl->index = i;
   }
+  bool patterns = false;
+  for (size_t i = 0; i < f->required_count; i++) {
+    if (!f->parameters[i].pattern) continue;
+    compile_pattern(&u, f->parameters[i].pattern, (uint32_t)i);
+    patterns = true;
+  }
   for (size_t i = f->required_count; i < f->parameter_count; i++) {
     size_t jump =
         emit_wide(&u, f->parameters[i].fallback->span, CAG_CODE_JUMP_IF_SET, (uint32_t)i, 0);
     compile_to(&u, f->parameters[i].fallback, (uint32_t)i);
     patch_to(&u, jump, here(&u));
   }
-  p->body = (uint32_t)here(&u);
+  p->body = patterns ? 0 : (uint32_t)here(&u);
   compile_tail(&u, f->body);
   return u.failed ? NULL : p;
 }
@@ -802,6 +831,22 @@ CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, 
   uint32_t r = take_registers(&u, 1);
   compile_to(&u, e, r);
   emit(&u, e->span, CAG_CODE_RETURN, r, 0, 0);
+  cag_cleanup_run(&cleanup);
+  return u.failed ? NULL : u.proto;
+}
+
+CagProto *cag_compile_definition(CagVm *vm, CagModuleUnit *m, const CagExpr *value,
+                                 const CagPattern *pattern, const char *name) {
+  CagArena scratch = {0};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_scratch, &scratch);
+  Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, name), .scratch = &scratch};
+  const uint32_t r = take_registers(&u, 1), n = (uint32_t)pattern->name_count;
+  const uint32_t first = u.result = take_registers(&u, n);
+  compile_to(&u, value, r);
+  compile_pattern(&u, pattern, r);
+  emit(&u, value->span, CAG_CODE_LIST, r, first, n);
+  emit(&u, value->span, CAG_CODE_RETURN, r, 0, 0);
   cag_cleanup_run(&cleanup);
   return u.failed ? NULL : u.proto;
 }

@@ -270,8 +270,11 @@ static void make_globals(CagVm *vm, CagModuleUnit *m) {
         s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value;
     vm->globals[g].unit = m;
     vm->globals[g].span = d->span;
-    if (d->name[0] == '_') continue;
-    m->publics[m->public_count] = (struct CagPublicName){d->name, g, s};
+    if (d->whole) vm->globals[g].pattern = s->as.definition.pattern;
+    else if (s->kind == CAG_STATEMENT_DEFINITION && s->as.definition.pattern)
+      vm->globals[g].whole = m->tops[s->as.definition.decl->index];
+    if (d->whole || d->name[0] == '_') continue;
+    m->publics[m->public_count] = (struct CagPublicName){d->name, g, d};
     m->public_names[m->public_count++] = d->name;
   }
   CagModuleValue *v = cag_alloc(vm, CAG_MODULE, sizeof *v);

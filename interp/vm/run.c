@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "interp/vm/calls.h"
+#include "interp/vm/unpack.h"
 #include "interp/vm/vm.h"
 
 // Free space that the C stack must have for a nested run. The deepest built-in needs far less.
@@ -152,25 +153,6 @@ static bool next_element(CagVm *vm, CagValue *it) {
     return true;
   }
   }
-}
-
-static bool unpack(CagVm *vm, CagValue *out, CagValue v, size_t n) {
-  CagValue list;
-  if (v.type != CAG_LIST && v.type != CAG_RANGE) {
-    CagString s = {0};
-    cag_describe_value(vm, &s, v);
-    cag_vm_fail(vm, CAG_ERR_pattern, "the pattern expects a list of %zu elements, found %s", n,
-                s.bytes);
-    cag_string_free(&s);
-    return false;
-  }
-  if (!cag_as_list(vm, v, &list)) return false;
-  const CagList *l = CAG_AS_LIST(list);
-  if (l->length != n)
-    return cag_vm_fail(vm, CAG_ERR_pattern,
-                       "the pattern has %zu names, but the element has %zu parts", n, l->length);
-  for (size_t i = 0; i < n; i++) out[i] = cag_list_get(vm, l, i);
-  return true;
 }
 
 static bool extend(CagVm *vm, CagValue builder, CagValue v) {
@@ -736,11 +718,20 @@ next:
   CASE(UNPACK) {
     CagValue v = R(i.b);
     const CagList *l = v.type == CAG_LIST ? (const CagList *)v.as.object : NULL;
-    if (l && l->dim == 1 && l->length == i.c) {
-      for (size_t k = 0; k < i.c; k++) R(i.a + k) = cag_number(l->as.numbers[k]);
+    if (l && l->dim <= 1 && l->length == i.c) {
+      for (size_t k = 0; k < i.c; k++)
+        R(i.a + k) = l->dim ? cag_number(l->as.numbers[k]) : l->as.items[k];
       NEXT_INSTRUCTION;
     }
-    TRY(unpack(vm, &R(i.a), v, i.c));
+    TRY(cag_unpack(vm, v, i.c, false, &R(i.a)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(UNPACK_REST) {
+    TRY(cag_unpack(vm, R(i.b), i.c, true, &R(i.a)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(FIELD) {
+    TRY(cag_unpack_field(vm, R(i.b), CAG_AS_TEXT(K(i.c)), &R(i.a)));
     NEXT_INSTRUCTION;
   }
   CASE(ASSERT_FAIL) {
@@ -836,14 +827,43 @@ static void note_definition(CagVm *vm, const char *name, CagValue v) {
   }
 }
 
+static CagProto *compile_global(CagVm *vm, const CagGlobal *g) {
+  return g->pattern ? cag_compile_definition(vm, g->unit, g->expr, g->pattern, g->name)
+                    : cag_compile_expression(vm, g->unit, g->expr, g->name);
+}
+
+// Gives the names of a pattern their values, except names that a later input of the REPL defines.
+static void set_names(CagVm *vm, size_t whole, CagValue parts) {
+  const CagGlobal *w = &vm->globals[whole];
+  for (size_t i = 0; i < w->pattern->name_count; i++) {
+    CagGlobal *g = &vm->globals[w->unit->tops[w->pattern->names[i]->index]];
+    if (g->whole != whole) continue;
+    g->value = cag_list_get(vm, CAG_AS_LIST(parts), i);
+    g->state = CAG_GLOBAL_DONE;
+    note_definition(vm, g->name, g->value);
+  }
+}
+
+// Evaluates the definition that a name of a pattern belongs to.
+static bool force_whole(CagVm *vm, size_t global, CagValue *result) {
+  const size_t whole = vm->globals[global].whole;
+  CagValue parts;
+  // Some of its names may have been forgotten.
+  if (vm->globals[whole].state == CAG_GLOBAL_DONE) vm->globals[whole].state = CAG_GLOBAL_NEW;
+  if (!cag_vm_force(vm, whole, &parts)) return false;
+  *result = vm->globals[global].value;
+  return true;
+}
+
 bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   CagGlobal *g = &vm->globals[global];
   if (g->state == CAG_GLOBAL_DONE) {
     *result = g->value;
     return true;
   }
+  if (g->whole) return force_whole(vm, global, result);
   if (g->state == CAG_GLOBAL_RUNNING) return fail_circle(vm, global);
-  const CagProto *p = cag_compile_expression(vm, g->unit, g->expr, g->name);
+  const CagProto *p = compile_global(vm, g);
   if (!p) {
     vm->failed = true;
     return false;
@@ -853,6 +873,10 @@ bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   g = &vm->globals[global];
   g->state = ok ? CAG_GLOBAL_DONE : CAG_GLOBAL_NEW;
   if (!ok) return false;
+  if (g->pattern) {
+    set_names(vm, global, *result);
+    return true;
+  }
   g->value = *result;
   note_definition(vm, g->name, *result);
   return true;

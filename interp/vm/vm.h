@@ -105,7 +105,11 @@ typedef struct CagGlobal {
   struct CagModuleUnit *unit;
   const char *name;
   CagSpan span; // of the name
-  bool given;   // a param whose value was set from outside; it is kept when others are forgotten
+  // The definition of a pattern has a slot of its own, whose value is not kept, beside those of its
+  // names.
+  const CagPattern *pattern; // NULL: a name
+  size_t whole;              // of a name of a pattern: the slot of its definition; 0: none
+  bool given; // a param whose value was set from outside; it is kept when others are forgotten
 } CagGlobal;
 
 // The locations of calls in tail position, of which the last CAG_TAIL_KEPT of each frame are kept.
@@ -144,7 +148,7 @@ typedef struct CagModuleUnit {
   struct CagPublicName {
     const char *name;
     size_t global;
-    const CagStatement *statement;
+    const CagDecl *decl;
   } * publics; // sorted by name
   size_t public_count;
   const char **public_names;
@@ -293,6 +297,9 @@ enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED
 // statement). `tops` and the module provide the numbers of globals. Returns NULL, with an error, if
 // it is too large for one function.
 CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, const char *name);
+// The same for a definition of a pattern. Its code returns the list of the values of its names.
+CagProto *cag_compile_definition(CagVm *vm, CagModuleUnit *m, const CagExpr *value,
+                                 const CagPattern *pattern, const char *name);
 // Compiles an assert. Its code returns true or fails.
 CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s);
 void cag_proto_free(CagProto *p);

@@ -152,6 +152,36 @@ static void each_function_says_what_it_takes(void **state) {
     }
 }
 
+static void types_are_inferred_through_patterns(void **state) {
+  (void)state;
+  assert_string_equal(found("[x, y] = [1, \"a\"]\nprint x + 1, y - 1"), "E0321:2");
+  assert_string_equal(found("{a, b: [c]} = {a: 1, b: [\"t\"]}\nprint a, c - 1"), "E0321:2");
+  assert_string_equal(found("f(v) = { [x, y] = [30, v]; sin(x) + y }\nprint f(1)"), "E0301:1");
+  assert_string_equal(found("[x, ...r] = [1, 2]\nprint x, r + 1deg"), "E0321:2");
+  assert_string_equal(found("[g, x] = [(a, b) => a + b, 1]\nprint g(x)"), "E0302:2");
+  assert_string_equal(found("[x, y] = [1, 2, 3]\nprint x, y"), "E0325:1");
+  assert_string_equal(found("{a, b} = {a: 1}\nprint a, b"), "E0325:1");
+  assert_string_equal(found("[x] = 3\nprint x"), "E0325:1");
+  assert_string_equal(found("{x} = [3]\nprint x"), "E0325:1");
+  assert_string_equal(
+      found("r = {b: 2}\n{a, b} = {...r, a: 1}\n[x, y] = [1, ...[2]]\nprint a, b, x, y"), "");
+  assert_string_equal(found("[x, y] = 0deg..1deg\nprint sin(x), sin(y)"), "");
+  assert_string_equal(found("print [for [k, v] in {a: 1}: [k, v]]"), "");
+  assert_string_equal(found("print [for {k} in 0..3: k]"), "E0325:1");
+  // Errors in a part are reported once.
+  assert_string_equal(found("[x, y] = [1 + \"a\", sin(3)]\nprint x, y"), "E0321:1 E0301:1");
+}
+
+static void names_of_patterns_that_nothing_uses_are_told(void **state) {
+  (void)state;
+  assert_string_equal(found("[x, y] = [1, 2]\nprint x"), "E0900:1");
+  assert_string_equal(found("[x, _] = [1, 2]\nprint x"), "");
+  assert_string_equal(found("print { [x, y] = [1, 2]; x }"), "E0900:1");
+  assert_string_equal(found("n = 3\n[x, _] = [n, 2]\nprint x"), "");
+  assert_string_equal(found("[a, b] = [b, 1]\nprint a, b"), "E0311:1");
+  assert_string_equal(found("[a, b] = [1, () => a]\nprint a, b()"), "");
+}
+
 static void literal_mistakes_are_found(void **state) {
   (void)state;
   assert_string_equal(found("show sphere(-3)"), "E0314:1");
@@ -574,6 +604,8 @@ int main(void) {
       cmocka_unit_test(defaults_of_params_are_in_their_range_or_list),
       cmocka_unit_test(functions_of_a_module_are_found_wherever_they_stand),
       cmocka_unit_test(each_function_says_what_it_takes),
+      cmocka_unit_test(types_are_inferred_through_patterns),
+      cmocka_unit_test(names_of_patterns_that_nothing_uses_are_told),
       cmocka_unit_test(literal_mistakes_are_found),
       cmocka_unit_test(circles_of_definitions_are_found),
       cmocka_unit_test(circles_are_found_in_every_part_of_expressions),

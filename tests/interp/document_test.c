@@ -161,6 +161,78 @@ static void a_module_of_the_library_is_a_document(void **state) {
   cag_workspace_free(w);
 }
 
+static void take_action(void *context, const CagActionView *a) {
+  if (a->kind != CAG_ACTION_FIX) return;
+  add(context, a->title);
+  for (size_t i = 0; i < a->edit_count; i++) {
+    char text[200];
+    snprintf(text, sizeof text, "%zu-%zu=%s", a->edits[i].place.start, a->edits[i].place.end,
+             a->edits[i].text);
+    add(context, text);
+  }
+}
+
+static void names_of_patterns_are_symbols_with_references(void **state) {
+  (void)state;
+  Found f = {0};
+  // Offsets: width 1 and 37, x 13, 35.
+  const char text[] = "{width, at: [x, ..._]} = box\nprint x, width\nbox = {width: 1, at: [2]}\n";
+  CagWorkspace *w = workspace("a", text);
+  const size_t width = (size_t)(strstr(text, ", width\n") - text) + 2;
+  cag_document_symbols(w, "a", take_symbol, &f);
+  assert_string_equal(f.text, "width;x;box;width;at");
+  f = (Found){0};
+  cag_document_definition(w, "a", width, take_place, &f);
+  assert_string_equal(f.text, "a:1-6");
+  f = (Found){0};
+  cag_document_references(w, "a", 13, true, take_place, &f);
+  assert_string_equal(f.text, "a:13-14;a:35-36");
+  // The name of a field stays when the name that it defines is changed.
+  char why[200];
+  for (size_t k = 0; k < 2; k++) {
+    f = (Found){0};
+    assert_true(cag_document_rename(w, "a", k ? 3 : width, "w", take_edit, &f, why, sizeof why));
+    assert_string_equal(f.text, "width: w;w");
+  }
+  f = (Found){0};
+  assert_true(cag_document_rename(w, "a", 13, "left", take_edit, &f, why, sizeof why));
+  assert_string_equal(f.text, "left;left");
+  cag_workspace_free(w);
+}
+
+static void fields_are_proposed_in_a_pattern(void **state) {
+  (void)state;
+  Found f = {0};
+  CagWorkspace *w = workspace("a", "box = {width: 1, at: [2]}\n{wi, at: [x]} = box\n");
+  cag_document_complete(w, "a", 29, take_label, &f); // after `wi`
+  assert_string_equal(f.text, "width");
+  f = (Found){0};
+  cag_document_complete(w, "a", 37, take_label, &f); // after `x`, a new name
+  assert_string_equal(f.text, "");
+  cag_workspace_free(w);
+}
+
+static const char *fixes_of(const char *text, size_t at, Found *f) {
+  CagWorkspace *w = workspace("a", text);
+  *f = (Found){0};
+  cag_document_actions(w, "a", at, at, take_action, f);
+  cag_workspace_free(w);
+  return f->text;
+}
+
+static void an_unused_name_is_removed_from_its_pattern(void **state) {
+  (void)state;
+  Found f;
+  assert_string_equal(fixes_of("[x, y] = [1, 2]\nprint x\n", 4, &f), "Remove the unused y;4-5=_");
+  assert_string_equal(fixes_of("[x, ...y] = [1, 2]\nprint x\n", 7, &f),
+                      "Remove the unused y;7-8=_");
+  assert_string_equal(fixes_of("{x, y} = {x: 1, y: 2}\nprint x\n", 4, &f),
+                      "Remove the unused y;2-5=");
+  assert_string_equal(fixes_of("{x, y: z} = {x: 1, y: 2}\nprint z\n", 1, &f),
+                      "Remove the unused x;1-4=");
+  assert_string_equal(fixes_of("[x, _] = [1, 2]\nprint 1\n", 1, &f), "Remove the unused x;0-16=");
+}
+
 static void a_check_has_limits_and_can_be_interrupted(void **state) {
   (void)state;
   Found f = {0};
@@ -201,6 +273,9 @@ int main(void) {
       cmocka_unit_test(an_unknown_document_has_no_answers),
       cmocka_unit_test(an_open_document_replaces_its_file),
       cmocka_unit_test(a_module_of_the_library_is_a_document),
+      cmocka_unit_test(names_of_patterns_are_symbols_with_references),
+      cmocka_unit_test(fields_are_proposed_in_a_pattern),
+      cmocka_unit_test(an_unused_name_is_removed_from_its_pattern),
       cmocka_unit_test(a_check_has_limits_and_can_be_interrupted),
       cmocka_unit_test(colors_are_written_as_short_as_possible),
   };

@@ -58,6 +58,34 @@ static void many_names_follow_one_another(void **state) {
   cag_session_free(s);
 }
 
+static void names_of_patterns_are_redefined_one_by_one(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  input(s, "n = 1");
+  input(s, "/// Two.\n[x, ...y] = [n, n + 1, 3]");
+  input(s, "[x, y]");
+  assert_string_equal(last_value, "[1, [2, 3]]");
+  input(s, "n = 5"); // both are evaluated again
+  input(s, "[y, x]");
+  assert_string_equal(last_value, "[[6, 3], 5]");
+  input(s, "x = 9"); // the other keeps its definition
+  input(s, "n = 7");
+  input(s, "[y, x]");
+  assert_string_equal(last_value, "[[8, 3], 9]");
+  input(s, "{x, b} = {x: n, b: 2}");
+  input(s, "[x, b, y]");
+  assert_string_equal(last_value, "[7, 2, [8, 3]]");
+  const char *source;
+  size_t length;
+  assert_string_equal(cag_session_name(s, 2, &source, &length), "y");
+  assert_int_equal(length, strlen("[x, ...y] = [n, n + 1, 3]"));
+  assert_string_equal(cag_session_name(s, 3, NULL, NULL), "b");
+  assert_null(cag_session_name(s, 4, NULL, NULL));
+  assert_true(cag_input_is_incomplete("[x,", 3));
+  assert_true(cag_input_is_incomplete("{x} =", 5));
+  cag_session_free(s);
+}
+
 static char *document_of(CagSession *s, const char *name) {
   char *text = NULL;
   size_t size;
@@ -187,6 +215,7 @@ static void shows_follow_names_that_are_defined_again(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(many_names_follow_one_another),
+      cmocka_unit_test(names_of_patterns_are_redefined_one_by_one),
       cmocka_unit_test(shows_follow_names_that_are_defined_again),
       cmocka_unit_test(documents_of_names),
       cmocka_unit_test(members_are_those_of_the_value),

@@ -57,6 +57,16 @@ static void spaces_are_set_anew(void **state) {
   expect_layout("", "");
 }
 
+static void patterns_are_set_like_lists_and_records(void **state) {
+  (void)state;
+  expect_layout("[x,y,...r ]=v\n{a,b:[c,_,],in:d}= v",
+                "[x, y, ...r] = v\n{ a, b: [c, _], in: d } = v\n");
+  expect_layout("f( [x , y],{a} )=([ z ])=>x", "f([x, y], { a }) = ([z]) => x\n");
+  expect_layout("xs=[for{a,at:[x]}in ys:x]", "xs = [for { a, at: [x] } in ys: x]\n");
+  expect_layout("[ // first\nx, /* second */ y // last\n] = v",
+                "[  // first\n  x,\n  /* second */ y  // last\n] = v\n");
+}
+
 static void products_are_set_close_within_something(void **state) {
   (void)state;
   expect_layout("a=2*r;b=[2 * r,-x / 2, r*3^2]", "a = 2 * r\nb = [2*r, -x/2, r*3^2]\n");
@@ -596,6 +606,7 @@ static void scripts_keep_their_trees(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(spaces_are_set_anew),
+      cmocka_unit_test(patterns_are_set_like_lists_and_records),
       cmocka_unit_test(products_are_set_close_within_something),
       cmocka_unit_test(labels_of_params_are_set_one_below_the_other),
       cmocka_unit_test(texts_of_several_lines_stay_as_they_are),
