@@ -22,9 +22,10 @@ static void polynomial_free(Polynomial *p) {
 }
 
 static CagStatus fail_kind(const CagCurve *c, const char *result, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "C", -1,
-                  "%s of %s curve is not a polynomial curve; use approximate(C, tolerance) first",
-                  result, c->kind->name);
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "C", -1,
+      "%s of a curve of kind %s is not a polynomial curve; use approximate(C, tolerance) first",
+      result, c->kind->name);
 }
 
 static CagStatus polynomial_open(const CagCurve *c, const char *result, Polynomial *out,

@@ -457,6 +457,20 @@ static double fit_cylinder(const Search *search, State *s, bool *settled) {
 
 // --- The fit ---
 
+// The number of different points, up to `most`.
+#define LEAST_MOST 6
+static size_t different_points(const Points *p, size_t most) {
+  CagVec3 found[LEAST_MOST];
+  size_t n = 0;
+  for (size_t i = 0; i < p->n && n < most && !cag_stopped(); i++) {
+    const CagVec3 q = normalized(p, i);
+    bool new = true;
+    for (size_t k = 0; k < n; k++) new = new &&cag_norm(cag_sub(q, found[k])) > FLAT;
+    if (new) found[n++] = q;
+  }
+  return n;
+}
+
 static CagStatus check_points(const Points *p, CagFitShape shape, bool planar, CagError *err) {
   const char *name = models[shape].name;
   const bool space = shape == CAG_FIT_SPHERE || shape == CAG_FIT_CYLINDER;
@@ -466,6 +480,12 @@ static CagStatus check_points(const Points *p, CagFitShape shape, bool planar, C
   if (space && p->extent[2] <= FLAT * p->extent[0])
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_coplanar_points, "points", -1,
                     "the points are coplanar, so they determine no %s", name);
+  const size_t least = models[shape].least[planar], count = different_points(p, least);
+  if (cag_stop_check(err)) return err->status;
+  if (count < least)
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
+                    "expected at least %zu different points for the %s, found %zu", least, name,
+                    count);
   const double a = p->extent[shape == CAG_FIT_PLANE], b = p->extent[shape == CAG_FIT_PLANE ? 2 : 1];
   const bool level =
       (shape == CAG_FIT_LINE || shape == CAG_FIT_PLANE) && (a - b) <= FLAT * p->extent[0];
@@ -566,7 +586,7 @@ CagStatus cag_shape_fit(CagFitShape shape, const CagVec3 *points, size_t n, bool
   const size_t least = cag_shape_fit_least(shape, planar);
   if (n < least)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
-                    "expected at least %zu points for a %s, found %zu", least, models[shape].name,
+                    "expected at least %zu points for the %s, found %zu", least, models[shape].name,
                     n);
   Points p = {.items = points, .n = n};
   CagStatus status = find_spread(&p, err);
