@@ -131,13 +131,15 @@ static CagStatus solve_open(const Spline *s, const CagCubicEnds *ends, CagVec3 *
     inner_row(s, i, &a.below[i - 1], &a.diagonal[i], &a.above[i], &right);
     set_right(&a, i, right);
   }
-  // Relaxed: P'' = 0 at the end.
   for (int e = 0; e < 2; e++) {
-    const size_t row = e ? n - 1 : 0;
+    const size_t row = e ? n - 1 : 0, i = e ? n - 2 : 0; // of the segment
+    // The second derivative at the end of a segment of length h whose slope is s, with the tangents D
+    // at the end and E at the other, is (6 s - 4 D - 2 E) / h, and negative at its finish.
+    const double h = s->u[i + 1] - s->u[i];
+    const CagVec3 bent = cag_madd(cag_scaled(slope(s, i), 3), (e ? h : -h) / 2, ends->second[e]);
     a.diagonal[row] = ends->clamped[e] ? 1 : 2;
     *(e ? &a.below[n - 2] : &a.above[0]) = ends->clamped[e] ? 0 : 1;
-    set_right(&a, row,
-              ends->clamped[e] ? ends->tangent[e] : cag_scaled(slope(s, e ? n - 2 : 0), 3));
+    set_right(&a, row, ends->clamped[e] ? ends->tangent[e] : bent);
   }
   status = solve(&a, 3, err);
   for (size_t i = 0; !status && i < n; i++) out[i] = solution(&a, i);

@@ -31,12 +31,13 @@ typedef enum CagCubicClosing {
   CAG_CUBIC_ANTICYCLIC
 } CagCubicClosing;
 
-// End conditions. With CAG_CUBIC_ENDS each end is clamped (its tangent given) or relaxed (P'' = 0).
-// Cyclic: tangents and second derivatives at both ends are equal; anticyclic: equal and opposite.
+// End conditions. With CAG_CUBIC_ENDS each end is clamped (its tangent given), or has a given second
+// derivative (0: relaxed). Cyclic: tangents and second derivatives at both ends are equal; anticyclic: equal and opposite.
 typedef struct CagCubicEnds {
   CagCubicClosing closing;
   bool clamped[2];
   CagVec3 tangent[2];
+  CagVec3 second[2]; // of ends that are not clamped
 } CagCubicEnds;
 
 // Tangents at all n points of the interpolating cubic spline with a continuous second derivative,

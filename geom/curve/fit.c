@@ -9,6 +9,7 @@
 #include "base/stop.h"
 #include "geom/basis/bspline.h"
 #include "geom/curve/family.h"
+#include "geom/curve/nurbs_ops.h"
 #include "geom/linalg/dense.h"
 
 // Uniform knots suit interpolation if each basis function has at least this fraction of its maximum
@@ -365,6 +366,66 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
   cag_free(control);
   cag_free(u);
   design_free(&a);
+  return status;
+}
+
+// --- Conditions at the ends ---
+
+// The knots of the second and the second to last point are left out. Fewer than 4 points determine a
+// curve of a lower degree.
+static CagStatus without_knots(const CagFitData *d, const double *u, CagCurve **out,
+                               CagError *err) {
+  CagFitData low = *d;
+  low.parameters = u;
+  low.degree = d->n < 4 ? (int)d->n - 1 : 3;
+  const size_t p = (size_t)low.degree, count = d->n + p + 1;
+  double *knots = cag_malloc(count * sizeof *knots);
+  CagCurve *made = NULL;
+  if (!knots) return cag_fail_memory(err);
+  for (size_t i = 0; i < count; i++) knots[i] = i <= p ? u[0] : i >= d->n ? u[d->n - 1] : u[i - 2];
+  low.kind = CAG_FIT_GIVEN;
+  low.knots = knots;
+  CagStatus status = cag_curve_interpolate(&low, NULL, 0, &made, err);
+  if (!status && low.degree < 3) {
+    status = cag_curve_elevate(made, 3 - low.degree, out, err);
+    cag_curve_release(made);
+  } else if (!status) {
+    *out = made;
+  }
+  cag_free(knots);
+  return status;
+}
+
+static CagStatus check_periodic(const CagFitData *d, CagError *err) {
+  const CagVec3 gap = cag_sub(d->points[0], d->points[d->n - 1]);
+  if (cag_norm(gap) <= CAG_CURVE_SAME * cag_curve_size(d->points, d->n)) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_closed, "points", (long)d->n - 1,
+                  "a periodic curve ends in its first point, but the last point is at a distance "
+                  "of %g from it; add the first point at the end",
+                  cag_norm(gap));
+}
+
+CagStatus cag_curve_interpolate_ends(const CagFitData *data, CagFitEnds ends,
+                                     const CagVec3 second[2], CagCurve **out, CagError *err) {
+  CagFitData d = *data;
+  d.kind = CAG_FIT_AUTO;
+  d.degree = 1; // only the number of points matters here
+  CagStatus status = check_data(&d, d.n, err);
+  if (!status && ends == CAG_FIT_PERIODIC) status = check_periodic(&d, err);
+  if (status) return status;
+  d.degree = 3;
+  const size_t fewest = 4, control = d.n + (ends == CAG_FIT_NOT_A_KNOT ? 0 : 2);
+  double *u = cag_malloc(d.n * sizeof *u);
+  if (!u) return cag_fail_memory(err);
+  CagCubicEnds conditions = {.closing =
+                                 ends == CAG_FIT_PERIODIC ? CAG_CUBIC_CYCLIC : CAG_CUBIC_ENDS};
+  for (int e = 0; e < 2 && ends == CAG_FIT_SECOND; e++) conditions.second[e] = second[e];
+  status = find_parameters(&d, control < fewest ? fewest : control, u, err);
+  if (!status) status = cag_parameters_check(u, d.n, err);
+  if (!status && ends == CAG_FIT_NOT_A_KNOT) status = without_knots(&d, u, out, err);
+  else if (!status)
+    status = cag_curve_cubic_spline(d.points, d.n, u, &conditions, NULL, d.dimension, out, err);
+  cag_free(u);
   return status;
 }
 

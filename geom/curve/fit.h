@@ -41,6 +41,20 @@ void cag_fit_report_free(CagFitReport *r);
 CagStatus cag_curve_interpolate(const CagFitData *data, const CagVec3 *tangents,
                                 size_t tangent_count, CagCurve **out, CagError *err);
 
+// Conditions at the ends of an interpolating cubic, instead of tangents.
+typedef enum CagFitEnds {
+  CAG_FIT_NATURAL,    // the second derivative is 0
+  CAG_FIT_NOT_A_KNOT, // the third derivative is continuous at the second and second to last point;
+                      // a parabola through 3 points, and a line through 2
+  CAG_FIT_PERIODIC,   // the first and second derivative agree; the first point is also the last
+  CAG_FIT_SECOND      // given second derivatives with respect to the parameter
+} CagFitEnds;
+
+// The cubic with two continuous derivatives through all points. The degree in the data is 3, and
+// knots in the data are ignored. `second` is for CAG_FIT_SECOND. Fails also with "not-closed".
+CagStatus cag_curve_interpolate_ends(const CagFitData *data, CagFitEnds ends,
+                                     const CagVec3 second[2], CagCurve **out, CagError *err);
+
 // Least squares with `count` control points.
 //
 //   keep_ends  the first and last control point are the first and last data point

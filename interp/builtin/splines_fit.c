@@ -53,13 +53,63 @@ static bool read_data(CagCall *call, const CagPoints *points, int degree, int or
   return true;
 }
 
+// Reads {second: [V, W]}.
+static bool read_second(CagCall *call, int argument, int dimension, CagVec3 second[2]) {
+  const CagValue v = call->values[argument];
+  const CagValue both =
+      v.type == CAG_RECORD ? cag_record_get(CAG_AS_RECORD(v), "second") : cag_unset();
+  if (both.type != CAG_LIST || CAG_AS_LIST(both)->length != 2)
+    return cag_fail_value(call, argument,
+                          "\"natural\", \"not-a-knot\", \"periodic\", or {second: [V, W]}");
+  for (size_t i = 0; i < 2; i++) {
+    const double *x;
+    size_t n;
+    if (!cag_as_vector(cag_list_get(call->vm, CAG_AS_LIST(both), i), &x, &n))
+      return cag_fail_value(call, argument, "a list of two vectors as `second`");
+    if ((int)n != dimension)
+      return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "ends", -1,
+                              "the points have %d numbers, but second[%zu] has %zu", dimension, i,
+                              n);
+    second[i] = cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
+    if (!isfinite(cag_norm(second[i])))
+      return cag_splines_fail(call, CAG_ERR_not_finite, "ends", -1,
+                              "second[%zu] has a number that is not finite", i);
+  }
+  return true;
+}
+
+// Conditions at the ends exclude what would determine the curve otherwise.
+static bool check_ends_alone(CagCall *call, const CagFitData *d) {
+  if (d->degree != 3)
+    return cag_fail_call(call, 6, CAG_ERR_value, "with `ends` makes cubics; omit the degree %d",
+                         d->degree);
+  if (cag_given(call, 3) || cag_given(call, 4))
+    return cag_fail_call(call, 6, CAG_ERR_value, "takes `ends` or `%s`, not both",
+                         cag_given(call, 3) ? "tangents" : "knots");
+  return true;
+}
+
+static bool interpolate_ends(CagCall *call, const CagFitData *d, CagValue *result) {
+  static const char *const names[] = {"natural", "not-a-knot", "periodic", NULL};
+  CagVec3 second[2];
+  CagCurve *c = NULL;
+  int ends = CAG_FIT_SECOND;
+  if (!check_ends_alone(call, d)) return false;
+  if (call->values[6].type == CAG_TEXT ? !cag_arg_choice(call, 6, names, &ends)
+                                       : !read_second(call, 6, d->dimension, second))
+    return false;
+  CagStatus status = cag_curve_interpolate_ends(d, (CagFitEnds)ends, second, &c, call->err);
+  return cag_curve_result(call, status, &c, result);
+}
+
 bool cag_splines_interpolate(CagCall *call, const struct cag_splines_interpolate *a,
                              CagValue *result) {
   CagFitData d;
   CagPoints tangents = {0};
   CagCurve *c = NULL;
-  if (!read_data(call, &a->points, 1, 5, 2, &d) ||
-      (cag_given(call, 3) && !cag_splines_tangents(call, 3, d.dimension, &tangents)) ||
+  if (!read_data(call, &a->points, 1, 5, 2, &d)) return false;
+  if (cag_given(call, 6)) return interpolate_ends(call, &d, result);
+  if ((cag_given(call, 3) && !cag_splines_tangents(call, 3, d.dimension, &tangents)) ||
       !read_knots(call, 4, &d, d.n + tangents.count))
     return false;
   CagStatus status = cag_curve_interpolate(&d, tangents.items, tangents.count, &c, call->err);
