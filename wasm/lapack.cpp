@@ -109,16 +109,18 @@ lapack_int LAPACKE_dgeqrf_work(int layout, lapack_int m, lapack_int n, double *a
   return 0;
 }
 
-lapack_int LAPACKE_dgeev(int layout, char, char, lapack_int n, double *a, lapack_int lda,
-                         double *wr, double *wi, double *, lapack_int, double *, lapack_int) {
+lapack_int LAPACKE_dgeev(int layout, char, char jobvr, lapack_int n, double *a, lapack_int lda,
+                         double *wr, double *wi, double *, lapack_int, double *vr,
+                         lapack_int ldvr) {
   const Matrix matrix = read(layout, a, n, n, lda);
   if (!matrix.allFinite()) return 1;
-  const Eigen::EigenSolver<Matrix> solver(matrix, false);
+  const Eigen::EigenSolver<Matrix> solver(matrix, jobvr == 'V');
   if (solver.info() != Eigen::Success) return 1;
   for (int i = 0; i < n; i++) {
     wr[i] = solver.eigenvalues()[i].real();
     wi[i] = solver.eigenvalues()[i].imag();
   }
+  if (jobvr == 'V') write(layout, solver.pseudoEigenvectors(), vr, ldvr);
   return 0;
 }
 
