@@ -44,7 +44,8 @@ static void *watch(void *context) {
 
 void cag_watch_begin(CagWatch *w) {
   pthread_condattr_t attributes;
-  *w->stop = 0;
+  // An interrupt that came before is not left to the thread, which may be slower than the work.
+  *w->stop = w->interrupt && *w->interrupt;
   w->begun = cag_clock_seconds();
   w->finished = false;
   pthread_mutex_init(&w->mutex, NULL);
