@@ -395,7 +395,7 @@ CagMotionNote *cag_motion_note(CagVm *vm, const CagTransform *t, const double *v
   uint8_t numbers = motion_numbers(t);
   const double moved[] = {t->m[0][3], t->m[1][3], t->m[2][3]};
   double v[3] = {0};
-  memcpy(v, vector, given * sizeof *v);
+  if (given > 0) memcpy(v, vector, given * sizeof *v);
   if (numbers == 3 && given > 0 && memcmp(v, moved, sizeof v) != 0) numbers = 12;
   const bool extra = given > 0 && numbers != 3;
   CagMotionNote *note =
