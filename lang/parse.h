@@ -191,7 +191,8 @@ CagExpr *cag_parse_group(Parser *p);
 bool cag_parse_at_pattern(Parser *p);
 // pattern = name | "_" | "[" ... "]" | "{" ... "}"
 //
-// `kind` is that of its names; `what` describes the name that is expected if there is no bracket.
+//   kind   the kind of declaration that the names in the pattern are
+//   what   what a message says was expected if there is neither a name nor a bracket
 CagPattern *cag_parse_pattern(Parser *p, CagDeclKind kind, const char *what);
 // Declares the value that a pattern takes apart. Its name is the text of the pattern.
 CagDecl *cag_parse_whole(Parser *p, CagDeclKind kind, const CagPattern *pattern);

@@ -5,8 +5,9 @@
 //
 // Without a base, top and bottom meet where the height is 0. Edges whose ends have the height 0 cut
 // the body: the triangle above and the one below meet there, and what is on the other side of such
-// an edge is not connected. A node of height 0 therefore has one vertex for each fan of triangles
-// between two cuts, and two vertices, above and below, if there is no cut.
+// an edge is not connected. The cuts at a node of height 0 separate the triangles around it into
+// fans, and each fan has a vertex of its own. A node without cuts has a vertex on the top and one on
+// the bottom.
 
 #include "geom/mesh/height_field.h"
 

@@ -193,8 +193,8 @@ typedef struct CagNative {
   size_t order_count;
 } CagNative;
 
-// What the origins of many shapes share: calls from one place, and equal motions. Collections forget
-// them, so they are no roots.
+// What the origins of many shapes share: calls from one place, and equal motions. Each
+// collection clears this table, so it does not keep objects alive.
 enum { CAG_RECENT_COUNT = 64 };
 typedef struct CagRecentOrigins {
   CagOriginSite *sites[CAG_RECENT_COUNT];
