@@ -339,7 +339,7 @@ CagStatus cag_curve_smoothing(const CagVec3 *points, size_t n, CagSmoothing by, 
                               CagCurve **out, CagError *err) {
   static const CagCubicEnds relaxed = {.closing = CAG_CUBIC_ENDS};
   Smoother s;
-  double weight, squares;
+  double weight = 0, squares;
   CagStatus status = check_points(points, n, err);
   if (!status) status = smoother_new(points, n, &s, err);
   if (status) return status;
