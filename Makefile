@@ -31,7 +31,8 @@ Q := $(if $(V),,@)
 # For each library: its pkg-config name, and the Debian package to install if it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
          libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev \
-         libcmark-gfm:libcmark-gfm-dev libxml-2.0:libxml2-dev libmicrohttpd:libmicrohttpd-dev
+         libcmark-gfm:libcmark-gfm-dev libxml-2.0:libxml2-dev libmicrohttpd:libmicrohttpd-dev \
+         harfbuzz:libharfbuzz-dev fribidi:libfribidi-dev fontconfig:libfontconfig-dev
 MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
 ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
 MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))
@@ -45,8 +46,9 @@ endif
 endif
 PKG_CFLAGS := $(shell pkg-config --cflags $(MODULES) 2>/dev/null)
 # The tables of Markdown come in a library that has no pkg-config file (libcmark-gfm-extensions-dev).
-# The program loads libmicrohttpd when a server starts.
-PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(filter-out libmicrohttpd,$(MODULES)) 2>/dev/null)
+# The program loads these when it first needs them: servers, and fonts.
+LOADED     := libmicrohttpd harfbuzz fribidi fontconfig
+PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(filter-out $(LOADED),$(MODULES)) 2>/dev/null)
 ifneq ($(EMBREE),)
 PKG_CFLAGS += -DCAG_EMBREE
 PKG_LIBS   += -lembree3
@@ -66,7 +68,7 @@ CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli live -name '*.c' | sort)
 # The documentation lists the families of built-in functions in this order.
 PARAMETERS := interp/vm/parameter_kinds.def interp/vm/parameter_types.def
 ROWS       := $(patsubst %,interp/builtin/%.rows,constants numbers angles vectors lists texts records control \
-              random calculus matrices files formula transforms curves regions bsplines functions frenet hulls \
+              random calculus matrices files formula transforms curves regions letters bsplines functions frenet hulls \
               conics splines fits surfaces tensors sections meetings triangles solids checks mesh_files figures \
               quality robots robot_files inverse scene cameras rays sensors images image_measures image_filters image_templates)
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
@@ -75,13 +77,15 @@ DOCUMENTS  := $(filter-out docs/architecture.md docs/contributing.md,$(sort $(wi
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
-GEOM_OBJ := $(call obj,$(GEOM_SRC))
+GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(BUILD)/obj/gen/fonts.o
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(patsubst %,$(BUILD)/obj/gen/%.o,stdlib documents builtins)
 CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC)) $(BUILD)/obj/gen/page_files.o
+# The compiled-in fonts, as `make fonts` leaves them.
+FONTS    := $(patsubst %,fonts/Sans-%.ttf,Regular Bold Italic BoldItalic)
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web playground screenshots vsix
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web fonts playground screenshots vsix
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -105,6 +109,9 @@ $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh $(STDLIB) > $@.tmp && mv $@.tmp $@
 # The documents for `cag doc` and the documentation site.
+$(BUILD)/gen/fonts.c: $(FONTS) tools/embed.sh
+	@mkdir -p $(@D)
+	sh tools/embed.sh --fonts $(FONTS) > $@.tmp && mv $@.tmp $@
 $(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
@@ -336,6 +343,9 @@ web/node_modules: web/package-lock.json
 web: web/node_modules
 	cd web && node_modules/.bin/tsc -p .
 	sh web/build.sh web/dist
+# The compiled-in fonts; needs fonts-liberation2 and python3-fonttools.
+fonts:
+	sh tools/fonts.sh fonts
 # The picture of the page in the README; needs node and Chromium.
 screenshots: all
 	node tools/screenshots.js $(BUILD)/cag docs/pictures
