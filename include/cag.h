@@ -446,6 +446,16 @@ typedef struct CagLabelView {
 } CagLabelView;
 CAG_API bool cag_session_label(CagSession *s, size_t i, CagLabelView *out);
 
+// What is drawn for a label, as data of SVG paths with y down. The location is the origin, and the
+// height of the text is 1. If the label has a direction, this is +x, and the paths are turned with
+// it, except for the text of an arrow and the other marks. Text that would be upside down is turned
+// by half a turn.
+typedef struct CagLabelPaths {
+  const char *text, *mark, *paper; // NULL: none. The paper is white, below the mark
+} CagLabelPaths;
+// The texts are valid until the next call on the session.
+CAG_API bool cag_session_label_paths(CagSession *s, size_t i, CagLabelPaths *out);
+
 typedef struct CagStageView {
   bool studio;  // the lights were added, because the script shows none
   bool drawing; // all parts are curves and regions of one plane z = constant

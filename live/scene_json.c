@@ -230,6 +230,7 @@ static void write_lights(CagJson *j, CagSession *s) {
 
 static void write_labels(CagJson *j, CagSession *s) {
   CagLabelView l;
+  CagLabelPaths paths;
   cag_json_open_in(j, "labels", '[');
   for (size_t i = 0; cag_session_label(s, i, &l); i++) {
     cag_json_open(j, '{');
@@ -240,6 +241,11 @@ static void write_labels(CagJson *j, CagSession *s) {
     cag_json_text(j, "mark", l.mark);
     cag_json_number(j, "size", l.size);
     cag_json_number(j, "material", (double)l.material);
+    if (cag_session_label_paths(s, i, &paths)) {
+      cag_json_text(j, "text_path", paths.text ? paths.text : "");
+      cag_json_text(j, "mark_path", paths.mark ? paths.mark : "");
+      cag_json_text(j, "paper_path", paths.paper ? paths.paper : "");
+    }
     cag_json_close(j, '}');
   }
   cag_json_close(j, ']');

@@ -22,6 +22,11 @@ font = subset.load_font(source, options)
 subsetter = subset.Subsetter(options)
 subsetter.populate(unicodes=subset.parse_unicodes(characters))
 subsetter.subset(font)
+# The sign for missing characters, which the slanted fonts do not have.
+if font["glyf"][".notdef"].numberOfContours == 0:
+    upright = TTFont(source.replace("BoldItalic", "Bold").replace("Italic", "Regular"))
+    upright["glyf"][".notdef"].removeHinting()
+    font["glyf"][".notdef"], font["hmtx"][".notdef"] = upright["glyf"][".notdef"], upright["hmtx"][".notdef"]
 for name in font["name"].names:
     if name.nameID in (1, 3, 4, 6): name.string = str(name).replace("Liberation Sans", "Cag Sans").replace("LiberationSans", "CagSans")
 font["head"].modified = font["head"].created

@@ -265,7 +265,10 @@ static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
   CagStatus status = write_materials(w, closed, err);
   if (status) return status;
   heading(w, "Things");
-  return write_items(w, closed, err);
+  status = write_items(w, closed, err);
+  if (status || s->label_count == 0) return status;
+  heading(w, "Labels");
+  return cag_pov_labels(w, err);
 }
 
 static bool lit_by_sky_alone(const CagScene *s) {

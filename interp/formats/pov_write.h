@@ -74,6 +74,10 @@ void cag_pov_camera(CagPovWriter *w);
 void cag_pov_lights(CagPovWriter *w);
 void cag_pov_sky(CagPovWriter *w);
 
+// --- Labels (pov_label.c) ---
+// Writes the labels of the scene as objects that face the camera.
+CagStatus cag_pov_labels(CagPovWriter *w, CagError *err);
+
 // --- Items ---
 // Each `try` function writes one native object after "#declare name = ", without the final line
 // break, and returns whether it could. If not, it writes nothing.

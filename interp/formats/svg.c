@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/formats/pieces.h"
-#include "interp/formats/svg_label.h"
+#include "interp/scene/label_shape.h"
 
 // The tolerance for approximated curves and for rounding of numbers, as a fraction of the picture's
 // size.
@@ -28,6 +28,8 @@
 // radius.
 #define ARC_SAMPLES 64
 #define PI 3.14159265358979323846
+// Coordinates of labels are rounded to a power of ten below this fraction of the height of the text.
+#define LABEL_ROUNDING 1e-3
 
 typedef struct Picture {
   const CagScene *scene;
@@ -85,6 +87,18 @@ static ColorText color_text(CagColor c) {
     byte[i] = (unsigned)lround(255 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1)));
   snprintf(out.text, sizeof out.text, "#%02x%02x%02x", byte[0] & 255, byte[1] & 255, byte[2] & 255);
   return out;
+}
+
+static void escape(Picture *p, const char *text) {
+  for (const char *c = text; *c; c++) {
+    switch (*c) {
+    case '&': fputs("&amp;", p->out); break;
+    case '<': fputs("&lt;", p->out); break;
+    case '>': fputs("&gt;", p->out); break;
+    case '"': fputs("&quot;", p->out); break;
+    default: fputc((unsigned char)*c < ' ' ? ' ' : *c, p->out);
+    }
+  }
 }
 
 // --- Pen strokes ---
@@ -319,14 +333,15 @@ static void open_path(Picture *p, const CagItem *item) {
 
 static void close_path(Picture *p, const CagItem *item) {
   fputs("\"><title>", p->out);
-  cag_svg_escape(p->out, item->name, strlen(item->name));
+  escape(p, item->name);
   fputs("</title></path>\n", p->out);
 }
 
-static CagStatus draw_region(Picture *p, const CagItem *item, CagError *err) {
-  const CagRegion *r = item->as.region;
+// Draws the loops under a transform to the world.
+static CagStatus draw_region(Picture *p, const CagRegion *r, const CagTransform *placement,
+                             CagError *err) {
   CagTransform world = p->view;
-  p->view = cag_transform_multiply(&world, &item->placement);
+  p->view = cag_transform_multiply(&world, placement);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < r->count; i++) {
     if (i > 0) fputc(' ', p->out);
@@ -343,7 +358,7 @@ static CagStatus draw_item(Picture *p, const CagItem *item, CagError *err) {
   if (status || (item->kind != CAG_ITEM_CURVE && item->kind != CAG_ITEM_REGION)) return status;
   open_path(p, item);
   if (item->kind == CAG_ITEM_REGION) {
-    status = draw_region(p, item, err);
+    status = draw_region(p, item->as.region, &item->placement, err);
   } else {
     status = draw_curve(p, item->as.curve, err);
     if (item->as.curve->closed && p->drawing && p->affine) fputs(" Z", p->out);
@@ -366,21 +381,83 @@ static bool look_at_label(const Picture *p, const CagLabel *l, CagVec3 *at, CagV
   return q.z > p->near;
 }
 
+// Draws a region of the picture.
+static CagStatus draw_flat(void *picture, const CagRegion *r, CagColor color, CagError *err) {
+  Picture *p = picture;
+  const CagTransform none = cag_transform_identity();
+  fprintf(p->out, "    <path stroke=\"none\" fill-rule=\"evenodd\" fill=\"%s\" d=\"",
+          color_text(color).text);
+  CagStatus status = draw_region(p, r, &none, err);
+  fputs("\"/>\n", p->out);
+  return status;
+}
+
+static CagStatus draw_shape(Picture *p, const CagLabel *l, const CagLabelShape *shape,
+                            CagError *err) {
+  fputs("  <g", p->out);
+  if (*l->text) {
+    fputs(" role=\"img\" aria-label=\"", p->out);
+    escape(p, l->text);
+    fputc('"', p->out);
+  }
+  fputs(">\n", p->out);
+  CagStatus status =
+      cag_label_shape_draw(shape, p->scene->materials[l->material].color, draw_flat, p, err);
+  fputs("  </g>\n", p->out);
+  cag_bounds_add(&p->box, shape->box.min);
+  cag_bounds_add(&p->box, shape->box.max);
+  return status;
+}
+
+// A picture whose paths are regions of its plane, with numbers fit for a text of this height.
+static Picture flat_picture(const Picture *p, double size) {
+  Picture flat = *p;
+  flat.view = cag_transform_identity();
+  flat.affine = true;
+  flat.size = size * LABEL_ROUNDING / ROUNDING_PART;
+  return flat;
+}
+
+static CagStatus draw_label(Picture *p, const CagLabel *l, CagVec3 at, CagVec3 along,
+                            double diagonal, CagError *err) {
+  const double size = l->size > 0 ? l->size : CAG_LABEL_PART * diagonal;
+  CagLabelShape shape;
+  if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(size)) {
+    p->undefined = true;
+    return CAG_OK;
+  }
+  CagStatus status = cag_label_shape(l, at, along, size, &shape, err);
+  if (status) return status;
+  Picture flat = flat_picture(p, size);
+  status = draw_shape(&flat, l, &shape, err);
+  p->box = flat.box;
+  p->undefined = flat.undefined;
+  cag_label_shape_free(&shape);
+  return status;
+}
+
+CagStatus cag_svg_path(const CagRegion *r, double size, FILE *out, CagError *err) {
+  const CagTransform none = cag_transform_identity();
+  const Picture whole = {.out = out, .box = CAG_BOUNDS_EMPTY};
+  Picture flat = flat_picture(&whole, size);
+  return draw_region(&flat, r, &none, err);
+}
+
 // Labels come last: they are on top of all lines, and depend on the picture's size.
-static void draw_labels(Picture *p) {
+static CagStatus draw_labels(Picture *p, CagError *err) {
   const CagScene *s = p->scene;
   CagBounds drawn = p->box;
   CagVec3 at, along;
+  CagStatus status = CAG_OK;
   for (size_t i = 0; i < s->label_count; i++)
     if (look_at_label(p, &s->labels[i], &at, &along)) cag_bounds_add(&drawn, at);
   double diagonal = cag_norm(cag_sub(drawn.max, drawn.min));
   if (!(diagonal > 0)) diagonal = p->size;
-  for (size_t i = 0; i < s->label_count; i++) {
+  for (size_t i = 0; !status && i < s->label_count; i++) {
     const CagLabel *l = &s->labels[i];
-    if (!look_at_label(p, l, &at, &along)) continue;
-    ColorText color = color_text(s->materials[l->material].color);
-    if (!cag_svg_label(p->out, l, at, along, color.text, diagonal, &p->box)) p->undefined = true;
+    if (look_at_label(p, l, &at, &along)) status = draw_label(p, l, at, along, diagonal, err);
   }
+  return status;
 }
 
 // --- The view ---
@@ -469,7 +546,7 @@ static void write_file(Picture *p, CagAtomicFile *f, const char *paths, size_t n
   }
   cag_atomic_file_text(f,
                        "\">\n<g fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
-                       "font-family=\"sans-serif\" stroke-width=\"");
+                       "stroke-width=\"");
   write_number(f, p, STROKE_PART * diagonal);
   cag_atomic_file_text(f, "\">\n");
   cag_atomic_file_write(f, paths, n);
@@ -488,7 +565,7 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   if (!p.out) return cag_fail_memory(err);
   for (size_t i = 0; !status && i < scene->item_count; i++)
     status = draw_item(&p, &scene->items[i], err);
-  if (!status) draw_labels(&p);
+  if (!status) status = draw_labels(&p, err);
   bool whole = fclose(p.out) == 0;
   if (!status && !whole) status = cag_fail_memory(err);
   if (!status && !(p.box.min.x <= p.box.max.x))

@@ -14,11 +14,17 @@
 #ifndef CAG_INTERP_FORMATS_SVG_H
 #define CAG_INTERP_FORMATS_SVG_H
 
+#include <stdio.h>
+
 #include "base/atomic_file.h"
 #include "interp/scene/scene.h"
 
 // Writes the picture to an open file. `camera` is an index into the scene's cameras. A scene
 // without curves, regions, and labels is an error ("svg-without-curves").
 CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *file, CagError *err);
+
+// Writes the boundary of a region as the data of a path, with y down. Numbers are rounded to a power
+// of ten below a thousandth of `size`.
+CagStatus cag_svg_path(const CagRegion *r, double size, FILE *out, CagError *err);
 
 #endif

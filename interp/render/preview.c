@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/stop.h"
+#include "interp/render/preview_labels.h"
 #include "interp/render/preview_shade.h"
 #include "interp/render/preview_smooth.h"
 
@@ -292,8 +293,11 @@ static CagStatus render_frame(Frame *f, bool *finished) {
     }
     if (!status && samples > 1 && f->options->samples > 0)
       cag_preview_smooth(f->sum, (size_t)f->width, (size_t)f->height, samples);
-    if (!status) write_picture(f, &r, samples);
-    else cag_image_free(f->out);
+    if (!status) {
+      write_picture(f, &r, samples);
+      status = cag_preview_labels(f->world->scene, f->camera, &f->map, r.x, r.y, f->out, f->err);
+    }
+    if (status) cag_image_free(f->out);
     cag_stop_lend(flag);
   }
   cag_free(f->sum);

@@ -138,9 +138,10 @@ static int check_parts(CagSession *s, const Parts *parts) {
   CagDiagnostic *d = cag_diagnostics_add(
       &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
       "%s shows nothing that a mesh file can contain", s->script ? s->script : "the session");
-  cag_diagnostic_set_help(d, s->scene.label_count > 0
-                                 ? "labels are drawn only in .svg; show a surface, solid, or mesh"
-                                 : "a ground is only for pictures; show a surface, solid, or mesh");
+  cag_diagnostic_set_help(
+      d, s->scene.label_count > 0
+             ? "labels have no mesh (`lettering` has one); show a surface, solid, or mesh"
+             : "a ground is only for pictures; show a surface, solid, or mesh");
   return CAG_STATUS_SCRIPT;
 }
 

@@ -45,6 +45,7 @@ static void drop_scene(CagSession *s) {
   cag_session_drop_robots(s);
   if (s->has_scene) cag_scene_free(&s->scene);
   cag_session_drop_sources(s);
+  cag_session_drop_label_paths(s);
   cag_session_drop_mesh(s); // it shares the geometry of the scene
   s->has_scene = false;
   cag_session_drop_points(s);

@@ -36,13 +36,14 @@ struct CagSession {
                     // keep
   CagScene scene;
   bool has_scene;
-  CagItemSources sources;                 // of the scene's items
-  struct CagSessionParams *params;        // of the main script; NULL: not listed yet
-  struct CagSessionMesh *mesh;            // the one that was made last; may be NULL
-  struct CagSessionSources *part_sources; // of the part that was asked about last; may be NULL
-  struct CagSessionRobots *robots;        // of the scene; NULL: not looked for yet
-  struct CagSessionPoints *points;        // those that were found last; may be NULL
-  CagSceneForm form;                      // of the scene
+  CagItemSources sources;                   // of the scene's items
+  struct CagSessionParams *params;          // of the main script; NULL: not listed yet
+  struct CagSessionMesh *mesh;              // the one that was made last; may be NULL
+  struct CagSessionSources *part_sources;   // of the part that was asked about last; may be NULL
+  struct CagSessionLabelPaths *label_paths; // of the label that was asked about last; may be NULL
+  struct CagSessionRobots *robots;          // of the scene; NULL: not looked for yet
+  struct CagSessionPoints *points;          // those that were found last; may be NULL
+  CagSceneForm form;                        // of the scene
   bool has_section;
   CagPlane section; // what lies on its positive side is cut off
   size_t main;      // the module of the script; CAG_NO_MODULE: it was not loaded
@@ -107,6 +108,7 @@ CagPlaceView cag_session_place(const CagSource *source, CagSpan span);
 void cag_session_drop_mesh(CagSession *s);
 void cag_session_drop_robots(CagSession *s);
 void cag_session_drop_sources(CagSession *s);
+void cag_session_drop_label_paths(CagSession *s);
 // Whether a call in the library has a caller that the call after it does not have.
 bool cag_origin_other_caller(const CagOriginStep *step, const CagOriginStep *later);
 // Returns the value of a definition of the script, for work of the session. Fails with

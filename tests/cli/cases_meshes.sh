@@ -312,7 +312,7 @@ it 'meshes without a triangle are no output'
 script labels.cag 'show label([1, 2, 3], "here")'
 try export labels.cag -o labels.stl
 status 1
-says 'labels are drawn only in .svg'
+says 'labels have no mesh'
 is_missing labels.stl
 script ground.cag 'show ground()'
 try export ground.cag -o ground.3mf

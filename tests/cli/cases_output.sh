@@ -182,17 +182,18 @@ code=$?
 status 0
 exists closed.svg
 
-# The middle label is centered: its baseline is half the height of capitals below its point. The upper text is as far above its point as the
-# top of the lower text is below it.
+# The letters are those of the compiled-in font, and H has no rounded parts: the middle label is half of its height, 1409/2048 of 3 mm, below its
+# point. The upper text is as far above its point as the top of the lower text is below it.
 it 'a label above stands as far above its place as one below stands below'
 script labels.cag 'show line([0, 0], [40, 20])
-show label([10, 5], "Above", place: "above", size: 3), label([10, 5], "Center", place: "center", size: 3)
-show label([10, 5], "Below", place: "below", size: 3)'
+show label([10, 5], "HHa", place: "above", size: 3), label([10, 5], "HHc", place: "center", size: 3)
+show label([10, 5], "HHb", place: "below", size: 3)'
 try export labels.cag -o labels.svg
 status 0
-foot() { sed -n "s/.*<text x=\"10\" y=\"-\([0-9.]*\)\".*text-anchor=\"middle\".*>$1<.*/\1/p" labels.svg; }
-echo "$(foot Above) $(foot Center) $(foot Below)" > feet
-awk '{ d = ($1 - 5) - (5 - ($3 + 2 * (5 - $2))); exit !(NF == 3 && $1 > 5 && $2 < 5 && $3 < $2 && d * d < 1e-8) }' feet ||
+# The baseline of a text: the lowest y of its first letter.
+foot() { sed -n "/aria-label=\"$1\"/{n;s/.* d=\"\([^Z]*\)Z.*/\1/;s/[ML]//gp}" labels.svg | awk '{ y = 1e9; for (i = 2; i <= NF; i += 2) if (-$i < y) y = -$i; print y }'; }
+echo "$(foot HHa) $(foot HHc) $(foot HHb)" > feet
+awk '{ h = 3 * 1409 / 2048; d = ($1 - 5) - (5 - ($3 + h)); c = $2 - (5 - h / 2); exit !(NF == 3 && $1 > 5 && $3 < $2 && d * d < 1e-6 && c * c < 1e-6) }' feet ||
   wrong "they stand at $(cat feet)"
 
 it 'a .json has samples of formulas, and labels'
@@ -245,17 +246,21 @@ it 'a label of .svg has its mark at its point'
 script marks.cag 'show circle(10), label([10, 0], "P", mark: "cross"), label([0, 10], "Q", mark: "circle"), label([-10, 0], "R", mark: "dot")'
 try export marks.cag -o marks.svg
 status 0
-grep -q '<circle cx="0" cy="-10" r="[0-9.]*" stroke-width="[0-9.]*" fill="#ffffff" stroke="#30353f"/>' marks.svg || wrong 'no circle at Q'
-grep -q '<circle cx="-10" cy="0" r="[0-9.]*" fill="#30353f" stroke="none"/>' marks.svg || wrong 'no dot at R'
 if needs python3; then
-  # The strokes of the cross are diagonals of a square about P.
+  # The middle of each mark, as the middle of its points: arcs of circles, and the cross with its round ends.
   try_command python3 -c '
 import re
-ends = re.search("d=\"M (\\S+) (\\S+) L (\\S+) (\\S+) M (\\S+) (\\S+) L (\\S+) (\\S+)\"", open("marks.svg").read())
-v = [float(x) for x in ends.groups()]
-half = abs(v[0] - 10)
-assert half > 0 and all(abs(abs(x - 10) - half) < 1e-4 for x in v[0::2]) and all(abs(abs(y) - half) < 1e-4 for y in v[1::2]), v
-assert (v[0] - v[2]) * (v[4] - v[6]) + (v[1] - v[3]) * (v[5] - v[7]) < 1e-4, v'
+picture = open("marks.svg").read()
+def middle(path):
+    v = [float(x) for x in re.sub(r"A (\S+ ){5}|[MLCZ,]", " ", path).split()]
+    return (min(v[0::2]) + max(v[0::2])) / 2, (min(v[1::2]) + max(v[1::2])) / 2
+for name, x, y in (("P", 10, 0), ("Q", 0, -10), ("R", -10, 0)):
+    paths = re.findall(" d=\"([^\"]*)\"", picture.split("aria-label=\"" + name)[1].split("</g>")[0])
+    assert len(paths) == (3 if name == "Q" else 2), paths
+    for path in paths[:-1]:
+        at = middle(path)
+        assert abs(at[0] - x) < 1e-3 and abs(at[1] - y) < 1e-3, (name, at)
+assert picture.count("#ffffff") == 1'
   status 0
 fi
 

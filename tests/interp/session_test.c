@@ -716,7 +716,8 @@ static void exports_warn_of_open_parts(void **state) {
       {"show box(1)", "stl", NULL, NULL, CAG_STATUS_OK},
       {"show sphere_surface(1)", "stl", NULL, NULL, CAG_STATUS_OK},
       {"show label([0, 0, 0], \"a\")", "stl", "test shows nothing that a mesh file can contain",
-       "labels are drawn only in .svg; show a surface, solid, or mesh", CAG_STATUS_SCRIPT},
+       "labels have no mesh (`lettering` has one); show a surface, solid, or mesh",
+       CAG_STATUS_SCRIPT},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -264,14 +264,15 @@ static void labels_have_a_size_by_what_is_drawn(void **state) {
   (void)state;
   Fixture f;
   CagCurve *c;
-  CagLabel label = {.text = "A", .at = {1, 1, 0}};
+  CagLabel label = {.text = "", .mark = CAG_LABEL_DOT, .at = {1, 1, 0}};
   OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(3, 4, 0), 3, &c, &err));
   fixture_begin(&f);
   fixture_curve(&f, "c", c);
   f.scene.labels = &label;
   f.scene.label_count = 1;
   char *text = export_text(&f);
-  assert_non_null(strstr(text, " font-size=\"0.12\""));
+  // The radius of a dot is 0.24 of the size.
+  assert_non_null(strstr(text, " A 0.0288 0.0288 "));
   free(text);
   fixture_end(&f);
 }
@@ -416,7 +417,7 @@ static void cameras_see_labels_as_they_are(void **state) {
     char *text = export_text(&f);
     f.scene.labels = NULL;
     f.scene.label_count = 0;
-    assert_true((strstr(text, "<circle") != NULL) == f.camera.orthographic);
+    assert_true((strstr(text, " A ") != NULL) == f.camera.orthographic);
     const char *d = strstr(text, " d=\"M ");
     assert_non_null(d);
     double p[4][2];

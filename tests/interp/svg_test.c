@@ -207,13 +207,11 @@ static void labels_stand_beside_their_marks(void **state) {
   f.scene.labels = labels;
   f.scene.label_count = 3;
   char *text = export_text(&f);
-  assert_contains(text, "<circle cx=\"10\" cy=\"-20\" r=\"0.96\"");
-  // A name is in italics, with a small subscript as its index.
-  assert_contains(text, "font-style=\"italic\" text-anchor=\"start\"");
-  assert_contains(text, "<tspan>P</tspan><tspan dy=\"0.88\" font-size=\"2.8\">0</tspan>");
-  // Words are upright; along +Y, they run upward.
-  assert_contains(text, "rotate(-90 ");
-  assert_contains(text, "<tspan>a &lt; b</tspan>");
+  // The texts are names of groups, for readers of screens. Their shapes are tested with the labels.
+  assert_contains(text, "<g role=\"img\" aria-label=\"P_0\">\n    <path stroke=\"none\"");
+  assert_contains(text, "<g role=\"img\" aria-label=\"a &lt; b\">");
+  // The circle of a dot of radius 0.96.
+  assert_contains(text, "A 0.96 0.96 0 0 0 ");
   // The tip of an arrow along +X is at its position.
   assert_contains(text, "d=\"M 30 0 L 21 ");
   free(text);

@@ -114,8 +114,10 @@
  * @property {string} text
  * @property {Triple} at
  * @property {Triple | null} along  null or zero: none
- * @property {string} place
  * @property {string} mark
+ * @property {string} text_path  what is drawn, as SVG paths about the location, for a text of height 1
+ * @property {string} mark_path
+ * @property {string} paper_path  white, below the mark
  * @property {number} size  mm; 0: of the page
  * @property {number} material
  *

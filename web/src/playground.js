@@ -89,7 +89,7 @@ function toast(...content) {
 const LACKS = [
   ["POV-Ray", "pictures are rendered by the built-in renderer"],
   ["OpenEXR", ".exr images are neither read nor written"],
-  ["fonts of the system", "labels use the font of the page"],
+  ["fonts of the system", "lettering has the compiled-in font"],
   ["files of your computer", "scripts read only the files of their example"],
   ["threads", "heavy scripts take about as long as with one processor, and memory ends at 800 MB"],
 ];
