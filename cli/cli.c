@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/diagnostic.h"
+#include "cli/params.h"
 #include "cli/tiles.h"
 #include "interp/render/image.h"
 
@@ -31,7 +32,7 @@ const CagToolCommand cag_tool_commands[CAG_TOOL_COMMAND_COUNT] = {
 static bool reject(const CagTool *t, const char *help, const char *option, const char *value,
                    const char *problem) {
   if (t->refusal) {
-    snprintf(t->refusal->message, sizeof t->refusal->message, "'%.160s': %s", value, problem);
+    snprintf(t->refusal->message, sizeof t->refusal->message, "'%.100s': %.150s", value, problem);
     snprintf(t->refusal->help, sizeof t->refusal->help, "%s", help);
     return false;
   }
@@ -224,6 +225,23 @@ static bool set_define(CagTool *t, const char *value) {
   if (!name) return false;
   t->defines[t->define_count++] = (CagToolDefine){name, equals + 1};
   return true;
+}
+
+// Keeps the name and, behind it, the value.
+static void add_define(void *context, const char *name, const char *value) {
+  CagTool *t = context;
+  const size_t n = strlen(name) + 1, m = strlen(value) + 1;
+  char *copy = grow(NULL, n + m, 1);
+  memcpy(copy, name, n);
+  memcpy(copy + n, value, m);
+  t->defines = grow(t->defines, t->define_count, sizeof *t->defines);
+  t->defines[t->define_count++] = (CagToolDefine){copy, copy + n};
+}
+
+static bool set_params(CagTool *t, const char *value) {
+  CagToolRefusal why;
+  return cag_params_read(value, add_define, t, &why) ||
+         reject(t, why.help, "--params", value, why.message);
 }
 
 static bool set_include(CagTool *t, const char *value) {

@@ -21,6 +21,31 @@ it '-D sets a param'
 try run vase.cag -D height=200
 prints_exactly 'height 200'
 
+it '--params takes a named set of the page'
+script sets.cag 'param height = 10 in 1..20
+param words = "none"
+param turned = false
+param angle = 30deg
+print height, words, turned, angle'
+echo '{"tall": {"height": 12.5, "words": "two words", "turned": true, "angle": "60deg"}, "flat": {"height": 2}}' > sets.cag.params.json
+try run sets.cag --params sets.cag.params.json:tall
+status 0
+prints_exactly '12.5 two words true 60deg'
+try run sets.cag --params sets.cag.params.json:tall -D height=3
+prints_exactly '3 two words true 60deg'
+try run sets.cag --params sets.cag.params.json:tal
+status 2
+says 'did you mean tall?'
+try run sets.cag --params sets.cag:tall
+status 2
+says 'not a JSON object'
+try run sets.cag --params none.json:tall
+status 2
+says 'cannot read none.json'
+try run sets.cag --params sets.cag.params.json
+status 2
+says 'FILE:NAME'
+
 it '-D of an unknown param gets the nearest'
 try run vase.cag -D hieght=200
 status 1
