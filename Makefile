@@ -294,7 +294,9 @@ check-layers:
 # element at a variable index, such as that of the tasks of a batch. Leaks in cli/, which allocates with malloc, are therefore left to
 # `make tidy`. The other folders allocate with cag_malloc, which neither tool follows.
 ANALYZED := base lang geom interp live cli
-ANALYZE  := -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value
+# ANALYZE_EFFORT bounds the states of a function that it looks at; 5 is the default of GCC.
+ANALYZE_EFFORT ?= 5
+ANALYZE  := -O1 -fanalyzer --param analyzer-bb-explosion-factor=$(ANALYZE_EFFORT) -Wno-analyzer-use-of-uninitialized-value
 $(BUILD)/analyzed/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "analyze $<"
