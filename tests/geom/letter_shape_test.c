@@ -3,6 +3,7 @@
 
 #include "tests/geom/support.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <utf8proc.h>
 
@@ -155,8 +156,66 @@ static void cubic_fonts_are_shaped_like_hb_shape_does(void **state) {
   assert_true(check_fonts("/usr/share/fonts/opentype/urw-base35/") > 3);
 }
 
+// --- Files and threads ---
+
+static double advance_of(const CagFont *font, const char *text) {
+  CagLetters l;
+  CagError problem;
+  const CagLetterRules rules = {CAG_LETTER_AUTO, 1, 0, false};
+  if (cag_letters_shape(font, text, strlen(text), &rules, &l, &problem)) return -1;
+  const double advance = l.lines[0].advance;
+  cag_letters_free(&l);
+  return advance;
+}
+
+// The second face has a wider A (tests/language/geometry/fonts/make.py).
+static void collections_have_faces_by_index(void **state) {
+  (void)state;
+  size_t size = 0;
+  CagFont font;
+  char *bytes = read_file("tests/language/geometry/fonts/Squares.ttc", &size);
+  assert_non_null(bytes);
+  for (unsigned i = 0; i < 2; i++) {
+    OK(cag_font_new("Squares", bytes, size, i, &font, &err));
+    assert_true(advance_of(&font, "A") == (i ? 1100 : 700));
+    cag_font_free(&font);
+  }
+  FAILS(cag_font_new("Squares", bytes, size, 2, &font, &err), "font-unreadable");
+  free(bytes);
+}
+
+enum { THREADS = 4, REPEATS = 50 };
+
+static void *shape_repeatedly(void *out) {
+  double sum = 0;
+  for (int i = 0; i < REPEATS; i++) {
+    CagFont font;
+    CagError problem;
+    if (cag_font_compiled_in((CagFontStyle)(i % CAG_FONT_STYLE_COUNT), &font, &problem))
+      return NULL;
+    sum += advance_of(&font, "AVA \u05d0\u05d1 12 e\u0301");
+    cag_font_free(&font);
+  }
+  *(double *)out = sum;
+  return out;
+}
+
+static void threads_do_not_affect_each_other(void **state) {
+  (void)state;
+  pthread_t threads[THREADS];
+  double sums[THREADS] = {0}, expected = 0;
+  for (int i = 0; i < THREADS; i++)
+    assert_int_equal(pthread_create(&threads[i], NULL, shape_repeatedly, &sums[i]), 0);
+  for (int i = 0; i < THREADS; i++) pthread_join(threads[i], NULL);
+  assert_non_null(shape_repeatedly(&expected));
+  assert_true(expected > 0);
+  for (int i = 0; i < THREADS; i++) assert_true(sums[i] == expected);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(threads_do_not_affect_each_other),
+      cmocka_unit_test(collections_have_faces_by_index),
       cmocka_unit_test(compiled_in_fonts_are_shaped_like_hb_shape_does),
       cmocka_unit_test(ligatures_and_arabic_are_shaped_like_hb_shape_does),
       cmocka_unit_test(cubic_fonts_are_shaped_like_hb_shape_does),
