@@ -12,7 +12,7 @@
 
 // A glyph that occurs in the text, with its outlines at the origin.
 typedef struct Glyph {
-  uint32_t id;
+  uint32_t id; // the first field, for by_number
   CagBounds box; // in units of the font
   CagRegion *region;
 } Glyph;
@@ -33,30 +33,41 @@ static bool is_vertical(const Layout *l) { return l->how->direction == CAG_LETTE
 // --- The glyphs ---
 
 static int by_number(const void *a, const void *b) {
-  const uint32_t x = ((const Glyph *)a)->id, y = ((const Glyph *)b)->id;
+  const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
   return (x > y) - (x < y);
 }
 
+// The distinct numbers of glyphs, ascending.
+static CagStatus find_numbers(const CagLetters *letters, uint32_t **out, size_t *count,
+                              CagError *err) {
+  const size_t n = letters->count;
+  uint32_t *ids = cag_malloc((n ? n : 1) * sizeof *ids);
+  if (!ids) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++) ids[i] = letters->items[i].glyph;
+  *out = ids;
+  *count = 0;
+  CagStatus status = cag_sort(ids, n, sizeof *ids, by_number, err);
+  for (size_t i = 0; !status && i < n; i++)
+    if (*count == 0 || ids[i] != ids[*count - 1]) ids[(*count)++] = ids[i];
+  return status;
+}
+
 static CagStatus find_glyphs(Layout *l, CagError *err) {
-  const size_t n = l->letters.count;
-  l->glyphs = cag_calloc(n ? n : 1, sizeof *l->glyphs);
-  if (!l->glyphs) return cag_fail_memory(err);
-  for (size_t i = 0; i < n; i++) l->glyphs[i].id = l->letters.items[i].glyph;
-  CagStatus status = cag_sort(l->glyphs, n, sizeof *l->glyphs, by_number, err);
-  if (status) return status;
-  for (size_t i = 0; i < n; i++)
-    if (i == 0 || l->glyphs[i].id != l->glyphs[l->glyph_count - 1].id)
-      l->glyphs[l->glyph_count++].id = l->glyphs[i].id;
-  for (size_t i = 0; !status && i < l->glyph_count; i++) {
-    l->glyphs[i].box = CAG_BOUNDS_EMPTY;
-    status = cag_glyph_bounds(l->how->font, l->glyphs[i].id, &l->glyphs[i].box, err);
+  uint32_t *ids = NULL;
+  size_t n = 0;
+  CagStatus status = find_numbers(&l->letters, &ids, &n, err);
+  if (!status) l->glyphs = cag_calloc(n ? n : 1, sizeof *l->glyphs);
+  if (!status && !l->glyphs) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    l->glyphs[l->glyph_count++] = (Glyph){.id = ids[i], .box = CAG_BOUNDS_EMPTY};
+    status = cag_glyph_bounds(l->how->font, ids[i], &l->glyphs[i].box, err);
   }
+  cag_free(ids);
   return status;
 }
 
 static Glyph *glyph_of(const Layout *l, const CagLetter *letter) {
-  const Glyph key = {.id = letter->glyph};
-  return bsearch(&key, l->glyphs, l->glyph_count, sizeof key, by_number);
+  return bsearch(&letter->glyph, l->glyphs, l->glyph_count, sizeof *l->glyphs, by_number);
 }
 
 static bool has_ink(const CagBounds *box) { return box->min.x <= box->max.x; }
@@ -105,13 +116,32 @@ static void layout_free(Layout *l) {
   cag_letters_free(&l->letters);
 }
 
+// Coordinates of at most this size can be multiplied by each other.
+#define SIZE_LEAST 1e-50
+#define SIZE_MOST 1e50
+#define FACTOR_MOST 1e30
+
+static CagStatus check_range(double x, double least, double most, const char *name, CagError *err) {
+  if (x >= least && x <= most) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, -1,
+                  "`%s` must be between %g and %g, found %g", name, least, most, x);
+}
+
+static CagStatus check_sizes(const CagLettering *how, CagError *err) {
+  CagStatus status = check_range(how->size, SIZE_LEAST, SIZE_MOST, "size", err);
+  if (!status) status = check_range(how->spacing, 0, FACTOR_MOST, "spacing", err);
+  if (!status) status = check_range(how->line_spacing, 0, FACTOR_MOST, "line_spacing", err);
+  return status;
+}
+
 static CagStatus layout_new(const char *text, size_t n, const CagLettering *how, Layout *l,
                             CagError *err) {
   const CagFont *f = how->font;
   *l = (Layout){.how = how, .scale = how->size / f->capital};
   l->distance = how->line_spacing * (f->ascender + f->descender + f->gap) * l->scale;
   const CagLetterRules rules = {how->direction, how->spacing, how->width / l->scale, how->missing};
-  CagStatus status = cag_letters_shape(f, text, n, &rules, &l->letters, err);
+  CagStatus status = check_sizes(how, err);
+  if (!status) status = cag_letters_shape(f, text, n, &rules, &l->letters, err);
   if (status) return status;
   status = find_glyphs(l, err);
   if (!status) find_box(l);

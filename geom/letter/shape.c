@@ -18,7 +18,7 @@
 #include "base/stop.h"
 
 // What HarfBuzz takes per character of a run.
-#define BYTES_PER_CHARACTER 80
+#define BYTES_PER_CHARACTER 128
 #define TAB_SPACES 4
 
 typedef struct Paragraph {
@@ -138,7 +138,7 @@ typedef struct Run {
 static CagStatus fail_missing(const Shaper *s, uint32_t c, CagError *err) {
   char text[8] = "";
   utf8proc_encode_char((utf8proc_int32_t)c, (utf8proc_uint8_t *)text);
-  const bool seen = c >= ' ' && c != 0x7f;
+  const bool seen = utf8proc_charwidth((utf8proc_int32_t)c) > 0; // marks and controls are not
   (cag_fail)(err, CAG_E_ARGUMENT, CAG_ERR_glyph_missing, "text", -1,
              "the font \"%s\" has no glyph for %s%s%sU+%04X%s", s->font->name, seen ? "\"" : "",
              seen ? text : "", seen ? "\" (" : "", c, seen ? ")" : "");
@@ -201,11 +201,25 @@ static void place_run(Shaper *s, bool vertical) {
   }
 }
 
+// The first character of a cluster that has no glyph of its own. Without one, the first character.
+static uint32_t missing_in_cluster(const Shaper *s, const Run *r, uint32_t cluster) {
+  const Shaped run = shaped(s);
+  size_t end = r->start + r->n;
+  for (unsigned i = 0; i < run.n; i++)
+    if (run.infos[i].cluster > cluster && r->line + run.infos[i].cluster < end)
+      end = r->line + run.infos[i].cluster;
+  for (size_t i = r->line + cluster; i < end; i++) {
+    hb_codepoint_t glyph;
+    if (!cag_hb.font_get_nominal_glyph(s->font->hb, s->p.chars[i], &glyph)) return s->p.chars[i];
+  }
+  return s->p.chars[r->line + cluster];
+}
+
 static CagStatus check_glyphs(const Shaper *s, const Run *r, CagError *err) {
   const Shaped run = shaped(s);
   for (unsigned i = 0; i < run.n; i++)
     if (run.infos[i].codepoint == 0)
-      return fail_missing(s, s->p.chars[r->line + run.infos[i].cluster], err);
+      return fail_missing(s, missing_in_cluster(s, r, run.infos[i].cluster), err);
   return CAG_OK;
 }
 
