@@ -32,6 +32,7 @@ const FILM = `show sphere(10) |> translate([100 * time, 0, 0])
 show box([10, 10, 10])
 `;
 const DRAWING = `show polyline([[0, 0], [60, 0], [60, 30], [0, 30]], closed: true)
+show label([60, 30], "P_1", mark: "circle", size: 6), label([30, 0], "side", place: "below", size: 6)
 `;
 
 const ARM = `arm = robot([
@@ -638,6 +639,12 @@ async function small(browser) {
     const image = await picture(page, "small"), scene = await sceneOf(page);
     equal(scene.width, 390 - 16);
     check(colorCount(image, scene) > 3, "the scene is blank");
+    // A capital P is 1409/2048 of 6 mm high, and the mark is in the corner of the drawing, which is 60 mm wide.
+    const box = (label, part) => page.value(`(() => { const r = document.querySelector('.label[aria-label="${label}"] .${part}').getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()`);
+    const pixel = await page.value("cagPage.view.pixel"), mark = await box("P_1", "mark"), word = await box("side", "text");
+    check(Math.abs(mark[2] - (2 * 0.24 + 0.1) * 6 / pixel) < 1, `the mark is ${mark[2]} wide`);
+    check(Math.abs(mark[0] + mark[2] / 2 - (word[0] + word[2] / 2) - 30 / pixel) < 2, "the mark is not at its corner");
+    check(word[1] > mark[1] + 30 / pixel, "the word is not below its side");
     await page.clickOn('[data-tab="code"]');
     await page.until(`${EDITOR}.offsetParent !== null`);
     equal(page.problems, []);
