@@ -16,11 +16,19 @@ static bool read_mesh(CagCall *call, const CagMesh **m) {
   *m = shape->as.mesh;
   if (call->values[0].type != CAG_SOLID) return true;
   const CagSolid *s = shape->as.solid;
+  CagMesh *moved = NULL;
+  bool empty;
+  if (!cag_value_is_empty(call, call->values[0], &empty)) return false;
+  if (empty) {
+    CagStatus status = cag_mesh_new(0, 0, false, false, false, &moved, call->err);
+    cag_hold_mesh(call, moved);
+    *m = moved;
+    return cag_geometry_ok(call, status);
+  }
   if (s->kind != CAG_SOLID_MESH)
     return cag_fail_call(
         call, 0, CAG_ERR_type,
         "expects a mesh or a polyhedron, found another solid; `tessellate` makes a mesh of it");
-  CagMesh *moved = NULL;
   CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
   cag_hold_mesh(call, moved);
   *m = moved;
