@@ -108,6 +108,7 @@ if [ -n "${SANITIZED:-}" ]; then
   language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
   suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
   suite counted "sanitized tests/fuzz/pictures" "python3 tests/fuzz/pictures.py '$SANITIZED/cag' 1000 3"
+  suite counted "sanitized tests/fuzz/fonts" "python3 tests/fuzz/fonts.py '$SANITIZED/cag' 250 3"
   suite counted "sanitized tests/fuzz/memory limits" "'$SANITIZED/tests/fuzz/memory' -l -n 3"
   # These take a third of the time of all with sanitizers, because they try thousands of random shapes. `make test-sanitize` runs them.
   unit_suites "$SANITIZED" "sanitized " "${SANITIZED_LEFT_OUT- caster_nearest boolean boolean_turned boolean_flat csg general half_spaces level_sets meet_touch meet_rings }"
@@ -120,6 +121,7 @@ suite counted "tests/scenes" "'$BUILD/cag' test tests/scenes"
 suite counted "cag test examples" "'$BUILD/cag' test --no-pictures examples stdlib"
 suite counted "tests/fuzz" "'$BUILD/tests/fuzz/fuzz' 8"
 suite counted "tests/fuzz/pictures" "python3 tests/fuzz/pictures.py '$BUILD/cag' 2000"
+suite counted "tests/fuzz/fonts" "python3 tests/fuzz/fonts.py '$BUILD/cag' 1000"
 suite counted "tests/fuzz/memory" "'$BUILD/tests/fuzz/memory' -n $points"
 suite counted "tests/fuzz/memory scripts" "'$BUILD/tests/fuzz/memory' -n $points -x tests/fuzz/scripts/*.cag"
 suite counted "tests/fuzz/memory language" \

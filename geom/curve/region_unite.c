@@ -68,7 +68,8 @@ static CagStatus add_parts(Member *m, const CagCurve *c, CagError *err) {
 
 static CagStatus find_parts(Member *m, CagError *err) {
   CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && !m->part_count && i < m->region->count; i++)
+  if (m->part_count) return CAG_OK;
+  for (size_t i = 0; !status && i < m->region->count; i++)
     status = add_parts(m, m->region->loops[i], err);
   return status;
 }
