@@ -11,7 +11,7 @@ command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
 command -v python3 > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES python3"
 
 # Tests that need these are skipped if they are not available. They are large, and nothing else needs them.
-EXTRA_PACKAGES="chromium emscripten libeigen3-dev"
+EXTRA_PACKAGES="chromium emscripten libeigen3-dev openscad"
 # The time limit of their download in seconds.
 EXTRA_SECONDS=240
 

@@ -7,7 +7,7 @@ import { promisify } from "node:util";
 const [cag, out, option] = process.argv.slice(2);
 const run = promisify(execFile);
 const FOLDER = "examples/";
-const GROUPS = { "": "First examples", curves: "Curves", surfaces: "Surfaces and solids", robots: "Robots", sensing: "Sensing" };
+const GROUPS = { "": "First examples", curves: "Curves", surfaces: "Surfaces and solids", robots: "Robots", sensing: "Sensing", "from-openscad": "From OpenSCAD" };
 // The pictures are shown with 160 to 240 pixels.
 const SIZE = "240x135";
 

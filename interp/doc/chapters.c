@@ -32,6 +32,10 @@ static const CagDocChapter chapters[] = {
     {"docs/live.md", "live", "Live work",
      "the page, watching files, the language server, measures, and language models"},
     {"docs/embedding.md", "embedding", "Embedding libcag", "scripts in programs written in C"},
+    {"docs/from-openscad.md", "from-openscad", "From OpenSCAD",
+     "the constructs of OpenSCAD and those of cag, side by side"},
+    {"docs/from-povray.md", "from-povray", "From POV-Ray",
+     "the constructs of POV-Ray and those of cag, side by side"},
 };
 
 const CagDocChapter *cag_doc_chapter(size_t i) {

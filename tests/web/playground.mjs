@@ -55,8 +55,9 @@ async function start() {
 
 const FOLDER = "examples/";
 // These take from 5 to 50 seconds, most of them for meshes.
-const SLOW = ["sensing/depth.cag", "robots/workspace.cag", "sensing/templates.cag", "surfaces/curvature_contours.cag"];
-const scripts = ["", "curves", "surfaces", "robots", "sensing"].flatMap((folder) =>
+const SLOW = ["sensing/depth.cag", "robots/workspace.cag", "sensing/templates.cag", "surfaces/curvature_contours.cag",
+  "from-openscad/projections.cag", "from-openscad/screw.cag"];
+const scripts = ["", "curves", "surfaces", "robots", "sensing", "from-openscad"].flatMap((folder) =>
   readdirSync(FOLDER + folder).filter((n) => n.endsWith(".cag") && n !== "stage.cag").map((n) => (folder ? `${folder}/${n}` : n)))
   .filter((path) => option === "--times" || !SLOW.includes(path));
 
