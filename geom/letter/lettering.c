@@ -12,7 +12,7 @@
 
 // A glyph that occurs in the text, with its outlines at the origin.
 typedef struct Glyph {
-  uint32_t id; // the first field, for by_number
+  uint32_t id;   // the first field, for by_number
   CagBounds box; // in units of the font
   CagRegion *region;
 } Glyph;

@@ -39,12 +39,13 @@
   X(face_reference_table)                                                                          \
   X(font_create)                                                                                   \
   X(font_destroy)                                                                                  \
+  X(font_get_glyph_h_advance)                                                                      \
   X(font_get_glyph_shape)                                                                          \
+  X(font_get_glyph_v_advance)                                                                      \
   X(font_get_h_extents)                                                                            \
   X(font_get_nominal_glyph)                                                                        \
   X(font_set_scale)                                                                                \
   X(language_from_string)                                                                          \
-  X(script_get_horizontal_direction)                                                               \
   X(shape)                                                                                         \
   X(unicode_funcs_get_default)                                                                     \
   X(unicode_script)

@@ -39,8 +39,9 @@ typedef struct Shaper {
   CagLetters *out;
   hb_buffer_t *buffer;
   Paragraph p;
-  size_t held;
-  double pen; // along the line
+  double pen;      // along the line
+  double hyphen;   // its advance; with a width only
+  bool has_hyphen; // whether the font has one
 } Shaper;
 
 // --- Characters ---
@@ -320,8 +321,21 @@ static bool is_space(uint32_t c) {
   return c == ' ' || (c >= 0x2000 && c <= 0x200b && c != 0x2007) || c == 0x3000;
 }
 
+#define SOFT_HYPHEN 0xad // seen only at the end of a line
+
 static bool is_hyphen(uint32_t c) {
-  return c == '-' || c == 0xad || c == 0x2010 || c == 0x2013 || c == 0x2014;
+  return c == '-' || c == SOFT_HYPHEN || c == 0x2010 || c == 0x2013 || c == 0x2014;
+}
+
+static bool is_digit(uint32_t c) { return c >= '0' && c <= '9'; }
+
+// Signs of numbers, and hyphens that begin a word, are not followed by a break (Unicode Standard
+// Annex 14, LB20a and LB25).
+static bool is_hyphenated(const Paragraph *p, size_t i) {
+  const uint32_t hyphen = p->chars[i - 1], c = p->chars[i];
+  if (!is_hyphen(hyphen) || is_hyphen(c)) return false;
+  const bool within = i > 1 && !is_space(p->chars[i - 2]);
+  return hyphen == 0x2014 || (within && !(hyphen == '-' && is_digit(c)));
 }
 
 // Ideographs, kana, and hangul.
@@ -338,7 +352,7 @@ static bool is_closing(uint32_t c) {
 static bool may_break_before(const Paragraph *p, size_t i) {
   const uint32_t before = p->chars[i - 1], c = p->chars[i];
   if (is_space(c)) return false;
-  return is_space(before) || (is_hyphen(before) && !is_hyphen(c)) ||
+  return is_space(before) || is_hyphenated(p, i) ||
          ((is_ideograph(c) || is_ideograph(before)) && !is_closing(c));
 }
 
@@ -346,25 +360,41 @@ static bool may_break_before(const Paragraph *p, size_t i) {
 // not counting spaces at the end, or the first break if there is none.
 static size_t line_end(const Shaper *s, size_t from) {
   const Paragraph *p = &s->p;
+  const double width = s->rules->width * (1 + 1e-9);
   double advance = 0;
   size_t end = from;
   for (size_t i = from; i < p->n; i++) {
-    if (i > from && may_break_before(p, i)) end = i;
-    if (!is_space(p->chars[i])) {
-      if (advance + p->advances[i] > s->rules->width * (1 + 1e-9) && end > from) return end;
+    if (i > from && may_break_before(p, i)) {
+      const bool soft = p->chars[i - 1] == SOFT_HYPHEN;
+      if (end == from || !soft || advance + s->hyphen <= width) end = i;
     }
+    if (!is_space(p->chars[i]) && advance + p->advances[i] > width && end > from) return end;
     advance += p->advances[i];
   }
   return p->n;
 }
 
+// Finds the hyphen that a soft hyphen becomes. Fonts without one have none there either.
+static void find_hyphen(Shaper *s) {
+  hb_codepoint_t glyph;
+  s->has_hyphen = cag_hb.font_get_nominal_glyph(s->font->hb, '-', &glyph);
+  if (!s->has_hyphen) return;
+  const int advance = s->rules->direction == CAG_LETTER_TTB
+                          ? -cag_hb.font_get_glyph_v_advance(s->font->hb, glyph)
+                          : cag_hb.font_get_glyph_h_advance(s->font->hb, glyph);
+  s->hyphen = s->rules->spacing * advance;
+}
+
 static CagStatus put_broken_lines(Shaper *s, CagError *err) {
   CagStatus status = measure_chars(s, err);
+  if (!status) find_hyphen(s);
   size_t from = 0;
   while (!status) {
     const size_t end = line_end(s, from);
     size_t seen = end; // without the spaces at which the line is broken
     while (end < s->p.n && seen > from && is_space(s->p.chars[seen - 1])) seen--;
+    if (end < s->p.n && s->has_hyphen && s->p.chars[seen - 1] == SOFT_HYPHEN)
+      s->p.chars[seen - 1] = '-';
     status = put_line(s, from, seen - from, err);
     from = end;
     if (from >= s->p.n) break;
