@@ -409,5 +409,6 @@ void cag_live_messages(CagSession *s, const CagLiveRun *run, CagString *out) {
   cag_json_open_in(&j, "values", '[');
   cag_session_values(s, write_value, &j);
   cag_json_close(&j, ']');
+  if (run->status != CAG_STATUS_OK) write_params(&j, s); // otherwise, the scene has them
   cag_json_close(&j, '}');
 }

@@ -30,7 +30,7 @@ typedef struct CagLiveModel {
 int cag_live_scene(CagSession *s, const CagLiveModel *model, const CagLiveMeshes *meshes,
                    CagString *out);
 
-// What a run printed and complained about, and the values of definitions.
+// What a run printed and complained about, the values of definitions, and, if it failed, the params.
 typedef struct CagLiveRun {
   int run, status;
   double seconds;

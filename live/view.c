@@ -1,6 +1,7 @@
 #include "live/view.h"
 
 #include <cJSON.h>
+#include <errno.h>
 #include <limits.h>
 #include <poll.h>
 #include <pthread.h>
@@ -157,6 +158,15 @@ static void answer_file(View *v, CagExchange *x, const char *path) {
 }
 
 // Whether the file still has the version that the page has changed.
+static bool is_missing(const View *v, const char *path) {
+  char *real = cag_model_path(v->folder, path);
+  const bool missing = real && access(real, F_OK) != 0 && errno == ENOENT;
+  free(real);
+  return missing;
+}
+
+// Whether the file on the disk is the one that the page knows. A file that was deleted can be saved
+// again: nothing is lost by it.
 static bool is_version(const View *v, CagExchange *x, const char *path,
                        char now[CAG_VERSION_SIZE]) {
   char *text, quoted[CAG_VERSION_SIZE + 2];
@@ -169,7 +179,7 @@ static bool is_version(const View *v, CagExchange *x, const char *path,
     cag_model_version("", 0, now);
   }
   snprintf(quoted, sizeof quoted, "\"%s\"", now);
-  return !expected || !strcmp(expected, quoted) || !strcmp(expected, "*");
+  return !expected || !strcmp(expected, quoted) || !strcmp(expected, "*") || is_missing(v, path);
 }
 
 static void save_file(View *v, CagExchange *x, const char *path) {

@@ -165,6 +165,20 @@ def test_errors_leave_the_last_scene():
     v.close()
 
 
+def test_params_of_a_script_that_fails():
+    v = View("param height = 40 in 10..90\nassert height < 30, \"too tall\"\nshow sphere(height)\n")
+    messages = v.wait("messages", lambda m: m["run"] == 1)
+    assert not messages["ok"] and [(p["name"], p["value"], p["low"], p["high"]) for p in messages["params"]] == [("height", "40", 10, 90)]
+    run = v.run(params={"height": "20"})
+    assert v.scene(run)["params"][0]["value"] == "20"
+    run = v.run(files={"model.cag": "param height = (\nshow = 3\n"})
+    messages = v.wait("messages", lambda m: m["run"] == run)
+    assert not messages["ok"] and messages["params"] == []
+    run = v.run(files={"model.cag": "param height = 1 / [0]\nparam width = 3 in nothing\nshow sphere(height)\n"})
+    assert not v.wait("messages", lambda m: m["run"] == run)["ok"]
+    v.close()
+
+
 def test_a_newer_run_cancels_an_older_one():
     v = View("show sphere(1)\n")
     v.scene(1)
@@ -403,6 +417,11 @@ def test_files_are_saved():
     with open(v.path + ".params.json") as f:
         assert json.load(f) == {"tall": {"height": 80}}
     assert json.loads(v.ask("GET", "/api/params")[1]) == {"tall": {"height": 80}}
+    os.remove(v.path)
+    version = json.loads(body)["version"]
+    assert v.ask("PUT", "/api/file?path=model.cag", "show sphere(4)\n", {"If-Match": f'"{version}"'})[0] == 200  # deleted meanwhile
+    with open(v.path) as f:
+        assert f.read() == "show sphere(4)\n"
     v.close()
 
 

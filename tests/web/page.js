@@ -62,13 +62,13 @@ mast = polyline([[50, 50, 0], [50, 50, height], [50 + cos(60deg), 60, 0]])
 show plate, rail, patch, ball, mast
 `;
 
-// Starts a server for a script, and returns its address and its process.
+// Starts a server for a script, or without one if the name is "", and returns its address and its process.
 const servers = [];
 function serve(name, text, ...options) {
-  const file = path.join(folder, name);
-  fs.writeFileSync(file, text);
+  const file = name && path.join(folder, name);
+  if (file) fs.writeFileSync(file, text);
   const env = { ...process.env, XDG_STATE_HOME: path.join(folder, "state") };
-  const server = spawn(command[0], [...command.slice(1), file, ...options], { stdio: ["ignore", "pipe", "inherit"], env });
+  const server = spawn(command[0], [...command.slice(1), ...(file ? [file] : []), ...options], { stdio: ["ignore", "pipe", "inherit"], env });
   servers.push(server);
   return new Promise((done, fail) => {
     let output = "";
@@ -817,6 +817,48 @@ async function tenLinks(browser) {
   await page.close();
 }
 
+async function failing(browser) {
+  const { url, file } = await serve("tall.cag", "param height = 40 in 10..90\nassert height < 30, \"too tall\"\nshow sphere(height) |> named(\"ball\")\n");
+  const page = await browser.open(url, SIZE);
+  await test("a script that fails at first has its params, and no tools for what is not there", async () => {
+    await page.until('document.documentElement.dataset.ready === "true" && document.documentElement.dataset.ok === "false"');
+    equal(await page.value('document.querySelectorAll("#views option").length'), 8);
+    check(!(await page.value(button("Show all"))), "Show all is offered");
+    check(await page.value(`${button("Write into script")}.disabled`), "values can be written");
+    await page.value(`(() => { const s = document.querySelector('[data-param=height] input[type=range]'); s.value = 20; s.dispatchEvent(new Event("input")); s.dispatchEvent(new Event("change")); })()`);
+    await page.until('document.documentElement.dataset.ok === "true" && document.querySelector("#parts [data-part=ball]")');
+    equal(page.problems, []);
+  });
+  if (!inPlayground) await test("a script whose file was deleted is saved again", async () => {
+    await page.value('cagPage.editor.replace("tall.cag", 0, 0, "// kept\\n")');
+    fs.unlinkSync(file);
+    await page.clickOn("#save");
+    await page.until('!document.querySelector("#tabs .dirty")');
+    check((await storedText(page, file)).startsWith("// kept"), "the file was not written");
+  });
+  await page.close();
+}
+
+async function untitled(browser) {
+  const { url } = await serve("", "");
+  const page = await browser.open(url, SIZE), downloads = path.join(folder, "scripts"), saved = path.join(downloads, "untitled.cag");
+  fs.mkdirSync(downloads);
+  await browser.say("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
+  await test("a script without a file is downloaded, and runs on", async () => {
+    await page.until(READY);
+    await page.value('cagPage.editor.replace("untitled.cag", 0, 0, "show sphere(3)\\n")');
+    await page.until('document.querySelector("#tabs .dirty")');
+    await page.clickOn("#save");
+    await page.until('!document.querySelector("#tabs .dirty")');
+    for (let i = 0; i < 600 && !fs.existsSync(saved); i++) await pause(50);
+    equal(fs.readFileSync(saved, "utf8"), "show sphere(3)\n");
+    await page.value('cagPage.editor.replace("untitled.cag", 0, 0, "show box([1, 2, 3])\\n")');
+    await page.until('document.querySelectorAll("#parts [data-part]").length === 2');
+    equal(page.problems, []);
+  });
+  await page.close();
+}
+
 // A port that no program listens on.
 const freePort = () => new Promise((done) => {
   const listener = net.createServer().listen(0, "127.0.0.1", () => {
@@ -855,6 +897,8 @@ async function main() {
     await robots(browser);
     await tenLinks(browser);
     await small(browser);
+    await failing(browser);
+    if (!inPlayground) await untitled(browser);
     if (!inPlayground) await restarted(browser);
   } finally {
     await browser.close();

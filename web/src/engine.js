@@ -159,6 +159,7 @@
  * @property {string[]} prints
  * @property {(Place & { name: string, text: string })[]} values  of definitions at the top level
  * @property {Diagnostic[]} diagnostics
+ * @property {Param[]} [params]  of a run that failed, as far as it read them
  *
  * @typedef {{ run: number, running: boolean }} RunState
  * @typedef {{ path: string, version: string }} FileVersion
@@ -175,7 +176,7 @@
  * @property {string} file  relative to the folder; "" for a new script
  * @property {string} folder
  * @property {boolean} readOnly
- * @property {boolean} [untitled]  a new script, which cannot be saved
+ * @property {boolean} [untitled]  a new script, which has no file
  * @property {boolean} [keepsEdits]  unsaved texts are kept when the page is left
  * @property {[string, string][]} formats  names and descriptions
  * @property {boolean} povray

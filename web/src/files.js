@@ -1,6 +1,6 @@
 // The files of the model: their texts, what is unsaved, tabs, and what to do when a file changed on the disk meanwhile.
 
-import { h } from "./dom.js";
+import { download, h } from "./dom.js";
 import { diffLines, isModule } from "./places.js";
 import { Topic } from "./topic.js";
 
@@ -25,13 +25,14 @@ export class Files {
     this.others = [];
     /** A file was saved, or taken from the disk. @type {Topic<void>} */
     this.settled = new Topic();
+    this.fileless = ""; // a script that has no file yet
     this.asking = false;
     this.key = ""; // what the tabs show
     editor.changed.on(() => this.showTabs());
     editor.saveWanted.on(() => this.save());
     // Leaving the page asks if something is unsaved.
     addEventListener("beforeunload", (e) => {
-      if (this.unsaved && !kept) e.preventDefault();
+      if (!kept && [...this.open.keys()].some((p) => this.isDirty(p))) e.preventDefault();
     });
   }
 
@@ -41,9 +42,9 @@ export class Files {
     return file !== undefined && this.editor.text(path) !== file.saved;
   }
 
-  /** The unsaved texts, or null. @returns {Record<string, string> | null} */
+  /** The texts that the engine does not have in a file, or null. @returns {Record<string, string> | null} */
   get unsaved() {
-    const dirty = [...this.open.keys()].filter((p) => this.isDirty(p));
+    const dirty = [...this.open.keys()].filter((p) => p === this.fileless || this.isDirty(p));
     return dirty.length ? Object.fromEntries(dirty.map((p) => [p, this.editor.text(p) ?? ""])) : null;
   }
 
@@ -63,6 +64,7 @@ export class Files {
 
   /** An empty script, which has no file yet. @param {string} path */
   begin(path) {
+    this.fileless = path;
     this.open.set(path, { version: "", saved: "" });
     this.editor.open(path, "");
     this.editor.show(path);
@@ -99,10 +101,16 @@ export class Files {
     if (next instanceof HTMLElement) next.click();
   }
 
-  /** Saves the file that is shown. */
+  /** Saves the file that is shown. A script without a file is downloaded. */
   async save() {
     const path = this.editor.path, file = this.open.get(path), text = this.editor.text(path);
     if (!file || text === null || this.editor.readOnly || isModule(path)) return;
+    if (path === this.fileless) {
+      download(path, new Blob([text], { type: "text/plain" }));
+      this.open.set(path, { version: "", saved: text });
+      this.showTabs();
+      return;
+    }
     try {
       const { saved, version } = await this.engine.write(path, text, file.version);
       if (!saved) return await this.ask(path);

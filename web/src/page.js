@@ -107,7 +107,7 @@ export async function start(engine, webview = null) {
   /** What else shows a scene. @type {((scene: SceneMessage) => void)[]} */
   const panels = [];
 
-  const file = hello.file || NEW_SCRIPT, canSave = !hello.readOnly && !hello.untitled;
+  const file = hello.file || NEW_SCRIPT;
   document.title = `${file} - cag`;
   byId("title", HTMLSpanElement).textContent = file;
   const hasEditor = !hello.readOnly && !webview;
@@ -365,10 +365,10 @@ export async function start(engine, webview = null) {
   // --- View ---
 
   const views = byId("views", HTMLSelectElement);
-  /** @param {SceneMessage} m */
+  /** @param {SceneMessage | null} m */
   function fillViews(m) {
     const options = STANDARD_VIEWS.map((v, i) => h("option", { value: v }, `${v} (${i + 1})`));
-    const cameras = m.cameras.filter((c) => !c.automatic).map((c) => h("option", { value: `camera ${c.name}` }, c.name));
+    const cameras = (m?.cameras ?? []).filter((c) => !c.automatic).map((c) => h("option", { value: `camera ${c.name}` }, c.name));
     views.replaceChildren(h("option", { value: "" }, "View"), h("optgroup", { label: "Standard views" }, ...options));
     if (cameras.length) views.append(h("optgroup", { label: "Cameras of the script" }, ...cameras));
   }
@@ -377,6 +377,7 @@ export async function start(engine, webview = null) {
     view.look(name);
     view.fit();
   };
+  fillViews(null); // a script that fails has no scene
   views.addEventListener("change", () => {
     const camera = /^camera (.*)$/.exec(views.value)?.[1];
     if (camera !== undefined) view.through(camera);
@@ -498,6 +499,8 @@ export async function start(engine, webview = null) {
       canvas.classList.toggle("stale", !m.ok);
       root.dataset.ok = String(m.ok);
       if (!m.ok) timeBar.stop();
+      // A value that makes the script fail can be changed back, also if there was no scene yet.
+      if (m.params?.length) params.show(m.params, !runs.pending);
       newest.messages = m;
     },
     file: (change) => files?.changedOnDisk(change),
@@ -547,7 +550,8 @@ export async function start(engine, webview = null) {
   });
   opened.cursorMoved.on(() => showMade());
   byId("save", HTMLButtonElement).addEventListener("click", () => documents.save());
-  byId("save", HTMLButtonElement).hidden = !canSave;
+  byId("save", HTMLButtonElement).hidden = hello.readOnly;
+  if (hello.untitled) byId("save", HTMLButtonElement).title = "Download the script, which has no file yet";
   if (newest.messages) {
     messages.show(newest.messages);
     opened.setProblems(newest.messages.diagnostics);

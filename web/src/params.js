@@ -170,6 +170,7 @@ export class ParamsPanel {
     const save = h("form", { class: "row", onsubmit: (/** @type {Event} */ e) => (e.preventDefault(), this.saveSet()) }, this.name, h("button", {}, "Save set"));
     this.setRow = h("div", { class: "row" }, this.choice, readOnly ? null : this.remove);
     this.tools = h("div", { class: "stack" }, h("div", { class: "row" }, readOnly ? null : this.write, this.resetAll), this.setRow, readOnly ? null : save);
+    this.empty.hidden = this.tools.hidden = true; // until it is known what the script has
     host.append(this.empty, this.list, this.tools);
   }
 

@@ -20,6 +20,7 @@ export class PartsPanel {
     this.all = h("button", { type: "button", onclick: () => this.showAll() }, "Show all");
     host.append(this.filter, this.list, this.rest, this.all);
     this.key = "";
+    this.fill();
   }
 
   /** Brings the list up to date with the scene. */
