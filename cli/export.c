@@ -76,6 +76,7 @@ static int export_script(CagTool *t, CagSession *s, void *path) {
   status = cag_tool_finish(t, s, status);
   if (status == CAG_STATUS_OK && t->verbose) {
     cag_session_describe_scene(s, stderr);
+    cag_tool_say_tolerances(t, s);
     cag_tool_say(t, "wrote %s", t->output);
   }
   return status;

@@ -53,6 +53,21 @@ void cag_tool_say(const CagTool *t, const char *format, ...) {
   va_end(args);
 }
 
+void cag_tool_say_tolerances(const CagTool *t, const CagSession *s) {
+  static const char *const REASONS[][2] = {{"shape", "by `tolerance`"},
+                                           {"option", "by --tolerance"},
+                                           {"pixels", "a quarter of a pixel or less"},
+                                           {"size", "by the size of what is shown"}};
+  CagToleranceView v;
+  for (size_t i = 0; cag_session_tolerance(s, i, &v); i++) {
+    const char *reason = "";
+    for (size_t k = 0; k < sizeof REASONS / sizeof *REASONS; k++)
+      if (!strcmp(v.source, REASONS[k][0])) reason = REASONS[k][1];
+    if (v.least == v.most) cag_tool_say(t, "tolerance %.6g mm, %s", v.most, reason);
+    else cag_tool_say(t, "tolerances %.6g to %.6g mm, %s", v.least, v.most, reason);
+  }
+}
+
 bool cag_tool_output_is_unread(void) {
   struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
   return poll(&out, 1, 0) > 0 && (out.revents & POLLERR);

@@ -215,6 +215,11 @@ static bool has_camera(CagSession *s, const char *name) {
   return false;
 }
 
+static void say_done(const Film *f, const char *path, double seconds) {
+  cag_tool_say_tolerances(f->tool, f->session);
+  cag_tool_say(f->tool, "wrote %s in %.1f s", path, seconds);
+}
+
 static int render_view(Film *f, const char *view) {
   const CagTool *t = f->tool;
   char path[PATH_MAX];
@@ -228,8 +233,7 @@ static int render_view(Film *f, const char *view) {
   f->options.camera = view;
   status = cag_session_render(f->session, &f->options, path);
   cag_progress_end(&f->progress);
-  if (status == CAG_STATUS_OK && t->verbose)
-    cag_tool_say(t, "wrote %s in %.1f s", path, cag_clock_seconds() - begun);
+  if (status == CAG_STATUS_OK && t->verbose) say_done(f, path, cag_clock_seconds() - begun);
   return status;
 }
 
@@ -271,8 +275,7 @@ static int render_frame(Film *f, long frame) {
   }
   cag_progress_end(&f->progress);
   status = cag_tool_finish(f->tool, f->session, status);
-  if (status == CAG_STATUS_OK && t->verbose)
-    cag_tool_say(t, "wrote %s in %.1f s", path, cag_clock_seconds() - begun);
+  if (status == CAG_STATUS_OK && t->verbose) say_done(f, path, cag_clock_seconds() - begun);
   return status;
 }
 

@@ -131,6 +131,9 @@ bool cag_tool_try(CagTool *t, const char *name, const char *value, CagToolRefusa
 // Writes a remark to standard error, unless -q or JSON diagnostics are selected.
 void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// Writes which tolerances the meshes of the last export or picture had, as such a remark.
+void cag_tool_say_tolerances(const CagTool *t, const CagSession *s);
+
 // Checks that the output can be written, before a long calculation. Returns 0, or a status after a
 // message.
 int cag_tool_check_output(const CagTool *t, const char *path);

@@ -61,11 +61,12 @@ typedef struct CagSession CagSession;
 
 // Defaults are in parentheses.
 typedef struct CagSessionOptions {
-  double tolerance;  // mm, largest distance between mesh and surface; 0: by the size of each shape
-  size_t max_memory; // memory limit of a run, in bytes, including its values (4 GiB)
-  size_t max_depth;  // nested calls in a script (10,000)
-  size_t max_triangles;           // of all meshes together (100 million)
-  double max_time;                // seconds for a run and all output of its scene; 0: no limit
+  double tolerance;     // mm, largest distance between mesh and surface; 0: a quarter of a pixel in
+                        // pictures, otherwise the default tolerance
+  size_t max_memory;    // memory limit of a run, in bytes, including its values (4 GiB)
+  size_t max_depth;     // nested calls in a script (10,000)
+  size_t max_triangles; // of all meshes together (100 million)
+  double max_time;      // seconds for a run and all output of its scene; 0: no limit
   const char *const *module_path; // folders that are searched for modules (-I)
   size_t module_path_count;
   // How POV-Ray source has set operations of solids: "native", "mesh", or "auto" (NULL). Auto uses
@@ -236,6 +237,21 @@ CAG_API int cag_session_export_image(CagSession *s, const char *path, const char
 CAG_API const char *const *cag_export_formats(void);
 // Returns a short description of a format, or NULL if there is no such format.
 CAG_API const char *cag_export_format_story(const char *format);
+
+// The default tolerance of meshes, in mm: a thousandth of the size of all that is shown, except
+// grounds, rounded down to a power of two. Small shapes have a smaller one, so that they keep their
+// form. The first function returns it, or 0 if there is no scene. The second replaces it in later
+// calls (0: as before); all frames of a film, for example, should have that of the first. It
+// returns false if the call is refused.
+CAG_API double cag_session_default_tolerance(CagSession *s);
+CAG_API bool cag_session_set_default_tolerance(CagSession *s, double tolerance);
+typedef struct CagToleranceView {
+  const char *source; // what determined it: "shape", "option", "pixels", or "size"
+  double least, most; // mm
+} CagToleranceView;
+// Returns range i of the tolerances of meshes that the last export or picture needed. Returns false
+// after the last range.
+CAG_API bool cag_session_tolerance(const CagSession *s, size_t i, CagToleranceView *out);
 
 // A part of a picture: pixels from its left and top edge. A width of 0 means the whole picture.
 typedef struct CagRenderRegion {

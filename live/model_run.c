@@ -91,22 +91,35 @@ void cag_model_run_free(CagModelRun *run) {
   *run = (CagModelRun){0};
 }
 
+// All times of a film have the default tolerance of the first one shown, so that meshes stay the
+// same, unless the size of the scene changes a lot. Returns it.
+static double keep_tolerance(CagSession *s, const CagLiveRequest *q, double before) {
+  const double most = 8; // ratio
+  const double own = cag_session_default_tolerance(s);
+  const bool later = q->has_time && q->time > 0;
+  if (!later || own == before || !(own <= most * before && before <= most * own)) return own;
+  return cag_session_set_default_tolerance(s, before) ? before : own;
+}
+
 void cag_model_run(const CagModel *model, const CagLiveRequest *request, int number,
                    const volatile int *interrupt, CagModelRun *last) {
   Prints *prints = calloc(1, sizeof *prints); // its addresses are in use until it is closed
   CagString scene = {0};
   CagLiveRun told = {.run = number, .status = CAG_STATUS_LIMIT};
   const double begin = cag_clock_seconds();
+  double tolerance = 0;
   publish_state(model, number, true);
   if (prints) prints->file = open_memstream(&prints->text, &prints->length);
   CagSession *s = prints && prints->file
                       ? cag_model_session(model, request, interrupt, prints->file, &told.status)
                       : NULL;
   if (model->begin_scene) model->begin_scene(model->context);
-  if (s && told.status == CAG_STATUS_OK)
+  if (s && told.status == CAG_STATUS_OK) {
+    tolerance = keep_tolerance(s, request, last->tolerance);
     told.status =
         cag_live_scene(s, &(CagLiveModel){number, model->name, model->folder, request->coarse},
                        &model->meshes, &scene);
+  }
   told.seconds = cag_clock_seconds() - begin;
   if (s) {
     fflush(prints->file);
@@ -120,7 +133,7 @@ void cag_model_run(const CagModel *model, const CagLiveRequest *request, int num
   cag_string_free(&scene);
   if (good) {
     cag_model_run_free(last);
-    *last = (CagModelRun){s, prints};
+    *last = (CagModelRun){s, prints, tolerance};
   } else {
     drop_session(s, prints);
   }

@@ -29,6 +29,7 @@ typedef struct CagModel {
 typedef struct CagModelRun {
   CagSession *session; // NULL: there is none
   struct CagModelPrints *prints;
+  double tolerance; // the default one of its meshes
 } CagModelRun;
 
 // Runs the script, and publishes the result. If it succeeds, it takes the place of `last`.

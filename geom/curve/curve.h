@@ -192,6 +192,9 @@ CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);
 // (radians) per step; both ends and all breaks are included. *out is malloc'd.
 CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
                                size_t *n, CagError *err);
+// The same, but steps up to the length `short_edge` may turn farther.
+CagStatus cag_curve_discretize_short(const CagCurve *c, double tolerance, double angle,
+                                     double short_edge, double **out, size_t *n, CagError *err);
 // The closest point of the curve (the global minimum). Intersections and others have their own
 // headers.
 CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *point,

@@ -22,7 +22,8 @@
 #define WIDEST (M_PI / 2)
 
 typedef struct Limits {
-  double tolerance, angle, cusp;
+  double tolerance, angle;
+  double cusp, short_edge; // up to these lengths, the turn does not matter
 } Limits;
 
 typedef struct Output {
@@ -139,7 +140,7 @@ static bool circle_steps(const CagCurve *c, double a, double b, const Limits *li
   if (fabs(cag_dot(y, y) - xx) > round * xx || fabs(cag_dot(x, y)) > round * xx) return false;
   // 1 - cos(step / 2) = tolerance / r
   double step = 4 * asin(sqrt(fmin(1, limits->tolerance / (2 * sqrt(xx)))));
-  step = fmin(step, fmin(limits->angle, WIDEST));
+  step = fmin(step, fmin(fmax(limits->angle, limits->short_edge / sqrt(xx)), WIDEST));
   *n = (size_t)fmax(1, ceil(fabs(rate) * (b - a) / step - slack));
   return true;
 }
@@ -156,6 +157,11 @@ static CagStatus one_piece(const CagCurve *c, double a, double b, const Limits *
 
 CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
                                size_t *n, CagError *err) {
+  return cag_curve_discretize_short(c, tolerance, angle, 0, out, n, err);
+}
+
+CagStatus cag_curve_discretize_short(const CagCurve *c, double tolerance, double angle,
+                                     double short_edge, double **out, size_t *n, CagError *err) {
   char text[32];
   if (cag_curve_resting_view(c, NULL)) return cag_curve_cuts(c, out, n, err);
   if (!(tolerance > 0))
@@ -173,7 +179,8 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   // Distances and directions below the rounding of the coordinates are meaningless.
   const double noise = cag_curve_noise(&box);
   const double cusp = fmin(CUSP_TOLERANCE * tolerance, CUSP_SIZE * size);
-  const Limits limits = {fmax(tolerance, noise), angle, fmax(cusp, 2 * noise / fmin(angle, 1))};
+  const Limits limits = {fmax(tolerance, noise), angle,
+                         fmax(fmax(cusp, short_edge), 2 * noise / fmin(angle, 1)), short_edge};
   Output o = {0};
   status = append(&o, cuts[0], err);
   for (size_t i = 0; !status && i + 1 < count; i++)

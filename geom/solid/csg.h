@@ -31,8 +31,8 @@ struct CagSolidCore {
   double form[10];     // HALF_SPACE, QUADRIC: in the order of CagQuadric, negative inside
   CagMesh *mesh;       // MESH: the boundary. Set operations: the finest one made so far, or NULL
                        // ...
-  double tolerance;    // ... to this tolerance
-  CagBounds reach;     // set operations: bounds that contain the solid; infinite if unknown
+  double tolerance, short_edge; // ... to these limits
+  CagBounds reach; // set operations: bounds that contain the solid; infinite if unknown
   const volatile int *interrupt; // set operations: cancels meshing; NULL: none
   CagSolidPlace place;
 };

@@ -196,7 +196,7 @@ static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMe
                             CagError *err) {
   CagSolidCore *core = s->core;
   if (core->mesh && is_usual(how) && core->tolerance <= how->tolerance &&
-      core->tolerance >= MUCH_FINER * how->tolerance) {
+      core->tolerance >= MUCH_FINER * how->tolerance && core->short_edge <= how->short_edge) {
     *out = cag_mesh_retain(core->mesh);
     return CAG_OK;
   }
@@ -205,6 +205,7 @@ static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMe
   cag_mesh_release(core->mesh);
   core->mesh = cag_mesh_retain(*out);
   core->tolerance = how->tolerance;
+  core->short_edge = how->short_edge;
   return CAG_OK;
 }
 

@@ -287,9 +287,6 @@ static void best_counts(const Form *f, double square_ratio, double n[2]) {
 // Fraction of the angle: where grids of different fineness are stitched, edges differ from those of
 // the grid.
 #define CLOSELY 0.95
-// Fraction of the tolerance. Edges need not be shorter than that because of the angle: at a cusp
-// the normal jumps.
-#define SHORTEST_EDGE 0.2
 
 // Counts for a leaf; correction scales the bound on the distance.
 static void counts_for(const CagTessellation *how, const Needs *needs, double correction,
@@ -319,7 +316,7 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
                   most);
     }
     for (int d = 0; d < 2; d++) {
-      double room = tess_larger(1, ceil(needs->length[d] / (SHORTEST_EDGE * how->tolerance)));
+      double room = tess_larger(1, ceil(needs->length[d] / tess_short_edge(how)));
       n[d] = tess_larger(n[d], tess_smaller(most[d], room));
     }
   }
@@ -413,7 +410,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
   const double near = 0.6, slight = 0.05, few = 4;
   const double surprising = 1.25; // more is needed only in some part of the leaf
   const CagTessellation *how = &t->how;
-  const double free = SHORTEST_EDGE * how->tolerance;
+  const double free = tess_short_edge(how);
   double *n = trial->n;
   for (int round = 0; round < MAX_CORRECTIONS; round++) {
     double turn[2], length[2];

@@ -322,7 +322,9 @@ static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCur
   double *at;
   size_t n;
   double scale = largest_scale(frame), angle = t->how.angle > 0 ? t->how.angle : M_PI / 2;
-  CagStatus status = cag_curve_discretize(curve, t->how.tolerance / scale, angle, &at, &n, err);
+  const double tolerance = t->how.tolerance / scale;
+  CagStatus status = cag_curve_discretize_short(curve, tolerance, angle,
+                                                t->how.short_edge * tolerance, &at, &n, err);
   if (status) return status;
   for (size_t k = 0; !status && k + 1 < n; k++) {
     CagVec3 p, q;

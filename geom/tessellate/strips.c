@@ -39,10 +39,8 @@ enum {
 #define AIMED_USE 0.84
 #define LOWEST_USE 0.72
 #define CHORD_USE 0.88
-// Fraction of the angle, and the length of edges exempt from it as a fraction of the tolerance; see
-// plan.c.
+// Fraction of the angle; see plan.c.
 #define CLOSELY 0.95
-#define SHORTEST_EDGE 0.2
 // Strips must take less than this fraction of the quadrilaterals of leaves, because their triangles
 // are longer.
 #define LEAST_GAIN 0.5
@@ -174,7 +172,7 @@ static double slope_of(const Cell *c, int first, int last) {
 // limits of edges. turn: change of the normal along both sides.
 static bool are_edges_within(const Run *r, const CagVec3 side[2], const CagVec3 turn[2]) {
   const CagTessellation *how = &r->t->how;
-  const double free = SHORTEST_EDGE * how->tolerance;
+  const double free = tess_short_edge(how);
   static const double part[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
   for (int k = 0; k < 4; k++) {
     const double *p = part[k];
@@ -253,8 +251,7 @@ static double least_steps(const Run *r) {
       n = fmax(n, sqrt(fabs(b->vv) * length * length / 8 / r->tolerance));
       if (end) n = fmax(n, sqrt(b->chord * length * length / 8 / (CHORD_USE * how->tolerance)));
       if (how->angle > 0)
-        n = fmax(n, fmin(cag_norm(b->turn[1]) * length / r->angle,
-                         edge / (SHORTEST_EDGE * how->tolerance)));
+        n = fmax(n, fmin(cag_norm(b->turn[1]) * length / r->angle, edge / tess_short_edge(how)));
       if (how->max_edge > 0) n = fmax(n, edge / how->max_edge);
     }
   }
@@ -327,8 +324,8 @@ static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double
   CagStatus status = cag_tess_try_distance(&trial, sine, &distance[0], err);
   if (!status) status = cag_tess_try_middles(&trial, &distance[1], err);
   if (!status)
-    status = cag_tess_try_edges(&trial, CLOSELY * how->angle, SHORTEST_EDGE * how->tolerance,
-                                how->max_edge, &found, err);
+    status = cag_tess_try_edges(&trial, CLOSELY * how->angle, tess_short_edge(how), how->max_edge,
+                                &found, err);
   if (!status && cag_tess_is_known_by_points(r->surface))
     status = cag_tess_try_scattered(&trial, how->tolerance, &missed, err);
   if (status) return status;

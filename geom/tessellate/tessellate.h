@@ -9,15 +9,16 @@
 typedef struct CagTessellation {
   double tolerance; // mm: maximum distance between surface and mesh; <= 0: by the size (1/1000 of
                     // the diagonal of the bounds)
-  double angle;     // radians: maximum turn of the normal along an edge; ignored for features
-                    // smaller than a fifth of the tolerance
+  double angle;     // radians: maximum turn of the normal along an edge that is not short
   double max_edge;  // mm; <= 0: unlimited
   size_t max_triangles;          // checked before memory is allocated; CAG_E_LIMIT "triangle-limit"
   const volatile int *interrupt; // nonzero stops with CAG_E_CALLBACK; may be NULL
+  double short_edge;             // multiple of the tolerance: along edges up to this length the
+                                 // normal may turn farther; <= 0: a fifth
 } CagTessellation;
 
 #define CAG_TESSELLATION_DEFAULT                                                                   \
-  ((CagTessellation){0, 15 * 3.14159265358979323846 / 180, 0, 100000000, 0})
+  ((CagTessellation){0, 15 * 3.14159265358979323846 / 180, 0, 100000000, 0, 0})
 
 // The distance from surface to mesh is at most the tolerance. Seams and poles share vertices. Grids
 // are chosen per smooth cell (between breaks), so that triangles concentrate where the curvature is

@@ -125,6 +125,12 @@ typedef struct Tessellator {
   bool needs_normals; // some vertex still has a zero normal
 } Tessellator;
 
+// The length up to which edges are exempt from the angle. There must be one, because at a cusp the
+// normal jumps.
+static inline double tess_short_edge(const CagTessellation *how) {
+  return (how->short_edge > 0 ? how->short_edge : 0.2) * how->tolerance;
+}
+
 CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err);
 CagStatus cag_tess_limit(const Tessellator *t, double triangles, CagError *err);
 

@@ -23,6 +23,7 @@
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "geom/tessellate/sides.h"
+#include "geom/tessellate/tessellation.h"
 
 #define NO_TRIANGLE UINT32_MAX
 
@@ -36,9 +37,6 @@
 #define ROUNDING CAG_ROUNDING
 // Maximum number of passes over all triangles; each roughly halves those that exceed the tolerance.
 #define MOST_PASSES 40
-// Edges shorter than this fraction of the tolerance are not divided because of the angle: there may
-// be a cusp.
-#define SHORT_EDGE 0.2
 
 typedef struct Plane {
   const CagSurface *inner;
@@ -128,7 +126,7 @@ static CagStatus turn_along(const Plane *p, const CagCurve *loop, double t0, dou
 static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double from, double to,
                                 double length, const CagTessellation *how, size_t *parts,
                                 CagError *err) {
-  const double closely = 0.9, most = ceil(length / (SHORT_EDGE * how->tolerance));
+  const double closely = 0.9, most = ceil(length / tess_short_edge(how));
   double n = 1;
   *parts = 1;
   if (!(how->angle > 0)) return CAG_OK;
@@ -159,7 +157,8 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
   CagStatus status = cag_trimmed_loop(s, loop, &on, err);
   if (status) return status;
   double angle = how->angle > 0 ? how->angle : M_PI / 2;
-  status = cag_curve_discretize(on, how->tolerance, angle, &at, &n, err);
+  status = cag_curve_discretize_short(on, how->tolerance, angle, how->short_edge * how->tolerance,
+                                      &at, &n, err);
   for (size_t k = 0; !status && k + 1 < n; k++) {
     CagVec3 a, b, x;
     status = cag_curve_point(on, at[k], &a, err);
@@ -504,7 +503,7 @@ static CagStatus judge(const Plane *p, uint32_t t, const CagTessellation *how, b
     if (status) return status;
     if (from_line(x[k], x[next], q) > how->tolerance) *bad = true;
     double turn = atan2(cag_norm(cag_cross(n[k], n[next])), cag_dot(n[k], n[next]));
-    if (how->angle > 0 && turn > how->angle && length > SHORT_EDGE * how->tolerance) *bad = true;
+    if (how->angle > 0 && turn > how->angle && length > tess_short_edge(how)) *bad = true;
     if (how->max_edge > 0 && length > how->max_edge) *bad = true;
     double flat = apart(at(p, c[k]), at(p, c[next]));
     if (flat > longest) {

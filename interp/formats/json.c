@@ -327,7 +327,7 @@ static CagStatus put_other_surface(Writer *w, const CagSurface *s, CagError *err
     return status;
   }
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.tolerance = w->scene->tolerance;
+  how.tolerance = w->scene->tolerance > 0 ? w->scene->tolerance : w->scene->usual_tolerance;
   how.max_triangles = w->scene->max_triangles > 0 ? w->scene->max_triangles : how.max_triangles;
   how.interrupt = w->scene->interrupt;
   if ((status = cag_surface_tessellate(s, &how, &mesh, err))) return status;

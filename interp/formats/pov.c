@@ -169,7 +169,6 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   bool meshed = false;
   w->item = item;
   w->placement = w->outer = cag_transform_identity();
-  w->tolerance = item->tolerance;
   w->see_through = w->scene->materials[item->material].transmission > 0;
   write_item_comment(w, item);
   if (item->kind == CAG_ITEM_CURVE && !w->options->meshes_only) {

@@ -22,7 +22,11 @@ static bool is_operation(const CagSolid *s) {
 
 // Writes a mesh with the item's tolerance.
 static void write_mesh(CagPovWriter *w, const CagSolid *s) {
-  CagItem item = {.kind = CAG_ITEM_SOLID, .as.solid = (CagSolid *)s, .tolerance = w->tolerance};
+  CagItem item = {.kind = CAG_ITEM_SOLID,
+                  .as.solid = (CagSolid *)s,
+                  .tolerance = w->item->tolerance,
+                  .bounds = w->item->bounds,
+                  .measured = w->item->measured};
   CagMesh *m;
   CagError err;
   CagStatus status = cag_item_mesh(w->scene, &item, &m, &err);

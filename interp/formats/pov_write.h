@@ -28,7 +28,6 @@ typedef struct CagPovWriter {
   bool in_operation;
   const CagItem *item; // being written
   int depth;           // indentation of lines, in steps
-  double tolerance;    // of the mesh of the item being written
   bool see_through;    // light passes through the item's material
   CagError failure;    // not CAG_OK: writing an item failed
 } CagPovWriter;

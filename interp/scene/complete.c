@@ -14,7 +14,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
-#include "interp/scene/scene.h"
+#include "interp/scene/fineness.h"
 
 #define AUTOMATIC_FOV 0.52 // radians, about 30 degrees: a moderate perspective
 // The direction from the target to the automatic camera.
@@ -202,10 +202,13 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
       status = CAG_OK;
       continue;
     }
+    s->items[i].bounds = one;
+    s->items[i].measured = !status;
     if (!status) join(&s->bounds, &one);
     s->items[kept++] = s->items[i];
   }
   s->item_count = kept;
+  if (!(s->usual_tolerance > 0)) s->usual_tolerance = cag_usual_tolerance(&s->bounds);
   return status;
 }
 

@@ -21,14 +21,6 @@ double cag_item_line_radius(const CagScene *s, const CagItem *item) {
   return item->line_radius > 0 ? item->line_radius : LINE_PART * diagonal(&s->bounds);
 }
 
-CagTessellation cag_item_fineness(const CagScene *s, const CagItem *item) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.tolerance = item->tolerance > 0 ? item->tolerance : s->tolerance;
-  if (s->max_triangles > 0) how.max_triangles = s->max_triangles;
-  how.interrupt = s->interrupt;
-  return how;
-}
-
 static CagStatus region_mesh(const CagItem *item, const CagTessellation *how, CagMesh **out,
                              CagError *err) {
   CagSurface *flat = NULL;

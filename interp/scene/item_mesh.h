@@ -3,14 +3,11 @@
 #ifndef CAG_INTERP_SCENE_ITEM_MESH_H
 #define CAG_INTERP_SCENE_ITEM_MESH_H
 
-#include "interp/scene/scene.h"
+#include "interp/scene/fineness.h"
 
 // Returns the radius with which a curve is drawn: its own, or one derived from the size of the
 // scene.
 double cag_item_line_radius(const CagScene *s, const CagItem *item);
-
-// Returns the tolerance and the limits of the item's mesh.
-CagTessellation cag_item_fineness(const CagScene *s, const CagItem *item);
 
 // Makes a closed mesh around the curve, with round corners and flat ends. If dash > 0, it consists
 // of dashes of this length, with gaps of the same length. The chord tolerance is a fraction of the

@@ -76,6 +76,8 @@ typedef struct CagItem {
                           // material
   size_t label_count;
   double tolerance;             // mm; 0: the scene's
+  CagBounds bounds;             // by cag_scene_complete
+  bool measured;                // the bounds are known
   double line_radius;           // CURVE; 0: derived from the size of the scene
   double dash;                  // CURVE: length of dashes in mm; 0: none
   double ground_z, ground_size; // GROUND; size may be infinite
@@ -159,6 +161,21 @@ typedef struct CagSky {
   char *image; // path of an EXR; NULL: none
 } CagSky;
 
+// What determined the tolerance of a mesh (fineness.h).
+typedef enum CagToleranceSource {
+  CAG_TOLERANCE_OF_ITEM,
+  CAG_TOLERANCE_OF_SCENE,
+  CAG_TOLERANCE_OF_PIXELS,
+  CAG_TOLERANCE_OF_SIZE,
+  CAG_TOLERANCE_SOURCES
+} CagToleranceSource;
+typedef struct CagToleranceRange {
+  double least, most; // mm; 0: no mesh was made
+} CagToleranceRange;
+typedef struct CagTolerances {
+  CagToleranceRange of[CAG_TOLERANCE_SOURCES];
+} CagTolerances;
+
 typedef struct CagScene {
   CagItem *items;
   size_t item_count;
@@ -175,8 +192,11 @@ typedef struct CagScene {
   CagSky sky;
   bool has_background;
   CagColor background;
-  CagBounds bounds; // of all items except grounds
-  double tolerance; // mm: for items without their own; 0: derived from the size of each
+  CagBounds bounds;         // of all items except grounds
+  double tolerance;         // mm: for items without their own; 0: the default (fineness.h)
+  double usual_tolerance;   // mm: the default, by the size of all that is shown; 0: of each
+  const CagCamera *picture; // meshes are for a picture of this camera; NULL: for any use
+  CagTolerances *used;      // receives the tolerances of meshes; may be NULL
   size_t max_triangles;
   bool studio; // the studio lights were added, because no light was shown
   bool
@@ -200,8 +220,8 @@ static inline size_t cag_item_label_material(const CagItem *item, uint32_t label
   return found ? item->labels[from].material : item->material;
 }
 // Adds a camera that frames everything, unless there is one, and the studio lights, unless there is
-// a light or a sky that lights. Computes bounds, and moves empty items to `empties`. If all items
-// are empty, nothing else is done.
+// a light or a sky that lights. Computes bounds and, unless it is set, the default tolerance, and
+// moves empty items to `empties`. If all items are empty, nothing else is done.
 CagStatus cag_scene_complete(CagScene *s, CagError *err);
 // Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
 // (size). Called by cag_scene_complete, and again for a picture of another size.

@@ -83,6 +83,7 @@ static CagStatus add_piece(Section *x, const CagItem *whole, CagItem piece, size
   item.kind = piece.kind;
   item.as = piece.as;
   item.placement = piece.placement;
+  item.measured = false;
   item.name = NULL;
   item.labels = NULL;
   CagStatus status = piece_name(x, whole->name, number, &item.name, err);
@@ -249,8 +250,16 @@ static CagStatus add_cut_mesh(Section *x, const CagItem *whole, CagMesh *m, CagE
   return CAG_OK;
 }
 
+// What is cut may be shown in a picture, whose pixels are finer than the default tolerance.
+static CagTessellation cut_fineness(const Section *x, const CagItem *item) {
+  const double of_usual = 0.25;
+  CagScene fine = *x->scene; // shares everything
+  fine.usual_tolerance *= of_usual;
+  return cag_item_fineness(&fine, item);
+}
+
 static CagStatus cut_surface(Section *x, const CagItem *item, const CagSurface *s, CagError *err) {
-  const CagTessellation how = cag_item_fineness(x->scene, item);
+  const CagTessellation how = cut_fineness(x, item);
   CagMesh *m = NULL;
   const CagStatus status = cag_surface_clip(s, x->half, &how, &m, err);
   return status ? status : add_cut_mesh(x, item, m, err);
@@ -275,7 +284,7 @@ static CagStatus cut_mesh(Section *x, const CagItem *item, CagError *err) {
     cag_solid_release(body);
     return status;
   }
-  const CagTessellation how = cag_item_fineness(x->scene, item);
+  const CagTessellation how = cut_fineness(x, item);
   status = cag_mesh_clip(mesh, x->half, &how, &m, err);
   return status ? status : add_cut_mesh(x, item, m, err);
 }
@@ -327,7 +336,7 @@ static CagStatus add_outline(Section *x, const CagItem *item, const CagCurve *c,
 
 static CagStatus draw_solid(Section *x, const CagItem *item, CagError *err) {
   const CagItem line = as_drawn(item);
-  const CagTessellation how = cag_item_fineness(x->scene, item);
+  const CagTessellation how = cut_fineness(x, item);
   CagRegion *cut = NULL;
   size_t number = 0;
   CagStatus status = cag_solid_section_region(item->as.solid, &x->frame, 0, &how, &cut, err);

@@ -546,8 +546,8 @@ static void free_urdf(void *u) { cag_urdf_free(u); }
 static int export_urdf(CagSession *s, const char *path) {
   const CagRobotValue *robot;
   CagUrdf u = {0};
-  CagUrdfHow how = {s->scene.tolerance, s->scene.bounds, s->scene.max_triangles,
-                    s->scene.interrupt};
+  CagUrdfHow how = {s->scene.tolerance, s->scene.usual_tolerance, s->scene.bounds,
+                    s->scene.max_triangles, s->scene.interrupt};
   int status = find_robot(s, &robot);
   if (status != CAG_STATUS_OK) return status;
   CagCleanup cleanup;
@@ -659,9 +659,13 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
     return CAG_STATUS_USAGE;
   }
   if (f->of_image) return f->write(s, path);
-  const int status = is_drawing(f) ? cag_session_build_drawing(s) : cag_session_build_scene(s);
-  return status == CAG_STATUS_OK ? cag_session_geometry(s, write_output, &(Output){f, path})
-                                 : status;
+  int status = is_drawing(f) ? cag_session_build_drawing(s) : cag_session_build_scene(s);
+  if (status != CAG_STATUS_OK) return status;
+  const CagCamera *picture = f->write == export_pov ? &s->scene.cameras[0] : NULL;
+  cag_session_begin_meshes(s, picture);
+  status = cag_session_geometry(s, write_output, &(Output){f, path});
+  cag_session_end_meshes(s);
+  return status;
 }
 
 int cag_session_export(CagSession *s, const char *path, const char *format) {

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/solid/solid.h"
+#include "geom/solid/csg.h"
 #include "interp/scene/feature_edges.h"
 #include "interp/scene/item_mesh.h"
 
@@ -50,7 +50,7 @@ void cag_session_drop_mesh(CagSession *s) {
 // An item before its placement.
 typedef struct Still {
   CagItem item;    // shares everything but an owned solid
-  CagSolid *owned; // released at the end
+  CagSolid *owned; // may be NULL
   CagTransform motion;
   bool moved;
 } Still;
@@ -61,6 +61,18 @@ static CagStatus unplaced_solid(const CagItem *item, Still *out, CagError *err) 
   if (!status) status = cag_solid_transform(item->as.solid, &back, &out->owned, err);
   if (!status) out->item.as.solid = out->owned;
   return status;
+}
+
+// The bounds in the frame of the solid do not change while it moves. Those of a set operation are
+// cheap, and may be too wide.
+static CagStatus measure_unplaced(const CagItem *item, Still *out, CagError *err) {
+  CagBounds box;
+  CagStatus status = unplaced_solid(item, out, err);
+  if (!status) status = cag_solid_reach(out->owned, &box, err);
+  if (status || !isfinite(cag_norm(cag_sub(box.max, box.min)))) return status;
+  out->item.bounds = box;
+  out->item.measured = true;
+  return CAG_OK;
 }
 
 static void share_geometry(CagItem *item, const CagShape *shape) {
@@ -79,14 +91,15 @@ static bool is_framed_solid(const CagItem *item) {
 }
 
 // Finds the item before it was moved, and adds it to the digest.
-static void find_still(const CagItem *item, const CagShape *shape, Still *out, CagDigest *d) {
+static CagStatus find_still(const CagItem *item, const CagShape *shape, Still *out, CagDigest *d,
+                            CagError *err) {
   *out = (Still){.item = *item, .motion = cag_transform_identity()};
   const CagStill *before = shape ? shape->still : NULL;
   if (is_framed_solid(item)) {
     out->motion = item->as.solid->placement;
     out->moved = true;
     cag_solid_digest_in_own_frame(item->as.solid, d);
-    return;
+    return measure_unplaced(item, out, err);
   }
   if (item->kind == CAG_ITEM_REGION && cag_transform_is_rigid(&item->placement)) {
     out->motion = item->placement;
@@ -97,6 +110,7 @@ static void find_still(const CagItem *item, const CagShape *shape, Still *out, C
     out->moved = true;
     share_geometry(&out->item, before->shape);
   }
+  out->item.measured &= !out->moved;
   switch (item->kind) {
   case CAG_ITEM_CURVE: cag_curve_digest(out->item.as.curve, d); break;
   case CAG_ITEM_REGION:
@@ -108,6 +122,7 @@ static void find_still(const CagItem *item, const CagShape *shape, Still *out, C
   case CAG_ITEM_MESH: cag_mesh_digest(out->item.as.mesh, d); break;
   case CAG_ITEM_GROUND: break;
   }
+  return CAG_OK;
 }
 
 static double size_of(const CagItem *item) {
@@ -117,9 +132,9 @@ static double size_of(const CagItem *item) {
   return cag_norm(cag_sub(box.max, box.min));
 }
 
-// The tolerance of the item; 0: by its size, as in exports.
+// The tolerance of the item, as in exports; 0: by its size.
 static double tolerance_of(const CagScene *scene, const CagItem *item, double coarse) {
-  const double own = item->tolerance > 0 ? item->tolerance : scene->tolerance;
+  const double own = cag_item_tolerance(scene, item);
   if (coarse <= 1) return own;
   return coarse * (own > 0 ? own : SIZE_PART * size_of(item));
 }
@@ -210,19 +225,16 @@ static CagStatus make_mesh(CagSession *s, const MeshTask *t, Still *still, CagDi
   if (out->line) out->radius = cag_item_line_radius(&s->scene, t->item);
   cag_digest_text(d, cag_session_item_type(t->item));
   cag_digest_number(d, still->item.tolerance);
-  cag_digest_number(d, scene.tolerance);
   out->placed = still->moved;
   for (int i = 0; i < 3; i++) memcpy(out->placement[i], still->motion.m[i], 4 * sizeof(double));
   write_id(d, out->id);
   if (!d->unknown && t->has && t->has(t->context, out->id)) return CAG_OK;
   if (!(s->mesh = cag_calloc(1, sizeof *s->mesh))) return cag_fail_memory(err);
-  CagStatus status = CAG_OK;
-  if (still->moved && is_framed_solid(t->item)) status = unplaced_solid(t->item, still, err);
   s->mesh->owned = still->owned;
+  still->owned = NULL;
   s->mesh->item = still->item;
-  if (status) return status;
-  status = out->line ? make_line(&still->item, still->item.tolerance, s->mesh, out, err)
-                     : make_triangles(&scene, &still->item, s->mesh, out, err);
+  CagStatus status = out->line ? make_line(&still->item, still->item.tolerance, s->mesh, out, err)
+                               : make_triangles(&scene, &still->item, s->mesh, out, err);
   out->positions = s->mesh->positions;
   out->normals = s->mesh->normals;
   out->edges = s->mesh->edges;
@@ -240,8 +252,10 @@ static int make_part_mesh(CagSession *s, void *context) {
   CagDigest d = cag_digest_start();
   Still still;
   cag_session_drop_mesh(s);
-  find_still(t->item, t->shape, &still, &d);
-  const CagStatus status = cag_session_checked(s, make_mesh(s, t, &still, &d, &err), &err);
+  CagStatus status = find_still(t->item, t->shape, &still, &d, &err);
+  if (!status) status = make_mesh(s, t, &still, &d, &err);
+  cag_solid_release(still.owned);
+  status = cag_session_checked(s, status, &err);
   return status ? cag_session_fail_geometry(s, &err) : CAG_STATUS_OK;
 }
 

@@ -460,12 +460,14 @@ static int render_camera(Job *j) {
     j->camera.size[1] = options->height;
   }
   if (!check_region(j)) return CAG_STATUS_USAGE;
+  cag_session_begin_meshes(s, &j->camera);
   if (j->renderer == POVRAY) status = cag_session_geometry(s, write_source, j);
   const double left = s->time_left;
   if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a separate time limit
   if (status == CAG_STATUS_OK)
     status = cag_session_geometry(s, j->renderer == POVRAY ? make_picture : make_preview, j);
   if (options->time_limit > 0) s->time_left = left;
+  cag_session_end_meshes(s);
   cag_free(j->source);
   cag_povray_result_free(&j->result);
   return status;

@@ -3,6 +3,7 @@
 #include "interp/session/session.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -12,6 +13,7 @@
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
 #include "geom/solid/csg.h"
+#include "interp/scene/fineness.h"
 #include "interp/scene/section.h"
 #include "interp/session/lead.h"
 #include "interp/session/scene_build.h"
@@ -624,9 +626,20 @@ static bool shows_shapes(const CagScene *scene) {
   return found;
 }
 
+// The default tolerance follows the size of the shapes before they are cut, so that it does not
+// change as the section moves.
+static int measure_whole(CagSession *s, void *context) {
+  (void)context;
+  const CagBounds whole = cag_scene_reach(&s->scene);
+  if (!(s->scene.usual_tolerance > 0)) s->scene.usual_tolerance = cag_usual_tolerance(&whole);
+  return CAG_STATUS_OK;
+}
+
 static int apply_section(CagSession *s) {
   CagSectionReach reach;
   if (s->form == CAG_SCENE_WHOLE || !shows_shapes(&s->scene)) return CAG_STATUS_OK;
+  const int measured = cag_session_geometry(s, measure_whole, NULL);
+  if (measured != CAG_STATUS_OK) return measured;
   const int status = cag_session_geometry(s, cut_scene, &reach);
   return status == CAG_STATUS_OK && !shows_shapes(&s->scene) ? fail_nothing_left(s, reach) : status;
 }
@@ -645,6 +658,7 @@ static int build_scene_as(CagSession *s, CagSceneForm form) {
   if (status != CAG_STATUS_OK) return status;
   CagScene *scene = &s->scene;
   if (s->options.tolerance > 0) scene->tolerance = s->options.tolerance;
+  scene->usual_tolerance = s->usual_tolerance;
   scene->max_triangles = s->options.max_triangles;
   scene->interrupt = &s->vm->stop;
   if (!scene->script && s->script && !(scene->script = cag_strdup(s->script))) {
@@ -675,6 +689,50 @@ int cag_session_scene(CagSession *s, CagShownCounts *out) {
   if (status == CAG_STATUS_OK)
     *out = (CagShownCounts){s->scene.item_count, s->scene.camera_count, s->scene.light_count};
   return cag_session_end(s, status);
+}
+
+// --- Tolerances ---
+
+double cag_session_default_tolerance(CagSession *s) {
+  if (!cag_session_begin(s)) return 0;
+  const bool built = cag_session_build_scene(s) == CAG_STATUS_OK;
+  const double tolerance = built ? s->scene.usual_tolerance : 0;
+  cag_session_end(s, CAG_STATUS_OK);
+  return tolerance;
+}
+
+bool cag_session_set_default_tolerance(CagSession *s, double tolerance) {
+  if (!cag_session_begin(s)) return false;
+  s->usual_tolerance = tolerance > 0 && isfinite(tolerance) ? tolerance : 0;
+  forget_scene(s);
+  cag_session_end(s, CAG_STATUS_OK);
+  return true;
+}
+
+void cag_session_begin_meshes(CagSession *s, const CagCamera *picture) {
+  s->used = (CagTolerances){0};
+  s->scene.used = &s->used;
+  s->scene.picture = picture;
+}
+
+void cag_session_end_meshes(CagSession *s) {
+  s->scene.used = NULL;
+  s->scene.picture = NULL;
+}
+
+bool cag_session_tolerance(const CagSession *s, size_t i, CagToleranceView *out) {
+  static const char *const SOURCES[] = {[CAG_TOLERANCE_OF_ITEM] = "shape",
+                                        [CAG_TOLERANCE_OF_SCENE] = "option",
+                                        [CAG_TOLERANCE_OF_PIXELS] = "pixels",
+                                        [CAG_TOLERANCE_OF_SIZE] = "size"};
+  size_t k = 0;
+  for (size_t source = 0; source < CAG_TOLERANCE_SOURCES; source++) {
+    const CagToleranceRange *r = &s->used.of[source];
+    if (!(r->most > 0) || k++ != i) continue;
+    *out = (CagToleranceView){SOURCES[source], r->least, r->most};
+    return true;
+  }
+  return false;
 }
 
 const char *cag_session_camera(CagSession *s, size_t i) {

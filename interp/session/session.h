@@ -43,7 +43,9 @@ struct CagSession {
   struct CagSessionLabelPaths *label_paths; // of the label that was asked about last; may be NULL
   struct CagSessionRobots *robots;          // of the scene; NULL: not looked for yet
   struct CagSessionPoints *points;          // those that were found last; may be NULL
-  CagSceneForm form;                        // of the scene
+  double usual_tolerance; // replaces the default tolerance of scenes; 0: it follows their size
+  CagTolerances used;     // of the meshes of the last export or picture
+  CagSceneForm form;      // of the scene
   bool has_section;
   CagPlane section; // what lies on its positive side is cut off
   size_t main;      // the module of the script; CAG_NO_MODULE: it was not loaded
@@ -89,6 +91,10 @@ int cag_session_fail_io(CagSession *s, CagErrorId id, const CagError *err);
 // Reads the option that states how set operations are written in POV-Ray source; "auto" means
 // `usual`. Returns false, after a diagnostic, if its value is invalid.
 bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out);
+// Meshes that are made between these calls are for a picture of a camera (NULL: for any use). Notes
+// their tolerances for cag_session_tolerance.
+void cag_session_begin_meshes(CagSession *s, const CagCamera *picture);
+void cag_session_end_meshes(CagSession *s);
 // Runs the statements `show` of an interactive session again. Of others, it does nothing.
 int cag_session_refresh(CagSession *s);
 // Whether the script shows an image, in a list or by itself.

@@ -172,6 +172,7 @@ static char *file_name(CagUrdf *u, const char *link) {
 static bool mesh_of(Walk *w, CagScene *scene, const CagItem *item, CagMesh **out) {
   CagError *err = w->call.err;
   scene->tolerance = w->how->tolerance;
+  scene->usual_tolerance = w->how->usual_tolerance;
   scene->max_triangles = w->how->max_triangles;
   scene->interrupt = w->how->interrupt;
   scene->bounds = w->how->bounds;

@@ -8,8 +8,8 @@
 
 // How shapes of links are meshed.
 typedef struct CagUrdfHow {
-  double tolerance;
-  CagBounds bounds; // of the whole scene, for lines
+  double tolerance, usual_tolerance; // of the scene
+  CagBounds bounds;                  // of the whole scene, for lines
   size_t max_triangles;
   const volatile int *interrupt;
 } CagUrdfHow;

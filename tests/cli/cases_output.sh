@@ -272,3 +272,36 @@ grep -q '"kind":"spot","position":\[10,10,10\]' light.json || wrong 'no spot lig
 grep -q '"angle":1.57079632679489' light.json || wrong 'the angle is not pi / 2'
 grep -q '"direction":\[-0.57735026918962[0-9]*,' light.json || wrong 'the direction is not along [-1, -1, -1]'
 grep -q '"sky":{"image":"sky.exr"}' light.json || wrong 'no panorama'
+
+# --- Default tolerances ---
+
+triangles_of() { python3 -c 'import struct, sys; print(struct.unpack("<I", open(sys.argv[1], "rb").read()[80:84])[0])' "$1"; }
+
+it 'the default tolerance follows the size of all that is shown' python3
+script large.cag 'show box([1000, 1000, 10])
+show [for i in 0..40: translate(sphere(5), [(i % 8)*100 + 100, floor(i/8)*100 + 100, 15])]
+show ground(size: 100000)'
+try export large.cag -o large.stl -v
+status 0
+# A thousandth of the diagonal is 1.41 mm. The balls are 17.3 mm across their corners, of which 1/32 is 0.54 mm.
+says 'tolerances 0.541266 to 1 mm, by the size of what is shown'
+# By the size of each, the balls have 107,256 triangles.
+[ "$(triangles_of large.stl)" -lt 12000 ] || wrong "$(triangles_of large.stl) triangles"
+for radius in 9.5 10 12; do
+  script ball.cag "show sphere($radius)"
+  try export ball.cag -o ball.stl -v
+  cat err >> balls
+done
+# Diagonals of 32.9, 34.6, and 41.6 mm.
+[ "$(grep -o 'tolerance 0[.0-9]*' balls | sort -u)" = 'tolerance 0.03125' ] || wrong "$(cat balls)"
+try export ball.cag -o ball.stl -v --tolerance 0.2
+says 'tolerance 0.2 mm, by --tolerance'
+script own.cag 'show sphere(10) |> tolerance(0.3)'
+try export own.cag -o own.stl -v
+says 'tolerance 0.3 mm, by `tolerance`'
+
+it 'a section has the default tolerance of the whole' python3
+script whole.cag 'show sphere(10)'
+try export whole.cag -o whole.stl -v --section x=-5
+status 0
+says 'tolerance 0.03125 mm'

@@ -534,6 +534,28 @@ grep -q '% rendering, about [0-9]* s left' shown || wrong "$(tail -2 shown)"
 python3 "$here/on_terminal.py" "$CAG" render ball.cag -o ball.png $quick -q > shown
 [ -z "$(cat shown)" ] || wrong "$(cat shown)"
 
+it '-v prints the tolerances of the meshes of a picture'
+script far.cag 'param away = 100
+show tube(helix(4, 2, 2), 0.5) |> named("coil")
+show camera(eye: [0, -away, 0], target: origin, kind: "orthographic", width: 20, size: [320, 240])'
+try render far.cag -o far.png $quick --engine preview -v
+status 0
+# A pixel is 20/64 mm, a quarter of it 0.078 mm.
+says 'tolerance 0.0625 mm, a quarter of a pixel or less'
+try render far.cag -o far.png --size 640x480 --engine preview --quality draft -v
+says 'tolerance 0.0078125 mm, a quarter of a pixel or less'
+try render far.cag -o far.png $quick --engine preview -v --tolerance 0.1
+says 'tolerance 0.1 mm, by --tolerance'
+# A quarter of a pixel at the nearest point, 4.5 mm before the target, is (d - 4.5) tan(20deg) / 128: 0.058, 0.129, 0.272 mm.
+script near.cag 'param away = 100
+show tube(helix(4, 2, 2), 0.5)
+show camera(eye: [0, -away, 2], target: [0, 0, 2], size: [320, 240])'
+for d in 25 50 100; do
+  try render near.cag -o near.png $quick --engine preview -v -D away=$d
+  cat err >> near
+done
+[ "$(grep -o 'tolerance 0[.0-9]*' near | tr '\n' ' ')" = 'tolerance 0.03125 tolerance 0.125 tolerance 0.25 ' ] || wrong "$(cat near)"
+
 it '--progress prints lines where there is no terminal' povray
 try render ball.cag -o ball.png $quick --progress
 status 0
@@ -569,13 +591,14 @@ try render sleeve.cag -o sleeve.png --size 1440x1080 --region 140x420+640+100 --
 status 0
 python3 "$here/png_specks.py" sleeve.png > specks || wrong "sleeve: $(cat specks)"
 script saddle.cag 'show surface((u, v) => [u, v, u*u/12 - v*v/12], -12..12, -12..12)'
-try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --quality draft --engine povray
+# The normals of a coarse mesh turn most. (A fine one shows the tip of the background between two outlines, a single pixel.)
+try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --quality draft --engine povray --tolerance 0.03
 status 0
 python3 "$here/png_specks.py" saddle.png > specks || wrong "saddle: $(cat specks)"
 
 # The floor of the studio is slightly below the objects on it: the dark inside must not be visible under the edge.
 it 'a sleeve meets the floor without dark specks' povray python3
 script standing.cag 'show revolve(line([200, 0, 0], [200, 0, 300]), angle: 180deg)'
-try render standing.cag -o standing.png --size 1440x1080 --region 420x60+560+655 --quality draft --engine povray
+try render standing.cag -o standing.png --size 1440x1080 --region 420x60+560+655 --quality draft --engine povray --tolerance 0.25
 status 0
 python3 "$here/png_specks.py" standing.png > specks || wrong "$(cat specks)"

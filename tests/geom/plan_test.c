@@ -25,7 +25,7 @@ static void release(Planned *p) {
 }
 
 static CagTessellation limits(double tolerance, double angle, double max_edge) {
-  return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL};
+  return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL, 0};
 }
 
 // --- Nets whose rows and columns can be exchanged or reversed ---

@@ -85,7 +85,7 @@ static void release(Planned *p) {
 }
 
 static CagTessellation limits(double tolerance, double angle, double max_edge) {
-  return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL};
+  return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL, 0};
 }
 
 // --- Cylinders with oblique parameter lines ---
