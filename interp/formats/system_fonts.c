@@ -35,6 +35,18 @@ static struct {
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static char missing[200]; // what cannot be loaded; empty: it is loaded
 
+// Available only in builds with AddressSanitizer.
+__attribute__((weak)) void __lsan_disable(void);
+__attribute__((weak)) void __lsan_enable(void);
+
+// Reads the configuration, which lasts until the program ends. LeakSanitizer does not see the
+// pointers that fontconfig keeps to it, because they are offsets.
+static void read_configuration(void) {
+  if (__lsan_disable) __lsan_disable();
+  fc.Init();
+  if (__lsan_enable) __lsan_enable();
+}
+
 static void load(void) {
   static const CagLibraryFunction functions[] = {
 #define X(name) {"Fc" #name, &fc.name},
@@ -43,7 +55,7 @@ static void load(void) {
   };
   if (cag_library_load("libfontconfig.so.1", "libfontconfig1", functions,
                        sizeof functions / sizeof *functions, missing, sizeof missing))
-    fc.Init();
+    read_configuration();
 }
 
 // --- One face ---

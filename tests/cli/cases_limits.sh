@@ -42,6 +42,14 @@ try run replaced.cag --max-memory 20M
 status 5
 says '--max-memory'
 
+it '--max-memory bounds the letters of texts, with what their shaping needs'
+# 1.2 million letters. In kilobytes, the limit on addresses is that of the memory and a margin for the program and its libraries.
+script letters.cag 'print lettering_metrics(join([for i in 1..200000: "a(b, 1 "]))'
+(ulimit -v 1000000; try run letters.cag --max-memory 60M; echo "$code" > ended)
+code=$(cat ended)
+status 5
+says '--max-memory'
+
 it 'what is freed does not count'
 script fold.cag 'print reduce(0..<300000, [0, 0], (acc, i) => acc + [i, 1])'
 try run fold.cag --max-memory 24M
