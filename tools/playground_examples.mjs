@@ -1,7 +1,8 @@
-// Writes the examples of the playground: their texts, and a picture of each in the folder `pictures`.
+// Writes the examples of the playground: a list, their texts in the folder `examples`, and a picture of each in the folder `pictures`.
 //   node tools/playground_examples.mjs CAG OUT [--no-pictures]       CAG renders the pictures, two at a time
 import { execFile } from "node:child_process";
 import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { dirname } from "node:path";
 import { promisify } from "node:util";
 
 const [cag, out, option] = process.argv.slice(2);
@@ -52,4 +53,8 @@ const work = async () => {
     await picture(example).catch((error) => console.error(`no picture of ${example.id}: ${String(error.stderr ?? error).split("\n")[0]}`));
 };
 await Promise.all([work(), work()]);
-writeFileSync(`${out}/examples.json`, JSON.stringify({ examples, files }));
+writeFileSync(`${out}/examples.json`, JSON.stringify(examples));
+for (const [path, text] of Object.entries(files)) {
+  mkdirSync(dirname(`${out}/examples/${path}`), { recursive: true });
+  writeFileSync(`${out}/examples/${path}`, text);
+}

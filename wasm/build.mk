@@ -6,6 +6,7 @@
 PLAYGROUND_OPT ?= -O2 -fno-unroll-loops
 # Of code that takes little of the time, so that less is sent.
 PLAYGROUND_OPT_SMALL ?= -Os
+PLAYGROUND_OPT_SMALLEST ?= -Oz
 WASM      := $(BUILD)/wasm
 WASM_DEPS := $(BUILD)/playground-deps
 # emcc looks for its packages where Debian's node does.
@@ -15,17 +16,20 @@ WASM_CLANG ?= $(notdir $(firstword $(wildcard /usr/bin/clang-14) clang))
 # Linear memory for the C stack, in bytes.
 WASM_STACK := 4194304
 
-WASM_LEFT_OUT := base/aside.c base/parallel.c base/large_stack.c base/reserve.c interp/session/watch.c \
+WASM_LEFT_OUT := base/aside.c base/library.c base/parallel.c base/large_stack.c base/reserve.c interp/session/watch.c \
+                 geom/letter/compiled.c geom/letter/libraries.c interp/formats/system_fonts.c \
                  interp/render/exr_read.c interp/render/exr_write.c interp/render/exr_complaint.c \
                  interp/render/povray.c interp/render/povray_files.c interp/render/povray_log.c interp/render/povray_process.c \
                  interp/render/sandbox.c interp/session/markdown.c $(wildcard interp/session/site*.c)
 WASM_LIVE := $(patsubst %,live/%.c,json json_write lsp lsp_files lsp_requests measures model_answers model_files model_run place_json points_json questions request robot_json scene_json)
 WASM_SRC  := $(filter-out $(WASM_LEFT_OUT),$(BASE_SRC) $(LANG_SRC) $(GEOM_SRC) $(INTERP_SRC)) $(WASM_LIVE) \
-             $(sort $(wildcard wasm/*.c wasm/*/*.c))
+             $(filter-out wasm/case_table.c,$(sort $(wildcard wasm/*.c wasm/*/*.c wasm/*/*/*.c)))
 WASM_OBJ  := $(patsubst %.c,$(WASM)/%.o,$(WASM_SRC)) $(patsubst %,$(WASM)/gen/%.o,stdlib builtins) $(WASM)/wasm/lapack.o
 # The flags of emcc are asked for when they are needed. Calling clang directly takes half of the time of emcc.
-WASM_SMALL := base geom/camera geom/image geom/meet geom/robot geom/solid interp/builtin interp/check interp/doc interp/document interp/formats interp/scene interp/session lang live wasm
-WASM_FLAGS = $$(cat $(WASM)/flags) $(if $(filter $(addsuffix /%,$(WASM_SMALL)),$<),$(PLAYGROUND_OPT_SMALL),$(PLAYGROUND_OPT)) -msimd128 $(WARN) -Iwasm -I$(WASM_DEPS)/include -MMD -MP
+WASM_SMALL := base geom/camera geom/image geom/letter geom/meet geom/robot geom/solid interp/scene lang
+WASM_SMALLEST := interp/builtin interp/check interp/doc interp/document interp/formats interp/session live wasm
+wasm_in = $(filter $(addsuffix /%,$(1)),$<)
+WASM_FLAGS = $$(cat $(WASM)/flags) $(if $(call wasm_in,$(WASM_SMALLEST)),$(PLAYGROUND_OPT_SMALLEST),$(if $(call wasm_in,$(WASM_SMALL)),$(PLAYGROUND_OPT_SMALL),$(PLAYGROUND_OPT))) -msimd128 $(WARN) -Iwasm -I$(WASM) -I$(WASM_DEPS)/include -MMD -MP
 WASM_CFLAGS = $(WASM_FLAGS) -std=c17 -D_GNU_SOURCE -fno-math-errno -fno-trapping-math -ffp-contract=off -I. -Iinclude -I$(BUILD)/gen \
               -DCAG_VERSION='"$(VERSION)"'
 WASM_LINK := -s MODULARIZE=1 -s EXPORT_ES6=1 -s USE_ES6_IMPORT_META=0 -s ENVIRONMENT=worker -s DYNAMIC_EXECUTION=0 \
@@ -41,6 +45,10 @@ $(WASM)/flags: wasm/build.mk
 $(WASM_DEPS)/libdeps.a: wasm/deps.sh
 	@echo "libraries for WebAssembly"
 	$QNODE_PATH=/usr/share/nodejs CLANG=$(WASM_CLANG) OPT="-Os $(WASM_CORRECT)" sh wasm/deps.sh $(WASM_DEPS)
+$(WASM)/case_table.h: wasm/case_table.c
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $< -lutf8proc -o $(WASM)/case_table && $(WASM)/case_table > $@
+$(WASM)/wasm/base/unicode.o: $(WASM)/case_table.h
 $(WASM)/%.o: %.c $(WASM)/flags | $(WASM_DEPS)/libdeps.a $(BUILD)/gen/builtin_functions.h
 	@mkdir -p $(@D)
 	@echo "wasm $<"
@@ -61,7 +69,7 @@ $(WASM)/cag.mjs: $(WASM_OBJ) $(WASM_DEPS)/libdeps.a wasm/build.mk
 # Everything together. PLAYGROUND_PICTURES=--no-pictures leaves out the pictures of the examples and of the documentation.
 PLAYGROUND := $(BUILD)/playground
 PLAYGROUND_PICTURES ?=
-$(PLAYGROUND)/worker.js: $(WASM)/cag.mjs web/playground.sh $(wildcard web/src/*) | web/node_modules
+$(PLAYGROUND)/worker.js: $(WASM)/cag.mjs web/playground.sh $(FONTS) $(wildcard web/src/*) | web/node_modules
 	@echo "bundle $(PLAYGROUND)"
 	$Qsh web/playground.sh $(PLAYGROUND) $(WASM)/cag.mjs $(WASM_DEPS)/sources
 $(PLAYGROUND)/examples.json: tools/playground_examples.mjs $(wildcard examples/*.cag examples/*/*.cag) | $(BUILD)/cag

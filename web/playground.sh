@@ -12,6 +12,8 @@ bundle src/editor.js editor.bundle.js
 bundle src/worker.js worker.js
 cat src/page.css src/playground.css | esbuild --loader=css --minify --log-level=warning > "$out/page.css"
 cp src/icon.svg "$out"
+mkdir -p "$out/fonts"
+cp ../fonts/*.ttf "$out/fonts"
 cp "${program%.mjs}.wasm" "$out"
 # The page is that of cag view, with another entry, and with a policy that the server would send.
 policy="default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' data:; base-uri 'none'; form-action 'none'; object-src 'none'"
@@ -28,12 +30,19 @@ grep -q playground.js "$out/index.html" && grep -q http.server "$out/index.html"
     cat "node_modules/$name/LICENSE"
     echo
   done
-  for name in utf8proc zlib libpng1.6 cjson libxml2; do
+  for name in utf8proc zlib libpng1.6 cjson libxml2 fribidi; do
     printf '%s\n\n' "$name"
     cat "$sources/$name/debian/copyright"
     echo
   done
-  printf 'libglu\n\n'
+  printf 'The terms of FriBidi let you change it and link the program with your version: its source is the package fribidi of Debian, %s,\nwhich `make playground` in the source of cag downloads, compiles, and links.\n\n' \
+    "$(sed -n 's/^.* (\(.*\)) .*/version \1/p;q' "$sources/fribidi/debian/changelog")"
+  cat "$sources/fribidi/COPYING"
+  printf '\nharfbuzz\n\n'
+  cat "$sources/harfbuzz/COPYING"
+  printf '\nfonts\n\n'
+  cat ../fonts/OFL.txt
+  printf '\nlibglu\n\n'
   sed -n '1,/^ \*\//p' "$sources/libglu/src/libtess/tess.c"
   for package in libeigen3-dev emscripten; do
     printf '\n%s\n\n' "$package"

@@ -92,8 +92,11 @@ CagStatus cag_font_new(const char *name, const void *bytes, size_t size, unsigne
 }
 
 CagStatus cag_font_compiled_in(CagFontStyle style, CagFont *out, CagError *err) {
-  const CagFontFile *file = &cag_compiled_fonts[style];
-  return cag_font_new(CAG_FONT_SANS, file->bytes, file->size, 0, out, err);
+  CagFontFile file;
+  *out = (CagFont){.hb = NULL};
+  CagStatus status = cag_font_compiled_file(style, &file, err);
+  if (status) return status;
+  return cag_font_new(CAG_FONT_SANS, file.bytes, file.size, 0, out, err);
 }
 
 void cag_font_free(CagFont *f) {

@@ -34,6 +34,8 @@ typedef struct CagFontFile {
 } CagFontFile;
 // The compiled-in fonts, by their style (generated).
 extern const CagFontFile cag_compiled_fonts[CAG_FONT_STYLE_COUNT];
+// One of them (geom/letter/compiled.c). In a browser, it is loaded when it is first needed.
+CagStatus cag_font_compiled_file(CagFontStyle style, CagFontFile *out, CagError *err);
 
 typedef struct CagFont {
   hb_font_t *hb;

@@ -66,6 +66,9 @@ static bool fail_missing(CagCall *call, int argument, const char *name, CagFontS
   const char *nearest = cag_nearest_name(name, names, fonts->count + 1);
   cag_fail_call(call, argument, CAG_ERR_font_missing, "found no font with the name \"%s\"", name);
   if (nearest) return cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
+  if (fonts->count == 0)
+    return cag_fail_help(call->vm, "use \"%s\", the only font of %s", CAG_FONT_SANS,
+                         cag_system_fonts_owner);
   return cag_fail_help(call->vm, "\"%s\" is compiled in, and fonts() lists the others",
                        CAG_FONT_SANS);
 }

@@ -23,6 +23,8 @@
   X(PatternGetInteger)                                                                             \
   X(PatternGetString)
 
+const char *const cag_system_fonts_owner = "this system";
+
 // An index has the number of a named instance of a variable font in these bits.
 #define INSTANCE_BITS 16
 

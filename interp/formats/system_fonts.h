@@ -17,6 +17,9 @@ typedef struct CagSystemFonts {
   size_t count, capacity;
 } CagSystemFonts;
 
+// Whose fonts these are, for messages: "this system".
+extern const char *const cag_system_fonts_owner;
+
 // The scalable TrueType and OpenType fonts. Fails with "library-missing".
 CagStatus cag_system_fonts(CagSystemFonts *out, CagError *err);
 void cag_system_fonts_free(CagSystemFonts *fonts);

@@ -2,7 +2,7 @@
 //   node tests/web/playground.mjs CAG CAG.MJS [--times]     --times also prints how long the examples take, in each, and includes slow ones
 // The last line is `N passed, N failed, 0 skipped`.
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, resolve } from "node:path";
 import { Program, crashOf } from "../../web/src/wasm_program.js";
@@ -29,6 +29,9 @@ const check = (truth, what) => {
   if (!truth) throw new Error(what);
 };
 
+/** Whether the server of the fonts can be reached. */
+let fonts = true;
+
 async function start() {
   const seen = { events: [], meshes: new Map() };
   const program = await Program.start(make, module, {
@@ -36,6 +39,7 @@ async function start() {
     hasMesh: () => false,
     keepMesh: (id, bytes) => seen.meshes.set(id, bytes),
     progress: () => {},
+    font: (name) => (fonts ? readFileSync(`fonts/${name}`) : null),
   });
   const last = (name) => seen.events.filter(([n]) => n === name).pop()?.[1];
   let number = 0;
@@ -50,6 +54,8 @@ async function start() {
   const ask = (name, ...values) => program.ask(program.cag[`_playground_${name}`], ...values);
   return { program, run, runText, ask };
 }
+
+const codeOf = ({ messages }) => messages.diagnostics.filter((d) => d.severity === "error").map((d) => d.code)[0] ?? "";
 
 // --- The examples ---
 
@@ -107,7 +113,6 @@ for (const path of scripts)
     if (isDrawing) check(close(found.length, expected.length, 200, 0.02), `a drawing of ${found.length} bytes instead of ${expected.length}`);
     else compareMeshes(found, expected);
   });
-rmSync(out, { recursive: true });
 
 // Numbers in texts may differ in their last digits.
 function sameText(a, b) {
@@ -117,10 +122,48 @@ function sameText(a, b) {
   return x.every((t, i) => Math.abs(t - y[i]) <= 1e-4 * Math.max(Math.abs(t), 1));
 }
 
+// --- Lettering ---
+
+// Each line gives the measures of one or more texts.
+const LETTERS = {
+  "all styles": `[for style in ["regular", "bold", "italic", "bold italic"]: each(lettering("Quick größe Ωλ Жя 0123 fi", style: style))]`,
+  "metrics": `[for style in ["regular", "bold", "italic", "bold italic"]: lettering_metrics("Ágy שלום", size: 7, style: style)]`,
+  "kerning": 'each(lettering("AVATAR To. Ty, P.")), each(lettering("AVATAR To. Ty, P.", spacing: 1.2))',
+  "Hebrew with points, digits, and Latin letters": 'each(lettering("שָׁלוֹם abc (12) בְּרֵאשִׁית"))',
+  "combining marks": 'each(lettering("e\\u{301} x\\u{323}\\u{308} \\u{41d}\\u{301}"))',
+  "spaces and fractions": 'each(lettering("1\\u{2044}2 x\\u{2009}y\\u{a0}z\\u{2003}."))',
+  "several lines": 'each(lettering("one\\ntwo lines\\n\\nand three", align: "center", valign: "middle", line_spacing: 1.3))',
+  "broken lines": 'each(lettering("A longer text that is broken - twice", width: 60, align: "right"))',
+  "other directions": 'each(lettering("down שלום", direction: "ttb")), each(lettering("(left)", direction: "rtl"))',
+  "along a curve": 'each(lettering("on a ring", along: circle(15)))',
+};
+for (const [name, values] of Object.entries(LETTERS))
+  await test(`lettering is the same: ${name}`, async () => {
+    const text = `each(r) = [area(r), length(r), bounds(r).min, bounds(r).max]\nprint ${values}\n`, path = `${out}/a.cag`;
+    writeFileSync(path, text);
+    const { messages } = (await start()).runText(text);
+    check(messages.ok, JSON.stringify(messages.diagnostics));
+    equal(messages.prints.join("\n"), execFileSync(cag, ["run", path], quiet).trimEnd(), "prints");
+  });
+await test("fonts: those of the playground, and no others", async () => {
+  const { runText } = await start();
+  equal(runText("print fonts() == [for s in [\"regular\", \"bold\", \"italic\", \"bold italic\"]: {name: \"sans\", style: s, file: none}]").messages.prints, ["true"], "fonts");
+  const { diagnostics } = runText('print lettering("A", font: "No Such Font")').messages;
+  equal([diagnostics[0].code, diagnostics[0].help], ["E0860", 'use "sans", the only font of the playground'], "another font");
+  equal(codeOf(runText('print lettering("漢")')), "E0862", "a character without a glyph");
+});
+await test("a font that cannot be loaded is an error, and is loaded later", async () => {
+  const { runText } = await start(), script = 'print lettering_metrics("H").height';
+  fonts = false;
+  equal(codeOf(runText(script)), "E0861", "code");
+  fonts = true;
+  equal(runText(script).messages.ok, true, "the next run");
+});
+rmSync(out, { recursive: true });
+
 // --- Limits ---
 
 // A crash is not allowed: the program must go on after each of these.
-const codeOf = ({ messages }) => messages.diagnostics.filter((d) => d.severity === "error").map((d) => d.code)[0] ?? "";
 const one = await start();
 const DEEP = {
   "a function that calls itself": "f(n) = 1 + f(n + 1)\nprint f(0)",

@@ -41,7 +41,9 @@ const DEEP = ["f(n) = 1 + f(n + 1)\nprint f(0)", "f(n) = sum(map([n], x => f(x +
   `print ${"(".repeat(990)}1${")".repeat(990)}\nassert false`, `print ${"[".repeat(100000)}`];
 
 async function main() {
-  const server = await serveFolder(folder), base = `http://localhost:${server.address().port}/`;
+  /** Paths of the answers. */
+  const sent = [];
+  const server = await serveFolder(folder, (name) => sent.push(name)), base = `http://localhost:${server.address().port}/`;
   const browser = new Browser(chromium);
   const page = await browser.open(base, { width: 1200, height: 760 });
   // A change of the fragment loads the page again.
@@ -120,6 +122,17 @@ async function main() {
     for (const word of ["POV-Ray", "OpenEXR", "fonts of the system"]) check(text.includes(word), word);
     await press(page, "Close");
     check(!(await page.value('[...document.querySelectorAll("#output option")].map((o) => o.value).join()')).match(/povray|exr/), "POV-Ray or .exr are offered");
+  });
+  await test("fonts are loaded when a script needs them", async () => {
+    equal(sent.filter((name) => name.startsWith("/fonts/")), []);
+    const script = 'show extrude(lettering("cag\\nשָׁלוֹם", style: "bold italic", align: "center"), 2)\nprint "set"\n';
+    await go(`#name=letters.cag&text=${encodeURIComponent(script)}`, `${READY} && ${OK} === "true" && ${MESSAGES}.includes("set")`);
+    equal([...new Set(sent.filter((name) => name.startsWith("/fonts/")))], ["/fonts/Sans-BoldItalic.ttf"]);
+    await shot(page, "playground-letters");
+  });
+  await test("the licenses of the libraries and fonts are in the folder", async () => {
+    const text = await page.value('fetch("licenses.txt").then((r) => r.text())');
+    for (const words of ["GNU LESSER GENERAL PUBLIC LICENSE", "Old MIT", "SIL OPEN FONT LICENSE"]) check(text.includes(words), words);
   });
   await test("endless recursion ends as an error, and the next script runs", async () => {
     for (const text of DEEP) {

@@ -6,7 +6,7 @@ const http = require("http");
 const path = require("path");
 const zlib = require("zlib");
 
-const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm", json: "application/json", png: "image/png", txt: "text/plain" };
+const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm", json: "application/json", png: "image/png", txt: "text/plain", cag: "text/plain" };
 
 /** Calls `note(path, size)` with the compressed size of each answer. */
 function serveFolder(folder, note = () => {}) {

@@ -18,9 +18,7 @@ const SAVED = "cag:file:", SETS = "cag:sets:";
  * @property {string} about
  * @property {string} group
  * @property {string} picture  "": none
- * @property {string[]} imports  paths of the files that it needs
- *
- * @typedef {{ examples: Example[], files: Record<string, string> }} Examples  files: texts by path below examples/
+ * @property {string[]} imports  paths of the files that it needs, below examples/
  */
 
 /** What the browser keeps. Some browsers forbid it. @param {string} key */
@@ -54,23 +52,31 @@ function safeName(name) {
   return plain.endsWith(".cag") && !plain.startsWith(".") ? plain : "script.cag";
 }
 
+/** The texts of files below examples/. @param {string[]} paths */
+const loadTexts = (paths) => Promise.all(paths.map(async (path) => {
+  const answer = await fetch(new URL(`examples/${path}`, document.baseURI));
+  if (!answer.ok) throw new Error(`${path} cannot be loaded`);
+  return answer.text();
+}));
+
 /**
  * The files of the model by the fragment.
  *
  * @param {import("./fragment.js").Fragment} fragment
- * @param {Examples} all
+ * @param {Example[]} examples
  */
-function openModel(fragment, all) {
+async function openModel(fragment, examples) {
   const saved = fragment.saved !== undefined ? recall(SAVED + fragment.saved) : null;
   const empty = fragment.text === undefined && saved === null;
-  const example = all.examples.find((e) => e.id === (fragment.example ?? (empty ? FIRST : "")));
+  const example = examples.find((e) => e.id === (fragment.example ?? (empty ? FIRST : "")));
   /** @type {Record<string, string>} */
   const files = {};
   let file = safeName(fragment.name ?? fragment.saved ?? "script.cag");
   if (example) {
     const folder = example.id.replace(/[^/]*$/, "");
     file = `${example.id.slice(folder.length)}.cag`;
-    for (const path of [`${example.id}.cag`, ...example.imports]) files[path.slice(folder.length)] = all.files[path];
+    const paths = [`${example.id}.cag`, ...example.imports], loaded = await loadTexts(paths);
+    paths.forEach((path, i) => (files[path.slice(folder.length)] = loaded[i]));
   }
   const original = { ...files };
   Object.assign(files, fragment.files);
@@ -89,7 +95,7 @@ function toast(...content) {
 const LACKS = [
   ["POV-Ray", "pictures are rendered by the built-in renderer"],
   ["OpenEXR", ".exr images are neither read nor written"],
-  ["fonts of the system", "lettering has the compiled-in font"],
+  ["fonts of the system", "lettering has the compiled-in font, \"sans\""],
   ["files of your computer", "scripts read only the files of their example"],
   ["threads", "heavy scripts take about as long as with one processor, and memory ends at 800 MB"],
 ];
@@ -115,9 +121,12 @@ async function open() {
   } catch {
     problem = "The script in the address is damaged.";
   }
-  /** @type {Examples} */
-  const all = await loading.catch(() => ({ examples: [], files: {} }));
-  const opened = openModel(fragment, all);
+  /** @type {Example[]} */
+  const examples = await loading.catch(() => []);
+  const opened = await openModel(fragment, examples).catch((error) => {
+    problem = `The example cannot be opened: ${error.message}.`;
+    return openModel(fragment, []);
+  });
   let texts = opened.files, writing = 0, writes = 0;
 
   const follow = async () => {
@@ -153,7 +162,7 @@ async function open() {
     await navigator.clipboard.writeText(location.href).then(() => toast("The address with the script is copied."), () => toast("The script is in the address of this page."));
   };
   byId("toggle-editor", HTMLButtonElement).before(
-    button("Examples", "Open an example", () => openGallery(all.examples, savedNames())),
+    button("Examples", "Open an example", () => openGallery(examples, savedNames())),
     button("Tour", "Getting started, step by step", () => tour.toggle()),
     button("Link", "Copy the address with the script", copy),
     button("Download", "Download the script", () => download(opened.file, new Blob([texts[opened.file]], { type: "text/plain" }))),

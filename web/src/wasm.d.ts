@@ -35,6 +35,8 @@ declare module "cag-wasm" {
     hasMesh(id: string): boolean;
     keepMesh(id: string, bytes: ArrayBuffer): void;
     progress(percent: number, phase: string): void;
+    /** A file of fonts/; null: it cannot be read. */
+    font(name: string): Uint8Array | null;
   }
   export default function make(options: {
     host: Host;

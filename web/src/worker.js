@@ -17,6 +17,19 @@ let quiet = false;
 
 const post = (/** @type {any} */ message, /** @type {Transferable[]} */ transfer = []) => self.postMessage(message, { transfer });
 
+/** A run cannot wait for anything else. @param {string} name */
+function loadFont(name) {
+  const request = new XMLHttpRequest();
+  request.open("GET", new URL(`fonts/${name}`, import.meta.url), false);
+  request.responseType = "arraybuffer";
+  try {
+    request.send();
+  } catch {
+    return null; // the server cannot be reached
+  }
+  return request.status === 200 ? new Uint8Array(request.response) : null;
+}
+
 /** @type {import("cag-wasm").Host} */
 const host = {
   event: (event, json) => quiet || post({ event, json }),
@@ -26,6 +39,7 @@ const host = {
     post({ mesh: id, bytes }, [bytes]);
   },
   progress: (percent, phase) => post({ progress: percent, phase }),
+  font: loadFont,
 };
 
 /** @param {WebAssembly.Module | null} given  compiled by another worker */
