@@ -14,7 +14,7 @@
 #include "live/server_token.h"
 
 enum { KINDS_MAX = 8, IDLE_SECONDS = 30 };
-#define COOKIE "cag-view"
+#define COOKIE "cag-view-%d" // of a port: browsers send the cookies of all ports of a host
 
 // A text that listeners share.
 typedef struct SharedText {
@@ -111,7 +111,9 @@ static const char *refusal(const CagServer *s, struct MHD_Connection *c, const c
   if (entry && same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "t")))
     return NULL; // a link from anywhere may lead here
   if (!is_own_origin(c, host)) return "a page of another origin cannot use this server";
-  if (!same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_COOKIE_KIND, COOKIE)))
+  char cookie[32];
+  snprintf(cookie, sizeof cookie, COOKIE, s->port);
+  if (!same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_COOKIE_KIND, cookie)))
     return "open the address that cag view printed";
   return NULL;
 }
@@ -174,7 +176,7 @@ static void answer_entry(CagExchange *x) {
   char cookie[128];
   struct MHD_Response *r =
       cag_microhttpd.create_response_from_buffer(0, "", MHD_RESPMEM_PERSISTENT);
-  snprintf(cookie, sizeof cookie, COOKIE "=%s; Path=/; HttpOnly; SameSite=Strict",
+  snprintf(cookie, sizeof cookie, COOKIE "=%s; Path=/; HttpOnly; SameSite=Strict", x->server->port,
            x->server->token);
   if (r) {
     add_safety(r);

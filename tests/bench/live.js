@@ -112,7 +112,7 @@ async function reloads(browser) {
   const page = await browser.open(url, { width: 400, height: 300 });
   await page.until(SHOWN);
   const ask = (body) => new Promise((done, fail) => {
-    const headers = { Cookie: `cag-view=${searchParams.get("t")}`, "Content-Type": "application/json" };
+    const headers = { Cookie: `cag-view-${port}=${searchParams.get("t")}`, "Content-Type": "application/json" };
     const request = http.request({ host: "127.0.0.1", port, agent, method: "POST", path: "/api/run", headers }, (answer) => {
       let text = "";
       answer.on("data", (data) => (text += data)).on("end", () => done(JSON.parse(text).run));

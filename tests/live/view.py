@@ -49,7 +49,7 @@ class View:
         self.address = self.process.stdout.readline().strip()
         self.port = int(self.address.split(":")[2].split("/")[0])
         self.token = self.address.split("t=")[1]
-        self.cookie = {"Cookie": "cag-view=" + self.token}
+        self.cookie = {"Cookie": f"cag-view-{self.port}={self.token}"}
         self.events = []
         self.changed = threading.Condition()
         threading.Thread(target=self._listen, daemon=True).start()
@@ -460,7 +460,7 @@ def test_strangers_are_refused():
     v = View(VASE)
     assert v.ask("GET", "/api/hello", cookie=False)[0] == 403
     assert v.ask("GET", "/", cookie=False)[0] == 403
-    assert v.ask("GET", "/api/hello", headers={"Cookie": "cag-view=" + "x" * 32})[0] == 403
+    assert v.ask("GET", "/api/hello", headers={"Cookie": f"cag-view-{v.port}=" + "x" * 32})[0] == 403
     assert v.ask("GET", "/?t=" + "x" * 32, cookie=False)[0] == 403
     assert v.ask("GET", "/?t=" + v.token[:-1], cookie=False)[0] == 403
     status, _, headers = v.ask("GET", "/?t=" + v.token, cookie=False)
@@ -476,6 +476,15 @@ def test_strangers_are_refused():
     _, _, headers = v.ask("GET", "/api/hello")
     assert "default-src 'none'" in headers["Content-Security-Policy"]
     v.close()
+
+
+def test_servers_of_one_browser():
+    v, w = View(VASE), View(VASE)
+    assert v.ask("GET", "/api/hello", headers={"Cookie": f"{v.cookie['Cookie']}; {w.cookie['Cookie']}"})[0] == 200
+    assert w.ask("GET", "/api/hello", headers={"Cookie": f"{v.cookie['Cookie']}; {w.cookie['Cookie']}"})[0] == 200
+    assert w.ask("GET", "/api/hello", headers=v.cookie)[0] == 403
+    v.close()
+    w.close()
 
 
 def test_files_outside_of_the_folder_are_refused():
@@ -522,7 +531,7 @@ def raw(v, data, wait=True):
 def test_sizes_are_limited():
     v = View(VASE)
     v.scene(1)
-    head = f"POST /api/run HTTP/1.1\r\nHost: localhost\r\nCookie: cag-view={v.token}\r\n".encode()
+    head = f"POST /api/run HTTP/1.1\r\nHost: localhost\r\nCookie: cag-view-{v.port}={v.token}\r\n".encode()
     assert b" 413 " in raw(v, head + b"Content-Length: 99999999999\r\n\r\n") + b" 413 "
     status = v.ask("POST", "/api/run", b" " * (33 << 20))[0]
     assert status == 413, status
@@ -606,7 +615,7 @@ def test_a_thousand_connections_and_slow_readers():
     slow = []
     for _ in range(8):
         s = socket.create_connection(("127.0.0.1", v.port))
-        s.sendall(f"GET /api/events HTTP/1.1\r\nHost: localhost\r\nCookie: cag-view={v.token}\r\n\r\n".encode())
+        s.sendall(f"GET /api/events HTTP/1.1\r\nHost: localhost\r\nCookie: cag-view-{v.port}={v.token}\r\n\r\n".encode())
         slow.append(s)
     many = []
     for _ in range(1000):
