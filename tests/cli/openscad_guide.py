@@ -3,7 +3,7 @@
     python3 openscad_guide.py GUIDE CAG shapes|values|scripts
 
 Run in an empty folder. The rows of tables with the heads `OpenSCAD` and `cag` are shapes if both cells are code and
-nothing else: their volumes or areas are compared. The rows of tables with the heads `OpenSCAD value` and `cag value` are
+nothing else: their volumes or areas are compared, and their bounds. The rows of tables with the heads `OpenSCAD value` and `cag value` are
 printed. Each block of OpenSCAD is followed by one of cag: their volumes are compared.
 """
 import re
@@ -55,6 +55,11 @@ def stl_points(path):
     return [c[k:k + 3] for c in corners for k in (0, 3, 6)]
 
 
+def stl_bounds(path):
+    axes = list(zip(*stl_points(path)))
+    return [min(a) for a in axes] + [max(a) for a in axes]
+
+
 def stl_volume(path):
     p = stl_points(path)
     return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
@@ -65,6 +70,20 @@ def openscad_volume(name, script):
     open(f"{name}.scad", "w").write(f"$fn = {FACETS};\n{script}\n")
     run("openscad", "-o", f"{name}.stl", f"{name}.scad")
     return stl_volume(f"{name}.stl")
+
+
+def compare_bounds(pairs):
+    """Prints the pairs of (what, found, expected) whose bounds differ. Regions have no height."""
+    wrong = 0
+    for what, found, expected in pairs:
+        half = len(found) // 2
+        axes = range(2 if half == 2 or found[2] == found[5] else 3)
+        found = [found[k] for k in axes] + [found[half + k] for k in axes]
+        expected = [expected[k] for k in axes] + [expected[3 + k] for k in axes]
+        if max(abs(a - b) for a, b in zip(found, expected)) > TOLERANCE * max(map(abs, expected)):
+            print(f"{what}: cag gives the bounds {found}, and OpenSCAD {expected}")
+            wrong = 1
+    return wrong
 
 
 def compare(pairs):
@@ -100,13 +119,16 @@ def main(guide, cag, part):
             return compare([(left, stl_volume(f"ours{i}.stl"), theirs[i]) for i, (left, _) in enumerate(pairs)])
         table = [r for r in rows(text, ["OpenSCAD", "cag"]) if not r[0].startswith(NOT_SHAPES)]
         open("shapes.cag", "w").write("".join(
-            f"s{i} = {right}\nprint type_of(s{i}), if type_of(s{i}) == \"region\" then area(s{i}) else volume(s{i})\n"
+            f"s{i} = {right}\nprint type_of(s{i}), if type_of(s{i}) == \"region\" then area(s{i}) else volume(s{i}), "
+            f"bounds(s{i}).min, bounds(s{i}).max\n"
             for i, (_, right) in enumerate(table)))
-        ours = [line.split() for line in run(cag, "run", "shapes.cag").splitlines()][:len(table)]
-        flat = ["linear_extrude(1) " if kind == "region" else "" for kind, _ in ours]
+        ours = [re.findall(r"[^\s\[\],]+", line) for line in run(cag, "run", "shapes.cag").splitlines()][:len(table)]
+        flat = ["linear_extrude(1) " if kind == "region" else "" for kind, *_ in ours]
         theirs = pool.map(openscad_volume, [f"row{i}" for i in range(len(table))],
                           [f"{f}union() {{ {left}{'' if left.endswith('}') else ';'} }}" for f, (left, _) in zip(flat, table)])
-        return compare([(left, float(size), v) for (left, _), (_, size), v in zip(table, ours, theirs)])
+        differ = compare([(left, float(size), v) for (left, _), (_, size, *_), v in zip(table, ours, theirs)])
+        return differ | compare_bounds([(left, [float(x) for x in bounds], stl_bounds(f"row{i}.stl"))
+                                        for i, ((left, _), (_, _, *bounds)) in enumerate(zip(table, ours))])
 
 
 if __name__ == "__main__":
