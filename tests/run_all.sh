@@ -135,7 +135,7 @@ suite counted "tests/editors" "sh tests/editors/run.sh"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
-for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance" \
+for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance geom/letter" \
   "geom/tessellate geom/boolean geom/solid" "interp/scene interp/render interp/formats" interp/vm "interp/doc interp/check" \
   interp/builtin "interp/session interp/document live cli"; do
   suite check "analyzer $part" "make -s analyze ANALYZED='$part'"
