@@ -140,7 +140,7 @@ unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""
 suite check "layers" "make -s check-layers"
 # With half of its effort, GCC's analyzer takes half of the time.
-for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance" \
+for part in "base lang geom/basis geom/linalg geom/curve" geom/surface "geom/mesh geom/meet geom/robot geom/distance geom/letter" \
   "geom/tessellate geom/boolean geom/solid" "interp/scene interp/render interp/formats" interp/vm "interp/doc interp/check" \
   interp/builtin "interp/session interp/document live cli"; do
   suite check "analyzer $part" "make -s analyze ANALYZED='$part' ANALYZE_EFFORT=2"

@@ -254,7 +254,8 @@ static CagStatus place_letters(Layout *l, CagRegion **regions, size_t *count, Ca
       CagRegion *region;
       CagTransform place;
       if (!has_ink(&glyph_of(l, letter)->box)) continue;
-      status = glyph_region(l, letter, &region, err);
+      status = cag_stop_check(err);
+      if (!status) status = glyph_region(l, letter, &region, err);
       if (!status) status = letter_place(l, k, letter, start, length, &place, err);
       if (!status) status = cag_region_transform(region, &place, &regions[*count], err);
       if (!status) ++*count;
