@@ -10,25 +10,29 @@
 #include "interp/builtin/solids.h"
 #include "interp/vm/vm.h"
 
-// Reads a mesh, or the boundary mesh of a polyhedron.
+// Reads the mesh of a solid without a boundary mesh, which must be empty.
+static bool read_empty(CagCall *call, const CagSolid *s, const CagMesh **m) {
+  CagMesh *none = NULL;
+  bool empty;
+  if (!cag_geometry_ok(call, cag_solid_is_empty(s, &empty, call->err))) return false;
+  if (!empty)
+    return cag_fail_call(
+        call, 0, CAG_ERR_type,
+        "expects a mesh or a polyhedron, found another solid; `tessellate` makes a mesh of it");
+  const CagStatus status = cag_mesh_new(0, 0, false, false, false, &none, call->err);
+  cag_hold_mesh(call, none);
+  *m = none;
+  return cag_geometry_ok(call, status);
+}
+
+// Reads a mesh, or the boundary mesh of a polyhedron or an empty solid.
 static bool read_mesh(CagCall *call, const CagMesh **m) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   *m = shape->as.mesh;
   if (call->values[0].type != CAG_SOLID) return true;
   const CagSolid *s = shape->as.solid;
+  if (s->kind != CAG_SOLID_MESH) return read_empty(call, s, m);
   CagMesh *moved = NULL;
-  bool empty;
-  if (!cag_value_is_empty(call, call->values[0], &empty)) return false;
-  if (empty) {
-    CagStatus status = cag_mesh_new(0, 0, false, false, false, &moved, call->err);
-    cag_hold_mesh(call, moved);
-    *m = moved;
-    return cag_geometry_ok(call, status);
-  }
-  if (s->kind != CAG_SOLID_MESH)
-    return cag_fail_call(
-        call, 0, CAG_ERR_type,
-        "expects a mesh or a polyhedron, found another solid; `tessellate` makes a mesh of it");
   CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, call->err);
   cag_hold_mesh(call, moved);
   *m = moved;
