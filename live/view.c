@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "live/json_write.h"
@@ -574,6 +575,7 @@ static void look_at_files(View *v) {
 
 static bool find_names(View *v, char *why, size_t size) {
   char real[PATH_MAX];
+  struct stat kind;
   if (!v->options->file) {
     snprintf(v->name, sizeof v->name, UNTITLED);
     if (getcwd(v->folder, sizeof v->folder)) return true;
@@ -582,6 +584,10 @@ static bool find_names(View *v, char *why, size_t size) {
   }
   if (!realpath(v->options->file, real) || access(real, R_OK) != 0) {
     snprintf(why, size, "cannot read %s", v->options->file);
+    return false;
+  }
+  if (stat(real, &kind) == 0 && S_ISDIR(kind.st_mode)) {
+    snprintf(why, size, "%s is a folder; name a script in it", v->options->file);
     return false;
   }
   char *slash = strrchr(real, '/');

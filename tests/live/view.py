@@ -674,6 +674,8 @@ def test_a_port_in_use():
     v.close()
     missing = subprocess.run([CAG, "view", "/nowhere/x.cag", "--no-open"], capture_output=True, text=True, timeout=WAIT)
     assert missing.returncode == 3 and "/nowhere/x.cag" in missing.stderr
+    folder = subprocess.run([CAG, "view", "/tmp", "--no-open"], capture_output=True, text=True, timeout=WAIT)
+    assert folder.returncode == 3 and "/tmp is a folder" in folder.stderr, folder
 
 
 ONLY = sys.argv[2:]
