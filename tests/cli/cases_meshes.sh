@@ -46,7 +46,7 @@ rod_of(k) = rod(origin, [0, 2, 9], 1)
 shapes = [sphere(10), translate(torus(4, 1), [0, 0, 30]), translate(box([3, 4, 5]), [40, 0, 0]),
   around(translate(rod_of(0), [25, 0, 0]), 7, axis: [1, 2, 3]), translate(rows(torus(4, 1), 5, [9, 0, 0]), [0, 60, 0]),
   mirrored(translate(cone(5, 3), [0, 30, 0]), plane(origin, Y))]
-wanted = tessellate(shapes)
+wanted = tessellate(shapes, tolerance: 0.01)
 found = read_mesh(file)
 same(a, b) = near(a, b, relative: 1e-6)
 print "volume {same(volume(found), volume(wanted))}, area {same(area(found), area(wanted))}"
@@ -63,7 +63,7 @@ bounds true, true'
 triangles=
 for format in stl obj ply glb gltf; do
   it "what .$format has is read back: volume, area, counts, closed"
-  try export bodies.cag -o "bodies.$format"
+  try export bodies.cag -o "bodies.$format" --tolerance 0.01
   status 0
   says_nothing
   no_temporaries .
@@ -77,7 +77,7 @@ it 'a .stl says how many triangles it has'
 [ "$(od -An -tu4 -j80 -N4 bodies.stl | tr -d ' ')" = "$triangles" ] || wrong 'it says another count'
 
 it 'a .gltf on standard output has its data in it'
-try export bodies.cag -o - --format gltf
+try export bodies.cag -o - --format gltf --tolerance 0.01
 status 0
 cp out embedded.gltf
 grep -q 'base64,' embedded.gltf || wrong 'no data in it'
@@ -133,7 +133,7 @@ if can_trace; then
 fi
 
 it 'the name of a .bin may have any characters'
-try export bodies.cag -o 'für 100% von "mir" #1.gltf'
+try export bodies.cag -o 'für 100% von "mir" #1.gltf' --tolerance 0.01
 status 0
 try run bodies_of.cag -D 'file=für 100% von "mir" #1.gltf'
 status 0
@@ -247,7 +247,8 @@ shapes = [
   difference(sphere(10), cylinder(30, 4) |> translate([0, 0, -15])),
   intersection(revolve(bspline([[0, 0], [10, 0], [4, 8], [12, 14], [0, 18]])), box([30, 30, 12]) |> translate([-10, -10, 0]))
 ]
-show shapes[which]'
+// In shown shapes, the normal may turn farther along edges up to four tolerances.
+show tessellate(shapes[which])'
 for which in 0 1 2 3 4 5 6 7 8 9; do
   try export lean.cag -o lean.glb -D which=$which
   status 0
@@ -264,7 +265,7 @@ shapes = [
   surface((u, v) => [u^3 + u*v, 0.75*u^4 + 0.5*u^2*v, v], -1..1, -1..1),
   surface((u, v) => [3*u^2 + v, -2*u^3, v], -1..1, -1..1)
 ]
-show if which < 5 then shapes[which] else clip(shapes[0], plane([0, 0, 9], [1, 1, 1]))'
+show tessellate(if which < 5 then shapes[which] else clip(shapes[0], plane([0, 0, 9], [1, 1, 1])))'
 for which in 0 1 2 3 4 5; do
   try export cusps.cag -o cusps.glb -D which=$which
   status 0
@@ -351,7 +352,7 @@ done
 for format in glb gltf 3mf; do
   it "what assimp makes of .$format is the same body"
   needs assimp || continue
-  [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
+  [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format" --tolerance 0.01
   try_command assimp export "bodies.$format" "of_$format.stl"
   status 0
   # assimp does not convert glTF's meters and Y up, so cag reads a .glb that assimp wrote.
@@ -386,8 +387,8 @@ for format in glb2 gltf2; do
 done
 
 it '.3mf is the same twice'
-try export bodies.cag -o bodies.3mf
-try export bodies.cag -o again.3mf
+try export bodies.cag -o bodies.3mf --tolerance 0.01
+try export bodies.cag -o again.3mf --tolerance 0.01
 status 0
 cmp -s bodies.3mf again.3mf || wrong 'the files differ'
 begins_with bodies.3mf 504b0304

@@ -39,7 +39,7 @@ fi
 
 it 'the pose that is shown is not part of it'
 sed 's/30deg, 40deg, 50\]/-30deg, 10deg, 80]/' arm.cag > other.cag
-try export other.cag -o arm.urdf
+try export other.cag -o arm.urdf --tolerance 0.02
 status 0
 same arm.urdf first.urdf
 
@@ -62,7 +62,7 @@ prints 'robot arm <1>, 3 joints (RRP) [-170deg..170deg, -90deg..120deg, 10..90] 
 prints 'true true true'
 
 it 'what was read is written with the same names'
-try export back.cag -o again.urdf
+try export back.cag -o again.urdf --tolerance 0.02
 status 0
 for name in foot link_3 a__wei_rd____long__name; do
   grep -q "<link name=\"$name\">" again.urdf || wrong "no link $name"
