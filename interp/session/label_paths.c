@@ -46,7 +46,7 @@ static int make_paths(CagSession *s, void *context) {
 }
 
 bool cag_session_label_paths(CagSession *s, size_t i, CagLabelPaths *out) {
-  *out = (CagLabelPaths){NULL};
+  *out = (CagLabelPaths){.text = NULL};
   if (!cag_session_begin(s)) return false;
   cag_session_drop_label_paths(s);
   bool found = s->has_scene && i < s->scene.label_count;
