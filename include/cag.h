@@ -240,9 +240,9 @@ CAG_API const char *cag_export_format_story(const char *format);
 
 // The default tolerance of meshes, in mm: a thousandth of the size of all that is shown, except
 // grounds, rounded down to a power of two. Small shapes have a smaller one, so that they keep their
-// form. The first function returns it, or 0 if there is no scene. The second replaces it in later
-// calls (0: as before); all frames of a film, for example, should have that of the first. It
-// returns false if the call is refused.
+// form. cag_session_default_tolerance returns 0 without a scene. After
+// cag_session_set_default_tolerance, later calls use the given tolerance (0: the usual one again):
+// give all frames of a film the tolerance of the first frame. It returns false if it is refused.
 CAG_API double cag_session_default_tolerance(CagSession *s);
 CAG_API bool cag_session_set_default_tolerance(CagSession *s, double tolerance);
 typedef struct CagToleranceView {

@@ -136,6 +136,16 @@ static CagLetterDirection direction_of(const CagCall *call, int given) {
   return cag_given(call, DIRECTION_ARGUMENT) ? (CagLetterDirection)given : CAG_LETTER_AUTO;
 }
 
+// The layout that the arguments of both built-ins state.
+#define LAYOUT_OF(call, a)                                                                         \
+  ((CagLettering){.size = (a)->size,                                                               \
+                  .align = (CagLetterAlign)(a)->align,                                             \
+                  .valign = (CagLetterValign)(a)->valign,                                          \
+                  .spacing = (a)->spacing,                                                         \
+                  .line_spacing = (a)->line_spacing,                                               \
+                  .direction = direction_of(call, (a)->direction),                                 \
+                  .width = (a)->width})
+
 // The plane curve of an argument, held, and its plane.
 static bool read_along(CagCall *call, CagCurve *given, CagLettering *how, CagTransform *frame,
                        bool *in_space) {
@@ -152,13 +162,7 @@ bool cag_letters_lettering(CagCall *call, const struct cag_letters_lettering *a,
   CagTransform frame;
   bool in_space = false;
   CagRegion *out = NULL;
-  CagLettering how = {.size = a->size,
-                      .align = (CagLetterAlign)a->align,
-                      .valign = (CagLetterValign)a->valign,
-                      .spacing = a->spacing,
-                      .line_spacing = a->line_spacing,
-                      .direction = direction_of(call, a->direction),
-                      .width = a->width};
+  CagLettering how = LAYOUT_OF(call, a);
   if (!read_font(call, a->font, a->style, &how)) return false;
   if (cag_given(call, ALONG_ARGUMENT) && !read_along(call, a->along, &how, &frame, &in_space))
     return false;
@@ -170,13 +174,7 @@ bool cag_letters_lettering(CagCall *call, const struct cag_letters_lettering *a,
 
 bool cag_letters_metrics(CagCall *call, const struct cag_letters_metrics *a, CagValue *result) {
   CagLetteringMetrics m;
-  CagLettering how = {.size = a->size,
-                      .align = (CagLetterAlign)a->align,
-                      .valign = (CagLetterValign)a->valign,
-                      .spacing = a->spacing,
-                      .line_spacing = a->line_spacing,
-                      .direction = direction_of(call, a->direction),
-                      .width = a->width};
+  CagLettering how = LAYOUT_OF(call, a);
   if (!read_font(call, a->font, a->style, &how)) return false;
   CagStatus status = cag_lettering_measure(a->text, strlen(a->text), &how, &m, call->err);
   if (!cag_geometry_ok(call, status)) return false;

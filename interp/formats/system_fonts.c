@@ -67,7 +67,7 @@ static const char *text_of(const FcPattern *p, const char *object, int n) {
   return fc.PatternGetString(p, object, n, &text) == FcResultMatch ? (const char *)text : NULL;
 }
 
-// Fontconfig gives numbers of variable fonts as ranges, which are no doubles.
+// Returns `otherwise` for a variable font, whose numbers are ranges.
 static double number_of(const FcPattern *p, const char *object, double otherwise) {
   double x;
   return fc.PatternGetDouble(p, object, 0, &x) == FcResultMatch ? x : otherwise;
