@@ -7,9 +7,8 @@
 #include <string.h>
 
 #include "base/diagnostic.h"
+#include "cli/scripts.h"
 
-// Sets of params are small. A larger file is something else.
-#define FILE_MOST ((size_t)1 << 24)
 #define NAMES_MOST 256
 
 static bool refuse(CagToolRefusal *why, const char *help, const char *format, ...)
@@ -21,30 +20,6 @@ static bool refuse(CagToolRefusal *why, const char *help, const char *format, ..
   va_end(arguments);
   snprintf(why->help, sizeof why->help, "%s", help);
   return false;
-}
-
-static char *read_file(const char *path) {
-  FILE *f = fopen(path, "rbe");
-  char *text = NULL;
-  size_t n = 0, room = 0;
-  while (f && n < FILE_MOST) {
-    if (n + 1 >= room) {
-      char *more = realloc(text, room = 2 * room + 4096);
-      if (!more) break;
-      text = more;
-    }
-    const size_t k = fread(text + n, 1, room - n - 1, f);
-    n += k;
-    if (k == 0) break;
-  }
-  const bool failed = !f || ferror(f) || !text;
-  if (f) fclose(f);
-  if (failed) {
-    free(text);
-    return NULL;
-  }
-  text[n] = 0;
-  return text;
 }
 
 static bool refuse_set(CagToolRefusal *why, const char *path, const char *name, const cJSON *sets) {
@@ -96,7 +71,8 @@ bool cag_params_read(const char *place, CagParamGive *give, void *context, CagTo
     return refuse(why, "write --params FILE:NAME, such as --params vase.cag.params.json:tall",
                   "expected a file and the name of a set");
   char *path = strndup(place, (size_t)(colon - place));
-  char *text = path ? read_file(path) : NULL;
+  size_t length;
+  char *text = path ? cag_tool_try_file(path, &length) : NULL;
   const bool ok = text ? give_set(path, colon + 1, text, give, context, why)
                        : refuse(why, "the page of `cag view` writes it beside the script",
                                 "cannot read %s: %s", path ? path : place, strerror(errno));

@@ -112,11 +112,18 @@ static char *read_all(FILE *from, size_t *length) {
   return NULL;
 }
 
-char *cag_tool_read_file(const CagTool *t, const char *path, size_t *length) {
+char *cag_tool_try_file(const char *path, size_t *length) {
   const bool input = strcmp(path, "-") == 0;
   FILE *from = input ? stdin : fopen(path, "rb");
   char *text = from ? read_all(from, length) : NULL;
-  if (!text) cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read %s: %s", path, strerror(errno));
+  const int why = errno;
   if (from && !input) fclose(from);
+  errno = why;
+  return text;
+}
+
+char *cag_tool_read_file(const CagTool *t, const char *path, size_t *length) {
+  char *text = cag_tool_try_file(path, length);
+  if (!text) cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read %s: %s", path, strerror(errno));
   return text;
 }

@@ -22,5 +22,7 @@ int cag_tool_each_script(CagToolScripts *s, int count, char **paths);
 // Reads a file ("-": standard input). Returns its bytes, allocated with malloc, or NULL, after a
 // message.
 char *cag_tool_read_file(const CagTool *t, const char *path, size_t *length);
+// The same without a message: errno tells why it failed.
+char *cag_tool_try_file(const char *path, size_t *length);
 
 #endif
