@@ -103,8 +103,16 @@ static bool is_own_origin(struct MHD_Connection *c, const char *host) {
   return !site || !strcmp(site, "same-origin") || !strcmp(site, "none");
 }
 
+// The port that is listened on. The first request may come before start_daemons has noted it.
+static int known_port(CagServer *s) {
+  pthread_mutex_lock(&s->mutex);
+  const int port = s->port;
+  pthread_mutex_unlock(&s->mutex);
+  return port;
+}
+
 // Why a request is refused, or NULL.
-static const char *refusal(const CagServer *s, struct MHD_Connection *c, const char *path) {
+static const char *refusal(CagServer *s, struct MHD_Connection *c, const char *path) {
   const char *host = header_of(c, "Host");
   if (!host || !is_loopback(host)) return "this server answers only for localhost";
   const bool entry = !strcmp(path, "/");
@@ -112,7 +120,7 @@ static const char *refusal(const CagServer *s, struct MHD_Connection *c, const c
     return NULL; // a link from anywhere may lead here
   if (!is_own_origin(c, host)) return "a page of another origin cannot use this server";
   char cookie[32];
-  snprintf(cookie, sizeof cookie, COOKIE, s->port);
+  snprintf(cookie, sizeof cookie, COOKIE, known_port(s));
   if (!same_token(s, cag_microhttpd.lookup_connection_value(c, MHD_COOKIE_KIND, cookie)))
     return "open the address that cag view printed";
   return NULL;
@@ -176,8 +184,8 @@ static void answer_entry(CagExchange *x) {
   char cookie[128];
   struct MHD_Response *r =
       cag_microhttpd.create_response_from_buffer(0, "", MHD_RESPMEM_PERSISTENT);
-  snprintf(cookie, sizeof cookie, COOKIE "=%s; Path=/; HttpOnly; SameSite=Strict", x->server->port,
-           x->server->token);
+  snprintf(cookie, sizeof cookie, COOKIE "=%s; Path=/; HttpOnly; SameSite=Strict",
+           known_port(x->server), x->server->token);
   if (r) {
     add_safety(r);
     cag_microhttpd.add_response_header(r, "Set-Cookie", cookie);
@@ -433,9 +441,12 @@ static struct MHD_Daemon *start_daemon(CagServer *s, const struct sockaddr *addr
 static bool start_daemons(CagServer *s) {
   struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)s->options.port)};
   v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  pthread_mutex_lock(&s->mutex);
   s->daemons[0] = start_daemon(s, (struct sockaddr *)&v4, false);
+  if (s->daemons[0])
+    s->port = cag_microhttpd.get_daemon_info(s->daemons[0], MHD_DAEMON_INFO_BIND_PORT)->port;
+  pthread_mutex_unlock(&s->mutex);
   if (!s->daemons[0]) return false;
-  s->port = cag_microhttpd.get_daemon_info(s->daemons[0], MHD_DAEMON_INFO_BIND_PORT)->port;
   struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)s->port)};
   v6.sin6_addr = in6addr_loopback;
   s->daemons[1] = start_daemon(s, (struct sockaddr *)&v6, true); // NULL without IPv6
