@@ -421,12 +421,17 @@ CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagReg
                     "a region needs a transform of the plane, found one of space");
   CagRegion *image = allocate(r->count);
   if (!image) return cag_fail_memory(err);
+  // Such a map keeps the orientation; for others, the sign of each area is computed.
+  double scale;
+  const bool keeps =
+      cag_transform_is_similarity(t, &scale) && scale > 0 && !cag_transform_mirrors(t);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < r->count; i++) {
     CagCurve *moved;
     status = cag_curve_transform(r->loops[i], t, &moved, err);
     if (status) break;
-    status = oriented(moved, r->outer[i] != i, &image->loops[i], err);
+    if (keeps) image->loops[i] = cag_curve_retain(moved);
+    else status = oriented(moved, r->outer[i] != i, &image->loops[i], err);
     cag_curve_release(moved);
     image->outer[i] = r->outer[i];
   }
