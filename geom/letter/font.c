@@ -101,6 +101,9 @@ CagStatus cag_font_compiled_in(CagFontStyle style, CagFont *out, CagError *err) 
 
 void cag_font_free(CagFont *f) {
   if (f->hb) cag_hb.font_destroy(f->hb);
+  for (size_t i = 0; i < f->glyph_count; i++) cag_region_release(f->glyphs[i].region);
+  cag_free(f->glyphs);
+  cag_hash_free(&f->glyph_index);
   cag_account_drop(f->held);
   *f = (CagFont){.hb = NULL};
 }

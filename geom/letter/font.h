@@ -6,7 +6,8 @@
 #ifndef CAG_GEOM_LETTER_FONT_H
 #define CAG_GEOM_LETTER_FONT_H
 
-#include "base/status.h"
+#include "base/hash.h"
+#include "geom/curve/region.h"
 #include "geom/letter/libraries.h"
 
 // X(NAME, text)
@@ -37,6 +38,13 @@ extern const CagFontFile cag_compiled_fonts[CAG_FONT_STYLE_COUNT];
 // One of them (geom/letter/compiled.c). In a browser, it is loaded when it is first needed.
 CagStatus cag_font_compiled_file(CagFontStyle style, CagFontFile *out, CagError *err);
 
+// A glyph that was asked for (geom/letter/outline.h).
+typedef struct CagGlyph {
+  uint32_t number;
+  CagBounds box;     // of its outlines
+  CagRegion *region; // NULL: not needed so far
+} CagGlyph;
+
 typedef struct CagFont {
   hb_font_t *hb;
   char name[100]; // for messages
@@ -45,6 +53,9 @@ typedef struct CagFont {
   double ascender, descender; // the largest heights above and below the baseline that lines allow
   double gap;                 // between the descenders of a line and the ascenders of the next
   size_t held;                // an estimate of the memory of HarfBuzz, held by the account
+  CagGlyph *glyphs;           // those that were asked for
+  size_t glyph_count, glyph_capacity;
+  CagHashIndex glyph_index; // by their numbers
 } CagFont;
 
 CagStatus cag_font_compiled_in(CagFontStyle style, CagFont *out, CagError *err);

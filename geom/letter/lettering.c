@@ -2,73 +2,22 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
-#include "base/sort.h"
 #include "base/stop.h"
 #include "geom/curve/region_unite.h"
 #include "geom/letter/outline.h"
-
-// A glyph that occurs in the text, with its outlines at the origin.
-typedef struct Glyph {
-  uint32_t id;   // the first field, for by_number
-  CagBounds box; // in units of the font
-  CagRegion *region;
-} Glyph;
 
 typedef struct Layout {
   const CagLettering *how;
   double scale;    // millimeters per unit of the font
   double distance; // between baselines, in millimeters
   CagLetters letters;
-  Glyph *glyphs; // distinct, by ascending numbers
-  size_t glyph_count;
   CagBounds box; // of all glyphs, in millimeters, before the vertical alignment
   CagVec3 shift; // aligns all lines together
 } Layout;
 
 static bool is_vertical(const Layout *l) { return l->how->direction == CAG_LETTER_TTB; }
-
-// --- The glyphs ---
-
-static int by_number(const void *a, const void *b) {
-  const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-  return (x > y) - (x < y);
-}
-
-// The distinct numbers of glyphs, ascending.
-static CagStatus find_numbers(const CagLetters *letters, uint32_t **out, size_t *count,
-                              CagError *err) {
-  const size_t n = letters->count;
-  uint32_t *ids = cag_malloc((n ? n : 1) * sizeof *ids);
-  if (!ids) return cag_fail_memory(err);
-  for (size_t i = 0; i < n; i++) ids[i] = letters->items[i].glyph;
-  *out = ids;
-  *count = 0;
-  CagStatus status = cag_sort(ids, n, sizeof *ids, by_number, err);
-  for (size_t i = 0; !status && i < n; i++)
-    if (*count == 0 || ids[i] != ids[*count - 1]) ids[(*count)++] = ids[i];
-  return status;
-}
-
-static CagStatus find_glyphs(Layout *l, CagError *err) {
-  uint32_t *ids = NULL;
-  size_t n = 0;
-  CagStatus status = find_numbers(&l->letters, &ids, &n, err);
-  if (!status) l->glyphs = cag_calloc(n ? n : 1, sizeof *l->glyphs);
-  if (!status && !l->glyphs) status = cag_fail_memory(err);
-  for (size_t i = 0; !status && i < n; i++) {
-    l->glyphs[l->glyph_count++] = (Glyph){.id = ids[i], .box = CAG_BOUNDS_EMPTY};
-    status = cag_glyph_bounds(l->how->font, ids[i], &l->glyphs[i].box, err);
-  }
-  cag_free(ids);
-  return status;
-}
-
-static Glyph *glyph_of(const Layout *l, const CagLetter *letter) {
-  return bsearch(&letter->glyph, l->glyphs, l->glyph_count, sizeof *l->glyphs, by_number);
-}
 
 static bool has_ink(const CagBounds *box) { return box->min.x <= box->max.x; }
 
@@ -86,19 +35,27 @@ static CagVec3 letter_origin(const Layout *l, size_t line, const CagLetter *lett
   return cag_madd(line_start(l, line), l->scale, cag_vec3(letter->x, letter->y, 0));
 }
 
-static void find_box(Layout *l) {
-  l->box = CAG_BOUNDS_EMPTY;
-  for (size_t k = 0; k < l->letters.line_count; k++) {
-    const CagLetterLine *line = &l->letters.lines[k];
-    for (size_t i = line->first; i < line->first + line->count; i++) {
-      const CagLetter *letter = &l->letters.items[i];
-      const CagBounds *ink = &glyph_of(l, letter)->box;
-      const CagVec3 at = letter_origin(l, k, letter);
-      if (!has_ink(ink)) continue;
-      cag_bounds_add(&l->box, cag_madd(at, l->scale, ink->min));
-      cag_bounds_add(&l->box, cag_madd(at, l->scale, ink->max));
-    }
+// Adds the boxes of a line.
+static CagStatus cover_line(Layout *l, size_t k, CagError *err) {
+  const CagLetterLine *line = &l->letters.lines[k];
+  CagStatus status = CAG_OK;
+  for (size_t i = line->first; !status && i < line->first + line->count; i++) {
+    const CagLetter *letter = &l->letters.items[i];
+    const CagVec3 at = letter_origin(l, k, letter);
+    CagBounds ink;
+    status = cag_font_glyph_box(l->how->font, letter->glyph, &ink, err);
+    if (status || !has_ink(&ink)) continue;
+    cag_bounds_add(&l->box, cag_madd(at, l->scale, ink.min));
+    cag_bounds_add(&l->box, cag_madd(at, l->scale, ink.max));
   }
+  return status;
+}
+
+static CagStatus find_box(Layout *l, CagError *err) {
+  CagStatus status = CAG_OK;
+  l->box = CAG_BOUNDS_EMPTY;
+  for (size_t k = 0; !status && k < l->letters.line_count; k++) status = cover_line(l, k, err);
+  return status;
 }
 
 static CagVec3 shift_of(const Layout *l) {
@@ -110,11 +67,7 @@ static CagVec3 shift_of(const Layout *l) {
   return is_vertical(l) ? cag_vec3(right[l->how->align], 0, 0) : cag_vec3(0, up[l->how->valign], 0);
 }
 
-static void layout_free(Layout *l) {
-  for (size_t i = 0; i < l->glyph_count; i++) cag_region_release(l->glyphs[i].region);
-  cag_free(l->glyphs);
-  cag_letters_free(&l->letters);
-}
+static void layout_free(Layout *l) { cag_letters_free(&l->letters); }
 
 // Coordinates of at most this size can be multiplied by each other.
 #define SIZE_LEAST 1e-50
@@ -143,8 +96,7 @@ static CagStatus layout_new(const char *text, size_t n, const CagLettering *how,
   CagStatus status = check_sizes(how, err);
   if (!status) status = cag_letters_shape(f, text, n, &rules, &l->letters, err);
   if (status) return status;
-  status = find_glyphs(l, err);
-  if (!status) find_box(l);
+  status = find_box(l, err);
   if (!status) l->shift = shift_of(l);
   if (status) layout_free(l);
   return status;
@@ -206,19 +158,10 @@ static CagStatus frame_on_curve(const CagCurve *c, double s, double length, CagT
 
 // --- The region ---
 
-// The region of a glyph at the origin, made once.
-static CagStatus glyph_region(Layout *l, const CagLetter *letter, CagRegion **out, CagError *err) {
-  Glyph *g = glyph_of(l, letter);
-  if (!g->region) {
-    CagStatus status = cag_glyph_region(l->how->font, g->id, l->scale, &g->region, err);
-    if (status) return status;
-  }
-  *out = g->region;
-  return CAG_OK;
-}
-
-static CagTransform shifted(CagVec3 by) {
-  CagTransform t = cag_translate(cag_vec3(by.x, by.y, 0));
+// The map from units of the font, with the origin of a glyph at `to`.
+static CagTransform map_to(const Layout *l, CagVec3 to) {
+  CagTransform t = cag_translate(cag_vec3(to.x, to.y, 0));
+  for (int i = 0; i < 3; i++) t.m[i][i] = l->scale;
   t.planar = true;
   return t;
 }
@@ -227,13 +170,13 @@ static CagTransform shifted(CagVec3 by) {
 static CagStatus letter_place(const Layout *l, size_t k, const CagLetter *letter, double start,
                               double length, CagTransform *out, CagError *err) {
   const CagVec3 origin = cag_add(letter_origin(l, k, letter), l->shift);
-  *out = shifted(origin);
+  *out = map_to(l, origin);
   if (!l->how->along) return CAG_OK;
   const double middle = letter->middle * l->scale;
   CagTransform frame;
   CagStatus status = frame_on_curve(l->how->along, start + middle, length, &frame, err);
   if (status) return status;
-  const CagTransform local = shifted(cag_sub(origin, cag_vec3(middle, 0, 0)));
+  const CagTransform local = map_to(l, cag_sub(origin, cag_vec3(middle, 0, 0)));
   *out = cag_transform_multiply(&frame, &local);
   return CAG_OK;
 }
@@ -251,11 +194,11 @@ static CagStatus place_letters(Layout *l, CagRegion **regions, size_t *count, Ca
     if (l->how->along) status = line_on_curve(l, k, length, &start, err);
     for (size_t i = line->first; !status && i < line->first + line->count; i++) {
       const CagLetter *letter = &l->letters.items[i];
-      CagRegion *region;
+      const CagRegion *region;
       CagTransform place;
-      if (!has_ink(&glyph_of(l, letter)->box)) continue;
       status = cag_stop_check(err);
-      if (!status) status = glyph_region(l, letter, &region, err);
+      if (!status) status = cag_font_glyph_region(l->how->font, letter->glyph, &region, err);
+      if (!status && cag_region_is_empty(region)) continue;
       if (!status) status = letter_place(l, k, letter, start, length, &place, err);
       if (!status) status = cag_region_transform(region, &place, &regions[*count], err);
       if (!status) ++*count;

@@ -15,8 +15,8 @@ typedef enum CagLetterValign {
 } CagLetterValign;
 
 typedef struct CagLettering {
-  const CagFont *font;
-  double size; // the height of H in millimeters
+  CagFont *font; // keeps the glyphs of the text
+  double size;   // the height of H in millimeters
   CagLetterAlign align;
   CagLetterValign valign;
   double spacing, line_spacing; // 1: those of the font

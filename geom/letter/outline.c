@@ -263,3 +263,41 @@ CagStatus cag_glyph_region(const CagFont *f, uint32_t glyph, double scale, CagRe
   release_loops(loops, n);
   return status;
 }
+
+// --- Glyphs that the font keeps ---
+
+static CagGlyph *find_glyph(const CagFont *f, uint32_t number) {
+  size_t i;
+  CagHashWalk w = cag_hash_walk(&f->glyph_index, cag_hash_word(CAG_HASH_START, number));
+  while (cag_hash_next(&w, &i))
+    if (f->glyphs[i].number == number) return &f->glyphs[i];
+  return NULL;
+}
+
+static CagStatus keep_glyph(CagFont *f, uint32_t number, CagGlyph **out, CagError *err) {
+  CagGlyph glyph = {.number = number, .box = CAG_BOUNDS_EMPTY};
+  if ((*out = find_glyph(f, number))) return CAG_OK;
+  CagStatus status = cag_glyph_bounds(f, number, &glyph.box, err);
+  if (status) return status;
+  if (!CAG_RESERVE(f->glyphs, f->glyph_capacity, f->glyph_count + 1) ||
+      !cag_hash_add(&f->glyph_index, cag_hash_word(CAG_HASH_START, number), f->glyph_count))
+    return cag_fail_memory(err);
+  f->glyphs[f->glyph_count] = glyph;
+  *out = &f->glyphs[f->glyph_count++];
+  return CAG_OK;
+}
+
+CagStatus cag_font_glyph_box(CagFont *f, uint32_t glyph, CagBounds *out, CagError *err) {
+  CagGlyph *kept;
+  CagStatus status = keep_glyph(f, glyph, &kept, err);
+  if (!status) *out = kept->box;
+  return status;
+}
+
+CagStatus cag_font_glyph_region(CagFont *f, uint32_t glyph, const CagRegion **out, CagError *err) {
+  CagGlyph *kept;
+  CagStatus status = keep_glyph(f, glyph, &kept, err);
+  if (!status && !kept->region) status = cag_glyph_region(f, glyph, 1, &kept->region, err);
+  if (!status) *out = kept->region;
+  return status;
+}

@@ -16,4 +16,9 @@ CagStatus cag_glyph_region(const CagFont *f, uint32_t glyph, double scale, CagRe
 // Adds the box around a glyph to `box`, in units of the font.
 CagStatus cag_glyph_bounds(const CagFont *f, uint32_t glyph, CagBounds *box, CagError *err);
 
+// The box around a glyph, in units of the font. The font keeps it. Empty: the glyph has no outlines.
+CagStatus cag_font_glyph_box(CagFont *f, uint32_t glyph, CagBounds *out, CagError *err);
+// The region of a glyph, in units of the font, which keeps it: it is made once.
+CagStatus cag_font_glyph_region(CagFont *f, uint32_t glyph, const CagRegion **out, CagError *err);
+
 #endif

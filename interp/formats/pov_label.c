@@ -18,6 +18,7 @@ typedef struct Screen {
   CagPovWriter *writer;
   CagCamera camera; // with the size of the picture
   double depth;     // of the plane of the next shape
+  CagLabelFonts fonts;
 } Screen;
 
 static CagVec3 column(const CagTransform *t, int j) {
@@ -82,7 +83,7 @@ static CagStatus write_region(void *screen, const CagRegion *r, CagColor color, 
 static CagStatus write_label(Screen *s, const CagCameraMap *map, const CagLabel *l, CagError *err) {
   const CagColor color = s->writer->scene->materials[l->material].color;
   CagLabelShape shape;
-  CagStatus status = cag_label_in_picture(l, &s->camera, map, &shape, err);
+  CagStatus status = cag_label_in_picture(&s->fonts, l, &s->camera, map, &shape, err);
   if (status) return status;
   cag_pov_comment(s->writer, "", l->text);
   status = cag_label_shape_draw(&shape, color, write_region, s, err);
@@ -91,7 +92,7 @@ static CagStatus write_label(Screen *s, const CagCameraMap *map, const CagLabel 
 }
 
 CagStatus cag_pov_labels(CagPovWriter *w, CagError *err) {
-  Screen s = {w, *w->camera, 0};
+  Screen s = {.writer = w, .camera = *w->camera};
   CagCameraMap map;
   const int *size = w->options->size;
   if (size[0] > 0 && size[1] > 0) {
@@ -102,5 +103,6 @@ CagStatus cag_pov_labels(CagPovWriter *w, CagError *err) {
   CagStatus status = cag_scene_camera_map(&s.camera, &map, err);
   for (size_t i = 0; !status && i < w->scene->label_count; i++)
     status = write_label(&s, &map, &w->scene->labels[i], err);
+  cag_label_fonts_free(&s.fonts);
   return status;
 }

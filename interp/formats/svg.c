@@ -418,15 +418,15 @@ static Picture flat_picture(const Picture *p, double size) {
   return flat;
 }
 
-static CagStatus draw_label(Picture *p, const CagLabel *l, CagVec3 at, CagVec3 along,
-                            double diagonal, CagError *err) {
+static CagStatus draw_label(Picture *p, CagLabelFonts *fonts, const CagLabel *l, CagVec3 at,
+                            CagVec3 along, double diagonal, CagError *err) {
   const double size = l->size > 0 ? l->size : CAG_LABEL_PART * diagonal;
   CagLabelShape shape;
   if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(size)) {
     p->undefined = true;
     return CAG_OK;
   }
-  CagStatus status = cag_label_shape(l, at, along, size, &shape, err);
+  CagStatus status = cag_label_shape(fonts, l, at, along, size, &shape, err);
   if (status) return status;
   Picture flat = flat_picture(p, size);
   status = draw_shape(&flat, l, &shape, err);
@@ -447,6 +447,7 @@ CagStatus cag_svg_path(const CagRegion *r, double size, FILE *out, CagError *err
 static CagStatus draw_labels(Picture *p, CagError *err) {
   const CagScene *s = p->scene;
   CagBounds drawn = p->box;
+  CagLabelFonts fonts = {0};
   CagVec3 at, along;
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < s->label_count; i++)
@@ -455,8 +456,10 @@ static CagStatus draw_labels(Picture *p, CagError *err) {
   if (!(diagonal > 0)) diagonal = p->size;
   for (size_t i = 0; !status && i < s->label_count; i++) {
     const CagLabel *l = &s->labels[i];
-    if (look_at_label(p, l, &at, &along)) status = draw_label(p, l, at, along, diagonal, err);
+    if (look_at_label(p, l, &at, &along))
+      status = draw_label(p, &fonts, l, at, along, diagonal, err);
   }
+  cag_label_fonts_free(&fonts);
   return status;
 }
 

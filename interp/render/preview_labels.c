@@ -60,14 +60,16 @@ static CagStatus draw(void *part, const CagRegion *r, CagColor color, CagError *
 CagStatus cag_preview_labels(const CagScene *scene, const CagCamera *camera,
                              const CagCameraMap *map, int x, int y, CagImage *part, CagError *err) {
   Part p = {part, x, (double)camera->size[1] - y - (double)part->height};
+  CagLabelFonts fonts = {0};
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < scene->label_count; i++) {
     const CagLabel *l = &scene->labels[i];
     CagLabelShape shape;
-    status = cag_label_in_picture(l, camera, map, &shape, err);
+    status = cag_label_in_picture(&fonts, l, camera, map, &shape, err);
     if (status) break;
     status = cag_label_shape_draw(&shape, scene->materials[l->material].color, draw, &p, err);
     cag_label_shape_free(&shape);
   }
+  cag_label_fonts_free(&fonts);
   return status;
 }

@@ -131,7 +131,7 @@ static size_t index_length(const char *text) {
 }
 
 typedef struct Pen {
-  CagFont font;
+  CagFont *font;
   double size, x;   // the height of the text, and how far it goes so far
   CagRegion **runs; // on the baseline, from x = 0 on
   size_t count, capacity;
@@ -148,8 +148,8 @@ static CagStatus add_run(Pen *pen, CagRegion *r, CagError *err) {
 
 static CagStatus put_run(Pen *pen, const char *text, size_t n, bool lowered, CagError *err) {
   const double em = (lowered ? INDEX_SIZE : 1) * pen->size;
-  const CagLettering how = {.font = &pen->font,
-                            .size = em * pen->font.capital / pen->font.em,
+  const CagLettering how = {.font = pen->font,
+                            .size = em * pen->font->capital / pen->font->em,
                             .spacing = 1,
                             .line_spacing = 1,
                             .direction = CAG_LETTER_AUTO,
@@ -192,7 +192,7 @@ static CagTransform text_frame(const CagLabel *l, const Pen *pen, CagVec3 at, Ca
 #undef X
   };
   const int sx = steps[l->place].x, sy = steps[l->place].y;
-  const double size = pen->size, capital = size * pen->font.capital / pen->font.em;
+  const double size = pen->size, capital = size * pen->font->capital / pen->font->em;
   const double gap = (GAP + (l->mark == CAG_LABEL_NONE ? 0 : MARK_RADIUS)) * size;
   const double near = sx && sy ? CORNER_GAP : 1;
   const bool turned = l->mark != CAG_LABEL_ARROW && cag_norm(along) > 0;
@@ -212,7 +212,8 @@ static CagTransform text_frame(const CagLabel *l, const Pen *pen, CagVec3 at, Ca
 static CagStatus place_text(const CagLabel *l, const Pen *pen, CagVec3 at, CagVec3 along,
                             CagLabelShape *out, CagError *err) {
   const CagTransform frame = text_frame(l, pen, at, along);
-  const double top = pen->size * pen->font.capital / pen->font.em, bottom = -INDEX_DROP * pen->size;
+  const double top = pen->size * pen->font->capital / pen->font->em,
+               bottom = -INDEX_DROP * pen->size;
   for (int i = 0; i < 4; i++)
     cag_bounds_add(&out->box, cag_transform_point(
                                   &frame, cag_vec3(i & 1 ? pen->x : 0, i & 2 ? top : bottom, 0)));
@@ -224,30 +225,35 @@ static CagStatus place_text(const CagLabel *l, const Pen *pen, CagVec3 at, CagVe
   return status;
 }
 
-static CagStatus make_text(const CagLabel *l, CagVec3 at, CagVec3 along, double size,
-                           CagLabelShape *out, CagError *err) {
+static CagStatus make_text(CagLabelFonts *fonts, const CagLabel *l, CagVec3 at, CagVec3 along,
+                           double size, CagLabelShape *out, CagError *err) {
   const bool name = is_name(l->text);
-  Pen pen = {.size = size};
+  Pen pen = {.font = name ? &fonts->slanted : &fonts->upright, .size = size};
+  CagStatus status = CAG_OK;
   if (!*l->text) return CAG_OK;
-  CagStatus status =
-      cag_font_compiled_in(name ? CAG_FONT_ITALIC : CAG_FONT_REGULAR, &pen.font, err);
+  if (!pen.font->hb)
+    status = cag_font_compiled_in(name ? CAG_FONT_ITALIC : CAG_FONT_REGULAR, pen.font, err);
   if (status) return status;
   status = put_runs(&pen, l->text, name, err);
   if (!status) status = place_text(l, &pen, at, along, out, err);
   for (size_t i = 0; i < pen.count; i++) cag_region_release(pen.runs[i]);
   cag_free(pen.runs);
-  cag_font_free(&pen.font);
   return status;
 }
 
 // --- Labels ---
 
-CagStatus cag_label_shape(const CagLabel *l, CagVec3 at, CagVec3 along, double size,
-                          CagLabelShape *out, CagError *err) {
+void cag_label_fonts_free(CagLabelFonts *fonts) {
+  cag_font_free(&fonts->upright);
+  cag_font_free(&fonts->slanted);
+}
+
+CagStatus cag_label_shape(CagLabelFonts *fonts, const CagLabel *l, CagVec3 at, CagVec3 along,
+                          double size, CagLabelShape *out, CagError *err) {
   *out = (CagLabelShape){.box = CAG_BOUNDS_EMPTY};
   cag_bounds_add(&out->box, at);
   CagStatus status = make_mark(l->mark, at, along, size, out, err);
-  if (!status) status = make_text(l, at, along, size, out, err);
+  if (!status) status = make_text(fonts, l, at, along, size, out, err);
   if (status) cag_label_shape_free(out);
   return status;
 }
@@ -278,8 +284,8 @@ static bool project(const CagCamera *c, const CagCameraMap *map, CagVec3 p, CagV
   return true;
 }
 
-CagStatus cag_label_in_picture(const CagLabel *l, const CagCamera *camera, const CagCameraMap *map,
-                               CagLabelShape *out, CagError *err) {
+CagStatus cag_label_in_picture(CagLabelFonts *fonts, const CagLabel *l, const CagCamera *camera,
+                               const CagCameraMap *map, CagLabelShape *out, CagError *err) {
   const CagTransform frame = cag_camera_frame(camera);
   const CagVec3 right = {frame.m[0][0], frame.m[1][0], frame.m[2][0]};
   CagVec3 at, beside, ahead, along = {0, 0, 0};
@@ -292,5 +298,5 @@ CagStatus cag_label_in_picture(const CagLabel *l, const CagCamera *camera, const
   double size = CAG_LABEL_PART * hypot(camera->size[0], camera->size[1]);
   if (l->size > 0 && project(camera, map, cag_madd(l->at, step, right), &beside))
     size = l->size * cag_norm(cag_sub(beside, at)) / step;
-  return cag_label_shape(l, at, along, size, out, err);
+  return cag_label_shape(fonts, l, at, along, size, out, err);
 }

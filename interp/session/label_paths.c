@@ -9,14 +9,21 @@
 #include "interp/session/session.h"
 
 struct CagSessionLabelPaths {
-  char *text, *mark, *paper; // from malloc, without an account
+  CagLabelFonts fonts;       // for all labels of the scene
+  char *text, *mark, *paper; // of the last one; from malloc, without an account
 };
+
+static void drop_texts(struct CagSessionLabelPaths *p) {
+  free(p->text);
+  free(p->mark);
+  free(p->paper);
+  p->text = p->mark = p->paper = NULL;
+}
 
 void cag_session_drop_label_paths(CagSession *s) {
   if (!s->label_paths) return;
-  free(s->label_paths->text);
-  free(s->label_paths->mark);
-  free(s->label_paths->paper);
+  drop_texts(s->label_paths);
+  cag_label_fonts_free(&s->label_paths->fonts);
   cag_free(s->label_paths);
   s->label_paths = NULL;
 }
@@ -35,11 +42,15 @@ static int make_paths(CagSession *s, void *context) {
   const CagLabel *l = context;
   CagLabelShape shape;
   CagError err = {0};
-  CagStatus status = cag_label_shape(l, origin, right, 1, &shape, &err);
+  if (!s->label_paths) s->label_paths = cag_calloc(1, sizeof *s->label_paths);
+  struct CagSessionLabelPaths *p = s->label_paths;
+  if (!p) return cag_session_fail_memory(s);
+  drop_texts(p);
+  CagStatus status = cag_label_shape(&p->fonts, l, origin, right, 1, &shape, &err);
   if (!status) {
-    status = write_path(shape.text, &s->label_paths->text, &err);
-    if (!status) status = write_path(shape.mark, &s->label_paths->mark, &err);
-    if (!status) status = write_path(shape.paper, &s->label_paths->paper, &err);
+    status = write_path(shape.text, &p->text, &err);
+    if (!status) status = write_path(shape.mark, &p->mark, &err);
+    if (!status) status = write_path(shape.paper, &p->paper, &err);
     cag_label_shape_free(&shape);
   }
   return status ? cag_session_fail_geometry(s, &err) : CAG_STATUS_OK;
@@ -48,13 +59,8 @@ static int make_paths(CagSession *s, void *context) {
 bool cag_session_label_paths(CagSession *s, size_t i, CagLabelPaths *out) {
   *out = (CagLabelPaths){.text = NULL};
   if (!cag_session_begin(s)) return false;
-  cag_session_drop_label_paths(s);
-  bool found = s->has_scene && i < s->scene.label_count;
-  if (found) {
-    s->label_paths = cag_calloc(1, sizeof *s->label_paths);
-    found =
-        s->label_paths && cag_session_geometry(s, make_paths, &s->scene.labels[i]) == CAG_STATUS_OK;
-  }
+  const bool found = s->has_scene && i < s->scene.label_count &&
+                     cag_session_geometry(s, make_paths, &s->scene.labels[i]) == CAG_STATUS_OK;
   if (found)
     *out = (CagLabelPaths){s->label_paths->text, s->label_paths->mark, s->label_paths->paper};
   cag_session_end(s, CAG_STATUS_OK);

@@ -21,9 +21,11 @@ static void is_near(double x, double expected, double within, const char *what) 
 }
 
 static CagLabelShape shape_of(const CagLabel *l, CagVec3 at, CagVec3 along, double size) {
+  CagLabelFonts fonts = {0};
   CagLabelShape shape;
   CagError err = {0};
-  if (cag_label_shape(l, at, along, size, &shape, &err)) fail_msg("%s", err.message);
+  if (cag_label_shape(&fonts, l, at, along, size, &shape, &err)) fail_msg("%s", err.message);
+  cag_label_fonts_free(&fonts);
   return shape;
 }
 
@@ -207,11 +209,12 @@ static void a_label_is_where_the_camera_sees_it(void **state) {
                             .fov = M_PI / 2,
                             .size = {800, 600}};
   CagCameraMap map;
+  CagLabelFonts fonts = {0};
   CagError err = {0};
   assert_int_equal(cag_scene_camera_map(&camera, &map, &err), CAG_OK);
   CagLabel l = {.text = "", .mark = CAG_LABEL_DOT, .at = {10, 20, 50}, .size = 5};
   CagLabelShape shape;
-  assert_int_equal(cag_label_in_picture(&l, &camera, &map, &shape, &err), CAG_OK);
+  assert_int_equal(cag_label_in_picture(&fonts, &l, &camera, &map, &shape, &err), CAG_OK);
   // At the distance 50, a millimeter has 8 pixels.
   CagBounds dot = bounds_of(shape.mark);
   is_near((dot.min.x + dot.max.x) / 2, 400 + 80, 1e-6, "x");
@@ -219,12 +222,12 @@ static void a_label_is_where_the_camera_sees_it(void **state) {
   is_near(dot.max.x - dot.min.x, 2 * MARK * 5 * 8, 1e-6, "width");
   cag_label_shape_free(&shape);
   l.size = 0;
-  assert_int_equal(cag_label_in_picture(&l, &camera, &map, &shape, &err), CAG_OK);
+  assert_int_equal(cag_label_in_picture(&fonts, &l, &camera, &map, &shape, &err), CAG_OK);
   dot = bounds_of(shape.mark);
   is_near(dot.max.x - dot.min.x, 2 * MARK * 0.024 * 1000, 1e-6, "width");
   cag_label_shape_free(&shape);
   l.at.z = 150;
-  assert_int_equal(cag_label_in_picture(&l, &camera, &map, &shape, &err), CAG_OK);
+  assert_int_equal(cag_label_in_picture(&fonts, &l, &camera, &map, &shape, &err), CAG_OK);
   assert_null(shape.mark);
 }
 
