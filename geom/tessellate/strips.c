@@ -121,9 +121,11 @@ static double sample_at(double from, double to, double part) {
 }
 
 // Decides from a few samples whether a cell bends along the rails, so that slants have a direction,
-// and whether strips would save triangles.
+// and whether strips would save triangles: because grids would not follow the surface, or because
+// leaves take far more than the distance requires. Then the normal turns along their edges, and may
+// do so along short slants.
 static void judge_cell(const Run *r, const Cell *c, bool *usable, bool *worthwhile) {
-  const double saving = 0.8;
+  const double saving = 0.8, far_more = 4;
   const double length = r->to - r->from;
   double straight = 0, aslant = 0;
   *usable = true;
@@ -137,7 +139,10 @@ static void judge_cell(const Run *r, const Cell *c, bool *usable, bool *worthwhi
       straight += sqrt(fabs(b.uu * b.vv - b.uv * b.uv));
       aslant += sqrt(fabs(b.uu * b.vv)) + fabs(b.uv);
     }
-  *worthwhile = *usable && straight < saving * aslant;
+  const double area = length * (c->to - c->from) / (LOOKS * LOOKS);
+  const double required = straight * area / (4 * r->tolerance); // quadrilaterals, by plan.c's bound
+  const bool turns = !(r->t->how.max_edge > 0) && c->quads > far_more * required;
+  *worthwhile = *usable && (straight < saving * aslant || turns);
 }
 
 static bool sample_cell(const Run *r, Cell *c) {
@@ -174,11 +179,13 @@ static bool are_edges_within(const Run *r, const CagVec3 side[2], const CagVec3 
   const CagTessellation *how = &r->t->how;
   const double free = tess_short_edge(how);
   static const double part[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+  const bool free_side = fmin(cag_norm(side[0]), cag_norm(side[1])) <= free;
   for (int k = 0; k < 4; k++) {
     const double *p = part[k];
     const double length = cag_norm(cag_madd(cag_scaled(side[0], p[0]), p[1], side[1]));
     const double turned = cag_norm(cag_madd(cag_scaled(turn[0], p[0]), p[1], turn[1]));
-    if (how->angle > 0 && turned > r->angle && length > free) return false;
+    const bool exempt = length <= free || (k >= 2 && free_side);
+    if (how->angle > 0 && turned > r->angle && !exempt) return false;
     if (how->max_edge > 0 && length > how->max_edge) return false;
   }
   return true;
@@ -262,12 +269,16 @@ static double least_steps(const Run *r) {
 // climb. At least three steps are used, so that shapes smaller than the tolerance do not vanish.
 static void close_run(Run *r) {
   const double nearly = 1.15, rounding = 1e-6; // limit on the increase of steps, and rounding
-  double climb = 0;
-  for (size_t k = 0; k < r->strip_count; k++)
-    climb += r->strips[k].slope * (r->strips[k].to - r->strips[k].from);
+  const double around_at_all = 0.5;            // or else slants climb as far as they descend
+  double climb = 0, way = 0;
+  for (size_t k = 0; k < r->strip_count; k++) {
+    const double rise = r->strips[k].slope * (r->strips[k].to - r->strips[k].from);
+    climb += rise;
+    way += fabs(rise);
+  }
   const double share = fabs(climb) / (r->to - r->from);
   const double around = fmax(3, ceil(share * r->steps - rounding));
-  if (!r->closed || !(share > 0)) return;
+  if (!r->closed || !(share > 0) || fabs(climb) < around_at_all * way) return;
   if (around < nearly * share * r->steps || around <= 3) r->steps = around / share;
 }
 

@@ -241,10 +241,10 @@ CagStatus cag_tess_try_edges(const TessTrial *trial, double angle, double free, 
       double v = tess_larger(excess_of(&most, p, q, a, d), excess_of(&most, p, q, b, c));
       bool cut_ac = tess_cut_ac(p[a], p[b], p[c], p[d]);
       // If a side is exempt from the angle limit, its turn appears in the diagonal as well. Strips
-      // have no such exemption and may be cut either way.
+      // may be cut either way.
       const bool strip = trial->slope != 0;
       EdgeLimits across = most;
-      if (!strip && (is_free(&most, p, a, b) || is_free(&most, p, a, d))) across.angle = 0;
+      if (is_free(&most, p, a, b) || is_free(&most, p, a, d)) across.angle = 0;
       double ac = cut_ac || strip ? excess_of(&across, p, q, a, c) : 0,
              bd = !cut_ac || strip ? excess_of(&across, p, q, b, d) : 0;
       out->along[0] = tess_larger(out->along[0], u);

@@ -191,6 +191,56 @@ static void twisted_bodies_keep_tolerance_and_angle(void **state) {
   }
 }
 
+// --- A spring ---
+
+// A bar that follows an arc of 300 degrees, with straight sides.
+enum { CHORDS = 16 };
+static const double bar[2] = {105, 95}; // radii
+
+static CagCurve *bent_bar(void) {
+  CagVec3 p[2 * CHORDS + 2];
+  size_t n = 0;
+  for (int side = 0; side < 2; side++)
+    for (int k = 0; k <= CHORDS; k++) {
+      const double a = 5 * M_PI / 3 * (side ? CHORDS - k : k) / CHORDS;
+      p[n++] = cag_vec3(bar[side] * cos(a), bar[side] * sin(a), 0);
+    }
+  CagCurve *c;
+  OK(cag_curve_polyline(p, n, true, 2, &c, &err));
+  return c;
+}
+
+// As meshes of exports are made: the normal may turn farther along edges of up to four tolerances.
+// The rails of corners are circles as seen from above, with the sagitta r (1 - cos(pi / n)). Between
+// two rails, sides are hollow: the sagitta of their chords is divided among the strips.
+static void springs_take_few_triangles(void **state) {
+  (void)state;
+  const double tolerance = 0.25, turns = 25.0 / 6, step = M_PI / 6 * 5 / CHORDS;
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagSolid *s = twisted(bent_bar(), 100, turns, 1);
+  CagMesh *m;
+  CagVec3 edge[2];
+  double most = 0, worst[2];
+  how.tolerance = tolerance;
+  how.short_edge = 4;
+  for (int k = 0; k < 2; k++) {
+    const double around = M_PI / acos(1 - tolerance / bar[k]) * turns;
+    const double strips = ceil(sqrt(bar[k] * (1 - cos(step)) / tolerance));
+    most += 2 * 2 * around * strips * CHORDS; // twice the triangles
+  }
+  OK(cag_solid_tessellate(s, &how, &m, &err));
+  if (!((double)m->triangle_count < most)) fail_msg("%zu triangles, %g", m->triangle_count, most);
+  assert_true(cag_mesh_is_watertight(m, edge));
+  cag_mesh_release(m);
+  for (size_t k = 0; k < s->face_count; k++) {
+    if (cag_surface_planar_view(s->faces[k], NULL, NULL)) continue;
+    OK(cag_surface_tessellate(s->faces[k], &how, &m, &err));
+    assert_true(largest_distance(s->faces[k], m, tolerance, worst) <= tolerance);
+    cag_mesh_release(m);
+  }
+  cag_solid_release(s);
+}
+
 // Swaps the parameters and changes nothing else.
 static void strips_run_along_either_parameter(void **state) {
   (void)state;
@@ -219,6 +269,7 @@ int main(void) {
       cmocka_unit_test(a_thread_takes_few_triangles_for_its_volume),
       cmocka_unit_test(coarser_tolerances_take_fewer_triangles),
       cmocka_unit_test(twisted_bodies_keep_tolerance_and_angle),
+      cmocka_unit_test(springs_take_few_triangles),
       cmocka_unit_test(strips_run_along_either_parameter),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
