@@ -328,6 +328,12 @@ typedef struct CagValueView {
 CAG_API void cag_session_values(CagSession *s, void (*give)(void *context, const CagValueView *v),
                                 void *context);
 
+// Runs work(context), which may call functions of this session often: for each part of a large
+// scene, say. Elsewhere, each call that uses the machine starts a thread of its own. The time limit
+// holds for all of the work. `work` must not run a script, and cag_session_free takes effect after
+// it.
+CAG_API void cag_session_together(CagSession *s, void (*work)(void *context), void *context);
+
 // The following need a scene, as cag_session_scene makes it.
 
 typedef struct CagPartView {

@@ -101,25 +101,38 @@ static double keep_tolerance(CagSession *s, const CagLiveRequest *q, double befo
   return cag_session_set_default_tolerance(s, before) ? before : own;
 }
 
+// What is written of a run.
+typedef struct Showing {
+  CagSession *session;
+  const CagModel *model;
+  const CagLiveRequest *request;
+  int run, status;
+  double tolerance; // before: of the last run
+  CagString scene;
+} Showing;
+
+static void write_scene(void *context) {
+  Showing *w = context;
+  const CagModel *m = w->model;
+  const CagLiveModel model = {w->run, m->name, m->folder, w->request->coarse};
+  w->tolerance = keep_tolerance(w->session, w->request, w->tolerance);
+  w->status = cag_live_scene(w->session, &model, &m->meshes, &w->scene);
+}
+
 void cag_model_run(const CagModel *model, const CagLiveRequest *request, int number,
                    const volatile int *interrupt, CagModelRun *last) {
   Prints *prints = calloc(1, sizeof *prints); // its addresses are in use until it is closed
-  CagString scene = {0};
   CagLiveRun told = {.run = number, .status = CAG_STATUS_LIMIT};
   const double begin = cag_clock_seconds();
-  double tolerance = 0;
   publish_state(model, number, true);
   if (prints) prints->file = open_memstream(&prints->text, &prints->length);
   CagSession *s = prints && prints->file
                       ? cag_model_session(model, request, interrupt, prints->file, &told.status)
                       : NULL;
   if (model->begin_scene) model->begin_scene(model->context);
-  if (s && told.status == CAG_STATUS_OK) {
-    tolerance = keep_tolerance(s, request, last->tolerance);
-    told.status =
-        cag_live_scene(s, &(CagLiveModel){number, model->name, model->folder, request->coarse},
-                       &model->meshes, &scene);
-  }
+  Showing shown = {s, model, request, number, told.status, last->tolerance, {0}};
+  if (s && told.status == CAG_STATUS_OK) cag_session_together(s, write_scene, &shown);
+  told.status = shown.status;
   told.seconds = cag_clock_seconds() - begin;
   if (s) {
     fflush(prints->file);
@@ -127,13 +140,13 @@ void cag_model_run(const CagModel *model, const CagLiveRequest *request, int num
     if (model->ran) model->ran(model->context, s);
     if (told.status != CAG_STATUS_INTERRUPTED) publish_messages(model, s, &told);
   }
-  const bool good = s && told.status == CAG_STATUS_OK && scene.bytes;
-  if (good) model->publish(model->context, "scene", scene.bytes);
+  const bool good = s && told.status == CAG_STATUS_OK && shown.scene.bytes;
+  if (good) model->publish(model->context, "scene", shown.scene.bytes);
   publish_state(model, number, false);
-  cag_string_free(&scene);
+  cag_string_free(&shown.scene);
   if (good) {
     cag_model_run_free(last);
-    *last = (CagModelRun){s, prints, tolerance};
+    *last = (CagModelRun){s, prints, shown.tolerance};
   } else {
     drop_session(s, prints);
   }

@@ -98,13 +98,25 @@ static void work_on_run(CagRunner *r) {
   r->running = false;
 }
 
+typedef struct Asked {
+  CagSession *session;
+  const Task *task;
+} Asked;
+
+static void answer_task(void *context) {
+  const Asked *a = context;
+  a->task->work(a->session, a->task->context);
+}
+
 static void work_on_task(CagRunner *r) {
   Task *t = r->tasks;
   r->tasks = t->next;
   if (!r->tasks) r->tasks_end = &r->tasks;
   r->interrupt = 0;
   pthread_mutex_unlock(&r->mutex);
-  t->work(r->good.session, t->context);
+  Asked asked = {r->good.session, t};
+  if (asked.session) cag_session_together(asked.session, answer_task, &asked);
+  else answer_task(&asked);
   free(t);
   pthread_mutex_lock(&r->mutex);
 }

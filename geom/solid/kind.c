@@ -7,6 +7,23 @@
 
 #include "geom/solid/csg.h"
 
+// --- Bounds of round bodies ---
+
+// The largest value of w . p for the points p of a body in its own coordinates.
+typedef double Support(const CagSolid *s, CagVec3 w);
+
+static CagStatus bounds_by_support(const CagSolid *s, Support *support, CagBounds *out) {
+  double low[3], high[3];
+  for (int i = 0; i < 3; i++) {
+    const double *row = s->placement.m[i];
+    const CagVec3 w = cag_vec3(row[0], row[1], row[2]);
+    high[i] = row[3] + support(s, w);
+    low[i] = row[3] - support(s, cag_scaled(w, -1));
+  }
+  *out = (CagBounds){cag_vec3(low[0], low[1], low[2]), cag_vec3(high[0], high[1], high[2])};
+  return CAG_OK;
+}
+
 // --- Box ---
 
 static CagSolidBody box_body(const CagSolid *s) {
@@ -61,6 +78,13 @@ static CagSolidBody sphere_body(const CagSolid *s) {
   return b;
 }
 
+static double sphere_support(const CagSolid *s, CagVec3 w) { return s->a * cag_norm(w); }
+
+static CagStatus sphere_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
+  (void)err;
+  return bounds_by_support(s, sphere_support, out);
+}
+
 static double sphere_beyond(const CagSolid *s, CagVec3 p) { return cag_norm(p) - s->a; }
 
 static void describe_sphere(const CagSolid *s, const double size[3], char *buffer, size_t n) {
@@ -88,6 +112,17 @@ static CagSolidBody frustum_body(const CagSolid *s) {
   return b;
 }
 
+// Of its two circles.
+static double frustum_support(const CagSolid *s, CagVec3 w) {
+  const double across = hypot(w.x, w.y);
+  return fmax(s->b * across, s->a * w.z + s->c * across);
+}
+
+static CagStatus frustum_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
+  (void)err;
+  return bounds_by_support(s, frustum_support, out);
+}
+
 static double frustum_beyond(const CagSolid *s, CagVec3 p) {
   double height = s->a, radius = s->b, top = s->c, slope = (top - radius) / height;
   double side = (hypot(p.x, p.y) - radius - slope * p.z) / hypot(1, slope);
@@ -113,6 +148,15 @@ static CagSolidBody torus_body(const CagSolid *s) {
   b.moment[0] = b.moment[1] = b.volume * (R * R / 2 + 3 * r * r / 8);
   b.moment[2] = b.volume * r * r / 4;
   return b;
+}
+
+static double torus_support(const CagSolid *s, CagVec3 w) {
+  return s->a * hypot(w.x, w.y) + s->b * cag_norm(w);
+}
+
+static CagStatus torus_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
+  (void)err;
+  return bounds_by_support(s, torus_support, out);
 }
 
 static double torus_beyond(const CagSolid *s, CagVec3 p) {
@@ -170,7 +214,8 @@ const CagSolidKindRow cag_solid_kinds[] = {
                           .is_symmetric = always,
                           .describe = describe_sphere,
                           .body = sphere_body,
-                          .beyond = sphere_beyond},
+                          .beyond = sphere_beyond,
+                          .bounds = sphere_bounds},
     [CAG_SOLID_CYLINDER] = {.name = "cylinder",
                             .scaling = CAG_SCALES_UPRIGHT,
                             .size_axes = {2, 1, 0},
@@ -178,14 +223,16 @@ const CagSolidKindRow cag_solid_kinds[] = {
                             .is_symmetric = always,
                             .describe = describe_frustum,
                             .body = frustum_body,
-                            .beyond = frustum_beyond},
+                            .beyond = frustum_beyond,
+                            .bounds = frustum_bounds},
     [CAG_SOLID_TORUS] = {.name = "torus",
                          .scaling = CAG_SCALES_EVENLY,
                          .turns_about_z = true,
                          .is_symmetric = always,
                          .describe = describe_torus,
                          .body = torus_body,
-                         .beyond = torus_beyond},
+                         .beyond = torus_beyond,
+                         .bounds = torus_bounds},
     [CAG_SOLID_EXTRUSION] = {.name = "extrusion", .describe = describe_faces},
     [CAG_SOLID_REVOLUTION] = {.name = "revolution", .describe = describe_faces},
     [CAG_SOLID_TUBE] = {.name = "tube", .scaling = CAG_SCALES_MIRRORED, .describe = describe_tube},

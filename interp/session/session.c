@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/assert.h"
 #include "base/large_stack.h"
 #include "base/memory.h"
 #include "base/stop.h"
@@ -55,6 +56,7 @@ static void drop_scene(CagSession *s) {
 }
 
 void cag_session_drop_vm(CagSession *s) {
+  CAG_ASSERT(!s->together); // the watch refers to the machine
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   drop_scene(s);
   cag_free(s->inputs);
@@ -91,8 +93,8 @@ int cag_session_end(CagSession *s, int status) {
 
 void cag_session_free(CagSession *s) {
   if (!s) return;
-  s->free_pending = s->busy;
-  if (s->busy) return;
+  s->free_pending = s->busy || s->together;
+  if (s->free_pending) return;
   cag_session_drop_vm(s);
   cag_session_clear_defines(s);
   cag_free(s->script);
@@ -207,14 +209,13 @@ static void tell_overdue(void *context) {
 static CagErrorId why_stopped(const CagSession *s);
 static int fail_stopped(CagSession *s, CagErrorId id);
 
-int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context) {
-  CagVm *vm = cag_session_vm(s);
-  if (!vm) return CAG_STATUS_LIMIT;
-  cag_vm_clear_error(vm);
-  Task task = {.vm = vm, .work = work, .context = context};
+// Runs work(context, low) on a large stack while the limits are watched. Returns false if no thread
+// can be created for it.
+static bool run_watched(CagSession *s, void (*work)(void *context, char *low), void *context) {
+  const CagVm *vm = s->vm;
   // If the limit has already been exceeded, the work ends at its first check.
   const double least = 1e-6;
-  CagWatch w = {.stop = &vm->stop,
+  CagWatch w = {.stop = &s->vm->stop,
                 .interrupt = s->options.interrupt,
                 .seconds = !(vm->max_time > 0)    ? 0
                            : s->time_left > least ? s->time_left
@@ -222,9 +223,41 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
                 .overdue = s->options.overdue && !s->interactive ? tell_overdue : NULL,
                 .context = s};
   cag_watch_begin(&w);
-  const bool started = cag_large_stack_run(perform, &task);
-  if (!started) cag_vm_fail(vm, CAG_ERR_limit_memory, "cannot create a thread for the evaluation");
+  const bool started = cag_large_stack_run(work, context);
   s->time_left -= cag_watch_end(&w);
+  return started;
+}
+
+typedef struct Together {
+  CagSession *session;
+  void (*work)(void *context);
+  void *context;
+} Together;
+
+static void perform_together(void *context, char *low) {
+  Together *t = context;
+  t->session->together = low;
+  t->work(t->context);
+  t->session->together = NULL;
+}
+
+void cag_session_together(CagSession *s, void (*work)(void *context), void *context) {
+  // Without a thread, each call starts its own, or fails.
+  if (s->together || !cag_session_vm(s) ||
+      !run_watched(s, perform_together, &(Together){s, work, context}))
+    work(context);
+  if (s->free_pending) cag_session_free(s);
+}
+
+int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context) {
+  CagVm *vm = cag_session_vm(s);
+  if (!vm) return CAG_STATUS_LIMIT;
+  cag_vm_clear_error(vm);
+  Task task = {.vm = vm, .work = work, .context = context};
+  bool started = true;
+  if (s->together) perform(&task, s->together);
+  else started = run_watched(s, perform, &task);
+  if (!started) cag_vm_fail(vm, CAG_ERR_limit_memory, "cannot create a thread for the evaluation");
   fflush(s->options.out);
   cag_diagnostics_move(&s->diagnostics, &vm->errors);
   vm->failed = false;
@@ -388,7 +421,7 @@ static bool run(CagVm *vm, void *context) {
 }
 
 static int start_run(CagSession *s, Run *r) {
-  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
+  if (s->together || !cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
   cag_free(s->script);
   s->script = cag_strdup(r->path ? r->path : r->name);

@@ -57,6 +57,7 @@ struct CagSession {
   atomic_bool busy;  // a call that uses the machine is under way
   bool free_pending; // a callback freed the session, which takes effect at the end of the call
                      // under way
+  char *together;    // the lowest address of the stack of cag_session_together; NULL: not within it
 };
 
 // Every call that uses the machine starts and ends with these functions. cag_session_begin drops

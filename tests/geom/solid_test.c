@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "surface_support.h"
+#include "tests/geom/random.h"
 
 static CagRegion *new_polygon(const CagVec3 *points, size_t n) {
   CagCurve *c;
@@ -176,6 +177,38 @@ static void a_torus_has_its_closed_forms(void **state) {
 
 // Reflections, shears, and rotations: the volume is multiplied by the determinant, normals stay
 // outward, and edges still meet.
+// The bounds of primitives have closed forms, under any map; those of a shell come from its faces.
+static void bounds_are_those_of_the_faces(void **state) {
+  (void)state;
+  enum { KINDS = 6, MAPS = 12 };
+  seed = 17;
+  for (int k = 0; k < KINDS * MAPS; k++) {
+    const double a = uniform(1, 5), b = uniform(1, 5), c = uniform(0.5, 5);
+    CagSolid *own, *s, *shell;
+    switch (k % KINDS) {
+    case 0: MUST(cag_solid_box(cag_vec3(a, b, c), k % 2, &own, err)); break;
+    case 1: MUST(cag_solid_sphere(a, &own, err)); break;
+    case 2: MUST(cag_solid_cylinder(a, b, c, &own, err)); break;
+    case 3: MUST(cag_solid_cylinder(a, b, 0, &own, err)); break;
+    case 4: MUST(cag_solid_cylinder(a, 0, b, &own, err)); break;
+    default: MUST(cag_solid_torus(a + b, b, &own, err)); break;
+    }
+    CagTransform map = cag_transform_identity();
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 4; j++) map.m[i][j] = uniform(-2, 2);
+    MUST(cag_solid_transform(own, &map, &s, err));
+    MUST(cag_solid_shell(s->faces, s->face_count, &shell, err));
+    CagBounds found, expected;
+    MUST(cag_solid_bounds(s, &found, err));
+    MUST(cag_solid_bounds(shell, &expected, err));
+    assert_point(found.min, expected.min, 1e-9, "lower bounds");
+    assert_point(found.max, expected.max, 1e-9, "upper bounds");
+    cag_solid_release(own);
+    cag_solid_release(s);
+    cag_solid_release(shell);
+  }
+}
+
 static void transforms_keep_solids_outward(void **state) {
   (void)state;
   CagSolid *solids[3], *moved;
@@ -464,6 +497,7 @@ int main(void) {
       cmocka_unit_test(a_sphere_faces_outward_at_its_poles),
       cmocka_unit_test(cylinders_frusta_and_cones),
       cmocka_unit_test(a_torus_has_its_closed_forms),
+      cmocka_unit_test(bounds_are_those_of_the_faces),
       cmocka_unit_test(transforms_keep_solids_outward),
       cmocka_unit_test(extrusions_have_the_metrics_of_the_reference),
       cmocka_unit_test(rings_obey_pappus),

@@ -294,6 +294,53 @@ static void a_ground_that_was_added_is_no_shape(void **state) {
   cag_session_free(s);
 }
 
+// --- Calls together ---
+
+typedef struct Counted {
+  CagSession *session;
+  size_t parts;
+  int status; // of the last mesh
+} Counted;
+
+static void count_parts(void *context) {
+  Counted *c = context;
+  CagPartView p;
+  CagMeshView m;
+  for (c->parts = 0; cag_session_part(c->session, c->parts, &p); c->parts++) {
+    if (!strcmp(p.type, "ground")) break;
+    c->status = cag_session_part_mesh(c->session, c->parts, 1, NULL, NULL, &m);
+    if (c->status != CAG_STATUS_OK) break;
+    assert_int_equal(strncmp(p.story, "sphere, radius 2", 16), 0);
+  }
+  assert_int_equal(cag_session_run_text(c->session, "other.cag", "", 0), CAG_STATUS_USAGE);
+}
+
+static void free_at_once(void *context) {
+  Counted *c = context;
+  cag_session_free(c->session);
+  count_parts(c); // the session still exists
+}
+
+static void calls_together_are_like_others(void **state) {
+  (void)state;
+  volatile int interrupt = 0;
+  CagSessionOptions options = session_options();
+  options.interrupt = &interrupt;
+  CagSession *s = cag_session_new(&options);
+  Counted c = {.session = s, .status = -1};
+  build_scene(s, "show [for i in 1..20: translate(sphere(2), [5*i, 0, 0])]\n");
+  cag_session_together(s, count_parts, &c);
+  assert_int_equal(c.parts, 20);
+  assert_int_equal(c.status, CAG_STATUS_OK);
+  interrupt = 1; // before them: the first one ends
+  cag_session_together(s, count_parts, &c);
+  assert_int_equal(c.parts, 0);
+  assert_int_equal(c.status, CAG_STATUS_INTERRUPTED);
+  interrupt = 0;
+  cag_session_together(s, free_at_once, &c);
+  assert_int_equal(c.parts, 20);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equal_shapes_have_one_mesh),
@@ -305,6 +352,7 @@ int main(void) {
       cmocka_unit_test(a_ground_has_no_story),
       cmocka_unit_test(params_are_described),
       cmocka_unit_test(params_of_a_script_that_fails_are_known),
+      cmocka_unit_test(calls_together_are_like_others),
       cmocka_unit_test(a_ground_that_was_added_is_no_shape),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
