@@ -67,12 +67,27 @@ trap 'rm -rf "$work"' EXIT
 
 suite() { printf '%s\t%s\t%s\n' "$1" "$2" "$3" >> "$work/suites"; }
 
-# unit_suites BUILD NAME [LEFT_OUT]: all programs of C tests of a build. NAME is a prefix of the names of its suites. LEFT_OUT lists tests of
-# geom, with a space at both ends.
+# These take half of the time of all with sanitizers, because they try thousands of random shapes or search long. `make test-sanitize` runs
+# them.
+: "${SANITIZED_LEFT_OUT=tests/geom/boolean tests/geom/boolean_flat tests/geom/boolean_turned tests/geom/caster_nearest tests/geom/csg
+tests/geom/general tests/geom/half_spaces tests/geom/level_sets tests/geom/meet_rings tests/geom/meet_touch tests/geom/minkowski
+tests/geom/nearest tests/geom/quadric_body tests/geom/quadric_outline tests/geom/ray_mesh tests/geom/region_clipper
+tests/geom/region_offset tests/geom/region_sets tests/geom/region_stroke tests/geom/region_unite tests/geom/section_small tests/geom/side
+tests/geom/tessellate tests/geom/tessellate_dense tests/geom/tessellate_motion tests/geom/tessellate_solids tests/geom/villarceau
+tests/interp/operators tests/interp/pov tests/interp/section tests/interp/tool_batch
+tests/language/geometry/csg tests/language/geometry/csg_sides tests/language/geometry/meet_branches tests/language/geometry/meet_shallow
+tests/language/geometry/meet_small tests/language/geometry/meet_surfaces tests/language/geometry/quadrics}"
+
+# is_left_out NAME LEFT_OUT: whether a list has the name.
+is_left_out() {
+  case " $(echo $2) " in *" $1 "*) return 0 ;; esac
+  return 1
+}
+
+# unit_suites BUILD NAME [LEFT_OUT]: all programs of C tests of a build, except those of a list. NAME is a prefix of the names of its suites.
 unit_suites() {
   for source in tests/base/*_test.c tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
-    left_out=${source#tests/geom/}
-    case "${3:-} " in *" ${left_out%_test.c} "*) continue ;; esac
+    is_left_out "${source%_test.c}" "${3:-}" && continue
     case $source in
       *'*'* | tests/interp/interrupt_test.c | tests/interp/heavy_test.c) ;; # the latter two run alone
       *) suite unit "$2${source%.c}" "'$1/${source%.c}'" ;;
@@ -87,15 +102,23 @@ vector_suites() {
   done
 }
 
-# language_suites BUILD NAME OPTIONS: the scripts of the language, folder by folder.
+# language_suites BUILD NAME OPTIONS [LEFT_OUT]: the scripts of the language, folder by folder, except those of a list.
 language_suites() {
   for folder in tests/language/*/; do
     folder=${folder%/}
     case $folder in
-      */geometry) for part in '[a-l]' '[m-r]' '[s-z]'; do suite counted "$2$folder/$part" "'$1/cag' test $3 $folder/$part*.cag"; done ;;
+      */geometry) for part in '[a-l]' '[m-r]' '[s-z]'; do language_suite "$@" "$folder/$part" "$folder"/$part*.cag; done ;;
       *) suite counted "$2$folder" "'$1/cag' test $3 $folder" ;;
     esac
   done
+}
+
+# language_suite BUILD NAME OPTIONS LEFT_OUT WHAT SCRIPT...
+language_suite() {
+  name=$2$5 command="'$1/cag' test $3" left_out=$4
+  shift 5
+  for script; do is_left_out "${script%.cag}" "$left_out" || command="$command $script"; done
+  suite counted "$name" "$command"
 }
 
 # The slowest ones start first.
@@ -104,19 +127,17 @@ alone='limits output signals'
 suite counted "tests/web" "sh tests/web/run.sh"
 if [ -n "${SANITIZED:-}" ]; then
   case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
-  # Three scripts take 12 s each without sanitizers, and four times as long with them.
-  language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
+  language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600" "$SANITIZED_LEFT_OUT"
   suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
   suite counted "sanitized tests/fuzz/pictures" "python3 tests/fuzz/pictures.py '$SANITIZED/cag' 1000 3"
   suite counted "sanitized tests/fuzz/fonts" "python3 tests/fuzz/fonts.py '$SANITIZED/cag' 250 3"
   suite counted "sanitized tests/fuzz/memory limits" "'$SANITIZED/tests/fuzz/memory' -l -n 3"
-  # These take a third of the time of all with sanitizers, because they try thousands of random shapes. `make test-sanitize` runs them.
-  unit_suites "$SANITIZED" "sanitized " "${SANITIZED_LEFT_OUT- caster_nearest boolean boolean_turned boolean_flat csg general half_spaces level_sets meet_touch meet_rings }"
+  unit_suites "$SANITIZED" "sanitized " "$SANITIZED_LEFT_OUT"
   vector_suites "$SANITIZED" "sanitized "
 fi
 suite counted "tests/live view" "python3 tests/live/view.py '$BUILD/cag'"
 suite counted "tests/live" "sh tests/live/run.sh"
-language_suites "$BUILD" "" ""
+language_suites "$BUILD" "" "" ""
 suite counted "tests/scenes" "'$BUILD/cag' test tests/scenes"
 suite counted "cag test examples" "'$BUILD/cag' test --no-pictures examples stdlib"
 suite counted "tests/fuzz" "'$BUILD/tests/fuzz/fuzz' 8"
