@@ -151,8 +151,17 @@ class Page {
     await this.say("Input.dispatchKeyEvent", { type: "keyUp", key, windowsVirtualKeyCode: code, ...more });
   }
 
+  // Chromium drops a text now and then that comes while a scene is drawn: then it is inserted again.
   async type(text) {
-    await this.say("Input.insertText", { text });
+    await this.value('void (globalThis.typedTexts ??= (document.addEventListener("beforeinput", () => globalThis.typedTexts++, true), 0))');
+    const before = await this.value("typedTexts"), arrived = async () => (await this.value("typedTexts")) > before;
+    for (let tries = 0; tries < 3; tries++) {
+      await this.say("Input.insertText", { text });
+      if (await arrived()) return;
+      await pause(500);
+      if (await arrived()) return;
+    }
+    throw new Error(`the page took no text: ${text}`);
   }
 
   async screenshot(file) {
