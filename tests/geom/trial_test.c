@@ -230,8 +230,7 @@ static TessExcess grid_excess(const TessTrial *t, const Limits *most) {
       for (int e = 0; e < 4; e++)
         out.along[e % 2] = fmax(out.along[e % 2], excess(t, most, c[e], c[(e + 1) % 4]));
       Limits across = *most;
-      if (!sheared &&
-          fmin(cag_norm(cag_sub(at[1], at[0])), cag_norm(cag_sub(at[3], at[0]))) <= most->free)
+      if (fmin(cag_norm(cag_sub(at[1], at[0])), cag_norm(cag_sub(at[3], at[0]))) <= most->free)
         across.angle = 0;
       if (sheared || ac) out.diagonal = fmax(out.diagonal, excess(t, &across, c[0], c[2]));
       if (sheared || !ac) out.diagonal = fmax(out.diagonal, excess(t, &across, c[1], c[3]));
