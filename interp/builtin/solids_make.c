@@ -73,6 +73,8 @@ bool cag_solids_prism(CagCall *call, const struct cag_solids_prism *a, CagValue 
                                                  .height = cag_number(a->height),
                                                  .scale = 1,
                                                  .caps = true,
+                                                 .fillet = cag_unset(),
+                                                 .chamfer = cag_unset(),
                                                  .centered = a->centered};
   return cag_surfaces_extrude(call, &extrusion, result);
 }

@@ -3,7 +3,9 @@
 #include <stdlib.h>
 
 #include "geom/solid/csg.h"
+#include "geom/solid/rounded.h"
 #include "interp/builtin/solids.h"
+#include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
 #define FULL_TURN 6.283185307179586 // 2 pi
@@ -157,24 +159,98 @@ static bool extrude_sides(CagCall *call, const struct cag_surfaces_extrude *a,
 
 // Extrudes along `way`, which is in the region's own coordinates.
 static bool extrude_region(CagCall *call, const struct cag_surfaces_extrude *a,
-                           const CagRegion *region, CagVec3 way, const CagTransform *place,
-                           CagValue *result) {
+                           const CagRegion *region, CagVec3 way, const CagRoundedEnd ends[2],
+                           const CagTransform *place, CagValue *result) {
   CagSolid *s = NULL, *placed = NULL;
   if (!a->caps) return extrude_sides(call, a, region, way, place, result);
-  CagStatus status = cag_solid_extrude(region, way, a->twist, a->scale, &s, call->err);
+  CagStatus status = ends[0].reach > 0 || ends[1].reach > 0
+                         ? cag_solid_extrude_rounded(region, way.z, ends, &s, call->err)
+                         : cag_solid_extrude(region, way, a->twist, a->scale, &s, call->err);
   if (!status) status = cag_solid_transform(s, place, &placed, call->err);
   cag_solid_release(s);
   return cag_solid_result(call, status, &placed, result);
+}
+
+// Indices of the parameters.
+enum { HEIGHT = 1, TWIST = 2, SCALE = 3, CAPS = 4, FILLET = 6, CHAMFER = 7 };
+
+// Reads a length for both ends, or a list of one for each.
+static bool read_reach(CagCall *call, int argument, CagValue v, double out[2]) {
+  const double *numbers = &v.as.number;
+  size_t n = 1;
+  out[0] = out[1] = 0;
+  if (v.type == CAG_UNSET || v.type == CAG_NONE) return true;
+  if (v.type == CAG_LIST) {
+    if (!cag_arg_numbers(call, argument, &numbers, &n)) return false;
+    if (n != 2) return cag_fail_value(call, argument, "a length, or a list of two");
+  } else if (v.type != CAG_NUMBER) {
+    return cag_fail_type(call, argument, "a length, or a list of two");
+  }
+  for (size_t i = 0; i < 2; i++) {
+    out[i] = numbers[n == 1 ? 0 : i];
+    if (!(out[i] >= 0) || isinf(out[i]))
+      return cag_fail_value(call, argument, "lengths of at least 0");
+  }
+  return true;
+}
+
+static bool read_ends(CagCall *call, const struct cag_surfaces_extrude *a, CagRoundedEnd ends[2]) {
+  double fillets[2], chamfers[2];
+  if (!read_reach(call, FILLET, a->fillet, fillets) ||
+      !read_reach(call, CHAMFER, a->chamfer, chamfers))
+    return false;
+  for (int i = 0; i < 2; i++) {
+    if (fillets[i] > 0 && chamfers[i] > 0)
+      return cag_fail_call(call, CHAMFER, CAG_ERR_value,
+                           "accepts a fillet or a chamfer for each end, found both; give one of "
+                           "them as a list with a 0 for this end");
+    ends[i] = (CagRoundedEnd){fmax(fillets[i], chamfers[i]), fillets[i] > 0};
+  }
+  return true;
+}
+
+// Whether what the ends require is given: a straight solid.
+static bool check_ends(CagCall *call, const struct cag_surfaces_extrude *a,
+                       const CagRoundedEnd ends[2]) {
+  if (ends[0].reach == 0 && ends[1].reach == 0) return true;
+  const char *name = ends[0].round || ends[1].round ? "fillet" : "chamfer";
+  if (a->twist != 0)
+    return cag_fail_call(call, TWIST, CAG_ERR_value, "accepts `%s` only without `twist`", name);
+  if (a->scale != 1)
+    return cag_fail_call(call, SCALE, CAG_ERR_value, "accepts `%s` only without `scale`", name);
+  if (!a->caps)
+    return cag_fail_call(call, CAPS, CAG_ERR_value, "accepts `%s` only with caps", name);
+  return true;
+}
+
+// A rounded extrusion goes along the normal of the region, and its placement keeps circles.
+static bool check_place(CagCall *call, CagVec3 own, const CagTransform *place,
+                        const CagRoundedEnd ends[2]) {
+  double scale;
+  if (ends[0].reach == 0 && ends[1].reach == 0) return true;
+  const char *name = ends[0].round || ends[1].round ? "fillet" : "chamfer";
+  if (fabs(own.x) + fabs(own.y) > AXIS_IN_PLANE * fabs(own.z))
+    return cag_fail_call(call, HEIGHT, CAG_ERR_value,
+                         "accepts `%s` only for a height along the normal of the section", name);
+  if (!cag_transform_is_similarity(place, &scale) || fabs(scale - 1) > AXIS_IN_PLANE)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "accepts `%s` only for a section that is not scaled or sheared", name);
+  return true;
 }
 
 bool cag_surfaces_extrude(CagCall *call, const struct cag_surfaces_extrude *a, CagValue *result) {
   CagRegion *region;
   CagTransform place, back;
   CagVec3 way;
-  if (!read_way(call, &way)) return false;
+  CagRoundedEnd ends[2];
+  if (!read_way(call, &way) || !read_ends(call, a, ends) || !check_ends(call, a, ends))
+    return false;
   const CagCurve *c = a->C.type == CAG_CURVE ? CAG_AS_SHAPE(a->C)->as.curve : NULL;
   if (c && (!c->closed || c->dimension == 3 || !a->caps)) {
     CagSurface *s = NULL;
+    if (ends[0].reach > 0 || ends[1].reach > 0)
+      return cag_fail_call(call, 0, CAG_ERR_value,
+                           "expects a region or a closed plane curve for `fillet` or `chamfer`");
     CagStatus status = cag_surface_extrude(c, way, a->twist, a->scale, &s, call->err);
     if (!cag_surface_result(call, status, &s, result)) return false;
   } else {
@@ -187,7 +263,9 @@ bool cag_surfaces_extrude(CagCall *call, const struct cag_surfaces_extrude *a, C
       if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, call->err))) return false;
       own = cag_transform_vector(&back, way);
     }
-    if (!extrude_region(call, a, region, own, &place, result)) return false;
+    if (!check_place(call, own, &place, ends) ||
+        !extrude_region(call, a, region, own, ends, &place, result))
+      return false;
   }
   if (a->centered) {
     const CagTransform half = cag_translate(cag_scaled(way, -0.5));
