@@ -2,6 +2,7 @@
 
 #include "geom/meet/quadric_body.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/rounded.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
@@ -48,16 +49,40 @@ bool cag_solids_sphere(CagCall *call, const struct cag_solids_sphere *a, CagValu
   return cag_solid_result(call, cag_solid_sphere(a->radius, &s, call->err), &s, result);
 }
 
-// A cylinder or frustum about Z, with its base or its middle at z = 0.
-static bool upright_result(CagCall *call, double height, double radius, double top, bool centered,
-                           CagValue *result) {
-  CagSolid *s = NULL, *moved = NULL;
-  CagStatus status = cag_solid_cylinder(height, radius, top, &s, call->err);
+bool cag_solids_rounded_box(CagCall *call, const struct cag_solids_rounded_box *a,
+                            CagValue *result) {
+  CagVec3 size;
+  CagSolid *s = NULL;
+  if (!read_size(call, a->size, &size)) return false;
+  return cag_solid_result(call, cag_solid_rounded_box(size, a->radius, a->centered, &s, call->err),
+                          &s, result);
+}
+
+// A solid that stands on z = 0, or with its middle there. Takes ownership of the solid.
+static bool standing_result(CagCall *call, CagStatus status, CagSolid *s, double height,
+                            bool centered, CagValue *result) {
+  CagSolid *moved = NULL;
   if (status || !centered) return cag_solid_result(call, status, &s, result);
   const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
   status = cag_solid_transform(s, &down, &moved, call->err);
   cag_solid_release(s);
   return cag_solid_result(call, status, &moved, result);
+}
+
+bool cag_solids_rounded_cylinder(CagCall *call, const struct cag_solids_rounded_cylinder *a,
+                                 CagValue *result) {
+  CagSolid *s = NULL;
+  const CagStatus status =
+      cag_solid_rounded_cylinder(a->height, a->radius, a->fillet, &s, call->err);
+  return standing_result(call, status, s, a->height, a->centered, result);
+}
+
+// A cylinder or frustum about Z.
+static bool upright_result(CagCall *call, double height, double radius, double top, bool centered,
+                           CagValue *result) {
+  CagSolid *s = NULL;
+  const CagStatus status = cag_solid_cylinder(height, radius, top, &s, call->err);
+  return standing_result(call, status, s, height, centered, result);
 }
 
 bool cag_solids_cylinder(CagCall *call, const struct cag_solids_cylinder *a, CagValue *result) {

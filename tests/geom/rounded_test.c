@@ -193,6 +193,29 @@ static void what_does_not_fit_is_rejected(void **state) {
   cag_region_release(l);
 }
 
+static void rounded_bodies_share_all_edges(void **state) {
+  (void)state;
+  CagSolid *s;
+  MUST(cag_solid_rounded_box(cag_vec3(10, 20, 30), 3, false, &s, err));
+  assert_int_equal(s->face_count, 26);
+  assert_int_equal(s->edge_count, 48);
+  assert_edges(s);
+  cag_solid_release(s);
+  // A rod with round ends: the faces of four edges, and eight octants with poles.
+  MUST(cag_solid_rounded_box(cag_vec3(2, 2, 8), 1, false, &s, err));
+  assert_int_equal(s->face_count, 12);
+  assert_int_equal(s->edge_count, 4 + 8 + 8);
+  cag_solid_release(s);
+  MUST(cag_solid_rounded_cylinder(10, 4, 1, &s, err));
+  assert_int_equal(s->face_count, 5);
+  assert_int_equal(s->edge_count, 4);
+  cag_solid_release(s);
+  MUST(cag_solid_rounded_cylinder(10, 4, 4, &s, err));
+  assert_int_equal(s->face_count, 3);
+  assert_int_equal(s->edge_count, 2);
+  cag_solid_release(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rims_have_consistent_derivatives),
@@ -201,6 +224,7 @@ int main(void) {
       cmocka_unit_test(the_faces_are_a_closed_shell),
       cmocka_unit_test(a_chamfered_l_has_the_volume_of_its_sections),
       cmocka_unit_test(what_does_not_fit_is_rejected),
+      cmocka_unit_test(rounded_bodies_share_all_edges),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
