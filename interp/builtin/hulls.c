@@ -103,7 +103,8 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
   cag_hold_for(call, release_cloud, cloud);
   cloud->plane = true;
   CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
+  for (size_t i = 0; i < call->count; i++)
+    if (!cag_shapes_collect(call, call->values[i], builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
   for (size_t i = 0; i < shapes->length; i++) {
     const CagValue v = cag_list_get(call->vm, shapes, i);
@@ -124,6 +125,7 @@ bool cag_is_list_of_shapes(CagVm *vm, CagValue v) {
 bool cag_hulls_convex_hull(CagCall *call, CagValue *result) {
   const CagValue v = call->values[0];
   if (cag_is_shape(v) || cag_is_list_of_shapes(call->vm, v)) return hull_of_shapes(call, result);
+  if (call->count > 1) return cag_fail_type(call, 0, "one list of points, or shapes");
   CagVec3 *points;
   size_t n;
   int dimension;
