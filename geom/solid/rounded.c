@@ -681,14 +681,30 @@ static CagStatus extrude_up(const CagRegion *r, double height, const CagRoundedE
   return status;
 }
 
-CagStatus cag_solid_extrude_rounded(const CagRegion *r, double height, const CagRoundedEnd ends[2],
+// A reach below rounding leaves the edge sharp.
+static CagStatus drop_tiny(const CagRegion *r, const CagRoundedEnd given[2], CagRoundedEnd ends[2],
+                           CagError *err) {
+  CagBounds box;
+  const CagStatus status = cag_region_bounds(r, &box, err);
+  if (status) return status;
+  for (int e = 0; e < 2; e++) {
+    ends[e] = given[e];
+    if (ends[e].reach <= CAG_ROUNDING * cag_norm(cag_sub(box.max, box.min))) ends[e].reach = 0;
+  }
+  return CAG_OK;
+}
+
+CagStatus cag_solid_extrude_rounded(const CagRegion *r, double height, const CagRoundedEnd given[2],
                                     CagSolid **out, CagError *err) {
+  if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
+  CagRoundedEnd ends[2];
+  const CagStatus bounded = drop_tiny(r, given, ends, err);
+  if (bounded) return bounded;
   if (ends[0].reach == 0 && ends[1].reach == 0)
     return cag_solid_extrude(r, cag_vec3(0, 0, height), 0, 1, out, err);
   if (height == 0)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
                     "`height` must not be 0");
-  if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   if (height > 0) return extrude_up(r, height, ends, out, err);
   const CagRoundedEnd turned[2] = {ends[1], ends[0]};
   const CagTransform down = cag_translate(cag_vec3(0, 0, height));

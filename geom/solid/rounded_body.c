@@ -106,6 +106,9 @@ CagStatus cag_solid_rounded_box(CagVec3 size, double radius, bool centered, CagS
   if (!status)
     status = check_radius(radius, fmin(size.x, fmin(size.y, size.z)) / 2, "radius",
                           "half of the smallest size", err);
+  // A radius below rounding leaves the edges sharp.
+  if (!status && radius <= CAG_ROUNDING * fmax(size.x, fmax(size.y, size.z)))
+    return cag_solid_box(size, centered, out, err);
   CagSolid *s;
   if (!status) status = cag_solid_block(CAG_SOLID_SHELL, 26, &s, err);
   if (status) return status;
@@ -174,6 +177,8 @@ CagStatus cag_solid_rounded_cylinder(double height, double radius, double fillet
   if (!status) status = cag_solid_check_size(fillet, "fillet", -1, err);
   if (!status) status = check_radius(fillet, radius, "fillet", "the radius", err);
   if (!status) status = check_radius(fillet, height / 2, "fillet", "half of the height", err);
+  if (!status && fillet <= CAG_ROUNDING * fmax(radius, height))
+    return cag_solid_cylinder(height, radius, radius, out, err);
   CagSolid *s;
   if (!status) status = cag_solid_block(CAG_SOLID_SHELL, 5, &s, err);
   if (status) return status;

@@ -8,6 +8,9 @@
 #include "interp/builtin/targets.h"
 #include "interp/vm/vm.h"
 
+// A distance below the first part of the size is rounding; beyond the second multiple, the solid is.
+#define NO_DISTANCE 1e-12
+#define FAR 1e9
 // Default tolerances: of the distance, and of the size of the solid.
 #define PART_OF_DISTANCE 0.01
 #define PART_OF_SIZE 1e-4
@@ -31,6 +34,13 @@ static CagStatus diagonal_of(CagValue v, double *out, CagError *err) {
   return status;
 }
 
+static bool check_closed(CagCall *call, const CagMesh *m) {
+  CagSolid *s;
+  const CagStatus status = cag_solid_from_mesh(m, &s, call->err);
+  if (!status) cag_solid_release(s);
+  return cag_geometry_ok(call, status);
+}
+
 // The mesh of an argument, held by the call; *out is NULL if the body is empty.
 static bool body_mesh(CagCall *call, int argument, double tolerance, CagMesh **out) {
   const CagValue v = call->values[argument];
@@ -42,7 +52,7 @@ static bool body_mesh(CagCall *call, int argument, double tolerance, CagMesh **o
   if (!cag_geometry_ok(call, status)) return false;
   cag_hold_for(call, release_mesh, m);
   *out = m;
-  return true;
+  return v.type == CAG_SOLID || check_closed(call, m);
 }
 
 // Takes ownership of the mesh.
@@ -73,12 +83,16 @@ bool cag_solids_offset(CagCall *call, const struct cag_solids_offset *a, CagValu
   bool empty;
   CagMesh *m, *moved = NULL;
   if (!check_body(call, 0) || !size_of_body(call, 0, &size, &empty)) return false;
-  if (empty) return nothing_result(call, result);
-  if (!cag_given(call, 2)) tolerance = fmax(PART_OF_DISTANCE * fabs(a->d), PART_OF_SIZE * size);
+  if (empty || a->d < -size) return nothing_result(call, result);
+  if (a->d > FAR * size)
+    return cag_fail_call(call, 1, CAG_ERR_too_far,
+                         "expects a distance of at most 1e9 times the size of the solid");
+  const double d = fabs(a->d) <= NO_DISTANCE * size ? 0 : a->d;
+  if (!cag_given(call, 2)) tolerance = fmax(PART_OF_DISTANCE * fabs(d), PART_OF_SIZE * size);
   if (!body_mesh(call, 0, tolerance, &m)) return false;
   if (!m) return nothing_result(call, result);
   const CagStatus status =
-      cag_mesh_offset(m, a->d, tolerance, cag_vm_stop(call->vm), &moved, call->err);
+      cag_mesh_offset(m, d, tolerance, cag_vm_stop(call->vm), &moved, call->err);
   return sum_result(call, status, moved, result);
 }
 
