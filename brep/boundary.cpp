@@ -56,7 +56,7 @@ static std::vector<TopoDS_Shape> boundary_parts(const TopoDS_Shape &solid, TopAb
 
 static gp_XYZ edge_middle(const TopoDS_Edge &edge) {
   double first, last;
-  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+  const Ref<Geom_Curve> curve = BRep_Tool::Curve(edge, first, last);
   if (!curve.IsNull()) return curve->Value((first + last) / 2).XYZ();
   const TopoDS_Vertex corner = TopExp::FirstVertex(edge);
   return corner.IsNull() ? gp_XYZ() : BRep_Tool::Pnt(corner).XYZ();
@@ -143,7 +143,7 @@ void complete_edges(const TopoDS_Solid &solid) {
 
 static void write_edge(Writer &out, const TopoDS_Edge &edge, const Numbering &numbering) {
   double first, last;
-  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+  const Ref<Geom_Curve> curve = BRep_Tool::Curve(edge, first, last);
   double tolerance = BRep_Tool::Tolerance(edge);
   if (curve.IsNull() || BRep_Tool::Degenerated(edge)) {
     out.u32(CAG_BREP_POINT);
@@ -166,7 +166,7 @@ static void write_edge(Writer &out, const TopoDS_Edge &edge, const Numbering &nu
 // One side of an edge, in the parameters of a face that is oriented forward.
 struct Use {
   TopoDS_Edge edge;
-  Handle(Geom2d_Curve) trace;
+  Ref<Geom2d_Curve> trace;
   double first, last;
   bool reversed;
 

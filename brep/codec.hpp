@@ -7,6 +7,7 @@
 #define CAG_BREP_CODEC_HPP
 
 #include "brep/failure.hpp"
+#include "brep/handle.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -68,15 +68,15 @@ struct InSpace {
   typedef GeomConvert_ApproxCurve Approximation;
   typedef gp_Pnt Point;
 
-  static gp_Pnt origin(const Handle(Geom_Line) & line) { return line->Position().Location(); }
-  static gp_Dir direction(const Handle(Geom_Line) & line) { return line->Position().Direction(); }
+  static gp_Pnt origin(const Ref<Geom_Line> &line) { return line->Position().Location(); }
+  static gp_Dir direction(const Ref<Geom_Line> &line) { return line->Position().Direction(); }
   template <typename Conic> static gp_Dir x(const Conic &conic) {
     return conic->Position().XDirection();
   }
   template <typename Conic> static gp_Dir y(const Conic &conic) {
     return conic->Position().YDirection();
   }
-  static Handle(Spline) convert(const Handle(Curve) & curve) {
+  static Ref<Spline> convert(const Ref<Curve> &curve) {
     return GeomConvert::CurveToBSplineCurve(curve);
   }
 };
@@ -93,73 +93,62 @@ struct InParameters {
   typedef Geom2dConvert_ApproxCurve Approximation;
   typedef gp_Pnt2d Point;
 
-  static gp_Pnt2d origin(const Handle(Geom2d_Line) & line) { return line->Location(); }
-  static gp_Dir2d direction(const Handle(Geom2d_Line) & line) { return line->Direction(); }
+  static gp_Pnt2d origin(const Ref<Geom2d_Line> &line) { return line->Location(); }
+  static gp_Dir2d direction(const Ref<Geom2d_Line> &line) { return line->Direction(); }
   template <typename Conic> static gp_Dir2d x(const Conic &conic) {
     return conic->Position().XDirection();
   }
   template <typename Conic> static gp_Dir2d y(const Conic &conic) {
     return conic->Position().YDirection();
   }
-  static Handle(Spline) convert(const Handle(Curve) & curve) {
+  static Ref<Spline> convert(const Ref<Curve> &curve) {
     return Geom2dConvert::CurveToBSplineCurve(curve);
   }
 };
 
-// The clamped spline of a periodic one that covers first..last, with the same parameter.
-template <typename Spline>
-static Handle(Spline) unroll(const Handle(Spline) & periodic, double first) {
-  const Handle(Spline) spline = Handle(Spline)::DownCast(periodic->Copy());
-  const double period = spline->LastParameter() - spline->FirstParameter();
-  // The knot where the spline is cut open: `first`, moved by whole periods.
-  const double turns = std::floor((first - spline->FirstParameter()) / period + 1e-12);
-  const double cut = first - turns * period;
+// The spline, no longer periodic, of a periodic one that covers a period from `first` on, with the
+// same parameter.
+template <typename Spline> static Ref<Spline> unroll(const Ref<Spline> &periodic, double first) {
+  const Ref<Spline> spline = Ref<Spline>::DownCast(periodic->Copy());
+  const double start = spline->FirstParameter(), period = spline->LastParameter() - start;
   const double near = 1e-10 * period;
+  const double turns = std::floor((first - start) / period + 1e-10);
+  // The knot where the spline is cut open.
+  const double cut = std::max(first - turns * period, start);
   int origin = 0;
-  for (int i = 1; i < spline->NbKnots(); ++i)
-    if (std::abs(spline->Knot(i) - cut) <= near) origin = i;
-  double moved = turns * period;
-  if (std::abs(spline->LastParameter() - cut) <= near) {
-    origin = 1;
-    moved += period;
-  }
-  if (!origin) {
-    spline->InsertKnot(cut, 1, near / 10);
+  for (int pass = 0; pass < 2 && !origin; ++pass) {
     for (int i = 1; i < spline->NbKnots(); ++i)
       if (std::abs(spline->Knot(i) - cut) <= near) origin = i;
+    if (!origin) spline->InsertKnot(cut, 1, near / 10);
   }
   if (origin > 1) spline->SetOrigin(origin);
   spline->SetNotPeriodic();
+  const double shift = cut + turns * period - spline->FirstParameter();
   TColStd_Array1OfReal knots(1, spline->NbKnots());
   spline->Knots(knots);
-  const double start = cut - (std::abs(periodic->LastParameter() - cut) <= near ? period : 0);
-  const double shift = moved + start - knots(1);
   for (double &knot : knots) knot += shift;
   spline->SetKnots(knots);
   return spline;
 }
 
-template <typename Spline> static bool is_clamped(const Handle(Spline) & spline) {
+template <typename Spline> static Ref<Spline> clamp(const Ref<Spline> &given, double first) {
+  Ref<Spline> spline = given;
+  if (spline->IsPeriodic()) spline = unroll<Spline>(spline, first);
   const int degree = spline->Degree();
-  return spline->Multiplicity(1) == degree + 1 &&
-         spline->Multiplicity(spline->NbKnots()) == degree + 1;
+  if (spline->Multiplicity(1) == degree + 1 &&
+      spline->Multiplicity(spline->NbKnots()) == degree + 1)
+    return spline;
+  spline = Ref<Spline>::DownCast(spline->Copy());
+  spline->Segment(spline->FirstParameter(), spline->LastParameter());
+  return spline;
 }
 
-template <typename Kind, typename Spline>
-static Handle(Spline) clamp(const Handle(Spline) & spline, double first) {
-  if (spline->IsPeriodic()) return unroll<Spline>(spline, first);
-  if (is_clamped(spline)) return spline;
-  const Handle(Spline) copy = Handle(Spline)::DownCast(spline->Copy());
-  copy->Segment(copy->FirstParameter(), copy->LastParameter());
-  return copy;
-}
-
-template <typename Spline> static void write_knots(Writer &out, const Handle(Spline) & spline) {
+template <typename Spline> static void write_knots(Writer &out, const Ref<Spline> &spline) {
   for (int i = 1; i <= spline->NbKnots(); ++i)
     for (int k = 0; k < spline->Multiplicity(i); ++k) out.f64(spline->Knot(i));
 }
 
-template <typename Spline> static void write_spline(Writer &out, const Handle(Spline) & spline) {
+template <typename Spline> static void write_spline(Writer &out, const Ref<Spline> &spline) {
   const bool rational = spline->IsRational();
   out.u32(CAG_BREP_SPLINE_CURVE);
   out.u32(static_cast<uint32_t>(spline->Degree()));
@@ -174,7 +163,7 @@ template <typename Spline> static void write_spline(Writer &out, const Handle(Sp
 
 // The size of the part of a curve, for tolerances.
 template <typename Kind>
-static double part_size(const Handle(typename Kind::Curve) & curve, double first, double last) {
+static double part_size(const Ref<typename Kind::Curve> &curve, double first, double last) {
   const typename Kind::Point start = curve->Value(first);
   double size = 0;
   for (int i = 1; i <= 8; ++i)
@@ -183,17 +172,17 @@ static double part_size(const Handle(typename Kind::Curve) & curve, double first
 }
 
 template <typename Kind>
-static double write_any(Writer &out, Handle(typename Kind::Curve) curve, double first, double last,
+static double write_any(Writer &out, Ref<typename Kind::Curve> curve, double first, double last,
                         double tolerance) {
-  while (const auto trimmed = Handle(typename Kind::Trimmed)::DownCast(curve))
+  while (const auto trimmed = Ref<typename Kind::Trimmed>::DownCast(curve))
     curve = trimmed->BasisCurve();
-  if (const auto line = Handle(typename Kind::Line)::DownCast(curve)) {
+  if (const auto line = Ref<typename Kind::Line>::DownCast(curve)) {
     out.u32(CAG_BREP_LINE);
     write_xyz(out, Kind::origin(line));
     write_xyz(out, Kind::direction(line));
     return 0;
   }
-  if (const auto circle = Handle(typename Kind::Circle)::DownCast(curve)) {
+  if (const auto circle = Ref<typename Kind::Circle>::DownCast(curve)) {
     out.u32(CAG_BREP_CIRCLE);
     write_xyz(out, circle->Location());
     write_xyz(out, Kind::x(circle));
@@ -201,7 +190,7 @@ static double write_any(Writer &out, Handle(typename Kind::Curve) curve, double 
     out.f64(circle->Radius());
     return 0;
   }
-  if (const auto ellipse = Handle(typename Kind::Ellipse)::DownCast(curve)) {
+  if (const auto ellipse = Ref<typename Kind::Ellipse>::DownCast(curve)) {
     out.u32(CAG_BREP_ELLIPSE);
     write_xyz(out, ellipse->Location());
     write_xyz(out, Kind::x(ellipse));
@@ -210,19 +199,19 @@ static double write_any(Writer &out, Handle(typename Kind::Curve) curve, double 
     out.f64(ellipse->MinorRadius());
     return 0;
   }
-  if (const auto spline = Handle(typename Kind::Spline)::DownCast(curve)) {
-    write_spline(out, clamp<Kind>(spline, first));
+  if (const auto spline = Ref<typename Kind::Spline>::DownCast(curve)) {
+    write_spline(out, clamp<typename Kind::Spline>(spline, first));
     return 0;
   }
-  const auto bezier = Handle(typename Kind::Bezier)::DownCast(curve);
-  if (bezier || Handle(typename Kind::Parabola)::DownCast(curve)) {
-    const Handle(typename Kind::Curve) part =
+  const auto bezier = Ref<typename Kind::Bezier>::DownCast(curve);
+  if (bezier || Ref<typename Kind::Parabola>::DownCast(curve)) {
+    const Ref<typename Kind::Curve> part =
         bezier ? curve : new typename Kind::Trimmed(curve, first, last);
     write_spline(out, Kind::convert(part));
     return 0;
   }
   // Exact splines of others, such as hyperbolas, would have other parameters.
-  const Handle(typename Kind::Curve) part = new typename Kind::Trimmed(curve, first, last);
+  const Ref<typename Kind::Curve> part = new typename Kind::Trimmed(curve, first, last);
   const double least = std::max(CURVE_ERROR * part_size<Kind>(curve, first, last), 1e-13);
   for (double error = std::min(least, tolerance); error <= tolerance * 10 || error <= least;
        error *= 10) {
@@ -234,35 +223,32 @@ static double write_any(Writer &out, Handle(typename Kind::Curve) curve, double 
   throw Failure{CAG_BREP_FAIL_METHOD, "a curve cannot be written as a spline"};
 }
 
-double write_curve(Writer &out, const Handle(Geom_Curve) & curve, double first, double last,
+double write_curve(Writer &out, const Ref<Geom_Curve> &curve, double first, double last,
                    double tolerance) {
   return write_any<InSpace>(out, curve, first, last, tolerance);
 }
 
-void write_trace(Writer &out, const Handle(Geom2d_Curve) & trace, double first, double last,
+void write_trace(Writer &out, const Ref<Geom2d_Curve> &trace, double first, double last,
                  bool mirrored) {
-  Handle(Geom2d_Curve) written = trace;
+  Ref<Geom2d_Curve> written = trace;
   if (mirrored) {
     gp_Trsf2d mirror;
     mirror.SetMirror(gp_Ax2d(gp_Pnt2d(), gp_Dir2d(0, 1)));
-    written = Handle(Geom2d_Curve)::DownCast(trace->Transformed(mirror));
+    written = Ref<Geom2d_Curve>::DownCast(trace->Transformed(mirror));
   }
   write_any<InParameters>(out, written, first, last, 1e-9);
 }
 
 // ---- surfaces ----
 
-// The u and v of a spline surface exchanged, so that one function serves both directions.
-static Handle(Geom_BSplineSurface)
-    unroll_u(const Handle(Geom_BSplineSurface) & periodic, double first) {
-  const Handle(Geom_BSplineSurface) surface =
-      Handle(Geom_BSplineSurface)::DownCast(periodic->Copy());
+// As `unroll`, of a surface in u.
+static Ref<Geom_BSplineSurface> unroll_u(const Ref<Geom_BSplineSurface> &periodic, double first) {
+  const Ref<Geom_BSplineSurface> surface = Ref<Geom_BSplineSurface>::DownCast(periodic->Copy());
   double u0, u1, v0, v1;
   surface->Bounds(u0, u1, v0, v1);
   const double period = u1 - u0, near = 1e-10 * period;
   const double turns = std::floor((first - u0) / period + 1e-10);
-  double cut = first - turns * period;
-  if (cut < u0 + near) cut = u0;
+  const double cut = std::max(first - turns * period, u0);
   int origin = 0;
   for (int pass = 0; pass < 2 && !origin; ++pass) {
     for (int i = 1; i < surface->NbUKnots(); ++i)
@@ -271,20 +257,21 @@ static Handle(Geom_BSplineSurface)
   }
   if (origin > 1) surface->SetUOrigin(origin);
   surface->SetUNotPeriodic();
+  const double moved = cut + turns * period;
+  surface->Bounds(u0, u1, v0, v1);
   TColStd_Array1OfReal knots(1, surface->NbUKnots());
   surface->UKnots(knots);
-  const double shift = cut + turns * period - knots(1);
-  for (double &knot : knots) knot += shift;
+  for (double &knot : knots) knot += moved - u0;
   surface->SetUKnots(knots);
   return surface;
 }
 
-static Handle(Geom_BSplineSurface)
-    clamp_surface(const Handle(Geom_BSplineSurface) & given, const Bounds &bounds) {
-  Handle(Geom_BSplineSurface) surface = given;
+static Ref<Geom_BSplineSurface> clamp_surface(const Ref<Geom_BSplineSurface> &given,
+                                              const Bounds &bounds) {
+  Ref<Geom_BSplineSurface> surface = given;
   if (surface->IsUPeriodic()) surface = unroll_u(surface, bounds.u0);
   if (surface->IsVPeriodic()) {
-    surface = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
+    surface = Ref<Geom_BSplineSurface>::DownCast(surface->Copy());
     surface->ExchangeUV();
     surface = unroll_u(surface, bounds.v0);
     surface->ExchangeUV();
@@ -293,14 +280,14 @@ static Handle(Geom_BSplineSurface)
   if (surface->UMultiplicity(1) == p + 1 && surface->UMultiplicity(surface->NbUKnots()) == p + 1 &&
       surface->VMultiplicity(1) == q + 1 && surface->VMultiplicity(surface->NbVKnots()) == q + 1)
     return surface;
-  surface = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
+  surface = Ref<Geom_BSplineSurface>::DownCast(surface->Copy());
   double u0, u1, v0, v1;
   surface->Bounds(u0, u1, v0, v1);
   surface->Segment(u0, u1, v0, v1);
   return surface;
 }
 
-static void write_spline_surface(Writer &out, const Handle(Geom_BSplineSurface) & surface) {
+static void write_spline_surface(Writer &out, const Ref<Geom_BSplineSurface> &surface) {
   const bool rational = surface->IsURational() || surface->IsVRational();
   out.u32(CAG_BREP_SPLINE);
   out.u32(static_cast<uint32_t>(surface->UDegree()));
@@ -332,7 +319,7 @@ static bool write_frame(Writer &out, uint32_t kind, const gp_Ax3 &frame) {
   return mirrored;
 }
 
-static WrittenSurface approximate_surface(Writer &out, const Handle(Geom_Surface) & surface,
+static WrittenSurface approximate_surface(Writer &out, const Ref<Geom_Surface> &surface,
                                           const Bounds &bounds, double tolerance) {
   double s0, s1, t0, t1;
   surface->Bounds(s0, s1, t0, t1);
@@ -340,7 +327,7 @@ static WrittenSurface approximate_surface(Writer &out, const Handle(Geom_Surface
   const double u1 = surface->IsUPeriodic() ? bounds.u1 : std::min(bounds.u1, s1);
   const double v0 = surface->IsVPeriodic() ? bounds.v0 : std::max(bounds.v0, t0);
   const double v1 = surface->IsVPeriodic() ? bounds.v1 : std::min(bounds.v1, t1);
-  const Handle(Geom_Surface) part = new Geom_RectangularTrimmedSurface(surface, u0, u1, v0, v1);
+  const Ref<Geom_Surface> part = new Geom_RectangularTrimmedSurface(surface, u0, u1, v0, v1);
   const double size = part->Value(u0, v0).Distance(part->Value(u1, v1)) +
                       part->Value(u0, v1).Distance(part->Value(u1, v0));
   for (double error = SURFACE_ERROR * std::max(size, 1e-3); error <= 1e-3 * size; error *= 10) {
@@ -353,8 +340,8 @@ static WrittenSurface approximate_surface(Writer &out, const Handle(Geom_Surface
 }
 
 // The curve of a revolution or an extrusion, over the bounds of the face.
-static double write_profile(Writer &out, const Handle(Geom_Curve) & curve, double first,
-                            double last, double tolerance) {
+static double write_profile(Writer &out, const Ref<Geom_Curve> &curve, double first, double last,
+                            double tolerance) {
   if (!curve->IsPeriodic()) {
     first = std::max(first, curve->FirstParameter());
     last = std::min(last, curve->LastParameter());
@@ -365,16 +352,16 @@ static double write_profile(Writer &out, const Handle(Geom_Curve) & curve, doubl
   return error;
 }
 
-WrittenSurface write_surface(Writer &out, const Handle(Geom_Surface) & given, const Bounds &bounds,
+WrittenSurface write_surface(Writer &out, const Ref<Geom_Surface> &given, const Bounds &bounds,
                              double tolerance) {
-  Handle(Geom_Surface) surface = given;
-  while (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface))
+  Ref<Geom_Surface> surface = given;
+  while (const auto trimmed = Ref<Geom_RectangularTrimmedSurface>::DownCast(surface))
     surface = trimmed->BasisSurface();
-  if (const auto offset = Handle(Geom_OffsetSurface)::DownCast(surface)) {
-    const Handle(Geom_Surface) equal = offset->Surface();
+  if (const auto offset = Ref<Geom_OffsetSurface>::DownCast(surface)) {
+    const Ref<Geom_Surface> equal = offset->Surface();
     if (!equal.IsNull()) surface = equal;
   }
-  if (const auto plane = Handle(Geom_Plane)::DownCast(surface)) {
+  if (const auto plane = Ref<Geom_Plane>::DownCast(surface)) {
     const gp_Ax3 frame = plane->Position();
     out.u32(CAG_BREP_PLANE);
     out.xyz(frame.Location().XYZ());
@@ -383,43 +370,43 @@ WrittenSurface write_surface(Writer &out, const Handle(Geom_Surface) & given, co
     out.xyz(frame.XDirection().XYZ().Crossed(frame.YDirection().XYZ()));
     return {false, 0};
   }
-  if (const auto cylinder = Handle(Geom_CylindricalSurface)::DownCast(surface)) {
+  if (const auto cylinder = Ref<Geom_CylindricalSurface>::DownCast(surface)) {
     const bool mirrored = write_frame(out, CAG_BREP_CYLINDRICAL, cylinder->Position());
     out.f64(cylinder->Radius());
     return {mirrored, 0};
   }
-  if (const auto cone = Handle(Geom_ConicalSurface)::DownCast(surface)) {
+  if (const auto cone = Ref<Geom_ConicalSurface>::DownCast(surface)) {
     const bool mirrored = write_frame(out, CAG_BREP_CONICAL, cone->Position());
     out.f64(cone->RefRadius());
     out.f64(cone->SemiAngle());
     return {mirrored, 0};
   }
-  if (const auto sphere = Handle(Geom_SphericalSurface)::DownCast(surface)) {
+  if (const auto sphere = Ref<Geom_SphericalSurface>::DownCast(surface)) {
     const bool mirrored = write_frame(out, CAG_BREP_SPHERICAL, sphere->Position());
     out.f64(sphere->Radius());
     return {mirrored, 0};
   }
-  if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(surface)) {
+  if (const auto torus = Ref<Geom_ToroidalSurface>::DownCast(surface)) {
     const bool mirrored = write_frame(out, CAG_BREP_TOROIDAL, torus->Position());
     out.f64(torus->MajorRadius());
     out.f64(torus->MinorRadius());
     return {mirrored, 0};
   }
-  if (const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface)) {
+  if (const auto spline = Ref<Geom_BSplineSurface>::DownCast(surface)) {
     write_spline_surface(out, clamp_surface(spline, bounds));
     return {false, 0};
   }
-  if (!Handle(Geom_BezierSurface)::DownCast(surface).IsNull()) {
+  if (!Ref<Geom_BezierSurface>::DownCast(surface).IsNull()) {
     write_spline_surface(out, GeomConvert::SurfaceToBSplineSurface(surface));
     return {false, 0};
   }
-  if (const auto revolved = Handle(Geom_SurfaceOfRevolution)::DownCast(surface)) {
+  if (const auto revolved = Ref<Geom_SurfaceOfRevolution>::DownCast(surface)) {
     out.u32(CAG_BREP_REVOLVED);
     out.xyz(revolved->Axis().Location().XYZ());
     out.xyz(revolved->Axis().Direction().XYZ());
     return {false, write_profile(out, revolved->BasisCurve(), bounds.v0, bounds.v1, tolerance)};
   }
-  if (const auto extruded = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface)) {
+  if (const auto extruded = Ref<Geom_SurfaceOfLinearExtrusion>::DownCast(surface)) {
     out.u32(CAG_BREP_EXTRUDED);
     out.xyz(extruded->Direction().XYZ());
     return {false, write_profile(out, extruded->BasisCurve(), bounds.u0, bounds.u1, tolerance)};

@@ -124,7 +124,7 @@ static double read_weight(Reader &in) {
   return weight;
 }
 
-static Handle(Geom_BSplineCurve) read_spline(Reader &in, const Space &space) {
+static Ref<Geom_BSplineCurve> read_spline(Reader &in, const Space &space) {
   const uint32_t degree = in.u32();
   const bool rational = in.u32() != 0;
   const uint32_t n = in.count(8 * (2 + !space.planar + rational));
@@ -144,15 +144,15 @@ static Handle(Geom_BSplineCurve) read_spline(Reader &in, const Space &space) {
 
 // A part of a curve, in the direction of the loop: from first to last, which may be less.
 struct Arc {
-  Arc(const Handle(Geom_Curve) & c, double f, double l) : curve(c), first(f), last(l) {}
+  Arc(const Ref<Geom_Curve> &c, double f, double l) : curve(c), first(f), last(l) {}
 
-  Handle(Geom_Curve) curve;
+  Ref<Geom_Curve> curve;
   double first, last;
 };
 
 // A spline of degree 1 as lines, others between the knots where the tangent may break: faces that
 // are swept along such knots would have folds, which the kernel does not support.
-static void split_spline(const Handle(Geom_BSplineCurve) & spline, double first, double last,
+static void split_spline(const Ref<Geom_BSplineCurve> &spline, double first, double last,
                          std::vector<Arc> &arcs) {
   const bool reversed = last < first;
   const double low = std::max(std::min(first, last), spline->FirstParameter());
@@ -175,7 +175,7 @@ static void split_spline(const Handle(Geom_BSplineCurve) & spline, double first,
     } else if (cuts.size() == 2) {
       parts.emplace_back(spline, low, high);
     } else {
-      const Handle(Geom_BSplineCurve) part = Handle(Geom_BSplineCurve)::DownCast(spline->Copy());
+      const Ref<Geom_BSplineCurve> part = Ref<Geom_BSplineCurve>::DownCast(spline->Copy());
       part->Segment(cuts[i], cuts[i + 1]);
       parts.emplace_back(part, part->FirstParameter(), part->LastParameter());
     }
@@ -194,7 +194,7 @@ static double read_radius(Reader &in) {
 
 static void read_arcs(Reader &in, const Space &space, std::vector<Arc> &arcs) {
   const uint32_t kind = in.u32();
-  Handle(Geom_Curve) curve;
+  Ref<Geom_Curve> curve;
   double shift = 0;
   switch (kind) {
   case CAG_BREP_LINE: {
@@ -230,7 +230,7 @@ static void read_arcs(Reader &in, const Space &space, std::vector<Arc> &arcs) {
   const double first = in.f64() + shift, last = in.f64() + shift;
   if (!(std::abs(last - first) > 1e-15))
     throw Failure{CAG_BREP_FAIL_INPUT, "a curve has no length"};
-  const Handle(Geom_BSplineCurve) spline = Handle(Geom_BSplineCurve)::DownCast(curve);
+  const Ref<Geom_BSplineCurve> spline = Ref<Geom_BSplineCurve>::DownCast(curve);
   if (spline.IsNull()) arcs.emplace_back(curve, first, last);
   else split_spline(spline, first, last, arcs);
 }
@@ -334,7 +334,7 @@ std::vector<TopoDS_Edge> read_space_edges(Reader &in) {
 
 // ---- faces that close ----
 
-static Handle(Geom_BSplineSurface) read_spline_surface(Reader &in) {
+static Ref<Geom_BSplineSurface> read_spline_surface(Reader &in) {
   const uint32_t p = in.u32(), q = in.u32();
   const bool rational = in.u32() != 0;
   const uint32_t nu = in.count(8), nv = in.count(8);
@@ -365,7 +365,7 @@ static Handle(Geom_BSplineSurface) read_spline_surface(Reader &in) {
 }
 
 // Where a spline surface may have folds, with both ends.
-static std::vector<double> fold_knots(const Handle(Geom_BSplineSurface) & surface, bool along_u) {
+static std::vector<double> fold_knots(const Ref<Geom_BSplineSurface> &surface, bool along_u) {
   std::vector<double> knots;
   const int n = along_u ? surface->NbUKnots() : surface->NbVKnots();
   const int degree = along_u ? surface->UDegree() : surface->VDegree();
@@ -377,14 +377,14 @@ static std::vector<double> fold_knots(const Handle(Geom_BSplineSurface) & surfac
   return knots;
 }
 
-static void add_surface_faces(const Handle(Geom_BSplineSurface) & surface,
+static void add_surface_faces(const Ref<Geom_BSplineSurface> &surface,
                               BRepBuilderAPI_Sewing &sewing) {
   const std::vector<double> us = fold_knots(surface, true), vs = fold_knots(surface, false);
   for (size_t i = 0; i + 1 < us.size(); ++i)
     for (size_t j = 0; j + 1 < vs.size(); ++j) {
-      Handle(Geom_BSplineSurface) part = surface;
+      Ref<Geom_BSplineSurface> part = surface;
       if (us.size() + vs.size() > 4) {
-        part = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
+        part = Ref<Geom_BSplineSurface>::DownCast(surface->Copy());
         part->Segment(us[i], us[i + 1], vs[j], vs[j + 1]);
       }
       BRepBuilderAPI_MakeFace face(part, Precision::Confusion());

@@ -1,6 +1,7 @@
 #include "brep/solids.hpp"
 
 #include "brep/failure.hpp"
+#include "brep/handle.hpp"
 
 #include <BRepBndLib.hxx>
 #include <BRepCheck.hxx>
@@ -77,7 +78,7 @@ static std::string first_fault(const BRepCheck_Analyzer &analyzer, const TopoDS_
     TopExp::MapShapes(shape, type, parts);
     for (int i = 1; i <= parts.Extent(); ++i) {
       if (analyzer.IsValid(parts(i))) continue;
-      const Handle(BRepCheck_Result) &result = analyzer.Result(parts(i));
+      const Ref<BRepCheck_Result> &result = analyzer.Result(parts(i));
       std::ostringstream text;
       text << "a " << shape_name(type) << " is not valid";
       if (result.IsNull()) return text.str();
