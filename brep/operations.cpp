@@ -3,8 +3,8 @@
 namespace brep {
 #define S(n)                                                                                       \
   Solids n(Reader &) { throw Failure{CAG_BREP_FAIL_INPUT, "unknown"}; }
-S(fillet)
-S(chamfer) S(shell) S(offset) S(draft) S(split) S(imprint) std::vector<Part> read_step(Reader &) {
+
+S(shell) S(offset) S(draft) S(split) S(imprint) std::vector<Part> read_step(Reader &) {
   throw Failure{CAG_BREP_FAIL_INPUT, "unknown"};
 }
 std::vector<Part> read_iges(Reader &) { throw Failure{CAG_BREP_FAIL_INPUT, "unknown"}; }

@@ -458,7 +458,7 @@ std::string write_body(const TopoDS_Solid &solid) {
   return BODY_MAGIC + checksum_bytes(shape.data(), shape.size()) + shape;
 }
 
-static Solids read_body(Reader &in) {
+TopoDS_Solid read_body_solid(Reader &in) {
   const std::string body = in.text();
   const size_t magic = sizeof BODY_MAGIC - 1;
   if (body.size() < BODY_HEAD || body.compare(0, magic, BODY_MAGIC) != 0)
@@ -468,7 +468,9 @@ static Solids read_body(Reader &in) {
   std::istringstream stream(body.substr(BODY_HEAD), std::ios::binary);
   TopoDS_Shape shape;
   BinTools::Read(shape, stream);
-  return solids_of(shape);
+  if (shape.IsNull() || shape.ShapeType() != TopAbs_SOLID)
+    throw Failure{CAG_BREP_FAIL_INPUT, "the body is not a solid"};
+  return TopoDS::Solid(shape);
 }
 
 // ---- primitives ----
@@ -596,7 +598,7 @@ static Solids read_nested(Reader &in, int depth) {
   case CAG_BREP_REVOLUTION: solids = make_revolution(in); break;
   case CAG_BREP_HALF_SPACE: solids = make_half_space(in); break;
   case CAG_BREP_FACES: solids = read_faces(in); break;
-  case CAG_BREP_BODY: solids = read_body(in); break;
+  case CAG_BREP_BODY: solids = {read_body_solid(in)}; break;
   case CAG_BREP_UNION: solids = read_operation(in, BOPAlgo_FUSE, depth); break;
   case CAG_BREP_DIFFERENCE: solids = read_operation(in, BOPAlgo_CUT, depth); break;
   case CAG_BREP_INTERSECTION: solids = read_operation(in, BOPAlgo_COMMON, depth); break;

@@ -22,6 +22,7 @@ std::vector<TopoDS_Edge> read_space_edges(Reader &in);
 
 // The form of a solid that a CAG_BREP_BODY holds.
 std::string write_body(const TopoDS_Solid &solid);
+TopoDS_Solid read_body_solid(Reader &in);
 
 } // namespace brep
 
