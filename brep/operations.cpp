@@ -4,7 +4,7 @@ namespace brep {
 #define S(n)                                                                                       \
   Solids n(Reader &) { throw Failure{CAG_BREP_FAIL_INPUT, "unknown"}; }
 
-S(shell) S(offset) S(draft) S(split) S(imprint) std::vector<Part> read_step(Reader &) {
+S(draft) S(split) S(imprint) std::vector<Part> read_step(Reader &) {
   throw Failure{CAG_BREP_FAIL_INPUT, "unknown"};
 }
 std::vector<Part> read_iges(Reader &) { throw Failure{CAG_BREP_FAIL_INPUT, "unknown"}; }

@@ -160,17 +160,16 @@ Solids solids_of(const TopoDS_Shape &shape) {
     TopoDS_Solid solid = TopoDS::Solid(solids(i));
     const double volume = volume_of(solid);
     if (!has_volume(solid, volume)) continue;
-    if (volume < 0) {
-      // The shells are reversed in a copy: an orientation of the solid itself would have no effect
-      // on those who look at its shells.
+    if (volume < 0 || solid.Orientation() != TopAbs_FORWARD) {
+      // A copy whose shells have the orientation: one of the solid itself has no effect on those who
+      // look at its shells.
       BRep_Builder builder;
-      TopoDS_Solid reversed;
-      builder.MakeSolid(reversed);
+      TopoDS_Solid copy;
+      builder.MakeSolid(copy);
       for (TopExp_Explorer it(solid, TopAbs_SHELL); it.More(); it.Next())
-        builder.Add(reversed, it.Current().Reversed());
-      solid = reversed;
+        builder.Add(copy, volume < 0 ? it.Current().Reversed() : it.Current());
+      solid = copy;
     }
-    solid.Orientation(TopAbs_FORWARD);
     found.push_back(solid);
   }
   sort_solids(found);
