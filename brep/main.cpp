@@ -61,13 +61,25 @@ static std::string make_result(std::vector<Part> parts) {
   return make_message(CAG_BREP_RESULT, out.bytes);
 }
 
-static std::string make_result(const Solids &solids) {
-  std::vector<Part> parts;
+static void add_parts(std::vector<Part> &parts, const Solids &solids, const char *name) {
   for (const TopoDS_Solid &solid : solids) {
     const std::string faults = faults_of(solid);
     if (!faults.empty()) throw Failure{CAG_BREP_FAIL_CHECK, faults};
-    parts.push_back({solid});
+    parts.push_back({solid, name});
   }
+}
+
+static std::string make_result(const Solids &solids) {
+  std::vector<Part> parts;
+  add_parts(parts, solids, "");
+  return make_result(parts);
+}
+
+// The names tell the parts inside of the tool from those outside.
+static std::string make_split_result(const std::vector<Solids> &sides) {
+  std::vector<Part> parts;
+  add_parts(parts, sides[0], "inside");
+  add_parts(parts, sides[1], "outside");
   return make_result(parts);
 }
 
@@ -84,7 +96,7 @@ static std::string answer(uint64_t type, const std::string &fields) {
   case CAG_BREP_SHELL: return make_result(shell(in));
   case CAG_BREP_OFFSET: return make_result(offset(in));
   case CAG_BREP_DRAFT: return make_result(draft(in));
-  case CAG_BREP_SPLIT: return make_result(split(in));
+  case CAG_BREP_SPLIT: return make_split_result(split(in));
   case CAG_BREP_IMPRINT: return make_result(imprint(in));
   case CAG_BREP_READ_STEP: return make_result(read_step(in));
   case CAG_BREP_READ_IGES: return make_result(read_iges(in));

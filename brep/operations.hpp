@@ -14,7 +14,8 @@ Solids chamfer(Reader &in);
 Solids shell(Reader &in);
 Solids offset(Reader &in);
 Solids draft(Reader &in);
-Solids split(Reader &in);
+// The parts inside of the tool, and those outside.
+std::vector<Solids> split(Reader &in);
 Solids imprint(Reader &in);
 
 } // namespace brep
