@@ -8,9 +8,12 @@
 #include <BRepAlgoAPI_BooleanOperation.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopTools_ListOfShape.hxx>
+#include <TopoDS.hxx>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -20,6 +23,8 @@ namespace brep {
 
 // Volumes of valid results may leave their bounds by this fraction: tolerances move faces.
 static const double VOLUME_SLACK = 1e-6;
+// A result whose tolerances are below this fraction of the size needs no other try.
+static const double FINE_TOLERANCE = 1e-4;
 // Points that are compared per operation.
 static const int SAMPLES = 40;
 // Points are compared only if they are farther than this fraction of the size from all faces.
@@ -159,6 +164,17 @@ static bool run_kernel(BOPAlgo_Operation operation, const std::vector<Solids> &o
   return why.empty();
 }
 
+static double largest_tolerance(const Solids &solids) {
+  double most = 0;
+  for (const TopoDS_Solid &solid : solids) {
+    for (TopExp_Explorer it(solid, TopAbs_VERTEX); it.More(); it.Next())
+      most = std::max(most, BRep_Tool::Tolerance(TopoDS::Vertex(it.Current())));
+    for (TopExp_Explorer it(solid, TopAbs_EDGE); it.More(); it.Next())
+      most = std::max(most, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  }
+  return most;
+}
+
 static const char *operation_name(BOPAlgo_Operation operation) {
   return operation == BOPAlgo_FUSE  ? "union"
          : operation == BOPAlgo_CUT ? "difference"
@@ -169,6 +185,8 @@ static Solids run(BOPAlgo_Operation operation, const std::vector<Solids> &operan
   double size = 0;
   for (const Solids &operand : operands) size = std::max(size, diagonal_of(compound_of(operand)));
   std::string first;
+  Solids best;
+  double least = INFINITY;
   for (const bool repaired : {false, true}) {
     std::vector<Solids> tried = operands;
     if (repaired)
@@ -177,10 +195,20 @@ static Solids run(BOPAlgo_Operation operation, const std::vector<Solids> &operan
     for (const double fuzzy : {0.0, 1e-7, 1e-6, 1e-5}) {
       Solids result;
       std::string why;
-      if (run_kernel(operation, tried, fuzzy * size, result, why)) return result;
-      if (first.empty()) first = why;
+      if (!run_kernel(operation, tried, fuzzy * size, result, why)) {
+        if (first.empty()) first = why;
+        continue;
+      }
+      // A valid result may be one only because of its tolerances: others may be better.
+      const double tolerance = largest_tolerance(result);
+      if (tolerance <= FINE_TOLERANCE * size) return result;
+      if (tolerance < least) {
+        least = tolerance;
+        best = result;
+      }
     }
   }
+  if (least < INFINITY) return best;
   throw Failure{CAG_BREP_FAIL_METHOD, std::string(operation_name(operation)) + ": " + first};
 }
 

@@ -141,23 +141,32 @@ void complete_edges(const TopoDS_Solid &solid) {
   }
 }
 
+// How far the corners of an edge are from its ends.
+static double corner_gap(const Ref<Geom_Curve> &curve, double first, double last,
+                         const TopoDS_Vertex &start, const TopoDS_Vertex &end) {
+  return std::max(curve->Value(first).Distance(BRep_Tool::Pnt(start)),
+                  curve->Value(last).Distance(BRep_Tool::Pnt(end)));
+}
+
 static void write_edge(Writer &out, const TopoDS_Edge &edge, const Numbering &numbering) {
-  double first, last;
+  TopoDS_Vertex start, end;
+  TopExp::Vertices(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)), start, end);
+  if (start.IsNull()) start = end;
+  if (end.IsNull()) end = start;
+  if (start.IsNull()) throw Failure{CAG_BREP_FAIL_CHECK, "an edge has no corners"};
+  double first, last, tolerance = BRep_Tool::Tolerance(edge);
   const Ref<Geom_Curve> curve = BRep_Tool::Curve(edge, first, last);
-  double tolerance = BRep_Tool::Tolerance(edge);
   if (curve.IsNull() || BRep_Tool::Degenerated(edge)) {
     out.u32(CAG_BREP_POINT);
     BRep_Tool::Range(edge, first, last);
   } else {
-    tolerance += write_curve(out, curve, first, last, tolerance);
+    tolerance = std::max(tolerance + write_curve(out, curve, first, last, tolerance),
+                         corner_gap(curve, first, last, start, end));
   }
   out.f64(first);
   out.f64(last);
-  TopoDS_Vertex start, end;
-  TopExp::Vertices(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)), start, end);
-  if (start.IsNull() && end.IsNull()) throw Failure{CAG_BREP_FAIL_CHECK, "an edge has no corners"};
-  out.u32(static_cast<uint32_t>(numbering.corners.FindIndex(start.IsNull() ? end : start) - 1));
-  out.u32(static_cast<uint32_t>(numbering.corners.FindIndex(end.IsNull() ? start : end) - 1));
+  out.u32(static_cast<uint32_t>(numbering.corners.FindIndex(start) - 1));
+  out.u32(static_cast<uint32_t>(numbering.corners.FindIndex(end) - 1));
   out.f64(tolerance);
 }
 
@@ -238,10 +247,15 @@ static void write_face(Writer &out, const TopoDS_Face &oriented, const Numbering
   out.f64(bounds.v0);
   out.f64(bounds.v1);
   out.f64(BRep_Tool::Tolerance(face) + written.error);
-  const std::vector<TopoDS_Wire> wires = face_loops(face);
-  out.u32(static_cast<uint32_t>(wires.size()));
-  for (const TopoDS_Wire &wire : wires) {
-    std::vector<Use> uses = loop_uses(wire, face);
+  std::vector<std::vector<Use>> loops;
+  for (const TopoDS_Wire &wire : face_loops(face)) {
+    // A wire may have no edges but some inside of the face.
+    const std::vector<Use> uses = loop_uses(wire, face);
+    if (!uses.empty()) loops.push_back(uses);
+  }
+  if (loops.empty()) throw Failure{CAG_BREP_FAIL_CHECK, "a face has no loops"};
+  out.u32(static_cast<uint32_t>(loops.size()));
+  for (std::vector<Use> &uses : loops) {
     if (reversed) std::reverse(uses.begin(), uses.end());
     out.u32(static_cast<uint32_t>(uses.size()));
     for (const Use &use : uses) {

@@ -6,8 +6,11 @@
 #include "brep/booleans.hpp"
 #include "brep/boundary.hpp"
 #include "brep/shapes.hpp"
+#include "brep/sides.hpp"
 
 #include <BRepAlgoAPI_Splitter.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepOffsetAPI_DraftAngle.hxx>
 #include <BRepOffsetAPI_NormalProjection.hxx>
 #include <TopExp_Explorer.hxx>
@@ -96,7 +99,8 @@ std::vector<Solids> split(Reader &in) {
 // ---- imprints ----
 
 // Fails unless the edges divide a face.
-static Solids imprint_once(const TopoDS_Solid &solid, const TopTools_ListOfShape &edges) {
+static Solids imprint_once(const TopoDS_Solid &solid, const TopTools_ListOfShape &edges,
+                           double fuzzy) {
   if (edges.IsEmpty()) throw Failure{CAG_BREP_FAIL_METHOD, "the curves are not near a face"};
   TopTools_ListOfShape arguments;
   arguments.Append(solid);
@@ -105,6 +109,7 @@ static Solids imprint_once(const TopoDS_Solid &solid, const TopTools_ListOfShape
   splitter.SetTools(edges);
   splitter.SetRunParallel(Standard_False);
   splitter.SetNonDestructive(Standard_True);
+  if (fuzzy > 0) splitter.SetFuzzyValue(fuzzy);
   splitter.Build();
   if (splitter.HasErrors()) {
     std::ostringstream text;
@@ -119,18 +124,33 @@ static Solids imprint_once(const TopoDS_Solid &solid, const TopTools_ListOfShape
   return found;
 }
 
-// The curves along the normals of the nearest faces.
+// Projections that are farther from the curve than this, times the nearest one, are on other sides of
+// the solid.
+static const double FARTHEST_PROJECTION = 2;
+
+// The curves along the normals of the faces that are near.
 static TopTools_ListOfShape project_edges(const TopoDS_Solid &solid,
                                           const TopTools_ListOfShape &edges) {
   TopTools_ListOfShape projected;
   for (const TopoDS_Shape &edge : edges) {
     BRepOffsetAPI_NormalProjection projection(solid);
     projection.SetLimit(Standard_True);
+    projection.SetParams(1e-6, 1e-4, GeomAbs_C2, 14, 16);
     projection.Add(edge);
     projection.Build();
     if (!projection.IsDone()) continue;
-    for (TopExp_Explorer it(projection.Projection(), TopAbs_EDGE); it.More(); it.Next())
-      projected.Append(it.Current());
+    std::vector<std::pair<double, TopoDS_Shape>> found;
+    double least = INFINITY;
+    for (TopExp_Explorer it(projection.Projection(), TopAbs_EDGE); it.More(); it.Next()) {
+      const TopoDS_Shape middle =
+          BRepBuilderAPI_MakeVertex(middle_of(TopoDS::Edge(it.Current()))).Shape();
+      const BRepExtrema_DistShapeShape distance(middle, edge);
+      if (!distance.IsDone()) continue;
+      found.push_back({distance.Value(), it.Current()});
+      least = std::min(least, distance.Value());
+    }
+    for (const auto &candidate : found)
+      if (candidate.first <= FARTHEST_PROJECTION * least + 1e-6) projected.Append(candidate.second);
   }
   return projected;
 }
@@ -145,11 +165,14 @@ Solids imprint(Reader &in) {
   if (edges.IsEmpty()) return {solid};
   Solids result;
   Failure failure = {}, ignored = {};
-  if (attempt([&] { return imprint_once(solid, edges); }, ATTEMPT_SECONDS, result, failure))
+  if (attempt([&] { return imprint_once(solid, edges, 0); }, ATTEMPT_SECONDS, result, failure))
     return result;
-  if (attempt([&] { return imprint_once(solid, project_edges(solid, edges)); }, ATTEMPT_SECONDS,
-              result, ignored))
-    return result;
+  // Ends of projected curves may miss each other by fractions of the size.
+  const double size = diagonal_of(solid);
+  for (const double fuzzy : {0.0, 1e-6, 1e-5, 1e-4})
+    if (attempt([&] { return imprint_once(solid, project_edges(solid, edges), fuzzy * size); },
+                ATTEMPT_SECONDS, result, ignored))
+      return result;
   throw failure;
 }
 
