@@ -304,7 +304,7 @@ bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OC
 silhouettes: all
 	python3 tests/bench/silhouettes.py $(BUILD)/cag
 
-FORMATTED = $(shell find include base lang geom interp live cli wasm tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp live cli wasm tests tools -name '*.[ch]' | sort) $(wildcard brep/*.[ch]pp)
 format:
 	clang-format -i $(FORMATTED)
 check-format:

@@ -7,10 +7,10 @@
 #include "brep/boundary.hpp"
 
 #include "brep/curves.hpp"
+#include "brep/measure.hpp"
 #include "brep/solids.hpp"
 
 #include <BRepClass3d.hxx>
-#include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRepTools.hxx>
 #include <BRepTools_WireExplorer.hxx>
@@ -293,12 +293,10 @@ static void write_shells(Writer &out, const TopoDS_Solid &solid, const Numbering
 
 void write_boundary(Writer &out, const TopoDS_Solid &solid) {
   const Numbering numbering = number_boundary(solid);
-  const GProp_GProps properties = volume_properties(solid);
-  GProp_GProps surface;
-  BRepGProp::SurfaceProperties(solid, surface, 1e-10, Standard_False);
-  out.f64(properties.Mass());
-  out.f64(surface.Mass());
-  out.xyz(properties.CentreOfMass().XYZ());
+  const Measures measures = measure(solid);
+  out.f64(measures.volume);
+  out.f64(measures.area);
+  out.xyz(measures.centroid.XYZ());
   out.u32(static_cast<uint32_t>(numbering.corners.Extent()));
   for (int i = 1; i <= numbering.corners.Extent(); ++i)
     out.xyz(BRep_Tool::Pnt(TopoDS::Vertex(numbering.corners(i))).XYZ());

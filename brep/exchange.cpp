@@ -170,7 +170,8 @@ struct Walk {
   std::vector<Part> parts;
   TopoDS_Shape loose; // faces and shells outside of solids
 
-  void visit(const TopoDS_Shape &shape, const std::string &product, const Color *color, bool alone);
+  void visit(const TopoDS_Shape &shape, const std::string &outer_product, const Color *color,
+             bool outer_alone);
 };
 
 // The color of most faces.
@@ -217,12 +218,17 @@ static Solids placed_solids(const TopoDS_Shape &shape, const std::string &name) 
   return solids;
 }
 
-void Walk::visit(const TopoDS_Shape &shape, const std::string &product, const Color *color,
-                 bool alone) {
+void Walk::visit(const TopoDS_Shape &shape, const std::string &outer_product, const Color *color,
+                 bool outer_alone) {
   const TopoDS_TShape *key = shape.TShape().get();
   const auto colored = colors.find(key);
   if (colored != colors.end()) color = &colored->second;
+  // A product with one solid may have it as its shape.
+  const auto named = product_names.find(key);
+  const bool is_product = named != product_names.end();
   if (shape.ShapeType() == TopAbs_SOLID) {
+    const std::string product = is_product ? named->second : outer_product;
+    const bool alone = is_product || outer_alone;
     const auto own = solid_names.find(key);
     std::string name = own == solid_names.end() ? "" : own->second;
     if (name.empty() || name == "NONE" || (assembly && alone && !product.empty())) name = product;
@@ -249,12 +255,10 @@ void Walk::visit(const TopoDS_Shape &shape, const std::string &product, const Co
     builder.Add(loose, shape);
     return;
   }
-  const auto named = product_names.find(key);
-  const bool is_product = named != product_names.end();
   const int solids = is_product ? count_solids(shape) : 0;
   for (TopoDS_Iterator it(shape); it.More(); it.Next())
-    visit(it.Value(), is_product ? named->second : product, color,
-          is_product ? solids == 1 : alone);
+    visit(it.Value(), is_product ? named->second : outer_product, color,
+          is_product ? solids == 1 : outer_alone);
 }
 
 // Closed surfaces of the loose faces are solids, too.
@@ -397,12 +401,7 @@ std::vector<Part> read_step(Reader &in) {
   }
   const Colors colors = step_colors(session, process);
   Walk walk = {solid_names, product_names, colors, products.size() > 1, {}, {}};
-  for (int i = 1; i <= reader.NbShapes(); ++i) {
-    // A product whose shape is one solid is named by that solid.
-    const TopoDS_Shape root = reader.Shape(i);
-    const auto named = product_names.find(root.TShape().get());
-    walk.visit(root, named == product_names.end() ? "" : named->second, nullptr, false);
-  }
+  for (int i = 1; i <= reader.NbShapes(); ++i) { walk.visit(reader.Shape(i), "", nullptr, false); }
   return finish_walk(walk, 1e-6);
 }
 

@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace brep {
@@ -145,7 +146,21 @@ static bool read_bytes(uint64_t size, std::string *bytes) {
   return true;
 }
 
+// Solids nest, and the kernel recurses: the stack of the main thread may grow further than usual. 100
+// MiB is below the gap that Linux leaves for it.
+static void allow_deep_recursion() {
+  const rlim_t wanted = 100 << 20;
+  rlimit limit;
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 ||
+      (limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur >= wanted))
+    return;
+  limit.rlim_cur =
+      limit.rlim_max == RLIM_INFINITY || limit.rlim_max > wanted ? wanted : limit.rlim_max;
+  setrlimit(RLIMIT_STACK, &limit);
+}
+
 static int serve() {
+  allow_deep_recursion();
   // Standard output becomes standard error, because the kernel prints.
   const int replies = dup(STDOUT_FILENO);
   if (replies < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {

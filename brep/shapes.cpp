@@ -4,8 +4,11 @@
 
 #include "brep/booleans.hpp"
 
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_GTransform.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepLib.hxx>
@@ -16,16 +19,17 @@
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools_WireExplorer.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <BinTools.hxx>
-#include <GeomLProp_SLProps.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Circle.hxx>
 #include <Geom_Ellipse.hxx>
 #include <Geom_Line.hxx>
 #include <Precision.hxx>
+#include <Standard_Failure.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColStd_Array2OfReal.hxx>
@@ -34,6 +38,7 @@
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
 #include <cmath>
@@ -477,6 +482,8 @@ TopoDS_Solid read_body_solid(Reader &in) {
 
 static Solids make_box(Reader &in) {
   const gp_Pnt size = in.point();
+  if (size.X() <= 0 || size.Y() <= 0 || size.Z() <= 0)
+    throw Failure{CAG_BREP_FAIL_INPUT, "a box has no volume"};
   return solids_of(BRepPrimAPI_MakeBox(size.X(), size.Y(), size.Z()).Shape());
 }
 
@@ -537,6 +544,57 @@ static Placement read_placement(Reader &in) {
   return placement;
 }
 
+static bool is_polyhedron(const TopoDS_Solid &solid) {
+  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next())
+    if (BRepAdaptor_Surface(TopoDS::Face(it.Current())).GetType() != GeomAbs_Plane) return false;
+  for (TopExp_Explorer it(solid, TopAbs_EDGE); it.More(); it.Next())
+    if (BRepAdaptor_Curve(TopoDS::Edge(it.Current())).GetType() != GeomAbs_Line) return false;
+  return true;
+}
+
+// The image of a polyhedron, by its corners: the kernel would make its faces splines.
+static TopoDS_Shape transform_polyhedron(const TopoDS_Solid &solid, const gp_GTrsf &map) {
+  const auto image = [&](const gp_Pnt &point) {
+    gp_XYZ xyz = point.XYZ();
+    map.Transforms(xyz);
+    return gp_Pnt(xyz);
+  };
+  BRepBuilderAPI_Sewing sewing(1e-9 * diagonal_of(solid) *
+                               std::cbrt(std::abs(map.VectorialPart().Determinant())));
+  for (TopExp_Explorer face(solid, TopAbs_FACE); face.More(); face.Next()) {
+    const gp_Ax3 frame = BRepAdaptor_Surface(TopoDS::Face(face.Current())).Plane().Position();
+    gp_XYZ x = frame.XDirection().XYZ(), y = frame.YDirection().XYZ();
+    const gp_Mat linear = map.VectorialPart();
+    x.Multiply(linear);
+    y.Multiply(linear);
+    BRepBuilderAPI_MakeFace maker(gp_Pln(image(frame.Location()), gp_Dir(x.Crossed(y))));
+    TopoDS_Face flat = maker.Face();
+    const TopoDS_Face forward = TopoDS::Face(face.Current().Oriented(TopAbs_FORWARD));
+    for (TopoDS_Iterator wire(forward); wire.More(); wire.Next()) {
+      BRepBuilderAPI_MakePolygon polygon;
+      for (BRepTools_WireExplorer it(TopoDS::Wire(wire.Value()), forward); it.More(); it.Next())
+        polygon.Add(image(BRep_Tool::Pnt(it.CurrentVertex())));
+      polygon.Close();
+      BRep_Builder().Add(flat, polygon.Wire());
+    }
+    sewing.Add(flat.Oriented(face.Current().Orientation()));
+  }
+  sewing.Perform();
+  return compound_of(solids_of_shells(sewing.SewedShape()));
+}
+
+static TopoDS_Shape transform_affine(const TopoDS_Solid &solid, const gp_GTrsf &map) {
+  if (is_polyhedron(solid)) {
+    try {
+      const TopoDS_Shape shape = transform_polyhedron(solid, map);
+      const Solids found = solids_of(shape);
+      if (found.size() == 1 && are_valid(found)) return shape;
+    } catch (const Failure &) {
+    } catch (const Standard_Failure &) {}
+  }
+  return BRepBuilderAPI_GTransform(solid, map, Standard_True).Shape();
+}
+
 static Solids place(const Solids &solids, const Placement &placement) {
   const double(&m)[3][4] = placement.rows;
   gp_Mat linear(m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1], m[2][2]);
@@ -566,7 +624,7 @@ static Solids place(const Solids &solids, const Placement &placement) {
                     m[2][1], m[2][2], m[2][3]);
       shape = BRepBuilderAPI_Transform(solid, map, Standard_True).Shape();
     } else {
-      shape = BRepBuilderAPI_GTransform(solid, gp_GTrsf(linear, moved), Standard_True).Shape();
+      shape = transform_affine(solid, gp_GTrsf(linear, moved));
     }
     for (const TopoDS_Solid &part : solids_of(shape)) placed.push_back(part);
   }

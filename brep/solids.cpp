@@ -2,6 +2,7 @@
 
 #include "brep/failure.hpp"
 #include "brep/handle.hpp"
+#include "brep/measure.hpp"
 
 #include <BRepBndLib.hxx>
 #include <BRepCheck.hxx>
@@ -9,7 +10,6 @@
 #include <BRepCheck_ListIteratorOfListOfStatus.hxx>
 #include <BRepClass3d.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
-#include <BRepGProp.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -29,22 +29,10 @@
 
 namespace brep {
 
-// Relative error of the integrals over faces.
-static const double INTEGRAL_ERROR = 1e-10;
 // A closed shell of less volume than this fraction of its bounding cube has collapsed.
 static const double LEAST_VOLUME = 1e-13;
 
-GProp_GProps volume_properties(const TopoDS_Shape &shape) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties, INTEGRAL_ERROR, Standard_False, Standard_False);
-  return properties;
-}
-
-double volume_of(const TopoDS_Shape &shape) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties);
-  return properties.Mass();
-}
+double volume_of(const TopoDS_Shape &shape) { return measure(shape).volume; }
 
 double volume_of(const Solids &solids) {
   double sum = 0;
@@ -115,6 +103,7 @@ bool are_valid(const Solids &solids) {
 }
 
 void sort_solids(Solids &solids) {
+  if (solids.size() < 2) return;
   struct Key {
     double volume;
     gp_Pnt center;
@@ -123,11 +112,10 @@ void sort_solids(Solids &solids) {
   std::vector<Key> keys;
   double most = 0, size = 0;
   for (const TopoDS_Solid &solid : solids) {
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(solid, properties);
-    keys.push_back({properties.Mass(), properties.CentreOfMass(), solid});
-    most = std::max(most, properties.Mass());
-    size = std::max(size, properties.CentreOfMass().XYZ().Modulus());
+    const Measures measures = measure(solid);
+    keys.push_back({measures.volume, measures.centroid, solid});
+    most = std::max(most, measures.volume);
+    size = std::max(size, measures.centroid.XYZ().Modulus());
   }
   size = std::max(size, std::cbrt(most));
   // Rounding makes solids that differ by rounding errors equal, so that the next key decides.

@@ -4,7 +4,6 @@
 #ifndef CAG_BREP_SOLIDS_HPP
 #define CAG_BREP_SOLIDS_HPP
 
-#include <GProp_GProps.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_Solid.hxx>
 #include <string>
@@ -14,9 +13,6 @@ namespace brep {
 
 typedef std::vector<TopoDS_Solid> Solids;
 
-// Volume and its moments. The relative error is below 1e-9 for faces of elementary surfaces.
-GProp_GProps volume_properties(const TopoDS_Shape &shape);
-// The volume alone, faster.
 double volume_of(const TopoDS_Shape &shape);
 double volume_of(const Solids &solids);
 // Of the box around a shape.
