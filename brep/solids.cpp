@@ -25,6 +25,7 @@
 #include <TopoDS_Shell.hxx>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 namespace brep {
@@ -32,7 +33,22 @@ namespace brep {
 // A closed shell of less volume than this fraction of its bounding cube has collapsed.
 static const double LEAST_VOLUME = 1e-13;
 
-double volume_of(const TopoDS_Shape &shape) { return measure(shape).volume; }
+// Measures of solids that were measured before: operands are compared with each result that is tried.
+static const Measures &measure_once(const TopoDS_Solid &solid) {
+  static std::vector<TopoDS_Solid> solids; // so that no address is used again
+  static std::map<const TopoDS_TShape *, Measures> known;
+  const auto found = known.find(solid.TShape().get());
+  if (found != known.end()) return found->second;
+  solids.push_back(solid);
+  return known.insert({solid.TShape().get(), measure(solid)}).first->second;
+}
+
+double volume_of(const TopoDS_Shape &shape) {
+  if (shape.ShapeType() == TopAbs_SOLID && shape.Orientation() == TopAbs_FORWARD &&
+      shape.Location().IsIdentity())
+    return measure_once(TopoDS::Solid(shape)).volume;
+  return measure(shape).volume;
+}
 
 double volume_of(const Solids &solids) {
   double sum = 0;
@@ -112,7 +128,7 @@ void sort_solids(Solids &solids) {
   std::vector<Key> keys;
   double most = 0, size = 0;
   for (const TopoDS_Solid &solid : solids) {
-    const Measures measures = measure(solid);
+    const Measures measures = solid.Location().IsIdentity() ? measure_once(solid) : measure(solid);
     keys.push_back({measures.volume, measures.centroid, solid});
     most = std::max(most, measures.volume);
     size = std::max(size, measures.centroid.XYZ().Modulus());
