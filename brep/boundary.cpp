@@ -17,6 +17,7 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom2d_Curve.hxx>
+#include <GeomAdaptor_Surface.hxx>
 #include <Geom_Curve.hxx>
 #include <Geom_Surface.hxx>
 #include <ShapeFix_Edge.hxx>
@@ -39,6 +40,11 @@ namespace brep {
 // Positions are compared after rounding to this fraction of the size, so that rounding errors do not
 // change the order.
 static const double ORDER_GRID = 1e-7;
+
+// Points where an edge is compared with its trace, and how much farther apart they may be between these
+// points.
+static const int TRACE_SAMPLES = 24;
+static const double TRACE_MARGIN = 1.1;
 
 static bool is_boundary(const TopoDS_Shape &shape) {
   return shape.Orientation() == TopAbs_FORWARD || shape.Orientation() == TopAbs_REVERSED;
@@ -122,9 +128,26 @@ Numbering number_boundary(const TopoDS_Solid &solid) {
 
 // ---- edges ----
 
+// How far an edge and its trace on a face are apart, at points of the edge.
+static double trace_gap(const TopoDS_Edge &edge, const TopoDS_Face &face) {
+  double first, last, start, end;
+  const Ref<Geom_Curve> curve = BRep_Tool::Curve(edge, first, last);
+  const Ref<Geom2d_Curve> trace = BRep_Tool::CurveOnSurface(edge, face, start, end);
+  if (curve.IsNull() || trace.IsNull()) return 0;
+  const GeomAdaptor_Surface surface(BRep_Tool::Surface(face));
+  double gap = 0;
+  for (int i = 0; i <= TRACE_SAMPLES; ++i) {
+    const double t = first + (last - first) * i / TRACE_SAMPLES;
+    const gp_Pnt2d at = trace->Value(t);
+    gap = std::max(gap, curve->Value(t).Distance(surface.Value(at.X(), at.Y())));
+  }
+  return gap;
+}
+
 void complete_edges(const TopoDS_Solid &solid) {
   BRepLib::BuildCurves3d(solid);
   ShapeFix_Edge fix;
+  BRep_Builder builder;
   for (const TopoDS_Shape &shape : boundary_parts(solid, TopAbs_FACE)) {
     const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
@@ -132,11 +155,17 @@ void complete_edges(const TopoDS_Solid &solid) {
       double first, last;
       if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull())
         fix.FixAddPCurve(edge, face, BRep_Tool::IsClosed(edge, face));
-      if (!BRep_Tool::Degenerated(edge) &&
-          (!BRep_Tool::SameParameter(edge) || !BRep_Tool::SameRange(edge))) {
+      if (BRep_Tool::Degenerated(edge)) continue;
+      if (!BRep_Tool::SameParameter(edge) || !BRep_Tool::SameRange(edge)) {
         BRepLib::SameRange(edge);
         BRepLib::SameParameter(edge);
       }
+      // Files may have edges whose tolerance is too small for their traces.
+      const double gap = trace_gap(edge, face);
+      if (gap <= BRep_Tool::Tolerance(edge)) continue;
+      builder.UpdateEdge(edge, gap * TRACE_MARGIN);
+      for (TopExp_Explorer corner(edge, TopAbs_VERTEX); corner.More(); corner.Next())
+        builder.UpdateVertex(TopoDS::Vertex(corner.Current()), gap * TRACE_MARGIN);
     }
   }
 }

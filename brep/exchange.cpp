@@ -220,6 +220,7 @@ static Solids placed_solids(const TopoDS_Shape &shape, const std::string &name) 
 
 void Walk::visit(const TopoDS_Shape &shape, const std::string &outer_product, const Color *color,
                  bool outer_alone) {
+  if (shape.IsNull()) return;
   const TopoDS_TShape *key = shape.TShape().get();
   const auto colored = colors.find(key);
   if (colored != colors.end()) color = &colored->second;
@@ -267,6 +268,7 @@ static void add_loose(Walk &walk, double gap) {
   BRepBuilderAPI_Sewing sewing(gap);
   sewing.Add(walk.loose);
   sewing.Perform();
+  if (sewing.SewedShape().IsNull()) return;
   // Names and colors of the faces that sewing replaces.
   Names names;
   Colors colors;
@@ -282,19 +284,20 @@ static void add_loose(Walk &walk, double gap) {
   TopoDS_Compound closed;
   builder.MakeCompound(closed);
   bool any = false;
-  for (TopExp_Explorer it(sewing.SewedShape(), TopAbs_SHELL); it.More(); it.Next()) {
-    if (!BRep_Tool::IsClosed(it.Current())) continue;
-    builder.Add(closed, it.Current());
+  const auto add_closed = [&](const TopoDS_Shape &shell) {
+    // Surfaces that close but enclose nothing are no solids.
+    if (!BRep_Tool::IsClosed(shell) || !encloses_volume(shell)) return;
+    builder.Add(closed, shell);
     any = true;
-  }
+  };
+  for (TopExp_Explorer it(sewing.SewedShape(), TopAbs_SHELL); it.More(); it.Next())
+    add_closed(it.Current());
   // A closed face of its own is no shell.
   for (TopExp_Explorer it(sewing.SewedShape(), TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
     TopoDS_Shell shell;
     builder.MakeShell(shell);
     builder.Add(shell, it.Current());
-    if (!BRep_Tool::IsClosed(shell)) continue;
-    builder.Add(closed, shell);
-    any = true;
+    add_closed(shell);
   }
   if (!any) return;
   for (const TopoDS_Solid &solid : solids_of_shells(closed)) {
@@ -331,6 +334,7 @@ static std::vector<Part> finish_walk(Walk &walk, double gap) {
 // ---- STEP ----
 
 static bool decode_color(const Ref<StepVisual_Colour> &colour, Color &color) {
+  if (colour.IsNull()) return false;
   if (const auto rgb = Ref<StepVisual_ColourRgb>::DownCast(colour)) {
     color = {{rgb->Red(), rgb->Green(), rgb->Blue()}};
     return true;

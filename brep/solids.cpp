@@ -155,6 +155,8 @@ static bool has_volume(const TopoDS_Shape &shape, double volume) {
   return std::abs(volume) > LEAST_VOLUME * size * size * size;
 }
 
+bool encloses_volume(const TopoDS_Shape &shape) { return has_volume(shape, volume_of(shape)); }
+
 Solids solids_of(const TopoDS_Shape &shape) {
   Solids found;
   if (shape.IsNull()) return found;

@@ -15,6 +15,8 @@ typedef std::vector<TopoDS_Solid> Solids;
 
 double volume_of(const TopoDS_Shape &shape);
 double volume_of(const Solids &solids);
+// Whether the faces of a shape enclose more than rounding errors.
+bool encloses_volume(const TopoDS_Shape &shape);
 // Of the box around a shape.
 double diagonal_of(const TopoDS_Shape &shape);
 
