@@ -3,6 +3,7 @@
 #include "brep/failure.hpp"
 #include "brep/handle.hpp"
 #include "brep/measure.hpp"
+#include "brep/sides.hpp"
 
 #include <BRepBndLib.hxx>
 #include <BRepCheck.hxx>
@@ -26,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <sstream>
 
 namespace brep {
@@ -182,12 +184,33 @@ Solids solids_of(const TopoDS_Shape &shape) {
   return found;
 }
 
+// The corners of a shell and the middles of its edges.
+static std::vector<gp_Pnt> shell_points(const TopoDS_Shell &shell) {
+  std::vector<gp_Pnt> points;
+  TopTools_IndexedMapOfShape corners, edges;
+  TopExp::MapShapes(shell, TopAbs_VERTEX, corners);
+  TopExp::MapShapes(shell, TopAbs_EDGE, edges);
+  for (int i = 1; i <= corners.Extent(); ++i)
+    points.push_back(BRep_Tool::Pnt(TopoDS::Vertex(corners(i))));
+  for (int i = 1; i <= edges.Extent(); ++i)
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(edges(i))))
+      points.push_back(middle_of(TopoDS::Edge(edges(i))));
+  if (points.empty()) throw Failure{CAG_BREP_FAIL_INPUT, "a shell has no corners"};
+  return points;
+}
+
+static bool box_contains(const Bnd_Box &outer, const Bnd_Box &inner) {
+  return !inner.IsVoid() && !outer.IsVoid() && !outer.IsOut(inner.CornerMin()) &&
+         !outer.IsOut(inner.CornerMax());
+}
+
 Solids solids_of_shells(const TopoDS_Shape &shape) {
   struct Shell {
     TopoDS_Shell shell; // its faces point out of what it encloses
     TopoDS_Solid solid;
     double volume;
-    gp_Pnt corner;
+    Bnd_Box box;
+    std::vector<gp_Pnt> points; // on it
     std::vector<size_t> around; // shells that enclose it
   };
   std::vector<Shell> shells;
@@ -207,16 +230,24 @@ Solids solids_of_shells(const TopoDS_Shape &shape) {
       builder.Add(solid, shell);
       volume = -volume;
     }
-    const TopExp_Explorer corner(shell, TopAbs_VERTEX);
-    if (!corner.More()) throw Failure{CAG_BREP_FAIL_INPUT, "a shell has no corners"};
-    shells.push_back({shell, solid, volume, BRep_Tool::Pnt(TopoDS::Vertex(corner.Current())), {}});
+    Bnd_Box box;
+    BRepBndLib::Add(shell, box, Standard_False);
+    shells.push_back({shell, solid, volume, box, shell_points(shell), {}});
   }
   for (size_t i = 0; i < shells.size() && shells.size() > 1; ++i) {
-    BRepClass3d_SolidClassifier classifier(shells[i].solid);
+    std::unique_ptr<BRepClass3d_SolidClassifier> classifier;
     for (size_t j = 0; j < shells.size(); ++j) {
-      if (i == j || shells[j].volume > shells[i].volume) continue;
-      classifier.Perform(shells[j].corner, 1e-7);
-      if (classifier.State() == TopAbs_IN) shells[j].around.push_back(i);
+      if (i == j || shells[j].volume > shells[i].volume ||
+          !box_contains(shells[i].box, shells[j].box))
+        continue;
+      if (!classifier) classifier = std::make_unique<BRepClass3d_SolidClassifier>(shells[i].solid);
+      const auto inside = [&](const gp_Pnt &point) {
+        classifier->Perform(point, 1e-7);
+        return classifier->State() == TopAbs_IN;
+      };
+      // Shells that pass through each other are separate solids.
+      const std::vector<gp_Pnt> &points = shells[j].points;
+      if (std::all_of(points.begin(), points.end(), inside)) shells[j].around.push_back(i);
     }
   }
   // An even number of shells around one makes it the outside of a solid, an odd number a cavity of

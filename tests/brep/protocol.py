@@ -182,6 +182,20 @@ def test_faces_of_a_closed_surface(h):
     near(part.volume, 4 / 3 * PI * 8)
 
 
+def test_faces_of_nested_and_crossing_shells(h):
+    def cuboid(low, high):
+        p = [(x, y, z) for z in (low[2], high[2]) for y in (low[1], high[1]) for x in (low[0], high[0])]
+        quads = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (2, 3, 6, 7), (0, 2, 4, 6), (1, 3, 5, 7))
+        return [spline_face(1, 1, [[p[a], p[b]], [p[c], p[d]]], [0, 0, 1, 1], [0, 0, 1, 1]) for a, b, c, d in quads]
+    cubes = [cuboid((0, 0, 0), (6, 6, 6)), cuboid((1, 1, 1), (5, 5, 5)), cuboid((2, 2, 2), (4, 4, 4))]
+    parts = h.ask(EVALUATE, faces(*[face for cube_faces in cubes for face in cube_faces]))
+    assert [round(part.volume) for part in parts] == [216 - 64, 8]
+    assert [len(part.shells) for part in parts] == [2, 1]
+    # A bar through a cube is no cavity.
+    parts = h.ask(EVALUATE, faces(*cubes[0], *cuboid((2, 2, -3), (3, 3, 9))))
+    assert [round(part.volume) for part in parts] == [216, 12]
+
+
 def test_faces_that_do_not_close(h):
     open_box = faces(flat_face((0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), region(polygon((0, 0), (1, 0), (1, 1)))))
     failure = h.fails(EVALUATE, open_box)
