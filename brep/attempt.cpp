@@ -40,7 +40,7 @@ static std::string method_bytes(const std::function<Solids()> &method) {
 bool attempt(const std::function<Solids()> &method, double seconds, Solids &result,
              Failure &failure) {
   std::string bytes, why;
-  if (!run_isolated([&] { return method_bytes(method); }, seconds, bytes, why)) {
+  if (!run_isolated([&] { return method_bytes(method); }, seconds, -1, bytes, why)) {
     failure = {CAG_BREP_FAIL_METHOD, why};
     return false;
   }

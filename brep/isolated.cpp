@@ -30,18 +30,18 @@ static double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Reads to the end of the pipe. Returns false at the deadline.
-static bool read_all(int file, double deadline, std::string &bytes) {
+// Reads to the end of the pipe. Returns false at the deadline, or when nobody reads `answers`.
+static bool read_all(int file, double deadline, int answers, std::string &bytes) {
   char block[65536];
   for (;;) {
     const double left = deadline - now();
-    pollfd wait = {file, POLLIN, 0};
-    const int ready = poll(&wait, 1,
+    pollfd waits[2] = {{file, POLLIN, 0}, {answers, 0, 0}};
+    const int ready = poll(waits, 2,
                            std::isinf(left) ? -1
                            : left > 0       ? static_cast<int>(left * 1000) + 1
                                             : 0);
     if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return false;
+    if (ready <= 0 || (answers >= 0 && waits[1].revents)) return false;
     const ssize_t n = read(file, block, sizeof block);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return n == 0;
@@ -49,8 +49,8 @@ static bool read_all(int file, double deadline, std::string &bytes) {
   }
 }
 
-bool run_isolated(const std::function<std::string()> &work, double seconds, std::string &out,
-                  std::string &why) {
+bool run_isolated(const std::function<std::string()> &work, double seconds, int answers,
+                  std::string &out, std::string &why) {
   int ends[2];
   if (pipe(ends) != 0) {
     why = std::strerror(errno);
@@ -81,7 +81,7 @@ bool run_isolated(const std::function<std::string()> &work, double seconds, std:
   }
   close(ends[1]);
   std::string bytes;
-  const bool ended = read_all(ends[0], seconds > 0 ? now() + seconds : INFINITY, bytes);
+  const bool ended = read_all(ends[0], seconds > 0 ? now() + seconds : INFINITY, answers, bytes);
   close(ends[0]);
   if (!ended) kill(child, SIGKILL);
   int status = 0;

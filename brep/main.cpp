@@ -186,7 +186,7 @@ static int serve() {
     } else {
       bytes.clear();
       if (!read_bytes(header.size, &bytes)) return 0;
-      if (!run_isolated([&] { return answer_or_fail(header.type, bytes); }, 0, reply, why))
+      if (!run_isolated([&] { return answer_or_fail(header.type, bytes); }, 0, replies, reply, why))
         reply = make_failure({CAG_BREP_FAIL_METHOD, why});
     }
     if (!write_all(replies, reply)) return 0;

@@ -13,6 +13,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from client import *  # noqa: E402,F403
@@ -818,6 +819,17 @@ def test_the_end_of_input(h):
     other = Helper(HELPER)
     other.process.stdin.write(struct.pack("=2Q", EVALUATE, 1 << 20) + b"abc")
     assert other.close() == 0
+
+
+def test_work_that_nobody_waits_for(h):
+    other = Helper(HELPER)
+    message = fillets(box(10, 10, 10), *[(i, 6, 6) for i in range(12)])  # takes seconds
+    other.process.stdin.write(struct.pack("=2Q", FILLET, len(message)) + message)
+    other.process.stdin.flush()
+    other.process.stdout.close()
+    started = time.monotonic()
+    other.close()
+    assert time.monotonic() - started < 2
 
 
 def main():
