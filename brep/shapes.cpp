@@ -3,6 +3,7 @@
 #include "brep/shapes.hpp"
 
 #include "brep/booleans.hpp"
+#include "brep/flatten.hpp"
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
@@ -592,7 +593,17 @@ static TopoDS_Shape transform_affine(const TopoDS_Solid &solid, const gp_GTrsf &
     } catch (const Failure &) {
     } catch (const Standard_Failure &) {}
   }
-  return BRepBuilderAPI_GTransform(solid, map, Standard_True).Shape();
+  const TopoDS_Shape image = BRepBuilderAPI_GTransform(solid, map, Standard_True).Shape();
+  try {
+    const TopoDS_Shape flat = flatten_faces(image);
+    const Solids before = solids_of(image), after = solids_of(flat);
+    if (are_valid(after) && after.size() == before.size() &&
+        std::abs(volume_of(after) - volume_of(before)) <= 1e-9 * volume_of(before))
+      return flat;
+  } catch (const Standard_Failure &) {
+    // The image has splines in place of planes.
+  }
+  return image;
 }
 
 static Solids place(const Solids &solids, const Placement &placement) {

@@ -247,6 +247,16 @@ def test_distorted(h):
     assert len(sheared.kinds(PLANE)) == 6 and len(sheared.edge_kinds(LINE)) == 12
 
 
+def test_distorted_with_curved_faces(h):
+    for place, factor in (((1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0), 2), ((1, 0.5, 0, 0, 0, -1, 0, 0, 0.25, 0, 1, 3), 1)):
+        part = h.one(EVALUATE, drilled(place))
+        near(part.volume, (1000 - 40 * PI) * factor)
+        assert len(part.kinds(PLANE)) == 6
+        # It can be used as any other.
+        half = h.one(EVALUATE, intersection(drilled(place), solid(HALF_SPACE, f64(200), moved(0, 0, 5))))
+        assert half.volume < part.volume
+
+
 def test_flattened(h):
     assert h.fails(EVALUATE, box(1, 1, 1, placement=(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0))).reason == FAIL_INPUT
 
