@@ -105,6 +105,10 @@ static std::string answer(uint64_t type, const std::string &fields) {
   }
 }
 
+static bool is_file_request(uint64_t type) {
+  return type == CAG_BREP_READ_STEP || type == CAG_BREP_READ_IGES;
+}
+
 static std::string answer_or_fail(uint64_t type, const std::string &fields) {
   try {
     return answer(type, fields);
@@ -187,7 +191,9 @@ static int serve() {
       bytes.clear();
       if (!read_bytes(header.size, &bytes)) return 0;
       if (!run_isolated([&] { return answer_or_fail(header.type, bytes); }, 0, replies, reply, why))
-        reply = make_failure({CAG_BREP_FAIL_METHOD, why});
+        reply = make_failure(is_file_request(header.type)
+                                 ? Failure{CAG_BREP_FAIL_FILE, "the file is damaged: " + why}
+                                 : Failure{CAG_BREP_FAIL_METHOD, why});
     }
     if (!write_all(replies, reply)) return 0;
   }
