@@ -11,6 +11,8 @@
 #   make EMBREE=1    with Embree for rays at large meshes; `make test-embree` runs the tests of rays with it for all meshes
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 #   make vsix        the extension of Visual Studio Code
+#   make brep        cag-brep, the helper for boundaries of solids; part of `make` if Open CASCADE is installed
+#                    (libocct-modeling-algorithms-dev, libocct-data-exchange-dev)
 
 BUILD   ?= build
 PREFIX  ?= /usr/local
@@ -63,6 +65,13 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 # There are hundreds of test programs: LLVM's linker takes a quarter of the time.
 CFLAGS_TEST := $(CFLAGS_ALL) $(TEST_OPT) $(if $(shell command -v ld.lld),-fuse-ld=lld)
 
+# The helper program links Open CASCADE, without the parts that draw.
+OCCT_H     := $(wildcard /usr/include/opencascade/BRepAlgoAPI_Fuse.hxx)
+OCCT_LIBS  := $(patsubst %,-l%,TKSTEP TKSTEP209 TKSTEPAttr TKSTEPBase TKIGES TKXSBase TKOffset TKFillet TKBool TKBO TKPrim TKShHealing \
+              TKTopAlgo TKBRep TKGeomAlgo TKGeomBase TKG3d TKG2d TKMath TKernel)
+BREP_OPT   ?= -O2
+BREP_SRC   := $(sort $(wildcard brep/*.cpp))
+
 BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
@@ -89,9 +98,9 @@ FONTS    := $(patsubst %,fonts/Sans-%.ttf,Regular Bold Italic BoldItalic)
 # The page of `cag view`, as `make web` leaves it.
 PAGE     := $(sort $(wildcard web/dist/*.gz))
 
-.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors web check-web fonts playground screenshots vsix
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors brep web check-web fonts playground screenshots vsix
 .SECONDARY:
-all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
+all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(OCCT_H),brep)
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
@@ -140,6 +149,15 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 
 $(BUILD)/cag: $(CLI_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
+
+brep: $(BUILD)/cag-brep
+$(BUILD)/obj/brep/%.o: brep/%.cpp
+	@mkdir -p $(@D)
+	@echo "c++ $<"
+	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -MMD -MP -I. -isystem $(dir $(OCCT_H)) -DCAG_VERSION='"$(VERSION)"' $(SANITIZE) \
+	  $(CXXFLAGS) -c $< -o $@
+$(BUILD)/cag-brep: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_SRC))
+	$Q$(CXX) $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
 
 # Writes the program's tables, as input for tools/*.sh.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
@@ -286,7 +304,7 @@ bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OC
 silhouettes: all
 	python3 tests/bench/silhouettes.py $(BUILD)/cag
 
-FORMATTED = $(shell find include base lang geom interp live cli wasm tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp live cli wasm tests tools -name '*.[ch]' | sort) $(wildcard brep/*.[ch]pp)
 format:
 	clang-format -i $(FORMATTED)
 check-format:

@@ -156,6 +156,7 @@ for cases in tests/cli/cases_*.sh; do
   esac
 done
 suite counted "tests/repl" "sh tests/repl/run.sh"
+suite counted "tests/brep" "python3 tests/brep/protocol.py '$BUILD/cag-brep' '$BUILD/cag'"
 suite counted "tests/editors" "sh tests/editors/run.sh"
 unit_suites "$BUILD" ""
 vector_suites "$BUILD" ""

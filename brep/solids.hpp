@@ -1,0 +1,47 @@
+// What all requests need of solids: their measures, whether they are valid, and the solids of a
+// shape.
+
+#ifndef CAG_BREP_SOLIDS_HPP
+#define CAG_BREP_SOLIDS_HPP
+
+#include <TopoDS_Shape.hxx>
+#include <TopoDS_Solid.hxx>
+#include <string>
+#include <vector>
+
+namespace brep {
+
+typedef std::vector<TopoDS_Solid> Solids;
+
+double volume_of(const TopoDS_Shape &shape);
+double volume_of(const Solids &solids);
+// Whether the faces of a shape enclose more than rounding errors.
+bool encloses_volume(const TopoDS_Shape &shape);
+// Of the box around a shape.
+double diagonal_of(const TopoDS_Shape &shape);
+
+// What is wrong with a solid: empty if it is closed, valid, and oriented outward.
+std::string faults_of(const TopoDS_Solid &solid);
+bool are_valid(const Solids &solids);
+
+// All solids of a shape, oriented outward, in canonical order: by descending volume, then by
+// centroid. Solids of no volume are left out.
+Solids solids_of(const TopoDS_Shape &shape);
+void sort_solids(Solids &solids);
+
+// The solids that closed shells bound: a shell inside of another is its cavity. Fails if a shell is
+// open.
+Solids solids_of_shells(const TopoDS_Shape &shells);
+
+// Merges faces of one surface and edges of one curve. Returns the solids as they are if merging
+// would break them.
+Solids unify(const Solids &solids);
+
+// Repairs tolerances, missing curves, and orientations.
+Solids repair(const Solids &solids);
+
+TopoDS_Shape compound_of(const Solids &solids);
+
+} // namespace brep
+
+#endif
