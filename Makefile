@@ -100,7 +100,8 @@ PAGE     := $(sort $(wildcard web/dist/*.gz))
 
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors brep web check-web fonts playground screenshots vsix
 .SECONDARY:
-all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(OCCT_H),brep)
+# The program with Clang is for tests of the C code, which need no helper.
+all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(OCCT_H),$(if $(filter clang,$(CC)),,brep))
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)

@@ -4,7 +4,9 @@
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev libmicrohttpd-dev
   libharfbuzz-dev libfribidi-dev libfontconfig-dev povray povray-includes"
-TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev fonts-dejavu-core fonts-urw-base35 clang-format clang-tidy tmux zsh mandoc groff-base vim vim-ale neovim strace g++ dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools esbuild"
+# For cag-brep, the helper for exact boundaries of solids. Everything else is built without them.
+BUILD_PACKAGES="$BUILD_PACKAGES g++ libocct-modeling-algorithms-dev libocct-data-exchange-dev"
+TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev fonts-dejavu-core fonts-urw-base35 clang-format clang-tidy tmux zsh mandoc groff-base vim vim-ale neovim strace dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools esbuild"
 # Needed by the Khronos glTF validator. If they were installed from another source, Debian's packages would conflict with them.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
