@@ -19,7 +19,11 @@
 
 void cag_brep_free(CagBrep *b) {
   for (size_t i = 0; i < b->edge_count; i++) cag_curve_release(b->edges[i].curve);
-  for (size_t i = 0; i < b->face_count; i++) cag_surface_release(b->faces[i].surface);
+  for (size_t i = 0; i < b->face_count; i++) {
+    cag_surface_release(b->faces[i].surface);
+    cag_surface_release(b->faces[i].carrier.spline);
+    cag_curve_release(b->faces[i].carrier.profile);
+  }
   for (size_t i = 0; i < b->shape_count; i++) cag_curve_release(b->shapes[i].curve);
   cag_free(b->vertices);
   cag_free(b->edges);
@@ -175,7 +179,7 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
 static CagStatus fail_operation(const CagItem *item, CagError *err) {
   return cag_fail(
       err, CAG_E_UNSUPPORTED, CAG_ERR_export_operation, "", -1,
-      "%s is a union, difference, or intersection of solids, whose faces meet in curves that are not NURBS: show its parts one by one, or write .stl, .obj, .ply, or .glb",
+      "%s is a union, difference, or intersection of solids, whose faces are not whole surfaces: write .step, show its parts one by one, or write .stl, .obj, .ply, or .glb",
       item->name);
 }
 
@@ -205,7 +209,6 @@ static CagStatus add_faces(CagBrepWork *w, CagError *err) {
     CagStatus status = CAG_OK;
     const CagSolid *solid = item->as.solid;
     if (solid->kind == CAG_SOLID_MESH) return fail_mesh(item, err);
-    if (solid->face_count == 0) return fail_operation(item, err);
     for (size_t i = 0; !status && i < solid->face_count; i++)
       status = cag_brep_add_surface(w, solid->faces[i], i, err);
     return status;
@@ -270,13 +273,85 @@ static CagStatus name_shape(const CagItem *item, CagStatus status, CagError *err
   return status;
 }
 
-static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagError *err) {
+// --- Boundaries from the kernel ---
+
+// Makes room in all arrays for a boundary.
+static bool reserve_boundary(CagBrep *b, const CagBoundary *from) {
+  return cag_brep_reserve((void **)&b->vertices, b->vertex_count, from->corner_count,
+                          sizeof *b->vertices) &&
+         cag_brep_reserve((void **)&b->edges, b->edge_count, from->edge_count, sizeof *b->edges) &&
+         cag_brep_reserve((void **)&b->uses, b->use_count, from->use_count, sizeof *b->uses) &&
+         cag_brep_reserve((void **)&b->loops, b->loop_count, from->loop_count, sizeof *b->loops) &&
+         cag_brep_reserve((void **)&b->faces, b->face_count, from->order_count, sizeof *b->faces) &&
+         cag_brep_reserve((void **)&b->shells, b->shell_count, from->shell_count,
+                          sizeof *b->shells);
+}
+
+static bool is_straight(const CagCurve *c) { return c && cag_brep_is_straight(c); }
+
+// Adds the edges and loops with their new numbers, and the faces in the order of the shells.
+static CagStatus add_boundary(CagBrep *b, const CagBoundary *from, CagError *err) {
+  const size_t corner = b->vertex_count, edge = b->edge_count, use = b->use_count;
+  const size_t loop = b->loop_count, face = b->face_count, shell = b->shell_count;
+  if (!reserve_boundary(b, from)) return cag_fail_memory(err);
+  for (size_t i = 0; i < from->corner_count; i++) b->vertices[b->vertex_count++] = from->corners[i];
+  for (size_t i = 0; i < from->edge_count; i++) {
+    const CagBoundaryEdge *e = &from->edges[i];
+    b->edges[b->edge_count++] =
+        (CagBrepEdge){e->curve ? cag_curve_retain(e->curve) : NULL, corner + e->from,
+                      corner + e->to, is_straight(e->curve)};
+    b->accuracy = fmax(b->accuracy, e->gap);
+  }
+  for (size_t i = 0; i < from->use_count; i++)
+    b->uses[b->use_count++] = (CagBrepUse){edge + from->uses[i].edge, from->uses[i].reversed};
+  for (size_t i = 0; i < from->loop_count; i++)
+    b->loops[b->loop_count++] = (CagBrepLoop){use + from->loops[i].first, from->loops[i].count};
+  for (size_t i = 0; i < from->order_count; i++) {
+    const CagBoundaryFace *f = &from->faces[from->order[i]];
+    CagBrepFace own = {.carrier = f->carrier, .reversed = f->reversed, .first = loop + f->first};
+    own.count = f->count;
+    own.source = from->order[i];
+    if (own.carrier.spline) cag_surface_retain(own.carrier.spline);
+    if (own.carrier.profile) cag_curve_retain(own.carrier.profile);
+    b->faces[b->face_count++] = own;
+  }
+  for (size_t i = 0; i < from->shell_count; i++)
+    b->shells[b->shell_count++] =
+        (CagBrepShell){face + from->shells[i].first, from->shells[i].count, true, shell};
+  return CAG_OK;
+}
+
+// Adds the parts of a set operation.
+static CagStatus add_operation(CagBrep *b, const CagItem *item, CagKernel *kernel,
+                               CagBrepShape *shape, CagError *err) {
+  CagBoundaries parts;
+  if (!kernel) return fail_operation(item, err);
+  shape->kind = CAG_BREP_SOLID;
+  shape->first = b->shell_count;
+  CagStatus status = cag_kernel_boundary(kernel, item->as.solid, &parts, err);
+  if (status) return status;
+  for (size_t i = 0; !status && i < parts.count; i++)
+    status = add_boundary(b, &parts.items[i], err);
+  cag_boundaries_free(&parts);
+  shape->count = b->shell_count - shape->first;
+  return status;
+}
+
+static bool needs_kernel(const CagItem *item) {
+  return item->kind == CAG_ITEM_SOLID && item->as.solid->face_count == 0 &&
+         item->as.solid->kind != CAG_SOLID_MESH;
+}
+
+static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagKernel *kernel,
+                          CagError *err) {
   CagBrepWork w = {.brep = b, .scene = scene, .item = item, .asked = shape_tolerance(scene, item)};
   CagBrepShape shape = {.name = item->name, .material = &scene->materials[item->material]};
   CagStatus status;
   if (item->kind == CAG_ITEM_CURVE) {
     shape.kind = CAG_BREP_CURVE;
     status = cag_brep_curve(&w, item->as.curve, &shape.curve, err);
+  } else if (needs_kernel(item)) {
+    status = add_operation(b, item, kernel, &shape, err);
   } else {
     status = add_bounded(&w, &shape, err);
   }
@@ -287,7 +362,7 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
   return CAG_OK;
 }
 
-CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) {
+CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrep *out, CagError *err) {
   *out = (CagBrep){.accuracy = ACCURACY_MIN};
   out->shapes = cag_calloc(scene->item_count + 1, sizeof *out->shapes);
   if (!out->shapes) return cag_fail_memory(err);
@@ -296,7 +371,7 @@ CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) 
       return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                       "the export was interrupted");
     if (scene->items[i].kind == CAG_ITEM_GROUND) continue;
-    CagStatus status = add_item(out, scene, &scene->items[i], err);
+    CagStatus status = add_item(out, scene, &scene->items[i], kernel, err);
     if (status) return status;
   }
   if (out->shape_count == 0)

@@ -1,9 +1,10 @@
 // The boundary representation of a scene, from which STEP and IGES files for CAD systems are
 // written.
 //
-// Every shape becomes NURBS curves and surfaces. A face is a smooth part of a surface (split where
-// the tangent plane is discontinuous), bounded by loops of edge uses; the face is on the left of
-// each use, seen against its normal. Adjacent faces of a shape share their edge, and adjacent edges
+// A shape becomes NURBS curves and surfaces. A face is a smooth part of a surface (split where the
+// tangent plane is discontinuous), bounded by loops of edge uses; the face is on the left of each
+// use, seen against its normal. The faces of a set operation come from the CAD kernel: they lie on
+// carriers (geom/boundary/boundary.h), and their edges may also be arcs. Adjacent faces of a shape share their edge, and adjacent edges
 // share their vertex. A seam is an edge that its face uses twice, and a pole is a vertex without an
 // edge.
 //
@@ -14,10 +15,12 @@
 #ifndef CAG_INTERP_FORMATS_BREP_H
 #define CAG_INTERP_FORMATS_BREP_H
 
+#include "geom/boundary/boundary.h"
+#include "interp/kernel/kernel.h"
 #include "interp/scene/scene.h"
 
 typedef struct CagBrepEdge {
-  CagCurve *curve; // of a NURBS kind
+  CagCurve *curve; // of a NURBS kind, or an arc; NULL: degenerate
   size_t from, to; // vertices; equal if the curve is closed
   bool straight;   // a line with constant speed
 } CagBrepEdge;
@@ -33,6 +36,8 @@ typedef struct CagBrepLoop {
 } CagBrepLoop;
 
 typedef struct CagBrepFace {
+  CagCarrier carrier;  // NONE: the fields below are valid
+  bool reversed;       // the outward normal is opposite to that of the carrier
   CagSurface *surface; // of a NURBS kind; for a flat face, a rectangle around it
   bool flat;
   bool whole;          // its loops are the four sides of the surface
@@ -72,8 +77,9 @@ typedef struct CagBrep {
   double accuracy; // mm: the largest distance between parts that should meet
 } CagBrep;
 
-// Grounds are omitted. Release with cag_brep_free, even after a failure.
-CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err);
+// Grounds are omitted. Release with cag_brep_free, even after a failure. Set operations need the
+// kernel; if it is NULL, they fail.
+CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrep *out, CagError *err);
 void cag_brep_free(CagBrep *b);
 
 #endif

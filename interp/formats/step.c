@@ -252,6 +252,80 @@ static Id line(Writer *w, const CagCurve *c) {
   return entity(w, "LINE('',#%zu,#%zu)", at, vector);
 }
 
+// A circle, or an ellipse, whose first semi-axis is the longer one.
+static Id conic(Writer *w, double a, double b, const CagTransform *t) {
+  const CagVec3 x = column(t, 0), y = column(t, 1), z = cag_cross(x, y);
+  const CagVec3 first = a >= b ? x : y;
+  const Id at = point(w, column(t, 3)), up = direction(w, z), along = direction(w, first);
+  const Id place = entity(w, "AXIS2_PLACEMENT_3D('',#%zu,#%zu,#%zu)", at, up, along);
+  Id id = begin(w, a == b ? "CIRCLE(''," : "ELLIPSE('',");
+  put_id(w, place);
+  put(w, ",");
+  put_real(w, fmax(a, b));
+  if (a != b) {
+    put(w, ",");
+    put_real(w, fmin(a, b));
+  }
+  end(w);
+  return id;
+}
+
+static Id any_curve(Writer *w, const CagCurve *c, bool straight) {
+  double a, b;
+  CagTransform frame;
+  if (cag_curve_arc_view(c, &a, &b, &frame)) return conic(w, a, b, &frame);
+  return straight ? line(w, c) : nurbs_curve(w, c);
+}
+
+// --- Carriers ---
+
+// The same cone with a positive angle: both axes point the other way.
+static CagCarrier with_positive_angle(const CagCarrier *c) {
+  CagCarrier out = *c;
+  if (!(c->b < 0)) return out;
+  out.b = -c->b;
+  for (int i = 0; i < 3; i++)
+    for (int j = 1; j < 3; j++) out.frame.m[i][j] = -c->frame.m[i][j];
+  return out;
+}
+
+static Id elementary(Writer *w, const char *head, const CagCarrier *c, int numbers) {
+  const Id place = placement(w, &c->frame);
+  const double number[2] = {c->a, c->b};
+  Id id = begin(w, head);
+  put_id(w, place);
+  for (int i = 0; i < numbers; i++) {
+    put(w, ",");
+    put_real(w, number[i]);
+  }
+  end(w);
+  return id;
+}
+
+static Id swept(Writer *w, const CagCarrier *c) {
+  const Id curve = any_curve(w, c->profile, false), z = direction(w, column(&c->frame, 2));
+  if (c->kind == CAG_CARRIER_EXTRUDED) {
+    const Id vector = entity(w, "VECTOR('',#%zu,1.)", z);
+    return entity(w, "SURFACE_OF_LINEAR_EXTRUSION('',#%zu,#%zu)", curve, vector);
+  }
+  const Id at = point(w, column(&c->frame, 3));
+  const Id axis = entity(w, "AXIS1_PLACEMENT('',#%zu,#%zu)", at, z);
+  return entity(w, "SURFACE_OF_REVOLUTION('',#%zu,#%zu)", curve, axis);
+}
+
+static Id carrier(Writer *w, const CagCarrier *c) {
+  const CagCarrier cone = c->kind == CAG_CARRIER_CONE ? with_positive_angle(c) : *c;
+  switch (c->kind) {
+  case CAG_CARRIER_PLANE: return elementary(w, "PLANE('',", c, 0);
+  case CAG_CARRIER_CYLINDER: return elementary(w, "CYLINDRICAL_SURFACE('',", c, 1);
+  case CAG_CARRIER_CONE: return elementary(w, "CONICAL_SURFACE('',", &cone, 2);
+  case CAG_CARRIER_SPHERE: return elementary(w, "SPHERICAL_SURFACE('',", c, 1);
+  case CAG_CARRIER_TORUS: return elementary(w, "TOROIDAL_SURFACE('',", c, 2);
+  case CAG_CARRIER_SPLINE: return nurbs_surface(w, c->spline);
+  default: return swept(w, c);
+  }
+}
+
 // --- Topology ---
 
 static Id vertex(Writer *w, size_t index) {
@@ -264,21 +338,30 @@ static Id edge(Writer *w, size_t index) {
   if (w->edge[index]) return w->edge[index];
   const CagBrepEdge *e = &w->brep->edges[index];
   Id from = vertex(w, e->from), to = vertex(w, e->to);
-  Id curve = e->straight ? line(w, e->curve) : nurbs_curve(w, e->curve);
+  Id curve = any_curve(w, e->curve, e->straight);
   return w->edge[index] = entity(w, "EDGE_CURVE('',#%zu,#%zu,#%zu,.T.)", from, to, curve);
 }
 
+// A loop around a pole alone is a vertex. Other loops leave degenerate edges out.
 static Id edge_loop(Writer *w, const CagBrepLoop *l) {
   Id *ids = take_ids(w, l->count);
   if (!ids) return 0;
+  size_t n = 0;
   for (size_t i = 0; i < l->count; i++) {
     const CagBrepUse *use = &w->brep->uses[l->first + i];
-    ids[i] =
+    if (!w->brep->edges[use->edge].curve) continue;
+    ids[n++] =
         entity(w, "ORIENTED_EDGE('',*,*,#%zu,%s)", edge(w, use->edge), logical(!use->reversed));
   }
-  Id id = begin(w, "EDGE_LOOP('',");
-  put_ids(w, ids, l->count);
-  end(w);
+  Id id;
+  if (n == 0) {
+    id = entity(w, "VERTEX_LOOP('',#%zu)",
+                vertex(w, w->brep->edges[w->brep->uses[l->first].edge].from));
+  } else {
+    id = begin(w, "EDGE_LOOP('',");
+    put_ids(w, ids, n);
+    end(w);
+  }
   cag_free(ids);
   return id;
 }
@@ -290,13 +373,14 @@ static Id face(Writer *w, const CagBrepFace *f) {
     Id loop = edge_loop(w, &w->brep->loops[f->first + i]);
     bounds[i] = entity(w, "%s('',#%zu,.T.)", i == 0 ? "FACE_OUTER_BOUND" : "FACE_BOUND", loop);
   }
-  Id surface =
-      f->flat ? entity(w, "PLANE('',#%zu)", placement(w, &f->plane)) : nurbs_surface(w, f->surface);
+  Id surface = f->carrier.kind ? carrier(w, &f->carrier)
+               : f->flat       ? entity(w, "PLANE('',#%zu)", placement(w, &f->plane))
+                               : nurbs_surface(w, f->surface);
   Id id = begin(w, "ADVANCED_FACE('',");
   put_ids(w, bounds, f->count);
   put(w, ",");
   put_id(w, surface);
-  put(w, ",.T.);\n");
+  put(w, f->reversed ? ",.F.);\n" : ",.T.);\n");
   cag_free(bounds);
   return id;
 }

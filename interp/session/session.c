@@ -1,6 +1,7 @@
 // Sessions: a machine for each run, on a thread with a large stack, and the results.
 
 #include "interp/session/session.h"
+#include "interp/kernel/kernel.h"
 
 #include <errno.h>
 #include <math.h>
@@ -97,9 +98,15 @@ void cag_session_free(CagSession *s) {
   if (s->free_pending) return;
   cag_session_drop_vm(s);
   cag_session_clear_defines(s);
+  cag_kernel_free(s->kernel);
   cag_free(s->script);
   cag_free(s->only);
   cag_free(s);
+}
+
+struct CagKernel *cag_session_kernel(CagSession *s) {
+  if (!s->kernel) s->kernel = cag_kernel_new();
+  return s->kernel;
 }
 
 // --- Params ---

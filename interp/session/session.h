@@ -43,6 +43,7 @@ struct CagSession {
   struct CagSessionLabelPaths *label_paths; // of the label that was asked about last; may be NULL
   struct CagSessionRobots *robots;          // of the scene; NULL: not looked for yet
   struct CagSessionPoints *points;          // those that were found last; may be NULL
+  struct CagKernel *kernel;                 // of exact boundaries; NULL: not needed yet
   double usual_tolerance; // replaces the default tolerance of scenes; 0: it follows their size
   CagTolerances used;     // of the meshes of the last export or picture
   CagSceneForm form;      // of the scene
@@ -59,6 +60,9 @@ struct CagSession {
                      // under way
   char *together;    // the lowest address of the stack of cag_session_together; NULL: not within it
 };
+
+// Returns the kernel, which is made if there is none, or NULL if memory ran out.
+struct CagKernel *cag_session_kernel(CagSession *s);
 
 // Every call that uses the machine starts and ends with these functions. cag_session_begin drops
 // the diagnostics that an earlier call on the same scene added. It returns false if another call is

@@ -1,0 +1,326 @@
+// The process of cag-brep and the exchange of messages with it (see kernel.h).
+//
+// Both directions are one socket, so that a program that has ended is an error of the call and not
+// a signal. The socket does not block: cag waits with poll, and looks at the stop flag meanwhile.
+
+#include "interp/kernel/kernel.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/stop.h"
+#include "interp/kernel/fields.h"
+#include "interp/kernel/protocol.h"
+#include "interp/kernel/put_solid.h"
+#include "interp/kernel/read_boundary.h"
+
+// Milliseconds between looks at the stop flag.
+#define WATCH_INTERVAL 20
+// Seconds until a program that says nothing is given up: at its start, and during a request.
+#define HELLO_SECONDS 20.0
+#define ANSWER_SECONDS 600.0
+// The largest answer that is accepted, in bytes.
+#define ANSWER_MOST ((uint64_t)1 << 31)
+// The memory that the program needs for itself, in bytes, beside that of the run's limit.
+#define OWN_MEMORY ((size_t)256 << 20)
+#define EXEC_FAILED 127
+
+#define PROGRAM "cag-brep"
+#define PACKAGE_HELP "install the package cag-brep, or build it with `make brep`"
+
+struct CagKernel {
+  pid_t process; // 0: not started
+  int socket;
+};
+
+CagKernel *cag_kernel_new(void) {
+  CagKernel *k = calloc(1, sizeof *k); // lives longer than an account
+  if (k) k->socket = -1;
+  return k;
+}
+
+// The process is killed with those that it has started.
+static void end_process(CagKernel *k) {
+  if (k->socket >= 0) close(k->socket);
+  k->socket = -1;
+  if (k->process <= 0) return;
+  kill(-k->process, SIGKILL);
+  kill(k->process, SIGKILL);
+  while (waitpid(k->process, NULL, 0) < 0 && errno == EINTR) continue;
+  k->process = 0;
+}
+
+void cag_kernel_free(CagKernel *k) {
+  if (!k) return;
+  end_process(k);
+  free(k);
+}
+
+// --- The program ---
+
+// Sets `path` to the folder of the running program and `rest`. Returns whether there is such a
+// program.
+static bool beside_self(const char *rest, char *path, size_t size) {
+  const ssize_t n = readlink("/proc/self/exe", path, size - strlen(rest) - 1);
+  if (n <= 0 || (size_t)n >= size - strlen(rest) - 1) return false;
+  path[n] = '\0';
+  char *slash = strrchr(path, '/');
+  if (!slash) return false;
+  strcpy(slash + 1, rest);
+  return access(path, X_OK) == 0;
+}
+
+// The program is the one that the environment variable CAG_BREP names, or lies beside cag, or in
+// lib/cag of its installation, or is found like any program.
+static void find_program(char *path, size_t size) {
+  const char *named = getenv("CAG_BREP");
+  if (named && *named && strlen(named) < size) strcpy(path, named);
+  else if (!beside_self(PROGRAM, path, size) && !beside_self("../lib/cag/" PROGRAM, path, size))
+    strcpy(path, PROGRAM);
+}
+
+// Runs in the child after fork, so only async-signal-safe calls are allowed.
+static void become(const char *program, char *const *arguments, int socket, rlim_t memory) {
+  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGPIPE, SIGXFSZ};
+  const struct rlimit no_core = {0, 0}, most = {memory, memory};
+  sigset_t none;
+  sigemptyset(&none);
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setrlimit(RLIMIT_CORE, &no_core);
+  if (memory != RLIM_INFINITY) setrlimit(RLIMIT_DATA, &most);
+  for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) signal(SIGNALS[i], SIG_DFL);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+  const int null = open("/dev/null", O_WRONLY);
+  if (null >= 0 && dup2(socket, STDIN_FILENO) >= 0 && dup2(socket, STDOUT_FILENO) >= 0 &&
+      dup2(null, STDERR_FILENO) >= 0)
+    execvp(program, arguments);
+  _exit(EXEC_FAILED);
+}
+
+static CagStatus fail_missing(CagError *err, const char *why) {
+  const CagStatus status =
+      cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_missing, "", -1,
+               "exact boundaries of solids need the program cag-brep, %s: " PACKAGE_HELP, why);
+  return status;
+}
+
+static CagStatus fail_ended(CagKernel *k, CagError *err, const char *what) {
+  end_process(k);
+  return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_failed, "", -1, "cag-brep %s", what);
+}
+
+// --- Messages ---
+
+// Waits until the socket is ready. Fails when the work is to stop, or the time is over.
+static CagStatus wait_for(CagKernel *k, short events, double until, CagError *err) {
+  for (;;) {
+    struct pollfd waiting = {.fd = k->socket, .events = events};
+    const int ready = poll(&waiting, 1, WATCH_INTERVAL);
+    if (ready > 0) return CAG_OK;
+    if (cag_stopped()) {
+      end_process(k);
+      return cag_stop_fail(err);
+    }
+    if (cag_clock_seconds() > until) return fail_ended(k, err, "did not answer in time");
+  }
+}
+
+static CagStatus send_bytes(CagKernel *k, const void *bytes, size_t n, double until,
+                            CagError *err) {
+  const char *at = bytes;
+  while (n > 0) {
+    const ssize_t sent = send(k->socket, at, n, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent > 0) {
+      at += sent;
+      n -= (size_t)sent;
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      CagStatus status = wait_for(k, POLLOUT, until, err);
+      if (status) return status;
+    } else if (errno != EINTR) {
+      return fail_ended(k, err, "ended before it had the question");
+    }
+  }
+  return CAG_OK;
+}
+
+static CagStatus receive_bytes(CagKernel *k, void *bytes, size_t n, double until, CagError *err) {
+  char *at = bytes;
+  while (n > 0) {
+    const ssize_t got = recv(k->socket, at, n, MSG_DONTWAIT);
+    if (got > 0) {
+      at += got;
+      n -= (size_t)got;
+    } else if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      CagStatus status = wait_for(k, POLLIN, until, err);
+      if (status) return status;
+    } else if (got == 0 || errno != EINTR) {
+      return fail_ended(k, err, "ended before it had answered");
+    }
+  }
+  return CAG_OK;
+}
+
+// An answer, which the caller frees.
+typedef struct Answer {
+  uint64_t type, length;
+  unsigned char *bytes;
+} Answer;
+
+static CagStatus receive(CagKernel *k, double seconds, Answer *out, CagError *err) {
+  uint64_t head[2];
+  const double until = cag_clock_seconds() + seconds;
+  CagStatus status = receive_bytes(k, head, sizeof head, until, err);
+  if (status) return status;
+  if (head[1] > ANSWER_MOST) {
+    end_process(k);
+    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                    "cag-brep answered something else than a message");
+  }
+  *out = (Answer){head[0], head[1], cag_malloc((size_t)head[1] + 1)};
+  if (!out->bytes) {
+    end_process(k);
+    return cag_fail_memory(err);
+  }
+  status = receive_bytes(k, out->bytes, (size_t)out->length, until, err);
+  if (status) cag_free(out->bytes);
+  return status;
+}
+
+static CagFieldReader reader_of(const Answer *a) {
+  return (CagFieldReader){a->bytes, a->bytes + a->length, false};
+}
+
+static CagStatus greet(CagKernel *k, CagError *err) {
+  Answer hello;
+  CagStatus status = receive(k, HELLO_SECONDS, &hello, err);
+  if (status == CAG_E_CALLBACK || status == CAG_E_MEMORY) return status;
+  if (status) return fail_missing(err, "which does not start");
+  CagFieldReader r = reader_of(&hello);
+  const bool ours = hello.type == CAG_BREP_HELLO && cag_take_u32(&r) == CAG_BREP_PROTOCOL;
+  cag_free(hello.bytes);
+  if (ours) return CAG_OK;
+  end_process(k);
+  return fail_missing(err, "of the same version as cag");
+}
+
+static CagStatus start(CagKernel *k, CagError *err) {
+  char path[PATH_MAX];
+  int ends[2];
+  if (k->process > 0) return CAG_OK;
+  find_program(path, sizeof path);
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_failed, "", -1,
+                    "cag-brep cannot be started: %s", strerror(errno));
+  char *const arguments[] = {PROGRAM, NULL};
+  const size_t room = cag_account_room();
+  const rlim_t memory = room >= SIZE_MAX / 2 - OWN_MEMORY ? RLIM_INFINITY : room + OWN_MEMORY;
+  k->process = fork();
+  if (k->process == 0) become(path, arguments, ends[1], memory);
+  const int code = errno;
+  close(ends[1]);
+  k->socket = ends[0];
+  if (k->process < 0) {
+    k->process = 0;
+    end_process(k);
+    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_failed, "", -1,
+                    "cag-brep cannot be started: %s", strerror(code));
+  }
+  setpgid(k->process, k->process); // in both processes, so that a kill never comes too early
+  return greet(k, err);
+}
+
+static CagStatus fail_as_told(const Answer *a, CagError *err) {
+  CagFieldReader r = reader_of(a);
+  size_t n;
+  const uint32_t reason = cag_take_u32(&r);
+  const char *text = (const char *)cag_take_bytes(&r, &n);
+  if (r.bad)
+    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                    "cag-brep answered something else than a message");
+  if (reason == CAG_BREP_FAIL_EMPTY)
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "nothing is left of it");
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "%.*s",
+                  (int)(n < 300 ? n : 300), text);
+}
+
+static CagStatus ask(CagKernel *k, CagBrepMessage type, const CagFields *f, Answer *out,
+                     CagError *err) {
+  const uint64_t head[2] = {type, f->length};
+  const double until = cag_clock_seconds() + ANSWER_SECONDS;
+  CagStatus status = start(k, err);
+  if (!status) status = send_bytes(k, head, sizeof head, until, err);
+  if (!status) status = send_bytes(k, f->bytes, f->length, until, err);
+  if (!status) status = receive(k, ANSWER_SECONDS, out, err);
+  if (status || out->type == CAG_BREP_RESULT) return status;
+  if (out->type == CAG_BREP_FAILURE) status = fail_as_told(out, err);
+  else
+    status = cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                      "cag-brep answered something else than a message");
+  if (status == CAG_E_RENDERER) end_process(k);
+  cag_free(out->bytes);
+  return status;
+}
+
+// --- Boundaries ---
+
+void cag_boundaries_free(CagBoundaries *b) {
+  for (size_t i = 0; i < b->count; i++) cag_boundary_free(&b->items[i]);
+  cag_free(b->items);
+  *b = (CagBoundaries){0};
+}
+
+// Whether each edge is used as often in one direction as in the other.
+static bool closes(const CagBoundary *b) {
+  long *balance = cag_calloc(b->edge_count + 1, sizeof *balance);
+  if (!balance) return false;
+  for (size_t i = 0; i < b->use_count; i++)
+    balance[b->uses[i].edge] += b->uses[i].reversed ? -1 : 1;
+  bool ok = true;
+  for (size_t i = 0; i < b->edge_count; i++) ok = ok && (balance[i] == 0 || !b->edges[i].curve);
+  cag_free(balance);
+  return ok;
+}
+
+static CagStatus read_result(const Answer *a, CagBoundaries *out, CagError *err) {
+  CagFieldReader r = reader_of(a);
+  const size_t n = cag_take_count(&r, 1);
+  *out = (CagBoundaries){cag_calloc(n + 1, sizeof *out->items), 0};
+  CagStatus status = out->items ? CAG_OK : cag_fail_memory(err);
+  while (!status && out->count < n) {
+    status = cag_read_boundary(&r, &out->items[out->count], err);
+    if (!status && !closes(&out->items[out->count++]))
+      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                        "the faces that the kernel found do not close");
+    if (!status) status = cag_stop_check(err);
+  }
+  if (!status && (n == 0 || r.at != r.end))
+    status = cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                      "the answer of cag-brep is not a boundary");
+  if (status) cag_boundaries_free(out);
+  return status;
+}
+
+CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, CagBoundaries *out, CagError *err) {
+  CagFields f = {0};
+  Answer answer;
+  CagStatus status = cag_put_solid(&f, s, err);
+  if (!status) status = ask(k, CAG_BREP_EVALUATE, &f, &answer, err);
+  cag_fields_free(&f);
+  if (status) return status;
+  status = read_result(&answer, out, err);
+  cag_free(answer.bytes);
+  return status;
+}

@@ -1,0 +1,466 @@
+// Solids as fields of messages (see put_solid.h).
+
+#include "interp/kernel/put_solid.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/stop.h"
+#include "geom/curve/nurbs_ops.h"
+#include "geom/curve/region.h"
+#include "geom/curve/strip.h"
+#include "geom/linalg/tolerance.h"
+#include "geom/solid/csg.h"
+#include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
+#include "interp/kernel/protocol.h"
+
+// Gaps between faces that are sewn together, as a fraction of the solid's size. Shells of surfaces
+// allow as much.
+#define SEWING 1e-6
+// How far half spaces are cut off, as a multiple of the size of everything that they meet.
+#define FAR 4.0
+
+static CagStatus memory_of(const CagFields *f, CagError *err) {
+  return f->failed ? cag_fail_memory(err) : CAG_OK;
+}
+
+// --- Regions ---
+
+static void put_direction(CagFields *f, const CagTransform *t, int column) {
+  cag_put_f64(f, t->m[0][column]);
+  cag_put_f64(f, t->m[1][column]);
+}
+
+// Whether the arc's axes are orthonormal.
+static bool is_plain_frame(const CagTransform *t) {
+  const CagVec3 x = cag_vec3(t->m[0][0], t->m[1][0], 0), y = cag_vec3(t->m[0][1], t->m[1][1], 0);
+  return fabs(cag_norm(x) - 1) <= CAG_ROUNDING && fabs(cag_norm(y) - 1) <= CAG_ROUNDING &&
+         fabs(cag_dot(x, y)) <= CAG_ROUNDING;
+}
+
+static bool put_arc(CagFields *f, const CagCurve *c) {
+  double a, b;
+  CagTransform t;
+  if (!cag_curve_arc_view(c, &a, &b, &t) || !is_plain_frame(&t) || !(a > 0) || !(b > 0))
+    return false;
+  cag_put_u32(f, a == b ? CAG_BREP_CIRCLE : CAG_BREP_ELLIPSE);
+  put_direction(f, &t, 3);
+  put_direction(f, &t, 0);
+  put_direction(f, &t, 1);
+  cag_put_f64(f, a);
+  if (a != b) cag_put_f64(f, b);
+  cag_put_f64(f, c->start);
+  cag_put_f64(f, c->end);
+  return true;
+}
+
+static void put_segment(CagFields *f, CagVec3 p, CagVec3 q) {
+  cag_put_u32(f, CAG_BREP_LINE);
+  cag_put_plane_point(f, p);
+  cag_put_plane_point(f, cag_unit(cag_sub(q, p)));
+  cag_put_f64(f, 0);
+  cag_put_f64(f, cag_norm(cag_sub(q, p)));
+}
+
+// Part of a circle that is known by its center: the angles follow from its ends.
+static void put_round(CagFields *f, const CagStripPart *p) {
+  const CagVec3 a = cag_sub(p->ends[0], p->center), b = cag_sub(p->ends[1], p->center);
+  const CagVec3 x = cag_unit(a), y = cag_scaled(cag_vec3(-x.y, x.x, 0), p->sense);
+  double turn = atan2(cag_dot(y, b), cag_dot(x, b));
+  if (turn <= CAG_ROUNDING) turn += 2 * M_PI;
+  cag_put_u32(f, CAG_BREP_CIRCLE);
+  cag_put_plane_point(f, p->center);
+  cag_put_plane_point(f, x);
+  cag_put_plane_point(f, y);
+  cag_put_f64(f, p->radius);
+  cag_put_f64(f, 0);
+  cag_put_f64(f, turn);
+}
+
+static CagStatus put_spline(CagFields *f, const CagCurve *c, CagError *err) {
+  CagCurve *exact, *clamped;
+  CagNurbsView v = {0};
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  status = cag_curve_clamp(exact, &clamped, err);
+  cag_curve_release(exact);
+  if (status) return status;
+  cag_curve_nurbs_view(clamped, &v);
+  cag_put_u32(f, CAG_BREP_SPLINE_CURVE);
+  cag_put_u32(f, (size_t)v.degree);
+  cag_put_u32(f, v.rational);
+  cag_put_u32(f, v.count);
+  for (size_t i = 0; i < v.count; i++) {
+    const double *h = v.homogeneous + 4 * i;
+    cag_put_f64(f, h[0] / h[3]);
+    cag_put_f64(f, h[1] / h[3]);
+    if (v.rational) cag_put_f64(f, h[3]);
+  }
+  for (size_t i = 0; i < v.count + (size_t)v.degree + 1; i++) cag_put_f64(f, v.knots[i]);
+  cag_put_f64(f, clamped->start);
+  cag_put_f64(f, clamped->end);
+  cag_curve_release(clamped);
+  return CAG_OK;
+}
+
+static CagStatus put_part(CagFields *f, const CagStripPart *p, CagError *err) {
+  if (p->straight) put_segment(f, p->ends[0], p->ends[1]);
+  else if (put_arc(f, p->curve)) return CAG_OK;
+  else if (p->round) put_round(f, p);
+  else return put_spline(f, p->curve, err);
+  return CAG_OK;
+}
+
+static CagStatus put_loop(CagFields *f, const CagCurve *c, CagError *err) {
+  CagStripParts parts = {0};
+  CagStatus status = cag_strip_parts_add(&parts, c, 0, err);
+  if (!status) cag_put_u32(f, parts.n);
+  for (size_t i = 0; !status && i < parts.n; i++) status = put_part(f, &parts.items[i], err);
+  cag_strip_parts_free(&parts);
+  return status;
+}
+
+static CagStatus put_region(CagFields *f, const CagRegion *r, CagError *err) {
+  CagStatus status = CAG_OK;
+  cag_put_u32(f, r->count);
+  for (size_t i = 0; !status && i < r->count; i++) status = put_loop(f, r->loops[i], err);
+  return status;
+}
+
+// --- Solids with faces ---
+
+static CagStatus put_net(CagFields *f, const CagSurface *s, CagError *err) {
+  CagSurface *exact, *clamped;
+  CagSurfaceNurbsView v = {0};
+  CagStatus status = cag_surface_to_nurbs(s, &exact, err);
+  if (status) return status;
+  status = cag_surface_nurbs_part(exact, exact->u0, exact->u1, exact->v0, exact->v1, &clamped, err);
+  cag_surface_release(exact);
+  if (status) return status;
+  cag_surface_nurbs_view(clamped, &v);
+  const size_t words[] = {
+      CAG_BREP_SPLINE, (size_t)v.degree_u, (size_t)v.degree_v, v.rational, v.nu, v.nv};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++) cag_put_u32(f, words[i]);
+  for (size_t i = 0; i < v.nu * v.nv; i++) {
+    const double *h = v.homogeneous + 4 * i;
+    cag_put_vec(f, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]));
+    if (v.rational) cag_put_f64(f, h[3]);
+  }
+  for (size_t i = 0; i < v.nu + (size_t)v.degree_u + 1; i++) cag_put_f64(f, v.knots_u[i]);
+  for (size_t i = 0; i < v.nv + (size_t)v.degree_v + 1; i++) cag_put_f64(f, v.knots_v[i]);
+  cag_surface_release(clamped);
+  return CAG_OK;
+}
+
+static CagVec3 frame_column(const CagTransform *t, int j) {
+  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
+}
+
+// The frame of a flat face made orthonormal and right-handed, and the map of its region into it.
+static CagStatus flat_frame(const CagTransform *t, CagTransform *frame, CagTransform *map,
+                            CagError *err) {
+  const CagVec3 x = frame_column(t, 0), y = frame_column(t, 1), origin = frame_column(t, 3);
+  CagStatus status = cag_axes(origin, x, y, frame, err);
+  if (status) return status;
+  *map = cag_transform_identity();
+  for (int i = 0; i < 2; i++) {
+    const CagVec3 axis = frame_column(frame, i);
+    map->m[i][0] = cag_dot(axis, x);
+    map->m[i][1] = cag_dot(axis, y);
+  }
+  return CAG_OK;
+}
+
+static CagStatus put_flat(CagFields *f, const CagRegion *r, const CagTransform *t, CagError *err) {
+  CagTransform frame, map;
+  CagRegion *own;
+  CagStatus status = flat_frame(t, &frame, &map, err);
+  if (!status) status = cag_region_transform(r, &map, &own, err);
+  if (status) return status;
+  cag_put_frame(f, &frame);
+  status = put_region(f, own, err);
+  cag_region_release(own);
+  return status;
+}
+
+static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  cag_put_u32(f, CAG_BREP_FACES);
+  cag_put_u32(f, s->face_count);
+  for (size_t i = 0; !status && i < s->face_count; i++) {
+    const CagRegion *region;
+    CagTransform t;
+    if (cag_surface_trimmed_view(s->faces[i], NULL, NULL))
+      return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+                      "a trimmed face cannot be joined with the others");
+    const bool flat = cag_surface_planar_view(s->faces[i], &region, &t);
+    cag_put_u32(f, flat);
+    status = flat ? put_flat(f, region, &t, err) : put_net(f, s->faces[i], err);
+  }
+  if (!status) cag_put_f64(f, SEWING * cag_norm(cag_sub(box.max, box.min)));
+  const CagTransform here = cag_transform_identity();
+  if (!status) cag_put_placement(f, &here);
+  return status;
+}
+
+// The region and the direction of an extrusion that is neither twisted nor scaled, in world
+// coordinates; false: another solid.
+static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *frame,
+                     CagVec3 *along) {
+  size_t caps = 0, sides = 0;
+  CagVec3 ends[2], v;
+  *region = NULL;
+  for (size_t i = 0; i < s->face_count; i++) {
+    const CagRegion *r;
+    const CagCurve *section;
+    CagTransform t;
+    if (cag_surface_planar_view(s->faces[i], &r, &t)) {
+      if (caps == 2) return false;
+      ends[caps] = frame_column(&t, 3);
+      if (caps++ == 0) {
+        *region = r;
+        *frame = t;
+      }
+    } else {
+      const CagSurface *side = s->faces[i];
+      cag_surface_placed_view(s->faces[i], &side, &t);
+      if (!cag_surface_extrusion_view(side, &section, &v)) return false;
+      sides++;
+    }
+  }
+  if (caps != 2 || sides == 0 || !*region) return false;
+  *along = cag_sub(ends[1], ends[0]);
+  return true;
+}
+
+// Put as what it is, so that its sides become planes and cylinders. *done: it is a prism.
+static CagStatus put_prism(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
+  const CagRegion *region = NULL;
+  CagRegion *own;
+  CagTransform t, frame, map;
+  CagVec3 along;
+  *done = s->kind == CAG_SOLID_EXTRUSION && prism_of(s, &region, &t, &along);
+  if (!*done) return CAG_OK;
+  CagStatus status = flat_frame(&t, &frame, &map, err);
+  if (!status) status = cag_region_transform(region, &map, &own, err);
+  if (status) return status;
+  cag_put_u32(f, CAG_BREP_PRISM);
+  status = put_region(f, own, err);
+  cag_region_release(own);
+  cag_put_vec(f, cag_vec3(cag_dot(along, frame_column(&frame, 0)),
+                          cag_dot(along, frame_column(&frame, 1)),
+                          cag_dot(along, frame_column(&frame, 2))));
+  cag_put_placement(f, &frame);
+  return status;
+}
+
+// --- Revolutions ---
+
+// What the sides of a revolution have in common.
+typedef struct Turn {
+  CagTransform frame; // z along the axis, x towards the profile
+  double from, to;
+} Turn;
+
+// Whether the face is turned about an axis, and how.
+static bool turn_of_face(const CagSurface *face, const CagCurve **profile, Turn *out) {
+  CagVec3 axis, through, radial;
+  bool one_sided;
+  CagError ignored;
+  if (!cag_surface_revolution_view(face, profile, &axis, &through, &out->from, &out->to) ||
+      !cag_surface_meridian_view(face, &radial, &one_sided))
+    return false;
+  const CagVec3 z = cag_unit(axis);
+  return !cag_axes(through, radial, cag_cross(z, radial), &out->frame, &ignored);
+}
+
+static bool same_turn(const Turn *a, const Turn *b) {
+  bool same = fabs(a->from - b->from) <= CAG_ROUNDING && fabs(a->to - b->to) <= CAG_ROUNDING;
+  for (int i = 0; i < 3 && same; i++)
+    for (int j = 0; j < 4 && same; j++)
+      same = fabs(a->frame.m[i][j] - b->frame.m[i][j]) <=
+             CAG_COINCIDENT * (1 + fabs(a->frame.m[i][3]));
+  return same;
+}
+
+// The profile as a plane curve: over the axis, along the axis.
+static CagStatus plane_profile(const CagCurve *profile, const Turn *turn, CagCurve **out,
+                               CagError *err) {
+  CagTransform plane;
+  const CagTransform *t = &turn->frame;
+  CagStatus status =
+      cag_axes(frame_column(t, 3), frame_column(t, 0), frame_column(t, 2), &plane, err);
+  return status ? status : cag_curve_flatten(profile, &plane, out, err);
+}
+
+// Adds a loop of the profile, which is closed along the axis if it ends there. *fits: it is closed.
+static CagStatus put_profile(CagFields *f, const CagCurve *c, double size, bool *fits,
+                             CagError *err) {
+  CagStripParts parts = {0};
+  CagVec3 a, b;
+  CagStatus status = cag_curve_point(c, c->start, &a, err);
+  if (!status) status = cag_curve_point(c, c->end, &b, err);
+  if (!status) status = cag_strip_parts_add(&parts, c, 0, err);
+  if (status) return status;
+  const bool closed = cag_norm(cag_sub(a, b)) <= CAG_COINCIDENT * size;
+  *fits = closed || (fabs(a.x) <= CAG_COINCIDENT * size && fabs(b.x) <= CAG_COINCIDENT * size);
+  cag_put_u32(f, parts.n + !closed);
+  for (size_t i = 0; !status && i < parts.n; i++) status = put_part(f, &parts.items[i], err);
+  if (!closed) put_segment(f, b, a);
+  cag_strip_parts_free(&parts);
+  return status;
+}
+
+static bool turn_of_solid(const CagSolid *s, Turn *turn, size_t *sides) {
+  *sides = 0;
+  for (size_t i = 0; i < s->face_count; i++) {
+    const CagCurve *profile;
+    Turn own;
+    if (cag_surface_planar_view(s->faces[i], NULL, NULL)) continue;
+    if (!turn_of_face(s->faces[i], &profile, &own)) return false;
+    if ((*sides)++ == 0) *turn = own;
+    else if (!same_turn(turn, &own)) return false;
+  }
+  return *sides > 0;
+}
+
+// *done: the solid is a revolution whose loops are known. Otherwise, nothing is added.
+static CagStatus put_revolution(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
+  Turn turn;
+  CagBounds box;
+  size_t sides;
+  *done = s->kind == CAG_SOLID_REVOLUTION && turn_of_solid(s, &turn, &sides);
+  if (!*done) return CAG_OK;
+  const size_t before = f->length;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  cag_put_u32(f, CAG_BREP_REVOLUTION);
+  cag_put_u32(f, sides);
+  for (size_t i = 0; !status && *done && i < s->face_count; i++) {
+    const CagCurve *profile;
+    CagCurve *plane = NULL;
+    Turn own;
+    if (!turn_of_face(s->faces[i], &profile, &own)) continue;
+    status = plane_profile(profile, &own, &plane, err);
+    if (!status) status = put_profile(f, plane, cag_norm(cag_sub(box.max, box.min)), done, err);
+    // Pieces between parts of the axis would have to be joined.
+    if (!status && !plane->closed) *done = *done && sides == 1;
+    cag_curve_release(plane);
+  }
+  if (!*done) f->length = before;
+  if (status || !*done) return status;
+  cag_put_f64(f, turn.from);
+  cag_put_f64(f, turn.to);
+  cag_put_placement(f, &turn.frame);
+  return CAG_OK;
+}
+
+// --- Primitives ---
+
+static CagStatus put_primitive(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
+  CagTransform t = s->placement;
+  *done = true;
+  switch (s->kind) {
+  case CAG_SOLID_BOX:
+    cag_put_u32(f, CAG_BREP_BOX);
+    cag_put_vec(f, cag_vec3(s->a, s->b, s->c));
+    if (s->centered) {
+      const CagTransform half = cag_translate(cag_vec3(-s->a / 2, -s->b / 2, -s->c / 2));
+      t = cag_transform_multiply(&t, &half);
+    }
+    break;
+  case CAG_SOLID_SPHERE:
+    cag_put_u32(f, CAG_BREP_SPHERE);
+    cag_put_f64(f, s->a);
+    break;
+  case CAG_SOLID_CYLINDER:
+    cag_put_u32(f, CAG_BREP_CYLINDER);
+    cag_put_f64(f, s->a);
+    cag_put_f64(f, s->b);
+    cag_put_f64(f, s->c);
+    break;
+  case CAG_SOLID_TORUS:
+    cag_put_u32(f, CAG_BREP_TORUS);
+    cag_put_f64(f, s->a);
+    cag_put_f64(f, s->b);
+    break;
+  default: *done = false; return CAG_OK;
+  }
+  cag_put_placement(f, &t);
+  return memory_of(f, err);
+}
+
+// --- Set operations ---
+
+static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *window, CagError *err);
+
+static CagStatus put_half_space(CagFields *f, const CagSolid *s, const CagBounds *window,
+                                CagError *err) {
+  CagQuadric form;
+  CagTransform frame;
+  if (!cag_solid_form(s, &form))
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                    "a half space has no plane");
+  const CagVec3 n = cag_vec3(form.c[6], form.c[7], form.c[8]);
+  const CagVec3 middle = cag_lerp(window->min, window->max, 0.5);
+  const double square = cag_dot(n, n), off = (cag_dot(n, middle) + form.c[9]) / square;
+  const CagVec3 foot = cag_madd(middle, -off, n);
+  const CagVec3 other = fabs(n.x) < 0.5 * sqrt(square) ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
+  const CagVec3 x = cag_cross(other, n);
+  CagStatus status = cag_axes(foot, x, cag_cross(n, x), &frame, err);
+  if (status) return status;
+  cag_put_u32(f, CAG_BREP_HALF_SPACE);
+  cag_put_f64(f, FAR * (cag_norm(cag_sub(window->max, window->min)) + fabs(off) * sqrt(square)));
+  cag_put_placement(f, &frame);
+  return CAG_OK;
+}
+
+static CagStatus put_operation(CagFields *f, const CagSolid *s, const CagBounds *window,
+                               CagError *err) {
+  const CagTransform *t = &s->placement;
+  CagTransform back;
+  CagStatus status = cag_transform_inverse(t, &back, err);
+  if (status) return status;
+  CagBounds own = CAG_BOUNDS_EMPTY;
+  for (int k = 0; k < 8; k++)
+    cag_bounds_add(&own,
+                   cag_transform_point(&back, cag_vec3(k & 1 ? window->max.x : window->min.x,
+                                                       k & 2 ? window->max.y : window->min.y,
+                                                       k & 4 ? window->max.z : window->min.z)));
+  cag_put_u32(f, s->kind == CAG_SOLID_UNION        ? CAG_BREP_UNION
+                 : s->kind == CAG_SOLID_DIFFERENCE ? CAG_BREP_DIFFERENCE
+                                                   : CAG_BREP_INTERSECTION);
+  cag_put_u32(f, s->core->count);
+  for (size_t i = 0; !status && i < s->core->count; i++) {
+    status = put_any(f, s->core->operands[i], &own, err);
+    if (!status) status = cag_stop_check(err);
+  }
+  cag_put_placement(f, t);
+  return status;
+}
+
+static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *window, CagError *err) {
+  bool done;
+  CagStatus status = put_primitive(f, s, &done, err);
+  if (!status && !done) status = put_prism(f, s, &done, err);
+  if (!status && !done) status = put_revolution(f, s, &done, err);
+  if (status || done) return status;
+  if (s->kind == CAG_SOLID_MESH)
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+                    "a mesh consists of triangles and has no exact faces");
+  if (s->face_count > 0) return put_faces(f, s, err);
+  if (s->kind == CAG_SOLID_HALF_SPACE) return put_half_space(f, s, window, err);
+  if (s->kind == CAG_SOLID_QUADRIC)
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+        "an unbounded quadric has no faces: give `quadric` the box that bounds it (`within`)");
+  return put_operation(f, s, window, err);
+}
+
+CagStatus cag_put_solid(CagFields *f, const CagSolid *s, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (!status) status = put_any(f, s, &box, err);
+  return status ? status : memory_of(f, err);
+}

@@ -1,0 +1,14 @@
+// Solids as fields of messages to cag-brep.
+
+#ifndef CAG_INTERP_KERNEL_PUT_SOLID_H
+#define CAG_INTERP_KERNEL_PUT_SOLID_H
+
+#include "geom/solid/solid.h"
+#include "interp/kernel/fields.h"
+
+// Adds a solid: primitives, prisms, and revolutions as such, other solids by their faces, set
+// operations with their operands. Fails with "no-boundary" for a mesh, and for an unbounded solid
+// that nothing bounds. Surfaces without an exact NURBS form fail with "no-exact-form".
+CagStatus cag_put_solid(CagFields *f, const CagSolid *s, CagError *err);
+
+#endif
