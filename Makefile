@@ -349,6 +349,8 @@ install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	ln -sf libcag.so.$(VERSION) $(DESTDIR)$(PREFIX)/$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.so
 	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
+	if [ -x $(BUILD)/cag-brep ]; then \
+	  install -d $(DESTDIR)$(PREFIX)/lib/cag && install -m 755 $(BUILD)/cag-brep $(DESTDIR)$(PREFIX)/lib/cag/cag-brep; fi
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
 	  > $(DESTDIR)$(PREFIX)/$(LIBDIR)/pkgconfig/libcag.pc
 	$(BUILD)/tools/tables > $(BUILD)/tables.txt

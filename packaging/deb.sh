@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the Debian packages of a build that is there, in $BUILD/deb: cag (the program with all that belongs to it), libcag0 and
-# libcag-dev. What they depend on is found by dpkg-shlibdeps. It needs dpkg-dev, and no rights of root.
+# Builds the Debian packages of a build that is there, in $BUILD/deb: cag (the program with all that belongs to it), cag-brep (if Open
+# CASCADE was there for the build), libcag0 and libcag-dev. What they depend on is found by dpkg-shlibdeps. It needs dpkg-dev, and no rights of root.
 #   BUILD=build VERSION=0.1.0 sh packaging/deb.sh
 set -eu
 cd "$(dirname "$0")/.."
@@ -35,6 +35,11 @@ take() {
 }
 take libcag0 "lib/$triplet/libcag.so.$VERSION" "lib/$triplet/libcag.so.0"
 take libcag-dev "lib/$triplet/libcag.so" "lib/$triplet/libcag.a" "lib/$triplet/pkgconfig/libcag.pc" include/cag.h
+packages='cag libcag0 libcag-dev'
+if [ -e "$all/usr/lib/cag/cag-brep" ]; then
+  packages="$packages cag-brep"
+  take cag-brep lib/cag/cag-brep
+fi
 take cag bin share
 find "$all" ! -type d > "$out/work/left"
 [ ! -s "$out/work/left" ] || { echo "these files belong to no package:" >&2; cat "$out/work/left" >&2; exit 1; }
@@ -46,7 +51,8 @@ find "$share/man" -type f -exec gzip -9n {} +
 strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag/usr/bin/cag" "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
 chmod 644 "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
 strip --strip-debug --enable-deterministic-archives "$out/work/libcag-dev/usr/lib/$triplet/libcag.a"
-for package in cag libcag0 libcag-dev; do
+[ ! -d "$out/work/cag-brep" ] || strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag-brep/usr/lib/cag/cag-brep"
+for package in $packages; do
   documents=$out/work/$package/usr/share/doc/$package
   mkdir -p "$documents"
   cp "$here/copyright" "$documents/copyright"
@@ -79,10 +85,11 @@ write_control() {
 write_control cag "$(libraries "$out/work/cag/usr/bin/cag")"
 write_control libcag0 "$(libraries "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION")"
 write_control libcag-dev ''
+[ ! -d "$out/work/cag-brep" ] || write_control cag-brep "$(libraries "$out/work/cag-brep/usr/lib/cag/cag-brep")"
 echo "libcag 0 libcag0 (>= $VERSION)" > "$out/work/libcag0/DEBIAN/shlibs"
 echo 'activate-noawait ldconfig' > "$out/work/libcag0/DEBIAN/triggers"
 
-for package in cag libcag0 libcag-dev; do
+for package in $packages; do
   find "$out/work/$package" -type d -exec chmod 755 {} +
   dpkg-deb --root-owner-group -Zxz --build "$out/work/$package" "$out/${package}_${version}_$architecture.deb" > /dev/null
   echo "$out/${package}_${version}_$architecture.deb"

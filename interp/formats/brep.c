@@ -322,13 +322,15 @@ static CagStatus add_boundary(CagBrep *b, const CagBoundary *from, CagError *err
 }
 
 // Adds the parts of a set operation.
-static CagStatus add_operation(CagBrep *b, const CagItem *item, CagKernel *kernel,
-                               CagBrepShape *shape, CagError *err) {
+static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepShape *shape,
+                               CagError *err) {
   CagBoundaries parts;
-  if (!kernel) return fail_operation(item, err);
+  CagBrep *b = w->brep;
+  if (!kernel) return fail_operation(w->item, err);
   shape->kind = CAG_BREP_SOLID;
   shape->first = b->shell_count;
-  CagStatus status = cag_kernel_boundary(kernel, item->as.solid, &parts, err);
+  CagStatus status =
+      cag_kernel_boundary(kernel, w->item->as.solid, w->asked, &parts, &w->approximate, err);
   if (status) return status;
   for (size_t i = 0; !status && i < parts.count; i++)
     status = add_boundary(b, &parts.items[i], err);
@@ -351,7 +353,7 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
     shape.kind = CAG_BREP_CURVE;
     status = cag_brep_curve(&w, item->as.curve, &shape.curve, err);
   } else if (needs_kernel(item)) {
-    status = add_operation(b, item, kernel, &shape, err);
+    status = add_operation(&w, kernel, &shape, err);
   } else {
     status = add_bounded(&w, &shape, err);
   }

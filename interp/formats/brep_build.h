@@ -47,10 +47,6 @@ CagStatus cag_brep_surface_creases(const CagSurface *s, int direction, double **
                                    CagError *err);
 bool cag_brep_is_straight(const CagCurve *c);
 
-// --- Surfaces within a tolerance (brep_approximate.c) ---
-CagStatus cag_brep_approximate(const CagSurface *s, double tolerance, CagSurface **out,
-                               CagError *err);
-
 // --- Faces (brep_face.c) ---
 // Adds the faces of a surface, with their sides.
 CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t source, CagError *err);

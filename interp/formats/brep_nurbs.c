@@ -9,6 +9,7 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
+#include "geom/surface/approximate.h"
 #include "geom/surface/family.h"
 #include "geom/surface/reshape.h"
 #include "interp/formats/brep_build.h"
@@ -211,7 +212,7 @@ CagStatus cag_brep_surface(CagBrepWork *w, const CagSurface *s, CagSurface **out
   if (no_exact_form(status)) {
     if (!(w->asked > 0)) return fail_inexact(w, what_it_is(s), err);
     w->approximate = true;
-    status = name_rough(w, cag_brep_approximate(s, w->asked, &exact, err), what_it_is(s), err);
+    status = name_rough(w, cag_surface_approximate(s, w->asked, &exact, err), what_it_is(s), err);
   }
   if (!status)
     status =

@@ -14,6 +14,8 @@ typedef struct CagFields {
   unsigned char *bytes;
   size_t length, room;
   bool failed;
+  double tolerance; // mm: for surfaces and curves without an exact form; 0: they fail
+  bool approximate; // the tolerance was used
 } CagFields;
 
 void cag_fields_free(CagFields *f);

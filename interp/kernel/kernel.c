@@ -313,11 +313,13 @@ static CagStatus read_result(const Answer *a, CagBoundaries *out, CagError *err)
   return status;
 }
 
-CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, CagBoundaries *out, CagError *err) {
-  CagFields f = {0};
+CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, CagBoundaries *out,
+                              bool *approximate, CagError *err) {
+  CagFields f = {.tolerance = tolerance};
   Answer answer;
   CagStatus status = cag_put_solid(&f, s, err);
   if (!status) status = ask(k, CAG_BREP_EVALUATE, &f, &answer, err);
+  *approximate = f.approximate;
   cag_fields_free(&f);
   if (status) return status;
   status = read_result(&answer, out, err);

@@ -27,12 +27,15 @@ void cag_boundaries_free(CagBoundaries *b);
 
 // Computes the boundary of a solid in world coordinates. Each result closes: every edge has as many
 // uses in one direction as in the other.
-// Operands without an exact NURBS form fail.
+//
+//   tolerance    mm: for operands without an exact NURBS form; 0: these fail
+//   approximate  set if the tolerance was used
 //
 // Fails with "kernel-missing" if the program is not installed or of another version,
 // "kernel-failed" if it ends early or does not answer, "kernel-answer" if its answer is wrong, and
 // "no-boundary", with a reason, for solids that have none: meshes, unbounded and empty solids, and
 // those for which the kernel finds no valid result.
-CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, CagBoundaries *out, CagError *err);
+CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, CagBoundaries *out,
+                              bool *approximate, CagError *err);
 
 #endif

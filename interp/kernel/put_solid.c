@@ -6,11 +6,13 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/curve/region.h"
 #include "geom/curve/strip.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
+#include "geom/surface/approximate.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/kernel/protocol.h"
@@ -23,6 +25,36 @@
 
 static CagStatus memory_of(const CagFields *f, CagError *err) {
   return f->failed ? cag_fail_memory(err) : CAG_OK;
+}
+
+static bool no_exact_form(CagStatus status) {
+  return status == CAG_E_UNSUPPORTED || status == CAG_E_DEGENERATE;
+}
+
+static CagStatus fail_inexact(const char *kind, CagError *err) {
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
+      "an operand has no exact NURBS form (%s): to approximate it within 0.01 mm, use --tolerance 0.01, or tolerance(.., 0.01) for this shape only",
+      kind);
+}
+
+static CagStatus exact_curve(CagFields *f, const CagCurve *c, CagCurve **out, CagError *err) {
+  const CagStatus status = cag_curve_to_nurbs(c, out, err);
+  if (!no_exact_form(status)) return status;
+  if (!(f->tolerance > 0)) return fail_inexact(c->kind->name, err);
+  f->approximate = true;
+  return cag_curve_approximate(c, f->tolerance, out, err);
+}
+
+static CagStatus exact_surface(CagFields *f, const CagSurface *s, CagSurface **out, CagError *err) {
+  const CagSurface *inner = s;
+  CagTransform map;
+  const CagStatus status = cag_surface_to_nurbs(s, out, err);
+  if (!no_exact_form(status)) return status;
+  cag_surface_placed_view(s, &inner, &map);
+  if (!(f->tolerance > 0)) return fail_inexact(inner->kind->name, err);
+  f->approximate = true;
+  return cag_surface_approximate(s, f->tolerance, out, err);
 }
 
 // --- Regions ---
@@ -81,7 +113,7 @@ static void put_round(CagFields *f, const CagStripPart *p) {
 static CagStatus put_spline(CagFields *f, const CagCurve *c, CagError *err) {
   CagCurve *exact, *clamped;
   CagNurbsView v = {0};
-  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  CagStatus status = exact_curve(f, c, &exact, err);
   if (status) return status;
   status = cag_curve_clamp(exact, &clamped, err);
   cag_curve_release(exact);
@@ -133,7 +165,7 @@ static CagStatus put_region(CagFields *f, const CagRegion *r, CagError *err) {
 static CagStatus put_net(CagFields *f, const CagSurface *s, CagError *err) {
   CagSurface *exact, *clamped;
   CagSurfaceNurbsView v = {0};
-  CagStatus status = cag_surface_to_nurbs(s, &exact, err);
+  CagStatus status = exact_surface(f, s, &exact, err);
   if (status) return status;
   status = cag_surface_nurbs_part(exact, exact->u0, exact->u1, exact->v0, exact->v1, &clamped, err);
   cag_surface_release(exact);
@@ -199,7 +231,10 @@ static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
     cag_put_u32(f, flat);
     status = flat ? put_flat(f, region, &t, err) : put_net(f, s->faces[i], err);
   }
-  if (!status) cag_put_f64(f, SEWING * cag_norm(cag_sub(box.max, box.min)));
+  // Two sides that were approximated separately may differ by twice the tolerance.
+  if (!status)
+    cag_put_f64(f, fmax(SEWING * cag_norm(cag_sub(box.max, box.min)),
+                        f->approximate ? 2 * f->tolerance : 0));
   const CagTransform here = cag_transform_identity();
   if (!status) cag_put_placement(f, &here);
   return status;

@@ -345,6 +345,18 @@ else
   skip 'cag-brep is missing (Open CASCADE is not installed)'
 fi
 
+it 'an operand without an exact form is approximated within the tolerance, and it is said'
+script wound.cag 'show ((tube(helix(10, 5, 2), 2)) - (box([9, 9, 9]) |> translate([5, 0, 0]))) |> named("wound")'
+try export wound.cag -o wound.step
+status 1
+says 'wound: an operand has no exact NURBS form'
+says '--tolerance'
+if [ -x "$helper" ]; then
+  try export wound.cag -o wound.step --tolerance 0.01
+  status 0
+  says 'wound has no exact form: approximated within 0.01 mm'
+fi
+
 it 'a set operation with a mesh has no exact boundary'
 script lump.cag 'show box(10) - solid(tessellate(sphere(3))) |> named("lump")'
 try export lump.cag -o lump.step

@@ -245,6 +245,7 @@ fi
 
 # --- The Debian packages ---
 
+helper=
 it 'the Debian packages hold the installation and say what they depend on'
 if [ -n "$sanitize" ]; then
   skip 'this is a build with sanitizers'
@@ -253,7 +254,8 @@ elif needs dpkg-shlibdeps; then
   env -u MAKEFLAGS -u MAKELEVEL make -s -o all -C "$root" deb BUILD="$BUILD" > out 2> err
   code=$?
   status 0
-  for package in cag libcag0 libcag-dev; do
+  [ ! -x "$BUILD/cag-brep" ] || helper=cag-brep
+  for package in cag libcag0 libcag-dev $helper; do
     deb=$(echo "$BUILD/deb/${package}"_*.deb)
     exists "$deb"
     dpkg-deb -I "$deb" > "$package.info" && dpkg-deb -c "$deb" > "$package.list" || wrong "dpkg-deb cannot read $deb"
@@ -268,6 +270,7 @@ elif needs dpkg-shlibdeps; then
     grep -q " ./$file\$" cag.list || wrong "cag lacks $file"
   done
   grep -q 'libcag.so.0 -> ' libcag0.list || wrong 'libcag0 lacks libcag.so.0'
+  [ -z "$helper" ] || grep -q 'usr/lib/cag/cag-brep$' cag-brep.list || wrong 'cag-brep lacks its program'
   grep -q 'usr/include/cag.h$' libcag-dev.list || wrong 'libcag-dev lacks cag.h'
   ! awk '$2 != "root/root"' cag.list libcag0.list libcag-dev.list | grep -q . || wrong 'a file is not owned by root'
   if needs lintian; then

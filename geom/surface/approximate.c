@@ -7,12 +7,13 @@
 // size of the cells. If a cell is too inaccurate, the lines are halved in the direction with the
 // larger error.
 
+#include "geom/surface/approximate.h"
+
 #include <math.h>
 #include <stdint.h>
 
 #include "base/memory.h"
 #include "geom/surface/family.h"
-#include "interp/formats/brep_build.h"
 
 // The maximum number of cells in one direction. If it is exceeded, the surface has a point that no
 // polynomial approximates.
@@ -258,8 +259,8 @@ static CagStatus make_net(const CagSurface *s, const Lines *u, const Lines *v, C
   return status;
 }
 
-CagStatus cag_brep_approximate(const CagSurface *s, double tolerance, CagSurface **out,
-                               CagError *err) {
+CagStatus cag_surface_approximate(const CagSurface *s, double tolerance, CagSurface **out,
+                                  CagError *err) {
   Lines u = {0}, v = {0};
   CagStatus status = lines_first(s, 0, &u, err);
   if (!status) status = lines_first(s, 1, &v, err);
