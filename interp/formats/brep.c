@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "geom/tessellate/orient.h"
 #include "interp/formats/brep_build.h"
+#include "interp/formats/step_check.h"
 
 // The fraction of a shape's size within which ends and edges count as equal. The checks of closed
 // solids allow the same.
@@ -19,6 +20,7 @@
 
 void cag_brep_free(CagBrep *b) {
   for (size_t i = 0; i < b->edge_count; i++) cag_curve_release(b->edges[i].curve);
+  for (size_t i = 0; i < b->use_count; i++) cag_curve_release(b->uses[i].trace);
   for (size_t i = 0; i < b->face_count; i++) {
     cag_surface_release(b->faces[i].surface);
     cag_surface_release(b->faces[i].carrier.spline);
@@ -289,21 +291,25 @@ static bool reserve_boundary(CagBrep *b, const CagBoundary *from) {
 
 static bool is_straight(const CagCurve *c) { return c && cag_brep_is_straight(c); }
 
-// Adds the edges and loops with their new numbers, and the faces in the order of the shells.
-static CagStatus add_boundary(CagBrep *b, const CagBoundary *from, CagError *err) {
+// The edges and loops get new numbers, and the faces are in the order of the shells.
+CagStatus cag_brep_add_boundary(CagBrep *b, const CagBoundary *from, CagError *err) {
   const size_t corner = b->vertex_count, edge = b->edge_count, use = b->use_count;
   const size_t loop = b->loop_count, face = b->face_count, shell = b->shell_count;
   if (!reserve_boundary(b, from)) return cag_fail_memory(err);
   for (size_t i = 0; i < from->corner_count; i++) b->vertices[b->vertex_count++] = from->corners[i];
   for (size_t i = 0; i < from->edge_count; i++) {
     const CagBoundaryEdge *e = &from->edges[i];
-    b->edges[b->edge_count++] =
-        (CagBrepEdge){e->curve ? cag_curve_retain(e->curve) : NULL, corner + e->from,
-                      corner + e->to, is_straight(e->curve)};
+    b->edges[b->edge_count++] = (CagBrepEdge){.curve = e->curve ? cag_curve_retain(e->curve) : NULL,
+                                              .from = corner + e->from,
+                                              .to = corner + e->to,
+                                              .straight = is_straight(e->curve),
+                                              .timed = true};
     b->accuracy = fmax(b->accuracy, e->gap);
   }
   for (size_t i = 0; i < from->use_count; i++)
-    b->uses[b->use_count++] = (CagBrepUse){edge + from->uses[i].edge, from->uses[i].reversed};
+    b->uses[b->use_count++] =
+        (CagBrepUse){edge + from->uses[i].edge, from->uses[i].reversed,
+                     from->uses[i].trace ? cag_curve_retain(from->uses[i].trace) : NULL};
   for (size_t i = 0; i < from->loop_count; i++)
     b->loops[b->loop_count++] = (CagBrepLoop){use + from->loops[i].first, from->loops[i].count};
   for (size_t i = 0; i < from->order_count; i++) {
@@ -321,19 +327,30 @@ static CagStatus add_boundary(CagBrep *b, const CagBoundary *from, CagError *err
   return CAG_OK;
 }
 
-// Adds the parts of a set operation.
+// Adds the parts of a set operation that other programs will read as they are. Where a face
+// contains poles of a sphere, or runs around an axis, some read a file differently; then other
+// poles and seams are tried.
 static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepShape *shape,
                                CagError *err) {
-  CagBoundaries parts;
+  CagBoundaries parts = {0};
   CagBrep *b = w->brep;
   if (!kernel) return fail_operation(w->item, err);
   shape->kind = CAG_BREP_SOLID;
   shape->first = b->shell_count;
-  CagStatus status =
-      cag_kernel_boundary(kernel, w->item->as.solid, w->asked, &parts, &w->approximate, err);
-  if (status) return status;
+  CagStatus status = CAG_OK;
+  bool same = false;
+  for (int turn = 0; !status && !same && turn < CAG_TURNS; turn++) {
+    cag_boundaries_free(&parts);
+    status = cag_kernel_boundary(kernel, w->item->as.solid, w->asked, turn, &parts, &w->approximate,
+                                 err);
+    if (!status) status = cag_step_reads_back(kernel, &parts, &same, err);
+  }
+  if (!status && !same)
+    status = cag_fail(
+        err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+        "Open CASCADE does not read the faces back as they are: turn round parts by a little, or write a mesh");
   for (size_t i = 0; !status && i < parts.count; i++)
-    status = add_boundary(b, &parts.items[i], err);
+    status = cag_brep_add_boundary(b, &parts.items[i], err);
   cag_boundaries_free(&parts);
   shape->count = b->shell_count - shape->first;
   return status;

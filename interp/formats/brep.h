@@ -23,11 +23,14 @@ typedef struct CagBrepEdge {
   CagCurve *curve; // of a NURBS kind, or an arc; NULL: degenerate
   size_t from, to; // vertices; equal if the curve is closed
   bool straight;   // a line with constant speed
+  bool timed;      // its parameter matters, because traces have the same one
 } CagBrepEdge;
 
 typedef struct CagBrepUse {
   size_t edge;
   bool reversed;
+  CagCurve *trace; // the edge in the parameters of the carrier, with the parameter of its curve;
+                   // NULL: unknown
 } CagBrepUse;
 
 // The first loop of a face is its outer one.

@@ -33,6 +33,9 @@ typedef struct CagBrepWork {
 // then unchanged.
 bool cag_brep_reserve(void **array, size_t count, size_t more, size_t size);
 
+// Adds the corners, edges, faces, and shells of a boundary (brep.c).
+CagStatus cag_brep_add_boundary(CagBrep *b, const CagBoundary *from, CagError *err);
+
 // --- Clean NURBS (brep_nurbs.c) ---
 // Returns the exact form, clamped, or one within the user's tolerance.
 CagStatus cag_brep_curve(CagBrepWork *w, const CagCurve *c, CagCurve **out, CagError *err);

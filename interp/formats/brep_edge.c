@@ -281,7 +281,7 @@ static void make_loops(CagBrepWork *w) {
   for (size_t l = w->first_loop; l < b->loop_count; l++) {
     b->loops[l].first = b->use_count;
     for (; at < w->side_count && w->sides[at].loop == l; at++)
-      b->uses[b->use_count++] = (CagBrepUse){w->sides[at].edge, w->sides[at].reversed};
+      b->uses[b->use_count++] = (CagBrepUse){w->sides[at].edge, w->sides[at].reversed, NULL};
     b->loops[l].count = b->use_count - b->loops[l].first;
   }
 }

@@ -17,7 +17,12 @@ typedef struct Writer {
   CagAtomicFile *file;
   Id last;
   Id context, product_shape, placement;
-  Id *vertex, *edge; // vertex points and edge curves; 0: not written yet
+  Id *vertex, *edge, *surface; // vertex points, edge curves, and surfaces of faces; 0: not written
+                               // yet
+  size_t *use_face;            // the face of each use
+  size_t *edge_use;            // the uses, sorted by edges; those of edge i begin at edge_uses[i]
+  size_t *edge_uses;
+  Id plane_context; // of curves in the parameters of surfaces; 0: not written yet
   Id *styled;
   size_t styled_count, styled_room;
   bool failed;    // memory ran out
@@ -117,6 +122,15 @@ static Id put_triple(Writer *w, const char *head, CagVec3 p) {
   return id;
 }
 
+static Id put_pair(Writer *w, const char *head, CagVec3 p) {
+  Id id = begin(w, head);
+  put_real(w, p.x);
+  put(w, ",");
+  put_real(w, p.y);
+  put(w, "));\n");
+  return id;
+}
+
 static Id point(Writer *w, CagVec3 p) { return put_triple(w, "CARTESIAN_POINT('',(", p); }
 static Id direction(Writer *w, CagVec3 d) { return put_triple(w, "DIRECTION('',(", d); }
 
@@ -151,10 +165,18 @@ static void put_distinct(Writer *w, const double *knots, size_t n) {
   put(w, ")");
 }
 
-static Id *put_points(Writer *w, const double *h, size_t n) {
+static Id point_of(Writer *w, CagVec3 p, int dimension) {
+  return dimension == 2 ? put_pair(w, "CARTESIAN_POINT('',(", p) : point(w, p);
+}
+
+static Id direction_of(Writer *w, CagVec3 d, int dimension) {
+  return dimension == 2 ? put_pair(w, "DIRECTION('',(", d) : direction(w, d);
+}
+
+static Id *put_points(Writer *w, const double *h, size_t n, int dimension) {
   Id *ids = take_ids(w, n);
   for (size_t i = 0; ids && i < n; i++, h += 4)
-    ids[i] = point(w, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]));
+    ids[i] = point_of(w, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]), dimension);
   return ids;
 }
 
@@ -172,7 +194,7 @@ static const char *logical(bool b) { return b ? ".T." : ".F."; }
 static Id nurbs_curve(Writer *w, const CagCurve *c) {
   CagNurbsView v = {0};
   cag_curve_nurbs_view(c, &v);
-  Id *ids = put_points(w, v.homogeneous, v.count);
+  Id *ids = put_points(w, v.homogeneous, v.count, c->dimension);
   if (!ids) return 0;
   size_t knots = v.count + (size_t)v.degree + 1;
   Id id =
@@ -208,7 +230,7 @@ static void put_rows(Writer *w, const CagSurfaceNurbsView *v, const Id *ids) {
 static Id nurbs_surface(Writer *w, const CagSurface *s) {
   CagSurfaceNurbsView v = {0};
   cag_surface_nurbs_view(s, &v);
-  Id *ids = put_points(w, v.homogeneous, v.nu * v.nv);
+  Id *ids = put_points(w, v.homogeneous, v.nu * v.nv, 3);
   if (!ids) return 0;
   size_t knots_u = v.nu + (size_t)v.degree_u + 1, knots_v = v.nv + (size_t)v.degree_v + 1;
   Id id = begin(w, v.rational ? "(BOUNDED_SURFACE()B_SPLINE_SURFACE("
@@ -252,29 +274,53 @@ static Id line(Writer *w, const CagCurve *c) {
   return entity(w, "LINE('',#%zu,#%zu)", at, vector);
 }
 
-// A circle, or an ellipse, whose first semi-axis is the longer one.
-static Id conic(Writer *w, double a, double b, const CagTransform *t) {
-  const CagVec3 x = column(t, 0), y = column(t, 1), z = cag_cross(x, y);
-  const CagVec3 first = a >= b ? x : y;
-  const Id at = point(w, column(t, 3)), up = direction(w, z), along = direction(w, first);
-  const Id place = entity(w, "AXIS2_PLACEMENT_3D('',#%zu,#%zu,#%zu)", at, up, along);
+// A circle, or an ellipse. In space, the first semi-axis of an ellipse is the longer one.
+static Id conic(Writer *w, double a, double b, const CagTransform *t, int dimension) {
+  const CagVec3 x = column(t, 0), y = column(t, 1);
+  const bool turned = dimension == 3 && a < b;
+  const Id at = point_of(w, column(t, 3), dimension);
+  const Id up = dimension == 3 ? direction(w, cag_cross(x, y)) : 0;
+  const Id along = direction_of(w, turned ? y : x, dimension);
+  const Id place = dimension == 3
+                       ? entity(w, "AXIS2_PLACEMENT_3D('',#%zu,#%zu,#%zu)", at, up, along)
+                       : entity(w, "AXIS2_PLACEMENT_2D('',#%zu,#%zu)", at, along);
   Id id = begin(w, a == b ? "CIRCLE(''," : "ELLIPSE('',");
   put_id(w, place);
   put(w, ",");
-  put_real(w, fmax(a, b));
+  put_real(w, turned ? b : a);
   if (a != b) {
     put(w, ",");
-    put_real(w, fmin(a, b));
+    put_real(w, turned ? a : b);
   }
   end(w);
   return id;
 }
 
-static Id any_curve(Writer *w, const CagCurve *c, bool straight) {
+// A line with the parameter of the curve: its point at 0, and its speed.
+static Id timed_line(Writer *w, const CagCurve *c) {
+  CagNurbsView v = {0};
+  cag_curve_nurbs_view(c, &v);
+  const double *a = v.homogeneous, *b = a + 4 * (v.count - 1);
+  const CagVec3 p = cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]);
+  const CagVec3 q = cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]);
+  const CagVec3 speed = cag_scaled(cag_sub(q, p), 1 / (c->end - c->start));
+  const Id at = point_of(w, cag_madd(p, -c->start, speed), c->dimension);
+  const Id along = direction_of(w, cag_unit(speed), c->dimension);
+  Id vector = begin(w, "VECTOR('',");
+  put_id(w, along);
+  put(w, ",");
+  put_real(w, cag_norm(speed));
+  end(w);
+  return entity(w, "LINE('',#%zu,#%zu)", at, vector);
+}
+
+static Id any_curve(Writer *w, const CagCurve *c) {
   double a, b;
   CagTransform frame;
-  if (cag_curve_arc_view(c, &a, &b, &frame)) return conic(w, a, b, &frame);
-  return straight ? line(w, c) : nurbs_curve(w, c);
+  CagNurbsView v;
+  if (cag_curve_arc_view(c, &a, &b, &frame)) return conic(w, a, b, &frame, c->dimension);
+  if (cag_curve_nurbs_view(c, &v) && v.degree == 1 && v.count == 2) return timed_line(w, c);
+  return nurbs_curve(w, c);
 }
 
 // --- Carriers ---
@@ -303,7 +349,7 @@ static Id elementary(Writer *w, const char *head, const CagCarrier *c, int numbe
 }
 
 static Id swept(Writer *w, const CagCarrier *c) {
-  const Id curve = any_curve(w, c->profile, false), z = direction(w, column(&c->frame, 2));
+  const Id curve = any_curve(w, c->profile), z = direction(w, column(&c->frame, 2));
   if (c->kind == CAG_CARRIER_EXTRUDED) {
     const Id vector = entity(w, "VECTOR('',#%zu,1.)", z);
     return entity(w, "SURFACE_OF_LINEAR_EXTRUSION('',#%zu,#%zu)", curve, vector);
@@ -334,11 +380,80 @@ static Id vertex(Writer *w, size_t index) {
   return w->vertex[index];
 }
 
+static Id face_surface(Writer *w, size_t index) {
+  const CagBrepFace *f = &w->brep->faces[index];
+  if (!w->surface[index])
+    w->surface[index] = f->carrier.kind ? carrier(w, &f->carrier)
+                        : f->flat       ? entity(w, "PLANE('',#%zu)", placement(w, &f->plane))
+                                        : nurbs_surface(w, f->surface);
+  return w->surface[index];
+}
+
+// Whether a trace can be written: arcs in the parameters turn to the left only.
+static bool has_trace(const Writer *w, const CagBrepUse *use, size_t face) {
+  double a, b;
+  CagTransform t;
+  const CagCarrier *c = &w->brep->faces[face].carrier;
+  if (!use->trace || c->kind == CAG_CARRIER_PLANE) return false;
+  return !cag_curve_arc_view(use->trace, &a, &b, &t) ||
+         t.m[0][0] * t.m[1][1] - t.m[0][1] * t.m[1][0] > 0;
+}
+
+static Id trace(Writer *w, const CagBrepUse *use, size_t face) {
+  const CagCarrier *c = &w->brep->faces[face].carrier;
+  CagTransform turn = cag_transform_identity();
+  CagCurve *own = cag_curve_retain(use->trace);
+  CagError ignored;
+  if (c->kind == CAG_CARRIER_CONE && c->b < 0) { // see with_positive_angle
+    turn.m[0][0] = turn.m[1][1] = -1;
+    cag_curve_release(own);
+    w->failed |= cag_curve_transform(use->trace, &turn, &own, &ignored) != CAG_OK;
+    if (w->failed) return 0;
+  }
+  const Id surface = face_surface(w, face), curve = any_curve(w, own);
+  cag_curve_release(own);
+  if (!w->plane_context)
+    w->plane_context = entity(w, "(GEOMETRIC_REPRESENTATION_CONTEXT(2)"
+                                 "PARAMETRIC_REPRESENTATION_CONTEXT()"
+                                 "REPRESENTATION_CONTEXT('parameters',''))");
+  const Id drawn =
+      entity(w, "DEFINITIONAL_REPRESENTATION('',(#%zu),#%zu)", curve, w->plane_context);
+  return entity(w, "PCURVE('',#%zu,#%zu)", surface, drawn);
+}
+
+// Adds the curves of an edge in the parameters of its faces, without which a reader would have to
+// find out how a face that runs around its carrier, or through a pole, continues. A seam needs both.
+static Id with_traces(Writer *w, size_t index, Id curve) {
+  Id ids[2];
+  size_t faces[2], n = 0;
+  for (size_t k = w->edge_uses[index]; k < w->edge_uses[index + 1] && n < 2; k++) {
+    const size_t use = w->edge_use[k], face = w->use_face[use];
+    if (!has_trace(w, &w->brep->uses[use], face)) continue;
+    faces[n] = face;
+    ids[n++] = trace(w, &w->brep->uses[use], face);
+  }
+  if (n == 0) return curve;
+  // The first trace of a seam is that of the use along the edge.
+  if (n == 2 && faces[0] == faces[1] && w->brep->uses[w->edge_use[w->edge_uses[index]]].reversed) {
+    const Id first = ids[0];
+    ids[0] = ids[1];
+    ids[1] = first;
+  }
+  const bool seam = n == 2 && faces[0] == faces[1];
+  Id id = begin(w, seam ? "SEAM_CURVE(''," : "SURFACE_CURVE('',");
+  put_id(w, curve);
+  put(w, ",");
+  put_ids(w, ids, n);
+  put(w, ",.CURVE_3D.);\n");
+  return id;
+}
+
 static Id edge(Writer *w, size_t index) {
   if (w->edge[index]) return w->edge[index];
   const CagBrepEdge *e = &w->brep->edges[index];
   Id from = vertex(w, e->from), to = vertex(w, e->to);
-  Id curve = any_curve(w, e->curve, e->straight);
+  Id curve = e->straight && !e->timed ? line(w, e->curve) : any_curve(w, e->curve);
+  curve = with_traces(w, index, curve);
   return w->edge[index] = entity(w, "EDGE_CURVE('',#%zu,#%zu,#%zu,.T.)", from, to, curve);
 }
 
@@ -373,9 +488,7 @@ static Id face(Writer *w, const CagBrepFace *f) {
     Id loop = edge_loop(w, &w->brep->loops[f->first + i]);
     bounds[i] = entity(w, "%s('',#%zu,.T.)", i == 0 ? "FACE_OUTER_BOUND" : "FACE_BOUND", loop);
   }
-  Id surface = f->carrier.kind ? carrier(w, &f->carrier)
-               : f->flat       ? entity(w, "PLANE('',#%zu)", placement(w, &f->plane))
-                               : nurbs_surface(w, f->surface);
+  Id surface = face_surface(w, (size_t)(f - w->brep->faces));
   Id id = begin(w, "ADVANCED_FACE('',");
   put_ids(w, bounds, f->count);
   put(w, ",");
@@ -567,6 +680,21 @@ static void write_context(Writer *w) {
                       accuracy, length, angle, solid_angle);
 }
 
+// Finds the faces of the uses, and the uses of the edges.
+static void index_uses(Writer *w) {
+  const CagBrep *b = w->brep;
+  for (size_t f = 0; f < b->face_count; f++)
+    for (size_t l = b->faces[f].first; l < b->faces[f].first + b->faces[f].count; l++)
+      for (size_t u = b->loops[l].first; u < b->loops[l].first + b->loops[l].count; u++)
+        w->use_face[u] = f;
+  for (size_t u = 0; u < b->use_count; u++) w->edge_uses[b->uses[u].edge + 1]++;
+  for (size_t e = 0; e < b->edge_count; e++) w->edge_uses[e + 1] += w->edge_uses[e];
+  for (size_t u = b->use_count; u-- > 0;) w->edge_use[--w->edge_uses[b->uses[u].edge + 1]] = u;
+  // Each start has moved to that of the edge before.
+  memmove(w->edge_uses, w->edge_uses + 1, b->edge_count * sizeof *w->edge_uses);
+  w->edge_uses[b->edge_count] = b->use_count;
+}
+
 static void write_data(Writer *w, const char *name) {
   write_product(w, name);
   write_context(w);
@@ -597,18 +725,28 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
   Writer w = {.brep = brep, .file = file};
   w.vertex = cag_calloc(brep->vertex_count + 1, sizeof *w.vertex);
   w.edge = cag_calloc(brep->edge_count + 1, sizeof *w.edge);
+  w.surface = cag_calloc(brep->face_count + 1, sizeof *w.surface);
+  w.use_face = cag_calloc(brep->use_count + 1, sizeof *w.use_face);
+  w.edge_use = cag_calloc(brep->use_count + 1, sizeof *w.edge_use);
+  w.edge_uses = cag_calloc(brep->edge_count + 2, sizeof *w.edge_uses);
   w.styled_room = brep->shape_count + brep->shell_count;
   w.styled = cag_calloc(w.styled_room + 1, sizeof *w.styled);
-  if (!w.vertex || !w.edge || !w.styled) {
+  if (!w.vertex || !w.edge || !w.surface || !w.use_face || !w.edge_use || !w.edge_uses ||
+      !w.styled) {
     w.failed = true;
   } else {
     const char *name = script && *script ? script : "scene";
+    index_uses(&w);
     write_header(&w, name);
     write_data(&w, name);
     put(&w, "ENDSEC;\nEND-ISO-10303-21;\n");
   }
   cag_free(w.vertex);
   cag_free(w.edge);
+  cag_free(w.surface);
+  cag_free(w.use_face);
+  cag_free(w.edge_use);
+  cag_free(w.edge_uses);
   cag_free(w.styled);
   if (w.undefined && !w.failed)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,

@@ -16,7 +16,12 @@ typedef struct CagFields {
   bool failed;
   double tolerance; // mm: for surfaces and curves without an exact form; 0: they fail
   bool approximate; // the tolerance was used
+  int turn;         // which of the equal forms of round primitives is put: their seams and poles
+                    // differ
 } CagFields;
+
+// The number of these forms.
+#define CAG_TURNS 4
 
 void cag_fields_free(CagFields *f);
 void cag_put_bytes(CagFields *f, const void *bytes, size_t n); // without a length

@@ -313,16 +313,33 @@ static CagStatus read_result(const Answer *a, CagBoundaries *out, CagError *err)
   return status;
 }
 
-CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, CagBoundaries *out,
-                              bool *approximate, CagError *err) {
-  CagFields f = {.tolerance = tolerance};
+static CagStatus ask_for_boundaries(CagKernel *k, CagBrepMessage type, const CagFields *f,
+                                    CagBoundaries *out, CagError *err) {
   Answer answer;
-  CagStatus status = cag_put_solid(&f, s, err);
-  if (!status) status = ask(k, CAG_BREP_EVALUATE, &f, &answer, err);
-  *approximate = f.approximate;
-  cag_fields_free(&f);
+  CagStatus status = ask(k, type, f, &answer, err);
   if (status) return status;
   status = read_result(&answer, out, err);
   cag_free(answer.bytes);
+  return status;
+}
+
+CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, int turn,
+                              CagBoundaries *out, bool *approximate, CagError *err) {
+  CagFields f = {.tolerance = tolerance, .turn = turn};
+  CagStatus status = cag_put_solid(&f, s, err);
+  if (!status) status = ask_for_boundaries(k, CAG_BREP_EVALUATE, &f, out, err);
+  *approximate = f.approximate;
+  cag_fields_free(&f);
+  return status;
+}
+
+CagStatus cag_kernel_read_step(CagKernel *k, const char *path, CagBoundaries *out, CagError *err) {
+  CagFields f = {0};
+  const size_t n = strlen(path);
+  cag_put_u32(&f, n);
+  cag_put_bytes(&f, path, n);
+  CagStatus status =
+      f.failed ? cag_fail_memory(err) : ask_for_boundaries(k, CAG_BREP_READ_STEP, &f, out, err);
+  cag_fields_free(&f);
   return status;
 }

@@ -10,6 +10,7 @@
 
 #include "geom/boundary/boundary.h"
 #include "geom/solid/solid.h"
+#include "interp/kernel/fields.h"
 
 typedef struct CagKernel CagKernel;
 
@@ -29,13 +30,17 @@ void cag_boundaries_free(CagBoundaries *b);
 // uses in one direction as in the other.
 //
 //   tolerance    mm: for operands without an exact NURBS form; 0: these fail
+//   turn         which of the equal forms of round primitives is used, below CAG_TURNS: the seams
+//                and poles of the result differ
 //   approximate  set if the tolerance was used
 //
 // Fails with "kernel-missing" if the program is not installed or of another version,
 // "kernel-failed" if it ends early or does not answer, "kernel-answer" if its answer is wrong, and
 // "no-boundary", with a reason, for solids that have none: meshes, unbounded and empty solids, and
 // those for which the kernel finds no valid result.
-CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, CagBoundaries *out,
-                              bool *approximate, CagError *err);
+CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, int turn,
+                              CagBoundaries *out, bool *approximate, CagError *err);
+// Reads the solids of a STEP file. Fails as above.
+CagStatus cag_kernel_read_step(CagKernel *k, const char *path, CagBoundaries *out, CagError *err);
 
 #endif

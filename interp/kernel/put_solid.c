@@ -393,7 +393,34 @@ static CagStatus put_revolution(CagFields *f, const CagSolid *s, bool *done, Cag
 
 // --- Primitives ---
 
-static CagStatus put_primitive(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
+// A rotation that maps a round primitive to itself, in its own coordinates. A sphere is turned such
+// that a pole lies towards the other parts, or its seam away from them; others about z.
+static CagTransform turn_in_place(const CagFields *f, const CagSolid *s, const CagBounds *window) {
+  CagTransform back, turned = cag_transform_identity();
+  CagError ignored;
+  if (f->turn == 0 || s->kind == CAG_SOLID_BOX) return turned;
+  const double z = 1.1 * f->turn; // radians; unlikely to meet the directions of other parts again
+  if (s->kind != CAG_SOLID_SPHERE) return cag_rpy(0, 0, z);
+  if (cag_transform_inverse(&s->placement, &back, &ignored)) return turned;
+  const CagVec3 there = cag_transform_point(&back, cag_lerp(window->min, window->max, 0.5));
+  const CagVec3 away = cag_scaled(there, -1), aside = cag_cross(there, cag_vec3(0.3, 0.5, 0.8));
+  const CagVec3 other = cag_cross(there, aside);
+  // The frame's x, y: the seam lies towards x, and the poles towards z.
+  const bool by_seam = f->turn == 1;
+  if (cag_axes(cag_vec3(0, 0, 0),
+               by_seam        ? away
+               : f->turn == 2 ? aside
+                              : other,
+               by_seam        ? aside
+               : f->turn == 2 ? other
+                              : away,
+               &turned, &ignored))
+    return cag_rpy(0.83, 0.47, z);
+  return turned;
+}
+
+static CagStatus put_primitive(CagFields *f, const CagSolid *s, const CagBounds *window, bool *done,
+                               CagError *err) {
   CagTransform t = s->placement;
   *done = true;
   switch (s->kind) {
@@ -422,6 +449,8 @@ static CagStatus put_primitive(CagFields *f, const CagSolid *s, bool *done, CagE
     break;
   default: *done = false; return CAG_OK;
   }
+  const CagTransform turn = turn_in_place(f, s, window);
+  t = cag_transform_multiply(&t, &turn);
   cag_put_placement(f, &t);
   return memory_of(f, err);
 }
@@ -477,7 +506,7 @@ static CagStatus put_operation(CagFields *f, const CagSolid *s, const CagBounds 
 
 static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *window, CagError *err) {
   bool done;
-  CagStatus status = put_primitive(f, s, &done, err);
+  CagStatus status = put_primitive(f, s, window, &done, err);
   if (!status && !done) status = put_prism(f, s, &done, err);
   if (!status && !done) status = put_revolution(f, s, &done, err);
   if (status || done) return status;

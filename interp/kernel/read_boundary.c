@@ -17,6 +17,10 @@
 #define LOOP_BYTES 4
 #define USE_BYTES 12
 
+// How far a curve may end from its corner: this multiple of what the edge says, and of rounding.
+#define END_SLACK 4.0
+#define END_ROUNDING 1e-9
+
 static CagStatus bad_answer(CagError *err) {
   return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
                   "the answer of cag-brep is not a boundary");
@@ -245,6 +249,20 @@ static CagStatus read_corners(CagFieldReader *r, CagBoundary *b, CagError *err) 
   return checked(r, err);
 }
 
+// The ends of a curve are its corners, as far as the edge says.
+static CagStatus check_ends(const CagBoundary *b, const CagBoundaryEdge *e, CagError *err) {
+  CagVec3 from, to;
+  if (!e->curve) return CAG_OK;
+  CagStatus status = cag_curve_point(e->curve, e->curve->start, &from, err);
+  if (!status) status = cag_curve_point(e->curve, e->curve->end, &to, err);
+  if (status) return status;
+  const double slack = END_SLACK * (e->gap + END_ROUNDING * (1 + cag_norm(from) + cag_norm(to)));
+  return cag_norm(cag_sub(from, b->corners[e->from])) <= slack &&
+                 cag_norm(cag_sub(to, b->corners[e->to])) <= slack
+             ? CAG_OK
+             : bad_answer(err);
+}
+
 // The ranges of the edges, by which the traces are read.
 typedef double (*Ranges)[2];
 
@@ -264,11 +282,12 @@ static CagStatus read_edges(CagFieldReader *r, CagBoundary *b, Ranges *ranges, C
     e->to = cag_take_u32(r);
     e->gap = cag_take_f64(r);
     if (r->bad || e->from >= b->corner_count || e->to >= b->corner_count) return bad_answer(err);
-    if (range[0] <= range[1]) continue;
-    // The curve was read in its own direction.
-    const size_t from = e->from;
-    e->from = e->to;
-    e->to = from;
+    if (range[0] > range[1]) { // the curve was read in its own direction
+      const size_t from = e->from;
+      e->from = e->to;
+      e->to = from;
+    }
+    status = check_ends(b, e, err);
   }
   return status;
 }
