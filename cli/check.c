@@ -1,4 +1,7 @@
-// cag check PATH ...: reports errors of scripts without running them.
+// cag check PATH ...: reports errors of scripts without running them, and with --interference,
+// parts that share volume.
+
+#include <string.h>
 
 #include "cli/scripts.h"
 
@@ -7,11 +10,22 @@ typedef struct Checking {
   int status; // the worst so far
 } Checking;
 
+static int check_interference(CagTool *t, CagSession *s, const char *path) {
+  int status = cag_session_run_file(s, path);
+  if (status == CAG_STATUS_OK) status = cag_session_interference(s);
+  return cag_tool_finish(t, s, status);
+}
+
 static int check_script(void *context, const char *path) {
   Checking *c = context;
   CagSession *s = cag_tool_session(c->tool);
   if (!s) return CAG_STATUS_LIMIT;
-  const int status = cag_tool_finish(c->tool, s, cag_session_check_file(s, path));
+  // Standard input can be read only once; a run finds the errors as well.
+  const bool run_only = c->tool->interference && !strcmp(path, "-");
+  int status = CAG_STATUS_OK;
+  if (!run_only) status = cag_tool_finish(c->tool, s, cag_session_check_file(s, path));
+  if (c->tool->interference && status == CAG_STATUS_OK)
+    status = check_interference(c->tool, s, path);
   if (status > c->status) c->status = status;
   if (c->tool->verbose && status == CAG_STATUS_OK && cag_session_error_count(s) == 0)
     cag_tool_say(c->tool, "%s is well", path);

@@ -390,6 +390,11 @@ static bool set_watch(CagTool *t, const char *value) {
   return t->watch = true;
 }
 
+static bool set_interference(CagTool *t, const char *value) {
+  (void)value;
+  return t->interference = true;
+}
+
 static bool set_json(CagTool *t, const char *value) {
   (void)value;
   return t->json = true;
@@ -503,7 +508,7 @@ static bool set_version(CagTool *t, const char *value) {
 #define ALL (~0u)
 #define SCRIPTS                                                                                    \
   (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch) | ON(measure) |  \
-   ON(mcp) | ON(view))
+   ON(mcp) | ON(view) | ON(check))
 const CagToolOption cag_tool_options[] = {
 #define CAG_OPTION(id, letter, name, argument, commands, help)                                     \
   {#id, letter, name, argument, commands, help, set_##id},

@@ -94,6 +94,7 @@ struct CagTool {
   bool has_section;       // --section
   double section[4];      // as for cag_session_set_section
   bool watch;             // --watch
+  bool interference;      // --interference
   bool json;              // --json
 
   // Receives the error of an invalid option value; NULL: it is written to standard error.

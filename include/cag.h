@@ -206,6 +206,10 @@ typedef struct CagMeasures {
 // are those in exported files.
 CAG_API int cag_session_measure(CagSession *s, void (*give)(void *context, const CagMeasures *part),
                                 void *context);
+// Looks for parts of what is shown that share volume: solids, closed meshes, and closed surfaces; a
+// group that has a name and contains no other names is one part. Adds an error for each pair, with
+// the names of the parts and the volume. Returns CAG_STATUS_SCRIPT if there are any.
+CAG_API int cag_session_interference(CagSession *s);
 // Writes a line for each shown item, such as "vase: revolution surface, ...", to `out`.
 CAG_API void cag_session_describe_scene(CagSession *s, FILE *out);
 // Returns the name of camera i of the scene, or NULL.

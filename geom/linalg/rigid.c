@@ -267,3 +267,49 @@ CagStatus cag_twist_of(const CagTransform *t, double twist[6], CagError *err) {
   memcpy(twist, (double[6]){v.x, v.y, v.z, w.x, w.y, w.z}, 6 * sizeof *twist);
   return CAG_OK;
 }
+
+// --- Frames ---
+
+// An axis of the half turn between a direction and its opposite.
+static CagVec3 half_turn_axis(CagVec3 direction) {
+  const CagVec3 d = cag_unit(direction), z = {0, 0, 1};
+  const CagVec3 across = cag_madd(z, -d.z, d);
+  return cag_norm(across) > CAG_PARALLEL ? across : cag_vec3(1, 0, 0);
+}
+
+CagTransform cag_rotation_between(CagVec3 from, CagVec3 to) {
+  CagTransform out = cag_transform_identity();
+  CagError ignored;
+  const CagVec3 a = cag_unit(from), b = cag_unit(to);
+  CagVec3 axis = cag_cross(a, b);
+  const double sine = cag_norm(axis), cosine = cag_dot(a, b);
+  if (sine <= CAG_PARALLEL && cosine > 0) return out;
+  if (sine <= CAG_PARALLEL) axis = half_turn_axis(a);
+  const double angle = sine <= CAG_PARALLEL ? M_PI : atan2(sine, cosine);
+  if (cag_rotate(axis, angle, cag_vec3(0, 0, 0), &out, &ignored)) return cag_transform_identity();
+  return out;
+}
+
+static CagVec3 column_of(const CagTransform *t, int k) {
+  return cag_vec3(t->m[0][k], t->m[1][k], t->m[2][k]);
+}
+
+bool cag_frame_image(const CagTransform *map, const CagTransform *frame, CagTransform *out) {
+  *out = cag_transform_multiply(map, frame);
+  if (!cag_transform_is_affine(out)) return false;
+  if (cag_transform_is_rigid(out)) return true;
+  const CagVec3 x = column_of(out, 0), y = column_of(out, 1), up = column_of(out, 2);
+  CagVec3 z = cag_cross(x, y);
+  const double side = cag_dot(z, up);
+  if (!(fabs(side) > CAG_ROUNDING * cag_norm(x) * cag_norm(y) * cag_norm(up))) return false;
+  z = cag_scaled(cag_unit(z), side > 0 ? 1 : -1);
+  const CagVec3 axes[3] = {cag_unit(x), cag_cross(z, cag_unit(x)), z};
+  for (int k = 0; k < 3; k++) {
+    out->m[0][k] = axes[k].x;
+    out->m[1][k] = axes[k].y;
+    out->m[2][k] = axes[k].z;
+    out->m[k][3] /= out->m[3][3];
+  }
+  out->m[3][3] = 1;
+  return true;
+}

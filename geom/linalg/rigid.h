@@ -1,4 +1,4 @@
-// Rigid motions: the best one for pairs of points, nearest rotations, and twists.
+// Rigid motions: the best one for pairs of points, nearest rotations, twists, and frames.
 //
 // A twist [v, w] is the logarithm of a rigid motion: w is the axis times the angle in radians, and v
 // is the velocity of the point at the origin of a constant motion that takes one unit of time.
@@ -36,5 +36,14 @@ CagStatus cag_mean_rotation(const CagTransform *t, size_t n, CagTransform *out, 
 // with "not-rigid" and "not-finite".
 CagStatus cag_twist_of(const CagTransform *t, double twist[6], CagError *err);
 CagStatus cag_motion_of(const double twist[6], CagTransform *out, CagError *err);
+
+// The rotation by the smallest angle that turns one direction into another, neither of which is 0.
+// Between opposite directions, it is a half turn about the direction perpendicular to them that is
+// nearest to z, or about x if they are vertical.
+CagTransform cag_rotation_between(CagVec3 from, CagVec3 to);
+// What becomes of a rigid frame if an affine map moves the space: x follows the map, z stays
+// perpendicular to the image of the xy plane and on the side of the image of z, and y completes a
+// right-handed frame. Returns false if there is no such frame: the map is projective or singular.
+bool cag_frame_image(const CagTransform *map, const CagTransform *frame, CagTransform *out);
 
 #endif

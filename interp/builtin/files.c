@@ -458,6 +458,85 @@ bool cag_files_read_json(CagCall *call, const struct cag_files_read_json *a, Cag
   return r.at == r.end || fail_at(&r, r.at, "unexpected text after the value");
 }
 
+// --- Writing CSV ---
+
+static void write_cell_text(CagString *s, const char *bytes, size_t n, char separator) {
+  bool quoted = n > 0 && (cag_is_space(bytes[0]) || cag_is_space(bytes[n - 1]));
+  for (size_t i = 0; i < n && !quoted; i++)
+    quoted = bytes[i] == separator || bytes[i] == '"' || bytes[i] == '\n' || bytes[i] == '\r';
+  if (quoted) cag_string_add(s, "\"", 1);
+  for (size_t i = 0; i < n; i++)
+    cag_string_add(s, bytes[i] == '"' ? "\"\"" : bytes + i, bytes[i] == '"' ? 2 : 1);
+  if (quoted) cag_string_add(s, "\"", 1);
+}
+
+static void write_cell(CagCall *call, CagString *s, CagValue v, char separator) {
+  if (v.type == CAG_NONE) return;
+  if (v.type == CAG_NUMBER || v.type == CAG_ANGLE) {
+    cag_print_number(s, v.as.number);
+    return;
+  }
+  if (v.type == CAG_TEXT) {
+    write_cell_text(s, CAG_AS_TEXT(v)->bytes, CAG_AS_TEXT(v)->length, separator);
+    return;
+  }
+  CagString *printed = cag_held_string(call);
+  cag_print_value(call->vm, printed, v, false);
+  cag_string_check(call->vm, printed);
+  write_cell_text(s, printed->bytes ? printed->bytes : "", printed->length, separator);
+  cag_release_held(call, printed);
+}
+
+static bool write_row(CagCall *call, CagString *s, const CagList *rows, size_t i, char separator,
+                      const CagLayout *header) {
+  const CagValue row = cag_list_get(call->vm, rows, i);
+  if (row.type != (header ? CAG_RECORD : CAG_LIST))
+    return cag_fail_element(call, 0, i, row, header ? "a record" : "a list");
+  if (!header) {
+    for (size_t k = 0; k < CAG_AS_LIST(row)->length; k++) {
+      if (k > 0) cag_string_add(s, &separator, 1);
+      write_cell(call, s, cag_list_get(call->vm, CAG_AS_LIST(row), k), separator);
+    }
+    return true;
+  }
+  const CagRecord *r = CAG_AS_RECORD(row);
+  for (size_t k = 0; k < header->count; k++) {
+    const size_t at = cag_layout_find(r->layout, header->names[k]);
+    if (at == (size_t)-1 || r->layout->count != header->count) {
+      cag_fail_call(
+          call, 0, CAG_ERR_field,
+          "expects records with the same fields as `rows`, but those of the record at [%zu] differ from those at [0]",
+          i);
+      return cag_fail_help(call->vm, "an empty cell is a field with the value none");
+    }
+    if (k > 0) cag_string_add(s, &separator, 1);
+    write_cell(call, s, r->fields[at], separator);
+  }
+  return true;
+}
+
+bool cag_files_csv(CagCall *call, const struct cag_files_csv *a, CagValue *result) {
+  const char *given = a->separator ? a->separator : ",", separator = *given;
+  if (!is_separator(given))
+    return cag_fail_value(call, 1, "one character, such as \",\" \";\" \"\\t\"");
+  CagString *s = cag_held_string(call);
+  const CagList *rows = a->rows;
+  const CagValue first = rows->length ? cag_list_get(call->vm, rows, 0) : cag_none();
+  const CagLayout *header = first.type == CAG_RECORD ? CAG_AS_RECORD(first)->layout : NULL;
+  for (size_t k = 0; header && k < header->count; k++) {
+    if (k > 0) cag_string_add(s, &separator, 1);
+    write_cell_text(s, header->names[k]->bytes, header->names[k]->length, separator);
+  }
+  for (size_t i = 0; i < rows->length; i++) {
+    if (i % ROWS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
+    if (i > 0 || header) cag_string_add(s, "\n", 1);
+    if (!cag_string_fits(call->vm, s) || !write_row(call, s, rows, i, separator, header))
+      return false;
+  }
+  *result = cag_text_from_string(call->vm, s);
+  return true;
+}
+
 // --- Writing JSON ---
 
 static bool write_json(CagCall *call, CagString *s, CagValue v, int depth);

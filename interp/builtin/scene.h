@@ -10,6 +10,9 @@
 bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, CagColor *out);
 CagValue cag_color_value(CagVm *vm, CagColor c);
 
+// Copies the first argument, a shape, or a list of shapes as a group, in order to change it.
+bool cag_scene_copy(CagCall *call, CagValue *result);
+
 // Fields of a record that was checked when it was made; `fallback` if there is no such field, or r
 // is NULL.
 double cag_number_field(const CagRecord *r, const char *name, double fallback);

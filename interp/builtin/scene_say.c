@@ -157,8 +157,7 @@ static CagValue with_field(CagVm *vm, CagValue v, const char *name, CagValue val
   return copy;
 }
 
-// Copies a shape, or a list of shapes as a group, in order to change it.
-static bool copy_shape(CagCall *call, CagValue *result) {
+bool cag_scene_copy(CagCall *call, CagValue *result) {
   CagValue v = call->values[0];
   if (v.type == CAG_LIST) {
     CagBuilder *shapes = cag_builder_new(call->vm);
@@ -179,7 +178,7 @@ static bool set_material(CagCall *call, CagRecord *material, CagValue *result) {
     *result = with_field(call->vm, v, "material", cag_object(CAG_RECORD, both));
     return true;
   }
-  if (!copy_shape(call, result)) return false;
+  if (!cag_scene_copy(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
   shape->material = cag_material_combine(call->vm, shape->material, material);
   return true;
@@ -220,21 +219,21 @@ bool cag_scenes_named(CagCall *call, const struct cag_scenes_named *a, CagValue 
     *result = named_image(call->vm, v, name);
     return true;
   }
-  if (!copy_shape(call, result)) return false;
+  if (!cag_scene_copy(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
   if (!shape->name) shape->name = CAG_AS_TEXT(name);
   return true;
 }
 
 bool cag_scenes_tolerance(CagCall *call, const struct cag_scenes_tolerance *a, CagValue *result) {
-  if (!copy_shape(call, result)) return false;
+  if (!cag_scene_copy(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
   if (shape->tolerance == 0) shape->tolerance = a->t;
   return true;
 }
 
 bool cag_scenes_hidden(CagCall *call, CagValue *result) {
-  if (!copy_shape(call, result)) return false;
+  if (!cag_scene_copy(call, result)) return false;
   CAG_AS_SHAPE(*result)->hidden = true;
   return true;
 }
@@ -254,7 +253,7 @@ bool cag_scenes_group(CagCall *call, CagValue *result) {
 }
 
 bool cag_scenes_line_style(CagCall *call, const struct cag_scenes_line_style *a, CagValue *result) {
-  if (!copy_shape(call, result)) return false;
+  if (!cag_scene_copy(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
   if (!shape->line.set) shape->line = (CagLineStyle){true, a->radius, a->dash};
   return true;

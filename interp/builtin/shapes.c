@@ -115,6 +115,7 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   const CagShape *b = CAG_AS_SHAPE(from);
   a->material = b->material;
   a->name = b->name;
+  a->frames = b->frames;
   a->line = b->line;
   a->tolerance = b->tolerance;
   a->hidden = b->hidden;

@@ -10,7 +10,8 @@
 #include "interp/builtin/surfaces.h"
 #include "interp/vm/vm.h"
 
-// The result has the material and tolerance of the first operand, but not its name and visibility.
+// The result has the material, tolerance, and frames of the first operand, but not its name and
+// visibility.
 static void inherit_material(CagValue to, const CagShape *from) {
   CAG_AS_SHAPE(to)->material = from->material;
   CAG_AS_SHAPE(to)->tolerance = from->tolerance;
@@ -292,6 +293,7 @@ static bool operate(CagCall *call, CagSetOperation op, CagValue *result) {
   shape->copied = n == 1;
   if (said.type != CAG_UNSET) inherit_material(*result, CAG_AS_SHAPE(said));
   if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have their own
+  if (cag_is_shape(items[0])) shape->frames = CAG_AS_SHAPE(items[0])->frames;
   return true;
 }
 

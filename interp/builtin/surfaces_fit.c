@@ -279,5 +279,8 @@ bool cag_surfaces_is_developable(CagCall *call, const struct cag_surfaces_is_dev
 
 bool cag_surfaces_unroll(CagCall *call, const struct cag_surfaces_unroll *a, CagValue *result) {
   CagSurface *out = NULL;
-  return cag_changed_surface_result(call, cag_surface_unroll(a->S, &out, call->err), &out, result);
+  const CagStatus status = cag_surface_unroll(a->S, &out, call->err);
+  if (!cag_changed_surface_result(call, status, &out, result)) return false;
+  CAG_AS_SHAPE(*result)->frames = NULL; // what is bent has no rigid frame
+  return true;
 }

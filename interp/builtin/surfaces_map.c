@@ -177,6 +177,7 @@ static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double toler
   if (smooth ? !map_smooth(call, g, s, result) : !map_body(call, g, s, tolerance, result))
     return false;
   cag_shape_say_alike(*result, g);
+  CAG_AS_SHAPE(*result)->frames = NULL; // what is bent has no rigid frame
   return true;
 }
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/builtin/shapes.h"
+#include "interp/builtin/assemblies.h"
 #include "interp/builtin/types.h"
 #include "interp/vm/jet.h"
 #include "interp/vm/vm.h"
@@ -94,12 +94,20 @@ static bool check_in_front(CagCall *call, const CagTransform *t, CagValue v) {
   return true;
 }
 
+// What a shape has beside its geometry follows it. Frames that have no image are lost.
+static void carry_along(CagVm *vm, CagValue moved, const CagShape *from, const CagTransform *t) {
+  CagShape *to = CAG_AS_SHAPE(moved);
+  to->model = from->model ? from->model : from->origin.definition;
+  to->frames = from->frames ? cag_frames_moved(vm, from->frames, t) : NULL;
+}
+
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   const CagValueType *type = cag_value_type(v);
   if (v.type == CAG_LIST) return cag_move_list(call, t, v, result);
   if (t->in_front && cag_is_shape(v) && !check_in_front(call, t, v)) return false;
   if (type->transform) {
     if (!type->transform(call, t, v, result)) return false;
+    if (cag_is_shape(v)) carry_along(call->vm, *result, CAG_AS_SHAPE(v), t);
     if (cag_is_shape(v)) cag_shape_note_motion(call->vm, *result, v, t);
     if (keeps_mesh(v) && cag_transform_is_rigid(t)) cag_shape_moved(call->vm, *result, v, t);
     if (cag_is_shape(v) && CAG_AS_SHAPE(v)->limb && cag_transform_is_affine(t))

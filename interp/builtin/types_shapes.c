@@ -150,6 +150,7 @@ static void scan_shape(CagHeap *h, CagObject *o) {
   const CagShape *s = (CagShape *)o;
   if (s->material) cag_mark_object(h, &s->material->head);
   if (s->name) cag_mark_object(h, &s->name->head);
+  if (s->frames) cag_mark_object(h, &s->frames->head);
   cag_mark_origin(h, &s->origin);
   if (s->motion) cag_mark_object(h, &s->motion->head);
   if (s->still) cag_mark_object(h, &s->still->head);
@@ -173,6 +174,30 @@ static void add_count(CagString *s, size_t n, const char *one, const char *many)
     cag_shape_say_alike(*result, v);                                                               \
     return true;                                                                                   \
   }
+
+// `frames`, which every shape may have.
+static bool shape_member(CagVm *vm, CagValue v, const char *name, CagValue *out) {
+  const CagShape *s = CAG_AS_SHAPE(v);
+  if (strcmp(name, "frames") != 0) return false;
+  if (!s->frames) {
+    cag_vm_fail(vm, CAG_ERR_field, "%s has no frames", cag_type_article(v));
+    return cag_fail_help(vm, "give it frames by with_frames(shape, {top: translate([0, 0, 10])})");
+  }
+  *out = cag_object(CAG_RECORD, s->frames);
+  return true;
+}
+
+static const char *shape_member_name(CagVm *vm, CagValue v, size_t i) {
+  (void)vm;
+  return i == 0 && CAG_AS_SHAPE(v)->frames ? "frames" : NULL;
+}
+
+// Beside the members of a type, which `names` has.
+static const char *further_member_name(CagVm *vm, CagValue v, const char *const *names, size_t i) {
+  size_t n = 0;
+  while (names[n]) n++;
+  return i < n ? names[i] : shape_member_name(vm, v, i - n);
+}
 
 // --- Curves and surfaces ---
 
@@ -213,12 +238,16 @@ const CagValueType cag_type_curve = {.print = print_curve,
                                      .retain = retain_curve,
                                      .destroy = destroy_curve,
                                      .call = cag_shape_call,
+                                     .member = shape_member,
+                                     .member_name = shape_member_name,
                                      .transform = move_curve};
 const CagValueType cag_type_surface = {.print = print_surface,
                                        .scan = scan_shape,
                                        .retain = retain_surface,
                                        .destroy = destroy_surface,
                                        .call = cag_shape_call,
+                                       .member = shape_member,
+                                       .member_name = shape_member_name,
                                        .transform = move_surface};
 
 // --- Regions ---
@@ -253,6 +282,8 @@ const CagValueType cag_type_region = {.print = print_region,
                                       .scan = scan_shape,
                                       .retain = retain_region,
                                       .destroy = destroy_region,
+                                      .member = shape_member,
+                                      .member_name = shape_member_name,
                                       .transform = move_region};
 
 // --- Solids and meshes ---
@@ -288,12 +319,11 @@ static const char *const mesh_members[] = {"vertices", "faces", NULL};
 static bool mesh_member(CagVm *vm, CagValue v, const char *name, CagValue *out) {
   for (size_t i = 0; mesh_members[i]; i++)
     if (!strcmp(name, mesh_members[i])) return call_unary(vm, name, v, out);
-  return false;
+  return shape_member(vm, v, name, out);
 }
 
 static const char *mesh_member_name(CagVm *vm, CagValue v, size_t i) {
-  (void)vm, (void)v;
-  return cag_name_at(mesh_members, i);
+  return further_member_name(vm, v, mesh_members, i);
 }
 
 const CagValueType cag_type_solid = {.print = print_solid,
@@ -301,6 +331,8 @@ const CagValueType cag_type_solid = {.print = print_solid,
                                      .retain = retain_solid,
                                      .destroy = destroy_solid,
                                      .call = cag_shape_call,
+                                     .member = shape_member,
+                                     .member_name = shape_member_name,
                                      .transform = move_operation};
 const CagValueType cag_type_mesh = {.print = print_mesh,
                                     .scan = scan_shape,
@@ -334,8 +366,11 @@ static bool move_label(CagCall *call, const CagTransform *t, CagValue v, CagValu
   return true;
 }
 
-const CagValueType cag_type_label = {
-    .print = print_label, .scan = scan_label, .transform = move_label};
+const CagValueType cag_type_label = {.print = print_label,
+                                     .scan = scan_label,
+                                     .member = shape_member,
+                                     .member_name = shape_member_name,
+                                     .transform = move_label};
 
 // --- Groups ---
 
@@ -352,15 +387,16 @@ static void scan_group(CagHeap *h, CagObject *o) {
   scan_shape(h, o);
 }
 
+static const char *const group_members[] = {"items", NULL};
+
 static bool group_member(CagVm *vm, CagValue v, const char *name, CagValue *out) {
-  (void)vm;
+  if (strcmp(name, "items") != 0) return shape_member(vm, v, name, out);
   *out = cag_object(CAG_LIST, CAG_AS_SHAPE(v)->as.items);
-  return !strcmp(name, "items");
+  return true;
 }
 
 static const char *group_member_name(CagVm *vm, CagValue v, size_t i) {
-  (void)vm, (void)v;
-  return i == 0 ? "items" : NULL;
+  return further_member_name(vm, v, group_members, i);
 }
 
 static bool move_group(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {

@@ -175,6 +175,8 @@ static void check_deprecated_row(Check *c, const CagBuiltin *row, const char *na
 static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
   if (strncmp(row->signature, "error(", strlen("error(")) == 0)
     return CAG_TYPES_ANY; // it does not return
+  // Functions that give attributes make a group of a list of shapes.
+  if (first & CAG_TYPES(LIST)) first |= CAG_TYPES(GROUP);
   if (row->result && strncmp(row->result, "as ", 3) == 0) return first ? first : CAG_TYPES_ANY;
   return cag_types_of_result(row->result);
 }

@@ -36,7 +36,9 @@ static bool keeps(const CagExpr *callee) {
   size_t n;
   const CagBuiltin *rows = cag_builtin_rows(callee->as.name.index, &n);
   for (size_t i = 0; i < n; i++)
-    if (!strcmp(rows[i].result, "as G") || !strcmp(rows[i].result, "as C")) return true;
+    if (!strcmp(rows[i].result, "as G") || !strcmp(rows[i].result, "as C") ||
+        !strcmp(rows[i].result, "as part"))
+      return true;
   return false;
 }
 

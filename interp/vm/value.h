@@ -328,12 +328,14 @@ typedef struct CagShape {
   } as;
   CagRecord *material; // NULL: not set
   CagText *name;       // NULL: not set
+  CagRecord *frames;   // transforms, which move with the shape; NULL: none
   CagOrigin origin;
-  CagMotionNote *motion;       // by the call that is not in its origin yet; NULL: it did not move
-  CagStill *still;             // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
-  CagLimb *limb;               // NULL: not of a robot, or changed since it was drawn
-  CagLineStyle line;           // of curves
-  double tolerance;            // 0: not set
+  CagText *model;        // the definition of the shape that was moved to make this one; NULL: none
+  CagMotionNote *motion; // by the call that is not in its origin yet; NULL: it did not move
+  CagStill *still;       // CURVE, SURFACE, SOLID, MESH: NULL if it was not moved
+  CagLimb *limb;         // NULL: not of a robot, or changed since it was drawn
+  CagLineStyle line;     // of curves
+  double tolerance;      // 0: not set
   struct CagRobotValue *drawn; // GROUP: the robot of which this is the drawing; NULL
   bool hidden;
   bool fresh;               // the call that makes it has not been added to its origin yet

@@ -76,3 +76,52 @@ grep -rL --include='*.cag' -e 'expect error' -e '(() =>' "$root/tests/language" 
 ran='cag check' && timeout $LONGEST xargs -0 "$CAG" check < right > out 2> err
 code=$?
 ! grep -A2 '^error' err > errors || wrong "$(cat errors)"
+
+it 'parts that share volume are reported with their names and the volume'
+script clash.cag 'post = named(box(2), "post")
+beam = named(box([4, 2, 2]), "beam")
+show post, beam |> translate([1, 0, 0]), named(box(2), "block") |> translate([5, 0, 0])'
+try check --interference clash.cag
+status 1
+prints_nothing
+says 'error: parts `post` and `beam` share 4 mm3'
+says 'clash.cag:1'
+says_not block
+try check clash.cag
+status 0
+
+it 'JSON of parts that share volume'
+try check --interference clash.cag --diagnostics json
+status 1
+says '"severity":"error","code":"E0921"'
+says 'parts `post` and `beam` share 4 mm3'
+says '"line":1'
+
+it 'parts that touch, and the bodies of a part, do not interfere'
+script fits.cag 'param deep = 0
+post = named(group(box(2), sphere(1)), "post")
+block = box([9, 9, 2]) - (cylinder(9, 2) |> translate([4, 4, -1]))
+show post, block |> translate([2 - deep, 0, 0]), cylinder(2, 2) |> translate([6 - deep, 4, 0])
+show circle(3), camera([0, -9, 3]), ground()'
+try check --interference fits.cag
+status 0
+says_nothing
+try check --interference fits.cag -D deep=0.5
+status 1
+says 'parts `post` and `block` share'
+
+it 'more than 20 pairs are all reported'
+script many.cag 'show [for i in 0..30: named(box(2), "b{i}") |> translate([1.5*i, 0, 0])]'
+try check --interference many.cag --diagnostics json
+status 1
+[ "$(grep -c E0921 err)" = 30 ] || wrong "$(grep -c E0921 err) pairs"
+
+it 'an error of the run, and standard input'
+script fails.cag 'show box(1)
+assert 1 > 2'
+try check --interference fails.cag
+status 1
+says 'assert'
+with_input clash.cag check --interference -
+status 1
+says 'share 4 mm3'
