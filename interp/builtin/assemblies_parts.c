@@ -131,13 +131,12 @@ static bool add_items(PartSearch *p, const CagList *items, const PartAround *aro
 static bool add_group(PartSearch *p, CagValue v, const PartAround *said) {
   const CagList *items = CAG_AS_SHAPE(v)->as.items;
   if (p->in_part || said->open || !cag_is_part(p->call->vm, v)) return add_items(p, items, said);
-  CagPart *part = add_part(p, said, "group");
+  add_part(p, said, "group");
   const size_t at = p->parts->count - 1;
   p->in_part = true;
   const bool ok = add_items(p, items, said);
   p->in_part = false;
-  part = &p->parts->items[at];
-  if (ok && part->count == 0) p->parts->count--; // nothing in it is a body
+  if (ok && p->parts->items[at].count == 0) p->parts->count--; // nothing in it is a body
   return ok;
 }
 
