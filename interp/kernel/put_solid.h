@@ -8,8 +8,8 @@
 
 // Adds a solid: primitives, prisms, and revolutions as such, other solids by their faces, set
 // operations with their operands. Fails with "no-boundary" for a mesh, and for an unbounded solid
-// that nothing bounds. What has no exact NURBS form is
-// approximated within the tolerance of the fields; if it is 0, fails with "export-not-exact".
+// that nothing bounds. Curves and surfaces without an exact NURBS form are approximated within the
+// tolerance of the fields; if it is 0, fails with "export-not-exact".
 CagStatus cag_put_solid(CagFields *f, const CagSolid *s, CagError *err);
 
 #endif

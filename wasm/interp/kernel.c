@@ -1,4 +1,5 @@
-// Replaces interp/kernel/ and the test of STEP files where there are no processes.
+// Replaces interp/kernel/ and interp/formats/step_check.c in a browser, which cannot start the
+// helper program.
 
 #include "interp/formats/step_check.h"
 
