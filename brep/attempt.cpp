@@ -8,7 +8,7 @@
 
 namespace brep {
 
-static std::string failure_bytes(const Failure &failure) {
+std::string failure_bytes(const Failure &failure) {
   Writer out;
   out.u32(failure.reason);
   out.text(failure.what);

@@ -18,6 +18,9 @@ static const double ATTEMPT_SECONDS = 120;
 bool attempt(const std::function<Solids()> &method, double seconds, Solids &result,
              Failure &failure);
 
+// The fields of a FAILURE (interp/kernel/protocol.h).
+std::string failure_bytes(const Failure &failure);
+
 } // namespace brep
 
 #endif

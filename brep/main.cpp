@@ -3,6 +3,7 @@
 //
 // Each request runs in a child process, so that this program survives crashes of the kernel.
 
+#include "brep/attempt.hpp"
 #include "brep/boundary.hpp"
 #include "brep/exchange.hpp"
 #include "brep/isolated.hpp"
@@ -38,12 +39,7 @@ static std::string make_message(CagBrepMessage type, const std::string &fields) 
 }
 
 static std::string make_failure(const Failure &failure) {
-  Writer out;
-  out.u32(failure.reason);
-  out.text(failure.what);
-  out.u32(failure.edge);
-  out.f64(failure.limit);
-  return make_message(CAG_BREP_FAILURE, out.bytes);
+  return make_message(CAG_BREP_FAILURE, failure_bytes(failure));
 }
 
 static std::string make_result(std::vector<Part> parts) {
