@@ -29,16 +29,16 @@ bool cag_carrier_is_periodic(const CagCarrier *c, int direction);
 // Breaks of the carrier along u (direction 0) or v (1), as for surfaces: writes up to `capacity`,
 // returns their number.
 size_t cag_carrier_breaks(const CagCarrier *c, int direction, double *out, size_t capacity);
-// A straight generator of a plane, cylinder, cone, or extruded carrier: S(u, v) is `at` + v `along`,
-// S_u is `at_u` + v `along_u`.
+// A straight generator of a plane, cylinder, cone, or extruded carrier: S(u, v) is `at` + v
+// `along`, S_u is `at_u` + v `along_u`.
 typedef struct CagGenerator {
   CagVec3 at, along, at_u, along_u;
 } CagGenerator;
 bool cag_carrier_is_ruled(const CagCarrier *c);
 CagStatus cag_carrier_generator(const CagCarrier *c, double u, CagGenerator *out, CagError *err);
 
-// The parameters of the point of an analytic carrier that is nearest to p, with the angles nearest to
-// those of `near`. On the axis, u is that of `near`.
+// The parameters of the point of an analytic carrier that is nearest to p, with the angles nearest
+// to those of `near`. On the axis, u is that of `near`.
 void cag_carrier_parameters(const CagCarrier *c, CagVec3 p, const double near[2], double out[2]);
 
 // An edge in the parameters of a face, with the parameter of its curve.

@@ -1,10 +1,10 @@
 // Areas and mass properties of boundaries (see measure.h).
 //
-// An integral of f over a face is the integral of F dv along its loops, where F is the integral of f
-// in u from any fixed value, or that of -G du, where G is the integral of f in v. On surfaces of
-// revolution, F is that of a trigonometric polynomial, and on ruled ones, G is that of a polynomial,
-// so that Gauss's quadrature with few points is exact or accurate to rounding. Splines need adaptive
-// quadrature.
+// An integral of f over a face is the integral of F dv along its loops, where F is the integral of
+// f in u from any fixed value, or that of -G du, where G is the integral of f in v. On surfaces of
+// revolution, F is that of a trigonometric polynomial, and on ruled ones, G is that of a
+// polynomial, so that Gauss's quadrature with few points is exact or accurate to rounding. Splines
+// need adaptive quadrature.
 //
 // Loops run clockwise in the parameters of a reversed face, which gives the flux along its outward
 // normal. Coordinates are relative to the middle of the boundary, and lengths to its size.

@@ -19,8 +19,8 @@ CagStatus cag_boundary_mass(const CagBoundary *b, CagMassProperties *out, CagErr
 CagStatus cag_boundary_face_area(const CagBoundary *b, size_t face, double *area, CagVec3 *centroid,
                                  CagError *err);
 
-// A box around points of all edges of a face, or of all faces if `face` is SIZE_MAX. Faces may bulge
-// beyond it.
+// A box around points of all edges of a face, or of all faces if `face` is SIZE_MAX. Faces may
+// bulge beyond it.
 CagStatus cag_boundary_extent(const CagBoundary *b, size_t face, CagBounds *out, CagError *err);
 
 #endif

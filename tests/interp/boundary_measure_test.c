@@ -1,4 +1,5 @@
-// Areas, volumes, centroids, and inertia of boundaries that cag-brep computed, compared with formulas.
+// Areas, volumes, centroids, and inertia of boundaries that cag-brep computed, compared with
+// formulas.
 
 #include "geom/boundary/measure.h"
 #include "tests/interp/boundary_support.h"
