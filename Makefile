@@ -82,7 +82,7 @@ CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli live -name '*.c' | sort)
 PARAMETERS := interp/vm/parameter_kinds.def interp/vm/parameter_types.def
 ROWS       := $(patsubst %,interp/builtin/%.rows,constants numbers angles vectors lists texts records control \
               random calculus matrices files formula transforms curves regions letters bsplines functions frenet hulls \
-              conics splines fits surfaces tensors sections meetings triangles solids checks mesh_files figures assemblies \
+              conics splines fits surfaces tensors sections meetings triangles solids exacts checks mesh_files figures assemblies \
               quality robots robot_files inverse scene cameras rays sensors images image_measures image_filters image_templates)
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 DOCUMENTS  := $(filter-out docs/architecture.md docs/contributing.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))

@@ -19,5 +19,6 @@ void cag_boundary_free(CagBoundary *b) {
   cag_free(b->shells);
   cag_free(b->order);
   cag_free(b->name);
+  cag_free(b->body);
   *b = (CagBoundary){0};
 }

@@ -74,7 +74,9 @@ typedef struct CagBoundary {
   CagVec3 centroid;
   char *name;
   bool has_color;
-  double color[3]; // linear red, green, blue
+  double color[3];     // linear red, green, blue
+  unsigned char *body; // the kernel's own form of the solid, by which it is asked for again
+  size_t body_length;
 } CagBoundary;
 
 void cag_boundary_free(CagBoundary *b);

@@ -224,6 +224,14 @@ bool cag_transform_is_similarity(const CagTransform *t, double *scale) {
   return true;
 }
 
+double cag_transform_stretch(const CagTransform *t) {
+  double scale, sum = 0;
+  if (cag_transform_is_similarity(t, &scale)) return scale;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) sum += t->m[i][j] * t->m[i][j];
+  return sqrt(sum) / fabs(t->m[3][3]);
+}
+
 bool cag_transform_mirrors(const CagTransform *t) {
   double det = linear_determinant(t);
   return t->m[3][3] < 0 ? det > 0 : det < 0;

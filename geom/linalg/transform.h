@@ -39,6 +39,8 @@ bool cag_transform_is_affine(const CagTransform *t);     // last row is [0 0 0 w
 bool cag_transform_is_similarity(
     const CagTransform *t, double *scale); // uniform scale, with or without reflection, exactly or
                                            // to rounding
+// An upper bound of how much an affine transform lengthens; the scale of a similarity.
+double cag_transform_stretch(const CagTransform *t);
 bool cag_transform_mirrors(const CagTransform *t); // determinant of the linear part < 0
 
 CagTransform cag_translate(CagVec3 v);

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "geom/solid/build.h"
+#include "geom/solid/exact.h"
 #include "geom/tessellate/orient.h"
 
 bool cag_solid_is_compound(const CagSolid *s) { return s->core != NULL; }
@@ -335,6 +336,7 @@ static CagStatus copy_solid(const CagSolid *s, CagSolid **out, CagError *err) {
   c->placement = s->placement;
   c->core = s->core;
   if (c->core) c->core->references++;
+  c->exact = cag_exact_retain(s->exact);
   for (size_t i = 0; i < s->face_count; i++) cag_solid_add(c, cag_surface_retain(s->faces[i]));
   for (size_t i = 0; !status && i < s->edge_count; i++) {
     const CagFaceEdge *e = &s->edges[i];

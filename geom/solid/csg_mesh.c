@@ -44,15 +44,6 @@ static CagStatus empty_mesh(CagMesh **out, CagError *err) {
   return cag_mesh_new(0, 0, false, false, false, out, err);
 }
 
-// An upper bound of how much a transform lengthens.
-static double stretch(const CagTransform *t) {
-  double scale, sum = 0;
-  if (cag_transform_is_similarity(t, &scale)) return scale;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) sum += t->m[i][j] * t->m[i][j];
-  return sqrt(sum) / fabs(t->m[3][3]);
-}
-
 static CagStatus check_interrupt(const volatile int *interrupt, CagError *err) {
   if (!interrupt || !*interrupt) return CAG_OK;
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
@@ -297,7 +288,7 @@ static CagStatus operation_mesh(const CagSolid *s, const CagTessellation *how,
                                 const CagBounds *window, CagMesh **out, CagError *err) {
   CagTessellation own = *how;
   CagMesh *m = NULL;
-  double scale = stretch(&s->placement);
+  double scale = cag_transform_stretch(&s->placement);
   if (!(scale > 0)) scale = 1;
   own.tolerance /= scale;
   own.max_edge /= scale;

@@ -184,6 +184,11 @@ static void describe_faces(const CagSolid *s, const double size[3], char *buffer
            s->face_count == 1 ? "face" : "faces");
 }
 
+static void describe_exact(const CagSolid *s, const double size[3], char *buffer, size_t n) {
+  (void)size;
+  snprintf(buffer, n, "exact solid, %zu %s", s->face_count, s->face_count == 1 ? "face" : "faces");
+}
+
 static void describe_mesh(const CagSolid *s, const double size[3], char *buffer, size_t n) {
   (void)size;
   snprintf(buffer, n, "polyhedron, %zu triangles", s->core->mesh->triangle_count);
@@ -239,6 +244,7 @@ const CagSolidKindRow cag_solid_kinds[] = {
     [CAG_SOLID_SWEEP] = {.name = "sweep", .describe = describe_faces},
     [CAG_SOLID_LOFT] = {.name = "loft", .describe = describe_faces},
     [CAG_SOLID_SHELL] = {.name = "shell", .describe = describe_faces},
+    [CAG_SOLID_EXACT] = {.name = "exact", .describe = describe_exact},
     [CAG_SOLID_MESH] = {.name = "polyhedron", .describe = describe_mesh},
     [CAG_SOLID_HALF_SPACE] = {.name = "half_space", .describe = cag_describe_half_space},
     [CAG_SOLID_QUADRIC] = {.name = "quadric", .describe = describe_name},

@@ -12,6 +12,7 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/exact.h"
 #include "geom/solid/kind.h"
 
 CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err) {
@@ -63,11 +64,12 @@ void cag_solid_release(CagSolid *s) {
   cag_free(s->faces);
   cag_free(s->edges);
   cag_solid_core_release(s->core);
+  cag_exact_release(s->exact);
   cag_free(s);
 }
 
 bool cag_solid_has_own_frame(const CagSolid *s) {
-  return s->core || s->kind == CAG_SOLID_BOX || s->kind == CAG_SOLID_SPHERE ||
+  return s->core || s->exact || s->kind == CAG_SOLID_BOX || s->kind == CAG_SOLID_SPHERE ||
          s->kind == CAG_SOLID_CYLINDER || s->kind == CAG_SOLID_TORUS;
 }
 
@@ -83,6 +85,7 @@ void cag_solid_digest_in_own_frame(const CagSolid *s, CagDigest *d) {
   cag_digest_word(d, s->label);
   cag_digest_numbers(d, (const double[]){s->a, s->b, s->c}, 3);
   if (s->core) core_digest(s->core, s->kind == CAG_SOLID_MESH, d);
+  if (s->exact) cag_exact_digest(s->exact, d);
 }
 
 void cag_solid_digest(const CagSolid *s, CagDigest *d) {
@@ -283,6 +286,7 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   moved->placement = cag_transform_multiply(t, &s->placement);
   moved->core = s->core;
   if (moved->core) moved->core->references++;
+  moved->exact = cag_exact_retain(s->exact);
   bool mirror = cag_transform_mirrors(t);
   for (size_t i = 0; !status && i < s->face_count; i++) {
     CagSurface *face;

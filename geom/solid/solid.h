@@ -31,6 +31,7 @@ typedef enum CagSolidKind {
   CAG_SOLID_SWEEP,      // region along a path, or under a motion
   CAG_SOLID_LOFT,       // surface through closed sections, with caps
   CAG_SOLID_SHELL,      // given closed surfaces
+  CAG_SOLID_EXACT,      // exact boundaries (exact.h)
   CAG_SOLID_MESH,       // the inside of a closed mesh
   CAG_SOLID_HALF_SPACE, // one side of a plane: unbounded
   CAG_SOLID_QUADRIC,    // the points at which a quadratic form is negative: unbounded
@@ -41,6 +42,8 @@ typedef enum CagSolidKind {
 
 // The definition of kinds without faces, in their own coordinates (csg.h).
 typedef struct CagSolidCore CagSolidCore;
+// The boundaries of a solid of the kind EXACT (exact.h).
+typedef struct CagExact CagExact;
 
 typedef struct CagSolid {
   int references;
@@ -56,6 +59,7 @@ typedef struct CagSolid {
   CagFaceEdge *edges;
   CagSolidCore *core; // for set operations and unbounded kinds, which may have faces as well;
                       // shared by transformed copies; else NULL
+  CagExact *exact;    // EXACT, likewise; else NULL
 } CagSolid;
 
 // Whether a solid has valid faces or a core, its edges refer to existing faces, and its placement

@@ -1,559 +1,62 @@
-// Tessellation of trimmed surfaces: a Delaunay triangulation of the parameter plane within the
-// loops, refined until its triangles are within the tolerance.
-//
-// The loops are discretized first, as curves in space, and triangulated; their edges are not
-// divided again. The vertices of the inner surface's own mesh over the region's box are then
-// inserted (Lawson), which brings the triangles near their final size; finally points are added in
-// triangles that exceed the tolerance. The plane is scaled so that its lengths approximate those on
-// the surface.
-//
-// Invariant of Plane: triangle t has corners corner[3t..] counter-clockwise; across[3t + k] is the
-// triangle beyond the edge from corner k to corner k + 1, NO_TRIANGLE at the outline.
+// Tessellation of trimmed surfaces: their loops are discretized as curves in space, and the surface
+// is triangulated within them (within.h).
 
 #include "geom/tessellate/trimmed.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "base/array.h"
 #include "base/memory.h"
-#include "geom/linalg/tolerance.h"
-#include "geom/mesh/edges.h"
-#include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
-#include "geom/tessellate/sides.h"
 #include "geom/tessellate/tessellation.h"
+#include "geom/tessellate/within.h"
 
-#define NO_TRIANGLE UINT32_MAX
-
-// Fraction of the tolerance for the mesh whose vertices are inserted: its triangles fit the
-// surface, with a margin for those between them and the outline.
-#define INNER_SHARE 0.7
-// Points closer to an edge of the outline than this fraction of its length are skipped, because
-// they would cause slivers.
-#define KEEP_OFF 0.3
-// An in-circle determinant below this fraction of its terms is rounding, and causes no flip.
-#define ROUNDING CAG_ROUNDING
-// Maximum number of passes over all triangles; each roughly halves those that exceed the tolerance.
-#define MOST_PASSES 40
-
-typedef struct Plane {
-  const CagSurface *inner;
-  double scale[2]; // from u and v to the plane
-  double *xy;      // scaled
-  CagVec3 *positions, *normals;
-  size_t outline; // the first vertices are those of the loops
-  size_t vertex_count, vertex_capacity;
-  uint32_t *corner, *across;
-  unsigned char *checked; // the triangle is within the tolerance
-  size_t triangle_count, triangle_capacity;
-  uint32_t hint;
-  uint32_t *stack; // triangles whose side 0, between corners 0 and 1, must be tested
-  size_t depth, stack_capacity;
-} Plane;
-
-static void release(Plane *p) {
-  cag_free(p->xy);
-  cag_free(p->positions);
-  cag_free(p->normals);
-  cag_free(p->corner);
-  cag_free(p->across);
-  cag_free(p->checked);
-  cag_free(p->stack);
-}
-
-// --- Room ---
-
-static CagStatus add_vertex(Plane *p, double u, double v, uint32_t *out, CagError *err) {
-  if (p->vertex_count == p->vertex_capacity) {
-    size_t n = p->vertex_capacity ? 2 * p->vertex_capacity : 1024;
-    if (!CAG_RESIZE(p->xy, 2 * n) || !CAG_RESIZE(p->positions, n) || !CAG_RESIZE(p->normals, n))
-      return cag_fail_memory(err);
-    p->vertex_capacity = n;
-  }
-  const CagSurface *s = p->inner;
-  u = fmin(fmax(u, s->u0), s->u1);
-  v = fmin(fmax(v, s->v0), s->v1);
-  size_t k = p->vertex_count;
-  CagError ignored;
-  CagStatus status = cag_surface_point(s, u, v, &p->positions[k], err);
+// Adds a point of a loop at t. Points of different parameters get different numbers.
+static CagStatus add_point(CagLoopPoints *o, const CagSurface *inner, const CagCurve *loop,
+                           double t, CagError *err) {
+  CagVec3 x, position;
+  CagStatus status = cag_curve_point(loop, t, &x, err);
   if (status) return status;
-  if (cag_surface_normal(s, u, v, &p->normals[k], &ignored)) p->normals[k] = cag_vec3(0, 0, 0);
-  p->xy[2 * k] = u * p->scale[0];
-  p->xy[2 * k + 1] = v * p->scale[1];
-  p->vertex_count++;
-  *out = (uint32_t)k;
-  return CAG_OK;
-}
-
-static CagStatus room_for_triangles(Plane *p, size_t wanted, CagError *err) {
-  if (wanted <= p->triangle_capacity) return CAG_OK;
-  size_t n = p->triangle_capacity ? p->triangle_capacity : 1024;
-  while (n < wanted) n *= 2;
-  if (!CAG_RESIZE(p->corner, 3 * n) || !CAG_RESIZE(p->across, 3 * n) || !CAG_RESIZE(p->checked, n))
-    return cag_fail_memory(err);
-  p->triangle_capacity = n;
-  return CAG_OK;
-}
-
-static CagStatus push(Plane *p, uint32_t triangle, CagError *err) {
-  if (!CAG_RESERVE(p->stack, p->stack_capacity, p->depth + 1)) return cag_fail_memory(err);
-  p->stack[p->depth++] = triangle;
-  return CAG_OK;
-}
-
-// --- The outline ---
-
-// Total turn of the surface's normal from t0 to t1 of an outline, summed over steps.
-static CagStatus turn_along(const Plane *p, const CagCurve *loop, double t0, double t1,
-                            double *turn, CagError *err) {
-  enum { STEPS = 4 };
-  CagVec3 at, before = {0}, normal;
-  *turn = 0;
-  for (int k = 0; k <= STEPS; k++) {
-    CagStatus status = cag_curve_point(loop, t0 + (t1 - t0) * k / STEPS, &at, err);
-    if (!status) status = cag_surface_normal(p->inner, at.x, at.y, &normal, err);
-    if (status) return status;
-    if (k) *turn += atan2(cag_norm(cag_cross(before, normal)), cag_dot(before, normal));
-    before = normal;
-  }
-  return CAG_OK;
-}
-
-// Number of parts of a chord of the outline such that the normal turns by at most the angle along
-// each part that is not short.
-static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double from, double to,
-                                double length, const CagTessellation *how, size_t *parts,
-                                CagError *err) {
-  const double closely = 0.9, most = ceil(length / tess_short_edge(how));
-  double n = 1;
-  *parts = 1;
-  if (!(how->angle > 0)) return CAG_OK;
-  while (n < most) {
-    double largest = 0;
-    for (double k = 0; k < n; k++) {
-      double turn;
-      CagStatus status = turn_along(p, loop, from + (to - from) * k / n,
-                                    from + (to - from) * (k + 1) / n, &turn, err);
-      if (status) return status;
-      largest = fmax(largest, turn);
-    }
-    if (largest <= how->angle) break;
-    n = fmin(most, ceil(n * largest / (closely * how->angle)));
-  }
-  *parts = (size_t)n;
-  return CAG_OK;
+  const double u = fmin(fmax(x.x, inner->u0), inner->u1), v = fmin(fmax(x.y, inner->v0), inner->v1);
+  status = cag_surface_point(inner, u, v, &position, err);
+  return status ? status : cag_loop_points_add(o, u, v, position, (uint32_t)o->count, err);
 }
 
 // Discretizes a loop in space; its last point equals the first and is left out.
-static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
+static CagStatus outline_loop(CagLoopPoints *o, const CagSurface *s, size_t loop,
                               const CagTessellation *how, size_t *count, CagError *err) {
+  const CagSurface *inner;
   const CagRegion *region;
-  cag_surface_trimmed_view(s, NULL, &region);
+  cag_surface_trimmed_view(s, &inner, &region);
   CagCurve *on;
   double *at = NULL;
-  size_t n = 0, before = p->vertex_count;
+  size_t n = 0, before = o->count;
   CagStatus status = cag_trimmed_loop(s, loop, &on, err);
   if (status) return status;
   double angle = how->angle > 0 ? how->angle : M_PI / 2;
   status = cag_curve_discretize_short(on, how->tolerance, angle, how->short_edge * how->tolerance,
                                       &at, &n, err);
   for (size_t k = 0; !status && k + 1 < n; k++) {
-    CagVec3 a, b, x;
+    CagVec3 a, b;
     status = cag_curve_point(on, at[k], &a, err);
     if (!status) status = cag_curve_point(on, at[k + 1], &b, err);
     if (status) break;
     const double length = cag_norm(cag_sub(b, a));
     double edges = how->max_edge > 0 ? ceil(length / how->max_edge) : 1;
     size_t parts = 1;
-    status = parts_for_turn(p, region->loops[loop], at[k], at[k + 1], length, how, &parts, err);
+    status = cag_loop_points_parts(inner, region->loops[loop], at[k], at[k + 1], length, how,
+                                   &parts, err);
     if (edges > (double)parts) parts = (size_t)edges;
-    for (size_t j = 0; !status && j < parts; j++) {
-      uint32_t vertex;
-      double t = at[k] + (at[k + 1] - at[k]) * (double)j / (double)parts;
-      status = cag_curve_point(region->loops[loop], t, &x, err);
-      if (!status) status = add_vertex(p, x.x, x.y, &vertex, err);
-    }
-    if (!status && p->vertex_count > how->max_triangles + 2)
-      status = cag_fail(
-          err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-          "the outline alone needs more triangles than the limit of %zu; use a larger tolerance",
-          how->max_triangles);
+    for (size_t j = 0; !status && j < parts; j++)
+      status = add_point(o, inner, region->loops[loop],
+                         at[k] + (at[k + 1] - at[k]) * (double)j / (double)parts, err);
+    if (!status) status = cag_loop_points_check(o, how, err);
   }
   cag_free(at);
   cag_curve_release(on);
-  *count = p->vertex_count - before;
+  *count = o->count - before;
   return status;
 }
-
-// Ratio of lengths on the surface to lengths in the parameters: the mean over some points.
-static CagStatus find_scale(Plane *p, const CagSurface *s, CagError *err) {
-  const int PLACES = 5;
-  double sum[2] = {0, 0};
-  for (int i = 0; i < PLACES; i++)
-    for (int j = 0; j < PLACES; j++) {
-      CagVec3 d[4];
-      CagStatus status = cag_surface_eval(p->inner, s->u0 + (s->u1 - s->u0) * (i + 0.5) / PLACES,
-                                          s->v0 + (s->v1 - s->v0) * (j + 0.5) / PLACES, 1,
-                                          CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
-      if (status) return status;
-      sum[0] += cag_norm(d[cag_partial(1, 1, 0)]);
-      sum[1] += cag_norm(d[cag_partial(1, 0, 1)]);
-    }
-  for (int k = 0; k < 2; k++) p->scale[k] = sum[k] > 0 ? sum[k] / (PLACES * PLACES) : 1;
-  return CAG_OK;
-}
-
-static CagStatus link_triangles(Plane *p, CagError *err) {
-  size_t n;
-  CagMeshEdge *edges = cag_mesh_edges(p->corner, p->triangle_count, NULL, p->vertex_count, &n);
-  if (!edges) return cag_fail_memory(err);
-  for (size_t k = 0; k < 3 * p->triangle_count; k++) p->across[k] = NO_TRIANGLE;
-  for (size_t k = 0; k + 1 < n; k++) {
-    const CagMeshEdge *a = &edges[k], *b = &edges[k + 1];
-    if (a->low != b->low || a->high != b->high) continue;
-    size_t ta = cag_mesh_edge_triangle(a), tb = cag_mesh_edge_triangle(b);
-    p->across[3 * ta + cag_mesh_edge_corner(a)] = (uint32_t)tb;
-    p->across[3 * tb + cag_mesh_edge_corner(b)] = (uint32_t)ta;
-  }
-  cag_free(edges);
-  return CAG_OK;
-}
-
-static CagStatus begin(Plane *p, const CagSurface *s, const CagTessellation *how, CagError *err) {
-  const CagRegion *region;
-  cag_surface_trimmed_view(s, &p->inner, &region);
-  CagStatus status = find_scale(p, s, err);
-  size_t *counts = cag_malloc((region->count + 1) * sizeof *counts);
-  uint32_t *triangles = NULL;
-  size_t n = 0;
-  if (!counts) status = cag_fail_memory(err);
-  for (size_t l = 0; !status && l < region->count; l++)
-    status = outline_loop(p, s, l, how, &counts[l], err);
-  p->outline = p->vertex_count;
-  if (!status) status = cag_triangulate(p->xy, counts, region->count, &triangles, &n, err);
-  if (!status) status = room_for_triangles(p, n, err);
-  if (!status) {
-    memcpy(p->corner, triangles, 3 * n * sizeof *triangles);
-    memset(p->checked, 0, n);
-    p->triangle_count = n;
-    status = link_triangles(p, err);
-  }
-  cag_free(triangles);
-  cag_free(counts);
-  return status;
-}
-
-// --- Insertion ---
-
-static double side_of(const double *a, const double *b, const double *c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-static const double *at(const Plane *p, uint32_t vertex) { return p->xy + 2 * vertex; }
-
-// Whether d lies inside the circle through a, b, c (counter-clockwise), by more than rounding.
-static bool in_circle(const double *a, const double *b, const double *c, const double *d) {
-  double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1];
-  double cx = c[0] - d[0], cy = c[1] - d[1];
-  double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-  double x = aa * (bx * cy - by * cx), y = bb * (cx * ay - cy * ax), z = cc * (ax * by - ay * bx);
-  double size = aa * (fabs(bx * cy) + fabs(by * cx)) + bb * (fabs(cx * ay) + fabs(cy * ax)) +
-                cc * (fabs(ax * by) + fabs(ay * bx));
-  return x + y + z > ROUNDING * size;
-}
-
-static void set_across(Plane *p, uint32_t triangle, uint32_t was, uint32_t now) {
-  if (triangle == NO_TRIANGLE) return;
-  for (int k = 0; k < 3; k++)
-    if (p->across[3 * triangle + (uint32_t)k] == was) {
-      p->across[3 * triangle + (uint32_t)k] = now;
-      return;
-    }
-}
-
-static void set_triangle(Plane *p, uint32_t t, uint32_t a, uint32_t b, uint32_t c, uint32_t ab,
-                         uint32_t bc, uint32_t ca) {
-  const uint32_t corner[3] = {a, b, c}, across[3] = {ab, bc, ca};
-  memcpy(p->corner + 3 * t, corner, sizeof corner);
-  memcpy(p->across + 3 * t, across, sizeof across);
-  p->checked[t] = 0;
-}
-
-static int side_towards(const Plane *p, uint32_t t, uint32_t other) {
-  for (int k = 0; k < 3; k++)
-    if (p->across[3 * t + (uint32_t)k] == other) return k;
-  return -1;
-}
-
-// Flips the edge between t, whose corner 2 is the new vertex, and the triangle beyond its side 0 if
-// that makes them Delaunay. After a flip the two outer edges of the former other triangle must be
-// tested.
-static CagStatus legalize(Plane *p, uint32_t t, CagError *err) {
-  uint32_t o = p->across[3 * t];
-  if (o == NO_TRIANGLE) return CAG_OK;
-  int back = side_towards(p, o, t);
-  uint32_t a = p->corner[3 * t], b = p->corner[3 * t + 1], c = p->corner[3 * t + 2];
-  uint32_t d = p->corner[3 * o + (uint32_t)(back + 2) % 3];
-  if (!in_circle(at(p, a), at(p, b), at(p, c), at(p, d))) return CAG_OK;
-  if (!(side_of(at(p, a), at(p, d), at(p, c)) > 0 && side_of(at(p, d), at(p, b), at(p, c)) > 0))
-    return CAG_OK;
-  uint32_t bc = p->across[3 * t + 1], ca = p->across[3 * t + 2];
-  uint32_t ad = p->across[3 * o + (uint32_t)(back + 1) % 3];
-  uint32_t db = p->across[3 * o + (uint32_t)(back + 2) % 3];
-  set_triangle(p, t, a, d, c, ad, o, ca);
-  set_triangle(p, o, d, b, c, db, bc, t);
-  set_across(p, ad, o, t);
-  set_across(p, bc, t, o);
-  CagStatus status = push(p, t, err);
-  return status ? status : push(p, o, err);
-}
-
-static CagStatus legalize_all(Plane *p, CagError *err) {
-  CagStatus status = CAG_OK;
-  while (!status && p->depth > 0) { status = legalize(p, p->stack[--p->depth], err); }
-  return status;
-}
-
-// Splits triangle t into three around the vertex.
-static CagStatus split_triangle(Plane *p, uint32_t t, uint32_t v, CagError *err) {
-  CagStatus status = room_for_triangles(p, p->triangle_count + 2, err);
-  if (status) return status;
-  uint32_t a = p->corner[3 * t], b = p->corner[3 * t + 1], c = p->corner[3 * t + 2];
-  uint32_t ab = p->across[3 * t], bc = p->across[3 * t + 1], ca = p->across[3 * t + 2];
-  uint32_t x = (uint32_t)p->triangle_count, y = x + 1;
-  p->triangle_count += 2;
-  set_triangle(p, t, a, b, v, ab, x, y);
-  set_triangle(p, x, b, c, v, bc, y, t);
-  set_triangle(p, y, c, a, v, ca, t, x);
-  set_across(p, bc, t, x);
-  set_across(p, ca, t, y);
-  status = push(p, t, err);
-  if (!status) status = push(p, x, err);
-  if (!status) status = push(p, y, err);
-  return status ? status : legalize_all(p, err);
-}
-
-// Splits the edge between t and the triangle beyond its side at the vertex: two triangles become
-// four.
-static CagStatus split_edge(Plane *p, uint32_t t, int side, uint32_t v, CagError *err) {
-  CagStatus status = room_for_triangles(p, p->triangle_count + 2, err);
-  if (status) return status;
-  uint32_t o = p->across[3 * t + (uint32_t)side];
-  int back = side_towards(p, o, t);
-  uint32_t a = p->corner[3 * t + (uint32_t)side], b = p->corner[3 * t + (uint32_t)(side + 1) % 3];
-  uint32_t c = p->corner[3 * t + (uint32_t)(side + 2) % 3];
-  uint32_t d = p->corner[3 * o + (uint32_t)(back + 2) % 3];
-  uint32_t bc = p->across[3 * t + (uint32_t)(side + 1) % 3];
-  uint32_t ca = p->across[3 * t + (uint32_t)(side + 2) % 3];
-  uint32_t ad = p->across[3 * o + (uint32_t)(back + 1) % 3];
-  uint32_t db = p->across[3 * o + (uint32_t)(back + 2) % 3];
-  uint32_t x = (uint32_t)p->triangle_count, y = x + 1;
-  p->triangle_count += 2;
-  set_triangle(p, t, c, a, v, ca, o, x);
-  set_triangle(p, x, b, c, v, bc, t, y);
-  set_triangle(p, o, a, d, v, ad, y, t);
-  set_triangle(p, y, d, b, v, db, x, o);
-  set_across(p, bc, t, x);
-  set_across(p, db, o, y);
-  status = push(p, t, err);
-  if (!status) status = push(p, x, err);
-  if (!status) status = push(p, o, err);
-  if (!status) status = push(p, y, err);
-  return status ? status : legalize_all(p, err);
-}
-
-static bool holds(const Plane *p, uint32_t t, const double *q) {
-  for (int k = 0; k < 3; k++)
-    if (side_of(at(p, p->corner[3 * t + (uint32_t)k]),
-                at(p, p->corner[3 * t + (uint32_t)(k + 1) % 3]), q) < 0)
-      return false;
-  return true;
-}
-
-// The triangle that contains a point: a walk towards it, and a search of all triangles if the
-// outline is in the way.
-static uint32_t locate(Plane *p, const double *q) {
-  uint32_t t = p->hint < p->triangle_count ? p->hint : 0;
-  for (size_t steps = 0; steps < p->triangle_count; steps++) {
-    int leave = -1;
-    for (int k = 0; k < 3 && leave < 0; k++) {
-      int side = (int)((steps + (size_t)k) % 3); // vary the first side to avoid cycles
-      if (side_of(at(p, p->corner[3 * t + (uint32_t)side]),
-                  at(p, p->corner[3 * t + (uint32_t)(side + 1) % 3]), q) < 0)
-        leave = side;
-    }
-    if (leave < 0) return p->hint = t;
-    t = p->across[3 * t + (uint32_t)leave];
-    if (t == NO_TRIANGLE) break;
-  }
-  for (t = 0; t < p->triangle_count; t++)
-    if (holds(p, t, q)) return p->hint = t;
-  return NO_TRIANGLE;
-}
-
-static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
-
-// Whether a point of triangle t is far enough from the outline and from vertices.
-static bool is_clear(const Plane *p, uint32_t t, const double *q) {
-  for (int k = 0; k < 3; k++) {
-    const double *a = at(p, p->corner[3 * t + (uint32_t)k]);
-    const double *b = at(p, p->corner[3 * t + (uint32_t)(k + 1) % 3]);
-    double length = apart(a, b);
-    if (p->across[3 * t + (uint32_t)k] == NO_TRIANGLE &&
-        side_of(a, b, q) < KEEP_OFF * length * length)
-      return false;
-    // Too close to a vertex, relative to the shortest edge that the point would halve.
-    if (apart(a, q) < ROUNDING * length) return false;
-  }
-  return true;
-}
-
-// The side of t that contains the point, -1: none.
-static int on_side(const Plane *p, uint32_t t, const double *q) {
-  for (int k = 0; k < 3; k++) {
-    const double *a = at(p, p->corner[3 * t + (uint32_t)k]);
-    const double *b = at(p, p->corner[3 * t + (uint32_t)(k + 1) % 3]);
-    double length = apart(a, b);
-    const double flat = 1e-7; // relative to the edge: a triangle this flat is degenerate
-    if (side_of(a, b, q) < flat * length * length) return k;
-  }
-  return -1;
-}
-
-static CagStatus insert(Plane *p, double u, double v, uint32_t t, CagError *err) {
-  uint32_t vertex;
-  double q[2] = {u * p->scale[0], v * p->scale[1]};
-  int side = on_side(p, t, q);
-  if (side >= 0 && p->across[3 * t + (uint32_t)side] == NO_TRIANGLE) return CAG_OK;
-  CagStatus status = add_vertex(p, u, v, &vertex, err);
-  if (status) return status;
-  return side >= 0 ? split_edge(p, t, side, vertex, err) : split_triangle(p, t, vertex, err);
-}
-
-// --- Points of the inner surface's mesh ---
-
-static CagStatus insert_mesh(Plane *p, const CagSurface *s, const CagTessellation *how,
-                             CagError *err) {
-  CagSurface *box;
-  CagMesh *mesh;
-  CagTessellation finer = *how;
-  finer.tolerance *= INNER_SHARE;
-  CagStatus status = cag_surface_part(p->inner, s->u0, s->u1, s->v0, s->v1, &box, err);
-  if (status) return status;
-  status = cag_surface_tessellate(box, &finer, &mesh, err);
-  cag_surface_release(box);
-  if (status) return status;
-  for (size_t k = 0; !status && k < mesh->vertex_count; k++) {
-    double u = mesh->uv[2 * k], v = mesh->uv[2 * k + 1];
-    double q[2] = {u * p->scale[0], v * p->scale[1]};
-    uint32_t t = locate(p, q);
-    if (t == NO_TRIANGLE || !is_clear(p, t, q)) continue;
-    status = insert(p, u, v, t, err);
-    if (!status && how->interrupt && *how->interrupt)
-      status = cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
-                        "the tessellation was interrupted");
-  }
-  cag_mesh_release(mesh);
-  return status;
-}
-
-// --- Refinement ---
-
-static CagStatus surface_at(const Plane *p, const double *xy, CagVec3 *out, CagError *err) {
-  const CagSurface *s = p->inner;
-  return cag_surface_point(s, fmin(fmax(xy[0] / p->scale[0], s->u0), s->u1),
-                           fmin(fmax(xy[1] / p->scale[1], s->v0), s->v1), out, err);
-}
-
-static double from_line(CagVec3 a, CagVec3 b, CagVec3 q) {
-  CagVec3 d = cag_sub(b, a);
-  double length = cag_norm(d);
-  if (!(length > 0)) return cag_norm(cag_sub(q, a));
-  return cag_norm(cag_cross(d, cag_sub(q, a))) / length;
-}
-
-// Whether a triangle exceeds the tolerance, and where to divide it: at the middle of its longest
-// inner edge, or (`*side` -1) at its center.
-static CagStatus judge(const Plane *p, uint32_t t, const CagTessellation *how, bool *bad, int *side,
-                       CagError *err) {
-  const uint32_t *c = p->corner + 3 * t;
-  CagVec3 x[3], n[3], q;
-  double longest = 0, middle[2] = {0, 0};
-  *bad = false;
-  *side = -1;
-  for (int k = 0; k < 3; k++) {
-    x[k] = p->positions[c[k]];
-    n[k] = p->normals[c[k]];
-    middle[0] += at(p, c[k])[0] / 3;
-    middle[1] += at(p, c[k])[1] / 3;
-  }
-  CagVec3 normal = cag_unit(cag_cross(cag_sub(x[1], x[0]), cag_sub(x[2], x[0])));
-  CagStatus status = surface_at(p, middle, &q, err);
-  if (status) return status;
-  if (fabs(cag_dot(normal, cag_sub(q, x[0]))) > how->tolerance) *bad = true;
-  for (int k = 0; k < 3; k++) {
-    int next = (k + 1) % 3;
-    if (p->across[3 * t + (uint32_t)k] == NO_TRIANGLE) continue;
-    double length = cag_norm(cag_sub(x[next], x[k]));
-    double half[2] = {(at(p, c[k])[0] + at(p, c[next])[0]) / 2,
-                      (at(p, c[k])[1] + at(p, c[next])[1]) / 2};
-    status = surface_at(p, half, &q, err);
-    if (status) return status;
-    if (from_line(x[k], x[next], q) > how->tolerance) *bad = true;
-    double turn = atan2(cag_norm(cag_cross(n[k], n[next])), cag_dot(n[k], n[next]));
-    if (how->angle > 0 && turn > how->angle && length > tess_short_edge(how)) *bad = true;
-    if (how->max_edge > 0 && length > how->max_edge) *bad = true;
-    double flat = apart(at(p, c[k]), at(p, c[next]));
-    if (flat > longest) {
-      longest = flat;
-      *side = k;
-    }
-  }
-  return CAG_OK;
-}
-
-static CagStatus divide(Plane *p, uint32_t t, int side, CagError *err) {
-  const uint32_t *c = p->corner + 3 * t;
-  double q[2];
-  for (int d = 0; d < 2; d++)
-    q[d] = side >= 0 ? (at(p, c[side])[d] + at(p, c[(side + 1) % 3])[d]) / 2
-                     : (at(p, c[0])[d] + at(p, c[1])[d] + at(p, c[2])[d]) / 3;
-  uint32_t vertex;
-  CagStatus status = add_vertex(p, q[0] / p->scale[0], q[1] / p->scale[1], &vertex, err);
-  if (status) return status;
-  return side >= 0 ? split_edge(p, t, side, vertex, err) : split_triangle(p, t, vertex, err);
-}
-
-static CagStatus refine(Plane *p, const CagTessellation *how, CagError *err) {
-  for (int pass = 0; pass < MOST_PASSES; pass++) {
-    size_t n = p->triangle_count;
-    bool any = false;
-    for (uint32_t t = 0; t < n; t++) {
-      if (p->checked[t]) continue;
-      bool bad;
-      int side;
-      CagStatus status = judge(p, t, how, &bad, &side, err);
-      if (!status && bad) status = divide(p, t, side, err);
-      if (status) return status;
-      if (!bad) p->checked[t] = 1;
-      any = any || bad;
-      if (p->triangle_count > how->max_triangles)
-        return cag_fail(
-            err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-            "the trimmed surface needs more triangles than the limit of %zu; use a larger tolerance",
-            how->max_triangles);
-    }
-    if (how->interrupt && *how->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
-                      "the tessellation was interrupted");
-    if (!any) return CAG_OK;
-  }
-  return CAG_OK;
-}
-
-// --- The mesh ---
 
 typedef struct Place {
   CagVec3 at;
@@ -568,88 +71,49 @@ static int by_place(const void *a, const void *b) {
   return x->vertex < y->vertex ? -1 : 1;
 }
 
-// Points of the outline that differ only by rounding, at poles and seams, get one position; `weld`
-// then marks them as one point.
-static CagStatus weld_outline(Plane *p, uint32_t *weld, CagError *err) {
+// Points of the outline that differ only by rounding, at poles and seams, become one.
+static CagStatus unite_points(CagLoopPoints *o, CagError *err) {
   const double same = 1e-11; // of the size
-  Place *places = cag_malloc((p->outline + 1) * sizeof *places);
+  uint32_t *of = o->points;
+  Place *places = cag_malloc((o->count + 1) * sizeof *places);
   if (!places) return cag_fail_memory(err);
   double size = 0;
-  for (size_t k = 0; k < p->vertex_count; k++) weld[k] = (uint32_t)k;
-  for (size_t k = 0; k < p->outline; k++) {
-    places[k] = (Place){p->positions[k], (uint32_t)k};
-    size = fmax(size, cag_norm(p->positions[k]));
+  for (size_t k = 0; k < o->count; k++) {
+    places[k] = (Place){o->positions[k], (uint32_t)k};
+    size = fmax(size, cag_norm(o->positions[k]));
   }
-  qsort(places, p->outline, sizeof *places, by_place);
-  for (size_t k = 0; k < p->outline; k++)
-    for (size_t j = k + 1; j < p->outline; j++) {
+  qsort(places, o->count, sizeof *places, by_place);
+  for (size_t k = 0; k < o->count; k++)
+    for (size_t j = k + 1; j < o->count; j++) {
       if (places[j].at.x - places[k].at.x > same * size) break;
       if (cag_norm(cag_sub(places[j].at, places[k].at)) > same * size) continue;
       uint32_t a = places[k].vertex, b = places[j].vertex;
-      while (weld[a] != a) a = weld[a];
-      while (weld[b] != b) b = weld[b];
-      weld[a > b ? a : b] = a < b ? a : b;
+      while (of[a] != a) a = of[a];
+      while (of[b] != b) b = of[b];
+      of[a > b ? a : b] = a < b ? a : b;
     }
-  for (size_t k = 0; k < p->outline; k++) {
-    while (weld[weld[k]] != weld[k]) weld[k] = weld[weld[k]];
-    p->positions[k] = p->positions[weld[k]];
+  for (size_t k = 0; k < o->count; k++) {
+    while (of[of[k]] != of[k]) of[k] = of[of[k]];
+    o->positions[k] = o->positions[of[k]];
   }
   cag_free(places);
   return CAG_OK;
 }
 
-static CagStatus to_mesh(Plane *p, CagMesh **out, CagError *err) {
-  CagMesh *m;
-  CagStatus status = cag_mesh_new(p->vertex_count, p->triangle_count, true, true, true, &m, err);
-  if (status) return status;
-  status = weld_outline(p, m->weld, err);
-  if (status) {
-    cag_mesh_release(m);
-    return status;
-  }
-  size_t n = 0;
-  for (size_t t = 0; t < p->triangle_count; t++) {
-    const uint32_t *c = p->corner + 3 * t, *w = m->weld;
-    // At a pole two corners are one point: the triangle is empty.
-    if (w[c[0]] == w[c[1]] || w[c[1]] == w[c[2]] || w[c[2]] == w[c[0]]) continue;
-    memcpy(m->triangles + 3 * n++, c, 3 * sizeof *c);
-  }
-  m->triangle_count = n;
-  for (size_t k = 0; k < p->vertex_count; k++) {
-    m->positions[k] = p->positions[k];
-    m->normals[k] = p->normals[k];
-    m->uv[2 * k] = p->xy[2 * k] / p->scale[0];
-    m->uv[2 * k + 1] = p->xy[2 * k + 1] / p->scale[1];
-  }
-  // Vertices without a normal take those of their triangles.
-  for (size_t t = 0; t < n; t++)
-    for (int k = 0; k < 3; k++) {
-      uint32_t v = m->triangles[3 * t + (size_t)k];
-      if (cag_dot(p->normals[v], p->normals[v]) > 0) continue;
-      const uint32_t *c = m->triangles + 3 * t;
-      m->normals[v] =
-          cag_add(m->normals[v], cag_cross(cag_sub(m->positions[c[1]], m->positions[c[0]]),
-                                           cag_sub(m->positions[c[2]], m->positions[c[0]])));
-    }
-  for (size_t k = 0; k < p->vertex_count; k++) {
-    m->normals[k] = cag_unit(m->normals[k]);
-    if (cag_dot(m->normals[k], m->normals[k]) == 0) m->normals[k] = cag_vec3(0, 0, 1);
-  }
-  *out = m;
-  return CAG_OK;
-}
-
 CagStatus cag_trimmed_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                                  CagError *err) {
-  Plane p = {0};
-  CagMesh *m = NULL;
-  CagStatus status = begin(&p, s, how, err);
-  if (!status) status = insert_mesh(&p, s, how, err);
-  if (!status) status = refine(&p, how, err);
-  if (!status) status = to_mesh(&p, &m, err);
-  if (!status) status = cag_mesh_split_sides(m, 0, m->triangle_count, p.inner, how->angle, 0, err);
-  release(&p);
-  if (!status) *out = m;
-  else cag_mesh_release(m);
+  const CagSurface *inner;
+  const CagRegion *region;
+  cag_surface_trimmed_view(s, &inner, &region);
+  size_t *counts = cag_malloc((region->count + 1) * sizeof *counts);
+  CagLoopPoints o = {.counts = counts, .loops = region->count};
+  const double box[4] = {s->u0, s->u1, s->v0, s->v1};
+  CagStatus status = counts ? CAG_OK : cag_fail_memory(err);
+  for (size_t l = 0; !status && l < region->count; l++)
+    status = outline_loop(&o, s, l, how, &counts[l], err);
+  if (!status) status = unite_points(&o, err);
+  if (!status) status = cag_within_tessellate(inner, box, &o, how, out, err);
+  cag_loop_points_free(&o);
+  cag_free(counts);
   return status;
 }

@@ -88,6 +88,7 @@ bool cag_pov_try_solid(CagPovWriter *w, const CagSolid *s) {
   case CAG_SOLID_TUBE:
   case CAG_SOLID_SWEEP:
   case CAG_SOLID_LOFT:
+  case CAG_SOLID_EXACT:
   case CAG_SOLID_MESH:
   case CAG_SOLID_HALF_SPACE:
   case CAG_SOLID_QUADRIC: return false;

@@ -360,16 +360,18 @@ static CagStatus read_shells(CagFieldReader *r, CagBoundary *b, CagError *err) {
 CagStatus cag_read_boundary(CagFieldReader *r, CagBoundary *out, CagError *err) {
   CagBoundary b = {0};
   Ranges ranges = NULL;
-  size_t length, body;
+  size_t length;
   const unsigned char *name = cag_take_bytes(r, &length);
   b.has_color = cag_take_u32(r) != 0;
   for (int k = 0; b.has_color && k < 3; k++) b.color[k] = cag_take_f64(r);
-  cag_take_bytes(r, &body);
+  const unsigned char *body = cag_take_bytes(r, &b.body_length);
   b.volume = cag_take_f64(r);
   b.area = cag_take_f64(r);
   b.centroid = cag_take_vec(r);
   CagStatus status = checked(r, err);
   if (!status && !(b.name = cag_strndup((const char *)name, length))) status = cag_fail_memory(err);
+  if (!status && !(b.body = cag_malloc(b.body_length + 1))) status = cag_fail_memory(err);
+  if (!status) memcpy(b.body, body, b.body_length);
   if (!status) status = read_corners(r, &b, err);
   if (!status) status = read_edges(r, &b, &ranges, err);
   if (!status) status = read_faces(r, &b, ranges, err);

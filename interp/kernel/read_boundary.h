@@ -6,7 +6,7 @@
 #include "geom/boundary/boundary.h"
 #include "interp/kernel/fields.h"
 
-// Reads one solid of a RESULT: name, color, body (which is skipped), and boundary. Fails with
+// Reads one solid of a RESULT: name, color, body, and boundary. Fails with
 // "kernel-answer" if the bytes are not one; *out is then empty.
 CagStatus cag_read_boundary(CagFieldReader *r, CagBoundary *out, CagError *err);
 

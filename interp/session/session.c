@@ -104,8 +104,11 @@ void cag_session_free(CagSession *s) {
   cag_free(s);
 }
 
+// The kernel outlives the run that first needs it, so the run is not charged for it.
 struct CagKernel *cag_session_kernel(CagSession *s) {
+  CagAccount *before = cag_account_lend(NULL);
   if (!s->kernel) s->kernel = cag_kernel_new();
+  cag_account_lend(before);
   return s->kernel;
 }
 
@@ -156,6 +159,8 @@ static bool add_folder(CagVm *vm, const char *path) {
   return true;
 }
 
+static struct CagKernel *find_kernel(void *session) { return cag_session_kernel(session); }
+
 CagVm *cag_session_vm(CagSession *s) {
   if (s->vm) return s->vm;
   const CagSessionOptions *o = &s->options;
@@ -171,6 +176,8 @@ CagVm *cag_session_vm(CagSession *s) {
   s->vm->tolerance = o->tolerance;
   s->vm->find_text = o->find_text;
   s->vm->find_text_context = o->find_text_context;
+  s->vm->find_kernel = find_kernel;
+  s->vm->find_kernel_context = s;
   CagAccount *before = cag_account_lend(&s->vm->account);
   bool found = true;
   for (size_t i = 0; found && i < o->module_path_count; i++)

@@ -273,6 +273,10 @@ struct CagVm {
   // call that loads the module ends. NULL: files are read.
   const char *(*find_text)(void *context, const char *path, size_t *length);
   void *find_text_context;
+  // Returns the session's kernel for exact boundaries, or NULL if memory ran out. NULL: there is
+  // none.
+  struct CagKernel *(*find_kernel)(void *context);
+  void *find_kernel_context;
   char **include; // real paths of the module path
   size_t include_count;
 

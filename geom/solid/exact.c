@@ -1,0 +1,166 @@
+// Solids with exact boundaries.
+//
+// Transformed copies share the boundaries, and the last mesh that was made of them.
+
+#include "geom/solid/exact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "geom/boundary/mesh.h"
+#include "geom/boundary/patch.h"
+#include "geom/solid/build.h"
+
+// Default tolerance as a fraction of the size (as in tessellate.h).
+#define DEFAULT_SHARE 1e-3
+
+struct CagExact {
+  int references;
+  CagBoundary *parts;
+  size_t count;
+  CagMesh *mesh; // in their coordinates; NULL: none yet
+  CagTessellation how;
+};
+
+CagExact *cag_exact_retain(CagExact *e) {
+  if (e) e->references++;
+  return e;
+}
+
+void cag_exact_release(CagExact *e) {
+  if (!e || --e->references > 0) return;
+  for (size_t i = 0; i < e->count; i++) cag_boundary_free(&e->parts[i]);
+  cag_free(e->parts);
+  cag_mesh_release(e->mesh);
+  cag_free(e);
+}
+
+const CagBoundary *cag_solid_boundaries(const CagSolid *s, size_t *n) {
+  if (!s->exact) return NULL;
+  *n = s->exact->count;
+  return s->exact->parts;
+}
+
+void cag_exact_digest(const CagExact *e, CagDigest *d) {
+  for (size_t i = 0; i < e->count; i++) {
+    const CagBoundary *b = &e->parts[i];
+    cag_digest_word(d, b->face_count);
+    cag_digest_bytes(d, b->corners, b->corner_count * sizeof *b->corners);
+    cag_digest_bytes(d, b->body, b->body_length);
+  }
+}
+
+// Takes the contents of the boundaries.
+static CagStatus exact_new(CagBoundary *parts, size_t n, CagExact **out, CagError *err) {
+  CagExact *e = cag_calloc(1, sizeof *e);
+  CagBoundary *own = cag_calloc(n + 1, sizeof *own);
+  if (!e || !own) {
+    for (size_t i = 0; i < n; i++) cag_boundary_free(&parts[i]);
+    cag_free(e);
+    cag_free(own);
+    return cag_fail_memory(err);
+  }
+  memcpy(own, parts, n * sizeof *own);
+  memset(parts, 0, n * sizeof *parts);
+  *e = (CagExact){.references = 1, .parts = own, .count = n};
+  *out = e;
+  return CAG_OK;
+}
+
+CagStatus cag_solid_exact(CagBoundary *parts, size_t n, CagSolid **out, CagError *err) {
+  CagExact *e;
+  CagSolid *s = NULL;
+  size_t faces = 0;
+  CagStatus status = exact_new(parts, n, &e, err);
+  if (status) return status;
+  for (size_t i = 0; i < n; i++) faces += e->parts[i].face_count;
+  status = cag_solid_block(CAG_SOLID_EXACT, faces, &s, err);
+  if (status) {
+    cag_exact_release(e);
+    return status;
+  }
+  s->exact = e;
+  for (size_t i = 0; !status && i < n; i++)
+    for (size_t f = 0; !status && f < e->parts[i].face_count; f++) {
+      CagSurface *face;
+      status = cag_boundary_surface(&e->parts[i], f, &face, err);
+      if (!status) cag_solid_add(s, face);
+    }
+  if (status) cag_solid_release(s);
+  else *out = s;
+  return status;
+}
+
+// --- Meshes ---
+
+static bool is_same(const CagTessellation *a, const CagTessellation *b) {
+  return a->tolerance == b->tolerance && a->angle == b->angle && a->max_edge == b->max_edge &&
+         a->short_edge == b->short_edge;
+}
+
+static CagStatus mesh_parts(const CagExact *e, const CagTessellation *how, CagMesh **out,
+                            CagError *err) {
+  CagMesh **meshes = cag_calloc(e->count + 1, sizeof *meshes);
+  size_t n = 0;
+  CagStatus status = meshes ? CAG_OK : cag_fail_memory(err);
+  while (!status && n < e->count) {
+    status = cag_boundary_mesh(&e->parts[n], how, &meshes[n], err);
+    if (!status) n++;
+  }
+  if (!status) status = cag_mesh_append(meshes, n, out, err);
+  for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
+  cag_free(meshes);
+  return status;
+}
+
+CagStatus cag_exact_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out,
+                         CagError *err) {
+  CagExact *e = s->exact;
+  CagTessellation own = how ? *how : CAG_TESSELLATION_DEFAULT;
+  const double scale = cag_transform_stretch(&s->placement);
+  CagMesh *mesh = NULL;
+  CagStatus status = CAG_OK;
+  if (!(own.tolerance > 0)) {
+    CagBounds box;
+    status = cag_solid_bounds(s, &box, err);
+    own.tolerance = DEFAULT_SHARE * cag_norm(cag_sub(box.max, box.min));
+  }
+  if (status) return status;
+  own.tolerance /= scale;
+  own.max_edge /= scale;
+  if (e->mesh && is_same(&own, &e->how) && e->mesh->triangle_count <= own.max_triangles)
+    mesh = cag_mesh_retain(e->mesh);
+  else status = mesh_parts(e, &own, &mesh, err);
+  if (status) return status;
+  if (mesh != e->mesh) {
+    cag_mesh_release(e->mesh);
+    e->mesh = cag_mesh_retain(mesh);
+    e->how = own;
+  }
+  status = cag_mesh_transform(mesh, &s->placement, out, err);
+  cag_mesh_release(mesh);
+  return status;
+}
+
+CagStatus cag_solid_exact_check(const CagSolid *s, CagError *err) {
+  double terms[10] = {0}, volume = 0;
+  char found[32], expected[32];
+  CagBounds box;
+  CagMesh *mesh;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (status) return status;
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = DEFAULT_SHARE * cag_norm(cag_sub(box.max, box.min));
+  status = cag_exact_mesh(s, &how, &mesh, err);
+  if (status) return status;
+  cag_mesh_volume_terms(mesh, terms);
+  for (size_t i = 0; i < s->exact->count; i++) volume += s->exact->parts[i].volume;
+  // The mesh and the solid differ by a layer over the surface as thick as the tolerance.
+  const double slack = 2 * how.tolerance * cag_mesh_area(mesh);
+  cag_mesh_release(mesh);
+  if (terms[0] > 0 && fabs(terms[0] - volume) <= slack) return CAG_OK;
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                  "its faces enclose the volume %s, and the kernel finds %s",
+                  cag_number_text(terms[0], found), cag_number_text(volume, expected));
+}

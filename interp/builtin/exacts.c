@@ -1,0 +1,80 @@
+// Solids with exact boundaries.
+
+#include "interp/builtin/exacts.h"
+
+#include <math.h>
+
+#include "geom/solid/csg.h"
+#include "geom/solid/exact.h"
+#include "interp/builtin/holds.h"
+#include "interp/builtin/support.h"
+#include "interp/vm/vm.h"
+
+// The tolerance for surfaces without an exact form, as a fraction of the size.
+#define APPROXIMATE 1e-5
+
+CagKernel *cag_exacts_kernel(CagCall *call) {
+  CagVm *vm = call->vm;
+  CagKernel *k = vm->find_kernel ? vm->find_kernel(vm->find_kernel_context) : NULL;
+  if (k) return k;
+  (void)cag_geometry_ok(call, cag_fail_memory(call->err));
+  return NULL;
+}
+
+// Takes the contents of the parts.
+static CagStatus checked_solid(CagBoundaries *parts, CagSolid **out, CagError *err) {
+  CagSolid *s = NULL;
+  CagStatus status = cag_solid_exact(parts->items, parts->count, &s, err);
+  cag_boundaries_free(parts);
+  if (!status) status = cag_solid_exact_check(s, err);
+  if (status) cag_solid_release(s);
+  else *out = s;
+  return status;
+}
+
+// Forms of round operands with other seams are tried if the boundary cannot be used.
+static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_reach(s, &box, err);
+  const double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
+  const double tolerance = size > 0 && isfinite(size) ? APPROXIMATE * size : 0;
+  for (int turn = 0; !status && turn < CAG_TURNS; turn++) {
+    CagBoundaries parts;
+    bool approximate;
+    status = cag_kernel_boundary(k, s, tolerance, turn, &parts, &approximate, err);
+    if (!status) status = checked_solid(&parts, out, err);
+    if (!status) return CAG_OK;
+    if (err->id == CAG_ERR_no_boundary && turn + 1 < CAG_TURNS) status = CAG_OK;
+  }
+  return status;
+}
+
+bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+  CagSolid *exact = NULL;
+  *out = s;
+  if (s->kind == CAG_SOLID_EXACT) return true;
+  CagKernel *k = cag_exacts_kernel(call);
+  if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
+  cag_hold_solid(call, exact);
+  *out = exact;
+  return true;
+}
+
+bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
+  CagSolid *s = NULL;
+  const CagStatus status = checked_solid(parts, &s, call->err);
+  if (!cag_solid_result(call, status, &s, result)) return false;
+  cag_shape_say_alike(*result, call->values[argument]);
+  return true;
+}
+
+bool cag_exacts_exact(CagCall *call, const struct cag_exacts_exact *a, CagValue *result) {
+  const CagSolid *s;
+  (void)a;
+  if (!cag_exacts_of(call, 0, &s)) return false;
+  CagSolid *kept = cag_solid_retain(s);
+  if (!cag_solid_result(call, CAG_OK, &kept, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}

@@ -1,0 +1,18 @@
+// Solids with exact boundaries, which the kernel computes.
+
+#ifndef CAG_INTERP_BUILTIN_EXACTS_H
+#define CAG_INTERP_BUILTIN_EXACTS_H
+
+#include "interp/builtin/shapes.h"
+#include "interp/kernel/kernel.h"
+
+// The session's kernel, or NULL, with an error.
+CagKernel *cag_exacts_kernel(CagCall *call);
+// The exact solid of an argument: the argument itself if it is one, else its boundary, which the
+// kernel computes. It is held by the call.
+bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
+// Checks the parts that the kernel found (cag_solid_exact_check), and returns them as one solid with
+// the attributes of an argument. Takes their contents.
+bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);
+
+#endif
