@@ -1,4 +1,4 @@
-// The process of cag-brep and the exchange of messages with it (see kernel.h and ask.h).
+// The process of cag-brep and the exchange of messages with it (see ask.h and kernel.h).
 //
 // Both directions are one socket, so that a program that has ended is an error of the call and not
 // a signal. The socket does not block: cag waits with poll, and looks at the stop flag meanwhile.
