@@ -21,8 +21,7 @@ CagKernel *cag_exacts_kernel(CagCall *call) {
   return NULL;
 }
 
-// Takes the contents of the parts.
-static CagStatus checked_solid(CagBoundaries *parts, CagSolid **out, CagError *err) {
+CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err) {
   CagSolid *s = NULL;
   CagStatus status = cag_solid_exact(parts->items, parts->count, &s, err);
   cag_boundaries_free(parts);
@@ -42,7 +41,7 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
     CagBoundaries parts;
     bool approximate;
     status = cag_kernel_boundary(k, s, tolerance, turn, &parts, &approximate, err);
-    if (!status) status = checked_solid(&parts, out, err);
+    if (!status) status = cag_exacts_checked(&parts, out, err);
     if (!status) return CAG_OK;
     if (err->id == CAG_ERR_no_boundary && turn + 1 < CAG_TURNS) status = CAG_OK;
   }
@@ -63,7 +62,7 @@ bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
   CagSolid *s = NULL;
-  const CagStatus status = checked_solid(parts, &s, call->err);
+  const CagStatus status = cag_exacts_checked(parts, &s, call->err);
   if (!cag_solid_result(call, status, &s, result)) return false;
   cag_shape_say_alike(*result, call->values[argument]);
   return true;
