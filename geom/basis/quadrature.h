@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 
-#define CAG_INTEGRAND_PARTS 10
+#define CAG_INTEGRAND_PARTS 14
 
 // Writes the integrand's `parts` numbers at t.
 typedef CagStatus (*CagIntegrand)(void *context, double t, double *out, CagError *err);

@@ -227,12 +227,12 @@ static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
 static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *frame,
                      CagVec3 *along) {
   size_t caps = 0, sides = 0;
-  CagVec3 ends[2], v;
+  CagVec3 ends[2], v = {0, 0, 0};
   *region = NULL;
   for (size_t i = 0; i < s->face_count; i++) {
     const CagRegion *r;
     const CagCurve *section;
-    CagTransform t;
+    CagTransform t = cag_transform_identity();
     if (cag_surface_planar_view(s->faces[i], &r, &t)) {
       if (caps == 2) return false;
       ends[caps] = frame_column(&t, 3);
@@ -244,11 +244,15 @@ static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *
       const CagSurface *side = s->faces[i];
       cag_surface_placed_view(s->faces[i], &side, &t);
       if (!cag_surface_extrusion_view(side, &section, &v)) return false;
+      v = cag_transform_vector(&t, v);
       sides++;
     }
   }
   if (caps != 2 || sides == 0 || !*region) return false;
-  *along = cag_sub(ends[1], ends[0]);
+  // The caps may have different origins in their planes, and a side may be flipped.
+  const CagVec3 normal = cag_cross(frame_column(frame, 0), frame_column(frame, 1));
+  const bool back = cag_dot(v, normal) * cag_dot(cag_sub(ends[1], ends[0]), normal) < 0;
+  *along = back ? cag_scaled(v, -1) : v;
   return true;
 }
 

@@ -1,0 +1,292 @@
+// Faces: kinds, areas, centers, normals, and bounds (see features.h).
+
+#include "geom/boundary/face_feature.h"
+
+#include <math.h>
+
+#include "base/stop.h"
+#include "geom/boundary/carrier.h"
+#include "geom/boundary/measure.h"
+#include "geom/boundary/outline.h"
+
+// A center this close to the axis of a face, as a fraction of the distances, is equally far from
+// all sides.
+#define CENTRAL 1e-9
+// Samples of a face in each direction, and steps that refine the best of them.
+#define SAMPLES 24
+#define NEWTON_STEPS 30
+// The step of difference quotients of the derivatives, as a fraction of the domain.
+#define DIFFERENCE 1e-5
+
+static const char *const KINDS[] = {
+    [CAG_CARRIER_NONE] = "none",         [CAG_CARRIER_PLANE] = "plane",
+    [CAG_CARRIER_CYLINDER] = "cylinder", [CAG_CARRIER_CONE] = "cone",
+    [CAG_CARRIER_SPHERE] = "sphere",     [CAG_CARRIER_TORUS] = "torus",
+    [CAG_CARRIER_SPLINE] = "spline",     [CAG_CARRIER_REVOLVED] = "revolved",
+    [CAG_CARRIER_EXTRUDED] = "extruded"};
+
+static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+static CagVec3 axis_of(int k) { return cag_vec3(k == 0, k == 1, k == 2); }
+
+static double clamped(double t, double lo, double hi) { return fmin(fmax(t, lo), hi); }
+
+// --- The point nearest to the center ---
+
+typedef struct Foot {
+  double uv[2], distance;
+} Foot;
+
+static CagStatus try_foot(const CagFaceOutline *o, CagVec3 center, double u, double v, Foot *best,
+                          CagError *err) {
+  double uv[2] = {u, v};
+  bool inside;
+  CagCarrierPoint p;
+  CagStatus status = cag_face_outline_has(o, uv, &inside, err);
+  if (status || !inside) return status;
+  status = cag_carrier_eval(&o->face->carrier, uv[0], uv[1], &p, err);
+  const double distance = status ? 0 : cag_norm(cag_sub(p.point, center));
+  if (!status && distance < best->distance) *best = (Foot){{uv[0], uv[1]}, distance};
+  return status;
+}
+
+// The directions across the axis along +-X, +-Y, and +-Z, for faces whose sides are equally far
+// from their center. Nearest sides that have the same distance are taken in this order.
+static CagStatus try_sides(const CagFaceOutline *o, CagVec3 center, double v, Foot *best,
+                           CagError *err) {
+  const CagTransform *frame = &o->face->carrier.frame;
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 6 && best->distance == INFINITY; k++) {
+    const CagVec3 side = cag_scaled(axis_of(k / 2), k % 2 ? -1 : 1);
+    const double x = cag_dot(side, cag_frame_column(frame, 0));
+    const double y = cag_dot(side, cag_frame_column(frame, 1));
+    if (hypot(x, y) < 1e-6) continue;
+    // Of a ball, the sides are points; of a surface about an axis, they are directions from it.
+    const double z = cag_dot(side, cag_frame_column(frame, 2));
+    const double to = isnan(v) ? atan2(z, hypot(x, y)) : v;
+    status = try_foot(o, center, atan2(y, x), to, best, err);
+  }
+  return status;
+}
+
+static CagStatus analytic_foot(const CagFaceOutline *o, CagVec3 center, Foot *best, CagError *err) {
+  const CagCarrier *c = &o->face->carrier;
+  const double *d = o->face->domain, middle[2] = {(d[0] + d[1]) / 2, (d[2] + d[3]) / 2};
+  const CagVec3 from = cag_sub(center, cag_frame_column(&c->frame, 3));
+  const CagVec3 axis = cag_frame_column(&c->frame, 2);
+  const double across = cag_norm(cag_cross(from, axis)), size = fabs(c->a) + fabs(c->b);
+  double uv[2];
+  cag_carrier_parameters(c, center, middle, uv);
+  if (c->kind == CAG_CARRIER_SPHERE && cag_norm(from) <= CENTRAL * size)
+    return try_sides(o, center, NAN, best, err);
+  if (c->kind != CAG_CARRIER_SPHERE && across <= CENTRAL * (size + cag_norm(from)))
+    return try_sides(o, center, uv[1], best, err);
+  return try_foot(o, center, uv[0], uv[1], best, err);
+}
+
+// The best sample, refined by the method of Gauss and Newton.
+static CagStatus sampled_foot(const CagFaceOutline *o, CagVec3 center, Foot *best, CagError *err) {
+  const CagCarrier *c = &o->face->carrier;
+  const double *box = o->box;
+  CagStatus status = cag_stop_check(err);
+  for (int i = 0; !status && i < SAMPLES * SAMPLES; i++)
+    status = try_foot(o, center, box[0] + (box[1] - box[0]) * (i % SAMPLES + 0.5) / SAMPLES,
+                      box[2] + (box[3] - box[2]) * (i / SAMPLES + 0.5) / SAMPLES, best, err);
+  for (int k = 0; !status && best->distance < INFINITY && k < NEWTON_STEPS; k++) {
+    CagCarrierPoint p;
+    status = cag_carrier_eval(c, best->uv[0], best->uv[1], &p, err);
+    if (status) break;
+    const CagVec3 to = cag_sub(center, p.point);
+    const double a = cag_dot(p.du, p.du), b = cag_dot(p.du, p.dv), d = cag_dot(p.dv, p.dv);
+    const double x = cag_dot(to, p.du), y = cag_dot(to, p.dv), det = a * d - b * b;
+    const double before = best->distance;
+    if (!(det > 0)) break;
+    status = try_foot(o, center, best->uv[0] + (d * x - b * y) / det,
+                      best->uv[1] + (a * y - b * x) / det, best, err);
+    if (!(best->distance < before)) break;
+  }
+  return status;
+}
+
+// The nearest points of the edges.
+static CagStatus edge_foot(const CagFaceOutline *o, CagVec3 center, Foot *best, CagError *err) {
+  const CagBoundary *b = o->boundary;
+  for (size_t l = o->face->first; l < o->face->first + o->face->count; l++)
+    for (size_t i = b->loops[l].first; i < b->loops[l].first + b->loops[l].count; i++) {
+      const CagCurve *curve = b->edges[b->uses[i].edge].curve;
+      CagEdgePath path;
+      Foot foot;
+      CagVec3 at;
+      double t;
+      if (!curve) continue;
+      CagStatus status = cag_curve_closest(curve, center, &t, &at, &foot.distance, err);
+      if (!status) status = cag_edge_path(b, o->face, &b->uses[i], &path, err);
+      if (!status) status = cag_edge_path_eval(&path, t, foot.uv, NULL, err);
+      if (status) return status;
+      if (foot.distance < best->distance) *best = foot;
+    }
+  return CAG_OK;
+}
+
+static CagStatus outward_at(const CagBoundaryFace *f, const double uv[2], CagVec3 *out,
+                            CagError *err) {
+  CagStatus status = cag_carrier_normal(&f->carrier, uv[0], uv[1], out, err);
+  if (!status && f->reversed) *out = cag_scaled(*out, -1);
+  return status;
+}
+
+static CagStatus normal_near(const CagFaceOutline *o, CagVec3 center, CagVec3 *out, CagError *err) {
+  Foot best = {{0, 0}, INFINITY};
+  const bool analytic = cag_carrier_is_analytic(&o->face->carrier);
+  CagStatus status =
+      analytic ? analytic_foot(o, center, &best, err) : sampled_foot(o, center, &best, err);
+  if (!status && (!analytic || best.distance == INFINITY))
+    status = edge_foot(o, center, &best, err);
+  return status ? status : outward_at(o->face, best.uv, out, err);
+}
+
+// --- Bounds ---
+
+static CagStatus add_inside(const CagFaceOutline *o, double u, double v, CagBounds *box,
+                            CagError *err) {
+  double uv[2] = {u, v};
+  bool inside;
+  CagCarrierPoint p;
+  CagStatus status = cag_face_outline_has(o, uv, &inside, err);
+  if (status || !inside) return status;
+  status = cag_carrier_eval(&o->face->carrier, uv[0], uv[1], &p, err);
+  if (!status) cag_bounds_add(box, p.point);
+  return status;
+}
+
+// Where the normal of a ball or torus is along an axis of the world.
+static CagStatus round_extremes(const CagFaceOutline *o, CagBounds *box, CagError *err) {
+  const CagCarrier *c = &o->face->carrier;
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 12; k++) {
+    const CagVec3 to = cag_scaled(axis_of(k / 4), k % 2 ? -1 : 1);
+    const double x = cag_dot(to, cag_frame_column(&c->frame, 0));
+    const double y = cag_dot(to, cag_frame_column(&c->frame, 1));
+    const double z = cag_dot(to, cag_frame_column(&c->frame, 2));
+    // Of a torus also on the inner side, and opposite ones are those of the opposite direction.
+    const bool inner = k / 2 % 2;
+    if (inner && c->kind == CAG_CARRIER_SPHERE) continue;
+    const double v = atan2(z, inner ? -hypot(x, y) : hypot(x, y));
+    status = add_inside(o, inner ? atan2(-y, -x) : atan2(y, x), v, box, err);
+  }
+  return status;
+}
+
+// One side of the bounds, found from the highest sample along a direction.
+typedef struct Peak {
+  const CagFaceOutline *outline;
+  int axis;
+  double sign, uv[2], height;
+} Peak;
+
+static CagStatus peak_slopes(const Peak *p, double u, double v, double out[2], CagError *err) {
+  CagCarrierPoint at;
+  CagStatus status = cag_carrier_eval(&p->outline->face->carrier, u, v, &at, err);
+  if (status) return status;
+  out[0] = p->sign * coordinate(at.du, p->axis);
+  out[1] = p->sign * coordinate(at.dv, p->axis);
+  return CAG_OK;
+}
+
+// A step of Newton's method; false if there is no maximum nearby.
+static CagStatus peak_step(const Peak *p, double step[2], bool *near, CagError *err) {
+  const double *box = p->outline->box, u = p->uv[0], v = p->uv[1];
+  const double hu = DIFFERENCE * (box[1] - box[0]), hv = DIFFERENCE * (box[3] - box[2]);
+  double g[2], right[2], left[2], up[2], down[2];
+  *near = false;
+  CagStatus status = peak_slopes(p, u, v, g, err);
+  if (!status) status = peak_slopes(p, u + hu, v, right, err);
+  if (!status) status = peak_slopes(p, u - hu, v, left, err);
+  if (!status) status = peak_slopes(p, u, v + hv, up, err);
+  if (!status) status = peak_slopes(p, u, v - hv, down, err);
+  if (status) return status;
+  const double uu = (right[0] - left[0]) / (2 * hu), vv = (up[1] - down[1]) / (2 * hv);
+  const double uv = ((right[1] - left[1]) / hu + (up[0] - down[0]) / hv) / 4;
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0) || uu >= 0) return CAG_OK;
+  step[0] = -(vv * g[0] - uv * g[1]) / det;
+  step[1] = -(uu * g[1] - uv * g[0]) / det;
+  *near = true;
+  return CAG_OK;
+}
+
+static CagStatus climb(Peak *p, CagBounds *box, CagError *err) {
+  const double *d = p->outline->box;
+  for (int k = 0; k < NEWTON_STEPS; k++) {
+    double step[2];
+    bool near;
+    CagStatus status = peak_step(p, step, &near, err);
+    if (status || !near) return status;
+    const double u = clamped(p->uv[0] + step[0], d[0], d[1]);
+    const double v = clamped(p->uv[1] + step[1], d[2], d[3]);
+    if (u == p->uv[0] && v == p->uv[1]) return CAG_OK;
+    p->uv[0] = u, p->uv[1] = v;
+    status = add_inside(p->outline, u, v, box, err);
+    if (status) return status;
+  }
+  return CAG_OK;
+}
+
+static CagStatus sampled_extremes(const CagFaceOutline *o, CagBounds *box, CagError *err) {
+  Peak peaks[6];
+  const double *d = o->box;
+  CagStatus status = cag_stop_check(err);
+  for (int k = 0; k < 6; k++) peaks[k] = (Peak){o, k / 2, k % 2 ? -1 : 1, {0, 0}, -INFINITY};
+  for (int i = 0; !status && i < SAMPLES * SAMPLES; i++) {
+    double uv[2] = {d[0] + (d[1] - d[0]) * (i % SAMPLES + 0.5) / SAMPLES,
+                    d[2] + (d[3] - d[2]) * (i / SAMPLES + 0.5) / SAMPLES};
+    bool inside;
+    CagCarrierPoint p;
+    status = cag_face_outline_has(o, uv, &inside, err);
+    if (!status && inside) status = cag_carrier_eval(&o->face->carrier, uv[0], uv[1], &p, err);
+    if (status || !inside) continue;
+    cag_bounds_add(box, p.point);
+    for (int k = 0; k < 6; k++) {
+      const double height = peaks[k].sign * coordinate(p.point, peaks[k].axis);
+      if (!(height > peaks[k].height)) continue;
+      peaks[k].height = height;
+      peaks[k].uv[0] = uv[0], peaks[k].uv[1] = uv[1];
+    }
+  }
+  for (int k = 0; !status && k < 6; k++)
+    if (peaks[k].height > -INFINITY) status = climb(&peaks[k], box, err);
+  return status;
+}
+
+// The straight lines of ruled carriers end at the edges, and so do their extremes.
+static CagStatus face_bounds(const CagFaceOutline *o, const CagBounds *boxes, CagBounds *out,
+                             CagError *err) {
+  const CagBoundary *b = o->boundary;
+  const CagCarrierKind kind = o->face->carrier.kind;
+  *out = CAG_BOUNDS_EMPTY;
+  for (size_t l = o->face->first; l < o->face->first + o->face->count; l++)
+    for (size_t u = b->loops[l].first; u < b->loops[l].first + b->loops[l].count; u++) {
+      cag_bounds_add(out, boxes[b->uses[u].edge].min);
+      cag_bounds_add(out, boxes[b->uses[u].edge].max);
+    }
+  if (cag_carrier_is_ruled(&o->face->carrier)) return CAG_OK;
+  return kind == CAG_CARRIER_SPHERE || kind == CAG_CARRIER_TORUS ? round_extremes(o, out, err)
+                                                                 : sampled_extremes(o, out, err);
+}
+
+CagStatus cag_face_feature(const CagBoundary *b, size_t face, const CagBounds *boxes,
+                           CagFaceFeature *out, CagError *err) {
+  const CagBoundaryFace *f = &b->faces[face];
+  const bool plane = f->carrier.kind == CAG_CARRIER_PLANE;
+  CagFaceOutline outline = {.boundary = b, .face = f};
+  *out = (CagFaceFeature){.kind = KINDS[f->carrier.kind]};
+  CagStatus status = cag_boundary_face_area(b, face, &out->area, &out->center, err);
+  if (!status && !plane) status = cag_face_outline(b, face, &outline, err);
+  if (!status) status = face_bounds(&outline, boxes, &out->bounds, err);
+  const double none[2] = {0, 0};
+  if (!status)
+    status = plane ? outward_at(f, none, &out->normal, err)
+                   : normal_near(&outline, out->center, &out->normal, err);
+  cag_face_outline_free(&outline);
+  return status;
+}
