@@ -51,8 +51,9 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
   const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
   CagSolid *exact = NULL;
+  double scale;
   *out = s;
-  if (s->kind == CAG_SOLID_EXACT) return true;
+  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale)) return true;
   CagKernel *k = cag_exacts_kernel(call);
   if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
   cag_hold_solid(call, exact);
