@@ -6,7 +6,7 @@
 
 #include "base/array.h"
 #include "geom/solid/exact.h"
-#include "interp/builtin/holds.h"
+#include "interp/builtin/exacts_features.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
@@ -24,6 +24,7 @@ CagExactParts *cag_exact_parts(CagCall *call, int argument) {
   if (!p) cag_vm_out_of_memory(call->vm);
   cag_hold_for(call, release_exact_parts, p);
   p->call = call;
+  p->records = (CagValue){.type = CAG_UNSET};
   p->kernel = cag_exacts_kernel(call);
   if (!p->kernel || !cag_exacts_of(call, argument, &p->solid)) return NULL;
   p->parts = cag_solid_boundaries(p->solid, &n);
@@ -69,21 +70,17 @@ static void add_chosen(Choice *c, size_t number) {
 
 // The records are those that the script gets from edges_of and faces_of.
 static bool make_records(Choice *c) {
-  CagVm *vm = c->p->call->vm;
-  CagSolid *solid = cag_solid_retain(c->p->solid);
-  CagValue shape, list;
-  const size_t index = cag_builtin_find(c->edges ? "edges_of" : "faces_of");
-  if (!cag_solid_result(c->p->call, CAG_OK, &solid, &shape)) return false;
-  cag_root_push(vm, shape);
-  if (index == (size_t)-1 || !cag_call(vm, vm->builtin_values[index], &shape, 1, &list))
+  CagExactParts *p = c->p;
+  if (!(c->edges ? cag_exacts_edge_records : cag_exacts_face_records)(p->call, p->solid,
+                                                                      &p->records))
     return false;
-  cag_root_push(c->p->call->vm, list);
-  c->records = CAG_AS_LIST(list);
+  c->records = CAG_AS_LIST(p->records);
   return true;
 }
 
 static bool choose_by_function(Choice *c, CagValue function) {
   CagCall *call = c->p->call;
+  cag_root_push(call->vm, c->p->records);
   for (size_t i = 0; i < c->records->length; i++) {
     const CagValue record = cag_list_get(call->vm, c->records, i);
     CagValue told;
@@ -94,6 +91,7 @@ static bool choose_by_function(Choice *c, CagValue function) {
                            cag_parameter_name(call, c->argument), cag_type_article(told));
     if (told.as.boolean) add_chosen(c, i);
   }
+  cag_root_pop(call->vm, 1);
   return true;
 }
 
@@ -105,7 +103,7 @@ static bool choose_from_list(Choice *c, const CagList *given) {
     size_t k = 0;
     if (!cag_keep_going(call->vm)) return false;
     while (k < c->records->length &&
-           !cag_equal(call->vm, cag_list_get(call->vm, c->records, k), one))
+           !cag_exacts_same_record(call->vm, cag_list_get(call->vm, c->records, k), one))
       k++;
     if (k == c->records->length)
       return cag_fail_call(call, c->argument, CAG_ERR_value,

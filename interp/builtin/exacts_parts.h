@@ -16,6 +16,7 @@ typedef struct CagExactParts {
   CagFeatures *features; // of each part, in its own coordinates
   size_t count;
   CagBoundaries results; // likewise
+  CagValue records;      // the list of those of the chosen edges or faces, or CAG_UNSET
 } CagExactParts;
 
 // The parts of an argument, a solid. They are held by the call. NULL: an error is set.
@@ -24,7 +25,7 @@ CagExactParts *cag_exact_parts(CagCall *call, int argument);
 // An edge or a face that was chosen.
 typedef struct CagChosen {
   size_t part, index; // of the features of the part
-  CagValue record;    // CAG_UNSET if there is none
+  CagValue record;    // an element of `records`, which keeps it alive; or CAG_UNSET
 } CagChosen;
 
 // The edges that an argument chooses: a function of the record of an edge that tells which, or a

@@ -137,19 +137,32 @@ static bool blend_part(CagExactParts *p, const BlendWords *words, size_t part,
   return cag_exact_parts_add(p, &made);
 }
 
+// The blends of the chosen edges, held by the call. Functions of the script may be called.
+static bool read_blends(CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
+                        size_t n, CagBlend **out) {
+  CagVm *vm = p->call->vm;
+  *out = cag_hold_array(p->call, n, sizeof **out);
+  cag_root_push(vm, p->records);
+  for (size_t i = 0; i < n; i++) {
+    double sizes[2];
+    if (!sizes_of(p->call, words, &chosen[i], sizes)) return false;
+    (*out)[i] = blend_of(p, words, &chosen[i], sizes);
+  }
+  cag_root_pop(vm, 1);
+  return true;
+}
+
 static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result) {
   const CagValue size = call->values[BLEND_SIZE];
-  CagExactParts *p = cag_exact_parts(call, 0);
-  CagChosen *chosen;
-  size_t n;
   double sizes[2];
   if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
-  if (!p || !cag_chosen_edges(p, BLEND_EDGES, cag_is_function(size), &chosen, &n)) return false;
-  CagBlend *blends = cag_hold_array(call, n, sizeof *blends);
-  for (size_t i = 0; i < n; i++) {
-    if (!sizes_of(call, words, &chosen[i], sizes)) return false;
-    blends[i] = blend_of(p, words, &chosen[i], sizes);
-  }
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagChosen *chosen;
+  CagBlend *blends;
+  size_t n;
+  if (!p || !cag_chosen_edges(p, BLEND_EDGES, cag_is_function(size), &chosen, &n) ||
+      !read_blends(p, words, chosen, n, &blends))
+    return false;
   CagBlend *own = cag_hold_array(call, n, sizeof *own); // of one part
   for (size_t i = 0; i < p->count; i++) {
     size_t count = 0;
