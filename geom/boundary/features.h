@@ -8,15 +8,7 @@
 #ifndef CAG_GEOM_BOUNDARY_FEATURES_H
 #define CAG_GEOM_BOUNDARY_FEATURES_H
 
-#include "geom/boundary/boundary.h"
-
-typedef struct CagFaceFeature {
-  const char *kind; // "plane" "cylinder" "cone" "sphere" "torus" "spline" "revolved" "extruded"
-  double area;
-  CagVec3 center; // of the area; it need not lie on the face
-  CagVec3 normal; // outward, a unit vector: at the point of the face nearest to the center
-  CagBounds bounds;
-} CagFaceFeature;
+#include "geom/boundary/face_feature.h"
 
 typedef enum CagEdgeBend { CAG_EDGE_CONVEX, CAG_EDGE_CONCAVE, CAG_EDGE_SMOOTH } CagEdgeBend;
 

@@ -22,7 +22,8 @@
 #include "geom/boundary/carrier.h"
 #include "geom/curve/family.h"
 
-// Area and its three moments; then the fluxes of surface.h: volume, moments, and inertia.
+// Area and its three moments; then the fluxes of surface.h: volume, moments, and inertia, of which
+// those that have a factor of 1/3 are three times as large.
 #define AREA_TERMS 4
 #define TERMS 14
 
@@ -36,16 +37,25 @@
 #define EDGE_ANGLE (M_PI / 4)
 #define INNER_ANGLE (M_PI / 2)
 
-// Gauss-Legendre quadrature with 8 and 3 points: the nodes of -1..1, and their weights.
-static const double NODES_8[8] = {-0.96028985649753623168, -0.79666647741362673959,
-                                  -0.52553240991632898582, -0.18343464249564980494,
-                                  0.18343464249564980494,  0.52553240991632898582,
-                                  0.79666647741362673959,  0.96028985649753623168};
-static const double WEIGHTS_8[8] = {
-    0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
-    0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915};
-static const double NODES_3[3] = {-0.77459666924148337704, 0, 0.77459666924148337704};
-static const double WEIGHTS_3[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+// A quadrature rule on -1..1. Weights are whole numbers where possible, so that areas of figures
+// with simple coordinates are exact.
+typedef struct Rule {
+  int n;
+  double nodes[8], weights[8], divisor;
+} Rule;
+
+// Exact for polynomials of degree 3 and 5.
+static const Rule SIMPSON = {3, {-1, 0, 1}, {1, 4, 1}, 3};
+static const Rule BOOLE = {5, {-1, -0.5, 0, 0.5, 1}, {7, 32, 12, 32, 7}, 45};
+static const Rule GAUSS = {8,
+                           {-0.96028985649753623168, -0.79666647741362673959,
+                            -0.52553240991632898582, -0.18343464249564980494,
+                            0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959,
+                            0.96028985649753623168},
+                           {0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734,
+                            0.36268378337836198297, 0.36268378337836198297, 0.31370664587788728734,
+                            0.22238103445337447054, 0.10122853629037625915},
+                           1};
 
 // The integrals over a face. The inner ones start at `from`.
 typedef struct FaceIntegral {
@@ -72,13 +82,13 @@ static void add_terms(const FaceIntegral *in, CagVec3 point, CagVec3 du, CagVec3
   out[3] += area * p.z;
   if (in->terms == AREA_TERMS) return;
   const double xx = p.x * p.x, yy = p.y * p.y, zz = p.z * p.z;
-  out[4] += cag_dot(p, n) / 3;
+  out[4] += cag_dot(p, n);
   out[5] += xx * n.x / 2;
   out[6] += yy * n.y / 2;
   out[7] += zz * n.z / 2;
-  out[8] += xx * p.x * n.x / 3;
-  out[9] += yy * p.y * n.y / 3;
-  out[10] += zz * p.z * n.z / 3;
+  out[8] += xx * p.x * n.x;
+  out[9] += yy * p.y * n.y;
+  out[10] += zz * p.z * n.z;
   out[11] += xx * p.y * n.x / 2;
   out[12] += yy * p.z * n.y / 2;
   out[13] += zz * p.x * n.z / 2;
@@ -86,17 +96,19 @@ static void add_terms(const FaceIntegral *in, CagVec3 point, CagVec3 du, CagVec3
 
 // --- Inner integrals ---
 
-// G at (u, v), negative: the terms are polynomials of degree 4 at most in v.
+// -G at (u, v): the terms are polynomials in v, of degree 3 at most, or 4 on cones.
 static CagStatus ruled_inner(const FaceIntegral *in, double u, double v, double *out,
                              CagError *err) {
+  const Rule *rule = in->face->carrier.kind == CAG_CARRIER_CONE ? &BOOLE : &SIMPSON;
+  const double middle = (in->from + v) / 2, half = (v - in->from) / 2;
   CagGenerator g;
   CagStatus status = cag_carrier_generator(&in->face->carrier, u, &g, err);
-  const double middle = (in->from + v) / 2, half = (v - in->from) / 2;
-  for (int i = 0; !status && i < 3; i++) {
-    const double at = middle + half * NODES_3[i];
+  for (int i = 0; !status && i < rule->n; i++) {
+    const double at = middle + half * rule->nodes[i];
     add_terms(in, cag_madd(g.at, at, g.along), cag_madd(g.at_u, at, g.along_u), g.along,
-              -half * WEIGHTS_3[i], out);
+              -half * rule->weights[i], out);
   }
+  for (int k = 0; k < in->terms; k++) out[k] /= rule->divisor;
   return status;
 }
 
@@ -117,10 +129,11 @@ static CagStatus turned_inner(const FaceIntegral *in, double u, double v, double
   const int parts = 1 + (int)(fabs(u - in->from) / INNER_ANGLE);
   const double half = (u - in->from) / (2 * parts);
   for (int i = 0; i < 8 * parts; i++) {
-    const double angle = half * (2 * (i / 8) + 1 + NODES_8[i % 8]), s = sin(angle), k = cos(angle);
+    const double angle = half * (2 * (i / 8) + 1 + GAUSS.nodes[i % 8]), s = sin(angle),
+                 k = cos(angle);
     CagVec3 at[3];
     for (int j = 0; j < 3; j++) at[j] = cag_madd(cag_madd(turned[j], k - 1, flat[j]), s, across[j]);
-    add_terms(in, cag_add(origin, at[0]), at[1], at[2], half * WEIGHTS_8[i % 8], out);
+    add_terms(in, cag_add(origin, at[0]), at[1], at[2], half * GAUSS.weights[i % 8], out);
   }
   return CAG_OK;
 }
@@ -195,16 +208,18 @@ static double edge_angle(const FaceIntegral *in) {
 
 static CagStatus integrate_smooth(FaceIntegral *in, double angle, double *sum, CagError *err) {
   const CagEdgePath *p = &in->path;
+  const Rule *rule = angle == 0 ? &BOOLE : &GAUSS;
   const int parts = 1 + (int)(angle / EDGE_ANGLE);
   const double half = (p->end - p->start) / (2 * parts);
   memset(sum, 0, (size_t)in->terms * sizeof *sum);
   CagStatus status = cag_stop_check(err);
-  for (int i = 0; !status && i < 8 * parts; i++) {
+  for (int i = 0; !status && i < rule->n * parts; i++) {
     double value[TERMS];
-    const double t = p->start + half * (2 * (i / 8) + 1 + NODES_8[i % 8]);
-    status = along_edge(in, t, value, err);
-    for (int k = 0; !status && k < in->terms; k++) sum[k] += half * WEIGHTS_8[i % 8] * value[k];
+    const int part = i / rule->n, at = i % rule->n;
+    status = along_edge(in, p->start + half * (2 * part + 1 + rule->nodes[at]), value, err);
+    for (int k = 0; !status && k < in->terms; k++) sum[k] += half * rule->weights[at] * value[k];
   }
+  for (int k = 0; !status && k < in->terms; k++) sum[k] /= rule->divisor;
   return status;
 }
 
@@ -348,7 +363,9 @@ static CagStatus face_integral(const CagBoundary *b, size_t face, int terms, Fac
   CagStatus status = cag_boundary_extent(b, face, &box, err);
   if (status) return status;
   const double size = cag_norm(cag_sub(box.max, box.min)) / 2;
-  *out = (FaceIntegral){.terms = terms, .size = size > 0 && isfinite(size) ? size : 1};
+  // A power of two, so that the division is exact.
+  *out = (FaceIntegral){.terms = terms,
+                        .size = size > 0 && isfinite(size) ? exp2(ceil(log2(size))) : 1};
   if (isfinite(size)) out->center = cag_lerp(box.min, box.max, 0.5);
   return CAG_OK;
 }
@@ -371,13 +388,13 @@ CagStatus cag_boundary_face_area(const CagBoundary *b, size_t face, double *area
 
 // From the integrals over all faces, relative to the center and the size.
 static void set_mass(const FaceIntegral *in, const double *sum, CagMassProperties *out) {
-  const double size = in->size, volume = sum[4];
+  const double size = in->size, volume = sum[4] / 3;
   const CagVec3 moment = cag_vec3(sum[1], sum[2], sum[3]);
   const double c[3] = {sum[5] / volume, sum[6] / volume, sum[7] / volume};
   double second[3][3]; // about the centroid
   for (int i = 0; i < 3; i++) {
     const int next = (i + 1) % 3;
-    second[i][i] = sum[8 + i] - volume * c[i] * c[i];
+    second[i][i] = sum[8 + i] / 3 - volume * c[i] * c[i];
     second[i][next] = second[next][i] = sum[11 + i] - volume * c[i] * c[next];
   }
   const double trace = second[0][0] + second[1][1] + second[2][2];

@@ -1,6 +1,6 @@
 // Solids with exact boundaries.
 //
-// Transformed copies share the boundaries, and the last mesh that was made of them.
+// Transformed copies share the boundaries, their measures, and the last mesh that was made of them.
 
 #include "geom/solid/exact.h"
 
@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/boundary/measure.h"
 #include "geom/boundary/mesh.h"
 #include "geom/boundary/patch.h"
 #include "geom/solid/build.h"
@@ -21,6 +22,8 @@ struct CagExact {
   size_t count;
   CagMesh *mesh; // in their coordinates; NULL: none yet
   CagTessellation how;
+  bool measured; // `body` is known
+  CagSolidBody body;
 };
 
 CagExact *cag_exact_retain(CagExact *e) {
@@ -89,6 +92,53 @@ CagStatus cag_solid_exact(CagBoundary *parts, size_t n, CagSolid **out, CagError
     }
   if (status) cag_solid_release(s);
   else *out = s;
+  return status;
+}
+
+// --- Measures ---
+
+// Second moments xx yy zz xy yz zx from the inertia: it is their trace minus themselves.
+static void second_moments(const CagMassProperties *m, double out[6]) {
+  const double trace = (m->inertia[0][0] + m->inertia[1][1] + m->inertia[2][2]) / 2;
+  for (int i = 0; i < 3; i++) {
+    out[i] = trace - m->inertia[i][i];
+    out[3 + i] = -m->inertia[i][(i + 1) % 3];
+  }
+}
+
+// Adds the moments of a part about its centroid, moved to the centroid of all.
+static void add_moments(const CagMassProperties *part, CagVec3 centroid, double moment[6]) {
+  const CagVec3 d = cag_sub(part->volume_centroid, centroid);
+  const double by[3] = {d.x, d.y, d.z};
+  double own[6];
+  second_moments(part, own);
+  for (int i = 0; i < 3; i++) {
+    moment[i] += own[i] + part->volume * by[i] * by[i];
+    moment[3 + i] += own[3 + i] + part->volume * by[i] * by[(i + 1) % 3];
+  }
+}
+
+CagStatus cag_exact_body(CagExact *e, CagSolidBody *out, CagError *err) {
+  CagSolidBody body = {0};
+  CagMassProperties *parts = e->measured ? NULL : cag_calloc(e->count + 1, sizeof *parts);
+  CagStatus status = e->measured || parts ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && parts && i < e->count; i++) {
+    status = cag_boundary_mass(&e->parts[i], &parts[i], err);
+    if (status) break;
+    body.volume += parts[i].volume;
+    body.area += parts[i].area;
+    body.centroid = cag_madd(body.centroid, parts[i].volume, parts[i].volume_centroid);
+    body.area_centroid = cag_madd(body.area_centroid, parts[i].area, parts[i].area_centroid);
+  }
+  if (!status && parts) {
+    body.centroid = cag_scaled(body.centroid, 1 / body.volume);
+    body.area_centroid = cag_scaled(body.area_centroid, 1 / body.area);
+    for (size_t i = 0; i < e->count; i++) add_moments(&parts[i], body.centroid, body.moment);
+    e->body = body;
+    e->measured = true;
+  }
+  cag_free(parts);
+  if (!status) *out = e->body;
   return status;
 }
 

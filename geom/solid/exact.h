@@ -7,6 +7,7 @@
 #define CAG_GEOM_SOLID_EXACT_H
 
 #include "geom/boundary/boundary.h"
+#include "geom/solid/kind.h"
 #include "geom/solid/solid.h"
 
 // A solid of n >= 1 separate parts. Takes the contents of their boundaries, which are then empty,
@@ -23,6 +24,9 @@ const CagBoundary *cag_solid_boundaries(const CagSolid *s, size_t *n);
 CagExact *cag_exact_retain(CagExact *e);
 void cag_exact_release(CagExact *e);
 void cag_exact_digest(const CagExact *e, CagDigest *d);
+// The measures of all parts in the solid's own coordinates (measure.h in geom/boundary), which are
+// computed once.
+CagStatus cag_exact_body(CagExact *e, CagSolidBody *out, CagError *err);
 CagStatus cag_exact_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out,
                          CagError *err);
 

@@ -418,13 +418,17 @@ CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *er
   const CagSolidKindRow *kind = &cag_solid_kinds[s->kind];
   double scale;
   if (s->face_count == 0) return cag_csg_mass(s, 0, out, err);
-  if (!kind->body) {
+  if (!kind->body && !s->exact) {
     CagStatus status = area_of_faces(s, &m, err);
     if (!status) status = volume_of_faces(s, &m, err);
     if (!status) *out = m;
     return status;
   }
-  const CagSolidBody body = kind->body(s);
+  CagSolidBody body;
+  if (s->exact) {
+    CagStatus status = cag_exact_body(s->exact, &body, err);
+    if (status) return status;
+  } else body = kind->body(s);
   place_body(&body, &s->placement, &m);
   if (cag_transform_is_similarity(&s->placement, &scale)) {
     m.area = body.area * scale * scale;

@@ -6,9 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "geom/linalg/tolerance.h"
 #include "interp/builtin/exacts_parts.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
+
+// Ends that are nearer than this fraction of the length of an edge are one point.
+#define CLOSED 1e-9
 
 typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
                                   size_t n, CagBoundaries *out, CagKernelFailure *why,
@@ -66,13 +70,24 @@ static const char *point_text(CagVec3 p, char text[64]) {
   return text;
 }
 
+// Whether an edge runs from its end to its start in world coordinates, where the first coordinate of
+// its direction is positive that is not 0 (features.h).
+static bool is_turned(const CagExactParts *p, const CagEdgeFeature *e) {
+  const CagVec3 d = cag_transform_vector(&p->solid->placement, e->direction);
+  const double x[3] = {d.x, d.y, d.z}, zero = CAG_PARALLEL * cag_norm(d);
+  for (int i = 0; i < 3; i++)
+    if (fabs(x[i]) > zero) return x[i] < 0;
+  return false;
+}
+
 // The edge in world coordinates: "the line from [0, 0, 0] to [0, 0, 30], 30 mm long".
 static void describe_edge(const CagExactParts *p, const CagEdgeFeature *e, char *text, size_t n) {
   char from[64], to[64];
   const CagTransform *t = &p->solid->placement;
-  const bool closed = cag_norm(cag_sub(e->start, e->end)) <= 1e-9 * e->length;
-  point_text(cag_transform_point(t, e->start), from);
-  point_text(cag_transform_point(t, e->end), to);
+  const bool closed = cag_norm(cag_sub(e->start, e->end)) <= CLOSED * e->length;
+  const bool turned = is_turned(p, e);
+  point_text(cag_transform_point(t, turned ? e->end : e->start), from);
+  point_text(cag_transform_point(t, turned ? e->start : e->end), to);
   if (closed)
     snprintf(text, n, "the %s through %s, %.6g mm long", e->kind, from, e->length * p->scale);
   else
@@ -120,7 +135,7 @@ static CagBlend blend_of(const CagExactParts *p, const BlendWords *words, const 
                          const double sizes[2]) {
   const CagFeatures *f = &p->features[c->part];
   const CagEdgeFeature *e = &f->edges[c->index];
-  const bool turned = !words->chamfer && e->flipped;
+  const bool turned = !words->chamfer && e->flipped != is_turned(p, e);
   return (CagBlend){.edge = e->edge,
                     .face = e->count > 0 ? f->edge_faces[e->first] : 0,
                     .first = sizes[turned] / p->scale,

@@ -227,12 +227,12 @@ static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
 static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *frame,
                      CagVec3 *along) {
   size_t caps = 0, sides = 0;
-  CagVec3 ends[2], v = {0, 0, 0};
+  CagVec3 ends[2], v;
   *region = NULL;
   for (size_t i = 0; i < s->face_count; i++) {
     const CagRegion *r;
     const CagCurve *section;
-    CagTransform t = cag_transform_identity();
+    CagTransform t;
     if (cag_surface_planar_view(s->faces[i], &r, &t)) {
       if (caps == 2) return false;
       ends[caps] = frame_column(&t, 3);
@@ -242,17 +242,17 @@ static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *
       }
     } else {
       const CagSurface *side = s->faces[i];
-      cag_surface_placed_view(s->faces[i], &side, &t);
+      const bool placed = cag_surface_placed_view(s->faces[i], &side, &t);
       if (!cag_surface_extrusion_view(side, &section, &v)) return false;
-      v = cag_transform_vector(&t, v);
+      *along = placed ? cag_transform_vector(&t, v) : v;
       sides++;
     }
   }
   if (caps != 2 || sides == 0 || !*region) return false;
-  // The caps may have different origins in their planes, and a side may be flipped.
+  // The frames of caps have any origin in their plane, so only their distance counts.
   const CagVec3 normal = cag_cross(frame_column(frame, 0), frame_column(frame, 1));
-  const bool back = cag_dot(v, normal) * cag_dot(cag_sub(ends[1], ends[0]), normal) < 0;
-  *along = back ? cag_scaled(v, -1) : v;
+  if (cag_dot(*along, normal) * cag_dot(cag_sub(ends[1], ends[0]), normal) < 0)
+    *along = cag_scaled(*along, -1);
   return true;
 }
 
@@ -261,7 +261,7 @@ static CagStatus put_prism(CagFields *f, const CagSolid *s, bool *done, CagError
   const CagRegion *region = NULL;
   CagRegion *own;
   CagTransform t, frame, map;
-  CagVec3 along;
+  CagVec3 along = {0, 0, 0};
   *done = s->kind == CAG_SOLID_EXTRUSION && prism_of(s, &region, &t, &along);
   if (!*done) return CAG_OK;
   CagStatus status = flat_frame(&t, &frame, &map, err);
