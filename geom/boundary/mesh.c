@@ -8,6 +8,7 @@
 #include "geom/boundary/mesh.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -20,6 +21,8 @@
 #define FINER 0.25
 // ... at most this many times.
 #define TRIES 4
+// Rounds in which edges within faces are divided because others have the same ends.
+#define ROUNDS 4
 // Parts of a degenerate edge on a carrier whose first parameter is not an angle.
 #define POLE_PARTS 12
 
@@ -38,7 +41,9 @@ typedef struct Mesher {
   CagCurve **traces; // of uses, in the parameters of patches
   CagVec3 *points;
   size_t count;
-  CagMesh **meshes; // of faces
+  CagMesh **meshes;     // of faces
+  uint32_t (*apart)[2]; // points that edges within faces must not join, ascending
+  size_t apart_count;
 } Mesher;
 
 static void mesher_free(Mesher *m) {
@@ -51,6 +56,7 @@ static void mesher_free(Mesher *m) {
   cag_free(m->patches);
   cag_free(m->meshes);
   cag_free(m->points);
+  cag_free(m->apart);
 }
 
 // --- Faces on their carriers ---
@@ -324,7 +330,10 @@ static void name_vertices(CagMesh *m, const CagLoopPoints *o, size_t points) {
 static CagStatus mesh_face(const Mesher *m, size_t face, CagMesh **out, CagError *err) {
   const CagBoundaryFace *f = &m->b->faces[face];
   size_t *counts = cag_malloc((f->count + 1) * sizeof *counts);
-  CagLoopPoints o = {.counts = counts, .loops = f->count};
+  CagLoopPoints o = {.counts = counts,
+                     .loops = f->count,
+                     .apart = (const uint32_t(*)[2])m->apart,
+                     .apart_count = m->apart_count};
   CagStatus status = counts ? cag_stop_check(err) : cag_fail_memory(err);
   for (size_t l = 0; !status && l < f->count; l++) {
     const CagBoundaryLoop *loop = &m->b->loops[f->first + l];
@@ -369,9 +378,58 @@ static CagStatus join_faces(const Mesher *m, CagMesh **out, CagError *err) {
   return status;
 }
 
-static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
-  CagStatus status = divide_edges(m, err);
-  if (!status) status = number_points(m, err);
+static int by_pair(const void *a, const void *b) {
+  const uint32_t *x = a, *y = b;
+  for (int k = 0; k < 2; k++)
+    if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
+  return 0;
+}
+
+// All edges of triangles between numbered points, the lower one first, in ascending order.
+static CagStatus edges_of_points(const Mesher *m, uint32_t (**out)[2], size_t *n, CagError *err) {
+  size_t most = 0;
+  for (size_t f = 0; f < m->b->face_count; f++) most += 3 * m->meshes[f]->triangle_count;
+  uint32_t(*edges)[2] = cag_malloc((most + 1) * sizeof *edges);
+  if (!edges) return cag_fail_memory(err);
+  *n = 0;
+  for (size_t f = 0; f < m->b->face_count; f++) {
+    const CagMesh *mesh = m->meshes[f];
+    for (size_t k = 0; k < 3 * mesh->triangle_count; k++) {
+      const size_t next = k % 3 == 2 ? k - 2 : k + 1;
+      const uint32_t p = mesh->weld[mesh->triangles[k]], q = mesh->weld[mesh->triangles[next]];
+      if (p >= m->count || q >= m->count) continue;
+      edges[*n][0] = p < q ? p : q;
+      edges[(*n)++][1] = p < q ? q : p;
+    }
+  }
+  qsort(edges, *n, sizeof *edges, by_pair);
+  *out = edges;
+  return CAG_OK;
+}
+
+// Finds points that more than two triangles join: an edge within a face has the ends of another one.
+// *found: there are some that were not known.
+static CagStatus find_equal_edges(Mesher *m, bool *found, CagError *err) {
+  uint32_t(*edges)[2];
+  size_t n, before = m->apart_count;
+  CagStatus status = edges_of_points(m, &edges, &n, err);
+  if (status) return status;
+  for (size_t i = 0, j; !status && i < n; i = j) {
+    for (j = i + 1; j < n && by_pair(edges[i], edges[j]) == 0; j++) {}
+    if (j - i <= 2 ||
+        (before > 0 && bsearch(edges[i], m->apart, before, sizeof *m->apart, by_pair)))
+      continue;
+    if (!CAG_RESIZE(m->apart, m->apart_count + 1)) status = cag_fail_memory(err);
+    else memcpy(m->apart[m->apart_count++], edges[i], sizeof *edges);
+  }
+  cag_free(edges);
+  *found = m->apart_count > before;
+  if (*found) qsort(m->apart, m->apart_count, sizeof *m->apart, by_pair);
+  return status;
+}
+
+static CagStatus mesh_each_face(Mesher *m, CagError *err) {
+  CagStatus status = CAG_OK;
   size_t triangles = 0;
   for (size_t f = 0; !status && f < m->b->face_count; f++) {
     cag_mesh_release(m->meshes[f]);
@@ -383,6 +441,18 @@ static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
                         "the solid needs more triangles than the limit of %zu; use a larger "
                         "tolerance",
                         m->how.max_triangles);
+  }
+  return status;
+}
+
+static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
+  CagStatus status = divide_edges(m, err);
+  if (!status) status = number_points(m, err);
+  bool found = true;
+  m->apart_count = 0;
+  for (int k = 0; !status && found && k < ROUNDS; k++) {
+    status = mesh_each_face(m, err);
+    if (!status) status = find_equal_edges(m, &found, err);
   }
   return status ? status : join_faces(m, out, err);
 }

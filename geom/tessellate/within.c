@@ -12,6 +12,7 @@
 #include "geom/tessellate/within.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -540,6 +541,33 @@ static CagStatus refine(Plane *p, const CagTessellation *how, CagError *err) {
   return CAG_OK;
 }
 
+// --- Edges that must not be ---
+
+static int by_pair(const void *a, const void *b) {
+  const uint32_t *x = a, *y = b;
+  for (int k = 0; k < 2; k++)
+    if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
+  return 0;
+}
+
+static bool must_not_join(const CagLoopPoints *o, uint32_t a, uint32_t b) {
+  if (a >= o->count || b >= o->count) return false;
+  const uint32_t p = o->points[a], q = o->points[b], key[2] = {p < q ? p : q, p < q ? q : p};
+  return bsearch(key, o->apart, o->apart_count, sizeof *o->apart, by_pair) != NULL;
+}
+
+// Divides the inner edges between points that must not be joined.
+static CagStatus part_points(Plane *p, const CagLoopPoints *o, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (uint32_t t = 0; !status && o->apart_count > 0 && t < p->triangle_count; t++)
+    for (int k = 0; !status && k < 3; k++) {
+      const uint32_t *c = p->corner + 3 * t;
+      if (p->across[3 * t + (uint32_t)k] != NO_TRIANGLE && must_not_join(o, c[k], c[(k + 1) % 3]))
+        status = divide(p, t, k, err);
+    }
+  return status;
+}
+
 // --- The mesh ---
 
 // The first vertex of each point.
@@ -603,6 +631,7 @@ CagStatus cag_within_tessellate(const CagSurface *s, const double box[4], const 
   CagStatus status = begin(&p, o, err);
   if (!status) status = insert_mesh(&p, how, err);
   if (!status) status = refine(&p, how, err);
+  if (!status) status = part_points(&p, o, err);
   if (!status) status = to_mesh(&p, o, &m, err);
   if (!status) status = cag_mesh_split_sides(m, 0, m->triangle_count, s, how->angle, 0, err);
   release(&p);

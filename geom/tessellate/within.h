@@ -14,6 +14,10 @@ typedef struct CagLoopPoints {
   double *uv; // 2 per point
   CagVec3 *positions;
   uint32_t *points; // equal for entries that are one point of space, at seams and poles
+  // Pairs of points, the lower one first, in ascending order: no edge within the outline may join
+  // them. The caller's.
+  const uint32_t (*apart)[2];
+  size_t apart_count;
 } CagLoopPoints;
 
 void cag_loop_points_free(CagLoopPoints *o);

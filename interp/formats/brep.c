@@ -357,8 +357,9 @@ static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepShape *
 }
 
 static bool needs_kernel(const CagItem *item) {
-  return item->kind == CAG_ITEM_SOLID && item->as.solid->face_count == 0 &&
-         item->as.solid->kind != CAG_SOLID_MESH;
+  return item->kind == CAG_ITEM_SOLID &&
+         (item->as.solid->kind == CAG_SOLID_EXACT ||
+          (item->as.solid->face_count == 0 && item->as.solid->kind != CAG_SOLID_MESH));
 }
 
 static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagKernel *kernel,
