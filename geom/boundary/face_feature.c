@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/memory.h"
 #include "base/stop.h"
 #include "geom/boundary/carrier.h"
 #include "geom/boundary/measure.h"
@@ -328,5 +329,41 @@ CagStatus cag_face_feature(const CagBoundary *b, size_t face, const CagBounds *b
     status = plane ? outward_at(f, none, &out->normal, err)
                    : normal_near(&outline, out->center, &out->normal, err);
   cag_face_outline_free(&outline);
+  return status;
+}
+
+// --- The whole boundary ---
+
+CagStatus cag_boundary_edge_boxes(const CagBoundary *b, CagBounds **out, CagError *err) {
+  CagBounds *boxes = cag_calloc(b->edge_count + 1, sizeof *boxes);
+  CagStatus status = boxes ? CAG_OK : cag_fail_memory(err);
+  for (size_t e = 0; !status && e < b->edge_count; e++) {
+    const CagBoundaryEdge *edge = &b->edges[e];
+    status = cag_stop_check(err);
+    if (!edge->curve) boxes[e] = (CagBounds){b->corners[edge->from], b->corners[edge->from]};
+    else if (!status) status = cag_curve_bounds(edge->curve, &boxes[e], err);
+  }
+  if (status) cag_free(boxes);
+  else *out = boxes;
+  return status;
+}
+
+CagStatus cag_boundary_bounds(const CagBoundary *b, CagBounds *out, CagError *err) {
+  CagBounds *boxes;
+  CagBounds all = CAG_BOUNDS_EMPTY;
+  CagStatus status = cag_boundary_edge_boxes(b, &boxes, err);
+  if (status) return status;
+  for (size_t f = 0; !status && f < b->face_count; f++) {
+    CagFaceOutline outline = {.boundary = b, .face = &b->faces[f]};
+    CagBounds box;
+    if (!cag_carrier_is_ruled(&b->faces[f].carrier)) status = cag_face_outline(b, f, &outline, err);
+    if (!status) status = face_bounds(&outline, boxes, &box, err);
+    cag_face_outline_free(&outline);
+    if (status) break;
+    cag_bounds_add(&all, box.min);
+    cag_bounds_add(&all, box.max);
+  }
+  cag_free(boxes);
+  if (!status) *out = all;
   return status;
 }

@@ -106,46 +106,53 @@ static CagStatus divide_curve(const Mesher *m, const CagBoundaryEdge *e, Divisio
   return CAG_OK;
 }
 
-// Divides the parts of an edge along which the normal of a face turns too far, or that are too
-// long.
-static CagStatus divide_for_face(const Mesher *m, size_t face, size_t use, Division *d,
-                                 CagError *err) {
+// The number of parts of a chord of an edge along which the normal of a face does not turn too far,
+// and which are not too long.
+static CagStatus parts_of_chord(const Mesher *m, size_t face, size_t use, double from, double to,
+                                size_t *parts, CagError *err) {
   const CagCurve *curve = m->b->edges[m->b->uses[use].edge].curve;
   const CagSurface *whole = m->patches[face].whole;
-  double *at = NULL;
-  size_t n = 0;
-  CagStatus status = CAG_OK;
+  CagVec3 p, q;
+  *parts = 1;
+  CagStatus status = cag_curve_point(curve, from, &p, err);
+  if (!status) status = cag_curve_point(curve, to, &q, err);
+  if (status) return status;
+  const double length = cag_norm(cag_sub(q, p)), longest = m->edge.max_edge;
+  if (whole)
+    status = cag_loop_points_parts(whole, m->traces[use], from, to, length, &m->edge, parts, err);
+  if (longest > 0 && ceil(length / longest) > (double)*parts)
+    *parts = (size_t)fmin(ceil(length / longest), (double)m->edge.max_triangles);
+  return status;
+}
+
+// Divides the parts of an edge that are too long for a face that uses it.
+static CagStatus divide_for_face(const Mesher *m, size_t face, size_t use, Division *d,
+                                 CagError *err) {
+  size_t *parts = cag_malloc((d->n + 1) * sizeof *parts), n = 1;
+  CagStatus status = parts ? CAG_OK : cag_fail_memory(err);
   for (size_t k = 0; !status && k + 1 < d->n; k++) {
-    CagVec3 p, q;
-    size_t parts = 1;
-    status = cag_curve_point(curve, d->at[k], &p, err);
-    if (!status) status = cag_curve_point(curve, d->at[k + 1], &q, err);
-    if (status) break;
-    const double length = cag_norm(cag_sub(q, p));
-    if (whole)
-      status = cag_loop_points_parts(whole, m->traces[use], d->at[k], d->at[k + 1], length,
-                                     &m->edge, &parts, err);
-    const double longest = m->edge.max_edge;
-    if (longest > 0 && ceil(length / longest) > (double)parts)
-      parts = (size_t)fmin(ceil(length / longest), (double)m->edge.max_triangles);
-    if (!status && !CAG_RESIZE(at, n + parts + 1)) status = cag_fail_memory(err);
-    for (size_t j = 0; !status && j < parts; j++)
-      at[n++] = d->at[k] + (d->at[k + 1] - d->at[k]) * (double)j / (double)parts;
+    status = parts_of_chord(m, face, use, d->at[k], d->at[k + 1], &parts[k], err);
+    n += parts[k];
     if (!status && n > m->edge.max_triangles + 2)
-      status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
-                        "an edge alone needs more triangles than the limit of %zu; use a larger "
-                        "tolerance",
-                        m->edge.max_triangles);
+      status = cag_fail(
+          err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
+          "an edge alone needs more triangles than the limit of %zu; use a larger tolerance",
+          m->edge.max_triangles);
   }
-  if (status || n + 1 == d->n) {
-    cag_free(at);
-    return status;
+  double *at = status || n == d->n ? NULL : cag_malloc((n + 1) * sizeof *at);
+  if (!status && n != d->n && !at) status = cag_fail_memory(err);
+  if (at) {
+    size_t i = 0;
+    for (size_t k = 0; k + 1 < d->n; k++)
+      for (size_t j = 0; j < parts[k]; j++)
+        at[i++] = d->at[k] + (d->at[k + 1] - d->at[k]) * (double)j / (double)parts[k];
+    at[i] = d->at[d->n - 1];
+    cag_free(d->at);
+    d->at = at;
+    d->n = n;
   }
-  at[n++] = d->at[d->n - 1];
-  cag_free(d->at);
-  d->at = at;
-  d->n = n;
-  return CAG_OK;
+  cag_free(parts);
+  return status;
 }
 
 static bool is_curved(const CagCurve *c) {

@@ -21,8 +21,7 @@ CagKernel *cag_exacts_kernel(CagCall *call) {
   return NULL;
 }
 
-// Takes the contents of the parts.
-static CagStatus checked_solid(CagBoundaries *parts, CagSolid **out, CagError *err) {
+CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err) {
   CagSolid *s = NULL;
   CagStatus status = cag_solid_exact(parts->items, parts->count, &s, err);
   cag_boundaries_free(parts);
@@ -42,7 +41,7 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
     CagBoundaries parts;
     bool approximate;
     status = cag_kernel_boundary(k, s, tolerance, turn, &parts, &approximate, err);
-    if (!status) status = checked_solid(&parts, out, err);
+    if (!status) status = cag_exacts_checked(&parts, out, err);
     if (!status) return CAG_OK;
     if (err->id == CAG_ERR_no_boundary && turn + 1 < CAG_TURNS) status = CAG_OK;
   }
@@ -52,8 +51,9 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
   const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
   CagSolid *exact = NULL;
+  double scale;
   *out = s;
-  if (s->kind == CAG_SOLID_EXACT) return true;
+  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale)) return true;
   CagKernel *k = cag_exacts_kernel(call);
   if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
   cag_hold_solid(call, exact);
@@ -63,7 +63,7 @@ bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
   CagSolid *s = NULL;
-  const CagStatus status = checked_solid(parts, &s, call->err);
+  const CagStatus status = cag_exacts_checked(parts, &s, call->err);
   if (!cag_solid_result(call, status, &s, result)) return false;
   cag_shape_say_alike(*result, call->values[argument]);
   return true;

@@ -8,9 +8,12 @@
 
 // The session's kernel, or NULL, with an error.
 CagKernel *cag_exacts_kernel(CagCall *call);
-// The exact solid of an argument: the argument itself if it is one, else its boundary, which the
-// kernel computes. It is held by the call.
+// The exact solid of an argument, whose placement is a similarity: the argument itself if it is one,
+// else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
+// Makes a solid of parts that the kernel found, whose contents it takes, and checks it
+// (cag_solid_exact_check).
+CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);
 // Checks the parts that the kernel found (cag_solid_exact_check), and returns them as one solid with
 // the attributes of an argument. Takes their contents.
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);

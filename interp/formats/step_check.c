@@ -3,9 +3,6 @@
 #include "interp/formats/step_check.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include "base/memory.h"
 #include "interp/formats/brep_build.h"
@@ -37,21 +34,6 @@ static CagStatus write_text(const CagBoundaries *parts, char **text, size_t *siz
   return status;
 }
 
-// A file without a name, and the path at which other processes find it.
-static int unnamed_file(const char *text, size_t size, char path[64]) {
-  const int fd = memfd_create("cag-step", MFD_CLOEXEC);
-  for (size_t done = 0; fd >= 0 && done < size;) {
-    const ssize_t n = write(fd, text + done, size - done);
-    if (n <= 0) {
-      close(fd);
-      return -1;
-    }
-    done += (size_t)n;
-  }
-  snprintf(path, 64, "/proc/%ld/fd/%d", (long)getpid(), fd);
-  return fd;
-}
-
 static double total_volume(const CagBoundaries *b) {
   double sum = 0;
   for (size_t i = 0; i < b->count; i++) sum += b->items[i].volume;
@@ -60,18 +42,16 @@ static double total_volume(const CagBoundaries *b) {
 
 CagStatus cag_step_reads_back(CagKernel *kernel, const CagBoundaries *parts, bool *same,
                               CagError *err) {
-  char *text = NULL, path[64];
+  char *text = NULL;
   size_t size = 0;
   CagBoundaries again = {0};
+  CagKernelFailure why;
   *same = false;
   CagStatus status = write_text(parts, &text, &size, err);
   if (status) return status;
-  const int fd = unnamed_file(text, size, path);
+  status = cag_kernel_read_step(kernel, "solid.step", text, size, &again, &why, err);
   cag_free(text);
-  if (fd < 0) return cag_fail_memory(err);
-  status = cag_kernel_read_step(kernel, path, &again, err);
-  close(fd);
-  if (status) return err->id == CAG_ERR_no_boundary ? CAG_OK : status;
+  if (status) return why.reason ? CAG_OK : status;
   const double meant = total_volume(parts), found = total_volume(&again);
   *same = again.count == parts->count && fabs(meant - found) <= VOLUME_SAME * fabs(meant);
   cag_boundaries_free(&again);

@@ -6,16 +6,17 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
-#include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/curve/region.h"
 #include "geom/curve/strip.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/exact.h"
 #include "geom/surface/approximate.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/kernel/protocol.h"
+#include "interp/kernel/put_curve.h"
 
 // Gaps between faces that are sewn together, as a fraction of the solid's size. Shells of surfaces
 // allow as much.
@@ -27,32 +28,13 @@ static CagStatus memory_of(const CagFields *f, CagError *err) {
   return f->failed ? cag_fail_memory(err) : CAG_OK;
 }
 
-static bool no_exact_form(CagStatus status) {
-  return status == CAG_E_UNSUPPORTED || status == CAG_E_DEGENERATE;
-}
-
-static CagStatus fail_inexact(const char *kind, CagError *err) {
-  return cag_fail(
-      err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
-      "an operand has no exact NURBS form (%s): to approximate it within 0.01 mm, use --tolerance 0.01, or tolerance(.., 0.01) for this shape only",
-      kind);
-}
-
-static CagStatus exact_curve(CagFields *f, const CagCurve *c, CagCurve **out, CagError *err) {
-  const CagStatus status = cag_curve_to_nurbs(c, out, err);
-  if (!no_exact_form(status)) return status;
-  if (!(f->tolerance > 0)) return fail_inexact(c->kind->name, err);
-  f->approximate = true;
-  return cag_curve_approximate(c, f->tolerance, out, err);
-}
-
 static CagStatus exact_surface(CagFields *f, const CagSurface *s, CagSurface **out, CagError *err) {
   const CagSurface *inner = s;
   CagTransform map;
   const CagStatus status = cag_surface_to_nurbs(s, out, err);
-  if (!no_exact_form(status)) return status;
+  if (!cag_no_exact_form(status)) return status;
   cag_surface_placed_view(s, &inner, &map);
-  if (!(f->tolerance > 0)) return fail_inexact(inner->kind->name, err);
+  if (!(f->tolerance > 0)) return cag_fail_inexact(inner->kind->name, err);
   f->approximate = true;
   return cag_surface_approximate(s, f->tolerance, out, err);
 }
@@ -113,7 +95,7 @@ static void put_round(CagFields *f, const CagStripPart *p) {
 static CagStatus put_spline(CagFields *f, const CagCurve *c, CagError *err) {
   CagCurve *exact, *clamped;
   CagNurbsView v = {0};
-  CagStatus status = exact_curve(f, c, &exact, err);
+  CagStatus status = cag_exact_curve(f, c, &exact, err);
   if (status) return status;
   status = cag_curve_clamp(exact, &clamped, err);
   cag_curve_release(exact);
@@ -459,6 +441,29 @@ static CagStatus put_primitive(CagFields *f, const CagSolid *s, const CagBounds 
   return memory_of(f, err);
 }
 
+// --- Exact solids ---
+
+void cag_put_body(CagFields *f, const CagBoundary *part, const CagTransform *placement) {
+  cag_put_u32(f, CAG_BREP_BODY);
+  cag_put_u32(f, part->body_length);
+  cag_put_bytes(f, part->body, part->body_length);
+  cag_put_placement(f, placement);
+}
+
+// Several parts are a union of separate bodies.
+static CagStatus put_exact(CagFields *f, const CagSolid *s, CagError *err) {
+  const CagTransform here = cag_transform_identity();
+  size_t n = 0;
+  const CagBoundary *parts = cag_solid_boundaries(s, &n);
+  if (n > 1) {
+    cag_put_u32(f, CAG_BREP_UNION);
+    cag_put_u32(f, n);
+  }
+  for (size_t i = 0; i < n; i++) cag_put_body(f, &parts[i], &s->placement);
+  if (n > 1) cag_put_placement(f, &here);
+  return memory_of(f, err);
+}
+
 // --- Set operations ---
 
 static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *window, CagError *err);
@@ -517,6 +522,7 @@ static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *windo
   if (s->kind == CAG_SOLID_MESH)
     return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
                     "a mesh consists of triangles and has no exact faces");
+  if (s->kind == CAG_SOLID_EXACT) return put_exact(f, s, err);
   if (s->face_count > 0) return put_faces(f, s, err);
   if (s->kind == CAG_SOLID_HALF_SPACE) return put_half_space(f, s, window, err);
   if (s->kind == CAG_SOLID_QUADRIC)
@@ -529,6 +535,11 @@ static CagStatus put_any(CagFields *f, const CagSolid *s, const CagBounds *windo
 CagStatus cag_put_solid(CagFields *f, const CagSolid *s, CagError *err) {
   CagBounds box;
   CagStatus status = cag_solid_bounds(s, &box, err);
-  if (!status) status = put_any(f, s, &box, err);
+  return status ? status : cag_put_solid_within(f, s, &box, err);
+}
+
+CagStatus cag_put_solid_within(CagFields *f, const CagSolid *s, const CagBounds *window,
+                               CagError *err) {
+  const CagStatus status = put_any(f, s, window, err);
   return status ? status : memory_of(f, err);
 }

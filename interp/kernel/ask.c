@@ -1,13 +1,14 @@
-// The process of cag-brep and the exchange of messages with it (see kernel.h).
+// The process of cag-brep and the exchange of messages with it (see ask.h and kernel.h).
 //
 // Both directions are one socket, so that a program that has ended is an error of the call and not
 // a signal. The socket does not block: cag waits with poll, and looks at the stop flag meanwhile.
 
-#include "interp/kernel/kernel.h"
+#include "interp/kernel/ask.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -21,9 +22,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/stop.h"
-#include "interp/kernel/fields.h"
-#include "interp/kernel/protocol.h"
-#include "interp/kernel/put_solid.h"
+#include "interp/kernel/answers.h"
 #include "interp/kernel/read_boundary.h"
 
 // Milliseconds between looks at the stop flag.
@@ -43,6 +42,7 @@
 struct CagKernel {
   pid_t process; // 0: not started
   int socket;
+  CagAnswers answers;
 };
 
 CagKernel *cag_kernel_new(void) {
@@ -65,6 +65,7 @@ static void end_process(CagKernel *k) {
 void cag_kernel_free(CagKernel *k) {
   if (!k) return;
   end_process(k);
+  cag_answers_free(&k->answers);
   free(k);
 }
 
@@ -123,6 +124,11 @@ static CagStatus fail_ended(CagKernel *k, CagError *err, const char *what) {
 }
 
 // --- Messages ---
+
+static CagStatus fail_answer(CagError *err) {
+  return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                  "cag-brep answered something else than a message");
+}
 
 // Waits until the socket is ready. Fails when the work is to stop, or the time is over.
 static CagStatus wait_for(CagKernel *k, short events, double until, CagError *err) {
@@ -186,8 +192,7 @@ static CagStatus receive(CagKernel *k, double seconds, Answer *out, CagError *er
   if (status) return status;
   if (head[1] > ANSWER_MOST) {
     end_process(k);
-    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
-                    "cag-brep answered something else than a message");
+    return fail_answer(err);
   }
   *out = (Answer){head[0], head[1], cag_malloc((size_t)head[1] + 1)};
   if (!out->bytes) {
@@ -242,22 +247,28 @@ static CagStatus start(CagKernel *k, CagError *err) {
   return greet(k, err);
 }
 
-static CagStatus fail_as_told(const Answer *a, CagError *err) {
+// The longest text of a failure that is passed on, in bytes.
+#define TOLD_MOST 300
+
+static CagStatus fail_as_told(const Answer *a, CagKernelFailure *why, CagError *err) {
   CagFieldReader r = reader_of(a);
   size_t n;
   const uint32_t reason = cag_take_u32(&r);
   const char *text = (const char *)cag_take_bytes(&r, &n);
-  if (r.bad)
-    return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
-                    "cag-brep answered something else than a message");
+  const uint32_t edge = cag_take_u32(&r);
+  const double limit = cag_take_f64(&r);
+  if (r.bad || reason == 0) return fail_answer(err);
+  why->reason = (int)reason;
+  why->edge = edge == CAG_BREP_NONE ? CAG_NO_EDGE : edge;
+  why->limit = fmax(limit, 0);
   if (reason == CAG_BREP_FAIL_EMPTY)
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "nothing is left of it");
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "%.*s",
-                  (int)(n < 300 ? n : 300), text);
+                  (int)(n < TOLD_MOST ? n : TOLD_MOST), text);
 }
 
-static CagStatus ask(CagKernel *k, CagBrepMessage type, const CagFields *f, Answer *out,
-                     CagError *err) {
+static CagStatus exchange(CagKernel *k, CagBrepMessage type, const CagFields *f, Answer *out,
+                          CagKernelFailure *why, CagError *err) {
   const uint64_t head[2] = {type, f->length};
   const double until = cag_clock_seconds() + ANSWER_SECONDS;
   CagStatus status = start(k, err);
@@ -265,22 +276,13 @@ static CagStatus ask(CagKernel *k, CagBrepMessage type, const CagFields *f, Answ
   if (!status) status = send_bytes(k, f->bytes, f->length, until, err);
   if (!status) status = receive(k, ANSWER_SECONDS, out, err);
   if (status || out->type == CAG_BREP_RESULT) return status;
-  if (out->type == CAG_BREP_FAILURE) status = fail_as_told(out, err);
-  else
-    status = cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
-                      "cag-brep answered something else than a message");
+  status = out->type == CAG_BREP_FAILURE ? fail_as_told(out, why, err) : fail_answer(err);
   if (status == CAG_E_RENDERER) end_process(k);
   cag_free(out->bytes);
   return status;
 }
 
 // --- Boundaries ---
-
-void cag_boundaries_free(CagBoundaries *b) {
-  for (size_t i = 0; i < b->count; i++) cag_boundary_free(&b->items[i]);
-  cag_free(b->items);
-  *b = (CagBoundaries){0};
-}
 
 // Whether each edge is used as often in one direction as in the other.
 static bool closes(const CagBoundary *b) {
@@ -313,33 +315,19 @@ static CagStatus read_result(const Answer *a, CagBoundaries *out, CagError *err)
   return status;
 }
 
-static CagStatus ask_for_boundaries(CagKernel *k, CagBrepMessage type, const CagFields *f,
-                                    CagBoundaries *out, CagError *err) {
+CagStatus cag_kernel_ask(CagKernel *k, CagBrepMessage type, const CagFields *f,
+                         const CagDigest *question, CagBoundaries *out, CagKernelFailure *why,
+                         CagError *err) {
+  *why = (CagKernelFailure){.edge = CAG_NO_EDGE};
+  *out = (CagBoundaries){0};
+  if (f->failed) return cag_fail_memory(err);
+  const CagKeptAnswer *kept = cag_answers_find(&k->answers, question);
+  if (kept) return read_result(&(Answer){CAG_BREP_RESULT, kept->length, kept->bytes}, out, err);
   Answer answer;
-  CagStatus status = ask(k, type, f, &answer, err);
+  CagStatus status = exchange(k, type, f, &answer, why, err);
   if (status) return status;
   status = read_result(&answer, out, err);
+  if (!status) cag_answers_keep(&k->answers, question, answer.bytes, (size_t)answer.length);
   cag_free(answer.bytes);
-  return status;
-}
-
-CagStatus cag_kernel_boundary(CagKernel *k, const CagSolid *s, double tolerance, int turn,
-                              CagBoundaries *out, bool *approximate, CagError *err) {
-  CagFields f = {.tolerance = tolerance, .turn = turn};
-  CagStatus status = cag_put_solid(&f, s, err);
-  if (!status) status = ask_for_boundaries(k, CAG_BREP_EVALUATE, &f, out, err);
-  *approximate = f.approximate;
-  cag_fields_free(&f);
-  return status;
-}
-
-CagStatus cag_kernel_read_step(CagKernel *k, const char *path, CagBoundaries *out, CagError *err) {
-  CagFields f = {0};
-  const size_t n = strlen(path);
-  cag_put_u32(&f, n);
-  cag_put_bytes(&f, path, n);
-  CagStatus status =
-      f.failed ? cag_fail_memory(err) : ask_for_boundaries(k, CAG_BREP_READ_STEP, &f, out, err);
-  cag_fields_free(&f);
   return status;
 }

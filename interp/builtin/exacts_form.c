@@ -1,0 +1,173 @@
+// Shells, drafts, splits, and imprints.
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "geom/solid/csg.h"
+#include "geom/solid/exact.h"
+#include "interp/builtin/exacts_parts.h"
+#include "interp/builtin/holds.h"
+#include "interp/builtin/support.h"
+#include "interp/vm/vm.h"
+
+// The tolerance for curves and surfaces without an exact form, as a fraction of the size.
+#define APPROXIMATE 1e-5
+
+// Adds what the kernel answered for a part.
+static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
+  return cag_geometry_ok(p->call, status) && cag_exact_parts_add(p, made);
+}
+
+bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue *result) {
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagChosen *open;
+  size_t n;
+  if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
+  const double thickness = (a->outside ? -1 : 1) * a->thickness / p->scale;
+  for (size_t i = 0; i < p->count; i++) {
+    CagBoundaries made;
+    CagKernelFailure why;
+    size_t *faces;
+    const size_t count = cag_chosen_in_part(call, open, n, i, &faces);
+    if (!add_made(p,
+                  cag_kernel_shell(p->kernel, &p->parts[i], thickness, faces, count, &made, &why,
+                                   call->err),
+                  &made))
+      return false;
+  }
+  return cag_exact_parts_result(p, 0, result);
+}
+
+bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagChosen *chosen;
+  CagTransform back;
+  size_t n;
+  if (!p || !cag_chosen_faces(p, 2, &chosen, &n) ||
+      !cag_geometry_ok(call, cag_transform_inverse(&p->solid->placement, &back, call->err)))
+    return false;
+  const CagVec3 at = cag_transform_point(&back, a->at.at);
+  const CagVec3 pull = cag_unit(cag_transform_vector(&back, a->pull.at));
+  for (size_t i = 0; i < p->count; i++) {
+    CagBoundaries made;
+    CagKernelFailure why;
+    size_t *faces;
+    const size_t count = cag_chosen_in_part(call, chosen, n, i, &faces);
+    if (!add_made(p,
+                  cag_kernel_draft(p->kernel, &p->parts[i], a->angle, pull, at, faces, count, &made,
+                                   &why, call->err),
+                  &made))
+      return false;
+  }
+  return cag_exact_parts_result(p, 0, result);
+}
+
+// --- split_solid ---
+
+// The side of a plane that is opposite to its normal, or a solid. It is held by the call.
+static bool splitting_tool(CagCall *call, CagValue v, const CagSolid **out) {
+  CagSolid *side = NULL;
+  if (v.type == CAG_SOLID) {
+    *out = CAG_AS_SHAPE(v)->as.solid;
+    return true;
+  }
+  CagPlane plane;
+  if (!cag_arg_plane(call, 1, &plane) ||
+      !cag_geometry_ok(call, cag_solid_half_space(&plane, &side, call->err)))
+    return false;
+  cag_hold_solid(call, side);
+  *out = side;
+  return true;
+}
+
+static void release_boundaries(void *what) {
+  CagBoundaries *b = what;
+  cag_boundaries_free(b);
+  cag_free(b);
+}
+
+// A list of the parts as solids with the attributes of the first argument.
+static bool list_of_parts(CagCall *call, CagBoundaries *parts, CagValue *result) {
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < parts->count; i++) {
+    CagBoundaries one = {cag_calloc(1, sizeof *one.items), 1};
+    CagValue solid;
+    if (!one.items) return cag_geometry_ok(call, cag_fail_memory(call->err));
+    one.items[0] = parts->items[i];
+    parts->items[i] = (CagBoundary){0};
+    if (!cag_exacts_result(call, &one, 0, &solid) || !cag_builder_add(call->vm, list, solid))
+      return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}
+
+bool cag_exacts_split_solid(CagCall *call, const struct cag_exacts_split_solid *a,
+                            CagValue *result) {
+  const CagSolid *tool;
+  CagKernelFailure why;
+  CagBounds box;
+  CagKernel *k = cag_exacts_kernel(call);
+  if (!k || !splitting_tool(call, a->by, &tool) ||
+      !cag_geometry_ok(call, cag_solid_bounds(a->G, &box, call->err)))
+    return false;
+  CagBoundaries *parts = cag_calloc(1, sizeof *parts);
+  if (!parts) cag_vm_out_of_memory(call->vm);
+  cag_hold_for(call, release_boundaries, parts);
+  const double size = cag_norm(cag_sub(box.max, box.min));
+  return cag_geometry_ok(
+             call, cag_kernel_split(k, a->G, tool, APPROXIMATE * size, parts, &why, call->err)) &&
+         list_of_parts(call, parts, result);
+}
+
+// --- imprint ---
+
+// The curves of the argument in the coordinates of the parts. They are held by the call.
+static bool imprinted_curves(CagCall *call, const CagExactParts *p, CagCurve ***out, size_t *n) {
+  CagTransform back;
+  CagBuilder *shapes = cag_builder_new(call->vm);
+  if (!cag_geometry_ok(call, cag_transform_inverse(&p->solid->placement, &back, call->err)) ||
+      !cag_shapes_collect(call, call->values[1], shapes))
+    return false;
+  const CagList *list = CAG_AS_LIST(cag_builder_finish(call->vm, shapes));
+  *n = list->length;
+  *out = cag_hold_curve_array(call, *n);
+  for (size_t i = 0; i < *n; i++) {
+    const CagValue one = cag_list_get(call->vm, list, i);
+    if (one.type != CAG_CURVE) return cag_fail_type(call, 1, "a curve or a list of curves");
+    if (!cag_geometry_ok(
+            call, cag_curve_transform(CAG_AS_SHAPE(one)->as.curve, &back, &(*out)[i], call->err)))
+      return false;
+  }
+  return *n > 0 || cag_fail_value(call, 1, "at least one curve");
+}
+
+// A part that the curves do not divide stays as it is, unless it is the only one.
+static bool imprint_part(CagExactParts *p, size_t part, CagCurve *const *curves, size_t n,
+                         double tolerance, bool *divided) {
+  CagBoundaries made;
+  CagKernelFailure why;
+  CagStatus status = cag_kernel_imprint(p->kernel, &p->parts[part], curves, n, tolerance, &made,
+                                        &why, p->call->err);
+  *divided = *divided || !status;
+  if (status && why.reason != 0 && (*divided || part + 1 < p->count))
+    status = cag_kernel_imprint(p->kernel, &p->parts[part], NULL, 0, tolerance, &made, &why,
+                                p->call->err);
+  return add_made(p, status, &made);
+}
+
+bool cag_exacts_imprint(CagCall *call, const struct cag_exacts_imprint *a, CagValue *result) {
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagCurve **curves;
+  CagBounds box;
+  size_t n;
+  bool divided = false;
+  (void)a;
+  if (!p || !imprinted_curves(call, p, &curves, &n) ||
+      !cag_geometry_ok(call, cag_solid_bounds(p->solid, &box, call->err)))
+    return false;
+  const double tolerance = APPROXIMATE * cag_norm(cag_sub(box.max, box.min)) / p->scale;
+  for (size_t i = 0; i < p->count; i++)
+    if (!imprint_part(p, i, curves, n, tolerance, &divided)) return false;
+  return cag_exact_parts_result(p, 0, result);
+}

@@ -1,0 +1,199 @@
+// Fillets and chamfers.
+//
+// The kernel rounds the parts one by one, in their own coordinates.
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/linalg/tolerance.h"
+#include "interp/builtin/exacts_parts.h"
+#include "interp/builtin/support.h"
+#include "interp/vm/vm.h"
+
+// Ends that are nearer than this fraction of the length of an edge are one point.
+#define CLOSED 1e-9
+
+typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
+                                  size_t n, CagBoundaries *out, CagKernelFailure *why,
+                                  CagError *err);
+
+// What fillet and chamfer differ in. Their parameters have the same numbers.
+typedef struct BlendWords {
+  const char *verb, *size;
+  BlendRequest request;
+  bool chamfer;
+} BlendWords;
+
+enum { BLEND_SIZE = 1, BLEND_EDGES = 2 };
+
+static const BlendWords FILLET = {"round", "radius", cag_kernel_fillet, false};
+static const BlendWords CHAMFER = {"cut off", "distance", cag_kernel_chamfer, true};
+
+// --- Sizes ---
+
+static bool fail_size(CagCall *call, const BlendWords *words) {
+  return cag_fail_call(
+      call, BLEND_SIZE, CAG_ERR_value,
+      "expects a length greater than 0, two of them, or a function of an edge that returns these, as `%s`",
+      words->size);
+}
+
+static bool is_size(CagValue v, double *out) {
+  *out = v.type == CAG_NUMBER ? v.as.number : 0;
+  return *out > 0 && isfinite(*out);
+}
+
+// A length, or two.
+static bool read_sizes(CagCall *call, const BlendWords *words, CagValue v, double out[2]) {
+  if (v.type != CAG_LIST) {
+    if (!is_size(v, &out[0])) return fail_size(call, words);
+    out[1] = out[0];
+    return true;
+  }
+  const CagList *pair = CAG_AS_LIST(v);
+  return (pair->length == 2 && is_size(cag_list_get(call->vm, pair, 0), &out[0]) &&
+          is_size(cag_list_get(call->vm, pair, 1), &out[1])) ||
+         fail_size(call, words);
+}
+
+static bool sizes_of(CagCall *call, const BlendWords *words, const CagChosen *c, double out[2]) {
+  CagValue v = call->values[BLEND_SIZE];
+  if (cag_is_function(v) && !cag_call(call->vm, v, &c->record, 1, &v)) return false;
+  return read_sizes(call, words, v, out);
+}
+
+// --- Failures ---
+
+static const char *point_text(CagVec3 p, char text[64]) {
+  snprintf(text, 64, "[%.6g, %.6g, %.6g]", p.x + 0.0, p.y + 0.0, p.z + 0.0);
+  return text;
+}
+
+// Whether an edge runs from its end to its start in world coordinates, where the first coordinate of
+// its direction is positive that is not 0 (features.h).
+static bool is_turned(const CagExactParts *p, const CagEdgeFeature *e) {
+  const CagVec3 d = cag_transform_vector(&p->solid->placement, e->direction);
+  const double x[3] = {d.x, d.y, d.z}, zero = CAG_PARALLEL * cag_norm(d);
+  for (int i = 0; i < 3; i++)
+    if (fabs(x[i]) > zero) return x[i] < 0;
+  return false;
+}
+
+// The edge in world coordinates: "the line from [0, 0, 0] to [0, 0, 30], 30 mm long".
+static void describe_edge(const CagExactParts *p, const CagEdgeFeature *e, char *text, size_t n) {
+  char from[64], to[64];
+  const CagTransform *t = &p->solid->placement;
+  const bool closed = cag_norm(cag_sub(e->start, e->end)) <= CLOSED * e->length;
+  const bool turned = is_turned(p, e);
+  point_text(cag_transform_point(t, turned ? e->end : e->start), from);
+  point_text(cag_transform_point(t, turned ? e->start : e->end), to);
+  if (closed)
+    snprintf(text, n, "the %s through %s, %.6g mm long", e->kind, from, e->length * p->scale);
+  else
+    snprintf(text, n, "the %s from %s to %s, %.6g mm long", e->kind, from, to,
+             e->length * p->scale);
+}
+
+// The reason without the kernel's words for the edge, which end with a colon.
+static const char *kernel_reason(const char *message) {
+  const char *colon = strstr(message, ": ");
+  return colon ? colon + 2 : message;
+}
+
+// A limit, rounded down to four digits.
+static double limit_shown(double limit) {
+  const double unit = pow(10, floor(log10(limit)) - 3);
+  return floor(limit / unit) * unit;
+}
+
+static bool fail_blend(const CagExactParts *p, const BlendWords *words, size_t part,
+                       const CagBlend *blends, size_t n, const CagKernelFailure *why) {
+  CagCall *call = p->call;
+  const CagFeatures *f = &p->features[part];
+  char edge[256], reason[sizeof call->err->message], limit[96] = "";
+  size_t at = 0, blend = 0;
+  while (at < f->edge_count && f->edges[at].edge != why->edge) at++;
+  while (blend < n && blends[blend].edge != why->edge) blend++;
+  if (why->reason == 0 || at == f->edge_count || blend == n)
+    return cag_fail_geometry(call, call->err);
+  describe_edge(p, &f->edges[at], edge, sizeof edge);
+  snprintf(reason, sizeof reason, "%s", kernel_reason(call->err->message));
+  const bool together = strstr(call->err->message, "does not fit together") != NULL;
+  if (why->limit > 0)
+    snprintf(limit, sizeof limit, "; the largest %s that fits is %.6g", words->size,
+             limit_shown(why->limit * p->scale));
+  return cag_fail_call(call, BLEND_SIZE, CAG_ERR_no_blend, "cannot %s %s, with the %s %.6g%s: %s%s",
+                       words->verb, edge, words->size,
+                       fmax(blends[blend].first, blends[blend].last) * p->scale,
+                       together ? ", along with other edges" : "", reason, limit);
+}
+
+// --- The functions ---
+
+static CagBlend blend_of(const CagExactParts *p, const BlendWords *words, const CagChosen *c,
+                         const double sizes[2]) {
+  const CagFeatures *f = &p->features[c->part];
+  const CagEdgeFeature *e = &f->edges[c->index];
+  const bool turned = !words->chamfer && e->flipped != is_turned(p, e);
+  return (CagBlend){.edge = e->edge,
+                    .face = e->count > 0 ? f->edge_faces[e->first] : 0,
+                    .first = sizes[turned] / p->scale,
+                    .last = sizes[!turned] / p->scale};
+}
+
+static bool blend_part(CagExactParts *p, const BlendWords *words, size_t part,
+                       const CagBlend *blends, size_t n) {
+  CagBoundaries made;
+  CagKernelFailure why;
+  const CagStatus status =
+      words->request(p->kernel, &p->parts[part], blends, n, &made, &why, p->call->err);
+  if (status) return fail_blend(p, words, part, blends, n, &why);
+  return cag_exact_parts_add(p, &made);
+}
+
+// The blends of the chosen edges, held by the call. Functions of the script may be called.
+static bool read_blends(CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
+                        size_t n, CagBlend **out) {
+  CagVm *vm = p->call->vm;
+  *out = cag_hold_array(p->call, n, sizeof **out);
+  cag_root_push(vm, p->records);
+  for (size_t i = 0; i < n; i++) {
+    double sizes[2];
+    if (!sizes_of(p->call, words, &chosen[i], sizes)) return false;
+    (*out)[i] = blend_of(p, words, &chosen[i], sizes);
+  }
+  cag_root_pop(vm, 1);
+  return true;
+}
+
+static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result) {
+  const CagValue size = call->values[BLEND_SIZE];
+  double sizes[2];
+  if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagChosen *chosen;
+  CagBlend *blends;
+  size_t n;
+  if (!p || !cag_chosen_edges(p, BLEND_EDGES, cag_is_function(size), &chosen, &n) ||
+      !read_blends(p, words, chosen, n, &blends))
+    return false;
+  CagBlend *own = cag_hold_array(call, n, sizeof *own); // of one part
+  for (size_t i = 0; i < p->count; i++) {
+    size_t count = 0;
+    for (size_t k = 0; k < n; k++)
+      if (chosen[k].part == i) own[count++] = blends[k];
+    if (!blend_part(p, words, i, own, count)) return false;
+  }
+  return cag_exact_parts_result(p, 0, result);
+}
+
+bool cag_exacts_fillet(CagCall *call, const struct cag_exacts_fillet *a, CagValue *result) {
+  (void)a;
+  return blend_edges(call, &FILLET, result);
+}
+
+bool cag_exacts_chamfer(CagCall *call, const struct cag_exacts_chamfer *a, CagValue *result) {
+  (void)a;
+  return blend_edges(call, &CHAMFER, result);
+}
