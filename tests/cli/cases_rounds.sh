@@ -89,6 +89,15 @@ fails 'a radius is positive' E0314 'a length greater than 0' 'fillet(box(5), -1)
 fails 'a radius by a function is positive, too' E0314 'a length greater than 0' 'fillet(box(5), e => [1, 0])'
 fails 'a mesh has no edges to round' E0759 'a mesh consists of triangles' 'fillet(solid(tessellate(sphere(5))), 1)'
 
+it 'with -v, the method is named'
+needs_helper
+printf 'show fillet(box(5), 1)\n' > round.cag
+try run -v round.cag
+status 0
+is_left_out || says 'round.cag:1:6: fillet: tier B: kernel; edges: 12'
+try run round.cag
+says_not tier
+
 # --- Chamfers ---
 
 holds 'chamfers take prisms and cones' 'B = box([10, 20, 30])
