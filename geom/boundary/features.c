@@ -147,6 +147,9 @@ static CagStatus bend_of(const Work *w, size_t e, CagVec3 along, CagEdgeFeature 
   CagStatus status = side_of(w, users[0], along, &normal, &into, err);
   if (!status) status = side_of(w, users[partner], along, &other, &across, err);
   if (status) return status;
+  const bool ascending = w->face_of[users[0]] <= w->face_of[users[partner]];
+  out->normals[!ascending] = normal;
+  out->normals[ascending] = other;
   if (cag_norm(into) == 0 || cag_norm(across) == 0) return CAG_OK;
   const double angle = atan2(-cag_dot(across, normal), cag_dot(across, into));
   out->angle = angle < 0 ? angle + 2 * M_PI : angle;
