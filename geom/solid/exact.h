@@ -13,8 +13,8 @@
 // A solid of n >= 1 separate parts. Takes the contents of their boundaries, which are then empty,
 // also if it fails.
 CagStatus cag_solid_exact(CagBoundary *parts, size_t n, CagSolid **out, CagError *err);
-// Fails with "no-boundary" unless the mesh is watertight and encloses the volume that the kernel
-// found, up to the tolerance of the mesh (1/1000 of the diagonal of the bounds).
+// Fails with "no-boundary" unless the faces enclose the volume that the kernel found, to 1/1000, and
+// the mesh is watertight and encloses it up to its tolerance (1/1000 of the diagonal of the bounds).
 CagStatus cag_solid_exact_check(const CagSolid *s, CagError *err);
 // The boundaries of the parts in the solid's own coordinates, which its placement maps to the
 // world. The solid's faces are theirs, in order. NULL: another kind.

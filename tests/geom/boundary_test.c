@@ -4,6 +4,7 @@
 #include "geom/boundary/features.h"
 #include "geom/boundary/measure.h"
 #include "geom/boundary/moved.h"
+#include "geom/solid/exact.h"
 #include "tests/geom/boundary_support.h"
 
 static const CagCarrierKind WALLS[] = {CAG_CARRIER_CYLINDER, CAG_CARRIER_EXTRUDED,
@@ -111,12 +112,27 @@ static void boundaries_must_enclose_a_volume(void **state) {
   cag_boundary_free(&b);
 }
 
+// The volume that the kernel found must be that of the faces.
+static void exact_solids_are_checked_by_their_volume(void **state) {
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    CagBoundary b = cylinder_boundary(CAG_CARRIER_CYLINDER);
+    CagSolid *s;
+    if (k == 1) b.volume *= 1.01;
+    OK(cag_solid_exact(&b, 1, &s, &err));
+    if (k == 0) OK(cag_solid_exact_check(s, &err));
+    else FAILS(cag_solid_exact_check(s, &err), "no-boundary");
+    cag_solid_release(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_walls_have_the_measures_of_a_cylinder),
       cmocka_unit_test(all_walls_have_two_edges_and_no_corners),
       cmocka_unit_test(moved_copies_have_the_measures_of_the_image),
       cmocka_unit_test(boundaries_must_enclose_a_volume),
+      cmocka_unit_test(exact_solids_are_checked_by_their_volume),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
