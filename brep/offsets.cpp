@@ -33,6 +33,8 @@ namespace brep {
 // Distances of valid results may be wrong by this fraction of the offset: the kernel approximates
 // offsets of splines.
 static const double DISTANCE_SLACK = 1e-3;
+// How far from an offset, as a fraction of it, points are that must be inside.
+static const double BESIDE = 0.05;
 
 // How the kernel joins offset faces.
 struct Joining {
@@ -105,6 +107,32 @@ static void check_distance(const TopoDS_Solid &offset, const TopoDS_Solid &solid
   }
 }
 
+// Fails if a part of the offset is missing: what lies beside a point of a face of the solid, as far
+// from its boundary as from this point, and within the offset, must be inside of it.
+static void check_complete(const Solids &offset, const TopoDS_Solid &solid, double distance) {
+  const TopoDS_Shape boundary = BRepClass3d::OuterShell(solid);
+  // Inward, a little deeper than the offset; outward, a little nearer.
+  const double depth = std::abs(distance) * (distance < 0 ? 1 + BESIDE : 1 - BESIDE);
+  BRepClass3d_SolidClassifier side(solid);
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(solid, TopAbs_FACE, faces);
+  for (int i = 1; i <= faces.Extent(); ++i) {
+    gp_Pnt point;
+    gp_Vec normal;
+    if (!face_point(TopoDS::Face(faces(i)), point, normal)) continue;
+    const gp_Pnt beside = point.Translated(normal * (distance < 0 ? -depth : depth));
+    side.Perform(beside, 1e-9);
+    if ((side.State() == TopAbs_IN) != (distance < 0)) continue;
+    if (distance_between(vertex_at(beside), boundary) < depth * (1 - DISTANCE_SLACK)) continue;
+    const bool found = std::any_of(offset.begin(), offset.end(), [&](const TopoDS_Solid &part) {
+      BRepClass3d_SolidClassifier within(part);
+      within.Perform(beside, 1e-9);
+      return within.State() == TopAbs_IN;
+    });
+    if (!found) throw Failure{CAG_BREP_FAIL_CHECK, "a part of the offset is missing"};
+  }
+}
+
 static Solids offset_once(const TopoDS_Solid &solid, double distance, const Joining &joining) {
   BRepOffsetAPI_MakeOffsetShape maker;
   maker.PerformByJoin(solid, distance, joining.tolerance, BRepOffset_Skin, joining.intersect,
@@ -119,6 +147,7 @@ static Solids offset_once(const TopoDS_Solid &solid, double distance, const Join
     if (!faults.empty()) throw Failure{CAG_BREP_FAIL_CHECK, faults};
     check_distance(part, solid, distance);
   }
+  check_complete(found, solid, distance);
   const double before = volume_of(solid), after = volume_of(found);
   if ((after > before) != (distance > 0)) throw Failure{CAG_BREP_FAIL_CHECK, "the volume is wrong"};
   return unify(found);

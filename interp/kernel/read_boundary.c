@@ -90,7 +90,7 @@ static CagStatus read_spline(CagFieldReader *r, int dimension, double first, dou
   cag_free(points);
   cag_free(weights);
   cag_free(knots);
-  if (status) return status;
+  if (status || !whole) return status;
   first = fmax(first, whole->start);
   last = fmin(last, whole->end);
   if (first == whole->start && last == whole->end) *out = whole;
