@@ -1,0 +1,264 @@
+// Chains of edges to be rounded (see roll_plan.h).
+
+#include "geom/solid/roll_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/memory.h"
+#include "base/stop.h"
+#include "geom/linalg/tolerance.h"
+#include "geom/solid/roll_corner.h"
+
+// Edges continue each other smoothly if their tangents differ by less, in radians.
+#define SMOOTH_JOINT 1e-4
+// Halvings of the parameters between neighboring sections.
+#define HALVINGS 12
+// The largest turn of the tangent between neighboring sections, in radians.
+#define TURN (M_PI / 15)
+// Sections of all chains.
+#define SECTIONS_MOST 200000
+
+void cag_roll_plan_free(CagRollPlan *p) {
+  cag_free(p->picks);
+  cag_free(p->sections);
+  cag_free(p->chains);
+  cag_free(p->balls);
+  *p = (CagRollPlan){0};
+}
+
+CagStatus cag_roll_leaving(const CagRollPick *p, int end, CagVec3 *out, CagError *err) {
+  const CagCurve *c = p->e.curve;
+  CagStatus status =
+      cag_curve_tangent(c, end ? c->end : c->start, end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, out, err);
+  if (!status && !end) *out = cag_scaled(*out, -1);
+  return status;
+}
+
+// --- Sections ---
+
+static CagStatus section_at(CagRollPlan *p, size_t pick, double t, CagRollSection *out,
+                            CagError *err) {
+  bool fits;
+  CagStatus status = cag_roll_section(&p->picks[pick].e, t, out, &fits, err);
+  out->origin = pick;
+  if (!status && !fits && p->unfit == CAG_ROLL_NONE) p->unfit = pick;
+  return status;
+}
+
+static CagStatus add_section(CagRollPlan *p, const CagRollSection *s, CagError *err) {
+  if (p->section_count >= SECTIONS_MOST)
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_no_boundary, "", -1,
+                    "the edges need too many sections for the tolerance");
+  if (!CAG_RESERVE(p->sections, p->section_room, p->section_count + 1)) return cag_fail_memory(err);
+  p->sections[p->section_count++] = *s;
+  return CAG_OK;
+}
+
+// Whether straight lines between two sections miss a third one, halfway, by less than the tolerance.
+static bool is_straight(const CagRollSection *a, const CagRollSection *b, const CagRollSection *m,
+                        double tolerance) {
+  double off = cag_norm(cag_sub(m->edge, cag_lerp(a->edge, b->edge, 0.5)));
+  for (int k = 0; k < 2; k++)
+    off = fmax(off, cag_norm(cag_sub(m->contact[k], cag_lerp(a->contact[k], b->contact[k], 0.5))));
+  if (m->radius > 0) {
+    // The middles of the arcs.
+    CagVec3 p[3];
+    const CagRollSection *const all[3] = {a, b, m};
+    for (int i = 0; i < 3; i++)
+      p[i] = cag_madd(all[i]->center, -all[i]->radius,
+                      cag_unit(cag_add(all[i]->toward[0], all[i]->toward[1])));
+    off = fmax(off, cag_norm(cag_sub(p[2], cag_lerp(p[0], p[1], 0.5))));
+  }
+  return off <= tolerance && cag_dot(a->along, b->along) >= cos(TURN);
+}
+
+// Adds the sections after t0 up to t1, whose sections are a and b, in the order of the curve.
+static CagStatus add_between(CagRollPlan *p, double t0, double t1, const CagRollSection *a,
+                             const CagRollSection *b, int depth, CagError *err) {
+  CagRollSection middle;
+  const double t = t0 + (t1 - t0) / 2;
+  CagStatus status = cag_stop_check(err);
+  if (!status) status = section_at(p, a->origin, t, &middle, err);
+  if (status || p->unfit != CAG_ROLL_NONE) return status;
+  if (depth == 0 || is_straight(a, b, &middle, p->tolerance)) return add_section(p, b, err);
+  status = add_between(p, t0, t, a, &middle, depth - 1, err);
+  if (!status && p->unfit == CAG_ROLL_NONE)
+    status = add_between(p, t, t1, &middle, b, depth - 1, err);
+  return status;
+}
+
+// The parameters at which sections must be: the ends, stations, and breaks of the curve; a closed
+// curve is divided, so that its halves are not taken for straight. Returns their number.
+#define STOPS_MOST 256
+static size_t pick_stops(const CagRollPick *pick, double stops[STOPS_MOST]) {
+  const CagCurve *c = pick->e.curve;
+  double found[STOPS_MOST];
+  size_t n = 0, m = 0;
+  found[n++] = pick->range[0];
+  for (int k = 0; k < 2; k++)
+    if (pick->ball[k]) found[n++] = pick->station[k];
+  const size_t breaks = c->kind->breaks ? c->kind->breaks(c, found + n, STOPS_MOST - 16) : 0;
+  n += breaks < STOPS_MOST - 16 ? breaks : STOPS_MOST - 16;
+  const bool line = strcmp(c->kind->name, "line") == 0;
+  for (int k = 1; !line && k < 4; k++)
+    found[n++] = pick->range[0] + (pick->range[1] - pick->range[0]) * k / 4.0;
+  found[n++] = pick->range[1];
+  for (size_t i = 1; i < n; i++)
+    for (size_t k = i; k > 0 && found[k - 1] > found[k]; k--) {
+      const double t = found[k];
+      found[k] = found[k - 1];
+      found[k - 1] = t;
+    }
+  const double near = CAG_COINCIDENT * (c->end - c->start);
+  for (size_t i = 0; i < n; i++)
+    if (found[i] >= pick->range[0] && found[i] <= pick->range[1] &&
+        (m == 0 || found[i] > stops[m - 1] + near))
+      stops[m++] = found[i];
+  return m;
+}
+
+// Turns the sections around, as for an edge that is followed from its end.
+static void reverse_sections(CagRollSection *s, size_t n) {
+  for (size_t i = 0; i < n / 2; i++) {
+    const CagRollSection other = s[i];
+    s[i] = s[n - 1 - i];
+    s[n - 1 - i] = other;
+  }
+  for (size_t i = 0; i < n; i++) {
+    CagVec3 *const pairs[3] = {s[i].contact, s[i].toward, s[i].start};
+    for (int k = 0; k < 3; k++) {
+      const CagVec3 first = pairs[k][0];
+      pairs[k][0] = pairs[k][1];
+      pairs[k][1] = first;
+    }
+    s[i].along = cag_scaled(s[i].along, -1);
+  }
+}
+
+// Adds the sections of an edge, without the first one if it continues the one before.
+static CagStatus add_edge_sections(CagRollPlan *p, size_t pick, bool reversed, bool continues,
+                                   CagError *err) {
+  double stops[STOPS_MOST];
+  const size_t n = pick_stops(&p->picks[pick], stops), first = p->section_count;
+  CagRollSection last;
+  CagStatus status = section_at(p, pick, stops[0], &last, err);
+  if (!status && p->unfit == CAG_ROLL_NONE) status = add_section(p, &last, err);
+  for (size_t i = 1; !status && p->unfit == CAG_ROLL_NONE && i < n; i++) {
+    CagRollSection next;
+    status = section_at(p, pick, stops[i], &next, err);
+    if (!status && p->unfit == CAG_ROLL_NONE)
+      status = add_between(p, stops[i - 1], stops[i], &last, &next, HALVINGS, err);
+    last = next;
+  }
+  if (status || p->unfit != CAG_ROLL_NONE) return status;
+  if (reversed) reverse_sections(p->sections + first, p->section_count - first);
+  if (!continues) return CAG_OK;
+  p->section_count--;
+  memmove(p->sections + first, p->sections + first + 1,
+          (p->section_count - first) * sizeof *p->sections);
+  return CAG_OK;
+}
+
+// --- Chains ---
+
+// The pick that continues another one smoothly beyond its end, and the end of it that is there.
+static CagStatus continuation(const CagRollPlan *p, CagRollTip tip, CagRollTip *out, bool *found,
+                              CagError *err) {
+  const CagRollPick *from = &p->picks[tip.pick];
+  CagVec3 leaving, other;
+  *found = false;
+  if (from->ball[tip.end] || from->closed) return CAG_OK;
+  CagStatus status = cag_roll_leaving(from, tip.end, &leaving, err);
+  for (size_t i = 0; !status && i < p->pick_count; i++) {
+    const CagRollPick *to = &p->picks[i];
+    if (to->part != from->part || to->e.convex != from->e.convex || to->closed) continue;
+    for (int end = 0; !status && end < 2; end++) {
+      if (to->corner[end] != from->corner[tip.end] || (i == tip.pick && end == tip.end)) continue;
+      status = cag_roll_leaving(to, end, &other, err);
+      if (status || cag_norm(cag_add(leaving, other)) > SMOOTH_JOINT) continue;
+      *out = (CagRollTip){i, end};
+      *found = true;
+      return CAG_OK;
+    }
+  }
+  return status;
+}
+
+// Follows the chain of a pick backward to its first edge, or once around.
+static CagStatus chain_start(const CagRollPlan *p, size_t pick, CagRollTip *out, bool *closed,
+                             CagError *err) {
+  CagRollTip tip = {pick, 0};
+  CagStatus status = CAG_OK;
+  bool found = true;
+  *closed = p->picks[pick].closed;
+  for (size_t i = 0; !status && !*closed && found && i <= p->pick_count; i++) {
+    CagRollTip before;
+    status = continuation(p, tip, &before, &found, err);
+    if (status || !found) break;
+    tip = (CagRollTip){before.pick, 1 - before.end};
+    *closed = tip.pick == pick && tip.end == 0;
+  }
+  *out = tip;
+  return status;
+}
+
+static CagStatus add_chain(CagRollPlan *p, size_t pick, CagError *err) {
+  CagRollTip tip;
+  bool closed;
+  CagStatus status = chain_start(p, pick, &tip, &closed, err);
+  if (status) return status;
+  CagRollChain *chain = &p->chains[p->chain_count];
+  *chain = (CagRollChain){.first = p->section_count, .closed = closed, .tips = {tip, tip}};
+  for (bool found = true; !status && found && p->unfit == CAG_ROLL_NONE;) {
+    CagRollPick *here = &p->picks[tip.pick];
+    here->used = true;
+    status = add_edge_sections(p, tip.pick, tip.end == 1, p->section_count > chain->first, err);
+    tip.end = 1 - tip.end;
+    chain->tips[1] = tip;
+    CagRollTip next;
+    found = false;
+    if (!status && !here->closed) status = continuation(p, tip, &next, &found, err);
+    if (status || !found || p->picks[next.pick].used) break;
+    tip = next;
+  }
+  if (closed && p->section_count > chain->first) p->section_count--;
+  chain->count = p->section_count - chain->first;
+  p->chain_count++;
+  return status;
+}
+
+static CagStatus start_pick(CagRollPick *pick, CagError *err) {
+  const CagCurve *c = pick->e.curve;
+  CagVec3 leaving[2];
+  CagStatus status = CAG_OK;
+  pick->used = false;
+  for (int k = 0; !status && k < 2; k++) {
+    pick->ball[k] = false;
+    pick->range[k] = pick->station[k] = k ? c->end : c->start;
+    status = cag_roll_leaving(pick, k, &leaving[k], err);
+  }
+  if (!status)
+    pick->closed = pick->corner[0] == pick->corner[1] &&
+                   cag_norm(cag_add(leaving[0], leaving[1])) <= SMOOTH_JOINT;
+  return status;
+}
+
+CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
+                        CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err) {
+  CagRollPlan p = {.parts = parts, .part_count = part_count, .tolerance = tolerance};
+  CagStatus status = CAG_OK;
+  p.picks = picks;
+  p.pick_count = n;
+  p.unfit = CAG_ROLL_NONE;
+  p.chains = cag_calloc(n + 1, sizeof *p.chains);
+  if (!p.chains) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) status = start_pick(&p.picks[i], err);
+  if (!status) status = cag_roll_balls(&p, err);
+  for (size_t i = 0; !status && p.unfit == CAG_ROLL_NONE && i < n; i++)
+    if (!p.picks[i].used) status = add_chain(&p, i, err);
+  if (status) cag_roll_plan_free(&p);
+  else *out = p;
+  return status;
+}
