@@ -138,6 +138,23 @@ static CagStatus find_stops(const CagRollPlan *p, CagRollTip tip, CagVec3 leavin
   return status;
 }
 
+// Fails if another edge of the same bend is rounded where a chain ends in a face.
+static CagStatus end_is_free(const CagRollPlan *p, CagRollTip tip, CagError *err) {
+  const CagRollPick *pick = &p->picks[tip.pick];
+  for (size_t i = 0; i < p->pick_count; i++)
+    for (int end = 0; end < 2; end++) {
+      const CagRollPick *other = &p->picks[i];
+      const CagVec3 at = p->parts[pick->part].b->corners[pick->corner[tip.end]];
+      if ((i != tip.pick || end != tip.end) && other->part == pick->part && !other->closed &&
+          other->corner[end] == pick->corner[tip.end] && other->e.convex == pick->e.convex)
+        return cag_fail(
+            err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+            "rounded edges meet at [%.6g, %.6g, %.6g] where the ball would leave a face", at.x,
+            at.y, at.z);
+    }
+  return CAG_OK;
+}
+
 // Moves the points of the last ring along the edge: to the faces on which the body ends, or beyond
 // those through which it leaves. *fits: whether the ring stays beyond the one before it.
 static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, CagVec3 *ring,
@@ -146,6 +163,7 @@ static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, Cag
   Stops stops;
   CagStatus status = cag_roll_leaving(&p->picks[tip.pick], tip.end, &leaving, err);
   if (!status) status = find_stops(p, tip, leaving, &stops, err);
+  if (!status && stops.flush) status = end_is_free(p, tip, err);
   for (size_t i = 0; !status && i < size; i++) {
     double move = stops.flush ? INFINITY : 0;
     for (size_t k = 0; !status && k < stops.count; k++) {
@@ -166,6 +184,7 @@ static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, Cag
 typedef struct Bodies {
   CagMesh **meshes;
   bool *convex;
+  size_t *level;
   size_t count;
   double removed, added; // volumes
 } Bodies;
@@ -174,6 +193,7 @@ static void bodies_free(Bodies *b) {
   for (size_t i = 0; i < b->count; i++) cag_mesh_release(b->meshes[i]);
   cag_free(b->meshes);
   cag_free(b->convex);
+  cag_free(b->level);
 }
 
 static double mesh_volume(const CagMesh *m) {
@@ -182,9 +202,10 @@ static double mesh_volume(const CagMesh *m) {
   return terms[0];
 }
 
-static void add_body(Bodies *b, CagMesh *m, bool convex) {
+static void add_body(Bodies *b, CagMesh *m, bool convex, size_t level) {
   *(convex ? &b->removed : &b->added) += fabs(mesh_volume(m));
   b->convex[b->count] = convex;
+  b->level[b->count] = level;
   b->meshes[b->count++] = m;
 }
 
@@ -221,13 +242,13 @@ static CagStatus chain_body(CagRollPlan *p, const CagRollChain *c, size_t arc, d
   }
   if (!status && !fits) p->unfit = c->tips[0].pick;
   if (!status && fits) status = cag_roll_sweep(rings, size, c->count, c->closed, &m, err);
-  if (!status && fits) add_body(out, m, p->picks[c->tips[0].pick].e.convex);
+  if (!status && fits) add_body(out, m, p->picks[c->tips[0].pick].e.convex, c->level);
   cag_free(rings);
   return status;
 }
 
-static CagStatus ball_body(const CagRollBall *b, size_t arc, double lift, Bodies *out,
-                           CagError *err) {
+static CagStatus ball_body(const CagRollPlan *p, const CagRollBall *b, size_t arc, double lift,
+                           Bodies *out, CagError *err) {
   const CagRollCorner corner = {.point = b->point,
                                 .center = b->center,
                                 .radius = b->radius,
@@ -240,7 +261,7 @@ static CagStatus ball_body(const CagRollBall *b, size_t arc, double lift, Bodies
                                 .after = b->after};
   CagMesh *m;
   CagStatus status = cag_roll_corner_body(&corner, arc, lift, &m, err);
-  if (!status) add_body(out, m, b->convex);
+  if (!status) add_body(out, m, b->convex, p->chains[p->picks[b->pick].chain].level);
   return status;
 }
 
@@ -248,26 +269,29 @@ static CagStatus all_bodies(CagRollPlan *p, Bodies *out, CagError *err) {
   double lift;
   const size_t arc = common_arc(p, &lift), most = p->chain_count + p->ball_count;
   *out = (Bodies){.meshes = cag_calloc(most + 1, sizeof(CagMesh *)),
-                  .convex = cag_calloc(most + 1, sizeof(bool))};
-  CagStatus status = out->meshes && out->convex ? CAG_OK : cag_fail_memory(err);
+                  .convex = cag_calloc(most + 1, sizeof(bool)),
+                  .level = cag_calloc(most + 1, sizeof(size_t))};
+  CagStatus status = out->meshes && out->convex && out->level ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < p->chain_count && p->unfit == CAG_ROLL_NONE; i++) {
     status = cag_stop_check(err);
     if (!status) status = chain_body(p, &p->chains[i], arc, lift, out, err);
   }
   for (size_t i = 0; !status && i < p->ball_count && p->unfit == CAG_ROLL_NONE; i++)
-    status = ball_body(&p->balls[i], arc, lift, out, err);
+    status = ball_body(p, &p->balls[i], arc, lift, out, err);
   return status;
 }
 
-// Removes the convex bodies, or adds the others. Releases *mesh if it is replaced.
-static CagStatus combine_bodies(const Bodies *b, bool convex, CagMesh **mesh, CagError *err) {
+// Removes the convex bodies of a level, or adds the others. Releases *mesh if it is replaced.
+static CagStatus combine_bodies(const Bodies *b, size_t level, bool convex, CagMesh **mesh,
+                                size_t *done, CagError *err) {
   const CagMesh **operands = cag_calloc(b->count + 1, sizeof *operands);
   size_t n = 0;
   CagMesh *next;
   if (!operands) return cag_fail_memory(err);
   operands[n++] = *mesh;
   for (size_t i = 0; i < b->count; i++)
-    if (b->convex[i] == convex) operands[n++] = b->meshes[i];
+    if (b->convex[i] == convex && b->level[i] == level) operands[n++] = b->meshes[i];
+  *done += n - 1;
   CagStatus status = CAG_OK;
   if (n > 1)
     status =
@@ -301,7 +325,9 @@ CagStatus cag_roll_apply(CagRollPlan *p, const CagMesh *solid, CagMesh **out, Ca
   CagMesh *m = cag_mesh_retain(solid);
   CagStatus status = all_bodies(p, &b, err);
   const bool fits = p->unfit == CAG_ROLL_NONE;
-  for (int k = 0; !status && fits && k < 2; k++) status = combine_bodies(&b, k == 0, &m, err);
+  for (size_t level = 0, done = 0; !status && fits && done < b.count; level++)
+    for (int k = 0; !status && k < 2; k++)
+      status = combine_bodies(&b, level, k == 0, &m, &done, err);
   if (!status && fits) status = check_middles(p, m, err);
   if (!status && p->unfit == CAG_ROLL_NONE) status = check_result(&b, solid, m, err);
   bodies_free(&b);

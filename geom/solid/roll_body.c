@@ -22,8 +22,7 @@ size_t cag_roll_arc(double radius, double angle, double tolerance) {
   return (size_t)fmin(fmax(ceil(angle / step - 1e-9), 2), ARC_MOST);
 }
 
-// The unit vector at the fraction t of the arc between two unit vectors.
-static CagVec3 arc_direction(CagVec3 a, CagVec3 b, double t) {
+CagVec3 cag_roll_arc_direction(CagVec3 a, CagVec3 b, double t) {
   const double sine = cag_norm(cag_cross(a, b)), angle = atan2(sine, cag_dot(a, b));
   if (sine < NEARLY_SAME) return cag_unit(cag_lerp(a, b, t));
   return cag_unit(cag_madd(cag_scaled(a, sin((1 - t) * angle)), sin(t * angle), b));
@@ -34,7 +33,7 @@ void cag_roll_ring(const CagRollSection *s, size_t arc, double lift, CagVec3 *ou
   const double longer = s->radius > 0 ? LONGER_CHORD : LONGER_BEVEL;
   for (size_t i = 1; i < arc; i++) {
     const double t = (double)i / (double)arc;
-    out[i] = s->radius > 0 ? cag_madd(s->center, s->radius, arc_direction(from, to, t))
+    out[i] = s->radius > 0 ? cag_madd(s->center, s->radius, cag_roll_arc_direction(from, to, t))
                            : cag_lerp(s->contact[0], s->contact[1], t);
   }
   const CagVec3 second = arc > 1 ? out[1] : s->contact[1];
@@ -189,8 +188,9 @@ static void add_patch(Builder *b, const CagRollCorner *c, size_t arc) {
     for (size_t row = 1; row <= arc; row++)
       for (size_t k = 0; k < row; k++) {
         const double part = (double)row / (double)arc;
-        const CagVec3 d = arc_direction(arc_direction(middle, from, part),
-                                        arc_direction(middle, to, part), (double)k / (double)row);
+        const CagVec3 d = cag_roll_arc_direction(cag_roll_arc_direction(middle, from, part),
+                                                 cag_roll_arc_direction(middle, to, part),
+                                                 (double)k / (double)row);
         b->points[patch_point(arc, c->count, i, row, k)] = cag_madd(c->center, c->radius, d);
       }
     b->points[side_point(arc, i, arc)] = c->contact[i];

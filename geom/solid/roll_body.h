@@ -14,6 +14,8 @@
 
 // How many parts an arc of this angle (radians) needs so that its chords are within the tolerance.
 size_t cag_roll_arc(double radius, double angle, double tolerance);
+// The unit vector at the fraction t of the arc between two unit vectors.
+CagVec3 cag_roll_arc_direction(CagVec3 a, CagVec3 b, double t);
 // The points around a section: those of the arc, then those beyond the faces by the distance `lift`.
 // The first and last chord of the arc are lengthened, so that they cross the faces.
 void cag_roll_ring(const CagRollSection *s, size_t arc, double lift, CagVec3 *out);

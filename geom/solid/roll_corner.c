@@ -1,4 +1,4 @@
-// Balls at corners (see roll_corner.h).
+// Balls and turns at corners (see roll_corner.h).
 
 #include "geom/solid/roll_corner.h"
 
@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/stop.h"
 #include "geom/linalg/tolerance.h"
+#include "geom/solid/roll_pivot.h"
 
 // Steps of Newton's method for the point of an edge whose section has the center of the ball, and for
 // the nearest point of a carrier without a closed form.
@@ -201,27 +202,52 @@ static CagStatus add_ball(CagRollPlan *p, size_t part, size_t corner, Ends *ends
   return CAG_OK;
 }
 
+// Two rounded edges of one bend, at a corner whose third edge has the other one. The third edge may be
+// rounded, too.
+static CagStatus add_turn(CagRollPlan *p, size_t part, size_t corner, const Ends *ends, bool *done,
+                          CagError *err) {
+  CagRollTip tips[2], third = {CAG_ROLL_NONE, 0};
+  size_t convex = 0, n = 0;
+  *done = false;
+  if (ends->sharp != 3 || ends->count > 3) return CAG_OK;
+  for (size_t i = 0; i < ends->count; i++) convex += p->picks[ends->tips[i].pick].e.convex ? 1 : 0;
+  const bool most = convex >= 2;
+  if (!most && ends->count - convex < 2) return CAG_OK;
+  for (size_t i = 0; i < ends->count; i++) {
+    if (p->picks[ends->tips[i].pick].e.convex != most) third = ends->tips[i];
+    else if (n < 2) tips[n++] = ends->tips[i];
+  }
+  if (n != 2 || (ends->count == 3 && third.pick == CAG_ROLL_NONE)) return CAG_OK;
+  return cag_roll_add_pivot(p, part, corner, tips, third, done, err);
+}
+
+static CagStatus round_corner(CagRollPlan *p, size_t part, size_t corner, CagError *err) {
+  Ends ends;
+  bool done;
+  collect_ends(p, part, corner, &ends);
+  if (ends.count < 2) return CAG_OK;
+  CagStatus status = add_turn(p, part, corner, &ends, &done, err);
+  if (status || done) return status;
+  if (ends.convex && ends.concave)
+    return corner_fail(p, part, corner, "convex and concave edges that are rounded", err);
+  if (ends.count < 3 || ends.count != ends.sharp || ends.flat) return CAG_OK;
+  if (ends.several_radii)
+    return corner_fail(p, part, corner, "edges that are rounded with different radii", err);
+  return add_ball(p, part, corner, &ends, err);
+}
+
 CagStatus cag_roll_balls(CagRollPlan *p, CagError *err) {
   CagStatus status = CAG_OK;
-  for (size_t part = 0; part < p->part_count; part++)
+  for (size_t part = 0; !status && part < p->part_count; part++)
     for (size_t c = 0; !status && c < p->parts[part].b->corner_count; c++) {
-      Ends ends;
       status = cag_stop_check(err);
-      collect_ends(p, part, c, &ends);
-      if (status || ends.count < 2) continue;
-      if (ends.convex && ends.concave)
-        return corner_fail(p, part, c, "convex and concave edges that are rounded", err);
-      if (ends.count < 3 || ends.count != ends.sharp || ends.flat) continue;
-      if (ends.several_radii)
-        return corner_fail(p, part, c, "edges that are rounded with different radii", err);
-      status = add_ball(p, part, c, &ends, err);
+      if (!status) status = round_corner(p, part, c, err);
       if (p->unfit != CAG_ROLL_NONE) return status;
     }
-  for (size_t i = 0; !status && i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++)
-    if (p->picks[i].station[0] >= p->picks[i].station[1]) {
-      const double over = p->picks[i].station[0] - p->picks[i].station[1];
-      const CagCurve *c = p->picks[i].e.curve;
-      if (over > CAG_COINCIDENT * (c->end - c->start)) p->unfit = i;
-    }
+  for (size_t i = 0; !status && i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++) {
+    const CagRollPick *pick = &p->picks[i];
+    const double over = pick->station[0] - pick->station[1];
+    if (over > CAG_COINCIDENT * (pick->e.curve->end - pick->e.curve->start)) p->unfit = i;
+  }
   return status;
 }

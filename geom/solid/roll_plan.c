@@ -10,6 +10,7 @@
 #include "base/stop.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/roll_corner.h"
+#include "geom/solid/roll_pivot.h"
 
 // Edges continue each other smoothly if their tangents differ by less, in radians.
 #define SMOOTH_JOINT 1e-4
@@ -25,6 +26,7 @@ void cag_roll_plan_free(CagRollPlan *p) {
   cag_free(p->sections);
   cag_free(p->chains);
   cag_free(p->balls);
+  cag_free(p->pivots);
   *p = (CagRollPlan){0};
 }
 
@@ -163,13 +165,25 @@ static CagStatus add_edge_sections(CagRollPlan *p, size_t pick, bool reversed, b
 
 // --- Chains ---
 
-// The pick that continues another one smoothly beyond its end, and the end of it that is there.
-static CagStatus continuation(const CagRollPlan *p, CagRollTip tip, CagRollTip *out, bool *found,
-                              CagError *err) {
+// A tip that follows another one in a chain.
+typedef struct Link {
+  CagRollTip tip;
+  const CagRollPivot *pivot; // between them; NULL: they continue each other smoothly
+  bool found;
+} Link;
+
+// The end of an edge that continues another one beyond its end.
+static CagStatus continuation(const CagRollPlan *p, CagRollTip tip, Link *out, CagError *err) {
   const CagRollPick *from = &p->picks[tip.pick];
   CagVec3 leaving, other;
-  *found = false;
+  *out = (Link){{0, 0}, NULL, false};
   if (from->ball[tip.end] || from->closed) return CAG_OK;
+  if (from->pivot[tip.end]) {
+    const CagRollPivot *v = &p->pivots[from->pivot[tip.end] - 1];
+    const bool first = v->tips[0].pick == tip.pick && v->tips[0].end == tip.end;
+    *out = (Link){v->tips[first ? 1 : 0], v, true};
+    return CAG_OK;
+  }
   CagStatus status = cag_roll_leaving(from, tip.end, &leaving, err);
   for (size_t i = 0; !status && i < p->pick_count; i++) {
     const CagRollPick *to = &p->picks[i];
@@ -178,8 +192,7 @@ static CagStatus continuation(const CagRollPlan *p, CagRollTip tip, CagRollTip *
       if (to->corner[end] != from->corner[tip.end] || (i == tip.pick && end == tip.end)) continue;
       status = cag_roll_leaving(to, end, &other, err);
       if (status || cag_norm(cag_add(leaving, other)) > SMOOTH_JOINT) continue;
-      *out = (CagRollTip){i, end};
-      *found = true;
+      *out = (Link){{i, end}, NULL, true};
       return CAG_OK;
     }
   }
@@ -191,42 +204,83 @@ static CagStatus chain_start(const CagRollPlan *p, size_t pick, CagRollTip *out,
                              CagError *err) {
   CagRollTip tip = {pick, 0};
   CagStatus status = CAG_OK;
-  bool found = true;
   *closed = p->picks[pick].closed;
-  for (size_t i = 0; !status && !*closed && found && i <= p->pick_count; i++) {
-    CagRollTip before;
-    status = continuation(p, tip, &before, &found, err);
-    if (status || !found) break;
-    tip = (CagRollTip){before.pick, 1 - before.end};
+  for (size_t i = 0; !*closed && i <= p->pick_count; i++) {
+    Link before;
+    status = continuation(p, tip, &before, err);
+    if (status || !before.found) break;
+    tip = (CagRollTip){before.tip.pick, 1 - before.tip.end};
     *closed = tip.pick == pick && tip.end == 0;
   }
   *out = tip;
   return status;
 }
 
+// Adds the sections of the turn that follows the end of an edge, without those of the edges.
+static CagStatus add_pivot_sections(CagRollPlan *p, const CagRollPivot *v, CagRollTip tip,
+                                    CagError *err) {
+  const size_t parts = cag_roll_pivot_parts(p, v);
+  const bool first = v->tips[0].pick == tip.pick && v->tips[0].end == tip.end;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i <= parts; i++) {
+    CagRollSection s;
+    if (v->flat && 2 * i != parts) continue;
+    if ((i == 0 && !v->beyond[first ? 0 : 1]) || (i == parts && !v->beyond[first ? 1 : 0]))
+      continue;
+    cag_roll_pivot_section(p, v, tip, (double)i / (double)parts, &s);
+    status = add_section(p, &s, err);
+  }
+  return status;
+}
+
 static CagStatus add_chain(CagRollPlan *p, size_t pick, CagError *err) {
   CagRollTip tip;
   bool closed;
+  Link link = {{0, 0}, NULL, false};
   CagStatus status = chain_start(p, pick, &tip, &closed, err);
   if (status) return status;
   CagRollChain *chain = &p->chains[p->chain_count];
   *chain = (CagRollChain){.first = p->section_count, .closed = closed, .tips = {tip, tip}};
-  for (bool found = true; !status && found && p->unfit == CAG_ROLL_NONE;) {
+  for (;;) {
     CagRollPick *here = &p->picks[tip.pick];
     here->used = true;
-    status = add_edge_sections(p, tip.pick, tip.end == 1, p->section_count > chain->first, err);
+    here->chain = p->chain_count;
+    status = add_edge_sections(p, tip.pick, tip.end == 1, link.found && !link.pivot, err);
     tip.end = 1 - tip.end;
     chain->tips[1] = tip;
-    CagRollTip next;
-    found = false;
-    if (!status && !here->closed) status = continuation(p, tip, &next, &found, err);
-    if (status || !found || p->picks[next.pick].used) break;
-    tip = next;
+    link.found = false;
+    if (status || p->unfit != CAG_ROLL_NONE || here->closed) break;
+    status = continuation(p, tip, &link, err);
+    if (!status && link.found && link.pivot) status = add_pivot_sections(p, link.pivot, tip, err);
+    if (status || !link.found || p->picks[link.tip.pick].used) break;
+    tip = link.tip;
   }
-  if (closed && p->section_count > chain->first) p->section_count--;
+  // The last section is the first one, unless a turn is between them.
+  if (closed && !(link.found && link.pivot) && p->section_count > chain->first) p->section_count--;
   chain->count = p->section_count - chain->first;
   p->chain_count++;
   return status;
+}
+
+// The fillets about which a ball turns come before its own chain.
+static CagStatus order_chains(CagRollPlan *p, CagError *err) {
+  bool changed = true;
+  for (size_t round = 0; changed; round++) {
+    changed = false;
+    if (round > p->chain_count)
+      return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+                      "convex and concave edges that are rounded depend on each other");
+    for (size_t i = 0; i < p->pivot_count; i++) {
+      const CagRollPivot *v = &p->pivots[i];
+      if (v->third == CAG_ROLL_NONE) continue;
+      CagRollChain *chain = &p->chains[p->picks[v->tips[0].pick].chain];
+      const size_t before = p->chains[p->picks[v->third].chain].level;
+      if (chain->level > before) continue;
+      chain->level = before + 1;
+      changed = true;
+    }
+  }
+  return CAG_OK;
 }
 
 static CagStatus start_pick(CagRollPick *pick, CagError *err) {
@@ -236,6 +290,7 @@ static CagStatus start_pick(CagRollPick *pick, CagError *err) {
   pick->used = false;
   for (int k = 0; !status && k < 2; k++) {
     pick->ball[k] = false;
+    pick->pivot[k] = 0;
     pick->range[k] = pick->station[k] = k ? c->end : c->start;
     status = cag_roll_leaving(pick, k, &leaving[k], err);
   }
@@ -258,6 +313,7 @@ CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tole
   if (!status) status = cag_roll_balls(&p, err);
   for (size_t i = 0; !status && p.unfit == CAG_ROLL_NONE && i < n; i++)
     if (!p.picks[i].used) status = add_chain(&p, i, err);
+  if (!status && p.unfit == CAG_ROLL_NONE) status = order_chains(&p, err);
   if (status) cag_roll_plan_free(&p);
   else *out = p;
   return status;

@@ -18,7 +18,9 @@ typedef struct CagRollPick {
   bool ball[2];      // whether a corner with a ball is at the end
   double station[2]; // the parameter of the section through the ball's center, or of the end
   double range[2];   // of the sections
-  bool used;         // belongs to a chain
+  size_t pivot[2];   // the turn at the end, plus 1; 0: none
+  bool used;         // belongs to a chain, ...
+  size_t chain;      // ... this one
 } CagRollPick;
 
 // One end of a chain.
@@ -32,6 +34,7 @@ typedef struct CagRollChain {
   size_t first, count;
   bool closed;
   CagRollTip tips[2]; // unless closed
+  size_t level;       // the bodies of chains of lower levels are applied before
 } CagRollChain;
 
 // At most this many edges end at a corner with a ball.
@@ -47,6 +50,19 @@ typedef struct CagRollBall {
   CagVec3 station[CAG_ROLL_VALENCE], before[CAG_ROLL_VALENCE], after[CAG_ROLL_VALENCE];
 } CagRollBall;
 
+// The ball turns from one edge to another, about the third edge of the corner or its fillet.
+typedef struct CagRollPivot {
+  CagRollTip tips[2];
+  size_t third; // the pick of the third edge, or CAG_ROLL_NONE
+  int side;     // of the first edge on which the face of both edges is
+  bool flat;    // a miter of chamfers, with the contacts `contact`: on the face, and the third edge
+  bool beyond[2];               // whether the turn begins or ends beyond the corner
+  double radius, inner, length; // of the ball, of the fillet (0: none); of the third edge
+  CagVec3 point, axis, along;   // the corner; a point of the axis, and its direction into the edge
+  CagVec3 face, toward[2]; // unit normals, toward the ball, of the common face and of the others
+  CagVec3 contact[2];
+} CagRollPivot;
+
 typedef struct CagRollPlan {
   const CagRollPart *parts;
   size_t part_count;
@@ -59,6 +75,8 @@ typedef struct CagRollPlan {
   size_t chain_count;
   CagRollBall *balls;
   size_t ball_count, ball_room;
+  CagRollPivot *pivots;
+  size_t pivot_count, pivot_room;
   size_t unfit; // the pick that does not fit, or CAG_ROLL_NONE
 } CagRollPlan;
 

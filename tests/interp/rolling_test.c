@@ -86,8 +86,106 @@ static void vertical_edges_of_a_box(void **state) {
   shape_free(&s);
 }
 
+
+// The formula of rounded_box: a box, its six sides, twelve quarters of cylinders, and a ball.
+static double rounded_box_volume(double a, double b, double c, double r) {
+  const double x = a - 2 * r, y = b - 2 * r, z = c - 2 * r;
+  return x * y * z + 2 * r * (x * y + y * z + z * x) + M_PI * r * r * (x + y + z) +
+         4 * M_PI / 3 * r * r * r;
+}
+
+static void all_edges_of_a_box(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(a_box(10, 8, 6));
+  choose(&s, is_any, 1.5, 1.5);
+  assert_int_equal(s.n, 12);
+  const double area = 2 * (80 + 48 + 60);
+  NEAR(rolled_volume(&s, 1e-3), rounded_box_volume(10, 8, 6, 1.5), area * 1e-3);
+  NEAR(rolled_volume(&s, 1e-2), rounded_box_volume(10, 8, 6, 1.5), area * 1e-2);
+  shape_free(&s);
+}
+
+static void all_edges_of_a_turned_box(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(turned(shifted(a_box(10, 8, 6), 3, 2, 1), cag_vec3(1, 2, 3), 0.7));
+  choose(&s, is_any, 1.5, 1.5);
+  assert_int_equal(s.n, 12);
+  NEAR(rolled_volume(&s, 1e-3), rounded_box_volume(10, 8, 6, 1.5), 0.376);
+  shape_free(&s);
+}
+
+// An L of two boxes: one concave edge, of length 10.
+static void a_concave_edge_is_filled(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s =
+      shape_of(combined(CAG_DIFFERENCE, a_box(20, 20, 10), shifted(a_box(20, 20, 20), 10, 10, 0)));
+  choose(&s, is_concave, 3, 3);
+  assert_int_equal(s.n, 1);
+  NEAR(rolled_volume(&s, 1e-3), 3000 + 10 * 9 * CORNER_AREA, 10 * 5 * 1e-3);
+  shape_free(&s);
+}
+
+// The rounded rim of a cylinder: by Pappus, the corner area at its centroid is removed. The centroid
+// of the area between a square and a circle of radius 1 is 2/3 / (4 - pi) from the lines.
+static void the_rim_of_a_cylinder(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(a_cylinder(10, 5, 5));
+  choose(&s, is_circle, 1, 1);
+  assert_int_equal(s.n, 2);
+  const double from_line = (1 - 5.0 / 6 + M_PI / 4 - M_PI / 4) / CORNER_AREA;
+  (void)from_line;
+  const double centroid = 5 - (5.0 / 6 - M_PI / 4) / CORNER_AREA;
+  const double volume = 250 * M_PI - 2 * 2 * M_PI * centroid * CORNER_AREA;
+  NEAR(rolled_volume(&s, 1e-3), volume, 1e-3 * 150 * M_PI);
+  shape_free(&s);
+}
+
+static void the_rims_of_a_hole_in_a_tilted_box(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  CagSolid *hole = shifted(a_cylinder(40, 5, 5), 8, 0, -20);
+  Shape s = shape_of(turned(combined(CAG_DIFFERENCE, a_box(40, 30, 20), hole), cag_vec3(1, 1, 0), 0.5));
+  choose(&s, is_circle, 1, 1);
+  assert_int_equal(s.n, 2);
+  const double centroid = 5 + (5.0 / 6 - M_PI / 4) / CORNER_AREA;
+  const double volume = 24000 - 500 * M_PI - 2 * 2 * M_PI * centroid * CORNER_AREA;
+  NEAR(rolled_volume(&s, 1e-3), volume, 1e-3 * 300 * M_PI);
+  shape_free(&s);
+}
+
+static void what_does_not_fit(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(a_box(10, 8, 6));
+  CagSolid *out;
+  CagRollLimit limit;
+  choose(&s, is_any, 3.5, 3.5);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large", 0, 11);
+  NEAR(limit.factor * 3.5, 3, 0.01);
+  choose(&s, is_vertical, 5, 5);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large", 0, 3);
+  NEAR(limit.factor * 5, 4, 0.1);
+  puts(err.message);
+  choose(&s, is_vertical, 9, 9);
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, 1, 1e-3, &limit, &out, &err), "rounding-too-large", 0);
+  NEAR(limit.factor * 9, 8, 0.01);
+  shape_free(&s);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(vertical_edges_of_a_box)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(vertical_edges_of_a_box),
+      cmocka_unit_test(all_edges_of_a_box),
+      cmocka_unit_test(all_edges_of_a_turned_box),
+      cmocka_unit_test(a_concave_edge_is_filled),
+      cmocka_unit_test(the_rim_of_a_cylinder),
+      cmocka_unit_test(the_rims_of_a_hole_in_a_tilted_box),
+      cmocka_unit_test(what_does_not_fit),
+  };
   (void)is_any, (void)is_convex, (void)is_concave, (void)is_circle, (void)is_top;
   return cmocka_run_group_tests(tests, start_kernel, end_kernel);
 }
