@@ -14,6 +14,8 @@
 // How much the first and last chord are lengthened, as a fraction of them.
 #define LONGER_CHORD 0.5
 #define LONGER_BEVEL 0.02
+// A contact on an edge is moved across the edge by this fraction of the lift.
+#define POINT_LIFT 0.02
 // Directions whose angle has a smaller sine are interpolated along their chord.
 #define NEARLY_SAME 1e-7
 
@@ -40,10 +42,13 @@ void cag_roll_ring(const CagRollSection *s, size_t arc, double lift, CagVec3 *ou
   const CagVec3 last = arc > 1 ? out[arc - 1] : s->contact[0];
   out[0] = cag_madd(s->contact[0], longer, cag_sub(s->contact[0], second));
   out[arc] = cag_madd(s->contact[1], longer, cag_sub(s->contact[1], last));
-  out[arc + 1] = cag_madd(s->contact[1], -lift, s->toward[1]);
-  out[arc + 2] = cag_madd(s->edge, -lift, s->start[1]);
-  out[arc + 3] = cag_madd(s->edge, -lift, s->start[0]);
-  out[arc + 4] = cag_madd(s->contact[0], -lift, s->toward[0]);
+  for (size_t k = 0; k < 2; k++) {
+    const CagVec3 at_contact = s->pointed[k] ? s->into : cag_scaled(s->toward[k], -1);
+    const CagVec3 at_edge = s->pointed[k] ? s->into : cag_scaled(s->start[k], -1);
+    out[k ? arc + 1 : arc + 4] = cag_madd(s->contact[k], lift, at_contact);
+    out[k ? arc + 2 : arc + 3] = cag_madd(s->edge, lift, at_edge);
+    if (s->pointed[k]) out[k ? arc : 0] = cag_madd(s->contact[k], POINT_LIFT * lift, s->into);
+  }
 }
 
 // --- Meshes ---

@@ -130,28 +130,23 @@ static CagStatus touch_faces(CagRollBall *ball, CagRollMeeting *faces, bool *fit
   return status;
 }
 
-// The parameter at which the section of the edge contains the center of the ball.
-static CagStatus find_station(CagRollPick *pick, int end, CagVec3 center, bool *fits,
-                              CagError *err) {
+CagStatus cag_roll_station(const CagRollPick *pick, int end, CagVec3 center, double *out,
+                           bool *found, CagError *err) {
   const CagCurve *c = pick->e.curve;
   double t = end ? c->end : c->start;
   CagStatus status = CAG_OK;
-  *fits = false;
-  for (int k = 0; !status && !*fits && k < STEPS; k++) {
+  *found = false;
+  for (int k = 0; !status && !*found && k < STEPS; k++) {
     CagVec3 d[2];
     status = cag_curve_eval(c, t, 1, t < c->end ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, err);
     if (status) break;
     const double step = cag_dot(cag_sub(center, d[0]), d[1]) / cag_dot(d[1], d[1]);
     const double next = fmin(fmax(t + step, c->start), c->end);
-    *fits = fabs(step) <= CAG_ROUNDING * (c->end - c->start);
-    if (next == t && !*fits) break; // beyond the other end
+    *found = fabs(step) <= CAG_ROUNDING * (c->end - c->start);
+    if (next == t && !*found) break; // beyond the other end
     t = next;
   }
-  if (!status && *fits) {
-    pick->ball[end] = true;
-    pick->station[end] = t;
-    pick->range[end] = t + BEYOND * ((end ? c->end : c->start) - t);
-  }
+  *out = t;
   return status;
 }
 
@@ -162,9 +157,15 @@ static CagStatus add_stations(CagRollPlan *p, CagRollBall *ball, const Ends *end
     CagRollPick *pick = &p->picks[tip.pick];
     CagRollSection s;
     bool fits;
-    CagStatus status = find_station(pick, tip.end, ball->center, &fits, err);
-    if (!status && fits)
-      status = cag_roll_section(&pick->e, pick->station[tip.end], &s, &fits, err);
+    double t;
+    const double corner = tip.end ? pick->e.curve->end : pick->e.curve->start;
+    CagStatus status = cag_roll_station(pick, tip.end, ball->center, &t, &fits, err);
+    if (!status && fits) {
+      pick->ball[tip.end] = true;
+      pick->station[tip.end] = t;
+      pick->range[tip.end] = t + BEYOND * (corner - t);
+      status = cag_roll_section(&pick->e, t, &s, &fits, err);
+    }
     if (status) return status;
     if (!fits) {
       p->unfit = tip.pick;

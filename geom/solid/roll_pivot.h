@@ -6,7 +6,8 @@
 // third edge is rounded too, the ball turns about its fillet.
 //
 // The ball touches the face F of both edges and, at the distance `inner` + `radius` from the axis, the
-// third edge (inner = 0) or its fillet. All faces are planes here, and the third edge is straight.
+// third edge (inner = 0) or its fillet. The other faces are
+// planes, and the third edge is straight.
 
 #ifndef CAG_GEOM_SOLID_ROLL_PIVOT_H
 #define CAG_GEOM_SOLID_ROLL_PIVOT_H
@@ -19,9 +20,10 @@
 CagStatus cag_roll_add_pivot(CagRollPlan *p, size_t part, size_t corner, const CagRollTip tips[2],
                              CagRollTip third, bool *done, CagError *err);
 // The section when the ball has turned by the fraction t from the end `tip` of an edge to the other.
-// Side 0 is on the left of someone who comes along the edge.
-void cag_roll_pivot_section(const CagRollPlan *p, const CagRollPivot *pivot, CagRollTip tip,
-                            double t, CagRollSection *out);
+// Side 0 is on the left of someone who comes along the edge. `along` is not set. *fits: whether there
+// is a place for the ball.
+CagStatus cag_roll_pivot_section(const CagRollPivot *pivot, CagRollTip tip, double t,
+                                 CagRollSection *out, bool *fits, CagError *err);
 // The number of parts into which the turn is divided.
 size_t cag_roll_pivot_parts(const CagRollPlan *p, const CagRollPivot *pivot);
 

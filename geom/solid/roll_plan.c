@@ -216,21 +216,45 @@ static CagStatus chain_start(const CagRollPlan *p, size_t pick, CagRollTip *out,
   return status;
 }
 
+static int pivot_end(const CagRollPivot *v, CagRollTip tip) {
+  return v->tips[0].pick == tip.pick && v->tips[0].end == tip.end ? 0 : 1;
+}
+
+// Whether the turn's first or last section takes the place of that of the edge, since it reaches
+// beyond the third edge of the corner, within both faces there.
+static bool pivot_replaces(const CagRollPivot *v, CagRollTip tip) {
+  return v && !v->flat && !(v->inner > 0) && !v->beyond[pivot_end(v, tip)];
+}
+
 // Adds the sections of the turn that follows the end of an edge, without those of the edges.
 static CagStatus add_pivot_sections(CagRollPlan *p, const CagRollPivot *v, CagRollTip tip,
                                     CagError *err) {
   const size_t parts = cag_roll_pivot_parts(p, v);
-  const bool first = v->tips[0].pick == tip.pick && v->tips[0].end == tip.end;
+  const int end = pivot_end(v, tip);
+  const bool own = !v->flat && !(v->inner > 0);
   CagStatus status = CAG_OK;
+  if (pivot_replaces(v, tip)) p->section_count--;
   for (size_t i = 0; !status && i <= parts; i++) {
     CagRollSection s;
     if (v->flat && 2 * i != parts) continue;
-    if ((i == 0 && !v->beyond[first ? 0 : 1]) || (i == parts && !v->beyond[first ? 1 : 0]))
-      continue;
-    cag_roll_pivot_section(p, v, tip, (double)i / (double)parts, &s);
+    if (i == 0 && !v->beyond[end] && !own) continue;
+    if (i == parts && !v->beyond[1 - end] && !own) continue;
+    bool fits;
+    status = cag_roll_pivot_section(v, tip, (double)i / (double)parts, &s, &fits, err);
+    if (!status && !fits) p->unfit = tip.pick;
+    if (status || !fits) break;
     status = add_section(p, &s, err);
   }
   return status;
+}
+
+// The last section of a closed chain is the first one, unless a turn is between them.
+static void close_chain(CagRollPlan *p, const CagRollChain *chain, const Link *last) {
+  if (last->found && last->pivot && !pivot_replaces(last->pivot, last->tip)) return;
+  p->section_count--;
+  if (last->found && last->pivot)
+    memmove(p->sections + chain->first, p->sections + chain->first + 1,
+            (p->section_count - chain->first) * sizeof *p->sections);
 }
 
 static CagStatus add_chain(CagRollPlan *p, size_t pick, CagError *err) {
@@ -245,7 +269,8 @@ static CagStatus add_chain(CagRollPlan *p, size_t pick, CagError *err) {
     CagRollPick *here = &p->picks[tip.pick];
     here->used = true;
     here->chain = p->chain_count;
-    status = add_edge_sections(p, tip.pick, tip.end == 1, link.found && !link.pivot, err);
+    status = add_edge_sections(p, tip.pick, tip.end == 1,
+                               link.found && (!link.pivot || pivot_replaces(link.pivot, tip)), err);
     tip.end = 1 - tip.end;
     chain->tips[1] = tip;
     link.found = false;
@@ -255,8 +280,7 @@ static CagStatus add_chain(CagRollPlan *p, size_t pick, CagError *err) {
     if (status || !link.found || p->picks[link.tip.pick].used) break;
     tip = link.tip;
   }
-  // The last section is the first one, unless a turn is between them.
-  if (closed && !(link.found && link.pivot) && p->section_count > chain->first) p->section_count--;
+  if (!status && closed && p->unfit == CAG_ROLL_NONE) close_chain(p, chain, &link);
   chain->count = p->section_count - chain->first;
   p->chain_count++;
   return status;

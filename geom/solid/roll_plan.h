@@ -53,13 +53,16 @@ typedef struct CagRollBall {
 // The ball turns from one edge to another, about the third edge of the corner or its fillet.
 typedef struct CagRollPivot {
   CagRollTip tips[2];
-  size_t third; // the pick of the third edge, or CAG_ROLL_NONE
-  int side;     // of the first edge on which the face of both edges is
-  bool flat;    // a miter of chamfers, with the contacts `contact`: on the face, and the third edge
-  bool beyond[2];               // whether the turn begins or ends beyond the corner
+  size_t third;   // the pick of the third edge, or CAG_ROLL_NONE
+  int side;       // of the first edge on which the face F of both edges is
+  bool flat;      // a miter of chamfers, with the contacts `contact`: on F, and on the third edge
+  bool beyond[2]; // whether the turn begins or ends beyond the corner
   double radius, inner, length; // of the ball, of the fillet (0: none); of the third edge
   CagVec3 point, axis, along;   // the corner; a point of the axis, and its direction into the edge
-  CagVec3 face, toward[2]; // unit normals, toward the ball, of the common face and of the others
+  CagRollSide base;             // F, ...
+  double uv[2];                 // ... and the parameters of the corner
+  double sign;                  // 1 if the ball is on the outer side of the faces, else -1
+  CagVec3 face, toward[2]; // unit normals, toward the ball, of F at the corner and of the others
   CagVec3 contact[2];
 } CagRollPivot;
 

@@ -38,6 +38,8 @@ typedef struct CagRollSection {
   CagVec3 toward[2];   // unit normals of the faces at A and B, toward the side of the ball
   CagVec3 start[2];    // those at E
   size_t origin;       // a number that the caller sets
+  bool pointed[2];     // whether a contact is on an edge, about which the ball turns: ...
+  CagVec3 into;        // ... a body reaches beyond the edge along this unit vector
   double bulge;        // the largest distance between a face and the chord from E to A or B
 } CagRollSection;
 
