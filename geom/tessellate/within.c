@@ -140,7 +140,11 @@ static CagStatus turn_along(const CagSurface *inner, const CagCurve *trace, doub
   *turn = 0;
   for (int k = 0; k <= STEPS; k++) {
     CagStatus status = cag_curve_point(trace, t0 + (t1 - t0) * k / STEPS, &at, err);
-    if (!status) status = cag_surface_normal(inner, at.x, at.y, &normal, err);
+    if (status) return status;
+    // The curve may leave the domain by rounding.
+    const double u = fmin(fmax(at.x, inner->u0), inner->u1);
+    const double v = fmin(fmax(at.y, inner->v0), inner->v1);
+    status = cag_surface_normal(inner, u, v, &normal, err);
     if (status) return status;
     if (k) *turn += atan2(cag_norm(cag_cross(before, normal)), cag_dot(before, normal));
     before = normal;

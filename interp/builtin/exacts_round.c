@@ -1,18 +1,22 @@
 // Fillets and chamfers.
 //
-// The kernel rounds the parts one by one, in their own coordinates.
+// The kernel rounds the parts one by one, in their own coordinates (tier B). If it cannot, a ball
+// rolls along the edges of the mesh (geom/solid/rolling.h), in the coordinates of the world (tier C).
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "geom/linalg/tolerance.h"
+#include "geom/solid/rolling.h"
 #include "interp/builtin/exacts_parts.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
 // Ends that are nearer than this fraction of the length of an edge are one point.
 #define CLOSED 1e-9
+// Default tolerance of the ball's mesh, as a fraction of the size of the solid.
+#define ROLLED 1e-3
 
 typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
                                   size_t n, CagBoundaries *out, CagKernelFailure *why,
@@ -22,13 +26,16 @@ typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const C
 typedef struct BlendWords {
   const char *verb, *size;
   BlendRequest request;
+  CagStatus (*roll)(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
+                    CagRollLimit *limit, CagSolid **out, CagError *err);
   bool chamfer;
 } BlendWords;
 
 enum { BLEND_SIZE = 1, BLEND_EDGES = 2 };
 
-static const BlendWords FILLET = {"round", "radius", cag_kernel_fillet, false};
-static const BlendWords CHAMFER = {"cut off", "distance", cag_kernel_chamfer, true};
+static const BlendWords FILLET = {"round", "radius", cag_kernel_fillet, cag_solid_roll, false};
+static const BlendWords CHAMFER = {"cut off", "distance", cag_kernel_chamfer, cag_solid_bevel,
+                                   true};
 
 // --- Sizes ---
 
@@ -129,7 +136,7 @@ static bool fail_blend(const CagExactParts *p, const BlendWords *words, size_t p
                        together ? ", along with other edges" : "", reason, limit);
 }
 
-// --- The functions ---
+// --- Blends ---
 
 static CagBlend blend_of(const CagExactParts *p, const BlendWords *words, const CagChosen *c,
                          const double sizes[2]) {
@@ -140,16 +147,6 @@ static CagBlend blend_of(const CagExactParts *p, const BlendWords *words, const 
                     .face = e->count > 0 ? f->edge_faces[e->first] : 0,
                     .first = sizes[turned] / p->scale,
                     .last = sizes[!turned] / p->scale};
-}
-
-static bool blend_part(CagExactParts *p, const BlendWords *words, size_t part,
-                       const CagBlend *blends, size_t n) {
-  CagBoundaries made;
-  CagKernelFailure why;
-  const CagStatus status =
-      words->request(p->kernel, &p->parts[part], blends, n, &made, &why, p->call->err);
-  if (status) return fail_blend(p, words, part, blends, n, &why);
-  return cag_exact_parts_add(p, &made);
 }
 
 // The blends of the chosen edges, held by the call. Functions of the script may be called.
@@ -167,6 +164,59 @@ static bool read_blends(CagExactParts *p, const BlendWords *words, const CagChos
   return true;
 }
 
+// --- Tier C ---
+
+// Whether a face uses an edge in the direction of its curve, which has the face on its left.
+static bool is_left_of(const CagBoundary *b, size_t face, size_t edge) {
+  const CagBoundaryFace *f = &b->faces[face];
+  for (size_t l = f->first; l < f->first + f->count; l++)
+    for (size_t u = b->loops[l].first; u < b->loops[l].first + b->loops[l].count; u++)
+      if (b->uses[u].edge == edge && !b->uses[u].reversed) return true;
+  return false;
+}
+
+static CagRolledEdge rolled_edge(const CagExactParts *p, const BlendWords *words, size_t part,
+                                 const CagBlend *blend) {
+  const bool mirrored = cag_transform_mirrors(&p->solid->placement);
+  const bool turned =
+      words->chamfer && is_left_of(&p->parts[part], blend->face, blend->edge) == mirrored;
+  const double sizes[2] = {blend->first * p->scale, blend->last * p->scale};
+  return (CagRolledEdge){part, blend->edge, {sizes[turned], sizes[!turned]}};
+}
+
+// Rounds the mesh. *done: it is rounded; else the kernel's error stays.
+static bool roll_edges(CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
+                       const CagBlend *blends, size_t n, CagValue *result, bool *done) {
+  CagCall *call = p->call;
+  CagRolledEdge *rolled = cag_hold_array(call, n, sizeof *rolled);
+  CagBounds box;
+  CagError err;
+  CagSolid *s = NULL;
+  char said[96], number[32];
+  *done = false;
+  for (size_t i = 0; i < n; i++) rolled[i] = rolled_edge(p, words, chosen[i].part, &blends[i]);
+  CagStatus status = cag_solid_bounds(p->solid, &box, &err);
+  const double own = call->vm->tolerance;
+  const double tolerance = own > 0  ? own
+                           : status ? 0
+                                    : ROLLED * cag_norm(cag_sub(box.max, box.min));
+  if (!status) status = words->roll(p->solid, rolled, n, tolerance, NULL, &s, &err);
+  if (cag_is_final(status)) {
+    *call->err = err;
+    return cag_geometry_ok(call, status);
+  }
+  if (status) return true;
+  if (!cag_solid_result(call, CAG_OK, &s, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %s mm",
+           cag_number_text(tolerance, number));
+  cag_exacts_say_tier(call, said, n);
+  *done = true;
+  return true;
+}
+
+// --- The functions ---
+
 static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result) {
   const CagValue size = call->values[BLEND_SIZE];
   double sizes[2];
@@ -180,10 +230,20 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
     return false;
   CagBlend *own = cag_hold_array(call, n, sizeof *own); // of one part
   for (size_t i = 0; i < p->count; i++) {
+    CagBoundaries made;
+    CagKernelFailure why;
     size_t count = 0;
+    bool rolled = false;
     for (size_t k = 0; k < n; k++)
       if (chosen[k].part == i) own[count++] = blends[k];
-    if (!blend_part(p, words, i, own, count)) return false;
+    const CagStatus status =
+        words->request(p->kernel, &p->parts[i], own, count, &made, &why, call->err);
+    if (status && !cag_is_final(status) &&
+        !roll_edges(p, words, chosen, blends, n, result, &rolled))
+      return false;
+    if (rolled) return true;
+    if (status) return fail_blend(p, words, i, own, count, &why);
+    if (!cag_exact_parts_add(p, &made)) return false;
   }
   if (!cag_exact_parts_result(p, 0, result)) return false;
   cag_exacts_say_tier(call, "tier B: kernel", n);
