@@ -12,8 +12,8 @@
 #include "geom/solid/roll_body.h"
 #include "geom/solid/roll_shells.h"
 
-// Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of the
-// tolerance and of the bulge of faces.
+// Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of
+// the tolerance and of the bulge of faces.
 #define LIFT_SIZE 2e-3
 #define LIFT_TOLERANCE 2
 #define LIFT_BULGE 2

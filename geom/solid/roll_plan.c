@@ -58,7 +58,8 @@ static CagStatus add_section(CagRollPlan *p, const CagRollSection *s, CagError *
   return CAG_OK;
 }
 
-// Whether straight lines between two sections miss a third one, halfway, by less than the tolerance.
+// Whether straight lines between two sections miss a third one, halfway, by less than the
+// tolerance.
 static bool is_straight(const CagRollSection *a, const CagRollSection *b, const CagRollSection *m,
                         double tolerance) {
   double off = cag_norm(cag_sub(m->edge, cag_lerp(a->edge, b->edge, 0.5)));

@@ -126,8 +126,9 @@ static void a_concave_edge_is_filled(void **state) {
   shape_free(&s);
 }
 
-// The rounded rim of a cylinder: by Pappus, the corner area at its centroid is removed. The centroid
-// of the area between two lines and a circle of radius 1 is (5/6 - pi/4) / (1 - pi/4) from the lines.
+// The rounded rim of a cylinder: by Pappus, the corner area at its centroid is removed. The
+// centroid of the area between two lines and a circle of radius 1 is (5/6 - pi/4) / (1 - pi/4) from
+// the lines.
 static void the_rim_of_a_cylinder(void **state) {
   (void)state;
   REQUIRE_KERNEL();
@@ -178,9 +179,9 @@ static CagSolid *an_l(void) {
   return combined(CAG_DIFFERENCE, a_box(20, 20, 10), shifted(a_box(20, 20, 20), 10, 10, 0));
 }
 
-// The upper edges of an L: a slice below the top is the L moved inward by d, with the area 300 - 80 d
-// + 5 d^2 for the convex corners - pi/4 d^2 for the concave one, and d = 1 - sqrt(1 - (1 - z)^2) has
-// the integral 1 - pi/4 and that of its square is 5/3 - pi/2.
+// The upper edges of an L: a slice below the top is the L moved inward by d, with the area 300 - 80
+// d + 5 d^2 for the convex corners - pi/4 d^2 for the concave one, and d = 1 - sqrt(1 - (1 - z)^2)
+// has the integral 1 - pi/4 and that of its square is 5/3 - pi/2.
 static void a_ball_turns_about_a_concave_edge(void **state) {
   (void)state;
   REQUIRE_KERNEL();
