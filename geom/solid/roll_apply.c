@@ -10,9 +10,10 @@
 #include "geom/boolean/boolean.h"
 #include "geom/mesh/distance.h"
 #include "geom/solid/roll_body.h"
+#include "geom/solid/roll_shells.h"
 
-// Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of the
-// tolerance and of the bulge of faces.
+// Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of
+// the tolerance and of the bulge of faces.
 #define LIFT_SIZE 2e-3
 #define LIFT_TOLERANCE 2
 #define LIFT_BULGE 2
@@ -304,32 +305,50 @@ static CagStatus combine_bodies(const Bodies *b, size_t level, bool convex, CagM
   return status;
 }
 
-static CagStatus check_result(const Bodies *b, const CagMesh *before, const CagMesh *after,
-                              CagError *err) {
+static CagStatus check_watertight(const CagMesh *m, CagError *err) {
   bool watertight;
   CagVec3 edge[2];
-  CagStatus status = cag_mesh_watertight(after, &watertight, edge, err);
-  if (status) return status;
-  if (!watertight)
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
-                    "the mesh of the rounded solid is open at [%.6g, %.6g, %.6g]", edge[0].x,
-                    edge[0].y, edge[0].z);
+  CagStatus status = cag_mesh_watertight(m, &watertight, edge, err);
+  if (status || watertight) return status;
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                  "the mesh of the rounded solid is open at [%.6g, %.6g, %.6g]", edge[0].x,
+                  edge[0].y, edge[0].z);
+}
+
+static CagStatus check_volume(const Bodies *b, const CagMesh *before, const CagMesh *after,
+                              CagError *err) {
   const double from = mesh_volume(before), to = mesh_volume(after), slack = VOLUME * fabs(from);
   if (to >= from - b->removed - slack && to <= from + b->added + slack) return CAG_OK;
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
                   "rounding changes the volume from %.9g to %.9g, which cannot be", from, to);
 }
 
+// Applies the bodies level by level. Replaces *mesh.
+static CagStatus apply_bodies(const CagRollPlan *p, const Bodies *b, CagMesh **mesh,
+                              CagError *err) {
+  CagMesh *solid = cag_mesh_retain(*mesh);
+  CagMesh *clean;
+  CagStatus status = CAG_OK;
+  for (size_t level = 0, done = 0; !status && done < b->count; level++)
+    for (int k = 0; !status && k < 2; k++)
+      status = combine_bodies(b, level, k == 0, mesh, &done, err);
+  if (!status) status = check_volume(b, solid, *mesh, err);
+  if (!status) status = cag_roll_drop_thin_shells(*mesh, p->tolerance, &clean, err);
+  if (!status) {
+    cag_mesh_release(*mesh);
+    *mesh = clean;
+    status = check_watertight(*mesh, err);
+  }
+  cag_mesh_release(solid);
+  return status;
+}
+
 CagStatus cag_roll_apply(CagRollPlan *p, const CagMesh *solid, CagMesh **out, CagError *err) {
   Bodies b;
   CagMesh *m = cag_mesh_retain(solid);
   CagStatus status = all_bodies(p, &b, err);
-  const bool fits = p->unfit == CAG_ROLL_NONE;
-  for (size_t level = 0, done = 0; !status && fits && done < b.count; level++)
-    for (int k = 0; !status && k < 2; k++)
-      status = combine_bodies(&b, level, k == 0, &m, &done, err);
-  if (!status && fits) status = check_middles(p, m, err);
-  if (!status && p->unfit == CAG_ROLL_NONE) status = check_result(&b, solid, m, err);
+  if (!status && p->unfit == CAG_ROLL_NONE) status = apply_bodies(p, &b, &m, err);
+  if (!status && p->unfit == CAG_ROLL_NONE) status = check_middles(p, m, err);
   bodies_free(&b);
   if (status || p->unfit != CAG_ROLL_NONE) cag_mesh_release(m);
   else *out = m;

@@ -8,7 +8,8 @@
 #include "base/memory.h"
 #include "base/stop.h"
 
-// The largest turn between neighboring facets of an arc, in radians, and the largest number of them.
+// The largest turn between neighboring facets of an arc, in radians, and the largest number of
+// them.
 #define TURN (M_PI / 12)
 #define ARC_MOST 2000
 // How much the first and last chord are lengthened, as a fraction of them.
@@ -210,7 +211,8 @@ static void add_patch(Builder *b, const CagRollCorner *c, size_t arc) {
   b->points_used = 1 + c->count * arc + c->count * (arc * (arc - 1) / 2);
 }
 
-// The four lifted points of face i and of the edge i: contact, corner, and the station on both sides.
+// The four lifted points of face i and of the edge i: contact, corner, and the station on both
+// sides.
 enum { LIFT_CONTACT, LIFT_CORNER, LIFT_BEFORE, LIFT_AFTER, LIFTS };
 
 static void add_lifted(Builder *b, const CagRollCorner *c, double lift) {

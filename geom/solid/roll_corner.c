@@ -9,8 +9,8 @@
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/roll_pivot.h"
 
-// Steps of Newton's method for the point of an edge whose section has the center of the ball, and for
-// the nearest point of a carrier without a closed form.
+// Steps of Newton's method for the point of an edge whose section has the center of the ball, and
+// for the nearest point of a carrier without a closed form.
 #define STEPS 100
 // Edges end beyond the section of the ball by this fraction of the rest.
 #define BEYOND 0.5
@@ -203,8 +203,8 @@ static CagStatus add_ball(CagRollPlan *p, size_t part, size_t corner, Ends *ends
   return CAG_OK;
 }
 
-// Two rounded edges of one bend, at a corner whose third edge has the other one. The third edge may be
-// rounded, too.
+// Two rounded edges of one bend, at a corner whose third edge has the other one. The third edge may
+// be rounded, too.
 static CagStatus add_turn(CagRollPlan *p, size_t part, size_t corner, const Ends *ends, bool *done,
                           CagError *err) {
   CagRollTip tips[2], third = {CAG_ROLL_NONE, 0};

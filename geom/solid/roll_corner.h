@@ -5,8 +5,9 @@
 
 #include "geom/solid/roll_plan.h"
 
-// Adds the balls and turns of all corners, and lets the edges there end within them. Sets `unfit` if
-// a ball does not exist, or if those at the ends of an edge pass each other. Fails as cag_roll_plan.
+// Adds the balls and turns of all corners, and lets the edges there end within them. Sets `unfit`
+// if a ball does not exist, or if those at the ends of an edge pass each other. Fails as
+// cag_roll_plan.
 CagStatus cag_roll_balls(CagRollPlan *p, CagError *err);
 
 // The parameter at which the section of an edge contains the center of a ball near its end.

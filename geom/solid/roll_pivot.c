@@ -76,8 +76,8 @@ static bool pivot_axis(CagRollPivot *v) {
          meeting_point(v->point, normals, distances, &v->axis);
 }
 
-// The point of the line through `from` along the axis at a distance from F, with the nearest point of F
-// and its normal there. *found: false if there is none.
+// The point of the line through `from` along the axis at a distance from F, with the nearest point
+// of F and its normal there. *found: false if there is none.
 static CagStatus point_off_face(const CagRollPivot *v, CagVec3 from, double distance, CagVec3 *out,
                                 CagVec3 *foot, CagVec3 *toward, bool *found, CagError *err) {
   double uv[2] = {v->uv[0], v->uv[1]}, moved = INFINITY;

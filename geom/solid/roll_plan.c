@@ -58,7 +58,8 @@ static CagStatus add_section(CagRollPlan *p, const CagRollSection *s, CagError *
   return CAG_OK;
 }
 
-// Whether straight lines between two sections miss a third one, halfway, by less than the tolerance.
+// Whether straight lines between two sections miss a third one, halfway, by less than the
+// tolerance.
 static bool is_straight(const CagRollSection *a, const CagRollSection *b, const CagRollSection *m,
                         double tolerance) {
   double off = cag_norm(cag_sub(m->edge, cag_lerp(a->edge, b->edge, 0.5)));
@@ -92,9 +93,10 @@ static CagStatus add_between(CagRollPlan *p, double t0, double t1, const CagRoll
 }
 
 // The parameters at which sections must be: the ends, stations, and breaks of the curve; a closed
-// curve is divided, so that its halves are not taken for straight. Returns their number.
+// curve is divided, so that its halves are not taken for straight.
 #define STOPS_MOST 256
-static size_t pick_stops(const CagRollPick *pick, double stops[STOPS_MOST]) {
+static CagStatus pick_stops(const CagRollPick *pick, double stops[STOPS_MOST], size_t *count,
+                            CagError *err) {
   const CagCurve *c = pick->e.curve;
   double found[STOPS_MOST];
   size_t n = 0, m = 0;
@@ -103,7 +105,9 @@ static size_t pick_stops(const CagRollPick *pick, double stops[STOPS_MOST]) {
     if (pick->ball[k]) found[n++] = pick->station[k];
   const size_t breaks = c->kind->breaks ? c->kind->breaks(c, found + n, STOPS_MOST - 16) : 0;
   n += breaks < STOPS_MOST - 16 ? breaks : STOPS_MOST - 16;
-  const bool line = strcmp(c->kind->name, "line") == 0;
+  bool line;
+  CagStatus status = cag_curve_is_straight(c, &line, err);
+  if (status) return status;
   for (int k = 1; !line && k < 4; k++)
     found[n++] = pick->range[0] + (pick->range[1] - pick->range[0]) * k / 4.0;
   found[n++] = pick->range[1];
@@ -118,7 +122,8 @@ static size_t pick_stops(const CagRollPick *pick, double stops[STOPS_MOST]) {
     if (found[i] >= pick->range[0] && found[i] <= pick->range[1] &&
         (m == 0 || found[i] > stops[m - 1] + near))
       stops[m++] = found[i];
-  return m;
+  *count = m;
+  return CAG_OK;
 }
 
 // Turns the sections around, as for an edge that is followed from its end.
@@ -143,9 +148,11 @@ static void reverse_sections(CagRollSection *s, size_t n) {
 static CagStatus add_edge_sections(CagRollPlan *p, size_t pick, bool reversed, bool continues,
                                    CagError *err) {
   double stops[STOPS_MOST];
-  const size_t n = pick_stops(&p->picks[pick], stops), first = p->section_count;
+  const size_t first = p->section_count;
+  size_t n;
   CagRollSection last;
-  CagStatus status = section_at(p, pick, stops[0], &last, err);
+  CagStatus status = pick_stops(&p->picks[pick], stops, &n, err);
+  if (!status) status = section_at(p, pick, stops[0], &last, err);
   if (!status && p->unfit == CAG_ROLL_NONE) status = add_section(p, &last, err);
   for (size_t i = 1; !status && p->unfit == CAG_ROLL_NONE && i < n; i++) {
     CagRollSection next;

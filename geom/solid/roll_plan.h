@@ -1,8 +1,8 @@
 // What is to be rounded: sections along chains of edges, and balls at corners, for rolling.h.
 //
-// Edges that continue each other smoothly form a chain, which is swept as one body. A corner at which
-// all sharp edges are rounded with one radius, all convex or all concave, has a ball. The edges then
-// end within the ball's corner.
+// Edges that continue each other smoothly form a chain, which is swept as one body. A corner at
+// which all sharp edges are rounded with one radius, all convex or all concave, has a ball. The
+// edges then end within the ball's corner.
 
 #ifndef CAG_GEOM_SOLID_ROLL_PLAN_H
 #define CAG_GEOM_SOLID_ROLL_PLAN_H
@@ -83,10 +83,10 @@ typedef struct CagRollPlan {
   size_t unfit; // the pick that does not fit, or CAG_ROLL_NONE
 } CagRollPlan;
 
-// Makes the plan for the picks, which are given with part, edge, corners, and e, and taken over also
-// if this fails. If a ball or section does not exist, the result is CAG_OK with `unfit` set. Fails
-// with "no-boundary" where rounded edges meet in a way that is not handled: convex and concave ones,
-// or different radii at a corner whose edges are all rounded.
+// Makes the plan for the picks, which are given with part, edge, corners, and e, and taken over
+// also if this fails. If a ball or section does not exist, the result is CAG_OK with `unfit` set.
+// Fails with "no-boundary" where rounded edges meet in a way that is not handled: convex and
+// concave ones, or different radii at a corner whose edges are all rounded.
 CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
                         CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err);
 void cag_roll_plan_free(CagRollPlan *p);

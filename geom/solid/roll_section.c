@@ -10,8 +10,8 @@
 #define STEPS 200
 // Normals whose triple product with the tangent is smaller are parallel.
 #define PARALLEL 1e-6
-// A step toward the nearest point of a carrier without a closed form is shortened by this factor. It
-// converges up to a distance of 3 radii of curvature from the convex side.
+// A step toward the nearest point of a carrier without a closed form is shortened by this factor.
+// It converges up to a distance of 3 radii of curvature from the convex side.
 #define DAMPED 0.5
 
 // One step of the Gauss-Newton method toward the nearest point.
@@ -56,7 +56,8 @@ static bool solve_rows(const CagVec3 rows[3], const double values[3], CagVec3 *x
   return true;
 }
 
-// A ball that touches carriers: those of `count` faces, and (count == 2) with its center in a plane.
+// A ball that touches carriers: those of `count` faces, and (count == 2) with its center in a
+// plane.
 typedef struct Touch {
   const CagRollSide *sides[3];
   double uv[3][2];

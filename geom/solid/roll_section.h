@@ -1,10 +1,10 @@
 // Cross sections of rounded and chamfered edges, for rolling.h.
 //
 // A ball that touches both faces of an edge has its center at the distance of its radius from both
-// carriers. The section at a point E of the edge is in the plane perpendicular to the edge there: the
-// center C is in this plane, the ball touches the faces at A and B, and the region between E and the
-// arc from A to B is what a fillet removes (convex edges) or adds (concave edges). A chamfer has the
-// line from A to B in place of the arc.
+// carriers. The section at a point E of the edge is in the plane perpendicular to the edge there:
+// the center C is in this plane, the ball touches the faces at A and B, and the region between E
+// and the arc from A to B is what a fillet removes (convex edges) or adds (concave edges). A
+// chamfer has the line from A to B in place of the arc.
 
 #ifndef CAG_GEOM_SOLID_ROLL_SECTION_H
 #define CAG_GEOM_SOLID_ROLL_SECTION_H
@@ -45,8 +45,8 @@ typedef struct CagRollSection {
 
 // The section at the parameter t of the edge's curve. Both equations of the distances, and that of
 // the plane, are solved by Newton's method, in which each carrier is replaced by its tangent plane
-// at the point nearest to C. Radii and distances change linearly with the parameter. *fits: false if
-// there is no such ball, or point: the faces are parallel, or bend too much.
+// at the point nearest to C. Radii and distances change linearly with the parameter. *fits: false
+// if there is no such ball, or point: the faces are parallel, or bend too much.
 CagStatus cag_roll_section(const CagRollEdge *e, double t, CagRollSection *out, bool *fits,
                            CagError *err);
 

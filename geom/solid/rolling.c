@@ -94,8 +94,8 @@ static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size
   return status;
 }
 
-// Finds the largest factor below 1 that fits; 0 if there is none. Errors count as not fitting, except
-// those that end the run.
+// Finds the largest factor below 1 that fits; 0 if there is none. Errors count as not fitting,
+// except those that end the run.
 static CagStatus largest_factor(const Rolling *r, double *out, CagError *err) {
   double low = 0, high = 1;
   for (int k = 0; k < CHEAP_STEPS + FULL_STEPS; k++) {

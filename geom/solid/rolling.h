@@ -1,12 +1,12 @@
 // Fillets and chamfers of solids as meshes, by a ball that rolls along the edges.
 //
 // A ball of the radius touches both faces of an edge. What it does not reach between them and the
-// edge is removed from the solid at a convex edge, and added at a concave one. The ball is placed at
-// sections of the edge, perpendicular to it, and the body between neighboring sections is bounded by
-// lines. The bodies are taken from the mesh of the solid, or united with it. The method is that of
-// rolling-ball blends (Rossignac and Requicha 1984, Constant-radius blending in solid modelling), with
-// meshes in place of canal surfaces. If the radius changes along an edge, the section is the same
-// circle, whereas the ball's envelope would have slightly inclined ones.
+// edge is removed from the solid at a convex edge, and added at a concave one. The ball is placed
+// at sections of the edge, perpendicular to it, and the body between neighboring sections is
+// bounded by lines. The bodies are taken from the mesh of the solid, or united with it. The method
+// is that of rolling-ball blends (Rossignac and Requicha 1984, Constant-radius blending in solid
+// modelling), with meshes in place of canal surfaces. If the radius changes along an edge, the
+// section is the same circle, whereas the ball's envelope would have slightly inclined ones.
 
 #ifndef CAG_GEOM_SOLID_ROLLING_H
 #define CAG_GEOM_SOLID_ROLLING_H
@@ -28,10 +28,10 @@ typedef struct CagRollLimit {
   double factor; // the largest multiple of all sizes that was found to fit, below 1; 0: none
 } CagRollLimit;
 
-// Rounds edges of a solid with boundaries. Edges that are smooth must not be given, none twice. At a
-// corner all of whose sharp edges are rounded with one radius, all of them convex or all concave, the
-// result has the ball's surface. Elsewhere the bodies of edges end in their faces, or beyond the
-// solid.
+// Rounds edges of a solid with boundaries. Edges that are smooth must not be given, none twice. At
+// a corner all of whose sharp edges are rounded with one radius, all of them convex or all concave,
+// the result has the ball's surface. Elsewhere the bodies of edges end in their faces, or beyond
+// the solid.
 //
 //   tolerance  mm, positive: the distance of the result from the rounded solid. Where the ball
 //              touches a curved face, the line of contact may be off by sqrt(2 radius tolerance)
@@ -40,9 +40,9 @@ typedef struct CagRollLimit {
 //
 // The result has the kind MESH. It is watertight, its volume differs from that of the solid by at
 // most the volumes of the bodies, and it passes through the arcs at the middles of all edges. Fails
-// with "rounding-too-large" if the sizes do not fit on the faces, and with "no-boundary" if the solid
-// has no boundary, if the edges meet in a way that is not handled (convex and concave ones, or
-// different radii, at one corner), or if the result fails this test.
+// with "rounding-too-large" if the sizes do not fit on the faces, and with "no-boundary" if the
+// solid has no boundary, if the edges meet in a way that is not handled (convex and concave ones,
+// or different radii, at one corner), or if the result fails this test.
 CagStatus cag_solid_roll(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
                          CagRollLimit *limit, CagSolid **out, CagError *err);
 // The same for chamfers, whose sections are straight. Corners have no face of their own.

@@ -43,7 +43,6 @@ static void choose(Shape *s, Chooses *chooses, double from, double to) {
 }
 
 static bool is_any(const CagEdgeFeature *e) { return e->bend != CAG_EDGE_SMOOTH; }
-static bool is_convex(const CagEdgeFeature *e) { return e->bend == CAG_EDGE_CONVEX; }
 static bool is_concave(const CagEdgeFeature *e) { return e->bend == CAG_EDGE_CONCAVE; }
 static bool is_circle(const CagEdgeFeature *e) { return strcmp(e->kind, "circle") == 0; }
 static bool is_vertical(const CagEdgeFeature *e) {
@@ -86,7 +85,6 @@ static void vertical_edges_of_a_box(void **state) {
   shape_free(&s);
 }
 
-
 // The formula of rounded_box: a box, its six sides, twelve quarters of cylinders, and a ball.
 static double rounded_box_volume(double a, double b, double c, double r) {
   const double x = a - 2 * r, y = b - 2 * r, z = c - 2 * r;
@@ -128,16 +126,15 @@ static void a_concave_edge_is_filled(void **state) {
   shape_free(&s);
 }
 
-// The rounded rim of a cylinder: by Pappus, the corner area at its centroid is removed. The centroid
-// of the area between a square and a circle of radius 1 is 2/3 / (4 - pi) from the lines.
+// The rounded rim of a cylinder: by Pappus, the corner area at its centroid is removed. The
+// centroid of the area between two lines and a circle of radius 1 is (5/6 - pi/4) / (1 - pi/4) from
+// the lines.
 static void the_rim_of_a_cylinder(void **state) {
   (void)state;
   REQUIRE_KERNEL();
   Shape s = shape_of(a_cylinder(10, 5, 5));
   choose(&s, is_circle, 1, 1);
   assert_int_equal(s.n, 2);
-  const double from_line = (1 - 5.0 / 6 + M_PI / 4 - M_PI / 4) / CORNER_AREA;
-  (void)from_line;
   const double centroid = 5 - (5.0 / 6 - M_PI / 4) / CORNER_AREA;
   const double volume = 250 * M_PI - 2 * 2 * M_PI * centroid * CORNER_AREA;
   NEAR(rolled_volume(&s, 1e-3), volume, 1e-3 * 150 * M_PI);
@@ -148,7 +145,8 @@ static void the_rims_of_a_hole_in_a_tilted_box(void **state) {
   (void)state;
   REQUIRE_KERNEL();
   CagSolid *hole = shifted(a_cylinder(40, 5, 5), 8, 0, -20);
-  Shape s = shape_of(turned(combined(CAG_DIFFERENCE, a_box(40, 30, 20), hole), cag_vec3(1, 1, 0), 0.5));
+  Shape s =
+      shape_of(turned(combined(CAG_DIFFERENCE, a_box(40, 30, 20), hole), cag_vec3(1, 1, 0), 0.5));
   choose(&s, is_circle, 1, 1);
   assert_int_equal(s.n, 2);
   const double centroid = 5 + (5.0 / 6 - M_PI / 4) / CORNER_AREA;
@@ -164,15 +162,103 @@ static void what_does_not_fit(void **state) {
   CagSolid *out;
   CagRollLimit limit;
   choose(&s, is_any, 3.5, 3.5);
-  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large", 0, 11);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large",
+              0, 11);
   NEAR(limit.factor * 3.5, 3, 0.01);
   choose(&s, is_vertical, 5, 5);
-  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large", 0, 3);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large",
+              0, 3);
   NEAR(limit.factor * 5, 4, 0.1);
-  puts(err.message);
   choose(&s, is_vertical, 9, 9);
   FAILS_AT(cag_solid_roll(s.solid, s.edges, 1, 1e-3, &limit, &out, &err), "rounding-too-large", 0);
   NEAR(limit.factor * 9, 8, 0.01);
+  shape_free(&s);
+}
+
+static CagSolid *an_l(void) {
+  return combined(CAG_DIFFERENCE, a_box(20, 20, 10), shifted(a_box(20, 20, 20), 10, 10, 0));
+}
+
+// The upper edges of an L: a slice below the top is the L moved inward by d, with the area 300 - 80
+// d + 5 d^2 for the convex corners - pi/4 d^2 for the concave one, and d = 1 - sqrt(1 - (1 - z)^2)
+// has the integral 1 - pi/4 and that of its square is 5/3 - pi/2.
+static void a_ball_turns_about_a_concave_edge(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(an_l());
+  choose(&s, is_top, 1, 1);
+  assert_int_equal(s.n, 6);
+  const double volume = 3000 - 80 * CORNER_AREA + (5 - M_PI / 4) * (5.0 / 3 - M_PI / 2);
+  NEAR(rolled_volume(&s, 1e-3), volume, 80 * M_PI / 2 * 1e-3);
+  shape_free(&s);
+}
+
+// Its slices are those of the L with rounded corners, whose outline has the length 68 + 3 pi.
+static void all_edges_of_an_l(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(an_l());
+  choose(&s, is_any, 1, 1);
+  assert_int_equal(s.n, 18);
+  const double volume = 10 * (300 - 4 * CORNER_AREA) - 2 * (68 + 3 * M_PI) * CORNER_AREA +
+                        2 * M_PI * (5.0 / 3 - M_PI / 2);
+  NEAR(rolled_volume(&s, 1e-3), volume, 240 * M_PI / 2 * 1e-3);
+  shape_free(&s);
+}
+
+// A box on a plate: the fillet around it is straight along 28, and turns at the corners.
+static void a_ball_turns_about_a_convex_edge(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(combined(CAG_UNION, a_box(20, 20, 4), shifted(a_box(6, 8, 20), 0, 0, 9)));
+  choose(&s, is_concave, 1, 1);
+  assert_int_equal(s.n, 4);
+  const double turns = 2 * M_PI * (5.0 / 6 - M_PI / 4);
+  NEAR(rolled_volume(&s, 1e-3), 1600 + 48 * 17 + 28 * CORNER_AREA + turns, 35 * M_PI / 2 * 1e-3);
+  shape_free(&s);
+}
+
+static void bevels(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  CagSolid *out;
+  Shape s = shape_of(a_box(10, 8, 6));
+  choose(&s, is_vertical, 1, 2);
+  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err));
+  NEAR(volume_of(out), 480 - 4 * 6, 1e-9);
+  shape_free(&s);
+  // Each corner of the L's top removes a third of a cube less, or more.
+  s = shape_of(an_l());
+  choose(&s, is_top, 1, 1);
+  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err));
+  NEAR(volume_of(out), 3000 - 40 + 5.0 / 3 - 1.0 / 3, 1e-9);
+  shape_free(&s);
+}
+
+static void a_radius_changes_along_edges(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(a_box(10, 8, 6));
+  choose(&s, is_vertical, 1, 2);
+  NEAR(rolled_volume(&s, 1e-3), 480 - 4 * 6 * CORNER_AREA * 7 / 3, 4 * 6 * M_PI * 1e-3);
+  shape_free(&s);
+}
+
+static void what_is_not_an_edge(void **state) {
+  (void)state;
+  REQUIRE_KERNEL();
+  Shape s = shape_of(a_box(10, 8, 6));
+  CagSolid *out, *plain = a_box(1, 1, 1);
+  choose(&s, is_vertical, 1, 1);
+  FAILS(cag_solid_roll(plain, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary");
+  FAILS(cag_solid_roll(s.solid, s.edges, s.n, 0, NULL, &out, &err), "tolerance-not-positive");
+  s.edges[1] = s.edges[0];
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary", 1);
+  s.edges[1].edge = 99;
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary", 1);
+  s.edges[0].size[1] = 0;
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "radius-not-positive", 0);
+  cag_solid_release(plain);
   shape_free(&s);
 }
 
@@ -184,8 +270,13 @@ int main(void) {
       cmocka_unit_test(a_concave_edge_is_filled),
       cmocka_unit_test(the_rim_of_a_cylinder),
       cmocka_unit_test(the_rims_of_a_hole_in_a_tilted_box),
+      cmocka_unit_test(a_ball_turns_about_a_concave_edge),
+      cmocka_unit_test(all_edges_of_an_l),
+      cmocka_unit_test(a_ball_turns_about_a_convex_edge),
+      cmocka_unit_test(bevels),
+      cmocka_unit_test(a_radius_changes_along_edges),
       cmocka_unit_test(what_does_not_fit),
+      cmocka_unit_test(what_is_not_an_edge),
   };
-  (void)is_any, (void)is_convex, (void)is_concave, (void)is_circle, (void)is_top;
   return cmocka_run_group_tests(tests, start_kernel, end_kernel);
 }
