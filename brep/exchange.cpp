@@ -325,6 +325,20 @@ static std::string read_path(Reader &in) {
   return path;
 }
 
+// A file that the kernel does not read: damaged if it begins as such files do. STEP files begin with
+// their standard, lines of IGES files have the letter of their section in column 73.
+static Failure unreadable(const std::string &path, const char *kind) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(80, ' ');
+  file.read(&start[0], static_cast<std::streamsize>(start.size()));
+  const bool step = start.find("ISO-10303-21") != std::string::npos, iges = start[72] == 'S';
+  if (kind == std::string("a STEP file") ? step : iges && !step)
+    return {CAG_BREP_FAIL_FILE, "`" + path +
+                                    "` is damaged: it is not complete, or not written as " + kind +
+                                    " must be"};
+  return {CAG_BREP_FAIL_FILE, "`" + path + "` is not " + kind};
+}
+
 static std::vector<Part> finish_walk(Walk &walk, double gap) {
   add_loose(walk, gap);
   if (walk.parts.empty()) throw Failure{CAG_BREP_FAIL_FILE, "the file has no solids"};
@@ -374,8 +388,7 @@ std::vector<Part> read_step(Reader &in) {
   const std::string path = read_path(in);
   STEPControl_Reader reader;
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-    throw Failure{CAG_BREP_FAIL_FILE, "`" + path + "` is not a STEP file"};
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw unreadable(path, "a STEP file");
   reader.TransferRoots();
   const Ref<XSControl_WorkSession> session = reader.WS();
   const Ref<Transfer_TransientProcess> process = session->TransferReader()->TransientProcess();
@@ -432,8 +445,7 @@ std::vector<Part> read_iges(Reader &in) {
   const std::string path = read_path(in);
   IGESControl_Reader reader;
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-    throw Failure{CAG_BREP_FAIL_FILE, "`" + path + "` is not an IGES file"};
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw unreadable(path, "an IGES file");
   reader.TransferRoots();
   const Ref<Transfer_TransientProcess> process = reader.WS()->TransferReader()->TransientProcess();
   const Ref<Interface_InterfaceModel> model = reader.WS()->Model();

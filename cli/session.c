@@ -27,6 +27,7 @@ static void end_overdue(CagSession *s, void *context) {
 CagSession *cag_tool_session(CagTool *t) {
   t->session.overdue = end_overdue;
   t->session.overdue_context = t;
+  t->session.verbose = t->verbose;
   CagSession *s = cag_session_new(&t->session);
   if (!s) {
     cag_tool_fail(t, CAG_STATUS_LIMIT, NULL, "out of memory");

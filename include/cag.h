@@ -90,6 +90,7 @@ typedef struct CagSessionOptions {
   // cag_session_write_overdue and _exit. Not called during interactive use. May be NULL.
   void (*overdue)(CagSession *s, void *context);
   void *overdue_context;
+  bool verbose; // `messages` also receives how results were found, such as the method of a fillet
 } CagSessionOptions;
 
 CAG_API const char *cag_version(void);

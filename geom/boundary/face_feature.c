@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/memory.h"
 #include "base/stop.h"
 #include "geom/boundary/carrier.h"
 #include "geom/boundary/measure.h"
@@ -15,6 +16,10 @@
 // Samples of a face in each direction, and steps that refine the best of them.
 #define SAMPLES 24
 #define NEWTON_STEPS 30
+// Samples of an edge, and sections between two of them.
+#define EDGE_SAMPLES 32
+#define GOLDEN_STEPS 40
+#define GOLDEN 1.618033988749895
 // The step of difference quotients of the derivatives, as a fraction of the domain.
 #define DIFFERENCE 1e-5
 
@@ -108,7 +113,42 @@ static CagStatus sampled_foot(const CagFaceOutline *o, CagVec3 center, Foot *bes
   return status;
 }
 
-// The nearest points of the edges.
+static CagStatus distance_along(const CagCurve *c, CagVec3 center, double t, double *out,
+                                CagError *err) {
+  CagVec3 p;
+  CagStatus status = cag_curve_point(c, t, &p, err);
+  if (!status) *out = cag_norm(cag_sub(p, center));
+  return status;
+}
+
+// The point of an edge nearest to the center: the best of some samples, refined by golden sections
+// between its neighbors. (The general function of curves is slow for the center of a circle.)
+static CagStatus nearest_on_edge(const CagCurve *c, CagVec3 center, double *t, double *distance,
+                                 CagError *err) {
+  const double step = (c->end - c->start) / EDGE_SAMPLES;
+  *distance = INFINITY;
+  for (int i = 0; i <= EDGE_SAMPLES; i++) {
+    const double at = i == EDGE_SAMPLES ? c->end : c->start + i * step;
+    double d;
+    CagStatus status = distance_along(c, center, at, &d, err);
+    if (status) return status;
+    if (d < *distance) *distance = d, *t = at;
+  }
+  double lo = fmax(*t - step, c->start), hi = fmin(*t + step, c->end);
+  for (int k = 0; k < GOLDEN_STEPS; k++) {
+    const double a = hi - (hi - lo) / GOLDEN, b = lo + (hi - lo) / GOLDEN;
+    double da, db;
+    CagStatus status = distance_along(c, center, a, &da, err);
+    if (!status) status = distance_along(c, center, b, &db, err);
+    if (status) return status;
+    if (fmin(da, db) < *distance) *distance = fmin(da, db), *t = da < db ? a : b;
+    if (da < db) hi = b;
+    else lo = a;
+  }
+  return CAG_OK;
+}
+
+// The nearest points of the edges, if they are nearer than the best one.
 static CagStatus edge_foot(const CagFaceOutline *o, CagVec3 center, Foot *best, CagError *err) {
   const CagBoundary *b = o->boundary;
   for (size_t l = o->face->first; l < o->face->first + o->face->count; l++)
@@ -116,14 +156,15 @@ static CagStatus edge_foot(const CagFaceOutline *o, CagVec3 center, Foot *best, 
       const CagCurve *curve = b->edges[b->uses[i].edge].curve;
       CagEdgePath path;
       Foot foot;
-      CagVec3 at;
-      double t;
+      double t = 0;
       if (!curve) continue;
-      CagStatus status = cag_curve_closest(curve, center, &t, &at, &foot.distance, err);
-      if (!status) status = cag_edge_path(b, o->face, &b->uses[i], &path, err);
+      CagStatus status = nearest_on_edge(curve, center, &t, &foot.distance, err);
+      if (status) return status;
+      if (!(foot.distance < (1 - CENTRAL) * best->distance)) continue;
+      status = cag_edge_path(b, o->face, &b->uses[i], &path, err);
       if (!status) status = cag_edge_path_eval(&path, t, foot.uv, NULL, err);
       if (status) return status;
-      if (foot.distance < best->distance) *best = foot;
+      *best = foot;
     }
   return CAG_OK;
 }
@@ -288,5 +329,41 @@ CagStatus cag_face_feature(const CagBoundary *b, size_t face, const CagBounds *b
     status = plane ? outward_at(f, none, &out->normal, err)
                    : normal_near(&outline, out->center, &out->normal, err);
   cag_face_outline_free(&outline);
+  return status;
+}
+
+// --- The whole boundary ---
+
+CagStatus cag_boundary_edge_boxes(const CagBoundary *b, CagBounds **out, CagError *err) {
+  CagBounds *boxes = cag_calloc(b->edge_count + 1, sizeof *boxes);
+  CagStatus status = boxes ? CAG_OK : cag_fail_memory(err);
+  for (size_t e = 0; !status && e < b->edge_count; e++) {
+    const CagBoundaryEdge *edge = &b->edges[e];
+    status = cag_stop_check(err);
+    if (!edge->curve) boxes[e] = (CagBounds){b->corners[edge->from], b->corners[edge->from]};
+    else if (!status) status = cag_curve_bounds(edge->curve, &boxes[e], err);
+  }
+  if (status) cag_free(boxes);
+  else *out = boxes;
+  return status;
+}
+
+CagStatus cag_boundary_bounds(const CagBoundary *b, CagBounds *out, CagError *err) {
+  CagBounds *boxes;
+  CagBounds all = CAG_BOUNDS_EMPTY;
+  CagStatus status = cag_boundary_edge_boxes(b, &boxes, err);
+  if (status) return status;
+  for (size_t f = 0; !status && f < b->face_count; f++) {
+    CagFaceOutline outline = {.boundary = b, .face = &b->faces[f]};
+    CagBounds box;
+    if (!cag_carrier_is_ruled(&b->faces[f].carrier)) status = cag_face_outline(b, f, &outline, err);
+    if (!status) status = face_bounds(&outline, boxes, &box, err);
+    cag_face_outline_free(&outline);
+    if (status) break;
+    cag_bounds_add(&all, box.min);
+    cag_bounds_add(&all, box.max);
+  }
+  cag_free(boxes);
+  if (!status) *out = all;
   return status;
 }

@@ -17,4 +17,10 @@ typedef struct CagFaceFeature {
 CagStatus cag_face_feature(const CagBoundary *b, size_t face, const CagBounds *boxes,
                            CagFaceFeature *out, CagError *err);
 
+// Bounds of each edge: `edge_count` of them, malloc'd.
+CagStatus cag_boundary_edge_boxes(const CagBoundary *b, CagBounds **out, CagError *err);
+// Bounds of the whole boundary: exact to 1e-9 of its size, by the curves of edges and by the points
+// of faces at which the tangent plane is across an axis.
+CagStatus cag_boundary_bounds(const CagBoundary *b, CagBounds *out, CagError *err);
+
 #endif

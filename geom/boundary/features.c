@@ -57,20 +57,6 @@ static CagStatus sort_uses(Work *w, CagError *err) {
   return CAG_OK;
 }
 
-static CagStatus bound_edges(Work *w, CagError *err) {
-  const CagBoundary *b = w->b;
-  CagStatus status = CAG_OK;
-  w->boxes = cag_calloc(b->edge_count + 1, sizeof *w->boxes);
-  if (!w->boxes) return cag_fail_memory(err);
-  for (size_t e = 0; !status && e < b->edge_count; e++) {
-    const CagBoundaryEdge *edge = &b->edges[e];
-    status = cag_stop_check(err);
-    if (!edge->curve) w->boxes[e] = (CagBounds){b->corners[edge->from], b->corners[edge->from]};
-    else if (!status) status = cag_curve_bounds(edge->curve, &w->boxes[e], err);
-  }
-  return status;
-}
-
 // --- Edges ---
 
 static const char *curve_kind(const CagCurve *c, double *radius, double *sweep) {
@@ -147,6 +133,9 @@ static CagStatus bend_of(const Work *w, size_t e, CagVec3 along, CagEdgeFeature 
   CagStatus status = side_of(w, users[0], along, &normal, &into, err);
   if (!status) status = side_of(w, users[partner], along, &other, &across, err);
   if (status) return status;
+  const bool ascending = w->face_of[users[0]] <= w->face_of[users[partner]];
+  out->normals[!ascending] = normal;
+  out->normals[ascending] = other;
   if (cag_norm(into) == 0 || cag_norm(across) == 0) return CAG_OK;
   const double angle = atan2(-cag_dot(across, normal), cag_dot(across, into));
   out->angle = angle < 0 ? angle + 2 * M_PI : angle;
@@ -247,7 +236,7 @@ CagStatus cag_boundary_features(const CagBoundary *b, CagFeatures *out, CagError
   Work w = {.b = b, .out = &f};
   f.faces = cag_calloc(b->face_count + 1, sizeof *f.faces);
   CagStatus status = f.faces ? sort_uses(&w, err) : cag_fail_memory(err);
-  if (!status) status = bound_edges(&w, err);
+  if (!status) status = cag_boundary_edge_boxes(b, &w.boxes, err);
   for (size_t i = 0; !status && i < b->face_count; i++)
     status = cag_face_feature(b, i, w.boxes, &f.faces[i], err);
   if (!status) status = collect_edges(&w, err);

@@ -21,6 +21,7 @@ typedef struct CagEdgeFeature {
   CagVec3 direction;   // a unit tangent whose first coordinate that is not 0 is positive
   bool flipped;        // the direction is opposite to the curve's
   CagVec3 start, end;  // along the direction
+  CagVec3 normals[2];  // the outward normals of two faces, of the one with the lower index first
   size_t first, count; // of edge_faces: the faces that meet here
 } CagEdgeFeature;
 

@@ -50,7 +50,8 @@ static CagStatus add_use(CagFaceOutline *o, size_t use, bool first, CagError *er
     const double f = (double)i / (double)n, along = path.reversed ? 1 - f : f;
     const double to = path.start + along * (path.end - path.start);
     status = cag_edge_path_eval(&path, to, next, rates, err);
-    const CagOutlineStep step = {{at[0], at[1]}, {next[0], next[1]}, use, t, to};
+    const CagOutlineStep step = {
+        {at[0], at[1]}, {next[0], next[1]}, path.straight ? SIZE_MAX : use, t, to};
     if (!status) status = add_step(o, &step, err);
     at[0] = next[0], at[1] = next[1];
     t = to;

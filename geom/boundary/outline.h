@@ -8,7 +8,7 @@
 // A part of an edge, or the gap between the traces of two edges.
 typedef struct CagOutlineStep {
   double from[2], to[2];
-  size_t use;         // SIZE_MAX: a gap
+  size_t use;         // SIZE_MAX: a gap, or a trace that is a line
   double start, last; // parameters of the edge
 } CagOutlineStep;
 

@@ -60,8 +60,9 @@ static CagStatus profile_of(const CagCarrier *c, double v0, double v1, CagCurve 
     CagCurve *line;
     CagStatus status =
         cag_curve_line(cag_madd(foot, v0, along), cag_madd(foot, v1, along), 3, &line, err);
-    if (!status) status = cag_curve_reparametrize(line, v0, v1, out, err);
-    if (!status) cag_curve_release(line);
+    if (status) return status;
+    status = cag_curve_reparametrize(line, v0, v1, out, err);
+    cag_curve_release(line);
     return status;
   }
   const bool torus = c->kind == CAG_CARRIER_TORUS;

@@ -8,8 +8,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/boundary/face_feature.h"
 #include "geom/boundary/measure.h"
 #include "geom/boundary/mesh.h"
+#include "geom/boundary/moved.h"
 #include "geom/boundary/patch.h"
 #include "geom/solid/build.h"
 
@@ -22,6 +24,8 @@ struct CagExact {
   size_t count;
   CagMesh *mesh; // in their coordinates; NULL: none yet
   CagTessellation how;
+  bool bounded; // `box` is known
+  CagBounds box;
   bool measured; // `body` is known
   CagSolidBody body;
 };
@@ -139,6 +143,68 @@ CagStatus cag_exact_body(CagExact *e, CagSolidBody *out, CagError *err) {
   }
   cag_free(parts);
   if (!status) *out = e->body;
+  return status;
+}
+
+// --- Bounds ---
+
+static CagStatus own_bounds(CagExact *e, CagBounds *out, CagError *err) {
+  CagBounds all = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; !e->bounded && i < e->count; i++) {
+    CagBounds box;
+    CagStatus status = cag_boundary_bounds(&e->parts[i], &box, err);
+    if (status) return status;
+    cag_bounds_add(&all, box.min);
+    cag_bounds_add(&all, box.max);
+  }
+  if (!e->bounded) e->box = all;
+  e->bounded = true;
+  *out = e->box;
+  return CAG_OK;
+}
+
+// Whether a transform keeps the directions of the axes, so that it maps bounds to bounds.
+static bool keeps_axes(const CagTransform *t) {
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      if (i != k && t->m[i][k] != 0) return false;
+  return true;
+}
+
+static CagStatus bounds_of_faces(const CagSolid *s, CagBounds *out, CagError *err) {
+  CagBounds all = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < s->face_count; i++) {
+    CagBounds box;
+    CagStatus status = cag_surface_bounds(s->faces[i], &box, err);
+    if (status) return status;
+    cag_bounds_add(&all, box.min);
+    cag_bounds_add(&all, box.max);
+  }
+  *out = all;
+  return CAG_OK;
+}
+
+CagStatus cag_exact_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
+  const CagTransform *t = &s->placement;
+  CagBounds box = CAG_BOUNDS_EMPTY, all = CAG_BOUNDS_EMPTY;
+  double scale;
+  CagStatus status = CAG_OK;
+  if (keeps_axes(t)) {
+    status = own_bounds(s->exact, &box, err);
+    cag_bounds_add(&all, cag_transform_point(t, box.min));
+    cag_bounds_add(&all, cag_transform_point(t, box.max));
+  } else if (cag_transform_is_similarity(t, &scale)) {
+    for (size_t i = 0; !status && i < s->exact->count; i++) {
+      CagBoundary moved;
+      status = cag_boundary_moved(&s->exact->parts[i], t, &moved, err);
+      if (status) break;
+      status = cag_boundary_bounds(&moved, &box, err);
+      cag_boundary_free(&moved);
+      cag_bounds_add(&all, box.min);
+      cag_bounds_add(&all, box.max);
+    }
+  } else return bounds_of_faces(s, out, err);
+  if (!status) *out = all;
   return status;
 }
 

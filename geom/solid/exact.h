@@ -27,6 +27,7 @@ void cag_exact_digest(const CagExact *e, CagDigest *d);
 // The measures of all parts in the solid's own coordinates (measure.h in geom/boundary), which are
 // computed once.
 CagStatus cag_exact_body(CagExact *e, CagSolidBody *out, CagError *err);
+CagStatus cag_exact_bounds(const CagSolid *s, CagBounds *out, CagError *err);
 CagStatus cag_exact_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out,
                          CagError *err);
 

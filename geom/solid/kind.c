@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "geom/solid/csg.h"
+#include "geom/solid/exact.h"
 
 // --- Bounds of round bodies ---
 
@@ -244,7 +245,7 @@ const CagSolidKindRow cag_solid_kinds[] = {
     [CAG_SOLID_SWEEP] = {.name = "sweep", .describe = describe_faces},
     [CAG_SOLID_LOFT] = {.name = "loft", .describe = describe_faces},
     [CAG_SOLID_SHELL] = {.name = "shell", .describe = describe_faces},
-    [CAG_SOLID_EXACT] = {.name = "exact", .describe = describe_exact},
+    [CAG_SOLID_EXACT] = {.name = "exact", .describe = describe_exact, .bounds = cag_exact_bounds},
     [CAG_SOLID_MESH] = {.name = "polyhedron", .describe = describe_mesh},
     [CAG_SOLID_HALF_SPACE] = {.name = "half_space", .describe = cag_describe_half_space},
     [CAG_SOLID_QUADRIC] = {.name = "quadric", .describe = describe_name},

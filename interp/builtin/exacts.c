@@ -3,6 +3,8 @@
 #include "interp/builtin/exacts.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
@@ -67,6 +69,14 @@ bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagVal
   if (!cag_solid_result(call, status, &s, result)) return false;
   cag_shape_say_alike(*result, call->values[argument]);
   return true;
+}
+
+void cag_exacts_say_tier(CagCall *call, const char *tier, size_t edges) {
+  char label[96];
+  if (!call->vm->verbose) return;
+  const char *signature = call->builtin->signature;
+  snprintf(label, sizeof label, "%.*s: %s; edges", (int)strcspn(signature, "("), signature, tier);
+  cag_vm_trace(call, cag_number((double)edges), label);
 }
 
 bool cag_exacts_exact(CagCall *call, const struct cag_exacts_exact *a, CagValue *result) {

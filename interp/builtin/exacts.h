@@ -17,5 +17,7 @@ CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err
 // Checks the parts that the kernel found (cag_solid_exact_check), and returns them as one solid with
 // the attributes of an argument. Takes their contents.
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);
+// With -v, writes how a rounding was computed ("tier B: kernel"), and the number of edges.
+void cag_exacts_say_tier(CagCall *call, const char *tier, size_t edges);
 
 #endif

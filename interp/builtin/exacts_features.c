@@ -109,8 +109,8 @@ static CagStatus edge_curve(const Part *part, const CagEdgeFeature *e, CagCurve 
 }
 
 static bool edge_record(CagCall *call, const Part *part, size_t k, CagValue *out) {
-  static const char *const names[] = {"curve",     "kind",  "length", "convex", "bend", "angle",
-                                      "direction", "start", "end",    "faces",  "index"};
+  static const char *const names[] = {"curve",     "kind",  "length", "convex", "bend",    "angle",
+                                      "direction", "start", "end",    "faces",  "normals", "index"};
   static const char *const bends[] = {
       [CAG_EDGE_CONVEX] = "convex", [CAG_EDGE_CONCAVE] = "concave", [CAG_EDGE_SMOOTH] = "smooth"};
   CagVm *vm = call->vm;
@@ -131,6 +131,7 @@ static bool edge_record(CagCall *call, const Part *part, size_t k, CagValue *out
                              cag_point(vm, e->start, 3),
                              cag_point(vm, e->end, 3),
                              faces,
+                             cag_points_value(vm, e->normals, 2, 3),
                              cag_number((double)(part->first_edge + k))};
   *out = cag_record_new(vm, names, values, sizeof values / sizeof *values);
   return true;

@@ -185,7 +185,9 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
       if (chosen[k].part == i) own[count++] = blends[k];
     if (!blend_part(p, words, i, own, count)) return false;
   }
-  return cag_exact_parts_result(p, 0, result);
+  if (!cag_exact_parts_result(p, 0, result)) return false;
+  cag_exacts_say_tier(call, "tier B: kernel", n);
+  return true;
 }
 
 bool cag_exacts_fillet(CagCall *call, const struct cag_exacts_fillet *a, CagValue *result) {

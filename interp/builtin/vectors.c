@@ -147,6 +147,15 @@ bool cag_vectors_angle_between(CagCall *call, CagValue *result) {
   return true;
 }
 
+bool cag_vectors_is_parallel(CagCall *call, CagValue *result) {
+  const double same = 1e-9; // radians
+  CagValue angle;
+  if (!cag_vectors_angle_between(call, &angle)) return false;
+  const double radians = angle.as.number * M_PI / 180;
+  *result = cag_bool(fmin(radians, M_PI - radians) <= same);
+  return true;
+}
+
 // --- near ---
 
 typedef struct Nearness {

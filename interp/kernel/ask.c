@@ -13,7 +13,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -92,14 +91,15 @@ static void find_program(char *path, size_t size) {
     strcpy(path, PROGRAM);
 }
 
-// Runs in the child after fork, so only async-signal-safe calls are allowed.
+// Runs in the child after fork, so only async-signal-safe calls are allowed. The program ends itself
+// when the socket is closed. The death signal of the parent would come when its thread ends, which is
+// that of a run.
 static void become(const char *program, char *const *arguments, int socket, rlim_t memory) {
   static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGPIPE, SIGXFSZ};
   const struct rlimit no_core = {0, 0}, most = {memory, memory};
   sigset_t none;
   sigemptyset(&none);
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
   setrlimit(RLIMIT_CORE, &no_core);
   if (memory != RLIM_INFINITY) setrlimit(RLIMIT_DATA, &most);
   for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) signal(SIGNALS[i], SIG_DFL);

@@ -29,6 +29,8 @@
 // is rendered at the size of the reference and compared (see CAG_TEST_DELTA_E). It is a picture of
 // POV-Ray with quality "normal" unless the run says otherwise by the options of `cag render`:
 // `run: --picture --engine preview --quality draft`. Without POV-Ray, its pictures are skipped.
+//
+// Without cag-brep, runs that need it are skipped.
 
 #ifndef CAG_INTERP_SESSION_EXPECT_H
 #define CAG_INTERP_SESSION_EXPECT_H

@@ -174,6 +174,7 @@ CagVm *cag_session_vm(CagSession *s) {
                      &s->diagnostics);
   if (!s->vm) return NULL;
   s->vm->tolerance = o->tolerance;
+  s->vm->verbose = o->verbose;
   s->vm->find_text = o->find_text;
   s->vm->find_text_context = o->find_text_context;
   s->vm->find_kernel = find_kernel;

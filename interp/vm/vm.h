@@ -260,6 +260,7 @@ struct CagVm {
 
   // The environment.
   FILE *out, *trace;
+  bool verbose;                  // `trace` also receives how results were found
   const volatile int *interrupt; // never NULL
   volatile int stop; // set by the watcher of the run, after an interrupt or when its time is over
   double max_time;   // seconds; 0: none

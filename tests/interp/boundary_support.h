@@ -3,31 +3,17 @@
 #ifndef CAG_TESTS_INTERP_BOUNDARY_SUPPORT_H
 #define CAG_TESTS_INTERP_BOUNDARY_SUPPORT_H
 
-#include <limits.h>
-#include <stdio.h>
-#include <unistd.h>
-
 #include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "interp/kernel/kernel.h"
 #include "tests/geom/support.h"
+#include "tests/interp/kernel_program.h"
 
 static CagKernel *kernel;
 
-// The program of the same build, two folders above that of the tests.
 static inline int start_kernel(void **state) {
-  char path[PATH_MAX + 32];
   (void)state;
-  const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX);
-  for (ssize_t i = n, slashes = 0; i > 0 && slashes < 3; i--)
-    if (path[i - 1] == '/' && ++slashes == 3) strcpy(path + i, "cag-brep");
-  if (n > 0 && access(path, X_OK) == 0) setenv("CAG_BREP", path, 0);
-  const char *program = getenv("CAG_BREP");
-  if (!program || access(program, X_OK) != 0) {
-    fprintf(stderr, "skipped: cag-brep is missing (Open CASCADE is not installed)\n");
-    return 0;
-  }
-  kernel = cag_kernel_new();
+  if (use_kernel_program()) kernel = cag_kernel_new();
   return 0;
 }
 

@@ -345,6 +345,24 @@ static void long_scripts_are_read_whole(void **state) {
   unlink(path);
 }
 
+// CAG_BREP names a program that does not exist.
+static void runs_without_cag_brep_are_skipped(void **state) {
+  (void)state;
+  static const Row rows[] = {
+      {"print volume(exact(box(1)))   // expect: 1\n",
+       "t skippedthe program cag-brep is missing\n"},
+      {"print 1   // expect: 1\nprint exact(box(1))   // expect error: E0756\n", "t passed\n"},
+  };
+  char *before = getenv("CAG_BREP");
+  before = before ? strdup(before) : NULL;
+  setenv("CAG_BREP", "/nonexistent/cag-brep", 1);
+  const CagTestOptions options = test_options();
+  check_rows(rows, sizeof rows / sizeof *rows, &options);
+  if (before) setenv("CAG_BREP", before, 1);
+  else unsetenv("CAG_BREP");
+  free(before);
+}
+
 static void interrupted_runs_end_without_outcome(void **state) {
   (void)state;
   const volatile int interrupt = 1;
@@ -368,6 +386,7 @@ int main(void) {
       cmocka_unit_test(runs_are_chosen_by_their_names),
       cmocka_unit_test(examples_of_documentation_are_tests),
       cmocka_unit_test(long_scripts_are_read_whole),
+      cmocka_unit_test(runs_without_cag_brep_are_skipped),
       cmocka_unit_test(interrupted_runs_end_without_outcome),
   };
   return cmocka_run_group_tests_name("expectations", tests, NULL, NULL);

@@ -1,10 +1,7 @@
 // Requests to cag-brep: volumes of results are those of formulas, and failures say what the kernel
 // said. Without cag-brep, these tests are skipped.
 
-#include <limits.h>
 #include <signal.h>
-#include <stdio.h>
-#include <unistd.h>
 
 #include "base/memory.h"
 #include "geom/solid/csg.h"
@@ -13,20 +10,13 @@
 #include "interp/kernel/kernel.h"
 #include "interp/kernel/protocol.h"
 #include "tests/geom/support.h"
+#include "tests/interp/kernel_program.h"
 
 static CagKernel *kernel;
 
-// The program of the same build, two folders above that of the tests.
 static int open_kernel(void **state) {
-  char path[PATH_MAX + 32];
   (void)state;
-  const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX);
-  for (ssize_t i = n, slashes = 0; i > 0 && slashes < 3; i--)
-    if (path[i - 1] == '/' && ++slashes == 3) strcpy(path + i, "cag-brep");
-  if (n > 0 && access(path, X_OK) == 0) setenv("CAG_BREP", path, 0);
-  const char *program = getenv("CAG_BREP");
-  if (program && access(program, X_OK) == 0) kernel = cag_kernel_new();
-  else fprintf(stderr, "skipped: cag-brep is missing (Open CASCADE is not installed)\n");
+  if (use_kernel_program()) kernel = cag_kernel_new();
   return 0;
 }
 
