@@ -8,6 +8,7 @@
 #include "interp/formats/iges_solid.h"
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "interp/formats/iges_carrier.h"
 
 typedef struct SolidLists {
@@ -162,8 +163,10 @@ static CagStatus solid_shell(CagIges *w, const SolidLists *s, const CagBrepShell
   CagIgesPointer *faces = cag_calloc(shell->count + 1, sizeof *faces);
   bool *along = cag_calloc(shell->count + 1, sizeof *along);
   CagStatus status = faces && along ? CAG_OK : cag_fail_memory(err);
-  for (size_t i = 0; !status && i < shell->count; i++)
+  for (size_t i = 0; !status && i < shell->count; i++) {
     status = solid_face(w, s, &w->brep->faces[shell->first + i], &along[i], &faces[i], err);
+    if (!status) status = cag_stop_check(err);
+  }
   if (!status) {
     *out = cag_iges_begin(w, 514, 1, CAG_IGES_PART);
     cag_iges_integer(w, (long)shell->count);
