@@ -20,7 +20,7 @@ WASM_LEFT_OUT := base/aside.c base/library.c base/parallel.c base/large_stack.c 
                  geom/letter/compiled.c geom/letter/libraries.c interp/formats/system_fonts.c \
                  interp/render/exr_read.c interp/render/exr_write.c interp/render/exr_complaint.c \
                  interp/render/povray.c interp/render/povray_files.c interp/render/povray_log.c interp/render/povray_process.c \
-                 interp/kernel/answers.c interp/kernel/ask.c interp/kernel/read_boundary.c interp/kernel/unnamed_file.c interp/formats/step_check.c interp/render/sandbox.c interp/session/markdown.c $(wildcard interp/session/site*.c)
+                 interp/kernel/answers.c interp/kernel/ask.c interp/kernel/read_boundary.c interp/kernel/unnamed_file.c interp/formats/brep_check.c interp/render/sandbox.c interp/session/markdown.c $(wildcard interp/session/site*.c)
 WASM_LIVE := $(patsubst %,live/%.c,json json_write lsp lsp_files lsp_requests measures model_answers model_files model_run place_json points_json questions request robot_json scene_json)
 WASM_SRC  := $(filter-out $(WASM_LEFT_OUT),$(BASE_SRC) $(LANG_SRC) $(GEOM_SRC) $(INTERP_SRC)) $(WASM_LIVE) \
              $(filter-out wasm/case_table.c,$(sort $(wildcard wasm/*.c wasm/*/*.c wasm/*/*/*.c)))

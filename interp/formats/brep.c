@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "geom/tessellate/orient.h"
 #include "interp/formats/brep_build.h"
-#include "interp/formats/step_check.h"
+#include "interp/formats/brep_check.h"
 
 // The fraction of a shape's size within which ends and edges count as equal. The checks of closed
 // solids allow the same.
@@ -178,13 +178,6 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
   return item->tolerance > 0 ? item->tolerance : s->tolerance;
 }
 
-static CagStatus fail_operation(const CagItem *item, CagError *err) {
-  return cag_fail(
-      err, CAG_E_UNSUPPORTED, CAG_ERR_export_operation, "", -1,
-      "%s is a union, difference, or intersection of solids, whose faces are not whole surfaces: write .step, show its parts one by one, or write .stl, .obj, .ply, or .glb",
-      item->name);
-}
-
 static CagStatus fail_mesh(const CagItem *item, CagError *err) {
   return cag_fail(
       err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
@@ -315,6 +308,7 @@ CagStatus cag_brep_add_boundary(CagBrep *b, const CagBoundary *from, CagError *e
   for (size_t i = 0; i < from->order_count; i++) {
     const CagBoundaryFace *f = &from->faces[from->order[i]];
     CagBrepFace own = {.carrier = f->carrier, .reversed = f->reversed, .first = loop + f->first};
+    memcpy(own.domain, f->domain, sizeof own.domain);
     own.count = f->count;
     own.source = from->order[i];
     if (own.carrier.spline) cag_surface_retain(own.carrier.spline);
@@ -330,11 +324,11 @@ CagStatus cag_brep_add_boundary(CagBrep *b, const CagBoundary *from, CagError *e
 // Adds the parts of a set operation that other programs will read as they are. Where a face
 // contains poles of a sphere, or runs around an axis, some read a file differently; then other
 // poles and seams are tried.
-static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepShape *shape,
-                               CagError *err) {
+static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepFormat format,
+                               CagBrepShape *shape, CagError *err) {
   CagBoundaries parts = {0};
   CagBrep *b = w->brep;
-  if (!kernel) return fail_operation(w->item, err);
+  if (!kernel) return cag_fail_memory(err);
   shape->kind = CAG_BREP_SOLID;
   shape->first = b->shell_count;
   CagStatus status = CAG_OK;
@@ -343,7 +337,7 @@ static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepShape *
     cag_boundaries_free(&parts);
     status = cag_kernel_boundary(kernel, w->item->as.solid, w->asked, turn, &parts, &w->approximate,
                                  err);
-    if (!status) status = cag_step_reads_back(kernel, &parts, &same, err);
+    if (!status) status = cag_brep_reads_back(kernel, &parts, format, &same, err);
   }
   if (!status && !same)
     status = cag_fail(
@@ -363,7 +357,7 @@ static bool needs_kernel(const CagItem *item) {
 }
 
 static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagKernel *kernel,
-                          CagError *err) {
+                          CagBrepFormat format, CagError *err) {
   CagBrepWork w = {.brep = b, .scene = scene, .item = item, .asked = shape_tolerance(scene, item)};
   CagBrepShape shape = {.name = item->name, .material = &scene->materials[item->material]};
   CagStatus status;
@@ -371,7 +365,7 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
     shape.kind = CAG_BREP_CURVE;
     status = cag_brep_curve(&w, item->as.curve, &shape.curve, err);
   } else if (needs_kernel(item)) {
-    status = add_operation(&w, kernel, &shape, err);
+    status = add_operation(&w, kernel, format, &shape, err);
   } else {
     status = add_bounded(&w, &shape, err);
   }
@@ -382,7 +376,8 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
   return CAG_OK;
 }
 
-CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrep *out, CagError *err) {
+CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrepFormat format,
+                            CagBrep *out, CagError *err) {
   *out = (CagBrep){.accuracy = ACCURACY_MIN};
   out->shapes = cag_calloc(scene->item_count + 1, sizeof *out->shapes);
   if (!out->shapes) return cag_fail_memory(err);
@@ -391,7 +386,7 @@ CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrep *o
       return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                       "the export was interrupted");
     if (scene->items[i].kind == CAG_ITEM_GROUND) continue;
-    CagStatus status = add_item(out, scene, &scene->items[i], kernel, err);
+    CagStatus status = add_item(out, scene, &scene->items[i], kernel, format, err);
     if (status) return status;
   }
   if (out->shape_count == 0)

@@ -4,8 +4,8 @@
 // A shape becomes NURBS curves and surfaces. A face is a smooth part of a surface (split where the
 // tangent plane is discontinuous), bounded by loops of edge uses; the face is on the left of each
 // use, seen against its normal. The faces of a set operation come from the CAD kernel: they lie on
-// carriers (geom/boundary/boundary.h), and their edges may also be arcs. Adjacent faces of a shape share their edge, and adjacent edges
-// share their vertex. A seam is an edge that its face uses twice, and a pole is a vertex without an
+// carriers (geom/boundary/boundary.h), and their edges may also be arcs. Adjacent faces of a shape
+// share their edge, and adjacent edges share their vertex. A seam is an edge that its face uses twice, and a pole is a vertex without an
 // edge.
 //
 // Curves and surfaces are clamped, with positive weights; weights that are all equal are omitted.
@@ -40,6 +40,7 @@ typedef struct CagBrepLoop {
 
 typedef struct CagBrepFace {
   CagCarrier carrier;  // NONE: the fields below are valid
+  double domain[4];    // of the carrier: u0 u1 v0 v1 of the face
   bool reversed;       // the outward normal is opposite to that of the carrier
   CagSurface *surface; // of a NURBS kind; for a flat face, a rectangle around it
   bool flat;
@@ -80,9 +81,12 @@ typedef struct CagBrep {
   double accuracy; // mm: the largest distance between parts that should meet
 } CagBrep;
 
+typedef enum CagBrepFormat { CAG_BREP_STEP, CAG_BREP_IGES } CagBrepFormat;
+
 // Grounds are omitted. Release with cag_brep_free, even after a failure. Set operations need the
-// kernel; if it is NULL, they fail.
-CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrep *out, CagError *err);
+// kernel, which also reads them back from a file of the format; if it is NULL, memory ran out.
+CagStatus cag_brep_of_scene(const CagScene *scene, CagKernel *kernel, CagBrepFormat format,
+                            CagBrep *out, CagError *err);
 void cag_brep_free(CagBrep *b);
 
 #endif

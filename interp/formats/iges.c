@@ -2,8 +2,7 @@
 //
 // A file consists of lines of 80 columns in five sections: start, global, directory (two lines per
 // entity), parameters, and end. The directory comes first and contains line numbers of the
-// parameters, so both are made in memory first. An entity is referred to by the number of its first
-// directory line.
+// parameters, so both are made in memory first.
 
 #include "interp/formats/iges.h"
 
@@ -12,210 +11,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/utf8.h"
-
-// Columns of parameters in a line, which are followed by the number of the directory line.
-#define PARAMETER_COLUMNS 64
-#define GLOBAL_COLUMNS 72
-
-typedef long Pointer; // number of a directory line; 0: none
-
-typedef struct Writer {
-  const CagBrep *brep;
-  CagAtomicFile *directory, *parameters;
-  char line[81];
-  size_t column, width; // of the current line
-  Pointer entity;       // whose parameters are being written; 0: the global section
-  long parameter_lines, first_line, entities;
-  int type, form, status;
-  Pointer color, name;
-  bool undefined; // a number was not finite
-} Writer;
-
-// --- Lines ---
-
-static void end_line(Writer *w) {
-  if (w->column == 0) return;
-  w->line[w->column] = 0;
-  w->parameter_lines++;
-  if (w->entity > 0)
-    cag_atomic_file_printf(w->parameters, "%-64s %7ldP%7ld\n", w->line, w->entity,
-                           w->parameter_lines);
-  else cag_atomic_file_printf(w->parameters, "%-72sG%7ld\n", w->line, w->parameter_lines);
-  w->column = 0;
-}
-
-// A value and its separator must be on the same line.
-static void put_token(Writer *w, const char *text, char separator) {
-  size_t n = strlen(text);
-  if (w->column + n + 1 > w->width) end_line(w);
-  memcpy(w->line + w->column, text, n);
-  w->line[w->column + n] = separator;
-  w->column += n + 1;
-}
-
-static void put_integer(Writer *w, long x) {
-  char text[24];
-  snprintf(text, sizeof text, "%ld", x);
-  put_token(w, text, ',');
-}
-
-static void put_pointer(Writer *w, Pointer p) { put_integer(w, p); }
-
-// Reals contain a point. The exponent of double precision is written with D.
-static void put_real(Writer *w, double x) {
-  char text[40], out[48];
-  w->undefined |= !isfinite(x);
-  cag_number_text(x == 0 ? 0 : x, text);
-  char *e = strchr(text, 'e');
-  if (e) *e++ = 0;
-  snprintf(out, sizeof out, "%s%s%s%s", text, strchr(text, '.') ? "" : ".", e ? "D" : "",
-           e ? e : "");
-  put_token(w, out, ',');
-}
-
-static void put_character(Writer *w, char c) {
-  if (w->column == w->width) end_line(w);
-  w->line[w->column++] = c;
-}
-
-// A string is preceded by its length. Only ASCII characters are supported.
-static void put_string(Writer *w, const char *text) {
-  const size_t n = cag_utf8_count(text, strlen(text));
-  if (n == 0) {
-    put_token(w, "", ',');
-    return;
-  }
-  char head[24];
-  snprintf(head, sizeof head, "%zuH", n);
-  if (w->column + strlen(head) + 1 > w->width) end_line(w);
-  for (const char *p = head; *p; p++) put_character(w, *p);
-  for (const char *p = text; *p; p++) {
-    if (cag_utf8_is_within(*p)) continue;
-    put_character(w, *p >= 0x20 && *p < 0x7f ? *p : '_');
-  }
-  put_character(w, ',');
-}
-
-static void put_point(Writer *w, CagVec3 p) {
-  put_real(w, p.x);
-  put_real(w, p.y);
-  put_real(w, p.z);
-}
-
-// --- Entities ---
-
-// The digits of the status: visibility, dependence (01: part of another), use (05: in parameters of
-// a surface, 02: definition), hierarchy.
-enum { FREE = 0, PART = 10000, PART_FLAT = 10500, DEFINITION = 200 };
-
-static Pointer begin(Writer *w, int type, int form, int status) {
-  w->type = type;
-  w->form = form;
-  w->status = status;
-  w->entity = 2 * w->entities++ + 1;
-  w->first_line = w->parameter_lines + 1;
-  put_integer(w, type);
-  return w->entity;
-}
-
-static void end(Writer *w, bool named) {
-  if (named && w->name > 0) { // no associations, one property
-    put_integer(w, 0);
-    put_integer(w, 1);
-    put_pointer(w, w->name);
-  }
-  w->line[w->column - 1] = ';';
-  end_line(w);
-  Pointer d = w->entity;
-  cag_atomic_file_printf(w->directory, "%8d%8ld%8d%8d%8d%8d%8d%8d%08dD%7ld\n", w->type,
-                         w->first_line, 0, 1, 0, 0, 0, 0, w->status, d);
-  cag_atomic_file_printf(w->directory, "%8d%8d%8ld%8ld%8d%8s%8s%8s%8dD%7ld\n", w->type, 0,
-                         -w->color, w->parameter_lines - w->first_line + 1, w->form, "", "", "", 0,
-                         d + 1);
-}
-
-static Pointer color(Writer *w, CagColor c) {
-  Pointer p = begin(w, 314, 0, DEFINITION);
-  const double rgb[3] = {c.r, c.g, c.b};
-  // Percentages of sRGB, which viewers expect, to 3 decimal places.
-  for (int i = 0; i < 3; i++)
-    put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1))) / 1e3);
-  end(w, false);
-  return p;
-}
-
-static Pointer name(Writer *w, const char *text) {
-  Pointer p = begin(w, 406, 15, DEFINITION);
-  put_integer(w, 1);
-  put_string(w, text);
-  end(w, false);
-  return p;
-}
-
-// --- NURBS ---
-
-// `flat`: a curve in the parameters of a surface.
-static CagStatus nurbs_curve(Writer *w, const CagCurve *c, bool flat, int use, Pointer *out,
-                             CagError *err) {
-  CagNurbsView v = {0};
-  CagPlane plane = {{0, 0, 0}, {0, 0, 1}};
-  bool planar = true, straight = false;
-  CagStatus status = flat ? CAG_OK : cag_curve_is_straight(c, &straight, err);
-  if (!status && !flat) status = cag_curve_is_planar(c, &planar, &plane, err);
-  if (status) return status;
-  planar = planar && !straight;
-  cag_curve_nurbs_view(c, &v);
-  *out = begin(w, 126, 0, use);
-  put_integer(w, (long)v.count - 1);
-  put_integer(w, v.degree);
-  put_integer(w, planar);
-  put_integer(w, c->closed);
-  put_integer(w, !v.rational);
-  put_integer(w, 0); // not periodic
-  for (size_t i = 0; i < v.count + (size_t)v.degree + 1; i++) put_real(w, v.knots[i]);
-  for (size_t i = 0; i < v.count; i++) put_real(w, v.homogeneous[4 * i + 3]);
-  for (size_t i = 0; i < v.count; i++) {
-    const double *h = v.homogeneous + 4 * i;
-    put_point(w, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]));
-  }
-  put_real(w, c->start);
-  put_real(w, c->end);
-  put_point(w, planar ? plane.normal : cag_vec3(0, 0, 0));
-  end(w, use == FREE);
-  return CAG_OK;
-}
-
-// Writes control points and weights, with u varying fastest.
-static Pointer nurbs_surface(Writer *w, const CagSurface *s, int status) {
-  CagSurfaceNurbsView v = {0};
-  cag_surface_nurbs_view(s, &v);
-  Pointer p = begin(w, 128, 0, status);
-  put_integer(w, (long)v.nu - 1);
-  put_integer(w, (long)v.nv - 1);
-  put_integer(w, v.degree_u);
-  put_integer(w, v.degree_v);
-  put_integer(w, s->closed_u);
-  put_integer(w, s->closed_v);
-  put_integer(w, !v.rational);
-  put_integer(w, 0); // not periodic
-  put_integer(w, 0);
-  for (size_t i = 0; i < v.nu + (size_t)v.degree_u + 1; i++) put_real(w, v.knots_u[i]);
-  for (size_t i = 0; i < v.nv + (size_t)v.degree_v + 1; i++) put_real(w, v.knots_v[i]);
-  for (size_t j = 0; j < v.nv; j++)
-    for (size_t i = 0; i < v.nu; i++) put_real(w, v.homogeneous[4 * (i * v.nv + j) + 3]);
-  for (size_t j = 0; j < v.nv; j++)
-    for (size_t i = 0; i < v.nu; i++) {
-      const double *h = v.homogeneous + 4 * (i * v.nv + j);
-      put_point(w, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]));
-    }
-  put_real(w, s->u0);
-  put_real(w, s->u1);
-  put_real(w, s->v0);
-  put_real(w, s->v1);
-  end(w, status == FREE);
-  return p;
-}
+#include "interp/formats/iges_entity.h"
+#include "interp/formats/iges_solid.h"
 
 // --- Trimmed planes ---
 
@@ -238,12 +35,12 @@ static CagStatus to_parameters(const CagSurface *s, CagTransform *out, CagError 
 }
 
 typedef struct Chain {
-  Pointer *flat, *space;
+  CagIgesPointer *flat, *space;
   size_t count;
 } Chain;
 
 // Adds the curve in space and, unless map is NULL, in the parameters.
-static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *map, Chain *chain,
+static CagStatus add_use(CagIges *w, const CagBrepUse *use, const CagTransform *map, Chain *chain,
                          CagError *err) {
   CagCurve *run = NULL, *flat = NULL;
   const CagCurve *c = w->brep->edges[use->edge].curve;
@@ -252,62 +49,64 @@ static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *m
   else run = cag_curve_retain(c);
   if (!status && map) status = cag_curve_transform(run, map, &flat, err);
   if (!status && map)
-    status = nurbs_curve(w, flat, true, PART_FLAT, &chain->flat[chain->count], err);
-  if (!status) status = nurbs_curve(w, run, false, PART, &chain->space[chain->count++], err);
+    status =
+        cag_iges_nurbs_curve(w, flat, true, CAG_IGES_PART_FLAT, &chain->flat[chain->count], err);
+  if (!status)
+    status = cag_iges_nurbs_curve(w, run, false, CAG_IGES_PART, &chain->space[chain->count++], err);
   cag_curve_release(run);
   cag_curve_release(flat);
   return status;
 }
 
 // Joins several curves end to end. A single curve is returned unchanged.
-static Pointer composite(Writer *w, const Pointer *parts, size_t n, int status) {
+static CagIgesPointer composite(CagIges *w, const CagIgesPointer *parts, size_t n, int status) {
   if (n == 1) return parts[0];
-  Pointer p = begin(w, 102, 0, status);
-  put_integer(w, (long)n);
-  for (size_t i = 0; i < n; i++) put_pointer(w, parts[i]);
-  end(w, false);
+  CagIgesPointer p = cag_iges_begin(w, 102, 0, status);
+  cag_iges_integer(w, (long)n);
+  for (size_t i = 0; i < n; i++) cag_iges_pointer(w, parts[i]);
+  cag_iges_end(w, false);
   return p;
 }
 
-static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform *map,
-                          Pointer surface, Pointer *out, CagError *err) {
+static CagStatus boundary(CagIges *w, const CagBrepLoop *loop, const CagTransform *map,
+                          CagIgesPointer surface, CagIgesPointer *out, CagError *err) {
   Chain chain = {cag_calloc(loop->count + 1, sizeof *chain.flat),
                  cag_calloc(loop->count + 1, sizeof *chain.space), 0};
   CagStatus status = chain.flat && chain.space ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < loop->count; i++)
     status = add_use(w, &w->brep->uses[loop->first + i], map, &chain, err);
   if (!status) {
-    Pointer flat = map ? composite(w, chain.flat, chain.count, PART_FLAT) : 0;
-    Pointer space = composite(w, chain.space, chain.count, PART);
-    *out = begin(w, 142, 0, PART);
-    put_integer(w, 0); // unspecified way of creation
-    put_pointer(w, surface);
-    put_pointer(w, flat);
-    put_pointer(w, space);
-    put_integer(w, map ? 3 : 2); // both are equally good; or the one in space
-    end(w, false);
+    CagIgesPointer flat = map ? composite(w, chain.flat, chain.count, CAG_IGES_PART_FLAT) : 0;
+    CagIgesPointer space = composite(w, chain.space, chain.count, CAG_IGES_PART);
+    *out = cag_iges_begin(w, 142, 0, CAG_IGES_PART);
+    cag_iges_integer(w, 0); // unspecified way of creation
+    cag_iges_pointer(w, surface);
+    cag_iges_pointer(w, flat);
+    cag_iges_pointer(w, space);
+    cag_iges_integer(w, map ? 3 : 2); // both are equally good; or the one in space
+    cag_iges_end(w, false);
   }
   cag_free(chain.flat);
   cag_free(chain.space);
   return status;
 }
 
-static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
+static CagStatus trimmed(CagIges *w, const CagBrepFace *f, CagError *err) {
   CagTransform map = cag_transform_identity();
   CagStatus status = f->flat ? to_parameters(f->surface, &map, err) : CAG_OK;
-  Pointer *loops = cag_calloc(f->count + 1, sizeof *loops);
+  CagIgesPointer *loops = cag_calloc(f->count + 1, sizeof *loops);
   if (!status && !loops) status = cag_fail_memory(err);
-  Pointer surface = status ? 0 : nurbs_surface(w, f->surface, PART);
+  CagIgesPointer surface = status ? 0 : cag_iges_nurbs_surface(w, f->surface, CAG_IGES_PART);
   for (size_t i = 0; !status && i < f->count; i++)
     status =
         boundary(w, &w->brep->loops[f->first + i], f->flat ? &map : NULL, surface, &loops[i], err);
   if (!status) {
-    begin(w, 144, 0, FREE);
-    put_pointer(w, surface);
-    put_integer(w, 1); // with an outer boundary
-    put_integer(w, (long)f->count - 1);
-    for (size_t i = 0; i < f->count; i++) put_pointer(w, loops[i]);
-    end(w, true);
+    cag_iges_begin(w, 144, 0, CAG_IGES_FREE);
+    cag_iges_pointer(w, surface);
+    cag_iges_integer(w, 1); // with an outer boundary
+    cag_iges_integer(w, (long)f->count - 1);
+    for (size_t i = 0; i < f->count; i++) cag_iges_pointer(w, loops[i]);
+    cag_iges_end(w, true);
   }
   cag_free(loops);
   return status;
@@ -315,24 +114,34 @@ static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
 
 // --- The whole file ---
 
-static CagStatus write_shape(Writer *w, const CagBrepShape *s, CagError *err) {
+// Writes the faces of a shell one by one.
+static CagStatus write_faces(CagIges *w, const CagBrepShell *shell, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t i = shell->first; !status && i < shell->first + shell->count; i++) {
+    if (cag_atomic_file_failed(w->parameters)) return CAG_OK;
+    const CagBrepFace *f = &w->brep->faces[i];
+    if (f->whole) cag_iges_nurbs_surface(w, f->surface, CAG_IGES_FREE);
+    else status = trimmed(w, f, err);
+  }
+  return status;
+}
+
+static CagStatus write_shape(CagIges *w, const CagBrepShape *s, CagError *err) {
   const CagBrep *b = w->brep;
   w->color = w->name = 0;
-  Pointer paint = color(w, s->material->color), title = name(w, s->name);
+  CagIgesPointer paint = cag_iges_color(w, s->material->color), title = cag_iges_name(w, s->name);
   w->color = paint;
   w->name = title;
-  Pointer curve;
-  if (s->kind == CAG_BREP_CURVE) return nurbs_curve(w, s->curve, false, FREE, &curve, err);
-  for (size_t k = s->first; k < s->first + s->count; k++)
-    for (size_t i = b->shells[k].first; i < b->shells[k].first + b->shells[k].count; i++) {
-      if (cag_atomic_file_failed(w->parameters)) return CAG_OK;
-      const CagBrepFace *f = &b->faces[i];
-      CagStatus status = CAG_OK;
-      if (f->whole) nurbs_surface(w, f->surface, FREE);
-      else status = trimmed(w, f, err);
-      if (status) return status;
-    }
-  return CAG_OK;
+  CagIgesPointer curve;
+  if (s->kind == CAG_BREP_CURVE)
+    return cag_iges_nurbs_curve(w, s->curve, false, CAG_IGES_FREE, &curve, err);
+  CagStatus status = CAG_OK;
+  for (size_t k = s->first; !status && k < s->first + s->count; k++) {
+    if (b->faces[b->shells[k].first].carrier.kind == CAG_CARRIER_NONE)
+      status = write_faces(w, &b->shells[k], err);
+    else if (b->shells[k].void_of == k) status = cag_iges_solid(w, s, k, err);
+  }
+  return status;
 }
 
 static double largest_coordinate(const CagBrep *b) {
@@ -345,33 +154,33 @@ static double largest_coordinate(const CagBrep *b) {
 }
 
 // There is no date, so that the output is reproducible.
-static void write_global(Writer *w, const char *script) {
-  w->width = GLOBAL_COLUMNS;
-  put_string(w, ",");
-  put_string(w, ";");
-  put_string(w, script);
-  put_string(w, script);
-  put_string(w, "cag " CAG_VERSION);
-  put_string(w, "cag " CAG_VERSION);
+static void write_global(CagIges *w, const char *script) {
+  w->width = CAG_IGES_GLOBAL_COLUMNS;
+  cag_iges_string(w, ",");
+  cag_iges_string(w, ";");
+  cag_iges_string(w, script);
+  cag_iges_string(w, script);
+  cag_iges_string(w, "cag " CAG_VERSION);
+  cag_iges_string(w, "cag " CAG_VERSION);
   // Bits of integers, exponents and digits of single and double precision.
   const long precision[5] = {32, 38, 6, 308, 15};
-  for (int i = 0; i < 5; i++) put_integer(w, precision[i]);
-  put_string(w, script);
-  put_real(w, 1); // scale
-  put_integer(w, 2);
-  put_string(w, "MM");
-  put_integer(w, 1);
-  put_real(w, 0.1); // width of lines
-  put_string(w, "19700101.000000");
-  put_real(w, w->brep->accuracy);
-  put_real(w, largest_coordinate(w->brep));
-  put_string(w, "");
-  put_string(w, "");
-  put_integer(w, 11); // IGES 5.3
-  put_integer(w, 0);
-  put_string(w, "19700101.000000");
+  for (int i = 0; i < 5; i++) cag_iges_integer(w, precision[i]);
+  cag_iges_string(w, script);
+  cag_iges_real(w, 1); // scale
+  cag_iges_integer(w, 2);
+  cag_iges_string(w, "MM");
+  cag_iges_integer(w, 1);
+  cag_iges_real(w, 0.1); // width of lines
+  cag_iges_string(w, "19700101.000000");
+  cag_iges_real(w, w->brep->accuracy);
+  cag_iges_real(w, largest_coordinate(w->brep));
+  cag_iges_string(w, "");
+  cag_iges_string(w, "");
+  cag_iges_integer(w, 11); // IGES 5.3
+  cag_iges_integer(w, 0);
+  cag_iges_string(w, "19700101.000000");
   w->line[w->column - 1] = ';';
-  end_line(w);
+  cag_iges_end_line(w);
 }
 
 // Appends a section made in memory, and counts its lines.
@@ -394,7 +203,7 @@ static void abort_sections(const Sections *s) {
   cag_atomic_file_abort(s->parameters);
 }
 
-static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagAtomicFile *file,
+static CagStatus write_sections(CagIges *w, Sections *s, const char *script, CagAtomicFile *file,
                                 CagError *err) {
   w->parameters = s->global;
   write_global(w, script);
@@ -402,7 +211,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
   w->parameters = s->parameters;
   w->directory = s->directory;
   w->parameter_lines = 0;
-  w->width = PARAMETER_COLUMNS;
+  w->width = CAG_IGES_PARAMETER_COLUMNS;
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < w->brep->shape_count; i++)
     status = write_shape(w, &w->brep->shapes[i], err);
@@ -434,6 +243,6 @@ CagStatus cag_export_iges(const CagBrep *brep, const char *script, CagAtomicFile
     abort_sections(&s);
     return cag_fail_memory(err);
   }
-  Writer w = {.brep = brep};
+  CagIges w = {.brep = brep};
   return write_sections(&w, &s, script && *script ? script : "scene", file, err);
 }

@@ -430,21 +430,21 @@ static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWri
   return status;
 }
 
-static int export_brep(CagSession *s, const char *path, CagKernel *kernel, BrepWriter write) {
+static int export_brep(CagSession *s, const char *path, CagBrepFormat format, BrepWriter write) {
   CagBrep b;
   CagError err = {0};
-  CagStatus made = cag_session_checked(s, cag_brep_of_scene(&s->scene, kernel, &b, &err), &err);
+  const CagStatus made = cag_session_checked(
+      s, cag_brep_of_scene(&s->scene, cag_session_kernel(s), format, &b, &err), &err);
   int status = !made ? write_brep(s, &b, path, write) : cag_session_fail_geometry(s, &err);
   cag_brep_free(&b);
   return status;
 }
 
 static int export_step(CagSession *s, const char *path) {
-  return export_brep(s, path, cag_session_kernel(s), cag_export_step);
+  return export_brep(s, path, CAG_BREP_STEP, cag_export_step);
 }
-// IGES files contain whole surfaces only, so they need no kernel.
 static int export_iges(CagSession *s, const char *path) {
-  return export_brep(s, path, NULL, cag_export_iges);
+  return export_brep(s, path, CAG_BREP_IGES, cag_export_iges);
 }
 
 // --- Robots ---

@@ -55,7 +55,7 @@ static void a_formula_that_fails_at_any_call_is_an_error_with_the_name(void **st
     CagBrep b;
     CagError err = {0};
     f = (Failing){0, at};
-    CagStatus status = cag_brep_of_scene(&scene.scene, NULL, &b, &err);
+    CagStatus status = cag_brep_of_scene(&scene.scene, NULL, CAG_BREP_STEP, &b, &err);
     cag_brep_free(&b);
     if (f.calls <= at) {
       assert_int_equal(status, CAG_OK);

@@ -59,7 +59,7 @@ static bool is_flat(const CagVec3 *p, CagTransform *plane) {
   OK(cag_surface_bilinear(p[0], p[3], p[1], p[2], &s, &err));
   fixture_surface(&f, "patch", s);
   CagBrep b;
-  OK(cag_brep_of_scene(&f.scene, NULL, &b, &err));
+  OK(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err));
   assert_int_equal(b.face_count, 1);
   const bool flat = b.faces[0].flat;
   *plane = b.faces[0].plane;

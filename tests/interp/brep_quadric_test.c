@@ -96,7 +96,7 @@ static void bodies_within_boxes_close_with_exact_edges(void **state) {
     CagBrep b;
     fixture_begin(&f);
     fixture_solid(&f, "body", s);
-    OK(cag_brep_of_scene(&f.scene, NULL, &b, &err));
+    OK(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err));
     assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID);
     for (size_t k = 0; k < b.shell_count; k++) assert_true(b.shells[k].closed);
     check_edges(&b, &q, &box, cag_norm(cag_sub(box.max, box.min)), &arcs);

@@ -69,7 +69,7 @@ static void regions_are_faces_with_their_loops(void **state) {
                cases[i].region, places[place]);
       CagSession *s = shown(script);
       CagBrep b;
-      OK(cag_brep_of_scene(&s->scene, NULL, &b, &err));
+      OK(cag_brep_of_scene(&s->scene, NULL, CAG_BREP_STEP, &b, &err));
       assert_int_equal(b.face_count, cases[i].faces);
       bool seen[3] = {false};
       for (size_t f = 0; f < b.face_count; f++) {

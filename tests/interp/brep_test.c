@@ -11,7 +11,7 @@
 
 static CagBrep boundary_of(const Fixture *f) {
   CagBrep b;
-  OK(cag_brep_of_scene(&f->scene, NULL, &b, &err));
+  OK(cag_brep_of_scene(&f->scene, NULL, CAG_BREP_STEP, &b, &err));
   return b;
 }
 
@@ -226,7 +226,7 @@ static void what_is_not_exact_needs_a_tolerance(void **state) {
   fixture_begin(&f);
   OK(cag_curve_helix(10, 5, 3, 0, &c, &err));
   CagItem *item = fixture_curve(&f, "coil", c);
-  assert_int_equal(cag_brep_of_scene(&f.scene, NULL, &b, &err), CAG_E_UNSUPPORTED);
+  assert_int_equal(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err), CAG_E_UNSUPPORTED);
   assert_string_equal(cag_error_info(err.id)->reason, "export-not-exact");
   assert_non_null(strstr(err.message, "coil"));
   cag_brep_free(&b);
@@ -256,7 +256,7 @@ static void a_weight_of_zero_is_an_error(void **state) {
   fixture_begin(&f);
   OK(cag_curve_bezier(p, weights, 3, 3, &c, &err));
   fixture_curve(&f, "flat", c);
-  assert_int_equal(cag_brep_of_scene(&f.scene, NULL, &b, &err), CAG_E_UNSUPPORTED);
+  assert_int_equal(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err), CAG_E_UNSUPPORTED);
   assert_string_equal(cag_error_info(err.id)->reason, "export-weight");
   cag_brep_free(&b);
   fixture_end(&f);
@@ -323,7 +323,7 @@ static void a_number_that_is_not_finite_is_an_error(void **state) {
   CagError io;
   fixture_begin(&f);
   fixture_solid(&f, "can", cylinder());
-  OK(cag_brep_of_scene(&f.scene, NULL, &b, &err));
+  OK(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err));
   for (int i = 0; i < 6; i++) {
     CagError why = {0};
     CagAtomicFile *file = cag_atomic_file_open_memory(&io);

@@ -1,7 +1,7 @@
-// Replaces the process of interp/kernel/, and interp/formats/step_check.c, in a browser, which
+// Replaces the process of interp/kernel/, and interp/formats/brep_check.c, in a browser, which
 // cannot start the helper program.
 
-#include "interp/formats/step_check.h"
+#include "interp/formats/brep_check.h"
 #include "interp/kernel/ask.h"
 #include "interp/kernel/unnamed_file.h"
 
@@ -37,10 +37,11 @@ int cag_unnamed_file(const void *bytes, size_t size, char path[CAG_UNNAMED_PATH]
 }
 void cag_unnamed_close(int file) { (void)file; }
 
-CagStatus cag_step_reads_back(CagKernel *kernel, const CagBoundaries *parts, bool *same,
-                              CagError *err) {
+CagStatus cag_brep_reads_back(CagKernel *kernel, const CagBoundaries *parts, CagBrepFormat format,
+                              bool *same, CagError *err) {
   (void)kernel;
   (void)parts;
+  (void)format;
   (void)same;
   return fail_missing(err);
 }
