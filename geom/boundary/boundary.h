@@ -11,8 +11,8 @@
 #include "geom/curve/curve.h"
 #include "geom/surface/surface.h"
 
-// The kinds of carriers, with the parameters of ISO 10303-42. The frame's columns x, y, z and
-// origin are orthonormal and right-handed.
+// The kinds of carriers, with the parameters of ISO 10303-42, except for v of cones, which is the
+// length along the side. The frame's columns x, y, z and origin are orthonormal and right-handed.
 typedef enum CagCarrierKind {
   CAG_CARRIER_NONE,
   CAG_CARRIER_PLANE,    // O + u x + v y

@@ -399,13 +399,16 @@ static bool has_trace(const Writer *w, const CagBrepUse *use, size_t face) {
          t.m[0][0] * t.m[1][1] - t.m[0][1] * t.m[1][0] > 0;
 }
 
+// Cones of STEP files measure v along the axis, not along the side.
 static Id trace(Writer *w, const CagBrepUse *use, size_t face) {
   const CagCarrier *c = &w->brep->faces[face].carrier;
   CagTransform turn = cag_transform_identity();
   CagCurve *own = cag_curve_retain(use->trace);
   CagError ignored;
-  if (c->kind == CAG_CARRIER_CONE && c->b < 0) { // see with_positive_angle
-    turn.m[0][0] = turn.m[1][1] = -1;
+  if (c->kind == CAG_CARRIER_CONE) {
+    const double sign = c->b < 0 ? -1 : 1; // see with_positive_angle
+    turn.m[0][0] = sign;
+    turn.m[1][1] = sign * cos(c->b);
     cag_curve_release(own);
     w->failed |= cag_curve_transform(use->trace, &turn, &own, &ignored) != CAG_OK;
     if (w->failed) return 0;

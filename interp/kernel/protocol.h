@@ -92,7 +92,7 @@ typedef enum CagBrepCurveKind {
                             // rational; n + degree + 1 f64 knots. Clamped, not periodic
 } CagBrepCurveKind;
 
-// S(u, v), as in STEP (ISO 10303-42).
+// S(u, v), as in STEP (ISO 10303-42), except for v of cones.
 typedef enum CagBrepSurfaceKind {
   CAG_BREP_PLANE = 1,       // frame: O + u X + v Y
   CAG_BREP_CYLINDRICAL = 2, // frame, f64 radius r: O + r (cos u X + sin u Y) + v Z
