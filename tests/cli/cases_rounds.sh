@@ -194,3 +194,37 @@ printf 'print fillet(box(5), 1)\n' > rounds.cag
 try_command env CAG_BREP="$PWD/none" "$CAG" run -q rounds.cag
 status 1
 says 'install the package cag-brep'
+
+# --- Examples ---
+
+# faces FILE PLANES CYLINDERS CONES TORI SPLINES SOLIDS: what a STEP file holds.
+faces() {
+  is_left_out && return
+  held=$(for kind in PLANE CYLINDRICAL_SURFACE CONICAL_SURFACE TOROIDAL_SURFACE B_SPLINE_SURFACE_WITH_KNOTS MANIFOLD_SOLID_BREP; do
+    grep -c "[=(]$kind(" "$1"
+  done | tr '\n' ' ')
+  shift
+  [ "$held" = "$* " ] || wrong "the file holds $held instead of $*"
+}
+
+# Planes: 3 outside of each leg, 2 sides, 3 of the rib, 4 of the counterbores. Cylinders: the inner edge, which the rib divides, 4 corners,
+# and 2 in each of 4 holes.
+it 'a bracket has the faces that its parts leave'
+needs_helper
+try export "$root/examples/parts/bracket.cag" -o bracket.step
+status 0
+faces bracket.step 15 14 0 0 0 1
+
+it 'the interference of the parts of a bearing block is none'
+needs_helper
+try check --interference "$root/examples/parts/bearing_block.cag"
+status 0
+
+it 'an enclosure and its lid are two solids without splines'
+needs_helper
+try export "$root/examples/parts/enclosure.cag" -o enclosure.step
+status 0
+is_left_out || {
+  [ "$(grep -c 'MANIFOLD_SOLID_BREP(' enclosure.step)" = 2 ] || wrong 'there are not 2 solids'
+  ! grep -q B_SPLINE_SURFACE enclosure.step || wrong 'there are splines'
+}
