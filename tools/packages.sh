@@ -6,7 +6,7 @@ BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libe
   libharfbuzz-dev libfribidi-dev libfontconfig-dev povray povray-includes"
 # For cag-brep, the helper for exact boundaries of solids. Everything else is built without them.
 BUILD_PACKAGES="$BUILD_PACKAGES g++ libocct-modeling-algorithms-dev libocct-data-exchange-dev"
-TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev fonts-dejavu-core fonts-urw-base35 clang-format clang-tidy tmux zsh mandoc groff-base vim vim-ale neovim strace dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools esbuild"
+TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev fonts-dejavu-core fonts-liberation fonts-urw-base35 clang-format clang-tidy tmux zsh mandoc groff-base vim vim-ale neovim strace dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools esbuild"
 # Needed by the Khronos glTF validator. If they were installed from another source, Debian's packages would conflict with them.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
