@@ -108,10 +108,10 @@ for format in obj stl ply glb gltf 3mf pov svg json; do
   status 0
   exists all.$format
 done
-# A cut solid is a set operation.
+# A cut surface is a mesh.
 try export all.cag -o all.igs --section z=1
 status 1
-says 'union, difference, or intersection'
+says 'is a mesh'
 for format in urdf png exr; do
   try export all.cag -o all.$format --section z=1
   status 2
