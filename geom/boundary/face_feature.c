@@ -42,17 +42,25 @@ typedef struct Foot {
   double uv[2], distance;
 } Foot;
 
+// The point of the carrier at parameters, and whether the face contains it. If so, they are changed
+// by periods to those of the loops.
+static CagStatus point_inside(const CagFaceOutline *o, double uv[2], bool *inside,
+                              CagCarrierPoint *out, CagError *err) {
+  CagStatus status = cag_face_outline_has(o, uv, inside, err);
+  if (status || !*inside) return status;
+  return cag_carrier_eval(&o->face->carrier, uv[0], uv[1], out, err);
+}
+
 static CagStatus try_foot(const CagFaceOutline *o, CagVec3 center, double u, double v, Foot *best,
                           CagError *err) {
   double uv[2] = {u, v};
   bool inside;
   CagCarrierPoint p;
-  CagStatus status = cag_face_outline_has(o, uv, &inside, err);
+  CagStatus status = point_inside(o, uv, &inside, &p, err);
   if (status || !inside) return status;
-  status = cag_carrier_eval(&o->face->carrier, uv[0], uv[1], &p, err);
-  const double distance = status ? 0 : cag_norm(cag_sub(p.point, center));
-  if (!status && distance < best->distance) *best = (Foot){{uv[0], uv[1]}, distance};
-  return status;
+  const double distance = cag_norm(cag_sub(p.point, center));
+  if (distance < best->distance) *best = (Foot){{uv[0], uv[1]}, distance};
+  return CAG_OK;
 }
 
 // The directions across the axis along +-X, +-Y, and +-Z, for faces whose sides are equally far
@@ -193,10 +201,8 @@ static CagStatus add_inside(const CagFaceOutline *o, double u, double v, CagBoun
   double uv[2] = {u, v};
   bool inside;
   CagCarrierPoint p;
-  CagStatus status = cag_face_outline_has(o, uv, &inside, err);
-  if (status || !inside) return status;
-  status = cag_carrier_eval(&o->face->carrier, uv[0], uv[1], &p, err);
-  if (!status) cag_bounds_add(box, p.point);
+  CagStatus status = point_inside(o, uv, &inside, &p, err);
+  if (!status && inside) cag_bounds_add(box, p.point);
   return status;
 }
 
