@@ -113,8 +113,8 @@ static Run begin(const char *what, double limit) {
 
 // Counts and reports errors of the way in which the operation ended.
 static size_t end(Run *r, int status, int wanted) {
-  const double late = fmin(cag_clock_seconds() - r->begun - LIMIT,
-                           processor_seconds() - r->begun_processor);
+  const double late =
+      fmin(cag_clock_seconds() - r->begun - LIMIT, processor_seconds() - r->begun_processor);
   alarm(0);
   const bool wrong = status != wanted || late > LATE;
   if (wrong) {
