@@ -5,6 +5,7 @@
 // front of it differ from those in front of its parent. A ray from each root to infinity determines
 // the winding numbers there.
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -191,16 +192,17 @@ static int side_of_ray(const Ray *r, uint32_t a, uint32_t b) {
   return rise ? -rise : cag_bool_compare(&r->w->points, a, b, 1);
 }
 
-static void cross_face(void *context, uint32_t face) {
+static bool cross_face(void *context, uint32_t face) {
   Ray *r = context;
   const BoolFace *f = &r->w->faces[face];
   const int seen = cag_bool_normal_sign(&r->w->points, f->plane, 0);
-  if (seen == 0) return;
+  if (seen == 0) return true;
   for (int k = 0; k < 3; k++)
-    if (side_of_ray(r, f->v[k], f->v[(k + 1) % 3]) != seen) return;
+    if (side_of_ray(r, f->v[k], f->v[(k + 1) % 3]) != seen) return true;
   // The face is ahead of the start: it faces +x with the start behind it, or the reverse.
-  if (cag_bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return;
+  if (cag_bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return true;
   for (int k = 0; k < 2; k++) r->sum[k] += seen * f->times[k];
+  return true;
 }
 
 // The winding in front of a piece. The ray starts at the centroid of the piece, on its +x side; for
@@ -209,7 +211,9 @@ static bool cast_ray(BoolWork *w, uint32_t piece, Winding front) {
   const BoolPiece *p = &bool_pieces(w)[piece];
   Ray r = {w, cag_bool_points_centroid(&w->points, p->v), {0, 0}};
   if (r.from == BOOL_NONE) return false;
-  cag_bool_visit_ray(w, w->points.at[r.from], cross_face, &r);
+  CagBounds ahead = {w->points.at[r.from], w->points.at[r.from]};
+  ahead.max.x = INFINITY;
+  cag_box_tree_meeting(&w->tree, &ahead, cross_face, &r);
   int facing = 0;
   for (int axis = 0; axis < 3 && facing == 0; axis++)
     facing = cag_bool_normal_sign(&w->points, plane_of(w, piece), axis);

@@ -1,7 +1,6 @@
 // Which faces of a set operation meet, and in what.
 //
-// A tree of boxes over the faces in Morton order is traversed against itself. Two faces in
-// different planes meet in a point or a segment. Its ends are corners of one face in the other, or
+// A tree of boxes over the faces is traversed against itself. Two faces in different planes meet in a point or a segment. Its ends are corners of one face in the other, or
 // points where an edge of one passes through the other, as decided by signs of determinants of the
 // operands' corners. Faces that overlap or touch in one plane form a group and are cut together.
 
@@ -11,142 +10,22 @@
 #include "base/stop.h"
 #include "geom/boolean/work.h"
 
-#define LEAF_FACES 4
-#define STOP_INTERVAL 1024 // pairs of leaves between looks at the caller's wish to stop
-
-typedef struct BoolNode {
-  CagBounds box;
-  uint32_t first, count; // of `order`
-  uint32_t right;        // the left child follows its parent; 0: a leaf
-} BoolNode;
-
-static bool boxes_meet(const CagBounds *a, const CagBounds *b) {
-  return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
-         b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
-}
-
-// For numbers other than NaN; fmin and fmax are slower.
-static double least(double a, double b) { return a < b ? a : b; }
-static double most(double a, double b) { return a > b ? a : b; }
-
-static void add_box(CagBounds *all, const CagBounds *b) {
-  all->min = cag_vec3(least(all->min.x, b->min.x), least(all->min.y, b->min.y),
-                      least(all->min.z, b->min.z));
-  all->max =
-      cag_vec3(most(all->max.x, b->max.x), most(all->max.y, b->max.y), most(all->max.z, b->max.z));
-}
+#define STOP_INTERVAL 1024 // pairs between looks at the caller's wish to stop
 
 static CagBounds face_box(const BoolWork *w, uint32_t f) {
   CagBounds box = CAG_BOUNDS_EMPTY;
-  for (int k = 0; k < 3; k++) {
-    const CagVec3 p = w->points.at[w->faces[f].v[k]];
-    add_box(&box, &(CagBounds){p, p});
-  }
+  for (int k = 0; k < 3; k++) cag_bounds_add(&box, w->points.at[w->faces[f].v[k]]);
   const CagVec3 room = {w->slack, w->slack, w->slack};
   return (CagBounds){cag_sub(box.min, room), cag_add(box.max, room)};
 }
 
-// --- The tree ---
-
-typedef struct Place {
-  uint64_t code;
-  uint32_t face;
-} Place;
-
-// Moves each bit to every third position.
-static uint64_t spread(uint64_t x) {
-  x = (x | x << 32) & 0x1f00000000ffffu;
-  x = (x | x << 16) & 0x1f0000ff0000ffu;
-  x = (x | x << 8) & 0x100f00f00f00f00fu;
-  x = (x | x << 4) & 0x10c30c30c30c30c3u;
-  return (x | x << 2) & 0x1249249249249249u;
-}
-
-static uint64_t grid_step(double x, double low, double high) {
-  const double steps = 2097151; // 21 bits
-  return high > low ? (uint64_t)((x - low) / (high - low) * steps) : 0;
-}
-
-// A stable sort by code; needs n more items of scratch space after p.
-static void sort_places(Place *p, size_t n) {
-  // 66 bits: an even number of passes, so that the result ends up in p.
-  enum { BITS = 11, DIGITS = 6 };
-  // Before each pass p holds a permutation, which remains if the work is canceled.
-  for (int digit = 0; digit < DIGITS && !cag_stopped(); digit++) {
-    size_t start[(1 << BITS) + 1] = {0};
-    Place *from = digit % 2 ? p + n : p, *to = digit % 2 ? p : p + n;
-    const uint64_t mask = (1 << BITS) - 1;
-    for (size_t i = 0; i < n; i++) start[(from[i].code >> (BITS * digit) & mask) + 1]++;
-    for (int k = 0; k < 1 << BITS; k++) start[k + 1] += start[k];
-    for (size_t i = 0; i < n; i++) to[start[from[i].code >> (BITS * digit) & mask]++] = from[i];
-  }
-}
-
-static bool sort_faces(BoolWork *w) {
-  Place *places = cag_malloc((2 * w->face_count + 1) * sizeof *places);
-  if (!places) return false;
-  CagBounds all = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; i < w->corners; i++)
-    add_box(&all, &(CagBounds){w->points.at[i], w->points.at[i]});
-  for (uint32_t f = 0; f < w->face_count; f++) {
-    const CagBounds box = face_box(w, f);
-    const CagVec3 c = cag_lerp(box.min, box.max, 0.5);
-    places[f].face = f;
-    places[f].code = spread(grid_step(c.x, all.min.x, all.max.x)) |
-                     spread(grid_step(c.y, all.min.y, all.max.y)) << 1 |
-                     spread(grid_step(c.z, all.min.z, all.max.z)) << 2;
-  }
-  sort_places(places, w->face_count);
-  for (size_t i = 0; i < w->face_count; i++) {
-    w->order[i] = places[i].face;
-    w->boxes[i] = face_box(w, places[i].face);
-  }
-  cag_free(places);
-  return true;
-}
-
-static uint32_t build_node(BoolWork *w, uint32_t first, uint32_t count, uint32_t *used) {
-  const uint32_t at = (*used)++;
-  BoolNode *node = &w->nodes[at];
-  *node = (BoolNode){CAG_BOUNDS_EMPTY, first, count, 0};
-  if (count <= LEAF_FACES) {
-    for (uint32_t i = 0; i < count; i++) add_box(&node->box, &w->boxes[first + i]);
-    return at;
-  }
-  const uint32_t half = count / 2, left = build_node(w, first, half, used);
-  node->right = build_node(w, first + half, count - half, used);
-  add_box(&node->box, &w->nodes[left].box);
-  add_box(&node->box, &w->nodes[node->right].box);
-  return at;
-}
-
-static bool build_tree(BoolWork *w) {
-  w->order = cag_malloc((w->face_count + 1) * sizeof *w->order);
-  w->nodes = cag_malloc((2 * w->face_count + 1) * sizeof *w->nodes);
-  w->boxes = cag_malloc((w->face_count + 1) * sizeof *w->boxes);
-  if (!w->order || !w->nodes || !w->boxes || !sort_faces(w)) return false;
-  uint32_t used = 0;
-  build_node(w, 0, (uint32_t)w->face_count, &used);
-  return true;
-}
-
-static void visit_ray(const BoolWork *w, uint32_t at, CagVec3 from, BoolRayVisit *visit,
-                      void *context) {
-  const BoolNode *node = &w->nodes[at];
-  const CagBounds *b = &node->box;
-  if (b->max.x < from.x || b->min.y > from.y || b->max.y < from.y || b->min.z > from.z ||
-      b->max.z < from.z)
-    return;
-  if (node->right) {
-    visit_ray(w, at + 1, from, visit, context);
-    visit_ray(w, node->right, from, visit, context);
-    return;
-  }
-  for (uint32_t i = 0; i < node->count; i++) visit(context, w->order[node->first + i]);
-}
-
-void cag_bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context) {
-  visit_ray(w, 0, from, visit, context);
+static CagStatus build_tree(BoolWork *w) {
+  CagBounds *boxes = cag_malloc((w->face_count + 1) * sizeof *boxes);
+  if (!boxes) return cag_fail_memory(w->err);
+  for (uint32_t f = 0; f < w->face_count; f++) boxes[f] = face_box(w, f);
+  const CagStatus status = cag_box_tree_new(boxes, w->face_count, &w->tree, w->err);
+  cag_free(boxes);
+  return status;
 }
 
 // --- Coplanar faces ---
@@ -321,71 +200,22 @@ typedef struct Search {
   BoolWork *work;
   BoolPairVisit *visit;
   void *context;
-  size_t leaves;
-  CagStatus status;
+  size_t pairs;
 } Search;
 
-static bool goes_on(Search *s) {
-  if (!s->status && s->leaves++ % STOP_INTERVAL == 0) s->status = cag_bool_stopped(s->work);
-  return !s->status;
+static CagStatus visit_pair(void *context, uint32_t f, uint32_t g) {
+  Search *s = context;
+  if (s->pairs++ % STOP_INTERVAL == 0 && cag_bool_stopped(s->work)) return s->work->err->status;
+  return s->visit(s->context, f, g) ? CAG_OK : cag_fail_memory(s->work->err);
 }
 
-static void meet_leaves(Search *s, const BoolNode *a, const BoolNode *b) {
-  BoolWork *w = s->work;
-  if (!goes_on(s)) return;
-  for (uint32_t i = 0; i < a->count; i++) {
-    const uint32_t f = w->order[a->first + i];
-    const CagBounds *box = &w->boxes[a->first + i];
-    if (a != b && !boxes_meet(box, &b->box)) continue;
-    for (uint32_t k = a == b ? i + 1 : 0; k < b->count; k++) {
-      const uint32_t g = w->order[b->first + k];
-      if (!boxes_meet(box, &w->boxes[b->first + k]) || s->visit(s->context, f, g)) continue;
-      s->status = cag_fail_memory(w->err);
-      return;
-    }
-  }
-}
-
-static void meet_nodes(Search *s, uint32_t i, uint32_t k) {
-  const BoolNode *a = &s->work->nodes[i], *b = &s->work->nodes[k];
-  if (s->status || !boxes_meet(&a->box, &b->box)) return;
-  if (!a->right && !b->right) meet_leaves(s, a, b);
-  else if (a->count >= b->count) {
-    meet_nodes(s, i + 1, k);
-    meet_nodes(s, a->right, k);
-  } else {
-    meet_nodes(s, i, k + 1);
-    meet_nodes(s, i, b->right);
-  }
-}
-
-static void meet_within(Search *s, uint32_t i) {
-  const BoolNode *a = &s->work->nodes[i];
-  if (s->status) return;
-  if (!a->right) {
-    meet_leaves(s, a, a);
-    return;
-  }
-  meet_within(s, i + 1);
-  meet_within(s, a->right);
-  meet_nodes(s, i + 1, a->right);
-}
-
-void cag_bool_forget_pairs(BoolWork *w) {
-  cag_free(w->nodes);
-  cag_free(w->order);
-  cag_free(w->boxes);
-  w->nodes = NULL;
-  w->order = NULL;
-  w->boxes = NULL;
-}
+void cag_bool_forget_pairs(BoolWork *w) { cag_box_tree_free(&w->tree); }
 
 CagStatus cag_bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
-  if (!w->nodes && !build_tree(w)) return cag_fail_memory(w->err);
-  if (cag_stop_check(w->err)) return w->err->status;
-  Search s = {w, visit, context, 0, CAG_OK};
-  meet_within(&s, 0);
-  return s.status;
+  CagStatus status = w->tree.nodes ? CAG_OK : build_tree(w);
+  if (!status) status = cag_stop_check(w->err);
+  Search s = {w, visit, context, 0};
+  return status ? status : cag_box_tree_pairs(&w->tree, visit_pair, &s);
 }
 
 CagStatus cag_bool_find_contacts(BoolWork *w) {

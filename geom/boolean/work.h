@@ -19,6 +19,7 @@
 #define CAG_GEOM_BOOLEAN_WORK_H
 
 #include "geom/boolean/boolean.h"
+#include "geom/mesh/box_tree.h"
 #include "geom/mesh/exact.h"
 
 #define BOOL_NONE UINT32_MAX
@@ -145,16 +146,14 @@ typedef struct BoolWork {
   size_t corners; // points 0 .. corners - 1 are those of the operands, as given and as snapped
   BoolFace *faces;
   size_t face_count;
-  double slack;           // faces closer than this may be coplanar
-  struct BoolNode *nodes; // a tree of boxes over `order`
-  uint32_t *order;        // of the faces
-  CagBounds *boxes;       // in that order
-  uint32_t *plane_of;     // union-find forest of the faces that overlap others in their plane
-  uint8_t *touched;       // for each face, bits for the edges (starting at corner k) along which
-                          // another edge runs
-  BoolList contacts;      // of BoolContact
-  BoolList pieces;        // of BoolPiece
-  int32_t (*winding)[2];  // winding numbers in front of each piece
+  double slack;          // faces closer than this may be coplanar
+  CagBoxTree tree;       // of the faces
+  uint32_t *plane_of;    // union-find forest of the faces that overlap others in their plane
+  uint8_t *touched;      // for each face, bits for the edges (starting at corner k) along which
+                         // another edge runs
+  BoolList contacts;     // of BoolContact
+  BoolList pieces;       // of BoolPiece
+  int32_t (*winding)[2]; // winding numbers in front of each piece
 } BoolWork;
 
 static inline BoolPiece *bool_pieces(const BoolWork *w) { return w->pieces.items; }
@@ -190,9 +189,6 @@ bool cag_bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, Bo
                       size_t *n);
 CagStatus cag_bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
 
-// Calls `visit` for the faces whose boxes the ray from `from` along +x may meet.
-typedef void BoolRayVisit(void *context, uint32_t face);
-void cag_bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context);
 // Whether v, a point in the plane of f, lies in f or on its boundary.
 bool cag_bool_is_in_face(BoolWork *w, const BoolFace *f, uint32_t v);
 uint32_t cag_bool_root(uint32_t *parent, uint32_t i);

@@ -26,6 +26,7 @@
 #include "base/stop.h"
 #include "geom/boolean/boolean.h"
 #include "geom/linalg/tolerance.h"
+#include "geom/mesh/box_tree.h"
 #include "geom/mesh/distance.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/hull.h"
@@ -45,7 +46,7 @@
 // depth, which are within the tolerance.
 #define DEPTH 1.5
 // Rounds of adding concave edges. Each one closes all holes at the points that it finds.
-#define ROUNDS 8
+#define ROUNDS 20
 // Faces of the body that are compared to find one far from the normals of a vertex.
 #define CANDIDATES 48
 
@@ -566,76 +567,91 @@ static bool is_within(const Body *b, bool exact, CagVec3 x, const CagVec3 *point
   return (exact || !b->round) && d < b->outer && body_reaches(b, x, points, n, INSIDE);
 }
 
-// Triangles of the solid in the order of their least x.
-typedef struct Sorted {
-  double low;
-  uint32_t triangle;
-} Sorted;
-
-static int by_low(const void *a, const void *b) {
-  const Sorted *p = a, *q = b;
-  return p->low != q->low ? (p->low < q->low ? -1 : 1)
-                          : (p->triangle > q->triangle) - (p->triangle < q->triangle);
-}
-
+// Trees of the triangles of the solid, and of its concave edges.
 typedef struct Search {
   const Solid *s;
   const Body *b;
-  Sorted *sorted;
-  double widest; // extent of a triangle in x
+  CagBoxTree triangles, edges;
 } Search;
 
+static void search_free(Search *w) {
+  cag_box_tree_free(&w->triangles);
+  cag_box_tree_free(&w->edges);
+}
+
 static CagStatus search_new(const Solid *s, const Body *b, Search *out, CagError *err) {
-  const size_t n = s->mesh->triangle_count;
-  *out = (Search){s, b, cag_malloc((n + 1) * sizeof *out->sorted), 0};
-  if (!out->sorted) return cag_fail_memory(err);
+  const CagVec3 *at = s->mesh->positions;
+  const size_t n = s->mesh->triangle_count, most = n > s->concave_count ? n : s->concave_count;
+  *out = (Search){.s = s, .b = b};
+  CagBounds *boxes = cag_malloc((most + 1) * sizeof *boxes);
+  if (!boxes) return cag_fail_memory(err);
   for (size_t f = 0; f < n; f++) {
-    double low = INFINITY, high = -INFINITY;
-    for (int k = 0; k < 3; k++) {
-      const double x = s->mesh->positions[s->corners[3 * f + k]].x;
-      low = fmin(low, x);
-      high = fmax(high, x);
-    }
-    out->sorted[f] = (Sorted){low, (uint32_t)f};
-    out->widest = fmax(out->widest, high - low);
+    boxes[f] = CAG_BOUNDS_EMPTY;
+    for (int k = 0; k < 3; k++) cag_bounds_add(&boxes[f], at[s->corners[3 * f + (size_t)k]]);
   }
-  qsort(out->sorted, n, sizeof *out->sorted, by_low);
-  return CAG_OK;
+  CagStatus status = cag_box_tree_new(boxes, n, &out->triangles, err);
+  for (size_t i = 0; i < s->concave_count; i++) {
+    const SolidEdge *e = &s->edges[s->concave[i]];
+    boxes[i] = CAG_BOUNDS_EMPTY;
+    cag_bounds_add(&boxes[i], at[e->from]);
+    cag_bounds_add(&boxes[i], at[e->to]);
+  }
+  if (!status) status = cag_box_tree_new(boxes, s->concave_count, &out->edges, err);
+  cag_free(boxes);
+  if (status) search_free(out);
+  return status;
+}
+
+// A point, and what is searched around it.
+typedef struct Near {
+  const Search *w;
+  CagVec3 x;
+  bool exact;
+  const bool *marked; // concave edges whose sums have been added
+  double least;       // the distance of the nearest concave edge
+  uint32_t edge;
+} Near;
+
+static CagBounds reach_of(const Body *b, CagVec3 x) {
+  const CagVec3 c = cag_sub(x, b->center), r = {b->outer, b->outer, b->outer};
+  return (CagBounds){cag_sub(c, r), cag_add(c, r)};
+}
+
+static bool triangle_is_far(void *context, uint32_t triangle) {
+  const Near *n = context;
+  const Solid *s = n->w->s;
+  CagVec3 p[3];
+  for (int k = 0; k < 3; k++) p[k] = s->mesh->positions[s->corners[3 * triangle + (uint32_t)k]];
+  return !is_within(n->w->b, n->exact, n->x, p, 3);
 }
 
 // Whether the solid's surface is nearer to x than the body reaches.
 static bool is_inside_sum(const Search *w, bool exact, CagVec3 x) {
-  const size_t n = w->s->mesh->triangle_count;
-  const CagVec3 c = cag_sub(x, w->b->center);
-  const double r = w->b->outer;
-  size_t lo = 0, hi = n;
-  while (lo < hi) {
-    const size_t middle = (lo + hi) / 2;
-    if (w->sorted[middle].low < c.x - r - w->widest) lo = middle + 1;
-    else hi = middle;
-  }
-  for (; lo < n && w->sorted[lo].low <= c.x + r; lo++) {
-    const uint32_t *v = w->s->corners + 3 * w->sorted[lo].triangle;
-    CagVec3 p[3];
-    for (int k = 0; k < 3; k++) p[k] = w->s->mesh->positions[v[k]];
-    if (fmin(p[0].y, fmin(p[1].y, p[2].y)) > c.y + r ||
-        fmax(p[0].y, fmax(p[1].y, p[2].y)) < c.y - r ||
-        fmin(p[0].z, fmin(p[1].z, p[2].z)) > c.z + r ||
-        fmax(p[0].z, fmax(p[1].z, p[2].z)) < c.z - r)
-      continue;
-    if (is_within(w->b, exact, x, p, 3)) return true;
-  }
-  return false;
+  const CagBounds box = reach_of(w->b, x);
+  Near n = {.w = w, .x = x, .exact = exact};
+  return !cag_box_tree_meeting(&w->triangles, &box, triangle_is_far, &n);
 }
 
-// Marks the concave edges near x.
-static void mark_edges(const Search *w, CagVec3 x, bool *marked, bool *more) {
-  for (size_t i = 0; i < w->s->concave_count; i++) {
-    const SolidEdge *e = &w->s->edges[w->s->concave[i]];
-    const CagVec3 p[2] = {w->s->mesh->positions[e->from], w->s->mesh->positions[e->to]};
-    if (marked[i] || !is_within(w->b, false, x, p, 2)) continue;
-    marked[i] = *more = true;
+static bool compare_edge(void *context, uint32_t i) {
+  Near *n = context;
+  const Search *w = n->w;
+  const SolidEdge *e = &w->s->edges[w->s->concave[i]];
+  const CagVec3 p[2] = {w->s->mesh->positions[e->from], w->s->mesh->positions[e->to]};
+  if (!is_within(w->b, false, n->x, p, 2)) return true;
+  const double d = cag_distance_to_segment(cag_sub(n->x, w->b->center), p[0], p[1]);
+  if (n->marked[i]) return false;
+  if (d < n->least) {
+    n->least = d;
+    n->edge = i;
   }
+  return true;
+}
+
+// The concave edge nearest to x, of those that reach it; NONE if one of these is marked.
+static uint32_t unmarked_edge_near(const Search *w, CagVec3 x, const bool *marked) {
+  const CagBounds box = reach_of(w->b, x);
+  Near n = {.w = w, .x = x, .marked = marked, .least = INFINITY, .edge = NONE};
+  return cag_box_tree_meeting(&w->edges, &box, compare_edge, &n) ? n.edge : NONE;
 }
 
 static CagStatus add_capsule(Pieces *out, const Solid *s, const Body *b, const SolidEdge *e,
@@ -664,35 +680,53 @@ static CagStatus add_capsule(Pieces *out, const Solid *s, const Body *b, const S
   return status;
 }
 
-static CagStatus resolve(const Pieces *p, const volatile int *interrupt, CagMesh **out,
-                         CagError *err) {
+// The union of the pieces and of a mesh, which may be NULL.
+static CagStatus resolve(const CagMesh *m, const Pieces *p, const volatile int *interrupt,
+                         CagMesh **out, CagError *err) {
   CagMesh *soup;
   CagStatus status = pieces_mesh(p, &soup, err);
   if (status) return status;
-  const CagMesh *one[1] = {soup};
+  const CagMesh *both[2] = {soup, m};
   const CagBooleanHow how = {.interrupt = interrupt};
-  status = cag_mesh_boolean_many(CAG_UNION, one, 1, &how, out, err);
+  status = cag_mesh_boolean_many(CAG_UNION, both, m ? 2 : 1, &how, out, err);
   cag_mesh_release(soup);
   return status;
 }
 
-// Marks the concave edges near points of the result that lie inside of the sum, and adds their sums.
-static CagStatus close_holes(Pieces *pieces, const Search *w, const CagMesh *result, bool *marked,
-                             bool *more, CagError *err) {
-  bool *before = cag_malloc((w->s->concave_count + 1) * sizeof *before);
-  if (!before) return cag_fail_memory(err);
-  memcpy(before, marked, w->s->concave_count * sizeof *before);
+// The sums of concave edges near points of the result that lie inside of the whole sum.
+static CagStatus find_holes(const Search *w, const CagMesh *result, bool *marked, Pieces *out,
+                            CagError *err) {
   CagStatus status = CAG_OK;
-  *more = false;
   for (size_t i = 0; !status && i < result->vertex_count; i++) {
-    if (is_inside_sum(w, false, result->positions[i]))
-      mark_edges(w, result->positions[i], marked, more);
-    if (i % 64 == 0) status = cag_stop_check(err);
+    const CagVec3 x = result->positions[i];
+    const uint32_t near = is_inside_sum(w, false, x) ? unmarked_edge_near(w, x, marked) : NONE;
+    if (near != NONE) {
+      marked[near] = true;
+      status = add_capsule(out, w->s, w->b, &w->s->edges[w->s->concave[near]], err);
+    }
+    if (!status && i % 64 == 0) status = cag_stop_check(err);
   }
-  for (size_t i = 0; !status && i < w->s->concave_count; i++)
-    if (marked[i] && !before[i])
-      status = add_capsule(pieces, w->s, w->b, &w->s->edges[w->s->concave[i]], err);
-  cag_free(before);
+  return status;
+}
+
+// Adds them, until there are none. Replaces the result, also if it fails.
+static CagStatus close_holes(const Search *w, const volatile int *interrupt, CagMesh **result,
+                             CagError *err) {
+  bool *marked = cag_calloc(w->s->concave_count + 1, sizeof *marked), more = true;
+  CagStatus status = marked ? CAG_OK : cag_fail_memory(err);
+  for (int round = 0; !status && more && round < ROUNDS; round++) {
+    Pieces sums = {.smooth = w->b->round};
+    CagMesh *closed = NULL;
+    status = find_holes(w, *result, marked, &sums, err);
+    more = sums.n > 0;
+    if (!status && more) status = resolve(*result, &sums, interrupt, &closed, err);
+    if (closed) {
+      cag_mesh_release(*result);
+      *result = closed;
+    }
+    pieces_free(&sums);
+  }
+  cag_free(marked);
   return status;
 }
 
@@ -732,30 +766,17 @@ static CagStatus drop_shells(const Search *w, CagMesh *m, CagError *err) {
   return status;
 }
 
-static CagStatus resolve_all(Pieces *pieces, const Solid *s, const Body *b,
+static CagStatus resolve_all(const Pieces *pieces, const Solid *s, const Body *b,
                              const volatile int *interrupt, CagMesh **out, CagError *err) {
   CagMesh *result = NULL;
-  CagStatus status = resolve(pieces, interrupt, &result, err);
-  if (status || s->concave_count == 0) {
-    if (!status) *out = result;
-    return status;
+  Search w = {0};
+  CagStatus status = resolve(NULL, pieces, interrupt, &result, err);
+  if (!status && s->concave_count > 0) {
+    status = search_new(s, b, &w, err);
+    if (!status) status = close_holes(&w, interrupt, &result, err);
+    if (!status) status = drop_shells(&w, result, err);
+    search_free(&w);
   }
-  Search w;
-  bool *marked = cag_calloc(s->concave_count + 1, sizeof *marked), more = true;
-  status = search_new(s, b, &w, err);
-  if (!status && !marked) status = cag_fail_memory(err);
-  for (int round = 0; !status && more && round < ROUNDS; round++) {
-    status = close_holes(pieces, &w, result, marked, &more, err);
-    if (status || !more) continue;
-    CagMesh *next = NULL;
-    status = resolve(pieces, interrupt, &next, err);
-    if (status) continue;
-    cag_mesh_release(result);
-    result = next;
-  }
-  if (!status) status = drop_shells(&w, result, err);
-  cag_free(w.sorted);
-  cag_free(marked);
   if (status) cag_mesh_release(result);
   else *out = result;
   return status;
