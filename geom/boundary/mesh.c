@@ -464,8 +464,14 @@ static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
   return status ? status : join_faces(m, out, err);
 }
 
-CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, CagMesh **out,
-                            CagError *err) {
+static void count_triangles(const Mesher *m, size_t *first) {
+  first[0] = 0;
+  for (size_t f = 0; f < m->b->face_count; f++)
+    first[f + 1] = first[f] + m->meshes[f]->triangle_count;
+}
+
+CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, size_t *first,
+                            CagMesh **out, CagError *err) {
   Mesher m = {.b = b, .how = *how, .edge = *how};
   CagMesh *mesh = NULL;
   bool watertight = false;
@@ -480,6 +486,7 @@ CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, Ca
     if (!status) status = cag_mesh_watertight(mesh, &watertight, edge, err);
     else if (err->id == CAG_ERR_polygon_self_intersection && k + 1 < TRIES) status = CAG_OK;
   }
+  if (!status && first) count_triangles(&m, first);
   mesher_free(&m);
   if (!status && !watertight)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,

@@ -11,7 +11,9 @@
 // and corners. If the outline of a face crosses itself because chords cut corners, all edges are
 // divided more finely. Fails with "no-boundary" if that does not help, or if the mesh is not
 // watertight.
-CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, CagMesh **out,
-                            CagError *err);
+//
+//   first  for each face, its first triangle, and at the end the number of all; may be NULL
+CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, size_t *first,
+                            CagMesh **out, CagError *err);
 
 #endif

@@ -16,6 +16,8 @@
 
 // The domain is this fraction larger than that of the face, because traces are approximate.
 #define MARGIN 1e-6
+// Traces may leave the domain of a spline by this fraction of its size; they are moved back.
+#define OVERSHOOT 1e-4
 // Ends of traces that are closer than this fraction of the size of the domain meet.
 #define MEET 1e-10
 
@@ -237,12 +239,42 @@ static CagStatus region_of(const CagBoundary *b, const CagBoundaryFace *f, const
   return status;
 }
 
+// The scale and shift that move a range into another one, or neither if it is inside already, or too
+// far outside.
+static void fit_range(double low, double high, double start, double end, double *scale,
+                      double *shift) {
+  const double room = OVERSHOOT * (end - start);
+  const bool out = low < start || high > end, near = low >= start - room && high <= end + room;
+  const double from = fmax(low, start), to = fmin(high, end);
+  *scale = out && near ? (to - from) / (high - low) : 1;
+  *shift = out && near ? from - *scale * low : 0;
+}
+
+// Replaces the region by one in the domain of the surface.
+static CagStatus fit_region(const CagSurface *s, CagRegion **region, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_region_bounds(*region, &box, err);
+  if (status) return status;
+  double scale[2], shift[2];
+  fit_range(box.min.x, box.max.x, s->u0, s->u1, &scale[0], &shift[0]);
+  fit_range(box.min.y, box.max.y, s->v0, s->v1, &scale[1], &shift[1]);
+  if (scale[0] == 1 && scale[1] == 1) return CAG_OK;
+  const CagTransform t = parameter_map(scale[0], 0, shift[0], 0, scale[1], shift[1]);
+  CagRegion *fitted;
+  status = cag_region_transform(*region, &t, &fitted, err);
+  if (status) return status;
+  cag_region_release(*region);
+  *region = fitted;
+  return CAG_OK;
+}
+
 CagStatus cag_boundary_surface(const CagBoundary *b, size_t face, CagSurface **out, CagError *err) {
   CagPatch p;
   CagRegion *region = NULL;
   CagStatus status = cag_patch_of_face(b, face, &p, err);
   if (status) return status;
   status = region_of(b, &b->faces[face], &p, &region, err);
+  if (!status && p.whole) status = fit_region(p.whole, &region, err);
   if (!status)
     status = p.whole ? cag_surface_trimmed(p.whole, region, out, err)
                      : cag_surface_planar(region, &p.plane, out, err);

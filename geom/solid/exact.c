@@ -225,7 +225,7 @@ static CagStatus mesh_parts(const CagExact *e, const CagTessellation *how, CagMe
   size_t n = 0;
   CagStatus status = meshes ? CAG_OK : cag_fail_memory(err);
   while (!status && n < e->count) {
-    status = cag_boundary_mesh(&e->parts[n], how, &meshes[n], err);
+    status = cag_boundary_mesh(&e->parts[n], how, NULL, &meshes[n], err);
     if (!status) n++;
   }
   if (!status) status = cag_mesh_append(meshes, n, out, err);

@@ -14,10 +14,16 @@
 
 // The tolerance for surfaces without an exact form, as a fraction of the size.
 #define APPROXIMATE 1e-5
+// The default tolerance of meshes in place of exact results, likewise.
+#define MESHED 1e-3
+
+static CagKernel *find_kernel(CagCall *call) {
+  CagVm *vm = call->vm;
+  return vm->find_kernel ? vm->find_kernel(vm->find_kernel_context) : NULL;
+}
 
 CagKernel *cag_exacts_kernel(CagCall *call) {
-  CagVm *vm = call->vm;
-  CagKernel *k = vm->find_kernel ? vm->find_kernel(vm->find_kernel_context) : NULL;
+  CagKernel *k = find_kernel(call);
   if (k) return k;
   (void)cag_geometry_ok(call, cag_fail_memory(call->err));
   return NULL;
@@ -50,17 +56,23 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
   return status;
 }
 
-bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+CagStatus cag_exacts_find(CagCall *call, int argument, const CagSolid **out, CagError *err) {
   const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
   CagSolid *exact = NULL;
   double scale;
   *out = s;
-  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale)) return true;
-  CagKernel *k = cag_exacts_kernel(call);
-  if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
+  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale))
+    return CAG_OK;
+  CagKernel *k = find_kernel(call);
+  const CagStatus status = k ? compute(k, s, &exact, err) : cag_fail_memory(err);
+  if (status) return status;
   cag_hold_solid(call, exact);
   *out = exact;
-  return true;
+  return CAG_OK;
+}
+
+bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+  return cag_geometry_ok(call, cag_exacts_find(call, argument, out, call->err));
 }
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
@@ -71,12 +83,20 @@ bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagVal
   return true;
 }
 
-void cag_exacts_say_tier(CagCall *call, const char *tier, size_t edges) {
-  char label[96];
+void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count) {
+  char label[128];
   if (!call->vm->verbose) return;
   const char *signature = call->builtin->signature;
-  snprintf(label, sizeof label, "%.*s: %s; edges", (int)strcspn(signature, "("), signature, tier);
-  cag_vm_trace(call, cag_number((double)edges), label);
+  snprintf(label, sizeof label, "%.*s: %s; %s", (int)strcspn(signature, "("), signature, tier,
+           what);
+  cag_vm_trace(call, cag_number((double)count), label);
+}
+
+double cag_exacts_tolerance(CagCall *call, const CagSolid *s) {
+  CagBounds box;
+  CagError err;
+  if (call->vm->tolerance > 0) return call->vm->tolerance;
+  return cag_solid_bounds(s, &box, &err) ? 0 : MESHED * cag_norm(cag_sub(box.max, box.min));
 }
 
 bool cag_exacts_exact(CagCall *call, const struct cag_exacts_exact *a, CagValue *result) {

@@ -11,13 +11,18 @@ CagKernel *cag_exacts_kernel(CagCall *call);
 // The exact solid of an argument, whose placement is a similarity: the argument itself if it is one,
 // else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
+// The same, without setting the machine's error.
+CagStatus cag_exacts_find(CagCall *call, int argument, const CagSolid **out, CagError *err);
 // Makes a solid of parts that the kernel found, whose contents it takes, and checks it
 // (cag_solid_exact_check).
 CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);
 // Checks the parts that the kernel found (cag_solid_exact_check), and returns them as one solid with
 // the attributes of an argument. Takes their contents.
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);
-// With -v, writes how a rounding was computed ("tier B: kernel"), and the number of edges.
-void cag_exacts_say_tier(CagCall *call, const char *tier, size_t edges);
+// With -v, writes how a result was computed ("tier B: kernel"), and a count ("edges").
+void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count);
+// The tolerance of results that are meshes because the kernel failed (tier C): the caller's, or
+// 1/1000 of the size of the solid.
+double cag_exacts_tolerance(CagCall *call, const CagSolid *s);
 
 #endif

@@ -1,10 +1,12 @@
 // Shells, drafts, splits, and imprints.
 
 #include <math.h>
+#include <stdio.h>
 
 #include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
+#include "geom/solid/hollow.h"
 #include "interp/builtin/exacts_parts.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
@@ -18,25 +20,70 @@ static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
   return cag_geometry_ok(p->call, status) && cag_exact_parts_add(p, made);
 }
 
-bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
-  CagChosen *open;
-  size_t n;
-  if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
+// --- shell ---
+
+// Walls that are meshes are within this fraction of their thickness.
+#define WALL 0.05
+
+// The walls by offsets of the mesh (tier C). Fails like the function of the core.
+static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, const CagSolid *s,
+                            const CagChosen *open, size_t n, CagSolid **out, CagError *err) {
+  const double tolerance = fmin(cag_exacts_tolerance(call, s), WALL * a->thickness);
+  CagSolidFace *faces = cag_hold_array(call, n, sizeof *faces);
+  char said[96], number[32];
+  for (size_t i = 0; i < n; i++) faces[i] = (CagSolidFace){open[i].part, open[i].index};
+  const CagStatus status =
+      cag_solid_hollow(s, a->thickness, a->outside, faces, n, tolerance, out, err);
+  if (status) return status;
+  snprintf(said, sizeof said, "tier C: offsets of the mesh, within %s mm",
+           cag_number_text(tolerance, number));
+  cag_exacts_say_tier(call, said, "open faces", n);
+  return CAG_OK;
+}
+
+static CagStatus kernel_shell(CagExactParts *p, const struct cag_exacts_shell *a,
+                              const CagChosen *open, size_t n, CagSolid **out) {
   const double thickness = (a->outside ? -1 : 1) * a->thickness / p->scale;
-  for (size_t i = 0; i < p->count; i++) {
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < p->count; i++) {
     CagBoundaries made;
     CagKernelFailure why;
     size_t *faces;
-    const size_t count = cag_chosen_in_part(call, open, n, i, &faces);
-    if (!add_made(p,
-                  cag_kernel_shell(p->kernel, &p->parts[i], thickness, faces, count, &made, &why,
-                                   call->err),
-                  &made))
-      return false;
+    const size_t count = cag_chosen_in_part(p->call, open, n, i, &faces);
+    status = cag_kernel_shell(p->kernel, &p->parts[i], thickness, faces, count, &made, &why,
+                              p->call->err);
+    if (!status) status = cag_exact_parts_take(p, &made);
   }
-  return cag_exact_parts_result(p, 0, result);
+  if (!status) status = cag_exact_parts_solid(p, out);
+  if (!status) cag_exacts_say_tier(p->call, "tier B: kernel", "open faces", n);
+  return status;
 }
+
+bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue *result) {
+  const CagSolid *s = NULL;
+  CagSolid *made = NULL;
+  CagChosen *open = NULL;
+  CagError err;
+  size_t n = 0;
+  CagStatus status = cag_exacts_find(call, 0, &s, call->err);
+  // The faces are those of the boundary.
+  if (status && (cag_is_final(status) || cag_given(call, 2))) return cag_geometry_ok(call, status);
+  if (!status) {
+    CagExactParts *p = cag_exact_parts_of(call, s);
+    if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
+    status = kernel_shell(p, a, open, n, &made);
+  } else s = a->G;
+  if (status && !cag_is_final(status)) {
+    const CagStatus meshed = mesh_shell(call, a, s, open, n, &made, &err);
+    if (cag_is_final(meshed)) *call->err = err;
+    if (!meshed || cag_is_final(meshed)) status = meshed;
+  }
+  if (!cag_solid_result(call, status, &made, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+// --- draft ---
 
 bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
   CagExactParts *p = cag_exact_parts(call, 0);

@@ -19,14 +19,20 @@ static void release_exact_parts(void *what) {
 }
 
 CagExactParts *cag_exact_parts(CagCall *call, int argument) {
+  const CagSolid *exact;
+  return cag_exacts_of(call, argument, &exact) ? cag_exact_parts_of(call, exact) : NULL;
+}
+
+CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact) {
   CagExactParts *p = cag_calloc(1, sizeof *p);
   size_t n = 0;
   if (!p) cag_vm_out_of_memory(call->vm);
   cag_hold_for(call, release_exact_parts, p);
   p->call = call;
   p->records = (CagValue){.type = CAG_UNSET};
+  p->solid = exact;
   p->kernel = cag_exacts_kernel(call);
-  if (!p->kernel || !cag_exacts_of(call, argument, &p->solid)) return NULL;
+  if (!p->kernel) return NULL;
   p->parts = cag_solid_boundaries(p->solid, &n);
   cag_transform_is_similarity(&p->solid->placement, &p->scale);
   p->features = cag_calloc(n + 1, sizeof *p->features);
@@ -173,25 +179,35 @@ size_t cag_chosen_in_part(CagCall *call, const CagChosen *chosen, size_t n, size
 
 // --- Results ---
 
-bool cag_exact_parts_add(CagExactParts *p, CagBoundaries *made) {
+CagStatus cag_exact_parts_take(CagExactParts *p, CagBoundaries *made) {
   CagBoundaries *all = &p->results;
   CagBoundary *items = cag_realloc(all->items, (all->count + made->count + 1) * sizeof *items);
   if (!items) {
     cag_boundaries_free(made);
-    return cag_geometry_ok(p->call, cag_fail_memory(p->call->err));
+    return cag_fail_memory(p->call->err);
   }
   memcpy(items + all->count, made->items, made->count * sizeof *items);
   *all = (CagBoundaries){items, all->count + made->count};
   cag_free(made->items);
   *made = (CagBoundaries){0};
-  return true;
+  return CAG_OK;
+}
+
+bool cag_exact_parts_add(CagExactParts *p, CagBoundaries *made) {
+  return cag_geometry_ok(p->call, cag_exact_parts_take(p, made));
+}
+
+CagStatus cag_exact_parts_solid(CagExactParts *p, CagSolid **out) {
+  CagSolid *own = NULL;
+  CagStatus status = cag_exacts_checked(&p->results, &own, p->call->err);
+  if (!status) status = cag_solid_transform(own, &p->solid->placement, out, p->call->err);
+  cag_solid_release(own);
+  return status;
 }
 
 bool cag_exact_parts_result(CagExactParts *p, int argument, CagValue *result) {
-  CagSolid *own = NULL, *placed = NULL;
-  CagStatus status = cag_exacts_checked(&p->results, &own, p->call->err);
-  if (!status) status = cag_solid_transform(own, &p->solid->placement, &placed, p->call->err);
-  cag_solid_release(own);
+  CagSolid *placed = NULL;
+  const CagStatus status = cag_exact_parts_solid(p, &placed);
   if (!cag_solid_result(p->call, status, &placed, result)) return false;
   cag_shape_say_alike(*result, p->call->values[argument]);
   return true;

@@ -21,6 +21,8 @@ typedef struct CagExactParts {
 
 // The parts of an argument, a solid. They are held by the call. NULL: an error is set.
 CagExactParts *cag_exact_parts(CagCall *call, int argument);
+// Those of an exact solid that cag_exacts_find found.
+CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact);
 
 // An edge or a face that was chosen.
 typedef struct CagChosen {
@@ -39,8 +41,12 @@ size_t cag_chosen_in_part(CagCall *call, const CagChosen *chosen, size_t n, size
                           size_t **out);
 
 // Adds what the kernel made of one part, and takes its contents.
+CagStatus cag_exact_parts_take(CagExactParts *p, CagBoundaries *made);
+// The same, with the machine's error.
 bool cag_exact_parts_add(CagExactParts *p, CagBoundaries *made);
-// The solid of all results, with the attributes of an argument.
+// The solid of all results in world coordinates. The error is that of the call.
+CagStatus cag_exact_parts_solid(CagExactParts *p, CagSolid **out);
+// The same, with the attributes of an argument.
 bool cag_exact_parts_result(CagExactParts *p, int argument, CagValue *result);
 
 #endif

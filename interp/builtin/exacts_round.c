@@ -15,8 +15,6 @@
 
 // Ends that are nearer than this fraction of the length of an edge are one point.
 #define CLOSED 1e-9
-// Default tolerance of the ball's mesh, as a fraction of the size of the solid.
-#define ROLLED 1e-3
 
 typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
                                   size_t n, CagBoundaries *out, CagKernelFailure *why,
@@ -189,18 +187,13 @@ static bool roll_edges(CagExactParts *p, const BlendWords *words, const CagChose
                        const CagBlend *blends, size_t n, CagValue *result, bool *done) {
   CagCall *call = p->call;
   CagRolledEdge *rolled = cag_hold_array(call, n, sizeof *rolled);
-  CagBounds box;
   CagError err;
   CagSolid *s = NULL;
   char said[96], number[32];
   *done = false;
   for (size_t i = 0; i < n; i++) rolled[i] = rolled_edge(p, words, chosen[i].part, &blends[i]);
-  CagStatus status = cag_solid_bounds(p->solid, &box, &err);
-  const double own = call->vm->tolerance;
-  const double tolerance = own > 0  ? own
-                           : status ? 0
-                                    : ROLLED * cag_norm(cag_sub(box.max, box.min));
-  if (!status) status = words->roll(p->solid, rolled, n, tolerance, NULL, &s, &err);
+  const double tolerance = cag_exacts_tolerance(call, p->solid);
+  const CagStatus status = words->roll(p->solid, rolled, n, tolerance, NULL, &s, &err);
   if (cag_is_final(status)) {
     *call->err = err;
     return cag_geometry_ok(call, status);
@@ -210,7 +203,7 @@ static bool roll_edges(CagExactParts *p, const BlendWords *words, const CagChose
   cag_shape_say_alike(*result, call->values[0]);
   snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %s mm",
            cag_number_text(tolerance, number));
-  cag_exacts_say_tier(call, said, n);
+  cag_exacts_say_tier(call, said, "edges", n);
   *done = true;
   return true;
 }
@@ -246,7 +239,7 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
     if (!cag_exact_parts_add(p, &made)) return false;
   }
   if (!cag_exact_parts_result(p, 0, result)) return false;
-  cag_exacts_say_tier(call, "tier B: kernel", n);
+  cag_exacts_say_tier(call, "tier B: kernel", "edges", n);
   return true;
 }
 

@@ -195,6 +195,13 @@ try_command env CAG_BREP="$PWD/none" "$CAG" run -q rounds.cag
 status 1
 says 'install the package cag-brep'
 
+it 'without cag-brep, shells are made of offsets of the mesh'
+printf 'print near(volume(shell(box([10, 20, 30]), 1)), 6000 - 8 * 18 * 28)\n' > shells.cag
+try_command env CAG_BREP="$PWD/none" "$CAG" run -v shells.cag
+status 0
+prints 'true'
+says 'tier C: offsets of the mesh, within'
+
 # --- Examples ---
 
 # faces FILE PLANES CYLINDERS CONES TORI SPLINES SOLIDS: what a STEP file holds.
