@@ -22,8 +22,8 @@ static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
 
 // --- shell ---
 
-// Walls that are meshes are within this fraction of their thickness.
-#define WALL 0.05
+// Walls that are meshes are within this fraction of their thickness, at most.
+#define WALL 0.1
 
 // The walls by offsets of the mesh (tier C). Fails like the function of the core.
 static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, const CagSolid *s,
