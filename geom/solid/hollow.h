@@ -3,12 +3,7 @@
 #ifndef CAG_GEOM_SOLID_HOLLOW_H
 #define CAG_GEOM_SOLID_HOLLOW_H
 
-#include "geom/solid/solid.h"
-
-// A face of a solid of the kind EXACT: its part and its number in the boundary of this part.
-typedef struct CagSolidFace {
-  size_t part, face;
-} CagSolidFace;
+#include "geom/solid/face_mesh.h"
 
 // The points of the solid that are at most a distance from its faces, or (outside) the points
 // outside of it that are: by offsets of the mesh (convolve.h).

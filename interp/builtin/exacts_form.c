@@ -7,6 +7,7 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
 #include "geom/solid/hollow.h"
+#include "geom/solid/incline.h"
 #include "interp/builtin/exacts_parts.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
@@ -20,25 +21,50 @@ static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
   return cag_geometry_ok(p->call, status) && cag_exact_parts_add(p, made);
 }
 
-// --- shell ---
+// --- Meshes where the kernel fails (tier C) ---
 
 // Walls that are meshes are within this fraction of their thickness, at most.
 #define WALL 0.1
 
-// The walls by offsets of the mesh (tier C). Fails like the function of the core.
-static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, const CagSolid *s,
-                            const CagChosen *open, size_t n, CagSolid **out, CagError *err) {
-  const double tolerance = fmin(cag_exacts_tolerance(call, s), WALL * a->thickness);
-  CagSolidFace *faces = cag_hold_array(call, n, sizeof *faces);
+static void say_meshed(CagCall *call, const char *how, double tolerance, const char *what,
+                       size_t count) {
   char said[96], number[32];
-  for (size_t i = 0; i < n; i++) faces[i] = (CagSolidFace){open[i].part, open[i].index};
+  snprintf(said, sizeof said, "tier C: %s, within %s mm", how, cag_number_text(tolerance, number));
+  cag_exacts_say_tier(call, said, what, count);
+}
+
+// The status after the mesh was tried: that of the kernel, with its error, unless the mesh was made,
+// or the run ends.
+static CagStatus instead(CagCall *call, CagStatus kernel, CagStatus meshed, const CagError *err) {
+  if (cag_is_final(meshed)) *call->err = *err;
+  return !meshed || cag_is_final(meshed) ? meshed : kernel;
+}
+
+// The chosen faces, held by the call.
+static const CagSolidFace *chosen_faces(CagCall *call, const CagChosen *chosen, size_t n) {
+  CagSolidFace *faces = cag_hold_array(call, n, sizeof *faces);
+  for (size_t i = 0; i < n; i++) faces[i] = (CagSolidFace){chosen[i].part, chosen[i].index};
+  return faces;
+}
+
+static bool changed_result(CagCall *call, CagStatus status, CagSolid **made, CagValue *result) {
+  if (!cag_solid_result(call, status, made, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+// --- shell ---
+
+// p: NULL without a boundary, and without open faces.
+static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, CagExactParts *p,
+                            const CagChosen *open, size_t n, CagSolid **out, CagError *err) {
+  const CagSolid *s = p ? p->solid : a->G;
+  const double tolerance = fmin(cag_exacts_tolerance(call, s), WALL * a->thickness);
+  const CagSolidFace *faces = chosen_faces(call, open, n);
   const CagStatus status =
       cag_solid_hollow(s, a->thickness, a->outside, faces, n, tolerance, out, err);
-  if (status) return status;
-  snprintf(said, sizeof said, "tier C: offsets of the mesh, within %s mm",
-           cag_number_text(tolerance, number));
-  cag_exacts_say_tier(call, said, "open faces", n);
-  return CAG_OK;
+  if (!status) say_meshed(call, "offsets of the mesh", tolerance, "open faces", n);
+  return status;
 }
 
 static CagStatus kernel_shell(CagExactParts *p, const struct cag_exacts_shell *a,
@@ -60,53 +86,71 @@ static CagStatus kernel_shell(CagExactParts *p, const struct cag_exacts_shell *a
 }
 
 bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue *result) {
-  const CagSolid *s = NULL;
+  const CagSolid *s;
+  CagExactParts *p = NULL;
   CagSolid *made = NULL;
   CagChosen *open = NULL;
   CagError err;
   size_t n = 0;
   CagStatus status = cag_exacts_find(call, 0, &s, call->err);
-  // The faces are those of the boundary.
+  // The choice is one of faces of the boundary.
   if (status && (cag_is_final(status) || cag_given(call, 2))) return cag_geometry_ok(call, status);
   if (!status) {
-    CagExactParts *p = cag_exact_parts_of(call, s);
+    p = cag_exact_parts_of(call, s);
     if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
     status = kernel_shell(p, a, open, n, &made);
-  } else s = a->G;
-  if (status && !cag_is_final(status)) {
-    const CagStatus meshed = mesh_shell(call, a, s, open, n, &made, &err);
-    if (cag_is_final(meshed)) *call->err = err;
-    if (!meshed || cag_is_final(meshed)) status = meshed;
   }
-  if (!cag_solid_result(call, status, &made, result)) return false;
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
+  if (status && !cag_is_final(status))
+    status = instead(call, status, mesh_shell(call, a, p, open, n, &made, &err), &err);
+  return changed_result(call, status, &made, result);
 }
 
 // --- draft ---
 
-bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
-  CagChosen *chosen;
+// The direction of the pull in world coordinates is a unit vector.
+static CagStatus mesh_draft(CagExactParts *p, const struct cag_exacts_draft *a,
+                            const CagChosen *chosen, size_t n, CagSolid **out, CagError *err) {
+  CagCall *call = p->call;
+  const double tolerance = cag_exacts_tolerance(call, p->solid);
+  const CagSolidFace *faces = chosen_faces(call, chosen, n);
+  const CagStatus status = cag_solid_incline(p->solid, faces, n, a->angle, a->at.at,
+                                             cag_unit(a->pull.at), tolerance, out, err);
+  if (!status) say_meshed(call, "moved faces of the mesh", tolerance, "faces", n);
+  return status;
+}
+
+static CagStatus kernel_draft(CagExactParts *p, const struct cag_exacts_draft *a,
+                              const CagChosen *chosen, size_t n, CagSolid **out) {
   CagTransform back;
-  size_t n;
-  if (!p || !cag_chosen_faces(p, 2, &chosen, &n) ||
-      !cag_geometry_ok(call, cag_transform_inverse(&p->solid->placement, &back, call->err)))
-    return false;
+  CagStatus status = cag_transform_inverse(&p->solid->placement, &back, p->call->err);
+  if (status) return status;
   const CagVec3 at = cag_transform_point(&back, a->at.at);
   const CagVec3 pull = cag_unit(cag_transform_vector(&back, a->pull.at));
-  for (size_t i = 0; i < p->count; i++) {
+  for (size_t i = 0; !status && i < p->count; i++) {
     CagBoundaries made;
     CagKernelFailure why;
     size_t *faces;
-    const size_t count = cag_chosen_in_part(call, chosen, n, i, &faces);
-    if (!add_made(p,
-                  cag_kernel_draft(p->kernel, &p->parts[i], a->angle, pull, at, faces, count, &made,
-                                   &why, call->err),
-                  &made))
-      return false;
+    const size_t count = cag_chosen_in_part(p->call, chosen, n, i, &faces);
+    status = cag_kernel_draft(p->kernel, &p->parts[i], a->angle, pull, at, faces, count, &made,
+                              &why, p->call->err);
+    if (!status) status = cag_exact_parts_take(p, &made);
   }
-  return cag_exact_parts_result(p, 0, result);
+  if (!status) status = cag_exact_parts_solid(p, out);
+  if (!status) cag_exacts_say_tier(p->call, "tier B: kernel", "faces", n);
+  return status;
+}
+
+bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
+  CagExactParts *p = cag_exact_parts(call, 0);
+  CagSolid *made = NULL;
+  CagChosen *chosen;
+  CagError err;
+  size_t n;
+  if (!p || !cag_chosen_faces(p, 2, &chosen, &n)) return false;
+  CagStatus status = kernel_draft(p, a, chosen, n, &made);
+  if (status && !cag_is_final(status))
+    status = instead(call, status, mesh_draft(p, a, chosen, n, &made, &err), &err);
+  return changed_result(call, status, &made, result);
 }
 
 // --- split_solid ---

@@ -22,7 +22,7 @@ SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 # Errors that a change may end in.
 NAMED = ("no-blend", "no-boundary", "value", "thickness-too-large", "empty-shape", "limit")
 VERBOSE = "RANDOM_VERBOSE" in os.environ
-SECONDS = 12  # for one change; more is counted as `limit`
+SECONDS = 60  # for one change; more is counted as `limit`
 
 HEAD = """import std.select
 G = %s
