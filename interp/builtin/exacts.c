@@ -50,17 +50,24 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
   return status;
 }
 
-bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
-  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid **out) {
+  const CagVm *vm = call->vm;
   CagSolid *exact = NULL;
   double scale;
   *out = s;
-  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale)) return true;
-  CagKernel *k = cag_exacts_kernel(call);
-  if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
+  if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale))
+    return CAG_OK;
+  CagKernel *k = vm->find_kernel ? vm->find_kernel(vm->find_kernel_context) : NULL;
+  CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
+  if (status) return status;
   cag_hold_solid(call, exact);
   *out = exact;
-  return true;
+  return CAG_OK;
+}
+
+bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+  return cag_geometry_ok(call, cag_exacts_of_solid(call, s, out));
 }
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
