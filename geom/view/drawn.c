@@ -102,12 +102,17 @@ static CagStatus turning_point(const CagCurve *flat, CagVec3 along, double a, do
   return status;
 }
 
+// A parameter of a curve, or one beyond the end of a closed one.
+static double within(const CagCurve *c, double t) {
+  return c->closed && t > c->end ? fmin(t - (c->end - c->start), c->end) : t;
+}
+
 static CagStatus add_segment(CagDrawing *d, const CagViewLine *line, const CagCurve *flat,
                              double from, double to, CagError *err) {
   CagVec3 p, q;
   CagCurve *segment = NULL;
   CagStatus status = cag_curve_point(flat, from, &p, err);
-  if (!status) status = cag_curve_point(flat, to, &q, err);
+  if (!status) status = cag_curve_point(flat, within(flat, to), &q, err);
   if (status || cag_norm(cag_sub(q, p)) <= POINT * d->size) return status;
   p.z = q.z = 0;
   status = cag_curve_line(p, q, 2, &segment, err);
@@ -127,25 +132,41 @@ static CagStatus straight_direction(const CagCurve *flat, CagVec3 *out, CagError
   return status;
 }
 
-static CagStatus add_straight(CagDrawing *d, const CagViewLine *line, const CagCurve *flat,
-                              CagError *err) {
+// The parameters at which a straight image turns back. *smooth: it is closed, and goes on at the seam.
+static CagStatus turning_points(const CagCurve *flat, double turns[STEPS], size_t *n, bool *smooth,
+                                CagError *err) {
   CagVec3 along;
-  double from = flat->start, last = from, speed = 0, before = 0;
+  double last = flat->start, speed = 0, before = 0, first = 0;
   CagStatus status = straight_direction(flat, &along, err);
+  *n = 0;
   for (int i = 0; !status && i < STEPS; i++) {
     // Not at the ends, where the image may stop.
     const double t = flat->start + (flat->end - flat->start) * (i + 0.47) / STEPS;
     status = speed_along(flat, t, along, &speed, err);
-    if (!status && before != 0 && (speed > 0) != (before > 0)) {
-      double turn;
-      status = turning_point(flat, along, last, t, before > 0, &turn, err);
-      if (!status) status = add_segment(d, line, flat, from, turn, err);
-      from = turn;
-    }
+    if (status) break;
+    if (i == 0) first = speed;
+    else if ((speed > 0) != (before > 0))
+      status = turning_point(flat, along, last, t, before > 0, &turns[(*n)++], err);
     before = speed;
     last = t;
   }
-  return status ? status : add_segment(d, line, flat, from, flat->end, err);
+  *smooth = flat->closed && *n > 0 && (first > 0) == (speed > 0);
+  return status;
+}
+
+static CagStatus add_straight(CagDrawing *d, const CagViewLine *line, const CagCurve *flat,
+                              CagError *err) {
+  double turns[STEPS];
+  size_t n;
+  bool smooth;
+  CagStatus status = turning_points(flat, turns, &n, &smooth, err);
+  if (!status && !smooth)
+    status = add_segment(d, line, flat, flat->start, n > 0 ? turns[0] : flat->end, err);
+  for (size_t i = 0; !status && i < n; i++) {
+    const double end = smooth ? turns[0] + (flat->end - flat->start) : flat->end;
+    status = add_segment(d, line, flat, turns[i], i + 1 < n ? turns[i + 1] : end, err);
+  }
+  return status;
 }
 
 static CagStatus project(CagDrawing *d, const CagViewLine *line, CagError *err) {
@@ -177,7 +198,7 @@ CagStatus cag_drawn_parameter(const CagDrawing *d, const CagDrawnLine *l, double
   *t = a + fraction * (b - a);
   for (int i = 0; i < 60; i++) {
     CagVec3 p;
-    CagStatus status = cag_curve_point(space, *t, &p, err);
+    CagStatus status = cag_curve_point(space, within(space, *t), &p, err);
     if (status) return status;
     const double off = cag_dot(cag_sub(flat_point(&d->frame, p), l->start), along) - goal;
     if (fabs(off) <= PARALLEL * cag_dot(along, along)) break;
@@ -185,6 +206,7 @@ CagStatus cag_drawn_parameter(const CagDrawing *d, const CagDrawnLine *l, double
     else b = *t;
     *t = a + (b - a) / 2;
   }
+  *t = within(space, *t);
   return CAG_OK;
 }
 
@@ -249,9 +271,9 @@ static CagStatus cut_piece_cusps(CagDrawnLine *l, double a, double b, CagError *
 }
 
 static bool is_conic(const CagCurve *c) {
-  double a, b;
-  CagTransform frame;
-  return cag_curve_arc_view(c, &a, &b, &frame);
+  CagVec3 center, x, y;
+  double rate;
+  return cag_curve_arc_axes(c, &center, &x, &y, &rate);
 }
 
 static CagStatus cut_cusps(CagDrawnLine *l, CagError *err) {
@@ -445,11 +467,14 @@ static CagStatus cut_by_face(const CagDrawing *d, CagDrawnLine *l, const CagSurf
                              CagError *err) {
   CagSurfaceMeeting *found = NULL;
   size_t n = 0;
-  CagStatus status = cag_surface_intersect_curve(face, l->line->curve, &found, &n, err);
+  const CagCurve *space = l->line->curve;
+  const double period = space->closed ? space->end - space->start : 0;
+  CagStatus status = cag_surface_intersect_curve(face, space, &found, &n, err);
   if (status) return forgive(status, err);
   for (size_t i = 0; !status && i < n; i++) {
     double s = found[i].t, distance;
-    if (l->straight && (s < fmin(l->from, l->to) || s > fmax(l->from, l->to))) continue;
+    if (l->straight && s < l->from) s += period;
+    if (l->straight && (s < l->from || s > l->to)) continue;
     if (l->straight)
       status = cag_drawn_nearest(l, flat_point(&d->frame, found[i].point), &s, &distance, err);
     if (!status) status = cut_at(l, s, err);

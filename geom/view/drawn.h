@@ -8,9 +8,9 @@
 // Lines that are closer to each other in the drawing than this fraction of the size coincide.
 #define CAG_DRAWN_NEAR 1e-6
 
-// A line of a body in the plane of the drawing. If it is straight, `flat` is the line from the image
-// of the parameter `from` of `space` to that of `to`, between which the image does not turn back; else
-// `flat` has the parameter of `space`.
+// A line of a body in the plane of the drawing. If it is straight, `flat` is the line between the
+// images of two parameters of the curve in space, `from` < `to`, between which the image does not turn
+// back; `to` may be beyond the end of a closed curve. Else `flat` has the parameter of that curve.
 typedef struct CagDrawnLine {
   const CagViewLine *line;
   CagCurve *flat;

@@ -10,6 +10,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/curve/family.h"
 #include "geom/ray/caster.h"
 #include "geom/surface/nearest.h"
 #include "geom/view/drawn.h"
@@ -24,6 +25,8 @@
 // Where a part is looked at, as fractions of its parameters.
 static const double LOOKS[] = {0.2031, 0.3517, 0.5059, 0.6491, 0.8013};
 enum { LOOK_COUNT = sizeof LOOKS / sizeof *LOOKS };
+// Axes of an ellipse whose directions have a smaller cosine are its principal axes.
+#define ROUND 1e-12
 // A place at which the visibility changes within a part is found by this many bisections.
 enum { BISECTIONS = 40 };
 
@@ -147,7 +150,6 @@ static CagStatus is_visible(View *v, const CagDrawnLine *l, double s, bool *out,
 
 // --- Pieces ---
 
-// Adds a piece, or extends the last one of the same line.
 static CagStatus add_piece(View *v, size_t line, double a, double b, bool visible, CagError *err) {
   if (!CAG_RESERVE(v->pieces, v->capacity, v->count + 1)) return cag_fail_memory(err);
   v->pieces[v->count++] = (Piece){line, a, b, visible, false};
@@ -219,55 +221,102 @@ static CagStatus look_at_lines(View *v, CagError *err) {
 
 // --- Lines that coincide ---
 
-// Whether a point of one line, with its tangent, is on a piece of another one.
-static CagStatus is_on_piece(const View *v, const Piece *q, CagVec3 p, CagVec3 along, bool *out,
-                             CagError *err) {
-  const CagDrawnLine *l = &v->drawing.items[q->line];
-  const double slack = 1e-9 * (l->flat->end - l->flat->start);
+// The parameter of a line at a point of another one, with its tangent, if the two coincide there; NAN
+// else.
+static CagStatus shared_parameter(const CagDrawing *d, size_t line, CagVec3 p, CagVec3 along,
+                                  double *out, CagError *err) {
+  const CagDrawnLine *l = &d->items[line];
   double s, distance;
-  CagVec3 d[2];
+  CagVec3 at[2];
   CagStatus status = cag_drawn_nearest(l, p, &s, &distance, err);
-  *out = false;
-  if (status || distance > CAG_DRAWN_NEAR * v->drawing.size || s < q->a - slack || s > q->b + slack)
-    return status;
-  status = cag_curve_eval(l->flat, s, 1, CAG_SIDE_RIGHT, d, err);
+  *out = NAN;
+  if (status || distance > CAG_DRAWN_NEAR * d->size) return status;
+  status = cag_curve_eval(l->flat, s, 1, CAG_SIDE_RIGHT, at, err);
   if (status) return status;
-  const CagVec3 other = cag_unit(d[1]);
-  *out = fabs(along.x * other.y - along.y * other.x) <= PARALLEL;
+  const CagVec3 other = cag_unit(at[1]);
+  if (fabs(along.x * other.y - along.y * other.x) <= PARALLEL) *out = s;
   return CAG_OK;
 }
 
-// Whether one line is drawn rather than another one: the larger one, else the one with the lower
-// index. This is a total order, so of all lines at a place one is drawn.
+static bool is_simple(const CagDrawnLine *l) {
+  CagVec3 center, x, y;
+  double rate;
+  return l->straight || cag_curve_arc_axes(l->flat, &center, &x, &y, &rate);
+}
+
+// Whether one of two lines at the same depth is drawn: lines and conics before other curves, then the
+// larger one, else the one with the lower index. This is a total order, so one of them is drawn.
 static bool is_drawn_before(const CagDrawing *d, size_t a, size_t b) {
+  const bool simple = is_simple(&d->items[a]);
+  if (simple != is_simple(&d->items[b])) return simple;
   const CagBounds *one = &d->items[a].box, *other = &d->items[b].box;
   const double size = cag_norm(cag_sub(one->max, one->min)),
                with = cag_norm(cag_sub(other->max, other->min));
   return size != with ? size > with : a < b;
 }
 
-// Whether a point of a piece is on another piece that is drawn rather than this one: a visible one
-// before a hidden one.
+// A point of a piece.
+typedef struct Spot {
+  const Piece *piece;
+  CagVec3 at, along; // in the drawing
+  double depth;      // toward the eye
+} Spot;
+
+static CagStatus spot_of(const View *v, const Piece *p, double s, Spot *out, CagError *err) {
+  const CagDrawnLine *l = &v->drawing.items[p->line];
+  CagVec3 d[2], space;
+  double t;
+  CagStatus status = cag_curve_eval(l->flat, s, 1, CAG_SIDE_RIGHT, d, err);
+  if (!status) status = cag_drawn_parameter(&v->drawing, l, s, &t, err);
+  if (!status) status = cag_curve_point(l->line->curve, t, &space, err);
+  if (!status) *out = (Spot){p, d[0], cag_unit(d[1]), cag_dot(space, v->eye)};
+  return status;
+}
+
+// Whether one of two pieces that coincide at a spot is drawn rather than the other one: a visible one
+// before a hidden one, and then the one that is nearer to the eye.
+static bool is_spot_before(const View *v, const Spot *q, const Spot *p) {
+  if (q->piece->visible != p->piece->visible) return q->piece->visible;
+  if (fabs(q->depth - p->depth) > CAG_DRAWN_NEAR * v->drawing.size) return q->depth > p->depth;
+  return is_drawn_before(&v->drawing, q->piece->line, p->piece->line);
+}
+
+// Whether a piece of a line is drawn rather than the one at a spot.
+static CagStatus is_on_line(const View *v, size_t line, const Spot *p, bool *out, CagError *err) {
+  const CagCurve *flat = v->drawing.items[line].flat;
+  const double slack = 1e-9 * (flat->end - flat->start);
+  bool any = false;
+  double s;
+  for (size_t k = v->first[line]; !any && k < v->first[line + 1]; k++)
+    any = v->pieces[k].visible || !p->piece->visible;
+  *out = false;
+  if (!any) return CAG_OK;
+  CagStatus status = shared_parameter(&v->drawing, line, p->at, p->along, &s, err);
+  for (size_t k = v->first[line]; !status && !*out && k < v->first[line + 1]; k++) {
+    const Piece *q = &v->pieces[k];
+    Spot other;
+    if (!(s >= q->a - slack && s <= q->b + slack)) continue;
+    status = spot_of(v, q, fmin(fmax(s, flat->start), flat->end), &other, err);
+    *out = !status && is_spot_before(v, &other, p);
+  }
+  return status;
+}
+
+// Whether something else is drawn at a point of a piece.
 static CagStatus is_drawn_there(const View *v, const Piece *p, double s, bool *out, CagError *err) {
   const CagDrawing *d = &v->drawing;
   const double near = CAG_DRAWN_NEAR * d->size;
-  CagVec3 at[2];
-  CagStatus status = cag_curve_eval(d->items[p->line].flat, s, 1, CAG_SIDE_RIGHT, at, err);
-  const CagVec3 along = cag_unit(at[1]);
+  Spot spot;
+  CagStatus status = spot_of(v, p, s, &spot, err);
   *out = false;
-  for (size_t i = status ? d->count : cag_drawing_from(d, at[0].x - near); i < d->count; i++) {
+  if (status) return status;
+  for (size_t i = cag_drawing_from(d, spot.at.x - near); !status && !*out && i < d->count; i++) {
     const size_t line = d->order[i];
     const CagBounds *box = &d->items[line].box;
-    if (box->min.x > at[0].x + near) break;
-    if (line == p->line || box->max.x < at[0].x - near || box->min.y > at[0].y + near ||
-        box->max.y < at[0].y - near)
-      continue;
-    for (size_t k = v->first[line]; !status && !*out && k < v->first[line + 1]; k++) {
-      const Piece *q = &v->pieces[k];
-      const bool before = q->visible != p->visible ? q->visible : is_drawn_before(d, line, p->line);
-      if (before) status = is_on_piece(v, q, at[0], along, out, err);
-    }
-    if (status || *out) break;
+    if (box->min.x > spot.at.x + near) break;
+    if (line != p->line && box->max.x >= spot.at.x - near && box->min.y <= spot.at.y + near &&
+        box->max.y >= spot.at.y - near)
+      status = is_on_line(v, line, &spot, out, err);
   }
   return status;
 }
@@ -288,13 +337,49 @@ static CagStatus drop_covered(View *v, bool visible, CagError *err) {
 
 // --- The lists ---
 
+// Replaces an arc of an ellipse that is given by any conjugate axes by one with its principal axes.
+static CagStatus turn_axes(CagCurve **c, CagError *err) {
+  CagVec3 center, x, y, p;
+  double rate;
+  if (!cag_curve_arc_axes(*c, &center, &x, &y, &rate) || rate != 1) return CAG_OK;
+  const double skew = cag_dot(x, y);
+  if (fabs(skew) <= ROUND * cag_norm(x) * cag_norm(y)) return CAG_OK;
+  CagStatus status = cag_curve_point(*c, (*c)->start, &p, err);
+  if (status) return status;
+  const double turn = atan2(2 * skew, cag_dot(x, x) - cag_dot(y, y)) / 2, cosine = cos(turn),
+               sine = sin(turn), w = x.x * y.y - x.y * y.x;
+  const CagVec3 major = cag_add(cag_scaled(x, cosine), cag_scaled(y, sine)),
+                minor = cag_sub(cag_scaled(y, cosine), cag_scaled(x, sine)),
+                from = cag_sub(p, center);
+  double start = atan2(x.x * from.y - x.y * from.x, from.x * y.y - from.y * y.x);
+  if (w < 0) start = atan2(-(x.x * from.y - x.y * from.x), -(from.x * y.y - from.y * y.x));
+  start -= turn;
+  start -= 2 * M_PI * floor(start / (2 * M_PI));
+  const double a = cag_norm(major), b = cag_norm(minor);
+  CagTransform frame = cag_transform_identity();
+  frame.m[0][0] = major.x / a, frame.m[1][0] = major.y / a;
+  frame.m[0][1] = minor.x / b, frame.m[1][1] = minor.y / b;
+  frame.m[0][3] = center.x, frame.m[1][3] = center.y;
+  frame.planar = true;
+  CagCurve *made;
+  status = cag_curve_arc(a, b, start, start + (*c)->end - (*c)->start, &frame, &made, err);
+  if (status) return status;
+  cag_curve_release(*c);
+  *c = made;
+  return CAG_OK;
+}
+
 static CagStatus add_curve(const CagDrawnLine *l, double a, double b, CagCurveList *out,
                            CagError *err) {
   CagCurve *part = NULL;
   CagStatus status = CAG_OK;
   if (a == l->flat->start && b == l->flat->end) part = cag_curve_retain(l->flat);
   else status = cag_curve_trim(l->flat, a, b, &part, err);
-  return status ? status : cag_curve_list_add(out, part, err);
+  if (status) return status;
+  status = turn_axes(&part, err);
+  if (!status) return cag_curve_list_add(out, part, err);
+  cag_curve_release(part);
+  return status;
 }
 
 static bool continues(const Piece *p, const Piece *q) {
@@ -331,7 +416,6 @@ static CagStatus add_line_pieces(const View *v, size_t line, CagCurveList *visib
 // --- The drawing ---
 
 static CagStatus body_bounds(const CagViewBody *b, CagBounds *out, CagError *err) {
-  if (b->solid && b->solid->kind != CAG_SOLID_MESH) return cag_solid_bounds(b->solid, out, err);
   if (b->solid) return cag_solid_bounds(b->solid, out, err);
   if (b->surface) return cag_surface_bounds(b->surface, out, err);
   if (b->curve) return cag_curve_bounds(b->curve, out, err);

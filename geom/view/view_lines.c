@@ -28,6 +28,9 @@
 #define CONTOUR 2e-7
 // A parameter this close to a break, as a fraction of the domain, is on it.
 #define ON_BREAK 1e-7
+// A curve is an arc if at this many points the center is the same, to this fraction of the radius.
+enum { ARC_LOOKS = 7 };
+#define ARC_SAME 1e-11
 // Where an edge is looked at, as fractions of its parameters.
 static const double LOOKS[] = {0.4819, 0.1873, 0.8217};
 enum { LOOK_COUNT = sizeof LOOKS / sizeof *LOOKS };
@@ -83,15 +86,19 @@ static bool box_has(const CagBounds *b, CagVec3 p, double slack) {
          p.y <= b->max.y + slack && p.z >= b->min.z - slack && p.z <= b->max.z + slack;
 }
 
-// A parameter, moved to a break that it is close to.
-static CagStatus on_break(const CagSurface *s, int direction, double *x, CagError *err) {
+// A parameter, moved to a break that it is close to, and the one at the other side of a seam there.
+static CagStatus on_break(const CagSurface *s, int direction, double x, double out[2],
+                          CagError *err) {
   double *cuts;
   size_t n;
   CagStatus status = cag_surface_cuts(s, direction, &cuts, &n, err);
   if (status) return status;
   const double near = ON_BREAK * (cuts[n] - cuts[0]);
   for (size_t i = 0; i <= n; i++)
-    if (fabs(*x - cuts[i]) <= near) *x = cuts[i];
+    if (fabs(x - cuts[i]) <= near) x = cuts[i];
+  out[0] = out[1] = x;
+  if (direction ? s->closed_v : s->closed_u)
+    out[1] = x == cuts[0] ? cuts[n] : x == cuts[n] ? cuts[0] : x;
   cag_free(cuts);
   return CAG_OK;
 }
@@ -103,17 +110,19 @@ static void normals_add(const CagViewLines *l, CagVec3 normal, Normals *out) {
   if (fabs(cag_dot(normal, l->direction)) > UPRIGHT) out->upright = false;
 }
 
-// Adds the normals on all sides of the breaks through the point of a face.
+// Adds the normals on all sides of the breaks and seams through the point of a face.
 static CagStatus face_normals(const Faces *f, const CagSurface *s, const CagSurfaceNearest *at,
                               Normals *out, CagError *err) {
   const CagSurface *whole = s;
   cag_surface_trimmed_view(s, &whole, NULL);
-  double u = at->u, v = at->v;
-  CagStatus status = on_break(whole, 0, &u, err);
-  if (!status) status = on_break(whole, 1, &v, err);
-  for (int k = 0; !status && k < 4; k++) {
+  double u[2], v[2];
+  CagStatus status = on_break(whole, 0, at->u, u, err);
+  if (!status) status = on_break(whole, 1, at->v, v, err);
+  for (int k = 0; !status && k < 16; k++) {
     CagVec3 d[4];
-    status = cag_surface_eval(whole, u, v, 1, k & 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+    if ((k & 4 && u[1] == u[0]) || (k & 8 && v[1] == v[0])) continue;
+    status = cag_surface_eval(whole, u[k >> 2 & 1], v[k >> 3 & 1], 1,
+                              k & 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
                               k & 2 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
     if (!status)
       normals_add(f->lines, cag_unit(cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)])),
@@ -157,33 +166,85 @@ static CagStatus edge_is_shown(const Faces *f, const CagCurve *c, bool *out, Cag
   return status;
 }
 
-// Whether the curve ends a piece at its break t: pieces of composite curves and of polylines are
-// lines of their own, and so are parts between corners.
-static CagStatus ends_piece(const CagCurve *c, double t, bool *out, CagError *err) {
-  const CagVec3 *vertices;
+// Whether a curve has a corner at its break t.
+static CagStatus has_corner(const CagCurve *c, double t, bool *out, CagError *err) {
   CagVec3 left[2], right[2];
-  double a, b, rate;
-  size_t n;
-  bool closed;
-  *out = cag_curve_vertices(c, &vertices, &n, &closed) ||
-         cag_curve_composite_piece(c, t, t, &a, &b, &rate);
-  if (*out) return CAG_OK;
   CagStatus status = cag_curve_eval(c, t, 1, CAG_SIDE_LEFT, left, err);
   if (!status) status = cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, right, err);
   if (!status) *out = cag_norm(cag_sub(cag_unit(left[1]), cag_unit(right[1]))) > SMOOTH;
   return status;
 }
 
-static CagStatus add_edge(Faces *f, CagCurve *c, CagError *err) {
+// Whether the breaks of a curve are those between its pieces: composite curves, and polylines.
+static bool has_pieces(const CagCurve *c) {
+  const CagVec3 *vertices;
+  double a, b, rate;
+  size_t n;
+  bool closed;
+  return cag_curve_vertices(c, &vertices, &n, &closed) ||
+         cag_curve_composite_piece(c, c->start, c->start, &a, &b, &rate);
+}
+
+// The arc of a curve whose parameter is the angle of a circle or ellipse: C + C'' is its center.
+// Returns false for other curves.
+static bool as_arc(const CagCurve *c, CagCurve **out) {
+  CagVec3 d[3], center = {0, 0, 0}, x = {0, 0, 0}, y = {0, 0, 0};
+  CagError none;
+  if (!c->angular) return false;
+  for (int i = 0; i < ARC_LOOKS; i++) {
+    const double t = c->start + (c->end - c->start) * i / (ARC_LOOKS - 1);
+    if (cag_curve_eval(c, t, 2, i + 1 < ARC_LOOKS ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, &none))
+      return false;
+    const CagVec3 middle = cag_add(d[0], d[2]), away = cag_sub(d[0], middle);
+    const double same = ARC_SAME * (cag_norm(away) + cag_norm(d[1]));
+    if (i > 0 && cag_norm(cag_sub(middle, center)) > same + ARC_SAME * cag_norm(center))
+      return false;
+    center = middle;
+    x = cag_sub(cag_scaled(away, cos(t)), cag_scaled(d[1], sin(t)));
+    y = cag_add(cag_scaled(away, sin(t)), cag_scaled(d[1], cos(t)));
+  }
+  const CagVec3 z = cag_unit(cag_cross(x, y)), columns[4] = {x, y, z, center};
+  CagTransform frame = cag_transform_identity();
+  for (int j = 0; j < 4; j++) {
+    frame.m[0][j] = columns[j].x;
+    frame.m[1][j] = columns[j].y;
+    frame.m[2][j] = columns[j].z;
+  }
+  frame.planar = false;
+  return cag_norm(z) > 0 && !cag_curve_arc(1, 1, c->start, c->end, &frame, out, &none);
+}
+
+// Replaces a curve of a surface by one of a simpler kind with the same points, if there is one.
+static void simplify(CagCurve **c) {
+  CagCurve *simple = NULL;
+  CagNurbsView view;
+  CagError none;
+  double a, b;
+  CagTransform frame;
+  if (cag_curve_arc_view(*c, &a, &b, &frame) || cag_curve_nurbs_view(*c, &view)) return;
+  if (!as_arc(*c, &simple) && cag_curve_to_nurbs(*c, &simple, &none)) return;
+  cag_curve_release(*c);
+  *c = simple;
+}
+
+static CagStatus add_edge(Faces *f, CagCurve *c, const CagSurface *unused, CagError *err) {
   bool shown;
+  (void)unused;
   CagStatus status = edge_is_shown(f, c, &shown, err);
-  if (!status && shown) return cag_view_lines_add(f->lines, c, NULL, f->body, err);
+  if (!status && shown) {
+    simplify(&c);
+    return cag_view_lines_add(f->lines, c, NULL, f->body, err);
+  }
   cag_curve_release(c);
   return status;
 }
 
-// Adds the pieces of an edge that are shown.
-static CagStatus add_edge_pieces(Faces *f, const CagCurve *c, CagError *err) {
+// Takes over a piece of a line.
+typedef CagStatus AddPiece(Faces *f, CagCurve *c, const CagSurface *fold, CagError *err);
+
+// Adds the parts of a curve between its corners, or its pieces.
+static CagStatus add_pieces(Faces *f, const CagCurve *c, bool pieces, const CagSurface *fold,
+                            AddPiece *add, CagError *err) {
   double *cuts;
   size_t n;
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
@@ -192,11 +253,11 @@ static CagStatus add_edge_pieces(Faces *f, const CagCurve *c, CagError *err) {
   for (size_t i = 1; !status && i < n; i++) {
     CagCurve *piece = NULL;
     bool ends = true;
-    if (i + 1 < n) status = ends_piece(c, cuts[i], &ends, err);
+    if (i + 1 < n && !pieces) status = has_corner(c, cuts[i], &ends, err);
     if (status || !ends) continue;
     if (from == c->start && i + 1 == n) piece = cag_curve_retain(c);
     else status = cag_curve_trim(c, from, cuts[i], &piece, err);
-    if (!status) status = add_edge(f, piece, err);
+    if (!status) status = add(f, piece, fold, err);
     from = cuts[i];
   }
   cag_free(cuts);
@@ -209,12 +270,16 @@ static CagStatus add_edges(Faces *f, CagError *err) {
   for (size_t i = 0; !status && i < f->count; i++)
     status = cag_surface_lines(f->items[i], &edges, err);
   for (size_t i = 0; !status && i < edges.count; i++)
-    status = add_edge_pieces(f, edges.items[i], err);
+    status = add_pieces(f, edges.items[i], has_pieces(edges.items[i]), NULL, add_edge, err);
   cag_curve_list_free(&edges);
   return status;
 }
 
 // --- Contours ---
+
+static CagStatus add_contour(Faces *f, CagCurve *c, const CagSurface *fold, CagError *err) {
+  return cag_view_lines_add(f->lines, c, fold, f->body, err);
+}
 
 static CagStatus add_contours(Faces *f, CagError *err) {
   const CagVec3 none = {0, 0, 0};
@@ -226,8 +291,7 @@ static CagStatus add_contours(Faces *f, CagError *err) {
     status = cag_surface_contour(s, f->lines->direction, none, false, CONTOUR * f->lines->size,
                                  &list, err);
     for (size_t k = 0; !status && k < list.count; k++)
-      status = cag_view_lines_add(f->lines, cag_curve_retain(list.items[k]), f->closed ? s : NULL,
-                                  f->body, err);
+      status = add_pieces(f, list.items[k], false, f->closed ? s : NULL, add_contour, err);
     cag_curve_list_free(&list);
     if (!status) status = cag_stop_check(err);
   }
