@@ -295,7 +295,8 @@ static CagStatus cut_cusps(CagDrawnLine *l, CagError *err) {
 
 // Errors of one pair of curves are no errors of the drawing, unless the work must stop.
 static CagStatus forgive(CagStatus status, CagError *err) {
-  return status == CAG_E_MEMORY ? status : cag_stop_check(err);
+  if (status == CAG_E_MEMORY || status == CAG_E_CALLBACK) return status;
+  return cag_stop_check(err);
 }
 
 static CagStatus cut_segments(CagDrawnLine *l, CagDrawnLine *k, CagError *err) {

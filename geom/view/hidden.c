@@ -337,13 +337,18 @@ static CagStatus drop_covered(View *v, bool visible, CagError *err) {
 
 // --- The lists ---
 
-// Replaces an arc of an ellipse that is given by any conjugate axes by one with its principal axes.
+// Replaces an arc of an ellipse that is given by any conjugate axes by one with its principal axes, in
+// an orthonormal frame.
 static CagStatus turn_axes(CagCurve **c, CagError *err) {
   CagVec3 center, x, y, p;
   double rate;
   if (!cag_curve_arc_axes(*c, &center, &x, &y, &rate) || rate != 1) return CAG_OK;
   const double skew = cag_dot(x, y);
-  if (fabs(skew) <= ROUND * cag_norm(x) * cag_norm(y)) return CAG_OK;
+  double a, b;
+  CagTransform frame = cag_transform_identity(), given;
+  if (fabs(skew) <= ROUND * cag_norm(x) * cag_norm(y) && cag_curve_arc_view(*c, &a, &b, &given) &&
+      fabs(a - cag_norm(x)) <= ROUND * a && fabs(b - cag_norm(y)) <= ROUND * b)
+    return CAG_OK;
   CagStatus status = cag_curve_point(*c, (*c)->start, &p, err);
   if (status) return status;
   const double turn = atan2(2 * skew, cag_dot(x, x) - cag_dot(y, y)) / 2, cosine = cos(turn),
@@ -355,8 +360,8 @@ static CagStatus turn_axes(CagCurve **c, CagError *err) {
   if (w < 0) start = atan2(-(x.x * from.y - x.y * from.x), -(from.x * y.y - from.y * y.x));
   start -= turn;
   start -= 2 * M_PI * floor(start / (2 * M_PI));
-  const double a = cag_norm(major), b = cag_norm(minor);
-  CagTransform frame = cag_transform_identity();
+  a = cag_norm(major);
+  b = cag_norm(minor);
   frame.m[0][0] = major.x / a, frame.m[1][0] = major.y / a;
   frame.m[0][1] = minor.x / b, frame.m[1][1] = minor.y / b;
   frame.m[0][3] = center.x, frame.m[1][3] = center.y;
