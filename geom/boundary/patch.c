@@ -16,6 +16,8 @@
 
 // The domain is this fraction larger than that of the face, because traces are approximate.
 #define MARGIN 1e-6
+// Traces of files may leave the domain of a spline by up to this fraction of it.
+#define OVERSHOOT 1e-2
 // Ends of traces that are closer than this fraction of the size of the domain meet.
 #define MEET 1e-10
 
@@ -163,8 +165,48 @@ CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, Ca
                   face);
 }
 
+// A parameter that is at most slightly outside of a domain, moved to its end.
+static double within(double x, double low, double high, bool *moved) {
+  const double inside = fmin(fmax(x, low), high);
+  if (inside == x || fabs(inside - x) > OVERSHOOT * (high - low)) return x;
+  *moved = true;
+  return inside;
+}
+
+// Moves the control points of a trace that are slightly outside of the surface's domain to its edge.
+static CagStatus trace_within(const CagSurface *s, CagCurve **trace, CagError *err) {
+  CagNurbsView view;
+  bool moved = false;
+  if (!cag_curve_nurbs_view(*trace, &view) || view.periodic) return CAG_OK;
+  CagVec3 *points = cag_calloc(view.count, sizeof *points);
+  double *weights = cag_calloc(view.count, sizeof *weights);
+  CagStatus status = points && weights ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < view.count; i++) {
+    const double *h = view.homogeneous + 4 * i;
+    weights[i] = h[3];
+    points[i] = cag_vec3(within(h[0] / h[3], s->u0, s->u1, &moved),
+                         within(h[1] / h[3], s->v0, s->v1, &moved), 0);
+  }
+  CagCurve *inside = NULL;
+  if (!status && moved)
+    status = cag_curve_nurbs(points, view.rational ? weights : NULL, view.count, view.degree,
+                             view.knots, 2, &inside, err);
+  cag_free(points);
+  cag_free(weights);
+  if (!inside) return status;
+  cag_curve_release(*trace);
+  *trace = inside;
+  return CAG_OK;
+}
+
 CagStatus cag_patch_trace(const CagPatch *p, const CagCurve *trace, CagCurve **out, CagError *err) {
-  return cag_curve_transform(trace, &p->parameters, out, err);
+  CagCurve *moved;
+  CagStatus status = cag_curve_transform(trace, &p->parameters, &moved, err);
+  if (status) return status;
+  if (p->whole) status = trace_within(p->whole, &moved, err);
+  if (status) cag_curve_release(moved);
+  else *out = moved;
+  return status;
 }
 
 // --- Regions ---
