@@ -217,8 +217,12 @@ typedef struct Chain {
   CagVec3 first, last; // ends of the chain
 } Chain;
 
+// Adds a line to the next trace unless the chain ends there. Curves are joined to a fraction of their
+// coordinates, which may be much smaller than the domain.
 static CagStatus bridge(Chain *c, CagVec3 to, double slack, CagError *err) {
-  if (cag_norm(cag_sub(to, c->last)) <= slack) return CAG_OK;
+  const double here = fmax(fmax(fabs(to.x), fabs(to.y)), fmax(fabs(c->last.x), fabs(c->last.y)));
+  const double near = fmin(slack, fmax(MEET * here, slack / 1000));
+  if (cag_norm(cag_sub(to, c->last)) <= near) return CAG_OK;
   CagStatus status = cag_curve_line(c->last, to, 2, &c->items[c->n], err);
   if (!status) c->n++;
   return status;
