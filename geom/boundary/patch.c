@@ -16,8 +16,8 @@
 
 // The domain is this fraction larger than that of the face, because traces are approximate.
 #define MARGIN 1e-6
-// Traces may leave the domain of a spline by this fraction of its size; they are moved back.
-#define OVERSHOOT 1e-4
+// Traces of files may leave the domain of a spline by up to this fraction of it.
+#define OVERSHOOT 1e-2
 // Ends of traces that are closer than this fraction of the size of the domain meet.
 #define MEET 1e-10
 
@@ -165,8 +165,48 @@ CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, Ca
                   face);
 }
 
+// A parameter that is at most slightly outside of a domain, moved to its end.
+static double within(double x, double low, double high, bool *moved) {
+  const double inside = fmin(fmax(x, low), high);
+  if (inside == x || fabs(inside - x) > OVERSHOOT * (high - low)) return x;
+  *moved = true;
+  return inside;
+}
+
+// Moves the control points of a trace that are slightly outside of the surface's domain to its edge.
+static CagStatus trace_within(const CagSurface *s, CagCurve **trace, CagError *err) {
+  CagNurbsView view;
+  bool moved = false;
+  if (!cag_curve_nurbs_view(*trace, &view) || view.periodic) return CAG_OK;
+  CagVec3 *points = cag_calloc(view.count, sizeof *points);
+  double *weights = cag_calloc(view.count, sizeof *weights);
+  CagStatus status = points && weights ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < view.count; i++) {
+    const double *h = view.homogeneous + 4 * i;
+    weights[i] = h[3];
+    points[i] = cag_vec3(within(h[0] / h[3], s->u0, s->u1, &moved),
+                         within(h[1] / h[3], s->v0, s->v1, &moved), 0);
+  }
+  CagCurve *inside = NULL;
+  if (!status && moved)
+    status = cag_curve_nurbs(points, view.rational ? weights : NULL, view.count, view.degree,
+                             view.knots, 2, &inside, err);
+  cag_free(points);
+  cag_free(weights);
+  if (!inside) return status;
+  cag_curve_release(*trace);
+  *trace = inside;
+  return CAG_OK;
+}
+
 CagStatus cag_patch_trace(const CagPatch *p, const CagCurve *trace, CagCurve **out, CagError *err) {
-  return cag_curve_transform(trace, &p->parameters, out, err);
+  CagCurve *moved;
+  CagStatus status = cag_curve_transform(trace, &p->parameters, &moved, err);
+  if (status) return status;
+  if (p->whole) status = trace_within(p->whole, &moved, err);
+  if (status) cag_curve_release(moved);
+  else *out = moved;
+  return status;
 }
 
 // --- Regions ---
@@ -177,8 +217,12 @@ typedef struct Chain {
   CagVec3 first, last; // ends of the chain
 } Chain;
 
+// Adds a line to the next trace unless the chain ends there. Curves are joined to a fraction of their
+// coordinates, which may be much smaller than the domain.
 static CagStatus bridge(Chain *c, CagVec3 to, double slack, CagError *err) {
-  if (cag_norm(cag_sub(to, c->last)) <= slack) return CAG_OK;
+  const double here = fmax(fmax(fabs(to.x), fabs(to.y)), fmax(fabs(c->last.x), fabs(c->last.y)));
+  const double near = fmin(slack, fmax(MEET * here, slack / 1000));
+  if (cag_norm(cag_sub(to, c->last)) <= near) return CAG_OK;
   CagStatus status = cag_curve_line(c->last, to, 2, &c->items[c->n], err);
   if (!status) c->n++;
   return status;
@@ -239,42 +283,12 @@ static CagStatus region_of(const CagBoundary *b, const CagBoundaryFace *f, const
   return status;
 }
 
-// The scale and shift that move a range into another one, or neither if it is inside already, or too
-// far outside.
-static void fit_range(double low, double high, double start, double end, double *scale,
-                      double *shift) {
-  const double room = OVERSHOOT * (end - start);
-  const bool out = low < start || high > end, near = low >= start - room && high <= end + room;
-  const double from = fmax(low, start), to = fmin(high, end);
-  *scale = out && near ? (to - from) / (high - low) : 1;
-  *shift = out && near ? from - *scale * low : 0;
-}
-
-// Replaces the region by one in the domain of the surface.
-static CagStatus fit_region(const CagSurface *s, CagRegion **region, CagError *err) {
-  CagBounds box;
-  CagStatus status = cag_region_bounds(*region, &box, err);
-  if (status) return status;
-  double scale[2], shift[2];
-  fit_range(box.min.x, box.max.x, s->u0, s->u1, &scale[0], &shift[0]);
-  fit_range(box.min.y, box.max.y, s->v0, s->v1, &scale[1], &shift[1]);
-  if (scale[0] == 1 && scale[1] == 1) return CAG_OK;
-  const CagTransform t = parameter_map(scale[0], 0, shift[0], 0, scale[1], shift[1]);
-  CagRegion *fitted;
-  status = cag_region_transform(*region, &t, &fitted, err);
-  if (status) return status;
-  cag_region_release(*region);
-  *region = fitted;
-  return CAG_OK;
-}
-
 CagStatus cag_boundary_surface(const CagBoundary *b, size_t face, CagSurface **out, CagError *err) {
   CagPatch p;
   CagRegion *region = NULL;
   CagStatus status = cag_patch_of_face(b, face, &p, err);
   if (status) return status;
   status = region_of(b, &b->faces[face], &p, &region, err);
-  if (!status && p.whole) status = fit_region(p.whole, &region, err);
   if (!status)
     status = p.whole ? cag_surface_trimmed(p.whole, region, out, err)
                      : cag_surface_planar(region, &p.plane, out, err);

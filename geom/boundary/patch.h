@@ -16,7 +16,8 @@ typedef struct CagPatch {
 // Fails with "no-boundary" if the carrier is not a surface.
 CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, CagError *err);
 void cag_patch_release(CagPatch *p);
-// The part of an edge's trace in the parameters of the patch.
+// The part of an edge's trace in the parameters of the patch. Where a trace is slightly outside of the
+// surface's domain, as in files of other programs, it is moved to the edge.
 CagStatus cag_patch_trace(const CagPatch *p, const CagCurve *trace, CagCurve **out, CagError *err);
 
 // The face: kind "planar" or "trimmed", with its outward normal. Traces that do not meet, because

@@ -18,7 +18,7 @@
 #define MESHED 1e-3
 
 static CagKernel *find_kernel(CagCall *call) {
-  CagVm *vm = call->vm;
+  const CagVm *vm = call->vm;
   return vm->find_kernel ? vm->find_kernel(vm->find_kernel_context) : NULL;
 }
 
@@ -56,15 +56,14 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
   return status;
 }
 
-CagStatus cag_exacts_find(CagCall *call, int argument, const CagSolid **out, CagError *err) {
-  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid **out) {
   CagSolid *exact = NULL;
   double scale;
   *out = s;
   if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale))
     return CAG_OK;
   CagKernel *k = find_kernel(call);
-  const CagStatus status = k ? compute(k, s, &exact, err) : cag_fail_memory(err);
+  const CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
   if (status) return status;
   cag_hold_solid(call, exact);
   *out = exact;
@@ -72,7 +71,8 @@ CagStatus cag_exacts_find(CagCall *call, int argument, const CagSolid **out, Cag
 }
 
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
-  return cag_geometry_ok(call, cag_exacts_find(call, argument, out, call->err));
+  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+  return cag_geometry_ok(call, cag_exacts_of_solid(call, s, out));
 }
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {

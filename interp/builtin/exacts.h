@@ -11,8 +11,8 @@ CagKernel *cag_exacts_kernel(CagCall *call);
 // The exact solid of an argument, whose placement is a similarity: the argument itself if it is one,
 // else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
-// The same, without setting the machine's error.
-CagStatus cag_exacts_find(CagCall *call, int argument, const CagSolid **out, CagError *err);
+// The same for a solid that need not be an argument, without setting the machine's error.
+CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid **out);
 // Makes a solid of parts that the kernel found, whose contents it takes, and checks it
 // (cag_solid_exact_check).
 CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);

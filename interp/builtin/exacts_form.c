@@ -92,7 +92,7 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
   CagChosen *open = NULL;
   CagError err;
   size_t n = 0;
-  CagStatus status = cag_exacts_find(call, 0, &s, call->err);
+  CagStatus status = cag_exacts_of_solid(call, a->G, &s);
   // The choice is one of faces of the boundary.
   if (status && (cag_is_final(status) || cag_given(call, 2))) return cag_geometry_ok(call, status);
   if (!status) {

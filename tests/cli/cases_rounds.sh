@@ -189,6 +189,24 @@ try run -q apart/reads.cag
 status 1
 says 'outside of the folders'
 
+# --- Files of other programs ---
+
+cp "$root"/tests/data/step/*.stp .
+holds 'files of NIST have the volumes and areas that Open CASCADE finds' 'g = read_step("nist_ftc_11_asme1_rb.stp")
+print near(volume(g), 5129.38613645, relative: 1e-8), near(area(g), 5474.47868298, relative: 1e-8)
+h = read_step("nist_ftc_06_asme1_rd.stp")
+print near(volume(h), 3323546.07078, relative: 1e-8), near(area(h), 283415.422871, relative: 1e-8)'
+holds 'a file in inches is converted, and all of its faces are read' 'h = read_step("nist_ftc_06_asme1_rd.stp")
+print near(bounds(h).size, [12 * 25.4, 3.85 * 25.4, 9.75 * 25.4])
+of(kind) = len(filter(faces_of(h), f => f.kind == kind))
+print [for k in ["plane", "cylinder", "cone", "sphere", "torus"]: of(k)] == [71, 58, 4, 5, 6]'
+it 'the color of a file is that of the solid'
+needs_helper
+printf 'show read_step("nist_ftc_11_asme1_rb.stp")\n' > colored.cag
+try export colored.cag -o colored.json
+status 0
+is_left_out || grep -q '"color":\[0.5209955' colored.json || wrong 'the color is missing'
+
 it 'without cag-brep, the package is named'
 printf 'print fillet(box(5), 1)\n' > rounds.cag
 try_command env CAG_BREP="$PWD/none" "$CAG" run -q rounds.cag

@@ -4,6 +4,7 @@
 #include "geom/boundary/features.h"
 #include "geom/boundary/measure.h"
 #include "geom/boundary/moved.h"
+#include "geom/boundary/patch.h"
 #include "geom/solid/exact.h"
 #include "tests/geom/boundary_support.h"
 
@@ -126,12 +127,34 @@ static void exact_solids_are_checked_by_their_volume(void **state) {
   }
 }
 
+// Files of other programs have traces that leave the domain of a spline slightly.
+static void traces_outside_of_a_spline_are_moved_to_its_edge(void **state) {
+  (void)state;
+  CagBoundary b = cylinder_boundary(CAG_CARRIER_SPLINE);
+  CagSurface *s;
+  double area;
+  CagCurve **top = &b.uses[2].trace;
+  const double from = (*top)->start, to = (*top)->end;
+  cag_curve_release(*top);
+  *top = straight_trace(from, to, from, 1 + 2e-4, to, 1 - 1e-12);
+  OK(cag_boundary_surface(&b, 0, &s, &err));
+  OK(cag_surface_area(s, &area, NULL, &err));
+  NEAR(area, 2 * M_PI * WALL_RADIUS * WALL_HEIGHT, 1e-9);
+  cag_surface_release(s);
+  // Farther outside, they are an error.
+  cag_curve_release(*top);
+  *top = straight_trace(from, to, from, 1.5, to, 1);
+  FAILS(cag_boundary_surface(&b, 0, &s, &err), "curve-outside");
+  cag_boundary_free(&b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_walls_have_the_measures_of_a_cylinder),
       cmocka_unit_test(all_walls_have_two_edges_and_no_corners),
       cmocka_unit_test(moved_copies_have_the_measures_of_the_image),
       cmocka_unit_test(boundaries_must_enclose_a_volume),
+      cmocka_unit_test(traces_outside_of_a_spline_are_moved_to_its_edge),
       cmocka_unit_test(exact_solids_are_checked_by_their_volume),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
