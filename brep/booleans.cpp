@@ -35,7 +35,7 @@ class Membership {
 public:
   explicit Membership(const Solids &solids) {
     for (const TopoDS_Solid &solid : solids) {
-      parts.push_back({Bnd_Box(), std::make_unique<BRepClass3d_SolidClassifier>(solid)});
+      parts.push_back({solid, Bnd_Box(), nullptr});
       BRepBndLib::Add(solid, parts.back().box, Standard_False);
     }
   }
@@ -43,6 +43,9 @@ public:
   TopAbs_State of(const gp_Pnt &point, double tolerance) {
     for (Part &part : parts) {
       if (part.box.IsOut(point)) continue;
+      // Most operands of many are far from all points.
+      if (!part.classifier)
+        part.classifier = std::make_unique<BRepClass3d_SolidClassifier>(part.solid);
       part.classifier->Perform(point, tolerance);
       if (part.classifier->State() != TopAbs_OUT) return part.classifier->State();
     }
@@ -51,6 +54,7 @@ public:
 
 private:
   struct Part {
+    TopoDS_Solid solid;
     Bnd_Box box;
     std::unique_ptr<BRepClass3d_SolidClassifier> classifier;
   };

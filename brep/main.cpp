@@ -51,9 +51,9 @@ static std::string make_result(std::vector<Part> parts) {
     out.u32(part.has_color);
     if (part.has_color)
       for (const double channel : part.color) out.f64(channel);
-    complete_edges(part.solid);
+    const bool changed = complete_edges(part.solid);
     out.text(write_body(part.solid));
-    write_boundary(out, part.solid);
+    write_boundary(out, part.solid, changed ? measure(part.solid) : measures_of(part.solid));
   }
   return make_message(CAG_BREP_RESULT, out.bytes);
 }
