@@ -27,6 +27,10 @@ static std::string method_bytes(const std::function<Solids()> &method) {
     for (const TopoDS_Solid &solid : solids) {
       out.text(write_body(solid));
       out.u32(is_known_valid(solid));
+      const Measures measures = measures_of(solid);
+      out.f64(measures.volume);
+      out.f64(measures.area);
+      out.xyz(measures.centroid.XYZ());
     }
     return out.bytes;
   } catch (const Failure &failure) {
@@ -58,6 +62,8 @@ bool attempt(const std::function<Solids()> &method, double seconds, Solids &resu
   for (uint32_t i = 0; i < n; ++i) {
     result.push_back(read_body_solid(in));
     if (in.u32()) note_valid(result.back());
+    const double volume = in.f64(), area = in.f64();
+    note_measures(result.back(), {volume, area, in.point()});
   }
   return true;
 }

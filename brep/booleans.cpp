@@ -37,6 +37,7 @@ public:
     for (const TopoDS_Solid &solid : solids) {
       parts.push_back({solid, Bnd_Box(), nullptr});
       BRepBndLib::Add(solid, parts.back().box, Standard_False);
+      box.Add(parts.back().box);
     }
   }
 
@@ -51,6 +52,8 @@ public:
     }
     return TopAbs_OUT;
   }
+
+  Bnd_Box box; // of all
 
 private:
   struct Part {
@@ -72,14 +75,10 @@ static double radical_inverse(int n, int base) {
 static bool agrees_at_points(BOPAlgo_Operation operation, const std::vector<Solids> &operands,
                              const Solids &result) {
   std::vector<Membership> members;
-  std::vector<Bnd_Box> boxes;
   Bnd_Box all;
   for (const Solids &operand : operands) {
     members.emplace_back(operand);
-    Bnd_Box box;
-    for (const TopoDS_Solid &solid : operand) BRepBndLib::Add(solid, box, Standard_False);
-    boxes.push_back(box);
-    if (operation == BOPAlgo_FUSE || boxes.size() == 1) all.Add(box);
+    if (operation == BOPAlgo_FUSE || members.size() == 1) all.Add(members.back().box);
   }
   if (all.IsVoid()) return true;
   Membership found(result);
@@ -88,7 +87,8 @@ static bool agrees_at_points(BOPAlgo_Operation operation, const std::vector<Soli
     const size_t other =
         operands.size() > 1 ? 1 + static_cast<size_t>(i / 2) % (operands.size() - 1) : 0;
     Bnd_Box box = all;
-    if (i % 2 && !boxes[other].IsVoid() && !boxes[other].IsOut(all)) box = boxes[other];
+    const Bnd_Box &near = members[other].box;
+    if (i % 2 && !near.IsVoid() && !near.IsOut(all)) box = near;
     const gp_Pnt low = box.CornerMin(), high = box.CornerMax();
     gp_Pnt point;
     const int bases[3] = {2, 3, 5};

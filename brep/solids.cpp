@@ -68,14 +68,19 @@ double volume_of(const TopoDS_Shape &shape) {
   return is_plain(shape) ? measure_once(TopoDS::Solid(shape)).volume : measure(shape).volume;
 }
 
+void note_measures(const TopoDS_Solid &solid, const Measures &measures) {
+  if (!is_plain(solid)) return;
+  Known &known = known_of(solid);
+  known.measures = measures;
+  known.measured = true;
+}
+
 void note_image(const TopoDS_Solid &before, const gp_Trsf &map, const TopoDS_Shape &after) {
   if (map.IsNegative() || !is_plain(before) || !is_plain(after)) return;
   const Measures from = measure_once(before);
   const double scale = map.ScaleFactor(), square = scale * scale;
-  Known &known = known_of(TopoDS::Solid(after));
-  known.measures = {from.volume * square * scale, from.area * square,
-                    from.centroid.Transformed(map)};
-  known.measured = true;
+  note_measures(TopoDS::Solid(after),
+                {from.volume * square * scale, from.area * square, from.centroid.Transformed(map)});
 }
 
 bool is_known_valid(const TopoDS_Solid &solid) { return is_plain(solid) && known_of(solid).valid; }

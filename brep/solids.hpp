@@ -20,6 +20,8 @@ double volume_of(const TopoDS_Shape &shape);
 double volume_of(const Solids &solids);
 // The measures of a solid, which are computed once.
 Measures measures_of(const TopoDS_Solid &solid);
+// Notes the measures of a solid that were found in another process.
+void note_measures(const TopoDS_Solid &solid, const Measures &measures);
 // Notes the measures of a solid that is the image of a measured one under a similarity.
 void note_image(const TopoDS_Solid &before, const gp_Trsf &map, const TopoDS_Shape &after);
 // Whether the faces of a shape enclose more than rounding errors.
