@@ -144,7 +144,7 @@ static bool run_kernel(BOPAlgo_Operation operation, const std::vector<Solids> &o
     builder.SetOperation(operation);
     builder.SetRunParallel(Standard_False);
     builder.SetNonDestructive(Standard_True);
-    builder.SetCheckInverted(Standard_True);
+    builder.SetCheckInverted(Standard_False); // all operands are oriented outward
     if (fuzzy > 0) builder.SetFuzzyValue(fuzzy);
     builder.Build();
     if (!builder.IsDone() || builder.HasErrors()) {

@@ -526,8 +526,13 @@ static Solids make_cylinder(Reader &in) {
   const double height = in.f64(), bottom = in.f64(), top = in.f64();
   if (height <= 0 || bottom < 0 || top < 0 || bottom + top <= 0)
     throw Failure{CAG_BREP_FAIL_INPUT, "a cylinder has no volume"};
-  if (std::abs(bottom - top) <= 1e-12 * (bottom + top))
-    return solids_of(BRepPrimAPI_MakeCylinder(bottom, height).Shape());
+  if (std::abs(bottom - top) <= 1e-12 * (bottom + top)) {
+    // Parts have many equal cylinders, which need no integrals.
+    const TopoDS_Solid solid = BRepPrimAPI_MakeCylinder(bottom, height).Solid();
+    note_measures(solid, {M_PI * bottom * bottom * height, 2 * M_PI * bottom * (bottom + height),
+                          gp_Pnt(0, 0, height / 2)});
+    return solids_of(solid);
+  }
   return solids_of(BRepPrimAPI_MakeCone(bottom, top, height).Shape());
 }
 
