@@ -292,6 +292,9 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	@mkdir -p $(@D)
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
+$(BUILD)/tests/bench/occt_solids: tests/bench/occt_solids.cpp
+	@mkdir -p $(@D)
+	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT_H)) $< -o $@ -Wl,--as-needed $(OCCT_LIBS)
 # Embree, too.
 $(BUILD)/tests/bench/rays: tests/bench/rays.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
@@ -300,7 +303,7 @@ $(BUILD)/tests/bench/rays: tests/bench/rays.c $(BUILD)/libcag.a
 $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
-bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays $(BUILD)/tests/bench/first_picture
+bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(if $(OCCT_H),$(BUILD)/tests/bench/occt_solids) $(BUILD)/tests/bench/solids $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans $(BUILD)/tests/bench/rays $(BUILD)/tests/bench/first_picture
 	BUILD=$(BUILD) sh tests/bench/run.sh
 silhouettes: all
 	python3 tests/bench/silhouettes.py $(BUILD)/cag

@@ -17,14 +17,21 @@ std::string failure_bytes(const Failure &failure) {
   return out.bytes;
 }
 
-// A result starts with 0, a failure with its reason.
+// A result starts with 0, a failure with its reason. Solids that were found valid are sent as such.
 static std::string method_bytes(const std::function<Solids()> &method) {
   try {
     const Solids solids = method();
     Writer out;
     out.u32(0);
     out.u32(static_cast<uint32_t>(solids.size()));
-    for (const TopoDS_Solid &solid : solids) out.text(write_body(solid));
+    for (const TopoDS_Solid &solid : solids) {
+      out.text(write_body(solid));
+      out.u32(is_known_valid(solid));
+      const Measures measures = measures_of(solid);
+      out.f64(measures.volume);
+      out.f64(measures.area);
+      out.xyz(measures.centroid.XYZ());
+    }
     return out.bytes;
   } catch (const Failure &failure) {
     return failure_bytes(failure);
@@ -52,7 +59,12 @@ bool attempt(const std::function<Solids()> &method, double seconds, Solids &resu
   }
   result.clear();
   const uint32_t n = in.u32();
-  for (uint32_t i = 0; i < n; ++i) result.push_back(read_body_solid(in));
+  for (uint32_t i = 0; i < n; ++i) {
+    result.push_back(read_body_solid(in));
+    if (in.u32()) note_valid(result.back());
+    const double volume = in.f64(), area = in.f64();
+    note_measures(result.back(), {volume, area, in.point()});
+  }
   return true;
 }
 

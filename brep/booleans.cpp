@@ -35,22 +35,29 @@ class Membership {
 public:
   explicit Membership(const Solids &solids) {
     for (const TopoDS_Solid &solid : solids) {
-      parts.push_back({Bnd_Box(), std::make_unique<BRepClass3d_SolidClassifier>(solid)});
+      parts.push_back({solid, Bnd_Box(), nullptr});
       BRepBndLib::Add(solid, parts.back().box, Standard_False);
+      box.Add(parts.back().box);
     }
   }
 
   TopAbs_State of(const gp_Pnt &point, double tolerance) {
     for (Part &part : parts) {
       if (part.box.IsOut(point)) continue;
+      // Most operands of many are far from all points.
+      if (!part.classifier)
+        part.classifier = std::make_unique<BRepClass3d_SolidClassifier>(part.solid);
       part.classifier->Perform(point, tolerance);
       if (part.classifier->State() != TopAbs_OUT) return part.classifier->State();
     }
     return TopAbs_OUT;
   }
 
+  Bnd_Box box; // of all
+
 private:
   struct Part {
+    TopoDS_Solid solid;
     Bnd_Box box;
     std::unique_ptr<BRepClass3d_SolidClassifier> classifier;
   };
@@ -68,14 +75,10 @@ static double radical_inverse(int n, int base) {
 static bool agrees_at_points(BOPAlgo_Operation operation, const std::vector<Solids> &operands,
                              const Solids &result) {
   std::vector<Membership> members;
-  std::vector<Bnd_Box> boxes;
   Bnd_Box all;
   for (const Solids &operand : operands) {
     members.emplace_back(operand);
-    Bnd_Box box;
-    for (const TopoDS_Solid &solid : operand) BRepBndLib::Add(solid, box, Standard_False);
-    boxes.push_back(box);
-    if (operation == BOPAlgo_FUSE || boxes.size() == 1) all.Add(box);
+    if (operation == BOPAlgo_FUSE || members.size() == 1) all.Add(members.back().box);
   }
   if (all.IsVoid()) return true;
   Membership found(result);
@@ -84,7 +87,8 @@ static bool agrees_at_points(BOPAlgo_Operation operation, const std::vector<Soli
     const size_t other =
         operands.size() > 1 ? 1 + static_cast<size_t>(i / 2) % (operands.size() - 1) : 0;
     Bnd_Box box = all;
-    if (i % 2 && !boxes[other].IsVoid() && !boxes[other].IsOut(all)) box = boxes[other];
+    const Bnd_Box &near = members[other].box;
+    if (i % 2 && !near.IsVoid() && !near.IsOut(all)) box = near;
     const gp_Pnt low = box.CornerMin(), high = box.CornerMax();
     gp_Pnt point;
     const int bases[3] = {2, 3, 5};
@@ -140,7 +144,7 @@ static bool run_kernel(BOPAlgo_Operation operation, const std::vector<Solids> &o
     builder.SetOperation(operation);
     builder.SetRunParallel(Standard_False);
     builder.SetNonDestructive(Standard_True);
-    builder.SetCheckInverted(Standard_True);
+    builder.SetCheckInverted(Standard_False); // all operands are oriented outward
     if (fuzzy > 0) builder.SetFuzzyValue(fuzzy);
     builder.Build();
     if (!builder.IsDone() || builder.HasErrors()) {

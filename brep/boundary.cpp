@@ -144,7 +144,8 @@ static double trace_gap(const TopoDS_Edge &edge, const TopoDS_Face &face) {
   return gap;
 }
 
-void complete_edges(const TopoDS_Solid &solid) {
+bool complete_edges(const TopoDS_Solid &solid) {
+  bool incomplete = false;
   BRepLib::BuildCurves3d(solid);
   ShapeFix_Edge fix;
   BRep_Builder builder;
@@ -153,10 +154,13 @@ void complete_edges(const TopoDS_Solid &solid) {
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Current());
       double first, last;
-      if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull())
+      if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull()) {
         fix.FixAddPCurve(edge, face, BRep_Tool::IsClosed(edge, face));
+        incomplete = true;
+      }
       if (BRep_Tool::Degenerated(edge)) continue;
       if (!BRep_Tool::SameParameter(edge) || !BRep_Tool::SameRange(edge)) {
+        incomplete = true;
         BRepLib::SameRange(edge);
         BRepLib::SameParameter(edge);
       }
@@ -168,6 +172,7 @@ void complete_edges(const TopoDS_Solid &solid) {
         builder.UpdateVertex(TopoDS::Vertex(corner.Current()), gap * TRACE_MARGIN);
     }
   }
+  return incomplete;
 }
 
 // How far the corners of an edge are from its ends.
@@ -320,9 +325,8 @@ static void write_shells(Writer &out, const TopoDS_Solid &solid, const Numbering
   }
 }
 
-void write_boundary(Writer &out, const TopoDS_Solid &solid) {
+void write_boundary(Writer &out, const TopoDS_Solid &solid, const Measures &measures) {
   const Numbering numbering = number_boundary(solid);
-  const Measures measures = measure(solid);
   out.f64(measures.volume);
   out.f64(measures.area);
   out.xyz(measures.centroid.XYZ());

@@ -4,6 +4,7 @@
 #define CAG_BREP_BOUNDARY_HPP
 
 #include "brep/codec.hpp"
+#include "brep/measure.hpp"
 
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Solid.hxx>
@@ -18,10 +19,10 @@ struct Numbering {
 Numbering number_boundary(const TopoDS_Solid &solid);
 
 // Completes what the boundary has to tell of all edges: curves in space and in the parameters of
-// their faces, at the same parameters.
-void complete_edges(const TopoDS_Solid &solid);
+// their faces, at the same parameters. Returns whether some were missing.
+bool complete_edges(const TopoDS_Solid &solid);
 
-void write_boundary(Writer &out, const TopoDS_Solid &solid);
+void write_boundary(Writer &out, const TopoDS_Solid &solid, const Measures &measures);
 
 } // namespace brep
 

@@ -19,6 +19,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <new>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -51,9 +54,9 @@ static std::string make_result(std::vector<Part> parts) {
     out.u32(part.has_color);
     if (part.has_color)
       for (const double channel : part.color) out.f64(channel);
-    complete_edges(part.solid);
+    const bool changed = complete_edges(part.solid);
     out.text(write_body(part.solid));
-    write_boundary(out, part.solid);
+    write_boundary(out, part.solid, changed ? measure(part.solid) : measures_of(part.solid));
   }
   return make_message(CAG_BREP_RESULT, out.bytes);
 }
@@ -159,8 +162,18 @@ static void allow_deep_recursion() {
   setrlimit(RLIMIT_STACK, &limit);
 }
 
+// Memory that is freed is kept, because the next request needs it, and is taken in large pieces.
+static void keep_memory() {
+#ifdef __GLIBC__
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TOP_PAD, 4 << 20);
+#endif
+}
+
 static int serve() {
   allow_deep_recursion();
+  keep_memory();
   // Standard output becomes standard error, because the kernel prints.
   const int replies = dup(STDOUT_FILENO);
   if (replies < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {

@@ -74,6 +74,8 @@ public:
       if (std::abs(value) < 1e50) breaks.push_back(value);
     const GeomAbs_SurfaceType type = surface.GetType();
     flat = type == GeomAbs_Plane;
+    ruled = type == GeomAbs_Cylinder || type == GeomAbs_Cone;
+    round = type == GeomAbs_Sphere || type == GeomAbs_Torus;
     angular = type == GeomAbs_Cylinder || type == GeomAbs_Cone || type == GeomAbs_Sphere ||
               type == GeomAbs_Torus || type == GeomAbs_SurfaceOfRevolution ||
               type == GeomAbs_OtherSurface || type == GeomAbs_SurfaceOfExtrusion ||
@@ -100,7 +102,7 @@ public:
       curve.Intervals(values, GeomAbs_CN);
       for (int i = 1; i <= n; ++i) {
         const double a = values(i), b = values(i + 1);
-        if (b > a) add_sums(sums, along(curve, a, b, piece(curve, a, b), MOST_BISECTIONS), sign);
+        if (b > a) add_sums(sums, along_trace(curve, a, b), sign);
       }
     }
     return sums;
@@ -171,6 +173,28 @@ private:
     return sums;
   }
 
+  // The angle by which the integrand turns along a trace, if it is a polynomial of low degree in
+  // lengths, sines, and cosines; negative for others.
+  double turn_along(const Geom2dAdaptor_Curve &curve, double a, double b) const {
+    const GeomAbs_CurveType type = curve.GetType();
+    if (flat && type == GeomAbs_Circle) return b - a;
+    if (type != GeomAbs_Line || !(flat || ruled || round)) return -1;
+    const gp_Dir2d way = curve.Line().Direction();
+    return (flat ? 0 : std::abs(way.X()) + (round ? std::abs(way.Y()) : 0)) * (b - a);
+  }
+
+  Sums along_trace(const Geom2dAdaptor_Curve &curve, double a, double b) {
+    const double turn = turn_along(curve, a, b);
+    if (turn < 0) return along(curve, a, b, piece(curve, a, b), MOST_BISECTIONS);
+    // Pieces that need no comparison with their halves. If v is constant, there is nothing to add.
+    Sums sums = {};
+    if (curve.GetType() == GeomAbs_Line && curve.Line().Direction().Y() == 0) return sums;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(turn / LONGEST_PIECE - 1e-9)));
+    for (int i = 0; i < pieces; ++i)
+      add_sums(sums, piece(curve, a + (b - a) * i / pieces, a + (b - a) * (i + 1) / pieces), 1);
+    return sums;
+  }
+
   Sums along(const Geom2dAdaptor_Curve &curve, double a, double b, const Sums &whole, int depth) {
     const double middle = (a + b) / 2;
     const Sums first = piece(curve, a, middle), second = piece(curve, middle, b);
@@ -189,7 +213,7 @@ private:
   GeomAdaptor_Surface surface;
   gp_XYZ center;
   std::vector<double> breaks; // of the surface in u
-  bool flat, angular;
+  bool flat, ruled, round, angular;
   double start = 0; // where inner integrals start
   Sums scales;
 };

@@ -27,8 +27,11 @@
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Circle.hxx>
+#include <Geom_ConicalSurface.hxx>
+#include <Geom_CylindricalSurface.hxx>
 #include <Geom_Ellipse.hxx>
 #include <Geom_Line.hxx>
+#include <Geom_SphericalSurface.hxx>
 #include <Precision.hxx>
 #include <Standard_Failure.hxx>
 #include <TColStd_Array1OfInteger.hxx>
@@ -399,20 +402,51 @@ static void add_surface_faces(const Ref<Geom_BSplineSurface> &surface,
     }
 }
 
+static Ref<Geom_Surface> read_round_surface(Reader &in, uint32_t kind) {
+  const gp_Ax3 frame = read_frame(in);
+  switch (kind) {
+  case CAG_BREP_CYLINDRICAL: return new Geom_CylindricalSurface(frame, read_radius(in));
+  case CAG_BREP_SPHERICAL: return new Geom_SphericalSurface(frame, read_radius(in));
+  case CAG_BREP_CONICAL: {
+    const double radius = in.f64(), angle = in.f64();
+    if (radius < 0 || !(std::abs(angle) > 1e-9 && std::abs(angle) < M_PI / 2 - 1e-9))
+      throw Failure{CAG_BREP_FAIL_INPUT, "a cone has no shape"};
+    return new Geom_ConicalSurface(frame, angle, radius);
+  }
+  default: throw Failure{CAG_BREP_FAIL_INPUT, "unknown kind of surface " + std::to_string(kind)};
+  }
+}
+
+// A rectangle of the parameters.
+static TopoDS_Face read_round_face(Reader &in, uint32_t kind) {
+  const Ref<Geom_Surface> surface = read_round_surface(in, kind);
+  double bounds[4];
+  for (double &bound : bounds) bound = in.f64();
+  if (!(bounds[0] < bounds[1] && bounds[2] < bounds[3]))
+    throw Failure{CAG_BREP_FAIL_INPUT, "a face has no area"};
+  BRepBuilderAPI_MakeFace face(surface, bounds[0], bounds[1], bounds[2], bounds[3],
+                               Precision::Confusion());
+  if (!face.IsDone()) throw Failure{CAG_BREP_FAIL_INPUT, "a surface has no face"};
+  return face.Face();
+}
+
+static void read_face(Reader &in, BRepBuilderAPI_Sewing &sewing) {
+  const uint32_t form = in.u32();
+  if (form == 1) {
+    const gp_Ax3 frame = read_frame(in);
+    sewing.Add(read_region(in, {true, frame.Location(), frame.XDirection(), frame.YDirection()}));
+    return;
+  }
+  const uint32_t kind = in.u32();
+  if (form == 2) sewing.Add(read_round_face(in, kind));
+  else if (form == 0 && kind == CAG_BREP_SPLINE) add_surface_faces(read_spline_surface(in), sewing);
+  else throw Failure{CAG_BREP_FAIL_INPUT, "unknown kind of face " + std::to_string(kind)};
+}
+
 static Solids read_faces(Reader &in) {
   const uint32_t n = in.count(8);
   BRepBuilderAPI_Sewing sewing;
-  for (uint32_t i = 0; i < n; ++i) {
-    if (in.u32()) {
-      const gp_Ax3 frame = read_frame(in);
-      sewing.Add(read_region(in, {true, frame.Location(), frame.XDirection(), frame.YDirection()}));
-      continue;
-    }
-    const uint32_t kind = in.u32();
-    if (kind != CAG_BREP_SPLINE)
-      throw Failure{CAG_BREP_FAIL_INPUT, "unknown kind of face " + std::to_string(kind)};
-    add_surface_faces(read_spline_surface(in), sewing);
-  }
+  for (uint32_t i = 0; i < n; ++i) read_face(in, sewing);
   const double tolerance = in.f64();
   if (!n) return {};
   sewing.SetTolerance(std::max(tolerance, Precision::Confusion()));
@@ -492,8 +526,13 @@ static Solids make_cylinder(Reader &in) {
   const double height = in.f64(), bottom = in.f64(), top = in.f64();
   if (height <= 0 || bottom < 0 || top < 0 || bottom + top <= 0)
     throw Failure{CAG_BREP_FAIL_INPUT, "a cylinder has no volume"};
-  if (std::abs(bottom - top) <= 1e-12 * (bottom + top))
-    return solids_of(BRepPrimAPI_MakeCylinder(bottom, height).Shape());
+  if (std::abs(bottom - top) <= 1e-12 * (bottom + top)) {
+    // Parts have many equal cylinders, which need no integrals.
+    const TopoDS_Solid solid = BRepPrimAPI_MakeCylinder(bottom, height).Solid();
+    note_measures(solid, {M_PI * bottom * bottom * height, 2 * M_PI * bottom * (bottom + height),
+                          gp_Pnt(0, 0, height / 2)});
+    return solids_of(solid);
+  }
   return solids_of(BRepPrimAPI_MakeCone(bottom, top, height).Shape());
 }
 
@@ -634,6 +673,7 @@ static Solids place(const Solids &solids, const Placement &placement) {
       map.SetValues(m[0][0], m[0][1], m[0][2], m[0][3], m[1][0], m[1][1], m[1][2], m[1][3], m[2][0],
                     m[2][1], m[2][2], m[2][3]);
       shape = BRepBuilderAPI_Transform(solid, map, Standard_True).Shape();
+      note_image(solid, map, shape);
     } else {
       shape = transform_affine(solid, gp_GTrsf(linear, moved));
     }

@@ -2,7 +2,6 @@
 
 #include "brep/failure.hpp"
 #include "brep/handle.hpp"
-#include "brep/measure.hpp"
 #include "brep/sides.hpp"
 
 #include <BRepBndLib.hxx>
@@ -35,21 +34,59 @@ namespace brep {
 // A closed shell of less volume than this fraction of its bounding cube has collapsed.
 static const double LEAST_VOLUME = 1e-13;
 
-// Measures of solids that were measured before: operands are compared with each result that is tried.
+// What is known of a solid, oriented forward and in place.
+struct Known {
+  TopoDS_Solid solid; // so that its address is not used again
+  bool measured, valid;
+  Measures measures;
+};
+
+static bool is_plain(const TopoDS_Shape &shape) {
+  return shape.ShapeType() == TopAbs_SOLID && shape.Orientation() == TopAbs_FORWARD &&
+         shape.Location().IsIdentity();
+}
+
+static Known &known_of(const TopoDS_Solid &solid) {
+  static std::map<const TopoDS_TShape *, Known> known;
+  return known.insert({solid.TShape().get(), {solid, false, false, {0, 0, gp_Pnt()}}})
+      .first->second;
+}
+
+// Operands are compared with each result that is tried, so measures are kept.
 static const Measures &measure_once(const TopoDS_Solid &solid) {
-  static std::vector<TopoDS_Solid> solids; // so that no address is used again
-  static std::map<const TopoDS_TShape *, Measures> known;
-  const auto found = known.find(solid.TShape().get());
-  if (found != known.end()) return found->second;
-  solids.push_back(solid);
-  return known.insert({solid.TShape().get(), measure(solid)}).first->second;
+  Known &known = known_of(solid);
+  if (!known.measured) known.measures = measure(solid);
+  known.measured = true;
+  return known.measures;
+}
+
+Measures measures_of(const TopoDS_Solid &solid) {
+  return is_plain(solid) ? measure_once(solid) : measure(solid);
 }
 
 double volume_of(const TopoDS_Shape &shape) {
-  if (shape.ShapeType() == TopAbs_SOLID && shape.Orientation() == TopAbs_FORWARD &&
-      shape.Location().IsIdentity())
-    return measure_once(TopoDS::Solid(shape)).volume;
-  return measure(shape).volume;
+  return is_plain(shape) ? measure_once(TopoDS::Solid(shape)).volume : measure(shape).volume;
+}
+
+void note_measures(const TopoDS_Solid &solid, const Measures &measures) {
+  if (!is_plain(solid)) return;
+  Known &known = known_of(solid);
+  known.measures = measures;
+  known.measured = true;
+}
+
+void note_image(const TopoDS_Solid &before, const gp_Trsf &map, const TopoDS_Shape &after) {
+  if (map.IsNegative() || !is_plain(before) || !is_plain(after)) return;
+  const Measures from = measure_once(before);
+  const double scale = map.ScaleFactor(), square = scale * scale;
+  note_measures(TopoDS::Solid(after),
+                {from.volume * square * scale, from.area * square, from.centroid.Transformed(map)});
+}
+
+bool is_known_valid(const TopoDS_Solid &solid) { return is_plain(solid) && known_of(solid).valid; }
+
+void note_valid(const TopoDS_Solid &solid) {
+  if (is_plain(solid)) known_of(solid).valid = true;
 }
 
 double volume_of(const Solids &solids) {
@@ -105,6 +142,7 @@ static std::string first_fault(const BRepCheck_Analyzer &analyzer, const TopoDS_
 }
 
 std::string faults_of(const TopoDS_Solid &solid) {
+  if (is_known_valid(solid)) return "";
   int shells = 0;
   for (TopExp_Explorer it(solid, TopAbs_SHELL); it.More(); it.Next(), ++shells)
     if (!BRep_Tool::IsClosed(it.Current())) return "a shell is not closed";
@@ -112,6 +150,7 @@ std::string faults_of(const TopoDS_Solid &solid) {
   const BRepCheck_Analyzer analyzer(solid);
   if (!analyzer.IsValid()) return first_fault(analyzer, solid);
   if (!(volume_of(solid) > 0)) return "its faces do not point outward";
+  note_valid(solid);
   return "";
 }
 
@@ -130,7 +169,7 @@ void sort_solids(Solids &solids) {
   std::vector<Key> keys;
   double most = 0, size = 0;
   for (const TopoDS_Solid &solid : solids) {
-    const Measures measures = solid.Location().IsIdentity() ? measure_once(solid) : measure(solid);
+    const Measures measures = measures_of(solid);
     keys.push_back({measures.volume, measures.centroid, solid});
     most = std::max(most, measures.volume);
     size = std::max(size, measures.centroid.XYZ().Modulus());

@@ -22,6 +22,9 @@
 // accurate, unless the kernel's edges are far from its faces.
 #define VOLUME_SHARE 1e-3
 
+// The mesh of a check is not shown: it may turn as far (radians) as its tolerance allows, nearly.
+#define CHECK_ANGLE (M_PI / 4)
+
 struct CagExact {
   int references;
   CagBoundary *parts;
@@ -175,16 +178,42 @@ static bool keeps_axes(const CagTransform *t) {
   return true;
 }
 
-static CagStatus bounds_of_faces(const CagSolid *s, CagBounds *out, CagError *err) {
+// The range of a coordinate of the images of all points under an affine map: that of a coordinate
+// along its row, which is the x of a boundary that is turned.
+static CagStatus range_of_row(const CagExact *e, const CagTransform *t, int row, double range[2],
+                              CagError *err) {
+  const CagVec3 along = cag_vec3(t->m[row][0], t->m[row][1], t->m[row][2]);
+  const double length = cag_norm(along);
+  range[0] = range[1] = t->m[row][3];
+  if (length == 0) return CAG_OK;
+  const CagVec3 other = fabs(along.x) < 0.5 * length ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
+  CagTransform axes, turn;
   CagBounds all = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; i < s->face_count; i++) {
+  CagStatus status = cag_axes(cag_vec3(0, 0, 0), along, other, &axes, err);
+  if (!status) status = cag_transform_inverse(&axes, &turn, err);
+  for (size_t i = 0; !status && i < e->count; i++) {
+    CagBoundary turned;
     CagBounds box;
-    CagStatus status = cag_surface_bounds(s->faces[i], &box, err);
-    if (status) return status;
+    status = cag_boundary_moved(&e->parts[i], &turn, &turned, err);
+    if (status) break;
+    status = cag_boundary_bounds(&turned, &box, err);
+    cag_boundary_free(&turned);
     cag_bounds_add(&all, box.min);
     cag_bounds_add(&all, box.max);
   }
-  *out = all;
+  range[0] += length * all.min.x;
+  range[1] += length * all.max.x;
+  return status;
+}
+
+static CagStatus bounds_by_rows(const CagExact *e, const CagTransform *t, CagBounds *out,
+                                CagError *err) {
+  double range[3][2];
+  CagStatus status = CAG_OK;
+  for (int row = 0; !status && row < 3; row++) status = range_of_row(e, t, row, range[row], err);
+  if (status) return status;
+  *out = (CagBounds){cag_vec3(range[0][0], range[1][0], range[2][0]),
+                     cag_vec3(range[0][1], range[1][1], range[2][1])};
   return CAG_OK;
 }
 
@@ -207,7 +236,7 @@ CagStatus cag_exact_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
       cag_bounds_add(&all, box.min);
       cag_bounds_add(&all, box.max);
     }
-  } else return bounds_of_faces(s, out, err);
+  } else return bounds_by_rows(s->exact, t, out, err);
   if (!status) *out = all;
   return status;
 }
@@ -284,6 +313,7 @@ CagStatus cag_solid_exact_check(const CagSolid *s, CagError *err) {
   if (status) return status;
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = DEFAULT_SHARE * cag_norm(cag_sub(box.max, box.min));
+  how.angle = CHECK_ANGLE;
   status = cag_exact_mesh(s, &how, &mesh, err);
   if (status) return status;
   cag_mesh_volume_terms(mesh, terms);

@@ -33,6 +33,8 @@
 #define KEEP_OFF 0.3
 // An in-circle determinant below this fraction of its terms is rounding, and causes no flip.
 #define ROUNDING CAG_ROUNDING
+// An edge turns by as much as is allowed, up to rounding, if the outline was divided by this angle.
+#define TURN_ROUNDING 1e-6
 // Maximum number of passes over all triangles; each roughly halves those that exceed the tolerance.
 #define MOST_PASSES 40
 
@@ -466,44 +468,50 @@ static double from_line(CagVec3 a, CagVec3 b, CagVec3 q) {
   return cag_norm(cag_cross(d, cag_sub(q, a))) / length;
 }
 
+// Whether an inner edge of a triangle exceeds the tolerance.
+static CagStatus judge_edge(const Plane *p, uint32_t a, uint32_t b, const CagTessellation *how,
+                            bool *bad, CagError *err) {
+  const CagVec3 x = p->positions[a], y = p->positions[b], n = p->normals[a], m = p->normals[b];
+  const double half[2] = {(at(p, a)[0] + at(p, b)[0]) / 2, (at(p, a)[1] + at(p, b)[1]) / 2};
+  const double length = cag_norm(cag_sub(y, x));
+  CagVec3 q;
+  CagStatus status = surface_at(p, half, &q, err);
+  if (status) return status;
+  const double turn = atan2(cag_norm(cag_cross(n, m)), cag_dot(n, m));
+  *bad = from_line(x, y, q) > how->tolerance ||
+         (how->angle > 0 && turn > (1 + TURN_ROUNDING) * how->angle &&
+          length > tess_short_edge(how)) ||
+         (how->max_edge > 0 && length > how->max_edge);
+  return CAG_OK;
+}
+
 // Whether a triangle exceeds the tolerance, and where to divide it: at the middle of its longest
-// inner edge, or (`*side` -1) at its center.
+// inner edge, of those that exceed it if there are some, or (`*side` -1) at its center.
 static CagStatus judge(const Plane *p, uint32_t t, const CagTessellation *how, bool *bad, int *side,
                        CagError *err) {
   const uint32_t *c = p->corner + 3 * t;
-  CagVec3 x[3], n[3], q;
+  const CagVec3 *x = p->positions;
   double longest = 0, middle[2] = {0, 0};
-  *bad = false;
+  CagVec3 q;
+  bool bad_edge = false;
   *side = -1;
-  for (int k = 0; k < 3; k++) {
-    x[k] = p->positions[c[k]];
-    n[k] = p->normals[c[k]];
-    middle[0] += at(p, c[k])[0] / 3;
-    middle[1] += at(p, c[k])[1] / 3;
-  }
-  CagVec3 normal = cag_unit(cag_cross(cag_sub(x[1], x[0]), cag_sub(x[2], x[0])));
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 2; d++) middle[d] += at(p, c[k])[d] / 3;
+  const CagVec3 normal = cag_unit(cag_cross(cag_sub(x[c[1]], x[c[0]]), cag_sub(x[c[2]], x[c[0]])));
   CagStatus status = surface_at(p, middle, &q, err);
-  if (status) return status;
-  if (fabs(cag_dot(normal, cag_sub(q, x[0]))) > how->tolerance) *bad = true;
-  for (int k = 0; k < 3; k++) {
-    int next = (k + 1) % 3;
+  for (int k = 0; !status && k < 3; k++) {
+    const uint32_t next = c[(k + 1) % 3];
+    bool exceeds;
     if (p->across[3 * t + (uint32_t)k] == NO_TRIANGLE) continue;
-    double length = cag_norm(cag_sub(x[next], x[k]));
-    double half[2] = {(at(p, c[k])[0] + at(p, c[next])[0]) / 2,
-                      (at(p, c[k])[1] + at(p, c[next])[1]) / 2};
-    status = surface_at(p, half, &q, err);
-    if (status) return status;
-    if (from_line(x[k], x[next], q) > how->tolerance) *bad = true;
-    double turn = atan2(cag_norm(cag_cross(n[k], n[next])), cag_dot(n[k], n[next]));
-    if (how->angle > 0 && turn > how->angle && length > tess_short_edge(how)) *bad = true;
-    if (how->max_edge > 0 && length > how->max_edge) *bad = true;
-    double flat = apart(at(p, c[k]), at(p, c[next]));
-    if (flat > longest) {
-      longest = flat;
-      *side = k;
-    }
+    status = judge_edge(p, c[k], next, how, &exceeds, err);
+    const double flat = apart(at(p, c[k]), at(p, next));
+    if (status || exceeds < bad_edge || (exceeds == bad_edge && flat <= longest)) continue;
+    bad_edge = exceeds;
+    longest = flat;
+    *side = k;
   }
-  return CAG_OK;
+  *bad = bad_edge || fabs(cag_dot(normal, cag_sub(q, x[c[0]]))) > how->tolerance;
+  return status;
 }
 
 static CagStatus divide(Plane *p, uint32_t t, int side, CagError *err) {

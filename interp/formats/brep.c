@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/boundary/moved.h"
+#include "geom/solid/exact.h"
 #include "geom/tessellate/orient.h"
 #include "interp/formats/brep_build.h"
 #include "interp/formats/brep_check.h"
@@ -321,6 +323,29 @@ CagStatus cag_brep_add_boundary(CagBrep *b, const CagBoundary *from, CagError *e
   return CAG_OK;
 }
 
+// The boundaries of an exact solid, placed.
+static CagStatus copy_known(const CagSolid *s, CagBoundaries *out, CagError *err) {
+  size_t n = 0;
+  const CagBoundary *parts = cag_solid_boundaries(s, &n);
+  CagStatus status = CAG_OK;
+  *out = (CagBoundaries){cag_calloc(n + 1, sizeof *out->items), 0};
+  if (!out->items) return cag_fail_memory(err);
+  while (!status && out->count < n) {
+    status = cag_boundary_moved(&parts[out->count], &s->placement, &out->items[out->count], err);
+    if (!status) out->count++;
+  }
+  return status; // the caller frees them
+}
+
+static CagStatus check_reading(CagKernel *kernel, const CagBoundaries *parts, CagBrepFormat format,
+                               bool *same, CagError *err) {
+  bool needed = true;
+  CagStatus status = CAG_OK;
+  if (format == CAG_BREP_STEP) status = cag_brep_needs_reading(parts, &needed, err);
+  *same = !needed;
+  return status || !needed ? status : cag_brep_reads_back(kernel, parts, format, same, err);
+}
+
 // Adds the parts of a set operation that other programs will read as they are. Where a face
 // contains poles of a sphere, or runs around an axis, some read a file differently; then other
 // poles and seams are tried.
@@ -332,12 +357,17 @@ static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepFormat 
   shape->kind = CAG_BREP_SOLID;
   shape->first = b->shell_count;
   CagStatus status = CAG_OK;
+  double scale;
   bool same = false;
-  for (int turn = 0; !status && !same && turn < CAG_TURNS; turn++) {
+  const CagSolid *solid = w->item->as.solid;
+  const bool known =
+      solid->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&solid->placement, &scale);
+  for (int turn = 0; !status && !same && turn < (known ? 1 : CAG_TURNS); turn++) {
     cag_boundaries_free(&parts);
-    status = cag_kernel_boundary(kernel, w->item->as.solid, w->asked, turn, &parts, &w->approximate,
-                                 err);
-    if (!status) status = cag_brep_reads_back(kernel, &parts, format, &same, err);
+    status = known
+                 ? copy_known(solid, &parts, err)
+                 : cag_kernel_boundary(kernel, solid, w->asked, turn, &parts, &w->approximate, err);
+    if (!status) status = check_reading(kernel, &parts, format, &same, err);
   }
   if (!status && !same)
     status = cag_fail(

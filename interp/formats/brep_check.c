@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "geom/boundary/carrier.h"
 #include "interp/formats/brep_build.h"
 #include "interp/formats/iges.h"
 #include "interp/formats/step.h"
@@ -12,6 +13,80 @@
 // The relative difference of volumes that counts as equal. Readers compute curves in the parameters
 // of surfaces again, within the gaps of edges; a face that was read wrongly changes far more.
 #define VOLUME_SAME 1e-5
+
+// The fraction of a face's extent in the parameters by which its sides may be off.
+#define SIDE_SLACK 1e-7
+
+// The sides of a face in the parameters, if all of its edges are straight there.
+typedef struct Rectangle {
+  double box[4]; // u0 u1 v0 v1
+  bool straight;
+} Rectangle;
+
+static void add_parameters(Rectangle *r, double u, double v) {
+  r->box[0] = fmin(r->box[0], u);
+  r->box[1] = fmax(r->box[1], u);
+  r->box[2] = fmin(r->box[2], v);
+  r->box[3] = fmax(r->box[3], v);
+}
+
+static CagStatus rectangle_about_face(const CagBoundary *b, const CagBoundaryFace *f,
+                                      Rectangle *out, CagError *err) {
+  const CagBoundaryLoop *loop = &b->loops[f->first];
+  *out = (Rectangle){{INFINITY, -INFINITY, INFINITY, -INFINITY}, true};
+  for (size_t i = loop->first; out->straight && i < loop->first + loop->count; i++) {
+    CagEdgePath p;
+    CagStatus status = cag_edge_path(b, f, &b->uses[i], &p, err);
+    if (status) return status;
+    out->straight = p.straight;
+    add_parameters(out, p.at[0] + p.start * p.along[0], p.at[1] + p.start * p.along[1]);
+    add_parameters(out, p.at[0] + p.end * p.along[0], p.at[1] + p.end * p.along[1]);
+  }
+  return CAG_OK;
+}
+
+// Whether an edge lies along a side.
+static bool is_on_side(const Rectangle *r, const CagEdgePath *p) {
+  for (int k = 0; k < 2; k++) {
+    const double *range = r->box + 2 * (size_t)k, slack = SIDE_SLACK * (range[1] - range[0]);
+    const double from = p->at[k] + p->start * p->along[k], to = p->at[k] + p->end * p->along[k];
+    for (int side = 0; side < 2; side++)
+      if (fabs(from - range[side]) <= slack && fabs(to - range[side]) <= slack) return true;
+  }
+  return false;
+}
+
+static CagStatus is_rectangle(const CagBoundary *b, const CagBoundaryFace *f, bool *out,
+                              CagError *err) {
+  const CagBoundaryLoop *loop = &b->loops[f->first];
+  Rectangle r;
+  CagStatus status = f->count == 1 ? rectangle_about_face(b, f, &r, err) : CAG_OK;
+  *out =
+      !status && f->count == 1 && r.straight && r.box[1] - r.box[0] <= 2 * M_PI * (1 + SIDE_SLACK);
+  for (size_t i = loop->first; !status && *out && i < loop->first + loop->count; i++) {
+    CagEdgePath p;
+    status = cag_edge_path(b, f, &b->uses[i], &p, err);
+    *out = !status && is_on_side(&r, &p);
+  }
+  return status;
+}
+
+CagStatus cag_brep_needs_reading(const CagBoundaries *parts, bool *needed, CagError *err) {
+  CagStatus status = CAG_OK;
+  *needed = false;
+  for (size_t i = 0; i < parts->count && !*needed; i++) {
+    const CagBoundary *b = &parts->items[i];
+    for (size_t f = 0; f < b->face_count && !*needed; f++) {
+      bool plain = false;
+      if (b->faces[f].carrier.kind == CAG_CARRIER_PLANE) continue;
+      if (cag_carrier_is_analytic(&b->faces[f].carrier))
+        status = is_rectangle(b, &b->faces[f], &plain, err);
+      if (status) return status;
+      *needed = !plain;
+    }
+  }
+  return CAG_OK;
+}
 
 static CagStatus write_text(const CagBoundaries *parts, CagBrepFormat format, char **text,
                             size_t *size, CagError *err) {

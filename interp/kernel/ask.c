@@ -36,6 +36,7 @@
 #define EXEC_FAILED 127
 
 #define PROGRAM "cag-brep"
+#define TUNABLES "GLIBC_TUNABLES"
 #define PACKAGE_HELP "install the package cag-brep, or build it with `make brep`"
 
 struct CagKernel {
@@ -91,10 +92,25 @@ static void find_program(char *path, size_t size) {
     strcpy(path, PROGRAM);
 }
 
+// The environment of the program, in which the C library takes memory in large pages: the kernel
+// touches much of it, once. NULL if memory ran out; the caller frees it.
+static char **program_environment(void) {
+  static char setting[] = TUNABLES "=glibc.malloc.hugetlb=1";
+  size_t n = 0;
+  while (environ && environ[n]) n++;
+  char **all = cag_calloc(n + 2, sizeof *all);
+  if (!all) return NULL;
+  if (n > 0) memcpy(all, environ, n * sizeof *all);
+  if (!getenv(TUNABLES)) all[n] = setting;
+  return all;
+}
+
 // Runs in the child after fork, so only async-signal-safe calls are allowed. The program ends itself
 // when the socket is closed. The death signal of the parent would come when its thread ends, which is
 // that of a run.
-static void become(const char *program, char *const *arguments, int socket, rlim_t memory) {
+static void become(const char *program, char *const *environment, int socket, rlim_t memory) {
+  static char name[] = PROGRAM;
+  char *const arguments[] = {name, NULL};
   static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGPIPE, SIGXFSZ};
   const struct rlimit no_core = {0, 0}, most = {memory, memory};
   sigset_t none;
@@ -107,7 +123,7 @@ static void become(const char *program, char *const *arguments, int socket, rlim
   const int null = open("/dev/null", O_WRONLY);
   if (null >= 0 && dup2(socket, STDIN_FILENO) >= 0 && dup2(socket, STDOUT_FILENO) >= 0 &&
       dup2(null, STDERR_FILENO) >= 0)
-    execvp(program, arguments);
+    execvpe(program, arguments, environment);
   _exit(EXEC_FAILED);
 }
 
@@ -229,12 +245,18 @@ static CagStatus start(CagKernel *k, CagError *err) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_failed, "", -1,
                     "cag-brep cannot be started: %s", strerror(errno));
-  char *const arguments[] = {PROGRAM, NULL};
+  char **environment = program_environment();
+  if (!environment) {
+    close(ends[0]);
+    close(ends[1]);
+    return cag_fail_memory(err);
+  }
   const size_t room = cag_account_room();
   const rlim_t memory = room >= SIZE_MAX / 2 - OWN_MEMORY ? RLIM_INFINITY : room + OWN_MEMORY;
   k->process = fork();
-  if (k->process == 0) become(path, arguments, ends[1], memory);
+  if (k->process == 0) become(path, environment, ends[1], memory);
   const int code = errno;
+  cag_free(environment);
   close(ends[1]);
   k->socket = ends[0];
   if (k->process < 0) {

@@ -27,7 +27,7 @@
 #define CAG_INTERP_KERNEL_PROTOCOL_H
 
 // Changes with every change of this file. A helper with another number is refused.
-#define CAG_BREP_PROTOCOL 1
+#define CAG_BREP_PROTOCOL 2
 
 typedef enum CagBrepMessage {
   // From the helper.
@@ -75,8 +75,9 @@ typedef enum CagBrepSolidKind {
          // z
   CAG_BREP_HALF_SPACE = 7, // z < 0, cut off: f64 size; the part within the cube of this half edge
                            // about the origin
-  CAG_BREP_FACES = 8,  // u32 n, per face: u32 flat; if 0: surface (SPLINE), the whole of it; if 1:
-                       // frame, region. Together they close; f64 tolerance of the gaps
+  CAG_BREP_FACES = 8,  // u32 n, per face: u32 kind; if 0: surface (SPLINE), the whole of it; if 1:
+                       // frame, region; if 2: surface (CYLINDRICAL, CONICAL, or SPHERICAL), 4 f64
+                       // bounds u0 u1 v0 v1. Together they close; f64 tolerance of the gaps
   CAG_BREP_BODY = 9,   // bytes body: from a RESULT
   CAG_BREP_UNION = 10, // u32 n, n solids
   CAG_BREP_DIFFERENCE = 11, // the first minus all others

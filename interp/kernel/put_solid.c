@@ -13,6 +13,7 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
 #include "geom/surface/approximate.h"
+#include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/kernel/protocol.h"
@@ -23,6 +24,8 @@
 #define SEWING 1e-6
 // How far half spaces are cut off, as a multiple of the size of everything that they meet.
 #define FAR 4.0
+// The kinds of faces in messages.
+enum { SPLINE_FACE, FLAT_FACE, ROUND_FACE };
 
 static CagStatus memory_of(const CagFields *f, CagError *err) {
   return f->failed ? cag_fail_memory(err) : CAG_OK;
@@ -198,21 +201,98 @@ static CagStatus put_flat(CagFields *f, const CagRegion *r, const CagTransform *
   return status;
 }
 
+// A parallelogram as a part of a plane.
+static CagStatus put_parallelogram(CagFields *f, CagVec3 origin, CagVec3 x, CagVec3 y,
+                                   CagError *err) {
+  CagTransform frame;
+  CagStatus status = cag_axes(origin, x, y, &frame, err);
+  if (status) return status;
+  const CagVec3 along = cag_vec3(cag_norm(x), 0, 0);
+  const CagVec3 across =
+      cag_vec3(cag_dot(y, frame_column(&frame, 0)), cag_dot(y, frame_column(&frame, 1)), 0);
+  const CagVec3 corners[4] = {cag_vec3(0, 0, 0), along, cag_add(along, across), across};
+  cag_put_u32(f, FLAT_FACE);
+  cag_put_frame(f, &frame);
+  cag_put_u32(f, 1);
+  cag_put_u32(f, 4);
+  for (int i = 0; i < 4; i++) put_segment(f, corners[i], corners[(i + 1) % 4]);
+  return CAG_OK;
+}
+
+// Whether the axes of a quadric's frame are perpendicular, and the first two of them equal.
+static bool is_round_frame(const CagTransform *t, double lengths[3]) {
+  CagVec3 axes[3];
+  bool good = true;
+  for (int i = 0; i < 3; i++) {
+    axes[i] = frame_column(t, i);
+    lengths[i] = cag_norm(axes[i]);
+    good = good && lengths[i] > 0;
+  }
+  for (int i = 0; i < 3; i++) {
+    const int next = (i + 1) % 3;
+    good = good && fabs(cag_dot(axes[i], axes[next])) <= CAG_ROUNDING * lengths[i] * lengths[next];
+  }
+  return good && fabs(lengths[0] - lengths[1]) <= CAG_ROUNDING * lengths[0];
+}
+
+// Adds a piece of a cylinder, a cone, or a ball as such. Frames become right-handed, which may
+// reverse u. *done: it is one.
+static CagStatus put_round_patch(CagFields *f, const CagSurface *s, bool *done, CagError *err) {
+  CagQuadricShape shape;
+  CagTransform t, frame;
+  double r[3];
+  *done = false;
+  if (!cag_surface_quadric_shape(s, &shape) || !cag_surface_quadric_frame(s, &t) ||
+      !is_round_frame(&t, r))
+    return CAG_OK;
+  const bool ball = shape == CAG_SHAPE_ELLIPSOID && fabs(r[2] - r[0]) <= CAG_ROUNDING * r[0];
+  const bool cone = shape == CAG_SHAPE_CONE && s->v0 >= 0;
+  if (!ball && !cone && shape != CAG_SHAPE_ELLIPTIC_CYLINDER) return CAG_OK;
+  const CagVec3 z = frame_column(&t, 2), x = frame_column(&t, 0), y = frame_column(&t, 1);
+  CagStatus status = cag_axes(frame_column(&t, 3), x, cag_cross(z, x), &frame, err);
+  if (status) return status;
+  const bool mirrored = cag_dot(cag_cross(x, y), z) < 0;
+  const double stretch = cone ? hypot(r[0], r[2]) : r[2];
+  cag_put_u32(f, ROUND_FACE);
+  cag_put_u32(f, ball ? CAG_BREP_SPHERICAL : cone ? CAG_BREP_CONICAL : CAG_BREP_CYLINDRICAL);
+  cag_put_frame(f, &frame);
+  cag_put_f64(f, cone ? 0 : r[0]);
+  if (cone) cag_put_f64(f, atan2(r[0], r[2]));
+  cag_put_f64(f, mirrored ? -s->u1 : s->u0);
+  cag_put_f64(f, mirrored ? -s->u0 : s->u1);
+  // The angle of a ball is measured from its pole, but from its equator in the message.
+  cag_put_f64(f, ball ? M_PI / 2 - s->v1 : s->v0 * stretch);
+  cag_put_f64(f, ball ? M_PI / 2 - s->v0 : s->v1 * stretch);
+  *done = true;
+  return CAG_OK;
+}
+
+static CagStatus put_face(CagFields *f, const CagSurface *s, CagError *err) {
+  const CagRegion *region;
+  CagTransform t;
+  CagVec3 origin, x, y;
+  bool done;
+  if (cag_surface_trimmed_view(s, NULL, NULL))
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
+                    "a trimmed face cannot be joined with the others");
+  if (cag_surface_planar_view(s, &region, &t)) {
+    cag_put_u32(f, FLAT_FACE);
+    return put_flat(f, region, &t, err);
+  }
+  if (cag_surface_parallelogram_view(s, &origin, &x, &y))
+    return put_parallelogram(f, origin, x, y, err);
+  CagStatus status = put_round_patch(f, s, &done, err);
+  if (status || done) return status;
+  cag_put_u32(f, SPLINE_FACE);
+  return put_net(f, s, err);
+}
+
 static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
   CagBounds box;
   CagStatus status = cag_solid_bounds(s, &box, err);
   cag_put_u32(f, CAG_BREP_FACES);
   cag_put_u32(f, s->face_count);
-  for (size_t i = 0; !status && i < s->face_count; i++) {
-    const CagRegion *region;
-    CagTransform t;
-    if (cag_surface_trimmed_view(s->faces[i], NULL, NULL))
-      return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
-                      "a trimmed face cannot be joined with the others");
-    const bool flat = cag_surface_planar_view(s->faces[i], &region, &t);
-    cag_put_u32(f, flat);
-    status = flat ? put_flat(f, region, &t, err) : put_net(f, s->faces[i], err);
-  }
+  for (size_t i = 0; !status && i < s->face_count; i++) status = put_face(f, s->faces[i], err);
   // Two sides that were approximated separately may differ by twice the tolerance.
   if (!status)
     cag_put_f64(f, fmax(SEWING * cag_norm(cag_sub(box.max, box.min)),

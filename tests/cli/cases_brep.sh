@@ -421,6 +421,24 @@ if [ -x "$helper" ]; then
   grep -q 'SEAM_CURVE' seam.step || wrong 'there is no seam'
 fi
 
+# A request to read a file has its path, which is one of /proc.
+it 'only faces that programs may read differently are read back'
+script plain.cag 'show rounded_box([30, 20, 10], 2) - translate(cylinder(12, 3), [15, 10, -1])'
+script cut_ball.cag 'show sphere(6) - translate(cylinder(20, 3, centered: true), [2, 1, 0])'
+if [ -x "$helper" ]; then
+  printf '#!/bin/sh\ntee -a "%s/asked" | "%s"\n' "$PWD" "$helper" > counted
+  chmod +x counted
+  for name in plain cut_ball; do
+    : > asked
+    try_command env CAG_BREP="$PWD/counted" "$CAG" export $name.cag -o $name.step
+    status 0
+    grep -aq '/proc/' asked && read_back=yes || read_back=no
+    [ $name-$read_back = plain-no ] || [ $name-$read_back = cut_ball-yes ] || wrong "$name is read back: $read_back"
+  done
+  [ "$(grep -c 'SPHERICAL_SURFACE' plain.step)" -eq 8 ] || wrong 'its corners are no balls'
+  [ "$(grep -c 'CYLINDRICAL_SURFACE' plain.step)" -eq 13 ] || wrong 'its edges are no cylinders'
+fi
+
 it 'a set operation with a mesh has no exact boundary'
 script lump.cag 'show box(10) - solid(tessellate(sphere(3))) |> named("lump")'
 try export lump.cag -o lump.step
@@ -438,9 +456,9 @@ stand_in ends 'exit 0'
 stand_in crashes 'kill -SEGV $$'
 stand_in babbles 'yes garbage'
 stand_in older "printf '${hello}\\143\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null"
-stand_in leaves "printf '${hello}\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'"
-stand_in hangs "printf '${hello}\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null; sleep 99"
-stand_in empty "printf '${hello}\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; printf '\\002\\000\\000\\000\\000\\000\\000\\000\\004\\000\\000\\000\\000\\000\\000\\000\\001\\000\\000\\000'; cat > /dev/null"
+stand_in leaves "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'"
+stand_in hangs "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null; sleep 99"
+stand_in empty "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; printf '\\002\\000\\000\\000\\000\\000\\000\\000\\004\\000\\000\\000\\000\\000\\000\\000\\001\\000\\000\\000'; cat > /dev/null"
 for entry in none:'install the package cag-brep' ends:'does not start' crashes:'does not start' babbles:'does not start' \
   older:'same version' leaves:'ended before' empty:'not a boundary'; do
   name=${entry%%:*}
