@@ -13,6 +13,7 @@
 #include "interp/formats/brep_build.h"
 #include "interp/formats/brep_check.h"
 #include "interp/formats/brep_facets.h"
+#include "interp/formats/brep_form.h"
 #include "interp/scene/fineness.h"
 
 // The fraction of a shape's size within which ends and edges count as equal. The checks of closed
@@ -398,7 +399,10 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
   } else if (needs_kernel(item)) {
     status = add_operation(&w, kernel, format, &shape, err);
   } else {
-    status = add_bounded(&w, &shape, err);
+    bool done = false;
+    status = item->kind == CAG_ITEM_SOLID ? cag_brep_add_form(b, item->as.solid, &shape, &done, err)
+                                          : CAG_OK;
+    if (!status && !done) status = add_bounded(&w, &shape, err);
   }
   if (status) return name_shape(item, status, err);
   shape.approximate = w.approximate;

@@ -79,6 +79,14 @@ shape cone 402.3677749251246 523.5987755982989 'g = cone(20, 5)'
 shape box 22 6 'g = box([1, 2, 3]) |> rotate(30deg, [1, 1, 0]) |> translate([100, 50, 20])'
 shape lathe - - 'g = solid(revolve(bspline([[0, 0], [10, 0], [12, 8], [5, 15], [9, 22], [0, 25]])))'
 shape wedge - - 'g = revolve(polygon([[5, 0], [10, 0], [10, 10], [7, 12]]), angle: 0deg..120deg)'
+shape mirrored_wedge - - 'g = revolve(polygon([[5, 0], [10, 0], [10, 10], [7, 12]]), angle: 10deg..120deg) |> reflect(plane([1, 2, 3], [1, 2, 3]))'
+shape part_torus - - 'g = revolve(region(circle(2, center: [6, 1])), angle: 20deg..300deg)'
+shape top - - 'g = revolve(polygon([[0, 0], [10, 0], [10, 10], [7, 12], [0, 8]]), angle: 10deg..120deg)'
+# Rounded profile: the area 4 3 + 14 + pi turned about an axis 11 from its center (Pappus).
+shape rounded_ring - 2014.1222946773275 'g = revolve(translate(offset(rectangle(4, 3), 1), [11, 0]))'
+# 2 (40 + 4 pi) + 9 (20 + 4 pi), and 9 (40 + 4 pi).
+shape bar 398.2300767579509 473.0973355292325 'g = extrude(stroke(line([-5, 0], [5, 0]), 4, cap: "round"), -9) |> rotate([1, 2, 3], 50deg)'
+shape uneven_ball - 678.5840131753953 'g = sphere(3) |> scale([1, 2, 3])'
 shape sweep - - 'g = sweep(circle(2), arc(20, 0deg..90deg))'
 # Area: both ends, the sides; volume: (100 pi - 9 pi) * 5.
 shape ring 980.1769079200158 1429.4246573833559 'g = extrude(region(circle(10), holes: [circle(3)]), 5)'
@@ -146,7 +154,7 @@ shape mesh_hull 6 1 'g = hull([for x in [0, 1], y in [0, 1], z in [0, 1]: [x, y,
 shape mesh_ball - - 'g = tessellate(sphere(3))'
 shape mesh_hollow 750 875 'g = solid(tessellate(box([10, 10, 10], centered: true))) - box([5, 5, 5], centered: true)'
 shape mesh_twins 12 2 'g = solid(tessellate(box([1, 1, 1]))) | (box([1, 1, 1]) |> translate([1, 1, 0]))'
-shape mesh_offset - - 'g = offset(box([4, 6, 8]), 1)'
+shape mesh_offset - - 'g = offset(box([4, 6, 8]), 1, tolerance: 0.02)'
 shape mesh_sum - - 'g = minkowski(box([10, 20, 30]), sphere(2))'
 said=
 
@@ -248,6 +256,26 @@ cp ball_body.step out
 [ "$(grep -c "=PLANE('" ball_body.step)" -eq 6 ] || wrong 'planes are missing'
 grep -q '=MANIFOLD_SOLID_BREP(' ball_body.step || wrong 'it is no solid'
 [ "$(grep -c "=B_SPLINE_CURVE_WITH_KNOTS('',3," ball_body.step)" -le 2 ] || wrong 'circles are approximated'
+
+# kinds NAME 'entities': those of the faces, sorted.
+kinds() {
+  it "the faces of $1.step are these surfaces: $2"
+  grep -o '=[A-Z]*_SURFACE(\|=PLANE(\|=B_SPLINE_SURFACE[A-Z_]*(\|=(BOUNDED_SURFACE' "$1.step" | tr -d '=(' | sort | tr '\n' ' ' > out
+  [ "$(cat out)" = "$2 " ] || wrong 'they are others'
+}
+kinds sphere SPHERICAL_SURFACE
+kinds torus TOROIDAL_SURFACE
+kinds cylinder 'CYLINDRICAL_SURFACE PLANE PLANE'
+kinds copies 'CYLINDRICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE PLANE PLANE'
+kinds cone 'CONICAL_SURFACE PLANE'
+kinds box 'PLANE PLANE PLANE PLANE PLANE PLANE'
+kinds ring 'CYLINDRICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE'
+kinds bar 'CYLINDRICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE PLANE PLANE'
+kinds wedge 'CONICAL_SURFACE CONICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE PLANE'
+kinds mirrored_wedge 'CONICAL_SURFACE CONICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE PLANE'
+kinds part_torus 'PLANE PLANE TOROIDAL_SURFACE'
+kinds rounded_ring 'CYLINDRICAL_SURFACE CYLINDRICAL_SURFACE PLANE PLANE TOROIDAL_SURFACE TOROIDAL_SURFACE TOROIDAL_SURFACE TOROIDAL_SURFACE'
+kinds uneven_ball BOUNDED_SURFACE
 
 it 'names and colors are in the .step'
 script named.cag 'show sphere(1) |> named("It'"'"'s \u{e9}t\u{e9}") |> color([1, 0, 0])'
@@ -424,7 +452,7 @@ for name in tip oval tilted waved vase rings smooth; do
     skip 'cag-brep is missing (Open CASCADE is not installed)'
   fi
 done
-for name in bored lens dumbbell crossing hollow half_ball half_torus cut_cone parts placed slotted cut_ring cut_shaft tip oval tilted waved vase rings smooth; do
+for name in sphere torus cylinder cone box wedge mirrored_wedge part_torus top rounded_ring bar ring plate bored lens dumbbell crossing hollow half_ball half_torus cut_cone parts placed slotted cut_ring cut_shaft tip oval tilted waved vase rings smooth; do
   it "the faces, edges, and curves of $name.igs fit, by the formulas of IGES 5.3" python3
   if [ -x "$helper" ]; then
     try_command python3 "$here/iges_solid.py" "$name.igs"
@@ -456,6 +484,27 @@ if [ -x "$helper" ]; then
   status 0
   grep -q 'SEAM_CURVE' seam.step || wrong 'there is no seam'
 fi
+
+it 'an offset says how it was computed'
+# 29486.932 is the offset of the block (Steiner), 980 pi + 2 pi (64 + 2/3 - 4 pi) that of the hole, rounded at its rims.
+script grown.cag 'g = offset(box([40, 30, 20]) - (cylinder(30, 8) |> translate([20, 15, -5])), 1)
+print near(volume(g), 24000 + 5200 + 90 * pi + 4 / 3 * pi - (980 * pi + 2 * pi * (64 + 2 / 3 - 4 * pi)), relative: 1e-7)'
+if [ -x "$helper" ]; then
+  try run -v grown.cag
+  status 0
+  says 'offset: tier B: kernel'
+  prints true
+fi
+script grown.cag 'print near(volume(offset(box([4, 6, 8]), 1)), 192 + 208 + 18 * pi + 4 / 3 * pi, relative: 1e-9)'
+try run -v grown.cag
+says 'offset: tier A: exact form'
+prints true
+# Without the helper, the mesh remains.
+script grown.cag 'g = offset(box([4, 4, 4]) - box([1, 1, 1]), -1)
+print near(volume(g), 8 - pi / 6, relative: 1e-2)'
+try_command env CAG_BREP="$PWD/none" "$CAG" run -v grown.cag
+status 0
+says 'offset: tier C: mesh'
 
 # Programs that misbehave in place of cag-brep: missing, ending at once or in a request, saying garbage or nothing, of another version.
 stand_in() {
