@@ -2,6 +2,7 @@
 
 #include "geom/solid/convolve.h"
 #include "geom/solid/csg.h"
+#include "interp/builtin/exacts_offset.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
@@ -88,12 +89,18 @@ bool cag_solids_offset(CagCall *call, const struct cag_solids_offset *a, CagValu
     return cag_fail_call(call, 1, CAG_ERR_too_far,
                          "expects a distance of at most 1e9 times the size of the solid");
   const double d = fabs(a->d) <= NO_DISTANCE * size ? 0 : a->d;
+  bool done = false;
+  if (d != 0 && !cag_given(call, 2) && !cag_exact_offset(call, 0, d, result, &done)) return false;
+  if (done) return true;
   if (!cag_given(call, 2)) tolerance = fmax(PART_OF_DISTANCE * fabs(d), PART_OF_SIZE * size);
   if (!body_mesh(call, 0, tolerance, &m)) return false;
   if (!m) return nothing_result(call, result);
   const CagStatus status =
       cag_mesh_offset(m, d, tolerance, cag_vm_stop(call->vm), &moved, call->err);
-  return sum_result(call, status, moved, result);
+  if (!sum_result(call, status, moved, result)) return false;
+  if (call->vm->verbose)
+    cag_vm_trace(call, cag_number(tolerance), "offset: tier C: mesh; tolerance");
+  return true;
 }
 
 bool cag_solids_minkowski(CagCall *call, const struct cag_solids_minkowski *a, CagValue *result) {

@@ -266,7 +266,12 @@ bool cag_surfaces_offset(CagCall *call, const struct cag_surfaces_offset *a, Cag
 
 bool cag_surfaces_thicken(CagCall *call, const struct cag_surfaces_thicken *a, CagValue *result) {
   CagSolid *out = NULL;
-  if (a->d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
-  return cag_changed_solid_result(call, cag_solid_thicken(a->S, a->d, &out, call->err), &out,
-                                  result);
+  CagSurface *from = NULL;
+  if (a->thickness == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
+  CagStatus status = CAG_OK;
+  if (a->centered) status = cag_surface_offset(a->S, -a->thickness / 2, &from, call->err);
+  else from = cag_surface_retain(a->S);
+  if (!status) status = cag_solid_thicken(from, a->thickness, &out, call->err);
+  cag_surface_release(from);
+  return cag_changed_solid_result(call, status, &out, result);
 }

@@ -9,10 +9,14 @@
 
 #include "base/memory.h"
 #include "geom/boundary/moved.h"
+#include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
 #include "geom/tessellate/orient.h"
 #include "interp/formats/brep_build.h"
 #include "interp/formats/brep_check.h"
+#include "interp/formats/brep_facets.h"
+#include "interp/formats/brep_form.h"
+#include "interp/scene/fineness.h"
 
 // The fraction of a shape's size within which ends and edges count as equal. The checks of closed
 // solids allow the same.
@@ -180,13 +184,6 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
   return item->tolerance > 0 ? item->tolerance : s->tolerance;
 }
 
-static CagStatus fail_mesh(const CagItem *item, CagError *err) {
-  return cag_fail(
-      err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
-      "%s is a mesh, but files of exact geometry contain curves and surfaces: show the surfaces from which it was made, or write .stl, .obj, .ply, or .glb",
-      item->name);
-}
-
 // The normals of a closed surface point outward, as for a solid.
 static CagStatus add_surface(CagBrepWork *w, const CagSurface *s, CagError *err) {
   CagSurface *outward;
@@ -202,15 +199,13 @@ static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   switch (item->kind) {
   case CAG_ITEM_REGION: return cag_brep_add_region(w, item->as.region, &item->placement, 0, err);
   case CAG_ITEM_SURFACE: return add_surface(w, item->as.surface, err);
-  case CAG_ITEM_SOLID: {
+  default: {
     CagStatus status = CAG_OK;
     const CagSolid *solid = item->as.solid;
-    if (solid->kind == CAG_SOLID_MESH) return fail_mesh(item, err);
     for (size_t i = 0; !status && i < solid->face_count; i++)
       status = cag_brep_add_surface(w, solid->faces[i], i, err);
     return status;
   }
-  default: return fail_mesh(item, err);
   }
 }
 
@@ -382,8 +377,43 @@ static CagStatus add_operation(CagBrepWork *w, CagKernel *kernel, CagBrepFormat 
 
 static bool needs_kernel(const CagItem *item) {
   return item->kind == CAG_ITEM_SOLID &&
-         (item->as.solid->kind == CAG_SOLID_EXACT ||
-          (item->as.solid->face_count == 0 && item->as.solid->kind != CAG_SOLID_MESH));
+         (item->as.solid->kind == CAG_SOLID_EXACT || item->as.solid->face_count == 0);
+}
+
+// --- Meshes ---
+
+// Whether a solid is a mesh, or a set operation with a mesh among its operands.
+static bool has_mesh(const CagSolid *s) {
+  if (s->kind == CAG_SOLID_MESH) return true;
+  for (size_t i = 0; s->face_count == 0 && s->core && i < s->core->count; i++)
+    if (has_mesh(s->core->operands[i])) return true;
+  return false;
+}
+
+static bool is_faceted(const CagItem *item) {
+  return item->kind == CAG_ITEM_MESH || (item->kind == CAG_ITEM_SOLID && has_mesh(item->as.solid));
+}
+
+// A mesh of which the exact form is not known. Set operations are meshed within the tolerance of the
+// item.
+static CagStatus add_facets(CagBrepWork *w, CagBrepShape *shape, CagError *err) {
+  const CagItem *item = w->item;
+  CagMesh *m;
+  CagStatus status = cag_item_mesh(w->scene, item, &m, err);
+  if (status) return status;
+  const size_t triangles = m->triangle_count;
+  status = cag_brep_add_facets(w->brep, m, shape, err);
+  cag_mesh_release(m);
+  if (!status && triangles == 0)
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "nothing is left of it");
+  if (status && err->id == CAG_ERR_mesh_open)
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
+        "%s is a mesh that is not closed, but files of exact geometry contain solids: close it (`mesh_check` tells where it is open, and `weld` merges vertices), or write .stl, .obj, .ply, or .glb",
+        item->name);
+  const bool own = item->kind == CAG_ITEM_MESH || item->as.solid->kind == CAG_SOLID_MESH;
+  w->asked = own ? 0 : cag_item_tolerance(w->scene, item);
+  return status;
 }
 
 static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagKernel *kernel,
@@ -394,10 +424,15 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
   if (item->kind == CAG_ITEM_CURVE) {
     shape.kind = CAG_BREP_CURVE;
     status = cag_brep_curve(&w, item->as.curve, &shape.curve, err);
+  } else if (is_faceted(item)) {
+    status = add_facets(&w, &shape, err);
   } else if (needs_kernel(item)) {
     status = add_operation(&w, kernel, format, &shape, err);
   } else {
-    status = add_bounded(&w, &shape, err);
+    bool done = false;
+    status = item->kind == CAG_ITEM_SOLID ? cag_brep_add_form(b, item->as.solid, &shape, &done, err)
+                                          : CAG_OK;
+    if (!status && !done) status = add_bounded(&w, &shape, err);
   }
   if (status) return name_shape(item, status, err);
   shape.approximate = w.approximate;

@@ -5,8 +5,9 @@
 // tangent plane is discontinuous), bounded by loops of edge uses; the face is on the left of each
 // use, seen against its normal. The faces of a set operation come from the CAD kernel: they lie on
 // carriers (geom/boundary/boundary.h), and their edges may also be arcs. Adjacent faces of a shape
-// share their edge, and adjacent edges share their vertex. A seam is an edge that its face uses twice, and a pole is a vertex without an
-// edge.
+// share their edge, and adjacent edges share their vertex. A seam is an edge that its face uses
+// twice, and a pole is a vertex without an edge. Closed meshes, and set operations with meshes among
+// their operands, become solids with plane faces.
 //
 // Curves and surfaces are clamped, with positive weights; weights that are all equal are omitted.
 // Shapes without an exact form are approximated within the user's tolerance, or cause an error if
@@ -66,7 +67,9 @@ typedef struct CagBrepShape {
   CagCurve *curve;     // CURVE: of a NURBS kind
   size_t first, count; // shells
   bool approximate;    // some part is approximated
-  double tolerance;    // of the approximation
+  double tolerance;    // of the approximation, or of the mesh of which the faces are
+  size_t facets;       // the number of flat faces of a mesh; 0: the faces are exact
+  double flatness;     // mm: of these, the largest distance from the triangles
 } CagBrepShape;
 
 typedef struct CagBrep {

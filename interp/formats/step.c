@@ -17,14 +17,15 @@ typedef struct Writer {
   CagAtomicFile *file;
   Id last;
   Id context, product_shape, placement;
-  Id *vertex, *edge, *surface; // vertex points, edge curves, and surfaces of faces; 0: not written
-                               // yet
-  size_t *use_face;            // the face of each use
-  size_t *edge_use;            // the uses, sorted by edges; those of edge i begin at edge_uses[i]
+  Id *point, *vertex, *edge, *surface; // points and vertex points of vertices, edge curves, and
+                                       // surfaces of faces; 0: not written yet
+  size_t *use_face;                    // the face of each use
+  size_t *edge_use; // the uses, sorted by edges; those of edge i begin at edge_uses[i]
   size_t *edge_uses;
   Id plane_context; // of curves in the parameters of surfaces; 0: not written yet
   Id *styled;
   size_t styled_count, styled_room;
+  bool faceted;   // of the current shape: directions need fewer digits
   bool failed;    // memory ran out
   bool undefined; // a number was not finite
 } Writer;
@@ -48,6 +49,18 @@ static void put_real(Writer *w, double x) {
     put(w, "E");
     put(w, e);
   }
+}
+
+// A component of a unit vector of a faceted shape. The error is far below the accuracy of the file,
+// and the file is smaller and written faster.
+static void put_short_real(Writer *w, double x) {
+  enum { DECIMALS = 13 };
+  char text[40];
+  w->undefined |= !isfinite(x);
+  snprintf(text, sizeof text, "%.*f", DECIMALS, x);
+  size_t n = strlen(text);
+  while (n > 0 && text[n - 1] == '0') text[--n] = 0;
+  put(w, strcmp(text, "-0.") == 0 ? "0." : text);
 }
 
 // Characters other than printable ASCII are written as code points.
@@ -132,7 +145,18 @@ static Id put_pair(Writer *w, const char *head, CagVec3 p) {
 }
 
 static Id point(Writer *w, CagVec3 p) { return put_triple(w, "CARTESIAN_POINT('',(", p); }
-static Id direction(Writer *w, CagVec3 d) { return put_triple(w, "DIRECTION('',(", d); }
+
+static Id direction(Writer *w, CagVec3 d) {
+  if (!w->faceted) return put_triple(w, "DIRECTION('',(", d);
+  const Id id = begin(w, "DIRECTION('',(");
+  put_short_real(w, d.x);
+  put(w, ",");
+  put_short_real(w, d.y);
+  put(w, ",");
+  put_short_real(w, d.z);
+  put(w, "));\n");
+  return id;
+}
 
 static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
@@ -258,19 +282,10 @@ static Id nurbs_surface(Writer *w, const CagSurface *s) {
   return id;
 }
 
-static Id line(Writer *w, const CagCurve *c) {
-  CagNurbsView v = {0};
-  cag_curve_nurbs_view(c, &v);
-  const double *a = v.homogeneous, *b = a + 4 * (v.count - 1);
-  CagVec3 p = cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]);
-  CagVec3 d = cag_sub(cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]), p);
-  double length = cag_norm(d);
-  Id at = point(w, p), along = direction(w, cag_unit(d));
-  Id vector = begin(w, "VECTOR('',");
-  put_id(w, along);
-  put(w, ",");
-  put_real(w, length);
-  end(w);
+// A line from a point of the file. The unit of its parameter is the millimeter.
+static Id line(Writer *w, Id at, CagVec3 from, CagVec3 to) {
+  const Id along = direction(w, cag_unit(cag_sub(to, from)));
+  const Id vector = entity(w, "VECTOR('',#%zu,1.)", along);
   return entity(w, "LINE('',#%zu,#%zu)", at, vector);
 }
 
@@ -375,9 +390,9 @@ static Id carrier(Writer *w, const CagCarrier *c) {
 // --- Topology ---
 
 static Id vertex(Writer *w, size_t index) {
-  if (!w->vertex[index])
-    w->vertex[index] = entity(w, "VERTEX_POINT('',#%zu)", point(w, w->brep->vertices[index]));
-  return w->vertex[index];
+  if (w->vertex[index]) return w->vertex[index];
+  w->point[index] = point(w, w->brep->vertices[index]);
+  return w->vertex[index] = entity(w, "VERTEX_POINT('',#%zu)", w->point[index]);
 }
 
 static Id face_surface(Writer *w, size_t index) {
@@ -455,7 +470,9 @@ static Id edge(Writer *w, size_t index) {
   if (w->edge[index]) return w->edge[index];
   const CagBrepEdge *e = &w->brep->edges[index];
   Id from = vertex(w, e->from), to = vertex(w, e->to);
-  Id curve = e->straight && !e->timed ? line(w, e->curve) : any_curve(w, e->curve);
+  Id curve = e->straight && !e->timed
+                 ? line(w, w->point[e->from], w->brep->vertices[e->from], w->brep->vertices[e->to])
+                 : any_curve(w, e->curve);
   curve = with_traces(w, index, curve);
   return w->edge[index] = entity(w, "EDGE_CURVE('',#%zu,#%zu,#%zu,.T.)", from, to, curve);
 }
@@ -617,8 +634,10 @@ static void write_shapes(Writer *w, CagBrepKind kind, Items *items) {
     if (s->kind != kind) continue;
     if (kind == CAG_BREP_CURVE) add(w, items, s, curve_set(w, s));
     if (kind == CAG_BREP_SHEET) add(w, items, s, sheet(w, s));
+    w->faceted = s->facets > 0;
     for (size_t k = s->first; kind == CAG_BREP_SOLID && k < s->first + s->count; k++)
       if (b->shells[k].void_of == k) add(w, items, s, solid(w, s, k));
+    w->faceted = false;
   }
 }
 
@@ -726,6 +745,7 @@ static void write_header(Writer *w, const char *name) {
 CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile *file,
                           CagError *err) {
   Writer w = {.brep = brep, .file = file};
+  w.point = cag_calloc(brep->vertex_count + 1, sizeof *w.point);
   w.vertex = cag_calloc(brep->vertex_count + 1, sizeof *w.vertex);
   w.edge = cag_calloc(brep->edge_count + 1, sizeof *w.edge);
   w.surface = cag_calloc(brep->face_count + 1, sizeof *w.surface);
@@ -734,8 +754,8 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
   w.edge_uses = cag_calloc(brep->edge_count + 2, sizeof *w.edge_uses);
   w.styled_room = brep->shape_count + brep->shell_count;
   w.styled = cag_calloc(w.styled_room + 1, sizeof *w.styled);
-  if (!w.vertex || !w.edge || !w.surface || !w.use_face || !w.edge_use || !w.edge_uses ||
-      !w.styled) {
+  if (!w.point || !w.vertex || !w.edge || !w.surface || !w.use_face || !w.edge_use ||
+      !w.edge_uses || !w.styled) {
     w.failed = true;
   } else {
     const char *name = script && *script ? script : "scene";
@@ -744,6 +764,7 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
     write_data(&w, name);
     put(&w, "ENDSEC;\nEND-ISO-10303-21;\n");
   }
+  cag_free(w.point);
   cag_free(w.vertex);
   cag_free(w.edge);
   cag_free(w.surface);

@@ -6,12 +6,14 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/boundary/carrier.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/curve/region.h"
 #include "geom/curve/strip.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
+#include "geom/solid/form.h"
 #include "geom/surface/approximate.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
@@ -170,29 +172,10 @@ static CagStatus put_net(CagFields *f, const CagSurface *s, CagError *err) {
   return CAG_OK;
 }
 
-static CagVec3 frame_column(const CagTransform *t, int j) {
-  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
-}
-
-// The frame of a flat face made orthonormal and right-handed, and the map of its region into it.
-static CagStatus flat_frame(const CagTransform *t, CagTransform *frame, CagTransform *map,
-                            CagError *err) {
-  const CagVec3 x = frame_column(t, 0), y = frame_column(t, 1), origin = frame_column(t, 3);
-  CagStatus status = cag_axes(origin, x, y, frame, err);
-  if (status) return status;
-  *map = cag_transform_identity();
-  for (int i = 0; i < 2; i++) {
-    const CagVec3 axis = frame_column(frame, i);
-    map->m[i][0] = cag_dot(axis, x);
-    map->m[i][1] = cag_dot(axis, y);
-  }
-  return CAG_OK;
-}
-
 static CagStatus put_flat(CagFields *f, const CagRegion *r, const CagTransform *t, CagError *err) {
   CagTransform frame, map;
   CagRegion *own;
-  CagStatus status = flat_frame(t, &frame, &map, err);
+  CagStatus status = cag_flat_frame(t, &frame, &map, err);
   if (!status) status = cag_region_transform(r, &map, &own, err);
   if (status) return status;
   cag_put_frame(f, &frame);
@@ -209,7 +192,7 @@ static CagStatus put_parallelogram(CagFields *f, CagVec3 origin, CagVec3 x, CagV
   if (status) return status;
   const CagVec3 along = cag_vec3(cag_norm(x), 0, 0);
   const CagVec3 across =
-      cag_vec3(cag_dot(y, frame_column(&frame, 0)), cag_dot(y, frame_column(&frame, 1)), 0);
+      cag_vec3(cag_dot(y, cag_frame_column(&frame, 0)), cag_dot(y, cag_frame_column(&frame, 1)), 0);
   const CagVec3 corners[4] = {cag_vec3(0, 0, 0), along, cag_add(along, across), across};
   cag_put_u32(f, FLAT_FACE);
   cag_put_frame(f, &frame);
@@ -224,7 +207,7 @@ static bool is_round_frame(const CagTransform *t, double lengths[3]) {
   CagVec3 axes[3];
   bool good = true;
   for (int i = 0; i < 3; i++) {
-    axes[i] = frame_column(t, i);
+    axes[i] = cag_frame_column(t, i);
     lengths[i] = cag_norm(axes[i]);
     good = good && lengths[i] > 0;
   }
@@ -248,8 +231,9 @@ static CagStatus put_round_patch(CagFields *f, const CagSurface *s, bool *done, 
   const bool ball = shape == CAG_SHAPE_ELLIPSOID && fabs(r[2] - r[0]) <= CAG_ROUNDING * r[0];
   const bool cone = shape == CAG_SHAPE_CONE && s->v0 >= 0;
   if (!ball && !cone && shape != CAG_SHAPE_ELLIPTIC_CYLINDER) return CAG_OK;
-  const CagVec3 z = frame_column(&t, 2), x = frame_column(&t, 0), y = frame_column(&t, 1);
-  CagStatus status = cag_axes(frame_column(&t, 3), x, cag_cross(z, x), &frame, err);
+  const CagVec3 z = cag_frame_column(&t, 2), x = cag_frame_column(&t, 0),
+                y = cag_frame_column(&t, 1);
+  CagStatus status = cag_axes(cag_frame_column(&t, 3), x, cag_cross(z, x), &frame, err);
   if (status) return status;
   const bool mirrored = cag_dot(cag_cross(x, y), z) < 0;
   const double stretch = cone ? hypot(r[0], r[2]) : r[2];
@@ -302,99 +286,28 @@ static CagStatus put_faces(CagFields *f, const CagSolid *s, CagError *err) {
   return status;
 }
 
-// The region and the direction of an extrusion that is neither twisted nor scaled, in world
-// coordinates; false: another solid.
-static bool prism_of(const CagSolid *s, const CagRegion **region, CagTransform *frame,
-                     CagVec3 *along) {
-  size_t caps = 0, sides = 0;
-  CagVec3 ends[2], v;
-  *region = NULL;
-  for (size_t i = 0; i < s->face_count; i++) {
-    const CagRegion *r;
-    const CagCurve *section;
-    CagTransform t;
-    if (cag_surface_planar_view(s->faces[i], &r, &t)) {
-      if (caps == 2) return false;
-      ends[caps] = frame_column(&t, 3);
-      if (caps++ == 0) {
-        *region = r;
-        *frame = t;
-      }
-    } else {
-      const CagSurface *side = s->faces[i];
-      const bool placed = cag_surface_placed_view(s->faces[i], &side, &t);
-      if (!cag_surface_extrusion_view(side, &section, &v)) return false;
-      *along = placed ? cag_transform_vector(&t, v) : v;
-      sides++;
-    }
-  }
-  if (caps != 2 || sides == 0 || !*region) return false;
-  // The frames of caps have any origin in their plane, so only their distance counts.
-  const CagVec3 normal = cag_cross(frame_column(frame, 0), frame_column(frame, 1));
-  if (cag_dot(*along, normal) * cag_dot(cag_sub(ends[1], ends[0]), normal) < 0)
-    *along = cag_scaled(*along, -1);
-  return true;
-}
-
 // Put as what it is, so that its sides become planes and cylinders. *done: it is a prism.
 static CagStatus put_prism(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
   const CagRegion *region = NULL;
   CagRegion *own;
   CagTransform t, frame, map;
   CagVec3 along = {0, 0, 0};
-  *done = s->kind == CAG_SOLID_EXTRUSION && prism_of(s, &region, &t, &along);
+  *done = s->kind == CAG_SOLID_EXTRUSION && cag_prism_of(s, &region, &t, &along);
   if (!*done) return CAG_OK;
-  CagStatus status = flat_frame(&t, &frame, &map, err);
+  CagStatus status = cag_flat_frame(&t, &frame, &map, err);
   if (!status) status = cag_region_transform(region, &map, &own, err);
   if (status) return status;
   cag_put_u32(f, CAG_BREP_PRISM);
   status = put_region(f, own, err);
   cag_region_release(own);
-  cag_put_vec(f, cag_vec3(cag_dot(along, frame_column(&frame, 0)),
-                          cag_dot(along, frame_column(&frame, 1)),
-                          cag_dot(along, frame_column(&frame, 2))));
+  cag_put_vec(f, cag_vec3(cag_dot(along, cag_frame_column(&frame, 0)),
+                          cag_dot(along, cag_frame_column(&frame, 1)),
+                          cag_dot(along, cag_frame_column(&frame, 2))));
   cag_put_placement(f, &frame);
   return status;
 }
 
 // --- Revolutions ---
-
-// What the sides of a revolution have in common.
-typedef struct Turn {
-  CagTransform frame; // z along the axis, x towards the profile
-  double from, to;
-} Turn;
-
-// Whether the face is turned about an axis, and how.
-static bool turn_of_face(const CagSurface *face, const CagCurve **profile, Turn *out) {
-  CagVec3 axis, through, radial;
-  bool one_sided;
-  CagError ignored;
-  if (!cag_surface_revolution_view(face, profile, &axis, &through, &out->from, &out->to) ||
-      !cag_surface_meridian_view(face, &radial, &one_sided))
-    return false;
-  const CagVec3 z = cag_unit(axis);
-  return !cag_axes(through, radial, cag_cross(z, radial), &out->frame, &ignored);
-}
-
-static bool same_turn(const Turn *a, const Turn *b) {
-  bool same = fabs(a->from - b->from) <= CAG_ROUNDING && fabs(a->to - b->to) <= CAG_ROUNDING;
-  for (int i = 0; i < 3 && same; i++)
-    for (int j = 0; j < 4 && same; j++)
-      same = fabs(a->frame.m[i][j] - b->frame.m[i][j]) <=
-             CAG_COINCIDENT * (1 + fabs(a->frame.m[i][3]));
-  return same;
-}
-
-// The profile as a plane curve: over the axis, along the axis.
-static CagStatus plane_profile(const CagCurve *profile, const Turn *turn, CagCurve **out,
-                               CagError *err) {
-  CagTransform plane;
-  const CagTransform *t = &turn->frame;
-  CagStatus status =
-      cag_axes(frame_column(t, 3), frame_column(t, 0), frame_column(t, 2), &plane, err);
-  return status ? status : cag_curve_flatten(profile, &plane, out, err);
-}
 
 // Adds a loop of the profile, which is closed along the axis if it ends there. *fits: it is closed.
 static CagStatus put_profile(CagFields *f, const CagCurve *c, double size, bool *fits,
@@ -414,25 +327,12 @@ static CagStatus put_profile(CagFields *f, const CagCurve *c, double size, bool 
   return status;
 }
 
-static bool turn_of_solid(const CagSolid *s, Turn *turn, size_t *sides) {
-  *sides = 0;
-  for (size_t i = 0; i < s->face_count; i++) {
-    const CagCurve *profile;
-    Turn own;
-    if (cag_surface_planar_view(s->faces[i], NULL, NULL)) continue;
-    if (!turn_of_face(s->faces[i], &profile, &own)) return false;
-    if ((*sides)++ == 0) *turn = own;
-    else if (!same_turn(turn, &own)) return false;
-  }
-  return *sides > 0;
-}
-
 // *done: the solid is a revolution whose loops are known. Otherwise, nothing is added.
 static CagStatus put_revolution(CagFields *f, const CagSolid *s, bool *done, CagError *err) {
-  Turn turn;
+  CagTurnedForm turn;
   CagBounds box;
   size_t sides;
-  *done = s->kind == CAG_SOLID_REVOLUTION && turn_of_solid(s, &turn, &sides);
+  *done = s->kind == CAG_SOLID_REVOLUTION && cag_turn_of_solid(s, &turn, &sides);
   if (!*done) return CAG_OK;
   const size_t before = f->length;
   CagStatus status = cag_solid_bounds(s, &box, err);
@@ -441,9 +341,9 @@ static CagStatus put_revolution(CagFields *f, const CagSolid *s, bool *done, Cag
   for (size_t i = 0; !status && *done && i < s->face_count; i++) {
     const CagCurve *profile;
     CagCurve *plane = NULL;
-    Turn own;
-    if (!turn_of_face(s->faces[i], &profile, &own)) continue;
-    status = plane_profile(profile, &own, &plane, err);
+    CagTurnedForm own;
+    if (!cag_turn_of_face(s->faces[i], &profile, &own)) continue;
+    status = cag_turn_profile(profile, &own, &plane, err);
     if (!status) status = put_profile(f, plane, cag_norm(cag_sub(box.max, box.min)), done, err);
     // Pieces between parts of the axis would have to be joined.
     if (!status && !plane->closed) *done = *done && sides == 1;

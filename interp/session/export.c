@@ -415,6 +415,30 @@ static void tell_approximate(const CagSession *s, const CagBrep *b) {
               b->shapes[i].name, b->shapes[i].tolerance);
 }
 
+// Warns about shapes that consist of flat faces. Leaves room in the list of diagnostics for a later
+// error.
+static void warn_faceted(CagSession *s, const CagBrep *b) {
+  for (size_t i = 0; i < b->shape_count; i++) {
+    const CagBrepShape *shape = &b->shapes[i];
+    char within[32];
+    if (shape->facets == 0) continue;
+    if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
+      s->diagnostics.dropped++;
+      continue;
+    }
+    snprintf(within, sizeof within, "%.3g", fmax(shape->tolerance + shape->flatness, b->accuracy));
+    CagDiagnostic *d = cag_diagnostics_add(
+        &s->diagnostics, CAG_ERR_faceted_in_file, NULL, (CagSpan){0, 0},
+        "%s is faceted in the file: %zu flat face%s, within %s mm of %s", shape->name,
+        shape->facets, shape->facets == 1 ? "" : "s", within,
+        shape->tolerance > 0 ? "its surfaces and the meshes among its operands" : "its mesh");
+    d->severity = CAG_SEVERITY_WARNING;
+    cag_diagnostic_set_help(d, shape->tolerance > 0
+                                   ? "without meshes among the operands, its faces are exact"
+                                   : "a mesh has no exact surfaces");
+  }
+}
+
 static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWriter write) {
   CagError io = {0};
   CagError err = {0};
@@ -426,7 +450,9 @@ static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWri
     return cag_session_fail_geometry(s, &err);
   }
   int status = commit(s, f);
-  if (status == CAG_STATUS_OK) tell_approximate(s, b);
+  if (status != CAG_STATUS_OK) return status;
+  tell_approximate(s, b);
+  warn_faceted(s, b);
   return status;
 }
 

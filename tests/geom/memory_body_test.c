@@ -9,6 +9,7 @@
 #include "geom/meet/quadric_body.h"
 #include "geom/meet/section.h"
 #include "geom/mesh/check.h"
+#include "geom/mesh/facets.h"
 #include "geom/mesh/hull.h"
 #include "geom/ray/mesh_surface.h"
 #include "geom/robot/path.h"
@@ -530,6 +531,14 @@ QUESTION(check) {
   if (!status) fault_found((double)found.edges);
   return status;
 }
+QUESTION(facets) {
+  MESHES;
+  CagFacets found;
+  const CagStatus status = cag_mesh_facets(m->a, 1e-9, &found, e);
+  if (!status) fault_found((double)found.edge_count);
+  if (!status) cag_facets_free(&found);
+  return status;
+}
 QUESTION(weld) {
   MESHES;
   CagMesh *made;
@@ -615,6 +624,7 @@ static const Question MESH_QUESTIONS[] = {
     ROW(weld),          ROW(mesh_flip),       ROW(mesh_moved),        ROW(append),
     ROW(mesh_outward),  ROW(open_edges),      ROW(split_edges),       ROW(mesh_section),
     ROW(hull_in_space), ROW(hull_in_plane),   ROW(distance),          ROW(from_faces),
+    ROW(facets),
 };
 
 static void meshes_report_faults(void **state) {

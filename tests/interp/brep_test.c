@@ -70,7 +70,7 @@ static void a_box_has_8_corners_12_edges_and_6_flat_faces(void **state) {
   assert_int_equal(b.vertex_count, 8);
   assert_int_equal(b.edge_count, 12);
   assert_int_equal(b.face_count, 6);
-  for (size_t i = 0; i < 6; i++) assert_true(b.faces[i].flat);
+  for (size_t i = 0; i < 6; i++) assert_int_equal(b.faces[i].carrier.kind, CAG_CARRIER_PLANE);
   for (size_t i = 0; i < 12; i++) assert_true(b.edges[i].straight);
   assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID);
   check_closed(&b);
