@@ -14,6 +14,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/boundary/meshed.h"
 #include "geom/boundary/patch.h"
 #include "geom/tessellate/within.h"
 
@@ -466,6 +467,7 @@ static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
 
 CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, CagMesh **out,
                             CagError *err) {
+  if (b->mesh) return cag_meshed_copy(b, out, err);
   Mesher m = {.b = b, .how = *how, .edge = *how};
   CagMesh *mesh = NULL;
   bool watertight = false;

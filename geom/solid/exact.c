@@ -59,6 +59,7 @@ void cag_exact_digest(const CagExact *e, CagDigest *d) {
     cag_digest_word(d, b->face_count);
     cag_digest_bytes(d, b->corners, b->corner_count * sizeof *b->corners);
     cag_digest_bytes(d, b->body, b->body_length);
+    if (b->mesh) cag_mesh_digest(b->mesh, d);
   }
 }
 

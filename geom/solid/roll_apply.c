@@ -11,6 +11,7 @@
 #include "geom/mesh/distance.h"
 #include "geom/solid/roll_body.h"
 #include "geom/solid/roll_shells.h"
+#include "geom/solid/roll_zone.h"
 
 // Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of
 // the tolerance and of the bulge of faces.
@@ -61,7 +62,7 @@ static CagStatus section_within(CagRollPlan *p, size_t pick, double part, CagRol
 CagStatus cag_roll_contacts(CagRollPlan *p, const CagMesh *solid, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++)
-    for (int k = 1; !status && k < 4; k++) {
+    for (int k = 1; !status && k < 4 && !p->picks[i].zoned; k++) {
       CagRollSection s;
       status = cag_stop_check(err);
       if (!status) status = section_within(p, i, k / 4.0, &s, err);
@@ -76,6 +77,7 @@ static CagStatus check_middles(CagRollPlan *p, const CagMesh *result, CagError *
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++) {
     CagRollSection s;
+    if (p->picks[i].zoned) continue;
     status = cag_stop_check(err);
     if (!status) status = section_within(p, i, 0.5, &s, err);
     if (status || p->unfit != CAG_ROLL_NONE) return status;
@@ -139,23 +141,6 @@ static CagStatus find_stops(const CagRollPlan *p, CagRollTip tip, CagVec3 leavin
   return status;
 }
 
-// Fails if another edge of the same bend is rounded where a chain ends in a face.
-static CagStatus end_is_free(const CagRollPlan *p, CagRollTip tip, CagError *err) {
-  const CagRollPick *pick = &p->picks[tip.pick];
-  for (size_t i = 0; i < p->pick_count; i++)
-    for (int end = 0; end < 2; end++) {
-      const CagRollPick *other = &p->picks[i];
-      const CagVec3 at = p->parts[pick->part].b->corners[pick->corner[tip.end]];
-      if ((i != tip.pick || end != tip.end) && other->part == pick->part && !other->closed &&
-          other->corner[end] == pick->corner[tip.end] && other->e.convex == pick->e.convex)
-        return cag_fail(
-            err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
-            "rounded edges meet at [%.6g, %.6g, %.6g] where the ball would leave a face", at.x,
-            at.y, at.z);
-    }
-  return CAG_OK;
-}
-
 // Moves the points of the last ring along the edge: to the faces on which the body ends, or beyond
 // those through which it leaves. *fits: whether the ring stays beyond the one before it.
 static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, CagVec3 *ring,
@@ -164,7 +149,6 @@ static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, Cag
   Stops stops;
   CagStatus status = cag_roll_leaving(&p->picks[tip.pick], tip.end, &leaving, err);
   if (!status) status = find_stops(p, tip, leaving, &stops, err);
-  if (!status && stops.flush) status = end_is_free(p, tip, err);
   for (size_t i = 0; !status && i < size; i++) {
     double move = stops.flush ? INFINITY : 0;
     for (size_t k = 0; !status && k < stops.count; k++) {
@@ -279,6 +263,8 @@ static CagStatus all_bodies(CagRollPlan *p, Bodies *out, CagError *err) {
   }
   for (size_t i = 0; !status && i < p->ball_count && p->unfit == CAG_ROLL_NONE; i++)
     status = ball_body(p, &p->balls[i], arc, lift, out, err);
+  for (size_t i = 0; i < p->zone_count; i++)
+    *(p->zones[i].convex ? &out->removed : &out->added) += p->zones[i].most;
   return status;
 }
 
@@ -323,8 +309,23 @@ static CagStatus check_volume(const Bodies *b, const CagMesh *before, const CagM
                   "rounding changes the volume from %.9g to %.9g, which cannot be", from, to);
 }
 
-// Applies the bodies level by level. Replaces *mesh.
-static CagStatus apply_bodies(const CagRollPlan *p, const Bodies *b, CagMesh **mesh,
+// Rounds within all zones: at concave edges first, so that a ball rolls over their fillets.
+static CagStatus apply_zones(CagRollPlan *p, CagMesh **mesh, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int convex = 0; convex < 2; convex++)
+    for (size_t i = 0; !status && i < p->zone_count && p->unfit == CAG_ROLL_NONE; i++) {
+      const CagRollZone *z = &p->zones[i];
+      bool fits = true;
+      if (z->convex != (convex == 1)) continue;
+      status = cag_stop_check(err);
+      if (!status) status = cag_roll_apply_zone(z, p->tolerance, mesh, &fits, err);
+      if (!status && !fits) p->unfit = z->pick;
+    }
+  return status;
+}
+
+// Applies the bodies level by level, then the zones. Replaces *mesh.
+static CagStatus apply_bodies(CagRollPlan *p, const Bodies *b, CagMesh **mesh,
                               CagError *err) {
   CagMesh *solid = cag_mesh_retain(*mesh);
   CagMesh *clean;
@@ -332,7 +333,8 @@ static CagStatus apply_bodies(const CagRollPlan *p, const Bodies *b, CagMesh **m
   for (size_t level = 0, done = 0; !status && done < b->count; level++)
     for (int k = 0; !status && k < 2; k++)
       status = combine_bodies(b, level, k == 0, mesh, &done, err);
-  if (!status) status = check_volume(b, solid, *mesh, err);
+  if (!status) status = apply_zones(p, mesh, err);
+  if (!status && p->unfit == CAG_ROLL_NONE) status = check_volume(b, solid, *mesh, err);
   if (!status) status = cag_roll_drop_thin_shells(*mesh, p->tolerance, &clean, err);
   if (!status) {
     cag_mesh_release(*mesh);

@@ -8,12 +8,16 @@
 
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
+#include "geom/solid/facets.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
 // The tolerance for surfaces without an exact form, as a fraction of the size.
 #define APPROXIMATE 1e-5
+// Default tolerance of rounded meshes, as a fraction of the size, and that of the mesh before.
+#define ROLLED 3e-4
+#define FINER 0.5
 
 CagKernel *cag_exacts_kernel(CagCall *call) {
   CagVm *vm = call->vm;
@@ -50,17 +54,52 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
   return status;
 }
 
-bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (status) return status;
+  const double own = call->vm->tolerance;
+  *out = own > 0 ? own : ROLLED * cag_norm(cag_sub(box.max, box.min));
+  return CAG_OK;
+}
+
+// The boundary that is found from the mesh. *out stays NULL if there is none; the kernel's error
+// then stays.
+static CagStatus compute_meshed(CagCall *call, const CagSolid *s, CagSolid **out) {
+  CagError err;
+  double tolerance;
+  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, &err);
+  if (!status) status = cag_solid_facets(s, FINER * tolerance, out, &err);
+  if (!cag_is_final(status)) return CAG_OK;
+  *call->err = err;
+  return status;
+}
+
+static bool exact_of(CagCall *call, int argument, bool meshed, const CagSolid **out) {
   const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
   CagSolid *exact = NULL;
   double scale;
   *out = s;
   if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale)) return true;
   CagKernel *k = cag_exacts_kernel(call);
-  if (!k || !cag_geometry_ok(call, compute(k, s, &exact, call->err))) return false;
+  if (!k) return false;
+  CagStatus status = compute(k, s, &exact, call->err);
+  if (status && !cag_is_final(status) && meshed) {
+    const CagStatus other = compute_meshed(call, s, &exact);
+    if (other || exact) status = other;
+  }
+  if (!cag_geometry_ok(call, status)) return false;
   cag_hold_solid(call, exact);
   *out = exact;
   return true;
+}
+
+bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
+  return exact_of(call, argument, false, out);
+}
+
+bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out) {
+  return exact_of(call, argument, true, out);
 }
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {

@@ -11,6 +11,11 @@ CagKernel *cag_exacts_kernel(CagCall *call);
 // The exact solid of an argument, whose placement is a similarity: the argument itself if it is one,
 // else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
+// The same; where the kernel is missing or fails, the boundary that is found from the mesh
+// (geom/solid/facets.h).
+bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out);
+// The tolerance of rounded meshes: that of the script, else 3/10000 of the size of the solid.
+CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, CagError *err);
 // Makes a solid of parts that the kernel found, whose contents it takes, and checks it
 // (cag_solid_exact_check).
 CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);

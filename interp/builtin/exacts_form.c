@@ -19,7 +19,7 @@ static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
 }
 
 bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, false);
   CagChosen *open;
   size_t n;
   if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
@@ -39,7 +39,7 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
 }
 
 bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, false);
   CagChosen *chosen;
   CagTransform back;
   size_t n;
@@ -157,7 +157,7 @@ static bool imprint_part(CagExactParts *p, size_t part, CagCurve *const *curves,
 }
 
 bool cag_exacts_imprint(CagCall *call, const struct cag_exacts_imprint *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, false);
   CagCurve **curves;
   CagBounds box;
   size_t n;

@@ -18,7 +18,7 @@ static void release_exact_parts(void *what) {
   cag_free(p);
 }
 
-CagExactParts *cag_exact_parts(CagCall *call, int argument) {
+CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed) {
   CagExactParts *p = cag_calloc(1, sizeof *p);
   size_t n = 0;
   if (!p) cag_vm_out_of_memory(call->vm);
@@ -26,7 +26,9 @@ CagExactParts *cag_exact_parts(CagCall *call, int argument) {
   p->call = call;
   p->records = (CagValue){.type = CAG_UNSET};
   p->kernel = cag_exacts_kernel(call);
-  if (!p->kernel || !cag_exacts_of(call, argument, &p->solid)) return NULL;
+  if (!p->kernel ||
+      !(meshed ? cag_exacts_or_meshed : cag_exacts_of)(call, argument, &p->solid))
+    return NULL;
   p->parts = cag_solid_boundaries(p->solid, &n);
   cag_transform_is_similarity(&p->solid->placement, &p->scale);
   p->features = cag_calloc(n + 1, sizeof *p->features);

@@ -19,8 +19,9 @@ typedef struct CagExactParts {
   CagValue records;      // the list of those of the chosen edges or faces, or CAG_UNSET
 } CagExactParts;
 
-// The parts of an argument, a solid. They are held by the call. NULL: an error is set.
-CagExactParts *cag_exact_parts(CagCall *call, int argument);
+// The parts of an argument, a solid; meshed: or the boundary that is found from its mesh
+// (cag_exacts_or_meshed). They are held by the call. NULL: an error is set.
+CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed);
 
 // An edge or a face that was chosen.
 typedef struct CagChosen {
