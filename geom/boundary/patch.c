@@ -255,8 +255,8 @@ static CagStatus meshed_surface(const CagBoundary *b, const CagBoundaryFace *f, 
   if (cag_is_final(status)) return status;
   const double *d = f->domain, sign = f->reversed ? -1 : 1;
   const CagVec3 x = column(&p->plane, 0), y = column(&p->plane, 1);
-  const CagVec3 corner = cag_madd(cag_madd(column(&p->plane, 3), d[0], x),
-                                  sign * d[f->reversed ? 3 : 2], y);
+  const CagVec3 corner =
+      cag_madd(cag_madd(column(&p->plane, 3), d[0], x), sign * d[f->reversed ? 3 : 2], y);
   return cag_surface_parallelogram(corner, cag_scaled(x, d[1] - d[0]), cag_scaled(y, d[3] - d[2]),
                                    out, err);
 }

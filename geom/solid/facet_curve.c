@@ -27,6 +27,8 @@
 #define POINTS_MOST 400
 // The largest turn between neighboring chords of a spline's points, in radians.
 #define TURN (5 * M_PI / 180)
+// The chords between points in their right order turn by less, in radians.
+#define BACK 1.2
 // Points of a trace.
 #define TRACE 65
 
@@ -102,15 +104,56 @@ typedef struct CurvePoints {
   double size, most;
 } CurvePoints;
 
+// Moves the points to both carriers. Those that cannot be moved are left out, unless they are most.
 static CagStatus settle_points(CurvePoints *c, CagError *err) {
   CagStatus status = CAG_OK;
-  bool settled;
-  for (size_t i = c->closed ? 0 : 1; !status && i + 1 < c->n; i++) {
+  bool settled[POINTS_MOST];
+  size_t count = 0, n = 0;
+  for (size_t i = 0; !status && i < c->n; i++) {
+    const bool fixed = !c->closed && (i == 0 || i + 1 == c->n);
     status = cag_stop_check(err);
-    if (!status) status = cag_facet_settle(c->carriers, 2, c->most, &c->at[i], &settled, err);
+    settled[i] = fixed;
+    if (!status && !fixed)
+      status = cag_facet_settle(c->carriers, 2, c->most, &c->at[i], &settled[i], err);
+    count += settled[i];
   }
-  if (c->closed) c->at[c->n - 1] = c->at[0];
+  for (size_t i = 0; !status && 2 * count > c->n && count >= 4 && i < c->n; i++)
+    if (settled[i]) c->at[n++] = c->at[i];
+  if (n > 0) c->n = n;
+  if (c->closed && cag_norm(cag_sub(c->at[c->n - 1], c->at[0])) > 0) {
+    if (settled[0]) c->at[c->n - 1] = c->at[0];
+    else if (c->n < POINTS_MOST) c->at[c->n] = c->at[0], c->n++;
+  }
   return status;
+}
+
+static double chord_turn(CagVec3 a, CagVec3 b, CagVec3 c) {
+  const CagVec3 d = cag_sub(b, a), e = cag_sub(c, b);
+  return atan2(cag_norm(cag_cross(d, e)), cag_dot(d, e));
+}
+
+// Leaves out points that are closer to the ones before them, or to the end, than the points moved at
+// most, and points at which the chords turn back: their order may have changed.
+static void thin_points(CurvePoints *c) {
+  double length = 0;
+  for (size_t i = 1; i < c->n; i++) length += cag_norm(cag_sub(c->at[i], c->at[i - 1]));
+  const double gap = fmin(c->most / 4, length / POINTS_LEAST);
+  const CagVec3 end = c->at[c->n - 1];
+  size_t n = 1;
+  for (size_t i = 1; i + 1 < c->n; i++)
+    if (cag_norm(cag_sub(c->at[i], c->at[n - 1])) >= gap && cag_norm(cag_sub(c->at[i], end)) >= gap)
+      c->at[n++] = c->at[i];
+  c->at[n++] = end;
+  c->n = n;
+  for (size_t i = 1; i + 1 < c->n && c->n > 4;) {
+    if (chord_turn(c->at[i - 1], c->at[i], c->at[i + 1]) <= BACK) {
+      i++;
+      continue;
+    }
+    memmove(c->at + i, c->at + i + 1, (c->n - i - 1) * sizeof *c->at);
+    c->n--;
+    if (i > 1) i--;
+  }
 }
 
 // Adds a point between points i and i + 1.
@@ -139,11 +182,6 @@ static CagStatus add_points(CurvePoints *c, size_t least, CagError *err) {
     status = split_chord(c, longest, err);
   }
   return status;
-}
-
-static double chord_turn(CagVec3 a, CagVec3 b, CagVec3 c) {
-  const CagVec3 d = cag_sub(b, a), e = cag_sub(c, b);
-  return atan2(cag_norm(cag_cross(d, e)), cag_dot(d, e));
 }
 
 // Divides chords beside which the curve turns.
@@ -191,10 +229,9 @@ static bool circle_through(const CurvePoints *c, Conic *out) {
   const CagVec3 a = cag_sub(q, p), b = cag_sub(r, p), normal = cag_cross(a, b);
   const double square = cag_dot(normal, normal);
   if (!(square > 0)) return false;
-  const CagVec3 to = cag_scaled(
-      cag_add(cag_scaled(cag_cross(b, normal), cag_dot(a, a)),
-              cag_scaled(cag_cross(normal, a), cag_dot(b, b))),
-      1 / (2 * square));
+  const CagVec3 to = cag_scaled(cag_add(cag_scaled(cag_cross(b, normal), cag_dot(a, a)),
+                                        cag_scaled(cag_cross(normal, a), cag_dot(b, b))),
+                                1 / (2 * square));
   const CagVec3 center = cag_add(p, to), z = cag_unit(normal), x = cag_unit(cag_scaled(to, -1));
   const CagVec3 y = cag_cross(z, x), columns[4] = {x, y, z, center};
   out->frame = cag_transform_identity();
@@ -294,6 +331,7 @@ CagStatus cag_facet_curve(const CagCarrier *const carriers[2], const CagVec3 *po
   c->n = kept;
   for (size_t i = 0; i < kept; i++) c->at[i] = points[i * (n - 1) / (kept - 1)];
   CagStatus status = settle_points(c, err);
+  if (!status) thin_points(c);
   if (!status) status = add_points(c, POINTS_LEAST, err);
   if (!status) {
     if (points_on_line(c)) status = line_curve(c, out, err);

@@ -16,6 +16,8 @@
 #define UPRIGHT 1e-7
 // A normal may differ from that of the carrier by at most this angle (radians): facets are inclined.
 #define INCLINED 0.6
+// A point is an apex or a pole if the carrier is thinner there than this multiple of the tolerance.
+#define APEX 100
 
 typedef struct Samples {
   const CagVec3 *points, *normals;
@@ -53,7 +55,7 @@ static CagStatus samples_agree(const Samples *s, const CagCarrier *c, bool *agre
     if (status) break;
     *agree = cag_norm(cag_sub(at.point, s->points[i])) <= s->most;
     const double turn = cag_dot(normal, s->normals[i]);
-    if (cag_norm(normal) == 0) continue; // an apex
+    if (cag_norm(normal) == 0 || cag_norm(at.du) <= APEX * s->most) continue; // an apex or a pole
     if (side == 0) side = turn < 0 ? -1 : 1;
     *agree = *agree && side * turn >= cos(INCLINED);
   }
@@ -171,11 +173,9 @@ static CagStatus fit_cylinder(const Samples *s, CagVec3 axis, CagCarrier *out, C
   if (!status) status = fit_circle((const double(*)[2])xy, s->n, center, &radius, &found, err);
   cag_free(xy);
   if (status || !found) return status;
-  const CagVec3 o =
-      cag_madd(cag_madd(s->points[0], center[0], cag_frame_column(&frame, 0)), center[1],
-               cag_frame_column(&frame, 1));
-  *out = (CagCarrier){
-      .kind = CAG_CARRIER_CYLINDER, .a = radius, .frame = cag_facet_frame(o, axis)};
+  const CagVec3 o = cag_madd(cag_madd(s->points[0], center[0], cag_frame_column(&frame, 0)),
+                             center[1], cag_frame_column(&frame, 1));
+  *out = (CagCarrier){.kind = CAG_CARRIER_CYLINDER, .a = radius, .frame = cag_facet_frame(o, axis)};
   return CAG_OK;
 }
 
@@ -214,8 +214,7 @@ static CagStatus meeting_axis(const Samples *s, CagVec3 *axis, CagVec3 *through,
                               CagError *err) {
   const CagVec3 from = mean_of(s->points, s->n);
   double a[36] = {0}, values[6], scale = 0;
-  for (size_t i = 0; i < s->n; i++)
-    scale = fmax(scale, cag_norm(cag_sub(s->points[i], from)));
+  for (size_t i = 0; i < s->n; i++) scale = fmax(scale, cag_norm(cag_sub(s->points[i], from)));
   for (size_t i = 0; i < s->n; i++) {
     const CagVec3 n = s->normals[i];
     const CagVec3 m = cag_scaled(cag_cross(cag_sub(s->points[i], from), n), 1 / scale);
@@ -270,8 +269,8 @@ static CagStatus fit_turned(const Samples *s, CagCarrier *out, CagError *err) {
 
 CagStatus cag_facet_fit(const CagVec3 *points, const CagVec3 *normals, size_t n, double most,
                         CagCarrier *out, CagError *err) {
-  static CagStatus (*const FITS[])(const Samples *s, CagCarrier *out, CagError *err) = {
-      fit_plane, fit_turned, fit_sphere, fit_torus};
+  static CagStatus (*const FITS[])(const Samples *s, CagCarrier *out,
+                                   CagError *err) = {fit_plane, fit_turned, fit_sphere, fit_torus};
   const Samples s = {points, normals, n, most};
   CagStatus status = CAG_OK;
   *out = (CagCarrier){.kind = CAG_CARRIER_NONE};

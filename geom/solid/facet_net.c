@@ -29,10 +29,10 @@ typedef struct NetWork {
   double tolerance;
   MeshEdge *edges;
   size_t edge_count;
-  uint32_t *parent;          // by triangles
-  uint32_t *carrier;         // by sources: the first one that is the same
-  uint32_t *first, *around;  // border edges at vertices
-  bool *used;                // by edges
+  uint32_t *parent;         // by triangles
+  uint32_t *carrier;        // by sources: the first one that is the same
+  uint32_t *first, *around; // border edges at vertices
+  bool *used;               // by edges
 } NetWork;
 
 void cag_facet_net_free(CagFacetNet *n) {
@@ -72,8 +72,8 @@ static CagStatus find_equal_carriers(NetWork *w, const CagFacetSources *s, CagEr
     size_t k = 0;
     CagStatus status = cag_stop_check(err);
     if (status) return status;
-    while (k < i && !(w->carrier[k] == k &&
-                      cag_facet_same(&s->items[k], &s->items[i], size, SAME * size)))
+    while (k < i &&
+           !(w->carrier[k] == k && cag_facet_same(&s->items[k], &s->items[i], size, SAME * size)))
       k++;
     w->carrier[i] = (uint32_t)k;
   }
@@ -310,8 +310,8 @@ static CagStatus find_chains(NetWork *w, CagError *err) {
 static double chain_length(const CagFacetNet *net, const CagFacetChain *c) {
   double length = 0;
   for (size_t i = c->first + 1; i < c->first + c->count; i++)
-    length += cag_norm(cag_sub(net->mesh->positions[net->path[i]],
-                               net->mesh->positions[net->path[i - 1]]));
+    length += cag_norm(
+        cag_sub(net->mesh->positions[net->path[i]], net->mesh->positions[net->path[i - 1]]));
   return length;
 }
 

@@ -15,10 +15,10 @@ typedef struct CagFacetChain {
 
 typedef struct CagFacetNet {
   const CagMesh *mesh;
-  uint32_t *region;  // by triangles
-  size_t *source;    // by regions: the index of the carrier
-  double *area;      // likewise
-  uint32_t *path;    // vertices, welded
+  uint32_t *region; // by triangles
+  size_t *source;   // by regions: the index of the carrier
+  double *area;     // likewise
+  uint32_t *path;   // vertices, welded
   CagFacetChain *chains;
   uint32_t *corners; // vertices
   size_t region_count, path_count, path_room, chain_count, chain_room, corner_count, corner_room;

@@ -19,6 +19,9 @@
 #define RECOGNIZED 2e-6
 // Triangles of meshes meet smoothly if their normals differ by less, in radians.
 #define CREASE (25 * M_PI / 180)
+// The normal of a vertex is used if it is not farther from that of its triangle (cosine): the apex of
+// a cone has none.
+#define APEX 0.94
 // Points from which a carrier is recognized.
 #define SAMPLES_MOST 600
 
@@ -130,9 +133,15 @@ static CagStatus group_by_creases(Groups *g, CagError *err) {
 
 // Vertices of a group, with their normals, or those of the triangles: evenly chosen.
 typedef struct GroupPoints {
-  CagVec3 *points, *normals;
+  CagVec3 *points, *normals, *flat;
   size_t n;
 } GroupPoints;
+
+static void group_points_free(GroupPoints *p) {
+  cag_free(p->points);
+  cag_free(p->normals);
+  cag_free(p->flat);
+}
 
 static CagStatus group_points(const Groups *g, uint32_t group, GroupPoints *out, CagError *err) {
   const CagMesh *m = g->mesh;
@@ -140,10 +149,10 @@ static CagStatus group_points(const Groups *g, uint32_t group, GroupPoints *out,
   for (size_t t = 0; t < m->triangle_count; t++) count += g->of[t] == group;
   const size_t step = 1 + 3 * count / SAMPLES_MOST;
   *out = (GroupPoints){cag_malloc((3 * (count / step) + 4) * sizeof(CagVec3)),
+                       cag_malloc((3 * (count / step) + 4) * sizeof(CagVec3)),
                        cag_malloc((3 * (count / step) + 4) * sizeof(CagVec3)), 0};
-  if (!out->points || !out->normals) {
-    cag_free(out->points);
-    cag_free(out->normals);
+  if (!out->points || !out->normals || !out->flat) {
+    group_points_free(out);
     return cag_fail_memory(err);
   }
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -153,7 +162,8 @@ static CagStatus group_points(const Groups *g, uint32_t group, GroupPoints *out,
     for (int k = 0; k < 3; k++) {
       const uint32_t v = m->triangles[3 * t + (size_t)k];
       out->points[out->n] = m->positions[v];
-      const bool smooth = m->normals && cag_norm(m->normals[v]) > 0.5;
+      const bool smooth = m->normals && cag_dot(m->normals[v], flat) >= APEX;
+      out->flat[out->n] = flat;
       out->normals[out->n++] = smooth ? m->normals[v] : flat;
     }
   }
@@ -166,8 +176,10 @@ static CagStatus group_carrier(const Groups *g, uint32_t group, CagCarrier *out,
   CagStatus status = group_points(g, group, &p, err);
   if (status) return status;
   if (p.n > 0) status = cag_facet_fit(p.points, p.normals, p.n, RECOGNIZED * g->size, out, err);
-  cag_free(p.points);
-  cag_free(p.normals);
+  // The apex of a cone has no normal. The facets of a cone are inclined like the cone.
+  if (!status && p.n > 0 && out->kind == CAG_CARRIER_NONE)
+    status = cag_facet_fit(p.points, p.flat, p.n, RECOGNIZED * g->size, out, err);
+  group_points_free(&p);
   return status;
 }
 

@@ -16,7 +16,7 @@
 #include "geom/solid/facet_net.h"
 
 // Points move by at most this multiple of the tolerance to their carriers.
-#define MOVE 6
+#define MOVE 25
 // Angles of the vertices of a face that leave a larger gap do not go all around (radians).
 #define GAP 0.8
 
@@ -74,8 +74,8 @@ static CagStatus find_corners(Facets *f, CagError *err) {
     for (size_t k = 0; k < met[i].n; k++) carriers[k] = region_carrier(f, met[i].regions[k]);
     status = cag_stop_check(err);
     if (!status && met[i].n > 1)
-      status = cag_facet_settle(carriers, met[i].n, MOVE * f->tolerance, &f->b.corners[i],
-                                &settled, err);
+      status = cag_facet_settle(carriers, met[i].n, MOVE * f->tolerance, &f->b.corners[i], &settled,
+                                err);
   }
   f->b.corner_count = n;
   cag_free(met);
@@ -89,8 +89,7 @@ static CagStatus chain_curve(const Facets *f, const CagFacetChain *c, CagCurve *
   const CagCarrier *carriers[2] = {region_carrier(f, c->sides[0]), region_carrier(f, c->sides[1])};
   CagVec3 *points = cag_malloc((c->count + 1) * sizeof *points);
   if (!points) return cag_fail_memory(err);
-  for (size_t i = 0; i < c->count; i++)
-    points[i] = f->mesh->positions[f->net.path[c->first + i]];
+  for (size_t i = 0; i < c->count; i++) points[i] = f->mesh->positions[f->net.path[c->first + i]];
   if (!c->closed) {
     points[0] = f->b.corners[c->ends[0]];
     points[c->count - 1] = f->b.corners[c->ends[1]];

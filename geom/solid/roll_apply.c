@@ -73,17 +73,30 @@ CagStatus cag_roll_contacts(CagRollPlan *p, const CagMesh *solid, CagError *err)
   return status;
 }
 
+// Whether the result passes through the contacts and the arc at a fraction of an edge.
+static CagStatus passes_section(CagRollPlan *p, size_t pick, double part, const CagMesh *result,
+                                bool *out, CagError *err) {
+  CagRollSection s;
+  CagStatus status = cag_stop_check(err);
+  *out = false;
+  if (!status) status = section_within(p, pick, part, &s, err);
+  if (status || p->unfit != CAG_ROLL_NONE) return status;
+  const CagVec3 points[3] = {s.contact[0], s.contact[1], section_middle(&s)};
+  *out = true;
+  for (int k = 0; *out && k < 3; k++)
+    *out = cag_roll_is_near(result, points[k], NEAR * p->tolerance);
+  return CAG_OK;
+}
+
+// The rounding of another edge may reach that of an edge, but not everywhere.
 static CagStatus check_middles(CagRollPlan *p, const CagMesh *result, CagError *err) {
+  static const double PARTS[] = {0.5, 0.25, 0.75};
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++) {
-    CagRollSection s;
-    if (p->picks[i].zoned) continue;
-    status = cag_stop_check(err);
-    if (!status) status = section_within(p, i, 0.5, &s, err);
-    if (status || p->unfit != CAG_ROLL_NONE) return status;
-    const CagVec3 points[3] = {s.contact[0], s.contact[1], section_middle(&s)};
-    for (int k = 0; k < 3; k++)
-      if (!cag_roll_is_near(result, points[k], NEAR * p->tolerance)) p->unfit = i;
+    bool passes = p->picks[i].zoned;
+    for (int k = 0; !status && !passes && k < 3 && p->unfit == CAG_ROLL_NONE; k++)
+      status = passes_section(p, i, PARTS[k], result, &passes, err);
+    if (!status && !passes) p->unfit = i;
   }
   return status;
 }
@@ -211,6 +224,34 @@ static size_t common_arc(const CagRollPlan *p, double *lift) {
   return arc;
 }
 
+// Ends the rings of a chain on one side. Rings that the end would pass are left out.
+static CagStatus end_rings(const CagRollPlan *p, CagRollTip tip, int end, double lift,
+                           CagVec3 *rings, size_t size, size_t *first, size_t *count, bool *fits,
+                           CagError *err) {
+  const size_t bytes = size * sizeof *rings, whole = *count, start = *first;
+  CagVec3 *own = cag_malloc(bytes + sizeof *own);
+  CagStatus status = CAG_OK;
+  if (!own) return cag_fail_memory(err);
+  memcpy(own, rings + size * (end ? *first + *count - 1 : *first), bytes);
+  for (*fits = false; !status && !*fits && *count >= 2;) {
+    CagVec3 *last = rings + size * (end ? *first + *count - 1 : *first);
+    memcpy(last, own, bytes);
+    *fits = true;
+    status = end_ring(p, tip, lift, last, end ? last - size : last + size, size, fits, err);
+    if (status || *fits) break;
+    --*count;
+    if (!end) ++*first;
+  }
+  if (!status && !*fits) { // the body ends where the edge does
+    *first = start;
+    *count = whole;
+    memcpy(rings + size * (end ? *first + *count - 1 : *first), own, bytes);
+    *fits = true;
+  }
+  cag_free(own);
+  return status;
+}
+
 static CagStatus chain_body(CagRollPlan *p, const CagRollChain *c, size_t arc, double lift,
                             Bodies *out, CagError *err) {
   const size_t size = CAG_ROLL_RING(arc);
@@ -218,15 +259,16 @@ static CagStatus chain_body(CagRollPlan *p, const CagRollChain *c, size_t arc, d
   CagStatus status = rings ? CAG_OK : cag_fail_memory(err);
   CagMesh *m;
   bool fits = true;
+  size_t first = 0, count = c->count;
   for (size_t i = 0; rings && i < c->count; i++)
     cag_roll_ring(&p->sections[c->first + i], arc, lift, rings + size * i);
-  for (int k = 0; !status && !c->closed && k < 2; k++) {
+  for (int k = 0; !status && fits && !c->closed && k < 2; k++) {
     if (p->picks[c->tips[k].pick].ball[c->tips[k].end]) continue;
-    CagVec3 *ring = rings + (k ? size * (c->count - 1) : 0);
-    status = end_ring(p, c->tips[k], lift, ring, k ? ring - size : ring + size, size, &fits, err);
+    status = end_rings(p, c->tips[k], k, lift, rings, size, &first, &count, &fits, err);
   }
   if (!status && !fits) p->unfit = c->tips[0].pick;
-  if (!status && fits) status = cag_roll_sweep(rings, size, c->count, c->closed, &m, err);
+  if (!status && fits)
+    status = cag_roll_sweep(rings + size * first, size, count, c->closed, &m, err);
   if (!status && fits) add_body(out, m, p->picks[c->tips[0].pick].e.convex, c->level);
   cag_free(rings);
   return status;
@@ -325,8 +367,7 @@ static CagStatus apply_zones(CagRollPlan *p, CagMesh **mesh, CagError *err) {
 }
 
 // Applies the bodies level by level, then the zones. Replaces *mesh.
-static CagStatus apply_bodies(CagRollPlan *p, const Bodies *b, CagMesh **mesh,
-                              CagError *err) {
+static CagStatus apply_bodies(CagRollPlan *p, const Bodies *b, CagMesh **mesh, CagError *err) {
   CagMesh *solid = cag_mesh_retain(*mesh);
   CagMesh *clean;
   CagStatus status = CAG_OK;

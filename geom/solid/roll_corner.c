@@ -32,10 +32,10 @@
 // The ends of rounded edges at a corner, and what is known of all edges there.
 typedef struct Ends {
   CagRollTip tips[CAG_ROLL_VALENCE];
-  size_t count;         // of tips, which may be more than there is room for
-  size_t sharp;         // ends of edges that are not smooth
-  size_t of_bend[2];    // of these, the convex and the concave ones
-  size_t rounded[2];    // likewise, of the rounded ones
+  size_t count;      // of tips, which may be more than there is room for
+  size_t sharp;      // ends of edges that are not smooth
+  size_t of_bend[2]; // of these, the convex and the concave ones
+  size_t rounded[2]; // likewise, of the rounded ones
   bool flat, several_radii;
 } Ends;
 
@@ -171,8 +171,7 @@ static CagStatus add_stations(CagRollPlan *p, CagRollBall *ball, const Ends *end
     const CagRollTip tip = ends->tips[i];
     const CagRollPick *pick = &p->picks[tip.pick];
     CagRollSection s;
-    CagStatus status =
-        cag_roll_station(pick, tip.end, ball->center, &stations[i], all, err);
+    CagStatus status = cag_roll_station(pick, tip.end, ball->center, &stations[i], all, err);
     if (!status && *all) status = cag_roll_section(&pick->e, stations[i], &s, all, err);
     if (status) return status;
     if (!*all) break;
@@ -192,7 +191,8 @@ static CagStatus add_stations(CagRollPlan *p, CagRollBall *ball, const Ends *end
   return CAG_OK;
 }
 
-// *done: false if no ball touches all faces, between the ends of the edges.
+// *done: false if no ball touches all faces, between the ends of the edges. Sets `unfit` if it would
+// be smaller, and nothing else may be made of the corner.
 static CagStatus add_ball(CagRollPlan *p, size_t part, size_t corner, Ends *ends, bool *done,
                           CagError *err) {
   size_t faces[CAG_ROLL_VALENCE];
@@ -208,8 +208,9 @@ static CagStatus add_ball(CagRollPlan *p, size_t part, size_t corner, Ends *ends
   if (whole) status = corner_faces(p, &ball, faces, met, &whole, err);
   if (status || !whole) return status;
   status = touch_faces(&ball, met, &fits, &touches, err);
-  if (status || !fits || !touches) return status;
-  status = add_stations(p, &ball, ends, faces, done, err);
+  if (!status && fits && !touches) return CAG_OK;
+  if (!status && fits) status = add_stations(p, &ball, ends, faces, done, err);
+  if (!status && !*done && p->corners == CAG_ROLL_BALLS) p->unfit = ball.pick;
   if (status || !*done) return status;
   if (!CAG_RESERVE(p->balls, p->ball_room, p->ball_count + 1)) return cag_fail_memory(err);
   p->balls[p->ball_count++] = ball;
@@ -257,9 +258,27 @@ static CagStatus enter_zone(CagRollPlan *p, CagRollTip tip, CagVec3 point, doubl
 
 static void drop_balls(CagRollPlan *p, size_t part, size_t corner) {
   size_t kept = 0;
+  for (size_t i = 0; i < p->pick_count; i++)
+    for (int end = 0; end < 2; end++) {
+      CagRollPick *pick = &p->picks[i];
+      if (pick->part != part || pick->corner[end] != corner || pick->closed) continue;
+      pick->ball[end] = false;
+      pick->station[end] = pick->range[end] = end ? pick->e.curve->end : pick->e.curve->start;
+    }
   for (size_t i = 0; i < p->ball_count; i++)
     if (p->balls[i].part != part || p->balls[i].corner != corner) p->balls[kept++] = p->balls[i];
   p->ball_count = kept;
+}
+
+// Whether all faces at a corner are planes: offsets of others take long.
+static CagStatus corner_is_flat(const CagRollPlan *p, size_t part, size_t corner, bool *out,
+                                CagError *err) {
+  CagRollMeeting met[2 * CAG_ROLL_VALENCE];
+  size_t n;
+  CagStatus status = cag_roll_meetings(&p->parts[part], corner, met, 2 * CAG_ROLL_VALENCE, &n, err);
+  *out = !status && n <= 2 * (size_t)CAG_ROLL_VALENCE;
+  for (size_t i = 0; *out && i < n; i++) *out = met[i].side.carrier->kind == CAG_CARRIER_PLANE;
+  return status;
 }
 
 // Rounds the edges at a corner within a zone, of each bend all of whose edges there are rounded. The
@@ -269,7 +288,11 @@ static CagStatus add_zones(CagRollPlan *p, size_t part, size_t corner, const End
   double reach[2] = {0, 0}, radius[2] = {INFINITY, INFINITY}, most[2] = {0, 0};
   size_t pick[2] = {CAG_ROLL_NONE, CAG_ROLL_NONE};
   const CagVec3 point = p->parts[part].b->corners[corner];
-  if (ends->flat || ends->count > CAG_ROLL_VALENCE) return CAG_OK;
+  bool flat;
+  CagStatus done = corner_is_flat(p, part, corner, &flat, err);
+  drop_balls(p, part, corner);
+  if (done || !flat || p->corners != CAG_ROLL_ZONES || ends->flat || ends->count > CAG_ROLL_VALENCE)
+    return done;
   for (size_t i = 0; i < ends->count; i++) {
     const CagRollTip tip = ends->tips[i];
     const int bend = p->picks[tip.pick].e.convex ? 0 : 1;
@@ -283,7 +306,6 @@ static CagStatus add_zones(CagRollPlan *p, size_t part, size_t corner, const End
     pick[bend] = tip.pick;
   }
   const double whole = ZONE * (reach[0] + reach[1]) + 4 * p->tolerance;
-  drop_balls(p, part, corner);
   for (int bend = 1; bend >= 0; bend--) { // concave ones first
     if (ends->rounded[bend] == 0 || ends->rounded[bend] != ends->of_bend[bend]) continue;
     for (size_t i = 0; i < ends->count; i++) {
@@ -292,10 +314,14 @@ static CagStatus add_zones(CagRollPlan *p, size_t part, size_t corner, const End
       if (status) return status;
     }
     if (!CAG_RESERVE(p->zones, p->zone_room, p->zone_count + 1)) return cag_fail_memory(err);
-    p->zones[p->zone_count++] =
-        (CagRollZone){part,          corner, pick[bend],
-                      bend == 0,     radius[bend], whole,
-                      most[bend] * whole + 10 * pow(radius[bend], 3), point};
+    p->zones[p->zone_count++] = (CagRollZone){part,
+                                              corner,
+                                              pick[bend],
+                                              bend == 0,
+                                              radius[bend],
+                                              whole,
+                                              most[bend] * whole + 10 * pow(radius[bend], 3),
+                                              point};
   }
   return CAG_OK;
 }
@@ -351,7 +377,7 @@ static CagStatus round_corner(CagRollPlan *p, size_t part, size_t corner, CagErr
 static CagStatus check_order(CagRollPlan *p, CagError *err) {
   bool changed = true;
   CagStatus status = CAG_OK;
-  while (!status && changed) {
+  while (!status && changed && p->corners != CAG_ROLL_BALLS) {
     changed = false;
     for (size_t i = 0; !status && i < p->ball_count; i++) {
       const CagRollBall ball = p->balls[i];
@@ -371,7 +397,7 @@ static CagStatus check_order(CagRollPlan *p, CagError *err) {
   for (size_t i = 0; !status && i < p->pick_count; i++) {
     CagRollPick *pick = &p->picks[i];
     if (!(pick->station[0] > pick->station[1])) continue;
-    pick->zoned = pick->ball[0] && pick->ball[1];
+    pick->zoned = p->corners == CAG_ROLL_ZONES && pick->ball[0] && pick->ball[1];
     if (!pick->zoned) p->unfit = i;
   }
   return status;

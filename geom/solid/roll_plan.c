@@ -333,10 +333,12 @@ static CagStatus start_pick(CagRollPick *pick, CagError *err) {
 }
 
 CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
-                        CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err) {
+                        CagRollCorners corners, CagRollPick *picks, size_t n, CagRollPlan *out,
+                        CagError *err) {
   CagRollPlan p = {.parts = parts, .part_count = part_count, .tolerance = tolerance};
   CagStatus status = CAG_OK;
   p.picks = picks;
+  p.corners = corners;
   p.pick_count = n;
   p.unfit = CAG_ROLL_NONE;
   p.chains = cag_calloc(n + 1, sizeof *p.chains);

@@ -67,6 +67,13 @@ typedef struct CagRollPivot {
   CagVec3 contact[2];
 } CagRollPivot;
 
+// What is made of corners that no single ball rounds.
+typedef enum CagRollCorners {
+  CAG_ROLL_ZONES,  // zones where all faces are planes, else miters
+  CAG_ROLL_MITERS, // the bodies of edges run into each other
+  CAG_ROLL_BALLS   // miters; balls at both ends of an edge that pass each other do not fit
+} CagRollCorners;
+
 // A ball about a corner within which all edges of one bend are rounded by opening or closing the
 // solid (roll_zone.h): where no single ball touches all faces.
 typedef struct CagRollZone {
@@ -93,6 +100,7 @@ typedef struct CagRollPlan {
   size_t pivot_count, pivot_room;
   CagRollZone *zones;
   size_t zone_count, zone_room;
+  CagRollCorners corners;
   size_t unfit; // the pick that does not fit, or CAG_ROLL_NONE
 } CagRollPlan;
 
@@ -101,7 +109,8 @@ typedef struct CagRollPlan {
 // Where convex and concave edges, different radii, or faces that no ball touches meet, there are
 // zones. Chamfers end there as at other corners.
 CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
-                        CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err);
+                        CagRollCorners corners, CagRollPick *picks, size_t n, CagRollPlan *out,
+                        CagError *err);
 void cag_roll_plan_free(CagRollPlan *p);
 
 // The unit tangent that leaves the edge at an end.

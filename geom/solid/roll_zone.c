@@ -13,8 +13,11 @@
 
 // What is opened or closed reaches beyond the zone by this multiple of the radius.
 #define MARGIN 2.2
-// The tolerance of the ball, as a fraction of its radius: at most this.
-#define COARSEST 0.04
+// The tolerance of the ball, as a fraction of its radius. The time grows fast with its vertices.
+#define COARSE 0.08
+// The most triangles of the part, and of its first offset.
+#define PART_MOST 100
+#define OFFSET_MOST 2500
 // The zone is a ball with facets of this tolerance, as a fraction of its radius.
 #define ZONE_TOLERANCE 0.05
 
@@ -47,13 +50,22 @@ static CagStatus zone_ball(const CagRollZone *z, CagMesh **out, CagError *err) {
   return status;
 }
 
+static CagStatus check_count(const CagRollZone *z, const CagMesh *m, size_t most, CagError *err) {
+  if (m->triangle_count <= most) return CAG_OK;
+  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_no_boundary, "", -1,
+                  "too many triangles meet at [%.6g, %.6g, %.6g], where rounded edges do",
+                  z->point.x, z->point.y, z->point.z);
+}
+
 CagStatus cag_roll_apply_zone(const CagRollZone *z, double tolerance, CagMesh **mesh, bool *fits,
                               CagError *err) {
-  const double sign = z->convex ? -1 : 1, fine = fmin(tolerance, COARSEST * z->radius);
+  const double sign = z->convex ? -1 : 1, fine = fmax(tolerance / 2, COARSE * z->radius);
   CagMesh *part = NULL, *first = NULL, *second = NULL, *ball = NULL, *body = NULL, *next;
   *fits = false;
   CagStatus status = zone_part(z, *mesh, &part, err);
+  if (!status) status = check_count(z, part, PART_MOST, err);
   if (!status) status = cag_mesh_offset(part, sign * z->radius, fine, NULL, &first, err);
+  if (!status) status = check_count(z, first, OFFSET_MOST, err);
   if (!status && first->triangle_count > 0)
     status = cag_mesh_offset(first, -sign * (z->radius + fine), fine, NULL, &second, err);
   *fits = !status && second && second->triangle_count > 0;
@@ -62,7 +74,8 @@ CagStatus cag_roll_apply_zone(const CagRollZone *z, double tolerance, CagMesh **
     status = cag_mesh_boolean(z->convex ? CAG_DIFFERENCE : CAG_INTERSECTION, ball, second, NULL,
                               &body, err);
   if (!status && *fits && body->triangle_count > 0) {
-    status = cag_mesh_boolean(z->convex ? CAG_DIFFERENCE : CAG_UNION, *mesh, body, NULL, &next, err);
+    status =
+        cag_mesh_boolean(z->convex ? CAG_DIFFERENCE : CAG_UNION, *mesh, body, NULL, &next, err);
     if (!status) {
       cag_mesh_release(*mesh);
       *mesh = next;

@@ -26,8 +26,7 @@ CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed) {
   p->call = call;
   p->records = (CagValue){.type = CAG_UNSET};
   p->kernel = cag_exacts_kernel(call);
-  if (!p->kernel ||
-      !(meshed ? cag_exacts_or_meshed : cag_exacts_of)(call, argument, &p->solid))
+  if (!p->kernel || !(meshed ? cag_exacts_or_meshed : cag_exacts_of)(call, argument, &p->solid))
     return NULL;
   p->parts = cag_solid_boundaries(p->solid, &n);
   cag_transform_is_similarity(&p->solid->placement, &p->scale);

@@ -198,8 +198,8 @@ static bool fail_rolled(const CagExactParts *p, const BlendWords *words, const C
     snprintf(most, sizeof most, "; the largest %s that fits is %.6g", words->size,
              limit_shown(limit->factor * given));
   return cag_fail_call(p->call, BLEND_SIZE, CAG_ERR_no_blend,
-                       "cannot %s %s, with the %s %.6g: the ball does not fit there%s",
-                       words->verb, edge, words->size, given, most);
+                       "cannot %s %s, with the %s %.6g: the ball does not fit there%s", words->verb,
+                       edge, words->size, given, most);
 }
 
 // Rounds the mesh. *done: it is rounded; else the kernel's error stays, unless the boundary was
